@@ -1,0 +1,45 @@
+"""Floor 0: what every other floor stands on. Needs numpy and the standard library; kernels need numba."""
+
+from .clock import Clock, ExternalClock, FreeClock, PacedClock
+from .errors import (
+    CrowdbotError,
+    DataError,
+    EpisodeError,
+    InputError,
+    MissingExtra,
+    TrialError,
+    UnknownName,
+)
+from .paper import Paper
+from .parameter import Parameter, PerAgent, check_parameters, parameter, parameters, per_agent
+from .pose import Pose, Twist, wrap
+from .random import stream
+from .scene import Scene
+from .walls import Walls
+
+__all__ = [
+    "Clock",
+    "CrowdbotError",
+    "DataError",
+    "EpisodeError",
+    "ExternalClock",
+    "FreeClock",
+    "InputError",
+    "MissingExtra",
+    "PacedClock",
+    "Paper",
+    "Parameter",
+    "PerAgent",
+    "Pose",
+    "Scene",
+    "TrialError",
+    "Twist",
+    "UnknownName",
+    "Walls",
+    "check_parameters",
+    "parameter",
+    "parameters",
+    "per_agent",
+    "stream",
+    "wrap",
+]

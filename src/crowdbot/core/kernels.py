@@ -1,0 +1,94 @@
+"""The one way to compile a kernel, with a cache that cannot be stale.
+
+numba does not notice that a jitted function in another file has changed: the caller keeps its cached machine code.
+So the cache folder is keyed by a hash of every source file that holds kernels, next to numba's own key (its version,
+the processor). All kernels use float64, no fast-math, and numpy's rules for division.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import shutil
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar, cast, overload
+
+import numba
+from numba.core import config
+
+__all__ = ["cache_folder", "is_cold", "kernel"]
+
+STALE_DAYS = 30
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+@overload
+def kernel(function: Function) -> Function: ...
+@overload
+def kernel(*, parallel: bool) -> Callable[[Function], Function]: ...
+def kernel(function: Function | None = None, *, parallel: bool = False) -> Any:
+    """Compile a function of arrays and numbers with numba, cached on disk.
+
+    Works with and without arguments: ``@kernel`` or ``@kernel(parallel=True)``.
+    """
+    if function is None:
+        return functools.partial(_compiled, parallel=parallel)
+    return _compiled(function, parallel=parallel)
+
+
+def _compiled(function: Function, parallel: bool) -> Function:
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(cache_folder())
+    try:
+        jit = numba.njit(cache=True, error_model="numpy", fastmath=False, parallel=parallel)
+        return cast(Function, jit(function))
+    finally:
+        config.CACHE_DIR = before
+
+
+@functools.cache
+def cache_folder() -> Path:
+    """Return the folder of compiled kernels that belongs to the sources as they are now, made when missing."""
+    folder = _cache_root() / f"kernels-{_source_key()}"
+    folder.mkdir(parents=True, exist_ok=True)
+    os.utime(folder)
+    _remove_stale(folder)
+    return folder
+
+
+def is_cold() -> bool:
+    """Return whether no kernel has been compiled yet for these sources."""
+    return not any(cache_folder().rglob("*.nbc"))
+
+
+def _source_key() -> str:
+    sum_ = hashlib.blake2b(digest_size=8)
+    for path in sorted(Path(__file__).parents[1].rglob("*.py")):
+        source = path.read_bytes()
+        if b"@kernel" in source or path.name == "kernels.py":
+            sum_.update(path.name.encode() + b"\0" + source)
+    return sum_.hexdigest()
+
+
+def _cache_root() -> Path:
+    chosen = os.environ.get("CROWDBOT_CACHE")
+    if chosen:
+        return Path(chosen)
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")) / "crowdbot"
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches" / "crowdbot"
+    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "crowdbot"
+
+
+def _remove_stale(keep: Path) -> None:
+    for folder in keep.parent.glob("kernels-*"):
+        try:
+            if folder != keep and time.time() - folder.stat().st_mtime > STALE_DAYS * 86400:
+                shutil.rmtree(folder)
+        except OSError:
+            continue  # another process is using or removing it

@@ -1,0 +1,180 @@
+"""Plugs: from a name or an address to a class, from text attributes to its fields.
+
+Built-in names are the classes in a room's ``__all__``, written in kebab-case. Anything else is an address:
+``package.module:Name`` or ``file.py:Name``. The same words work in Python, XML and on the command line.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import importlib.util
+import inspect
+import re
+import sys
+import types
+import typing
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .errors import InputError, UnknownName, did_you_mean
+
+__all__ = ["built_in", "find", "kebab", "read"]
+
+
+def kebab(name: str) -> str:
+    """Return a class name as it is written on the command line and in XML.
+
+    >>> kebab("ConstantVelocity"), kebab("ORCA"), kebab("Lidar2D"), kebab("ORCANavigator")
+    ('constant-velocity', 'orca', 'lidar2d', 'orca-navigator')
+    """
+    return re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "-", name).lower()
+
+
+def built_in(room: types.ModuleType, contract: type) -> dict[str, type]:
+    """Return the concrete classes of ``contract`` in ``room.__all__`` by their kebab-case names, sorted."""
+    classes = (getattr(room, name) for name in room.__all__)
+    found = {
+        kebab(value.__name__): value
+        for value in classes
+        if inspect.isclass(value)
+        and issubclass(value, contract)
+        and not inspect.isabstract(value)
+        and value is not contract
+    }
+    return dict(sorted(found.items()))
+
+
+def find(name: str, room: types.ModuleType, contract: type, *, folder: Path | None = None, trust: bool = True) -> type:
+    """Return the class that ``name`` means: a built-in name or an address.
+
+    Args:
+        name: ``social-force``, ``SocialForce``, ``package.module:Name`` or ``file.py:Name``.
+        room: the package of the built-in ones.
+        contract: what the class must be.
+        folder: where relative files are looked up (default: the working folder).
+        trust: when False, only files inside ``folder`` are loaded; that is how trials from elsewhere are read.
+
+    Raises:
+        UnknownName: no built-in has this name.
+        InputError: the address cannot be loaded, is not of the contract, or is not trusted.
+    """
+    known = built_in(room, contract)
+    plain = {key.replace("-", ""): value for key, value in known.items()}
+    short = name.strip().replace("-", "").replace("_", "").lower()
+    if short in plain:
+        return plain[short]
+    if ":" not in name:
+        raise UnknownName(_spoken(contract), name, known)
+    place, _, attribute = name.rpartition(":")
+    module = _load_file(place, folder or Path.cwd(), trust) if place.endswith(".py") else _load(place, trust)
+    value = getattr(module, attribute, None)
+    if not (inspect.isclass(value) and issubclass(value, contract)) or inspect.isabstract(value):
+        here = [n for n, v in vars(module).items() if inspect.isclass(v) and issubclass(v, contract)]
+        raise InputError(f"{name} is not a concrete {contract.__name__}; {place} holds {', '.join(here) or 'none'}")
+    return value
+
+
+def read(cls: type, attributes: Mapping[str, str], where: str = "") -> Any:
+    """Make an instance of a dataclass from text attributes (kebab-case names allowed).
+
+    Raises:
+        InputError: an attribute is unknown, missing or has a value that its field cannot take.
+    """
+    prefix = f"{where}: " if where else ""
+    hints = typing.get_type_hints(cls)
+    fields = {f.name: f for f in dataclasses.fields(cls) if f.init}
+    values: dict[str, Any] = {}
+    for key, text in attributes.items():
+        name = key.replace("-", "_")
+        if name not in fields:
+            known = [f.replace("_", "-") for f in fields]
+            raise InputError(
+                f"{prefix}{kebab(cls.__name__)} has no attribute {key!r}{did_you_mean(key, known)};"
+                f" it takes {', '.join(known) or 'none'}"
+            )
+        values[name] = _convert(text, hints[name], f"{prefix}{kebab(cls.__name__)} {key}")
+    missing = [
+        f.name
+        for f in fields.values()
+        if f.name not in values and f.default is dataclasses.MISSING and f.default_factory is dataclasses.MISSING
+    ]
+    if missing:
+        raise InputError(f"{prefix}{kebab(cls.__name__)} needs the attribute {missing[0].replace('_', '-')!r}")
+    try:
+        return cls(**values)
+    except InputError as error:
+        raise type(error)(f"{prefix}{error}") from None
+
+
+def _convert(text: str, kind: Any, what: str) -> Any:
+    union = isinstance(kind, types.UnionType) or typing.get_origin(kind) is typing.Union
+    options = typing.get_args(kind) if union else (kind,)
+    for option in options:
+        if option is type(None):
+            continue
+        if hasattr(option, "parse"):
+            try:
+                return option.parse(text)
+            except ValueError as error:
+                raise InputError(f"{what}: {error}") from None
+        if option is bool and text.lower() in ("true", "false"):
+            return text.lower() == "true"
+        if option is int and re.fullmatch(r"[+-]?\d{1,18}", text.strip()):
+            return int(text)
+        if option is float:
+            return _number(text, what)
+        if option is str:
+            return text
+        if typing.get_origin(option) is tuple:
+            return tuple(_number(part, what) for part in text.replace(",", " ").split())
+    names = " or ".join(getattr(o, "__name__", str(o)) for o in options if o is not type(None))
+    raise InputError(f"{what}: {text!r} is not a {names}")
+
+
+def _number(text: str, what: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise InputError(f"{what}: {text!r} is not a number") from None
+    if not np.isfinite(value):
+        raise InputError(f"{what}: {text!r} is not finite")
+    return value
+
+
+def _spoken(contract: type) -> str:
+    return kebab(contract.__name__).replace("-", " ")
+
+
+def _load(place: str, trust: bool) -> types.ModuleType:
+    if not trust:
+        raise InputError(f"the module {place!r} is not loaded from here; pass --trust to allow it")
+    try:
+        return importlib.import_module(place)
+    except ImportError as error:
+        raise InputError(f"the module {place!r} cannot be imported: {error}") from None
+
+
+def _load_file(place: str, folder: Path, trust: bool) -> types.ModuleType:
+    path = (folder / place).resolve()
+    if not trust and not path.is_relative_to(folder.resolve()):
+        raise InputError(f"the file {place!r} lies outside {folder}; pass --trust to allow it")
+    if not path.is_file():
+        raise InputError(f"there is no file {path}")
+    name = f"crowdbot_plug_{path.stem}_{abs(hash(str(path)))}"
+    if name in sys.modules:
+        return sys.modules[name]
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        del sys.modules[name]
+        raise InputError(f"{path} cannot be loaded: {type(error).__name__}: {error}") from error
+    return module
