@@ -41,13 +41,14 @@ def kernel(function: Function | None = None, *, parallel: bool = False) -> Any:
 
 
 def _compiled(function: Function, parallel: bool) -> Function:
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(cache_folder())
+    settings: Any = config
+    before = settings.CACHE_DIR
+    settings.CACHE_DIR = str(cache_folder())
     try:
         jit = numba.njit(cache=True, error_model="numpy", fastmath=False, parallel=parallel)
         return cast(Function, jit(function))
     finally:
-        config.CACHE_DIR = before
+        settings.CACHE_DIR = before
 
 
 @functools.cache
