@@ -12,7 +12,9 @@ def _shared(folder: str) -> Path:
     root = Path(os.environ.get("CROWDBOT_SHARED", Path(__file__).parents[2] / "shared"))
     path = root / folder
     if not path.is_dir():
-        pytest.fail(f"{path} is missing: set CROWDBOT_SHARED to the folder that holds data/ and reference/", pytrace=False)
+        pytest.fail(
+            f"{path} is missing: set CROWDBOT_SHARED to the folder that holds data/ and reference/", pytrace=False
+        )
     return path
 
 

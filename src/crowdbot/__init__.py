@@ -1,1 +1,83 @@
-"""crowdbot: predict how a crowd moves in the next seconds, and test robots in simulated crowds."""
+"""crowdbot: predict how a crowd moves in the next seconds, and test robots in simulated crowds.
+
+The names below are the front door; each is loaded when it is first used.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0"
+
+_ROOMS = {
+    "core": ("CrowdbotError", "Paper", "Pose", "Scene", "Twist", "Walls", "stream"),
+    "data": ("Forecast", "Trajectories", "Windows", "load", "save"),
+    "models": ("ORCA", "CrowdModel", "CurrentDirection", "SocialForce"),
+    "sensors": ("Lidar2D", "Sensor"),
+    "metrics": ("score",),
+    "calibration": ("Calibrator",),
+    "navigation": ("Navigator", "Observation"),
+    "prediction": (
+        "ConstantAcceleration",
+        "ConstantVelocity",
+        "Kalman",
+        "Predictor",
+        "SampledConstantVelocity",
+        "Simulated",
+    ),
+    "trials": ("Episode", "Trial", "load_trial", "replay"),
+    "benchmark": ("cite",),
+}
+_HOME = {name: room for room, names in _ROOMS.items() for name in names}
+
+__all__ = [  # noqa: PLE0604
+    *_HOME,
+    "__version__",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        return getattr(importlib.import_module(f"crowdbot.{_HOME[name]}"), name)
+    raise AttributeError(f"module 'crowdbot' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_HOME])
+
+
+if TYPE_CHECKING:
+    from .benchmark import cite as cite
+    from .calibration import Calibrator as Calibrator
+    from .core import CrowdbotError as CrowdbotError
+    from .core import Paper as Paper
+    from .core import Pose as Pose
+    from .core import Scene as Scene
+    from .core import Twist as Twist
+    from .core import Walls as Walls
+    from .core import stream as stream
+    from .data import Forecast as Forecast
+    from .data import Trajectories as Trajectories
+    from .data import Windows as Windows
+    from .data import load as load
+    from .data import save as save
+    from .metrics import score as score
+    from .models import ORCA as ORCA
+    from .models import CrowdModel as CrowdModel
+    from .models import CurrentDirection as CurrentDirection
+    from .models import SocialForce as SocialForce
+    from .navigation import Navigator as Navigator
+    from .navigation import Observation as Observation
+    from .prediction import ConstantAcceleration as ConstantAcceleration
+    from .prediction import ConstantVelocity as ConstantVelocity
+    from .prediction import Kalman as Kalman
+    from .prediction import Predictor as Predictor
+    from .prediction import SampledConstantVelocity as SampledConstantVelocity
+    from .prediction import Simulated as Simulated
+    from .sensors import Lidar2D as Lidar2D
+    from .sensors import Sensor as Sensor
+    from .trials import Episode as Episode
+    from .trials import Trial as Trial
+    from .trials import load_trial as load_trial
+    from .trials import replay as replay

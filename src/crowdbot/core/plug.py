@@ -14,7 +14,7 @@ import re
 import sys
 import types
 import typing
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +22,7 @@ import numpy as np
 
 from .errors import InputError, UnknownName, did_you_mean
 
-__all__ = ["built_in", "find", "kebab", "read"]
+__all__ = ["built_in", "find", "kebab", "problems", "read"]
 
 
 def kebab(name: str) -> str:
@@ -108,6 +108,39 @@ def read(cls: type, attributes: Mapping[str, str], where: str = "") -> Any:
         return cls(**values)
     except InputError as error:
         raise type(error)(f"{prefix}{error}") from None
+
+
+def problems(cls: type, attributes: Mapping[str, str], also: Iterable[str] = ()) -> list[str]:
+    """Return a sentence for every attribute that is unknown, missing or cannot be converted, not only the first.
+
+    Args:
+        cls: a dataclass.
+        attributes: as :func:`read` takes them.
+        also: attributes that belong to somebody else and may be what was meant.
+
+    >>> from crowdbot.core import Paper
+    >>> problems(Paper, {"yeer": "1995", "year": "x", "authors": "a", "title": "t", "venue": "v"})[0]
+    "has no attribute 'yeer', did you mean 'year'?; it takes authors, year, title, venue, doi"
+    """
+    hints = typing.get_type_hints(cls)
+    fields = {f.name: f for f in dataclasses.fields(cls) if f.init}
+    known = [*(name.replace("_", "-") for name in fields), *also]
+    found = []
+    for key, text in attributes.items():
+        name = key.replace("-", "_")
+        if name not in fields:
+            found.append(f"has no attribute {key[:40]!r}{did_you_mean(key, known)}; it takes {', '.join(known) or 'none'}")
+            continue
+        try:
+            _convert(text, hints[name], key)
+        except InputError as error:
+            found.append(str(error))
+    given = {key.replace("-", "_") for key in attributes}
+    for field in fields.values():
+        needed = field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
+        if needed and field.name not in given:
+            found.append(f"needs the attribute {field.name.replace('_', '-')!r}")
+    return found
 
 
 def _convert(text: str, kind: Any, what: str) -> Any:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -37,9 +38,11 @@ class Scene:
         active: ``[E, A]``; an absent agent is not active.
         visible: ``[E, A]``; whether the others react to it.
         external: ``[E, A]``; moved from outside (a robot, a replayed person): models leave it alone but see it.
+        group: ``[E, A]`` int, people with the same number walk together; -1 walks alone.
         walls: shared by all environments.
         preferred_velocity: ``[E, A, 2]`` [m/s], or None when it follows from goal and preferred speed.
         time: [s].
+        memory: what a model keeps from step to step, by name, each ``[E, A, ...]``; most keep nothing.
 
     >>> scene = Scene.of([[0.0, 0.0], [4.0, 0.0]], [[1.0, 0.0], [-1.0, 0.0]], goal=[[9.0, 0.0], [-9.0, 0.0]])
     >>> scene.position.shape, float(scene.advanced(scene.velocity, 0.5).position[0, 0, 0])
@@ -56,9 +59,11 @@ class Scene:
     active: Bools
     visible: Bools
     external: Bools
+    group: NDArray[np.int64]
     walls: Walls
     preferred_velocity: Floats | None = None
     time: float = 0.0
+    memory: Mapping[str, Floats] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -75,6 +80,7 @@ class Scene:
         active: ArrayLike = True,
         visible: ArrayLike = True,
         external: ArrayLike = False,
+        group: ArrayLike = -1,
         walls: Any = (),
         time: float = 0.0,
     ) -> Scene:
@@ -104,6 +110,7 @@ class Scene:
             active=here,
             visible=np.broadcast_to(np.asarray(visible, dtype=np.bool_), shape).copy(),
             external=np.broadcast_to(np.asarray(external, dtype=np.bool_), shape).copy(),
+            group=np.broadcast_to(np.asarray(group, dtype=np.int64), shape).copy(),
             walls=Walls.of(walls),
             preferred_velocity=wish,
             time=float(time),
@@ -167,11 +174,12 @@ class Scene:
         if self.shape[0] != 1:
             raise InputError(f"only a scene with E = 1 can be repeated, this one has E = {self.shape[0]}")
         arrays: dict[str, Any] = {
-            field.name: np.repeat(getattr(self, field.name), count, axis=0)
-            for field in dataclasses.fields(self)
-            if isinstance(getattr(self, field.name), np.ndarray)
+            part.name: np.repeat(getattr(self, part.name), count, axis=0)
+            for part in dataclasses.fields(self)
+            if isinstance(getattr(self, part.name), np.ndarray)
         }
-        return dataclasses.replace(self, **arrays)
+        memory = {name: np.repeat(value, count, axis=0) for name, value in self.memory.items()}
+        return dataclasses.replace(self, **arrays, memory=memory)
 
     def digest(self) -> str:
         """Return a hash of every moving array, equal exactly when the bytes are equal."""

@@ -26,6 +26,7 @@ class Windows:
         protocol: name of the protocol that cut the windows.
         source: name of the recording.
         walls: rings ``[N, 2]`` [m] of what cannot be walked on, empty when unknown.
+        units: ``m``, or ``px`` when the recording was not turned into metres: then every [m] above is pixels.
     """
 
     position: NDArray[np.float64]
@@ -38,6 +39,7 @@ class Windows:
     protocol: str
     source: str
     walls: tuple[NDArray[np.float64], ...] = ()
+    units: str = "m"
 
     def __len__(self) -> int:
         """Return the number of windows."""

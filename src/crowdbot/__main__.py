@@ -1,0 +1,5 @@
+"""``python -m crowdbot``."""
+
+from crowdbot.cli import main
+
+raise SystemExit(main())

@@ -1,0 +1,121 @@
+"""Catalogue: what is built in, by kind, and the papers behind it."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+from typing import Any
+
+from crowdbot.core import InputError, Paper, UnknownName
+from crowdbot.core.plug import built_in
+
+__all__ = ["catalogue", "cite", "papers"]
+
+KINDS = {
+    "models": ("models", "CrowdModel"),
+    "goals": ("models", "Goal"),
+    "sensors": ("sensors", "Sensor"),
+    "drives": ("world", "Drive"),
+    "navigators": ("navigation", "Navigator"),
+    "costs": ("calibration", "Cost"),
+    "searches": ("calibration", "Search"),
+    "predictors": ("prediction", "Predictor"),
+}
+"""Kinds of plugs: the room that holds them and the contract that they keep."""
+
+REPORT = Paper(
+    "EU H2020 CROWDBOT project",
+    2019,
+    "D4.2 Crowd Simulator, intermediate version",
+    "Public deliverable of ICT-25-2016-2017",
+)
+PROGRAM = Paper(
+    "The crowdbot authors",
+    2026,
+    "crowdbot: crowd prediction and robot testing in simulated crowds",
+    "Software, Apache-2.0",
+)
+
+
+def catalogue(kind: str | None = None) -> dict[str, dict[str, str]]:
+    """Return name -> one line, for one kind or for all.
+
+    >>> "orca" in catalogue("models")["models"]
+    True
+    """
+    words = {"trials": _trials, "protocols": _protocols, "formats": _formats}
+    known = [*KINDS, *words]
+    if kind is not None and kind not in known:
+        raise UnknownName("kind", kind, known)
+    found: dict[str, dict[str, str]] = {}
+    for name in known if kind is None else [kind]:
+        if name in KINDS:
+            found[name] = {key: _first_line(cls) for key, cls in _classes(name).items()}
+        else:
+            found[name] = words[name]()
+    return found
+
+
+def papers(name: str) -> list[Paper]:
+    """Return the papers behind a built-in name; ``crowdbot`` itself has its report.
+
+    Raises:
+        InputError: no built-in has this name, or what it means comes from no paper.
+    """
+    if name.lower() == "crowdbot":
+        return [PROGRAM, REPORT]
+    plain = name.replace("-", "").replace("_", "").lower()
+    classes = {f"{kind} {key}": cls for kind in KINDS for key, cls in _classes(kind).items()}
+    meant = [cls for key, cls in classes.items() if key.split()[1].replace("-", "") == plain]
+    if not meant:
+        raise UnknownName("name", name, {key.split()[1] for key in classes})
+    found = list(dict.fromkeys(paper for cls in meant for paper in _papers_of(cls)))
+    if not found:
+        raise InputError(f"{name} comes from no paper; to cite crowdbot itself: crowdbot cite")
+    return found
+
+
+def cite(thing: Any) -> str:
+    """Return the papers behind a name, a class or an instance, one a line.
+
+    >>> print(cite("orca").splitlines()[0])
+    van den Berg, Guy, Lin & Manocha (2011). Reciprocal n-body collision avoidance. Robotics Research, \
+STAR 70, 3-19. https://doi.org/10.1007/978-3-642-19457-3_1
+    """
+    found = papers(thing) if isinstance(thing, str) else _papers_of(thing)
+    return "\n".join(str(paper) for paper in found)
+
+
+def _papers_of(thing: Any) -> list[Paper]:
+    paper = getattr(thing, "paper", None)
+    if isinstance(paper, Paper):
+        return [paper]
+    return list(paper or ())
+
+
+def _classes(kind: str) -> dict[str, type]:
+    room_name, contract = KINDS[kind]
+    room = importlib.import_module(f"crowdbot.{room_name}")
+    return built_in(room, getattr(room, contract))
+
+
+def _first_line(thing: Any) -> str:
+    return (inspect.getdoc(thing) or "").split("\n\n")[0].replace("\n", " ")
+
+
+def _trials() -> dict[str, str]:
+    from crowdbot.trials import builtin_trials, load_trial
+
+    return {name: load_trial(name).about for name in builtin_trials()}
+
+
+def _protocols() -> dict[str, str]:
+    from crowdbot.data import PROTOCOLS
+
+    return dict(PROTOCOLS)
+
+
+def _formats() -> dict[str, str]:
+    from crowdbot.data import FORMATS
+
+    return dict(FORMATS)

@@ -1,0 +1,130 @@
+"""Demo: the main job end to end on built-in input: run a trial, predict its people, write a report."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from crowdbot.core.plug import kebab
+
+from .report import Predicted, write_report
+
+if TYPE_CHECKING:
+    from crowdbot.calibration import Fit
+    from crowdbot.data import Windows
+    from crowdbot.metrics import Score
+    from crowdbot.trials import Episode, Trial
+
+__all__ = ["Demo", "run_demo"]
+
+TRIAL = "crossing-flows"
+STEP = 0.4
+"""Predictions are made every 0.4 s, the step of the field's data sets."""
+OBSERVE, PREDICT = 8, 12
+NEAR = 5.0
+"""People within this distance [m] of the robot are predicted."""
+OTHER_SEED = 1000
+"""The crowd that the simulated predictor is calibrated on has the demo's seed plus this."""
+BUDGET = 64
+
+
+@dataclass(frozen=True)
+class Demo:
+    """What the demo made: the episode, the scores of the predictors and the files."""
+
+    episode: Episode
+    scores: tuple[Score, ...]
+    episode_file: Path
+    report_file: Path
+    caption: str
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what ``crowdbot demo --json`` prints."""
+        return {
+            "trial": self.episode.trial.name,
+            "seed": self.episode.seed,
+            "outcome": self.episode.outcome,
+            "digest": self.episode.digest,
+            "metrics": self.episode.metrics,
+            "prediction": {score.predictor: score.as_dict() for score in self.scores},
+            "episode": str(self.episode_file),
+            "report": str(self.report_file),
+        }
+
+
+def run_demo(out: Path, seed: int | None = None, progress: Callable[[str, float], None] | None = None) -> Demo:
+    """Run ``crossing-flows``, predict the people near its robot and write ``episode.mcap`` and ``report.html``.
+
+    Args:
+        out: folder of the results, made when missing.
+        seed: of everything random; None is the trial's own.
+        progress: called with what is being done and the share that is done.
+    """
+    from crowdbot.trials import load_trial
+
+    report = progress or (lambda what, share: None)
+    trial = load_trial(TRIAL)
+    out.mkdir(parents=True, exist_ok=True)
+    file = out / "episode.mcap"
+    episode = trial.run(seed=seed, out=file, progress=lambda share: report("1 run the trial", share))
+    report("1 run the trial", 1.0)
+    fit = _calibrated(trial, episode.seed + OTHER_SEED, lambda share: report("2 calibrate the simulated crowd", share))
+    past, future = episode.tracks(STEP).windows(OBSERVE, PREDICT, near=NEAR)
+    predicted = _predicted(fit, past, future, episode.seed, lambda share: report("3 predict the people", share))
+    report("4 write the report", 0.0)
+    commands = _commands(out, episode, fit)
+    page = write_report(out / "report.html", episode, past, future, predicted, commands, _seen(trial, fit))
+    report("4 write the report", 1.0)
+    scores = tuple(one.score for one in predicted)
+    caption = f"protocol {scores[0].protocol}; people within {NEAR:g} m of the robot; means over persons"
+    return Demo(episode, scores, file, page, caption)
+
+
+def _calibrated(trial: Trial, seed: int, progress: Callable[[float], None]) -> Fit:
+    """Fit one ORCA parameter set to another crowd of the same trial, so that no scored person is seen."""
+    from crowdbot.calibration import Calibrator
+
+    past, _ = trial.run(seed=seed).tracks(STEP).windows(PREDICT, 1)
+    return Calibrator("orca", budget=BUDGET).fit(past[::4], seed=seed, progress=progress)
+
+
+def _predicted(
+    fit: Fit, past: Windows, future: Windows, seed: int, progress: Callable[[float], None]
+) -> list[Predicted]:
+    from crowdbot.core import stream
+    from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, Kalman, Simulated, evaluate
+
+    simulated = Simulated(fit.model, radius=fit.values["radius"])
+    found = []
+    for number, predictor in enumerate((ConstantVelocity(), ConstantAcceleration(), Kalman(), simulated), start=1):
+        score = evaluate(predictor, past, future, seed=seed)
+        found.append(Predicted(predictor.predict(past, PREDICT, rng=stream(seed, "report")), score))
+        progress(number / 4)
+    return found
+
+
+def _commands(out: Path, episode: Episode, fit: Fit) -> dict[str, str]:
+    file = out / "episode.mcap"
+    scored = f"crowdbot predict --data {file} --near {NEAR:g} --predictor"
+    values = " ".join(f"{name.replace('_', '-')}={value!r}" for name, value in fit.values.items())
+    return {
+        f"crowdbot run {TRIAL} --seed {episode.seed} --out {out}": "the trial",
+        f"crowdbot replay {file}": "the same bytes again",
+        f"{scored} constant-velocity": "a row of the prediction table",
+        f"{scored} constant-acceleration": "another",
+        f"{scored} kalman": "another",
+        f"{scored} simulated --model orca --set {values}": "the calibrated crowd",
+        f"crowdbot demo --seed {episode.seed} --out {out}": "all of this page",
+    }
+
+
+def _seen(trial: Trial, fit: Fit) -> str:
+    crowd = kebab(type(trial.crowd).__name__)
+    return (
+        f"Predictors know the last {OBSERVE * STEP:.1f} s of everyone's true positions, without noise, and no goals."
+        f" The crowd of this trial walks by {crowd}; the simulated predictor is ORCA, calibrated in"
+        f" {fit.evaluations} evaluations on a crowd with another seed. A simulated crowd is easier to predict than a"
+        " real one: for real recordings see crowdbot predict."
+    )

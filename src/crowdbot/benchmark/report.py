@@ -1,0 +1,268 @@
+"""Report: one self-contained page about a recorded trial and the predictions of its people."""
+
+from __future__ import annotations
+
+import html
+import importlib.resources
+import io
+import json
+import math
+import os
+import platform
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from string import Template
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from crowdbot.data import Forecast, Windows
+    from crowdbot.metrics import Score
+    from crowdbot.trials import Episode
+
+__all__ = ["Predicted", "write_report"]
+
+COLORS = ("#e69f00", "#cc79a7", "#009e73", "#0072b2", "#d55e00", "#56b4e9")
+"""Colours that people with colour blindness can tell apart (Okabe & Ito)."""
+FRAME = 0.1
+"""Period of the animation [s]."""
+OPENING = 5.0
+"""The page opens at this time [s], when the robot is among people."""
+MARGIN = 0.6
+
+
+@dataclass(frozen=True)
+class Predicted:
+    """What one predictor said about the windows of an episode: its forecasts and their score."""
+
+    forecast: Forecast
+    score: Score
+
+
+def write_report(
+    path: Path,
+    episode: Episode,
+    past: Windows,
+    future: Windows,
+    predicted: Sequence[Predicted],
+    commands: Mapping[str, str],
+    seen: str,
+) -> Path:
+    """Write the page; nothing is left behind when it fails.
+
+    Args:
+        path: file to write.
+        episode: the recorded trial.
+        past, future: windows of its people at the prediction instants, ``[W, T, A, ...]``.
+        predicted: one entry for each predictor, over the same windows.
+        commands: what each part is reproduced by.
+        seen: one sentence about what the predictors know.
+    """
+    page = Template(_asset("page.html")).substitute(
+        title=html.escape(f"{episode.trial.name}: {episode.outcome}"),
+        lead=html.escape(episode.trial.about),
+        style=_asset("page.css"),
+        script=_asset("page.js"),
+        cards=_cards(episode, predicted),
+        seen=html.escape(seen),
+        prediction=_prediction_table(predicted, future),
+        horizon=_horizon_chart(predicted, future.dt),
+        horizon_words=f"Mean distance to the true position over the horizon, over the same {predicted[0].score.persons}"
+        " person-windows.",
+        navigation=_navigation_table(episode),
+        commands=html.escape("\n".join(f"{command:<72}  # {what}" for what, command in commands.items())),
+        environment=html.escape(_environment(episode)),
+        data=_data(episode, past, future, predicted),
+    )
+    draft = path.with_suffix(".part")
+    draft.write_text(page, encoding="utf-8")
+    os.replace(draft, path)
+    return path
+
+
+def _asset(name: str) -> str:
+    return importlib.resources.files("crowdbot").joinpath("assets", "report", name).read_text(encoding="utf-8")
+
+
+def _cards(episode: Episode, predicted: Sequence[Predicted]) -> str:
+    best = min(predicted, key=lambda one: one.score.ade).score
+    people = episode.position.shape[1] - len(episode.robots)
+    cards = [
+        (episode.outcome, "outcome", "good" if episode.outcome == "success" else "bad"),
+        (f"{episode.times[-1]:.1f} s", "simulated time", ""),
+        (str(people), "people", ""),
+        (f"{episode.metrics['min_clearance']:.2f} m", "nearest anyone came to the robot, surface to surface", ""),
+        (
+            f"{best.ade:.2f} m",
+            f"mean error over {best.dt * len(best.horizon):.1f} s of the best predictor, {best.predictor}",
+            "",
+        ),
+    ]
+    return "".join(
+        f'<li class="{kind}"><b>{html.escape(value)}</b><span>{html.escape(words)}</span></li>'
+        for value, words, kind in cards
+    )
+
+
+def _prediction_table(predicted: Sequence[Predicted], future: Windows) -> str:
+    best, marked = min(one.score.ade for one in predicted), ' class="best"'
+    rows = "".join(
+        f"<tr{marked if one.score.ade == best else ''}><td>{html.escape(one.score.predictor)}</td>"
+        f"<td>{one.score.windows}</td><td>{one.score.persons}</td><td>{one.score.ade:.3f}</td>"
+        f"<td>{one.score.fde:.3f}</td><td>{1e3 * one.score.seconds_per_window:.2f}</td></tr>"
+        for one in predicted
+    )
+    horizon = future.dt * future.position.shape[1]
+    return (
+        "<table><thead><tr><th>predictor</th><th>windows</th><th>persons</th><th>ADE [m]</th><th>FDE [m]</th>"
+        f"<th>ms per window</th></tr></thead><tbody>{rows}</tbody></table>"
+        f'<p class="hint">Protocol {html.escape(predicted[0].score.protocol)}, {horizon:.1f} s ahead every'
+        f" {future.dt} s; means over persons. ADE: mean distance over the horizon; FDE: distance at its end.</p>"
+    )
+
+
+def _navigation_table(episode: Episode) -> str:
+    from crowdbot.metrics import NAVIGATION_METRICS
+
+    rows = "".join(
+        f"<tr><td>{html.escape(name.replace('_', ' '))}</td><td>{_spoken(value)}</td><td>{html.escape(unit)}</td>"
+        f"<td>{html.escape(words)}</td></tr>"
+        for name, value in episode.metrics.items()
+        for unit, words in [NAVIGATION_METRICS.get(name.rpartition(".")[2], ("", ""))]
+    )
+    head = "<tr><th>metric</th><th>value</th><th>unit</th><th>definition</th></tr>"
+    return f'<table class="words"><thead>{head}</thead><tbody>{rows}</tbody></table>'
+
+
+def _spoken(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.3f}" if math.isfinite(value) else ("-" if math.isnan(value) else "none")
+    return html.escape(str(value))
+
+
+def _environment(episode: Episode) -> str:
+    import numba
+
+    from crowdbot import __version__
+
+    return (
+        f"crowdbot {__version__}, Python {platform.python_version()}, numpy {np.__version__},"
+        f" numba {numba.__version__}, {platform.system()} {platform.machine()};"
+        f" seed {episode.seed}, digest {episode.digest}"
+    )
+
+
+def _horizon_chart(predicted: Sequence[Predicted], dt: float) -> str:
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    with rc_context({"svg.hashsalt": "crowdbot", "svg.fonttype": "none", "font.family": "sans-serif", "font.size": 10}):
+        figure = Figure(figsize=(7.6, 3.4), layout="constrained")
+        axes = figure.add_subplot()
+        for one, color in zip(predicted, COLORS, strict=False):
+            curve = one.score.horizon
+            axes.plot(dt * np.arange(1, len(curve) + 1), curve, color=color, label=one.score.predictor, marker=".")
+        axes.set_xlabel("time ahead [s]")
+        axes.set_ylabel("mean error [m]")
+        axes.set_ylim(bottom=0.0)
+        axes.grid(alpha=0.3)
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.legend(frameon=False)
+        text = io.StringIO()
+        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
+    return text.getvalue()[text.getvalue().index("<svg") :]
+
+
+def _data(episode: Episode, past: Windows, future: Windows, predicted: Sequence[Predicted]) -> str:
+    robot = episode.robots[0]
+    chosen = _frames(episode.times)
+    times = episode.times[chosen]
+    people = [a for a in range(episode.position.shape[1]) if a not in episode.robots]
+    spec = episode.trial.robots[0]
+    page = {
+        "bounds": _bounds(episode),
+        "walls": [_rounded(ring) for ring in episode.walls],
+        "times": _rounded(times),
+        "opening": int(np.searchsorted(times, OPENING)),
+        "people": [_track(episode, a, chosen) for a in people],
+        "robot": {
+            **_track(episode, robot, chosen),
+            "radius": spec.radius,
+            "goal": [*spec.goal.position, spec.goal.tolerance],
+        },
+        "scans": _scans(episode),
+        "forecasts": _forecasts(past, future, predicted, times[0]),
+    }
+    return json.dumps(page, separators=(",", ":"), allow_nan=False).replace("</", "<\\/")
+
+
+def _frames(times: np.ndarray) -> np.ndarray:
+    stride = max(1, round(FRAME / float(times[1] - times[0])))
+    return np.arange(0, len(times), stride)
+
+
+def _bounds(episode: Episode) -> list[float]:
+    points = episode.position[episode.active]
+    corners = np.concatenate([points, *episode.walls])
+    low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
+    return [float(low[0]), float(low[1]), float(high[0]), float(high[1])]
+
+
+def _track(episode: Episode, agent: int, frames: np.ndarray) -> dict[str, Any]:
+    here = episode.active[frames, agent]
+    place, heading = episode.position[frames, agent], episode.heading[frames, agent]
+    return {
+        "r": round(float(episode.radius[agent]), 3),
+        "x": _or_none(place[:, 0], here),
+        "y": _or_none(place[:, 1], here),
+        "h": _or_none(heading, here),
+    }
+
+
+def _scans(episode: Episode) -> dict[str, Any]:
+    scans = episode.scans
+    if not scans:
+        return {"times": [], "poses": [], "angles": [], "ranges": []}
+    return {
+        "times": _rounded([scan.time for scan in scans]),
+        "poses": [_rounded(scan.pose) for scan in scans],
+        "angles": [round(float(a), 4) for a in scans[0].angles],
+        "ranges": [_or_none(scan.ranges, np.isfinite(scan.ranges)) for scan in scans],
+    }
+
+
+def _forecasts(past: Windows, future: Windows, predicted: Sequence[Predicted], begin: float) -> dict[str, Any]:
+    observed = past.position.shape[1]
+    instants = [float(begin + past.dt * (frame + observed - 1)) for frame in range(len(past))]
+    return {
+        "times": _rounded(instants),
+        "period": past.dt,
+        "truth": _paths(past, future, future.position),
+        "predictors": [
+            {
+                "name": one.score.predictor,
+                "color": color,
+                "shown": index in (0, len(predicted) - 1),
+                "paths": _paths(past, future, one.forecast.position[:, 0]),
+            }
+            for index, (one, color) in enumerate(zip(predicted, COLORS, strict=False))
+        ],
+    }
+
+
+def _paths(past: Windows, future: Windows, position: np.ndarray) -> list[list[list[list[float]]]]:
+    now = past.position[:, -1]
+    return [
+        [_rounded(np.concatenate([now[w, a][None], position[w, :, a]])) for a in np.flatnonzero(future.scored[w])]
+        for w in range(len(past))
+    ]
+
+
+def _rounded(values: Any) -> Any:
+    return np.round(np.asarray(values, dtype=float), 3).tolist()
+
+
+def _or_none(values: np.ndarray, here: np.ndarray) -> list[float | None]:
+    return [round(float(v), 3) if ok else None for v, ok in zip(values, here, strict=True)]

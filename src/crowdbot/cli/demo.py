@@ -1,0 +1,53 @@
+"""``crowdbot demo``: the main job on built-in input, then a report."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from pathlib import Path
+
+from .output import add_json, note, number, print_json, print_metrics, print_table, progress
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument(
+        "--out", type=Path, default=Path("demo"), metavar="DIR", help="folder of the results (default demo)"
+    )
+    parser.add_argument("--seed", type=int, help="seed of everything random (default: the trial's own)")
+    add_json(parser)
+
+
+def main(options: argparse.Namespace) -> int:
+    """Run a trial, predict its people, write the report."""
+    from crowdbot.benchmark import run_demo
+    from crowdbot.core.kernels import cache_folder, is_cold
+
+    if is_cold() and not options.json:
+        note(f"first run: compiling the kernels (ORCA, social force, LiDAR) into {cache_folder()}, about a minute")
+    begin = time.perf_counter()
+    with progress(options.json) as report:
+        done = run_demo(options.out, seed=options.seed, progress=report)
+    seconds = time.perf_counter() - begin
+    if options.json:
+        print_json({**done.as_dict(), "wall_seconds": seconds})
+        return 0
+    episode = done.episode
+    print_metrics(f"{episode.trial.name}, seed {episode.seed}: {episode.outcome}", episode.metrics)
+    print_table(
+        "prediction of the people near the robot, next 4.8 s",
+        ("predictor", "windows", "persons", "ADE [m]", "FDE [m]", "ms/window"),
+        [
+            (
+                s.predictor,
+                *(number(v) for v in (s.windows, s.persons, s.ade, s.fde)),
+                number(1e3 * s.seconds_per_window, 2),
+            )
+            for s in done.scores
+        ],
+        caption=done.caption,
+    )
+    print(f"recorded  {done.episode_file}")
+    print(f"report    {done.report_file}   (open it in a browser)")
+    print(f"took      {seconds:.1f} s")
+    return 0

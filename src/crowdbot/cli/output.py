@@ -1,0 +1,123 @@
+"""What commands write: one JSON object or tables on stdout, progress and notes on stderr."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+__all__ = ["Progress", "add_json", "note", "number", "print_json", "print_metrics", "print_table", "progress"]
+
+Progress = Callable[[str, float], None]
+"""Called with what is being done and the share that is done, 0 to 1."""
+
+
+def add_json(parser: argparse.ArgumentParser) -> None:
+    """Add the option ``--json``."""
+    parser.add_argument("--json", action="store_true", help="print one JSON object on stdout and nothing else")
+
+
+def print_json(value: Any) -> None:
+    """Print one JSON object; numbers that JSON does not know (NaN, infinity) become null."""
+    print(json.dumps(_plain(value), indent=2, allow_nan=False))
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if hasattr(value, "item") and not hasattr(value, "__len__"):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def print_table(title: str, head: Sequence[str], rows: Sequence[Sequence[str]], caption: str = "") -> None:
+    """Print a table on stdout; the first column is aligned left, the others right."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title=title, caption=caption, box=box.SIMPLE_HEAD, title_justify="left", caption_justify="left")
+    for index, name in enumerate(head):
+        table.add_column(name, justify="left" if index == 0 else "right", overflow="fold")
+    for row in rows:
+        table.add_row(*row)
+    wide = None if sys.stdout.isatty() else 120
+    Console(width=wide, highlight=False, markup=False).print(table)
+
+
+def print_metrics(title: str, metrics: Mapping[str, float]) -> None:
+    """Print the navigation metrics of an episode with their units."""
+    from crowdbot.metrics import NAVIGATION_METRICS
+
+    rows = [
+        (name.replace("_", " "), number(value), NAVIGATION_METRICS.get(name.rpartition(".")[2], ("", ""))[0])
+        for name, value in metrics.items()
+    ]
+    print_table(title, ("navigation metric", "value", "unit"), rows)
+
+
+def number(value: Any, digits: int = 3) -> str:
+    """Return a number for a table; what is missing or infinite is said in a word."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return "-"
+    if isinstance(value, float) and math.isinf(value):
+        return "none"
+    if isinstance(value, float):
+        return f"{value:.{digits}f}"
+    return str(value)
+
+
+def note(sentence: str) -> None:
+    """Say something on stderr."""
+    print(sentence, file=sys.stderr, flush=True)
+
+
+@contextmanager
+def progress(quiet: bool = False) -> Iterator[Progress]:
+    """Show bars on stderr, one for each thing that is being done; plain lines when stderr is no terminal."""
+    if quiet:
+        yield lambda what, share: None
+    elif sys.stderr.isatty():
+        with _bars() as report:
+            yield report
+    else:
+        yield _lines()
+
+
+@contextmanager
+def _bars() -> Iterator[Progress]:
+    from rich.console import Console
+    from rich.progress import BarColumn, TaskID, TaskProgressColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bars
+
+    columns = (TextColumn("{task.description:<44}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn())
+    with Bars(*columns, console=Console(stderr=True)) as bars:
+        known: dict[str, TaskID] = {}
+
+        def report(what: str, share: float) -> None:
+            if what not in known:
+                known[what] = bars.add_task(what, total=1.0)
+            bars.update(known[what], completed=share)
+
+        yield report
+
+
+def _lines() -> Progress:
+    said: dict[str, int] = {}
+
+    def report(what: str, share: float) -> None:
+        quarter = min(4, int(share * 4.0 + 1e-9))
+        if said.get(what, -1) < quarter:
+            said[what] = quarter
+            if quarter in (0, 4):
+                note(f"{what} ..." if quarter == 0 else f"{what} done")
+
+    return report

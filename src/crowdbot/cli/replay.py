@@ -1,0 +1,28 @@
+"""``crowdbot replay EPISODE.mcap``: run a recorded episode again and check its digest."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from .output import add_json, print_json, progress
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("episode", metavar="EPISODE.mcap", type=Path)
+    parser.add_argument("--trust", action="store_true", help="let the trial load code from outside its own folder")
+    add_json(parser)
+
+
+def main(options: argparse.Namespace) -> int:
+    """Replay; status 1 when the digests differ."""
+    from crowdbot.trials import replay
+
+    with progress(options.json) as report:
+        done = replay(options.episode, trust=options.trust, progress=lambda share: report("replay", share))
+    if options.json:
+        print_json(done.as_dict())
+    else:
+        print(done)
+    return 0 if done.equal else 1

@@ -1,0 +1,161 @@
+"""Our own recordings of trials, MCAP with ROS 2 messages: the people and the robots of an episode as tracks.
+
+Read are ``/people`` (people_msgs/msg/People; a person's name is the id), every ``.../odom`` (nav_msgs/msg/Odometry, a
+robot, pose in the frame of the world), and of the metadata record ``crowdbot`` the ``walls`` (JSON list of rings).
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import DataError
+from .assemble import assemble
+from .source import MAX_BYTES, Given, Reader, Source, parsing
+from .trajectories import Trajectories
+
+__all__ = ["READER"]
+
+PEOPLE, PEOPLE_TYPE = "/people", "people_msgs/msg/People"
+ODOMETRY_ENDING, ODOMETRY_TYPE = "/odom", "nav_msgs/msg/Odometry"
+METADATA = "crowdbot"
+SECOND = 1_000_000_000
+
+
+@dataclass
+class _Heard:
+    """What the messages say: stamps [ns] of /people, persons with the number of their message, poses by topic."""
+
+    stamps: list[int] = field(default_factory=list)
+    persons: list[tuple[int, str, float, float]] = field(default_factory=list)
+    poses: dict[str, list[tuple[int, float, float]]] = field(default_factory=dict)
+    walls: str = "[]"
+
+
+def read(source: Source, given: Given) -> Trajectories:
+    """Read people and robots; robots get ids above all people's, in the order of their channels."""
+    with parsing(source, "MCAP"):
+        heard = _listen(source)
+    stamps = np.asarray(heard.stamps, dtype=np.int64)
+    period, frames = _frames(source.name, stamps)
+    message = np.asarray([person[0] for person in heard.persons], dtype=np.int64)
+    columns = [_numbered([person[1] for person in heard.persons]), frames[message]]
+    columns += [np.asarray([person[axis] for person in heard.persons]) for axis in (2, 3)]
+    robots = _robots(heard, stamps, frames, first_id=int(columns[0].max(initial=0)) + 1)
+    id, frame, x, y = (np.concatenate(parts) for parts in zip(columns, *robots, strict=True))
+    return assemble(
+        source,
+        given,
+        id=id,
+        frame=frame,
+        x=x,
+        y=y,
+        row_fps=SECOND / period,
+        frame_step=1,
+        walls=_walls(source.name, heard.walls),
+        robots=frozenset(int(robot[0][0]) for robot in robots),
+    )
+
+
+def _listen(source: Source) -> _Heard:
+    from mcap.reader import SeekingReader
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    heard = _Heard()
+    with source.path.open("rb") as file:
+        reader = SeekingReader(file, validate_crcs=True, record_size_limit=MAX_BYTES)
+        summary = reader.get_summary()
+        if summary is None:
+            raise DataError(f"{source.name} has no summary section, so the recording was cut short")
+        channels = sorted(summary.channels.values(), key=lambda channel: channel.id)
+        topics = {channel.topic: summary.schemas[channel.schema_id] for channel in channels if channel.schema_id}
+        wanted = {topic: schema.name for topic, schema in topics.items() if _wanted(topic, schema.name)}
+        if PEOPLE not in wanted:
+            held = ", ".join(sorted(topics)) or "no topics"
+            raise DataError(f"{source.name} has no topic {PEOPLE} of {PEOPLE_TYPE}; it has {held}")
+        for topic, kind in wanted.items():
+            heard.poses.update({topic: []} if kind == ODOMETRY_TYPE else {})
+            types = get_types_from_msg(topics[topic].data.decode(), kind)
+            store.register({name: definition for name, definition in types.items() if name not in store.types})
+        for record in reader.iter_metadata():
+            if record.name == METADATA:
+                heard.walls = record.metadata.get("walls", "[]")
+        for _, channel, message in reader.iter_messages(topics=list(wanted)):
+            _take(heard, channel.topic, store.deserialize_cdr(message.data, wanted[channel.topic]))
+    return heard
+
+
+def _wanted(topic: str, kind: str) -> bool:
+    return (topic == PEOPLE and kind == PEOPLE_TYPE) or (topic.endswith(ODOMETRY_ENDING) and kind == ODOMETRY_TYPE)
+
+
+def _take(heard: _Heard, topic: str, message: Any) -> None:
+    stamp = message.header.stamp.sec * SECOND + message.header.stamp.nanosec
+    if topic == PEOPLE:
+        number = len(heard.stamps)
+        heard.stamps.append(stamp)
+        heard.persons += [(number, p.name, p.position.x, p.position.y) for p in message.people]
+    else:
+        place = message.pose.pose.position
+        heard.poses[topic].append((stamp, place.x, place.y))
+
+
+def _frames(name: str, stamps: NDArray[np.int64]) -> tuple[float, NDArray[np.int64]]:
+    """Return the period of /people [ns] and the frame of each message, from its stamp."""
+    if len(stamps) < 2:
+        raise DataError(f"{name} holds {len(stamps)} messages on {PEOPLE}, at least 2 are needed")
+    steps = np.diff(stamps)
+    if np.any(steps <= 0):
+        index = int(np.argmax(steps <= 0)) + 1
+        raise DataError(f"{name}: the stamp of message {index + 1} on {PEOPLE} is not after the one before")
+    period = float(np.median(steps))
+    frames = np.rint((stamps - stamps[0]) / period).astype(np.int64)
+    if np.any(np.diff(frames) == 0):
+        raise DataError(
+            f"{name}: the stamps on {PEOPLE} are not regular, some are far nearer than {period / 1e6:.3g} ms"
+        )
+    return period, frames
+
+
+def _numbered(names: list[str]) -> NDArray[np.int64]:
+    """Return the names as numbers; when one is a word, all are numbered from 1 in the order of appearance."""
+    if all(name.lstrip("-").isdecimal() and len(name) < 18 for name in names):
+        return np.asarray([int(name) for name in names], dtype=np.int64)
+    known = {name: number for number, name in enumerate(dict.fromkeys(names), 1)}
+    return np.asarray([known[name] for name in names], dtype=np.int64)
+
+
+def _robots(
+    heard: _Heard, stamps: NDArray[np.int64], frames: NDArray[np.int64], first_id: int
+) -> list[list[NDArray[Any]]]:
+    """Return id, frame, x, y of every robot at the stamps of /people, interpolated between its own."""
+    found = []
+    for id, poses in enumerate((sorted(poses) for poses in heard.poses.values() if poses), first_id):
+        own = np.asarray([pose[0] - int(stamps[0]) for pose in poses], dtype=np.float64)
+        at = (stamps - stamps[0]).astype(np.float64)
+        inside = (at >= own[0]) & (at <= own[-1])
+        place = [np.interp(at[inside], own, [pose[axis] for pose in poses]) for axis in (1, 2)]
+        if np.any(inside):
+            found.append([np.full(int(inside.sum()), id), frames[inside], *place])
+    return found
+
+
+def _walls(name: str, text: str) -> tuple[NDArray[np.float64], ...]:
+    try:
+        rings = tuple(np.asarray(ring, dtype=np.float64) for ring in json.loads(text))
+    except (ValueError, TypeError, RecursionError):
+        raise DataError(f"{name}: the metadata 'walls' is not a JSON list of rings") from None
+    wrong = next((k for k, r in enumerate(rings) if r.ndim != 2 or r.shape[1] != 2 or not np.all(np.isfinite(r))), None)
+    if wrong is not None:
+        raise DataError(f"{name}: ring {wrong} of the metadata 'walls' is not a list of finite points [N, 2]")
+    return rings
+
+
+READER = Reader(
+    "episode", "recorded trial, MCAP with /people and /robot/odom", lambda source: source.kind == "mcap", read
+)

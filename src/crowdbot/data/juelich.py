@@ -1,0 +1,110 @@
+"""Two formats of Jülich: the HDF5 files of the pedestrian data archive, and the sqlite output of JuPedSim."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import DataError
+from .assemble import assemble
+from .source import MAX_ROWS, Given, Reader, Source, parsing
+from .trajectories import Trajectories
+
+__all__ = ["HDF5", "SQLITE"]
+
+COLUMNS = ("id", "frame", "x", "y")
+UNIT = re.compile(r"\[\s*(mm|cm|m)\s*\]")
+
+
+def read_hdf5(source: Source, given: Given) -> Trajectories:
+    """Read the dataset ``trajectory`` (id, frame, x, y, z; attribute fps) and the walkable area as walls."""
+    import h5py
+
+    with parsing(source, "HDF5"), h5py.File(source.path, "r") as file:
+        if not isinstance(file.get("trajectory"), h5py.Dataset):
+            held = ", ".join(sorted(file)) or "nothing"
+            raise DataError(f"{source.name} is HDF5 without a table 'trajectory'; it holds {held}")
+        table = file["trajectory"]
+        missing = [column for column in COLUMNS if column not in (table.dtype.names or ())]
+        if missing:
+            found = ", ".join(table.dtype.names or ()) or "no named columns"
+            raise DataError(f"{source.name}: table 'trajectory' lacks {', '.join(missing)}; it has {found}")
+        if table.size > MAX_ROWS:
+            raise DataError(f"{source.name} has {table.size} rows, more than the {MAX_ROWS} that are read")
+        columns: dict[str, Any] = {column: np.asarray(table[column]) for column in COLUMNS}
+        fps = table.attrs.get("fps", file.attrs.get("fps"))
+        unit = UNIT.search(str(table.attrs.get("x", "")))
+        area = file.attrs.get("wkt_geometry")
+    return assemble(
+        source,
+        given,
+        **columns,
+        counter_fps=None if fps is None else _number(fps, "fps", source.name),
+        units=unit.group(1) if unit else "m",
+        walls=_walls(None if area is None else str(area), source.name),
+    )
+
+
+def read_sqlite(source: Source, given: Given) -> Trajectories:
+    """Read the tables ``trajectory_data`` and ``metadata`` of JuPedSim, and its first geometry as walls."""
+    import sqlite3
+
+    address = f"{source.path.resolve().as_uri()}?mode=ro&immutable=1"
+    with parsing(source, "sqlite"), contextlib.closing(sqlite3.connect(address, uri=True)) as base:
+        held = {name for (name,) in base.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
+        if not {"trajectory_data", "metadata"} <= held:
+            raise DataError(
+                f"{source.name} is sqlite without the tables trajectory_data and metadata of JuPedSim;"
+                f" it holds {', '.join(sorted(held)) or 'nothing'}"
+            )
+        query = "SELECT id, frame, pos_x, pos_y FROM trajectory_data LIMIT ?"
+        rows = base.execute(query, (MAX_ROWS + 1,)).fetchall()
+        told = dict(base.execute("SELECT key, value FROM metadata"))
+        area = base.execute("SELECT wkt FROM geometry").fetchone() if "geometry" in held else None
+    id, frame, x, y = (np.asarray(column) for column in zip(*rows, strict=True)) if rows else np.empty((4, 0))
+    fps = told.get("fps")
+    return assemble(
+        source,
+        given,
+        id=id,
+        frame=frame,
+        x=x,
+        y=y,
+        counter_fps=None if fps is None else _number(fps, "fps", source.name),
+        walls=_walls(area[0] if area else None, source.name),
+    )
+
+
+def _number(value: Any, what: str, name: str) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise DataError(f"{name}: its {what} {value!r} is not a number") from None
+
+
+def _walls(wkt: str | None, name: str) -> tuple[NDArray[np.float64], ...]:
+    """Return the rings around a walkable area: the outside clockwise, holes counter-clockwise."""
+    if not wkt:
+        return ()
+    import shapely
+
+    try:
+        area = shapely.from_wkt(wkt)
+    except shapely.errors.ShapelyError:
+        raise DataError(f"{name}: its walkable area {wkt[:40]!r} is not well-known text") from None
+    polygons = [part for part in getattr(area, "geoms", [area]) if part.geom_type == "Polygon"]
+    rings = []
+    for polygon in polygons:
+        turned = shapely.geometry.polygon.orient(polygon, sign=-1.0)
+        rings += [np.asarray(ring.coords)[:-1, :2] for ring in (turned.exterior, *turned.interiors)]
+    return tuple(np.ascontiguousarray(ring, dtype=np.float64) for ring in rings)
+
+
+HDF5 = Reader(
+    "juelich-hdf5", "HDF5 of the Jülich pedestrian data archive", lambda source: source.kind == "hdf5", read_hdf5
+)
+SQLITE = Reader("jupedsim", "sqlite output of JuPedSim", lambda source: source.kind == "sqlite", read_sqlite)

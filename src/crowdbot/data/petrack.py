@@ -1,0 +1,81 @@
+"""PeTrack text: id frame x y z, in metres or centimetres, with or without a "#" header (Boltes & Seyfried 2013).
+
+The header tells frame rate and unit. The HERMES files have none: they are centimetres at 16 frames a second, which is
+assumed for files without a header, and said in the note.
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import DataError
+from .assemble import assemble
+from .source import Given, Reader, Source
+from .trajectories import Trajectories
+
+__all__ = ["READER"]
+
+HERMES_FPS = 16.0
+ROOM = 50.0
+"""No indoor experiment is larger [m]: coordinates beyond it, without a unit, are centimetres."""
+
+FPS = re.compile(r"frame\s*rate\s*:?\s*([0-9.]+)", re.IGNORECASE)
+UNIT = re.compile(r"\bx\s*[/\[(]\s*(?:in\s+)?(mm|cm|m)\b", re.IGNORECASE)
+COLUMNS = re.compile(r"^#\s*id\s+frame\b", re.IGNORECASE)
+
+
+def sniff(source: Source) -> bool:
+    """Return whether a header names PeTrack or its columns, or the rows are id frame x y z without a header."""
+    header = _header(source)
+    told = any("petrack" in line.lower() or COLUMNS.match(line) or FPS.search(line) for line in header)
+    return source.numeric(5) or (told and source.numeric(4))
+
+
+def read(source: Source, given: Given) -> Trajectories:
+    """Read id frame x y and leave out z."""
+    header = "\n".join(_header(source))
+    if not source.rows:
+        raise DataError(f"{source.name} holds a header but no row of any track")
+    values, line = source.table(len(source.rows[0]))
+    if values.shape[1] not in (4, 5):
+        raise DataError(f"{source.name} has {values.shape[1]} columns, PeTrack has id frame x y and perhaps z")
+    fps, unit = FPS.search(header), UNIT.search(header)
+    units, guess = (unit.group(1).lower(), "") if unit else _guessed_units(values)
+    notes = [] if given.units else [guess]
+    if fps is None and given.fps is None and not header:
+        notes.append("no frame rate in the file: 16 frames a second are assumed, as in HERMES; fps overrides it")
+    return assemble(
+        source,
+        given,
+        id=values[:, 0],
+        frame=values[:, 1],
+        x=values[:, 2],
+        y=values[:, 3],
+        counter_fps=_told(fps, source.name) if fps else (None if header else HERMES_FPS),
+        units=units,
+        note="; ".join(note for note in notes if note),
+        line=line,
+    )
+
+
+def _header(source: Source) -> list[str]:
+    return [line.strip() for line in source.lines if line.lstrip().startswith("#")]
+
+
+def _told(fps: re.Match[str], name: str) -> float:
+    try:
+        return float(fps.group(1))
+    except ValueError:
+        raise DataError(f"{name}: the header's frame rate {fps.group(1)!r} is not a number; give fps") from None
+
+
+def _guessed_units(values: NDArray[np.float64]) -> tuple[str, str]:
+    size = float(np.nanmax(np.abs(values[:, 2:4]), initial=0.0))
+    units = "cm" if size > ROOM else "m"
+    return units, f"no unit in the file: coordinates up to {size:.0f} are taken as {units}; units overrides it"
+
+
+READER = Reader("petrack", "PeTrack and HERMES text: id frame x y z, metres or centimetres", sniff, read)

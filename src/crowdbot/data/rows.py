@@ -1,0 +1,141 @@
+"""Rows of tracks as plain arrays: what is allowed in them, and how they follow one another.
+
+A run is a stretch of one track without a hole. Everything that is cut out of a recording is cut out of runs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..core.errors import DataError
+
+__all__ = ["Runs", "check_rows", "floats", "frame_step", "integers", "runs", "where"]
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+LARGEST = 2.0**53
+"""Above this a float64 cannot hold every integer."""
+
+
+def where(name: str, index: int, line: Integers | None) -> str:
+    """Return the place of a row in words: its line in the file when known, else its row, counted from 1."""
+    return f"{name} row {index + 1}" if line is None else f"{name} line {int(line[index])}"
+
+
+def integers(values: ArrayLike, what: str, name: str, line: Integers | None = None) -> Integers:
+    """Return ``values`` as int64.
+
+    Raises:
+        DataError: a value is not a whole number below 2**53.
+    """
+    array = np.asarray(values)
+    if array.dtype.kind in "iu":
+        return array.astype(np.int64)
+    number = floats(array, what, name)
+    with np.errstate(invalid="ignore"):
+        wrong = ~((number == np.rint(number)) & (np.abs(number) < LARGEST))
+    if np.any(wrong):
+        index = int(np.argmax(wrong))
+        raise DataError(f"{where(name, index, line)}: {what} is {number[index]}, it must be a whole number below 2**53")
+    return number.astype(np.int64)
+
+
+def floats(values: ArrayLike, what: str, name: str) -> Floats:
+    """Return ``values`` as float64.
+
+    Raises:
+        DataError: one is no number.
+    """
+    try:
+        return np.asarray(values, dtype=np.float64)
+    except (ValueError, TypeError):
+        raise DataError(f"{name}: the column of {what} holds something else than numbers") from None
+
+
+def check_rows(
+    id: Integers, frame: Integers, x: Floats, y: Floats, name: str, line: Integers | None = None
+) -> NDArray[np.intp]:
+    """Return the order that sorts the rows by frame, then id.
+
+    Raises:
+        DataError: there is no row, a coordinate is not finite, or a (frame, id) pair stands twice.
+    """
+    if len(frame) == 0:
+        raise DataError(f"{name} holds no row of any track")
+    for axis, values in (("x", x), ("y", y)):
+        wrong = ~np.isfinite(values)
+        if np.any(wrong):
+            index = int(np.argmax(wrong))
+            raise DataError(
+                f"{where(name, index, line)}: {axis} is {values[index]} for frame {frame[index]}, id {id[index]};"
+                " coordinates must be finite, leave out rows without a position"
+            )
+    order = np.lexsort((id, frame))
+    twice = (np.diff(frame[order]) == 0) & (np.diff(id[order]) == 0)
+    if np.any(twice):
+        index = int(np.min(order[1:][twice]))
+        raise DataError(
+            f"{where(name, index, line)}: frame {frame[index]}, id {id[index]} stands there a second time;"
+            " a person has one position in a frame, keep one of the rows"
+        )
+    return order
+
+
+def frame_step(id: Integers, frame: Integers) -> int:
+    """Return how many frames of the counter lie between the rows of a track: the most frequent difference.
+
+    >>> frame_step(np.array([1, 1, 1, 2]), np.array([0, 10, 20, 10]))
+    10
+    """
+    order = np.lexsort((frame, id))
+    steps = np.diff(frame[order])[np.diff(id[order]) == 0]
+    if len(steps) == 0:
+        steps = np.diff(np.unique(frame))
+    if len(steps) == 0:
+        return 1
+    values, counts = np.unique(steps, return_counts=True)
+    return int(values[np.argmax(counts)])
+
+
+@dataclass(frozen=True)
+class Runs:
+    """Rows sorted by id, then frame, and how far each stands from the ends of its run.
+
+    Fields:
+        order: ``[N]`` the rows of the table in this order.
+        instant: ``[N]`` position of the row's frame among the existing frames of the file.
+        behind: ``[N]`` rows of the run up to this one, itself included.
+        ahead: ``[N]`` rows of the run after this one.
+        frames: ``[F]`` the existing frames.
+    """
+
+    order: NDArray[np.intp]
+    instant: Integers
+    behind: Integers
+    ahead: Integers
+    frames: Integers
+
+
+def runs(id: Integers, frame: Integers, step: int | None = None) -> Runs:
+    """Find the runs of a table.
+
+    Args:
+        id, frame: ``[N]``.
+        step: rows of a run lie exactly so many frames apart; None takes neighbours among the existing frames, so that
+            frames in which nobody is present make no hole (the loader of SGAN and its followers).
+    """
+    order = np.lexsort((frame, id))
+    own, count = id[order], len(order)
+    frames = np.unique(frame)
+    instant = np.searchsorted(frames, frame[order]).astype(np.int64)
+    away = np.diff(instant) == 1 if step is None else np.diff(frame[order]) == step
+    begins = np.concatenate([[True], ~((np.diff(own) == 0) & away)])
+    here = np.arange(count)
+    first = np.maximum.accumulate(np.where(begins, here, 0))
+    ends = np.concatenate([begins[1:], [True]])
+    last = np.minimum.accumulate(np.where(ends, here, count)[::-1])[::-1]
+    return Runs(order, instant, here - first + 1, last - here, frames)

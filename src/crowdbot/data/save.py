@@ -1,0 +1,145 @@
+"""Write a recording: the whole file or nothing."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable
+from os import PathLike
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+
+from ..core.errors import DataError, InputError, did_you_mean
+from .rows import runs
+from .tables import ROBOT
+from .trajectories import PrimaryScene, Trajectories
+
+__all__ = ["SUFFIXES", "save"]
+
+SCENE_ROWS = 21
+"""Rows of a TrajNet++ scene: 9 observed and 12 predicted."""
+
+
+def save(tracks: Trajectories, path: str | PathLike[str], format: str | None = None) -> None:
+    """Write tracks; rows come back exactly, coordinates to the last bit.
+
+    What travels beside the rows differs: ``parquet`` keeps everything; ``csv`` keeps the time of each row, labels,
+    which tracks are robots, and pixels (as ``x_px``); ``trajnetpp`` keeps frame rate and scenes, and writes a scene
+    for every 21 rows of a track when there are none; ``sgan`` (text: frame id x y) keeps the rows only.
+
+    Args:
+        tracks: what to write.
+        path: file to write; its ending chooses the format: .txt, .csv, .parquet or .ndjson.
+        format: ``sgan``, ``csv``, ``parquet`` or ``trajnetpp``, when the ending should not choose.
+
+    Raises:
+        InputError: the format is unknown.
+        DataError: the file cannot be written; what was there before is then untouched.
+    """
+    path = Path(path)
+    if format is not None and format not in _WRITERS:
+        near = did_you_mean(str(format), _WRITERS)
+        raise InputError(f"unknown format {format!r} to write{near}; known are {', '.join(_WRITERS)}")
+    name = format or SUFFIXES.get(path.suffix.lower())
+    if name is None:
+        raise InputError(f"{path}: the ending {path.suffix!r} says no format; endings are {', '.join(SUFFIXES)}")
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        with part.open("xb") as file:
+            _WRITERS[name](tracks, file)
+        part.replace(path)
+    except OSError as error:
+        raise DataError(f"{path} cannot be written: {error.strerror or error}") from None
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _write_text(tracks: Trajectories, file: IO[bytes]) -> None:
+    rows = zip(tracks.frame.tolist(), tracks.id.tolist(), tracks.x.tolist(), tracks.y.tolist(), strict=True)
+    file.write("".join(f"{frame}\t{id}\t{x!r}\t{y!r}\n" for frame, id, x, y in rows).encode())
+
+
+def _write_csv(tracks: Trajectories, file: IO[bytes]) -> None:
+    import csv
+    import io
+
+    labels = _labels(tracks)
+    unit = "_px" if tracks.units == "px" else ""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["id", "frame", "time", f"x{unit}", f"y{unit}", *(["label"] if labels else [])])
+    columns = [values.tolist() for values in (tracks.id, tracks.frame, tracks.time, tracks.x, tracks.y)]
+    if labels:
+        columns.append([labels.get(id, "") for id in columns[0]])
+    writer.writerows(zip(*columns, strict=True))
+    file.write(text.getvalue().encode())
+
+
+def _write_parquet(tracks: Trajectories, file: IO[bytes]) -> None:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    labels = _labels(tracks)
+    columns: dict[str, Any] = {
+        "id": tracks.id,
+        "frame": tracks.frame,
+        "time": tracks.time,
+        "x": tracks.x,
+        "y": tracks.y,
+    }
+    if labels:
+        columns["label"] = [labels.get(id) for id in tracks.id.tolist()]
+    beside = {
+        "frame_rate": tracks.frame_rate,
+        "frame_step": tracks.frame_step,
+        "units": tracks.units,
+        "note": tracks.note,
+        "homography": None if tracks.homography is None else np.asarray(tracks.homography).tolist(),
+        "robots": sorted(tracks.robots),
+        "walls": [np.asarray(ring).tolist() for ring in tracks.walls],
+        "labels": sorted(tracks.labels.items()),
+        "scenes": tracks.scenes,
+    }
+    table = pa.table(columns)
+    pq.write_table(table.replace_schema_metadata({"crowdbot": json.dumps(beside)}), file)
+
+
+def _write_trajnetpp(tracks: Trajectories, file: IO[bytes]) -> None:
+    for scene in tracks.scenes or _scenes(tracks):
+        head = {"id": scene.id, "p": scene.person, "s": scene.first, "e": scene.last, "fps": tracks.frame_rate}
+        tag = {"tag": [scene.tag[0], list(scene.tag[1:])]} if scene.tag else {}
+        file.write(json.dumps({"scene": {**head, **tag}}).encode() + b"\n")
+    rows = zip(tracks.frame.tolist(), tracks.id.tolist(), tracks.x.tolist(), tracks.y.tolist(), strict=True)
+    lines = (f'{{"track": {{"f": {frame}, "p": {id}, "x": {x!r}, "y": {y!r}}}}}\n' for frame, id, x, y in rows)
+    file.write("".join(lines).encode())
+
+
+def _scenes(tracks: Trajectories) -> list[PrimaryScene]:
+    """Return a scene for every 21 rows of a run of a person; the longest run when none has so many."""
+    found = runs(tracks.id, tracks.frame, tracks.frame_step)
+    id, frame = tracks.id[found.order], tracks.frame[found.order]
+    ends = np.flatnonzero((found.behind % SCENE_ROWS == 0) & ~np.isin(id, sorted(tracks.robots)))
+    rows = SCENE_ROWS
+    if len(ends) == 0:
+        ends = np.asarray([int(np.argmax(found.behind))])
+        rows = int(found.behind[ends[0]])
+    return [
+        PrimaryScene(number, int(id[end]), int(frame[end - rows + 1]), int(frame[end]))
+        for number, end in enumerate(ends.tolist())
+    ]
+
+
+def _labels(tracks: Trajectories) -> dict[int, str]:
+    return {**tracks.labels, **dict.fromkeys(tracks.robots, ROBOT)}
+
+
+_WRITERS: dict[str, Callable[[Trajectories, IO[bytes]], None]] = {
+    "sgan": _write_text,
+    "csv": _write_csv,
+    "parquet": _write_parquet,
+    "trajnetpp": _write_trajnetpp,
+}
+SUFFIXES = {".txt": "sgan", ".csv": "csv", ".parquet": "parquet", ".ndjson": "trajnetpp"}
+"""Endings of files, and the format that each is written in."""

@@ -1,0 +1,59 @@
+"""Stanford Drone Dataset, ``annotations.txt``: boxes in pixels at 30 frames a second (Robicquet et al., ECCV 2016).
+
+Ten columns: id xmin ymin xmax ymax frame lost occluded generated "label".
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from ..core.errors import DataError
+from .assemble import assemble
+from .source import Given, Reader, Source
+from .trajectories import Trajectories
+
+__all__ = ["READER"]
+
+VIDEO_FPS = 30.0
+LABEL = re.compile(r'"([^"\n]*)"')
+
+
+def sniff(source: Source) -> bool:
+    """Return whether the first rows are nine whole numbers and a quoted label."""
+    return bool(source.rows) and all(
+        len(row) == 10 and row[9].startswith('"') and all(word.lstrip("-").isdigit() for word in row[:9])
+        for row in source.rows
+    )
+
+
+def read(source: Source, given: Given) -> Trajectories:
+    """Read the middle of every box; rows marked lost are left out, labels are kept by id."""
+    text = source.text()
+    names = sorted(set(LABEL.findall(text)))
+    for number, name in enumerate(names):
+        text = text.replace(f'"{name}"', str(number))
+    values, line = source.table(10, text)
+    seen = values[:, 6] == 0.0
+    if not np.any(seen):
+        raise DataError(f"{source.name}: all of its {len(values)} rows are marked lost, nobody is in view")
+    lost = int(np.sum(~seen))
+    values, line = values[seen], line[seen]
+    ids, first = np.unique(values[:, 0], return_index=True)
+    return assemble(
+        source,
+        given,
+        id=values[:, 0],
+        frame=values[:, 5],
+        x=(values[:, 1] + values[:, 3]) / 2.0,
+        y=(values[:, 2] + values[:, 4]) / 2.0,
+        counter_fps=VIDEO_FPS,
+        units="px",
+        note=f"pixels; {lost} rows marked lost left out",
+        line=line,
+        labels={int(id): names[int(values[row, 9])] for id, row in zip(ids, first, strict=True)},
+    )
+
+
+READER = Reader("sdd", "Stanford Drone Dataset annotations.txt: boxes in pixels, with labels", sniff, read)

@@ -1,0 +1,77 @@
+"""Text of four columns, frame id x y, parted by white space: SGAN's leave-one-out files, TrajNet, and many others."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .assemble import assemble
+from .eth import eth_time_base
+from .source import Given, Reader, Source
+from .trajectories import Trajectories
+
+__all__ = ["READER"]
+
+HIDDEN = "?"
+ENOUGH = 100
+"""Steps of tracks from which the order of the columns is looked at."""
+SMOOTHER = 5.0
+
+
+def sniff(source: Source) -> bool:
+    """Return whether the first rows have four columns of numbers; x and y may be hidden by "?"."""
+    rows = [row for row in source.rows if row[2:] != [HIDDEN, HIDDEN]]
+    return bool(rows) and all(len(row) == 4 and all(map(_number, row)) for row in rows)
+
+
+def read(source: Source, given: Given) -> Trajectories:
+    """Read frame id x y; rows with "?" (the hidden future of TrajNet's test files) are left out and counted."""
+    text, note, left_out = source.text(), "", 0
+    if HIDDEN in text:
+        lines = text.splitlines()
+        hidden = [line.split()[2:] == [HIDDEN, HIDDEN] for line in lines]
+        left_out = sum(hidden)
+        text = "\n".join("" if gone else line for gone, line in zip(hidden, lines, strict=True))
+        note = f"{left_out} rows with '?' left out: a test file whose futures are hidden"
+    values, line = source.table(4, text)
+    fps, base = eth_time_base(values, given) if len(values) else (None, "")
+    return assemble(
+        source,
+        given,
+        frame=values[:, 0],
+        id=values[:, 1],
+        x=values[:, 2],
+        y=values[:, 3],
+        counter_fps=fps,
+        note="; ".join(part for part in (note, base, _exchanged(values)) if part),
+        line=line,
+    )
+
+
+def _exchanged(values: NDArray[np.float64]) -> str:
+    """Return a warning when people would walk far more smoothly if the first column were the id."""
+    told, other = _jump(values[:, 1], values[:, 0], values), _jump(values[:, 0], values[:, 1], values)
+    if told is None or other is None or not told > SMOOTHER * other:
+        return ""
+    return "id and frame look exchanged (read as frame id x y); format petrack reads id frame x y"
+
+
+def _jump(id: NDArray[np.float64], frame: NDArray[np.float64], values: NDArray[np.float64]) -> float | None:
+    """Return the median way from one row of a track to the next; None when there are too few to tell."""
+    order = np.lexsort((frame, id))
+    same = np.diff(id[order]) == 0
+    if np.sum(same) < ENOUGH:
+        return None
+    away = np.diff(values[order, 2:4], axis=0)[same]
+    return float(np.median(np.hypot(away[:, 0], away[:, 1])))
+
+
+def _number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
+READER = Reader("sgan", "text of frame id x y (SGAN, TrajNet, ETH/UCY leave-one-out files)", sniff, read)

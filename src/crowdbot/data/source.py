@@ -1,0 +1,199 @@
+"""A file before it is understood: its beginning, its text, its columns of numbers; and what a reader of it is."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import DataError, InputError
+
+if TYPE_CHECKING:
+    from .trajectories import Trajectories
+
+__all__ = ["MAX_BYTES", "MAX_ROWS", "Given", "Reader", "Source", "parsing"]
+
+MAX_BYTES = 2 * 1024**3
+"""Larger files are refused: cut them in time first."""
+MAX_ROWS = 20_000_000
+"""Larger tables are refused, also when compression makes their file small."""
+HEAD = 64 * 1024
+
+MAGIC = {
+    b"\x89HDF\r\n\x1a\n": "hdf5",
+    b"SQLite format 3\x00": "sqlite",
+    b"PAR1": "parquet",
+    b"\x89MCAP0\r\n": "mcap",
+    b"PK\x03\x04": "zip",
+}
+
+
+@dataclass(frozen=True)
+class Given:
+    """What the user says about a file; it overrides what the file says.
+
+    Fields:
+        fps: rows a second of one track.
+        units: ``m``, ``cm``, ``mm`` or ``px``, of the numbers in the file.
+        time_base: ``true`` or ``published``.
+    """
+
+    fps: float | None = None
+    units: str | None = None
+    time_base: str = "true"
+
+
+class Reader(NamedTuple):
+    """One format: its name, a line about it, whether a file looks like it, and how it is read."""
+
+    name: str
+    about: str
+    sniff: Callable[[Source], bool]
+    read: Callable[[Source, Given], Trajectories]
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file that exists, holds something, and is not too large."""
+
+    path: Path
+    head: bytes
+
+    @classmethod
+    def of(cls, path: Path) -> Source:
+        """Open a file far enough to see what it is.
+
+        Raises:
+            DataError: it is missing, a folder, empty, larger than 2 GiB, or cannot be read.
+        """
+        if path.is_dir():
+            raise DataError(f"{path} is a folder, not a recording; name one file in it")
+        try:
+            size = path.stat().st_size
+            if size > MAX_BYTES:
+                raise DataError(f"{path} has {size} bytes, more than the {MAX_BYTES} that are read; cut it in time")
+            with path.open("rb") as file:
+                head = file.read(HEAD)
+        except FileNotFoundError:
+            raise DataError(f"there is no file {path}") from None
+        except (OSError, ValueError) as error:
+            raise DataError(f"{path} cannot be read: {error}") from None
+        if not head.strip():
+            raise DataError(f"{path} is empty")
+        return cls(path, head)
+
+    @property
+    def name(self) -> str:
+        """The path as the user wrote it, for messages."""
+        return str(self.path)
+
+    @cached_property
+    def kind(self) -> str:
+        """``hdf5``, ``sqlite``, ``parquet``, ``mcap``, ``zip``, ``text`` or ``binary``, from the first bytes."""
+        for magic, kind in MAGIC.items():
+            if self.head.startswith(magic):
+                return kind
+        control = np.frombuffer(self.head, np.uint8)
+        strange = (control < 32) & ~np.isin(control, (9, 10, 12, 13))
+        return "binary" if np.any(strange) else "text"
+
+    @cached_property
+    def lines(self) -> list[str]:
+        """The first lines of a text that are not blank, without a last one that may be cut."""
+        if self.kind != "text":
+            return []
+        text = _decoded(self.head)
+        lines = text.splitlines()
+        if len(self.head) == HEAD and len(lines) > 1:
+            lines = lines[:-1]
+        return [line for line in lines if line.strip()]
+
+    @cached_property
+    def rows(self) -> list[list[str]]:
+        """The first lines that are no comment, split at white space and commas."""
+        return [_split(line) for line in self.lines if not line.lstrip().startswith("#")][:50]
+
+    def numeric(self, columns: int) -> bool:
+        """Return whether the first rows have this many columns and all of them are numbers."""
+        return bool(self.rows) and all(len(row) == columns and all(map(_is_number, row)) for row in self.rows)
+
+    def text(self) -> str:
+        """Return the whole text."""
+        data = self.path.read_bytes()
+        if b"\x00" in data:
+            raise DataError(f"{self.path} holds binary bytes after a beginning of text; the file is damaged")
+        return _decoded(data)
+
+    def table(self, columns: int, text: str | None = None) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Return the numbers ``[N, columns]`` of a text and the line ``[N]`` of each row; "#" begins a comment.
+
+        Raises:
+            DataError: a line has another number of columns, or a word that is not a number.
+        """
+        lines = (self.text() if text is None else text).replace(",", " ").splitlines()
+        kept = [k for k, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
+        if len(kept) < len(lines):
+            lines = [lines[k] for k in kept]
+        line = np.asarray(kept, dtype=np.int64) + 1
+        if not lines:
+            return np.empty((0, columns)), line
+        try:
+            values = np.loadtxt(lines, dtype=np.float64, comments=None, ndmin=2)
+        except ValueError:
+            values = np.empty((0, 0))
+        if values.shape != (len(lines), columns):
+            raise DataError(_first_wrong(self.name, lines, line, columns))
+        return values, line
+
+
+@contextlib.contextmanager
+def parsing(source: Source, kind: str) -> Iterator[None]:
+    """Turn whatever the parser of a binary format stumbles over into one sentence.
+
+    Raises:
+        DataError: the file is cut short, damaged, or not of this kind.
+    """
+    try:
+        yield
+    except InputError:
+        raise
+    except Exception as error:  # parsers of damaged files raise anything: KeyError, UnicodeError, NotImplementedError
+        lines = str(error).splitlines() or [type(error).__name__]
+        raise DataError(f"{source.name} cannot be read as {kind}, it is cut short or damaged: {lines[0]}") from None
+
+
+def _first_wrong(name: str, lines: list[str], line: NDArray[np.int64], columns: int) -> str:
+    for number, words in zip(line.tolist(), map(str.split, lines), strict=True):
+        if len(words) != columns:
+            return f"{name} line {number} has {len(words)} columns, the others have {columns}"
+        bad = next((word for word in words if not _is_number(word)), None)
+        if bad is not None:
+            return f"{name} line {number}: {bad[:40]!r} is not a number"
+    return f"{name} does not hold {columns} columns of numbers"
+
+
+def _decoded(data: bytes) -> str:
+    """Return the text; old files with a name in Latin-1 in a comment are read as that."""
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def _split(line: str) -> list[str]:
+    return [word for word in re.split(r"[\s,]+", line) if word]
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return "_" not in word

@@ -1,0 +1,153 @@
+"""CSV and Parquet with named columns."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+from typing import Any
+
+import numpy as np
+
+from ..core.errors import DataError
+from .assemble import assemble
+from .columns import (
+    Columns,
+    Lines,
+    check_columns,
+    find_columns,
+    frames_of_times,
+    ids,
+    labels,
+    numbers,
+    rate_of_times,
+)
+from .rows import integers
+from .source import MAX_ROWS, Given, Reader, Source, parsing
+from .trajectories import PrimaryScene, Trajectories
+
+__all__ = ["CSV", "PARQUET", "ROBOT"]
+
+ROBOT = "robot"
+"""Tracks with this label are robots."""
+DELIMITERS = ",;\t"
+NAME = re.compile(r"^[A-Za-z_][\w .:/()\[\]-]*$")
+
+
+def sniff_csv(source: Source) -> bool:
+    """Return whether the first line holds names: two of them known, or as many words as the line below has values."""
+    lines = _uncommented(source)
+    if not lines:
+        return False
+    names = _words(lines[0])
+    if len(find_columns(names)[0]) >= 2:
+        return True
+    marked = any(mark in lines[0] for mark in DELIMITERS) and all(NAME.match(name) for name in names)
+    return marked and len(lines) > 1 and len(_words(lines[1])) == len(names)
+
+
+def read_csv(source: Source, given: Given) -> Trajectories:
+    """Read a table with a line of names, parted by commas, semicolons, tabs or blanks; "#" begins a comment."""
+    head = _uncommented(source)
+    if not head:
+        raise DataError(f"{source.name} is not a text with a line of column names")
+    delimiter = _delimiter(head[0])
+    reader = csv.reader(io.StringIO(source.text(), newline=""), delimiter=delimiter or " ", skipinitialspace=True)
+    rows: list[list[str]] = []
+    lines: list[int] = []
+    try:
+        for row in reader:
+            if any(row) and not row[0].startswith("#"):
+                rows.append(row if delimiter else [word for word in row if word])
+                lines.append(reader.line_num)
+    except csv.Error as error:
+        raise DataError(f"{source.name} line {reader.line_num} cannot be read as a table: {error}") from None
+    if not rows:
+        raise DataError(f"{source.name} has no line of column names")
+    names = [name.strip() for name in rows.pop(0)]
+    wrong = next((index for index, row in enumerate(rows) if len(row) != len(names)), None)
+    if wrong is not None:
+        place = f"{source.name} line {lines[wrong + 1]}"
+        raise DataError(f"{place} has {len(rows[wrong])} columns, the line of names has {len(names)}")
+    cells = zip(*rows, strict=True) if rows else [()] * len(names)
+    columns = {name: np.asarray(column, dtype=np.str_) for name, column in zip(names, cells, strict=True)}
+    return _tracks(source, given, columns, {}, np.asarray(lines[1:], dtype=np.int64))
+
+
+def read_parquet(source: Source, given: Given) -> Trajectories:
+    """Read a Parquet table; one written by crowdbot keeps everything that stands beside its columns."""
+    import pyarrow.parquet as pq
+
+    with parsing(source, "Parquet"), pq.ParquetFile(source.path) as file:
+        count = file.metadata.num_rows
+        if count > MAX_ROWS:
+            raise DataError(f"{source.name} has {count} rows, more than the {MAX_ROWS} that are read")
+        table = file.read()
+        columns = {name: table.column(name).to_numpy() for name in table.column_names}
+    return _tracks(source, given, columns, _told(source.name, table.schema.metadata or {}), None)
+
+
+def _uncommented(source: Source) -> list[str]:
+    return [line for line in source.lines if not line.lstrip().startswith("#")]
+
+
+def _delimiter(line: str) -> str | None:
+    return next((mark for mark in DELIMITERS if mark in line), None)
+
+
+def _words(line: str) -> list[str]:
+    return [word.strip().strip('"') for word in line.split(_delimiter(line))]
+
+
+def _tracks(source: Source, given: Given, columns: Columns, told: dict[str, Any], line: Lines) -> Trajectories:
+    name = source.name
+    found, units = find_columns(list(columns))
+    check_columns(found, list(columns), name)
+    known = [meaning for meaning in ("frame", "time", "x", "y") if meaning in found]
+    values = {meaning: numbers(columns[found[meaning]], found[meaning], name, line) for meaning in known}
+    id, renamed = ids(columns[found["id"]], found["id"], name, line)
+    if "frame" in found:
+        frame = integers(values["frame"], found["frame"], name, line)
+        rate = rate_of_times(id, frame, values["time"]) if "time" in found else None
+    else:
+        frame, rate = frames_of_times(id, values["time"], given.fps, name, line)
+    named = labels(columns[found["label"]], id) if "label" in found else {}
+    beside: dict[str, Any] = {
+        "row_fps": rate,
+        "units": units or "m",
+        "note": renamed,
+        "labels": {key: label for key, label in named.items() if label != ROBOT},
+        "robots": frozenset(key for key, label in named.items() if label == ROBOT),
+    }
+    return assemble(source, given, id=id, frame=frame, x=values["x"], y=values["y"], line=line, **{**beside, **told})
+
+
+def _told(name: str, metadata: dict[bytes, bytes]) -> dict[str, Any]:
+    """Return the fields that a file written by crowdbot keeps beside the columns."""
+    try:
+        told = json.loads(metadata.get(b"crowdbot", b"{}"))
+        if not told:
+            return {}
+        return {
+            "row_fps": float(told["frame_rate"]),
+            "frame_step": int(told["frame_step"]),
+            "units": str(told["units"]),
+            "note": str(told["note"]),
+            "homography": None if told["homography"] is None else np.asarray(told["homography"], dtype=np.float64),
+            "robots": frozenset(map(int, told["robots"])),
+            "walls": tuple(np.asarray(ring, dtype=np.float64) for ring in told["walls"]),
+            "labels": {int(key): str(label) for key, label in told["labels"]},
+            "scenes": tuple(_scene(scene) for scene in told["scenes"]),
+        }
+    except (ValueError, TypeError, KeyError, IndexError) as error:
+        raise DataError(f"{name}: what crowdbot wrote beside the columns is damaged: {error!r}") from None
+
+
+def _scene(told: list[Any]) -> PrimaryScene:
+    id, person, first, last, tag = told
+    return PrimaryScene(int(id), int(person), int(first), int(last), tuple(map(int, tag)))
+
+
+CSV = Reader("csv", "CSV with named columns: id, frame or time, x, y", sniff_csv, read_csv)
+PARQUET = Reader("parquet", "Parquet with named columns", lambda source: source.kind == "parquet", read_parquet)

@@ -1,0 +1,141 @@
+"""Contacts between a robot and people, from logs: events (not samples), who caused them, how hard they were."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .proximity import JUMP, clearance, swept_clearance
+
+__all__ = ["ContactEvent", "cause_of", "contact_events"]
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+RELEASE = 0.05
+"""A contact is over when the clearance stays above this [m] ..."""
+HOLD = 0.5
+"""... for this long [s]."""
+MARGIN = 0.05
+"""Closing speeds [m/s] that differ by less have the same share in a contact; a robot slower than this stands."""
+
+
+@dataclass(frozen=True)
+class ContactEvent:
+    """One contact between the robot and someone, from first touch to last overlap.
+
+    Fields:
+        person: index of the other one.
+        begin, end: first touch and end of the last time step with overlap [s].
+        depth: deepest overlap [m], positive.
+        cause: ``robot``, ``person`` or ``mutual``, see :func:`cause_of`.
+        impact_speed: relative speed along the normal at first touch [m/s], 0 when they part.
+    """
+
+    person: int
+    begin: float
+    end: float
+    depth: float
+    cause: str
+    impact_speed: float
+
+
+def cause_of(normal: Floats, robot_velocity: Floats, person_velocity: Floats) -> str:
+    """Return who caused a contact: ``robot``, ``person`` or ``mutual``.
+
+    With n the unit vector from robot to person, each is charged its own closing speed, ``c_R = max(0, v.n)`` and
+    ``c_i = max(0, -v_i.n)``; the larger one, by more than 0.05 m/s, is the cause. A robot slower
+    than 0.05 m/s never is.
+
+    >>> n = np.array([1.0, 0.0])
+    >>> cause_of(n, np.array([1.0, 0.0]), np.zeros(2)), cause_of(n, np.zeros(2), np.array([-1.0, 0.0]))
+    ('robot', 'person')
+    """
+    robot_closing = max(0.0, float(robot_velocity @ normal))
+    person_closing = max(0.0, float(-person_velocity @ normal))
+    if math.hypot(*robot_velocity) < MARGIN or person_closing > robot_closing + MARGIN:
+        return "person"
+    return "robot" if robot_closing > person_closing + MARGIN else "mutual"
+
+
+def contact_events(
+    times: Floats, position: Floats, velocity: Floats, radius: Floats, active: Bools, robot: int
+) -> tuple[ContactEvent, ...]:
+    """Return the contacts of the robot with everyone, by first touch.
+
+    An event begins when the clearance swept between two samples falls below 0 and ends once the clearance at the
+    samples has stayed above 0.05 m for 0.5 s. Velocities at first touch are those of the positions between the two
+    samples; ``velocity`` is used only for who is in contact at its first sample.
+
+    >>> p = np.zeros((3, 2, 2)); p[:, 1, 0] = [0.6, 0.4, 0.6]
+    >>> v, r, here = np.zeros((3, 2, 2)), np.array([0.25, 0.25]), np.ones((3, 2), bool)
+    >>> event = contact_events(np.array([0.0, 0.1, 0.2]), p, v, r, here, robot=0)[0]
+    >>> round(event.begin, 3), event.cause, round(event.impact_speed, 3), round(event.depth, 3)
+    (0.05, 'person', 2.0, 0.1)
+    """
+    swept = swept_clearance(times, position, radius, active, robot)
+    gap = clearance(position, radius, active, robot)
+    found: list[ContactEvent] = []
+    for person in np.flatnonzero(np.any(swept < 0.0, axis=0)):
+        for first, last in _stretches(times, swept[:, person], gap[:, person]):
+            deepest = -float(np.min(swept[first : last + 1, person]))
+            begin, normal, own, other = _first_touch(
+                times, position, velocity, radius, active, robot, int(person), first
+            )
+            impact = max(0.0, float((own - other) @ normal))
+            cause = cause_of(normal, own, other)
+            found.append(ContactEvent(int(person), begin, float(times[last]), deepest, cause, impact))
+    return tuple(sorted(found, key=lambda event: (event.begin, event.person)))
+
+
+def _stretches(times: Floats, swept: Floats, gap: Floats) -> list[tuple[int, int]]:
+    """Return first and last sample of each contact of one person."""
+    found: list[tuple[int, int]] = []
+    first = last = -1
+    free_since = math.inf
+    for k in range(len(times)):
+        if swept[k] < 0.0:
+            first = k if first < 0 else first
+            last = k
+        if gap[k] <= RELEASE:
+            free_since = math.inf
+        elif swept[k] < 0.0 or math.isinf(free_since):
+            free_since = float(times[k])
+        if first >= 0 and times[k] - free_since >= HOLD - 1e-9:
+            found.append((first, last))
+            first = -1
+    return [*found, (first, last)] if first >= 0 else found
+
+
+def _first_touch(
+    times: Floats, position: Floats, velocity: Floats, radius: Floats, active: Bools, robot: int, person: int, k: int
+) -> tuple[float, Floats, Floats, Floats]:
+    """Return time, normal (robot to person) and both velocities at the first touch, in the step that ends at k."""
+    reach = float(radius[robot] + radius[person])
+    away = position[k, person] - position[k, robot]
+    own, other = velocity[k, robot], velocity[k, person]
+    begin = float(times[k])
+    step = float(times[k] - times[k - 1]) if k > 0 else 0.0
+    entered = k == 0 or not active[k - 1, person] or math.dist(*position[k - 1 : k + 1, person]) > JUMP * step
+    if not entered and math.dist(position[k - 1, person], position[k - 1, robot]) > reach:
+        own = (position[k, robot] - position[k - 1, robot]) / step
+        other = (position[k, person] - position[k - 1, person]) / step
+        before = position[k - 1, person] - position[k - 1, robot]
+        closing = other - own
+        after = min(step, _touch(before, closing, reach))
+        away = before + closing * after
+        begin = float(times[k - 1]) + after
+    length = math.hypot(away[0], away[1])
+    normal = away / length if length > 0.0 else np.array([1.0, 0.0])
+    return begin, normal, own, other
+
+
+def _touch(away: Floats, closing: Floats, reach: float) -> float:
+    """Return when the distance ``|away + closing t|`` has shrunk to ``reach``, or when it is smallest (a graze)."""
+    a, b, c = float(closing @ closing), float(away @ closing), float(away @ away) - reach**2
+    if a == 0.0 or b >= 0.0:
+        return 0.0
+    return c / (-b + math.sqrt(b * b - a * c)) if b * b > a * c else -b / a

@@ -1,0 +1,396 @@
+"""GroupForce: social forces measured in experiments, and people who walk in groups (Moussaïd et al. 2009 and 2010)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numba import prange
+from numpy.typing import NDArray
+
+from ..core.errors import InputError, did_you_mean
+from ..core.kernels import kernel
+from ..core.neighbors import CHUNK, Neighbors, nearest
+from ..core.paper import Paper
+from ..core.parameter import PerAgent, parameter, per_agent
+from ..core.scene import Scene
+from .model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
+from .surfaces import feel, surfaces_of
+
+__all__ = ["GroupForce"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+VARIANTS = ("moussaid", "pysocialforce")
+ARRIVED = 0.5
+"""PySocialForce stops who is nearer to the goal than this [m]."""
+BODY = 0.35
+"""Its radius of everyone before walls [m]."""
+SIGHT = 3.35
+"""It feels points of walls nearer than this [m] to the body."""
+POINTS = 10.0
+"""It takes so many points of a wall per metre."""
+COLUMNS = (
+    "strength",
+    "anticipation",
+    "distance",
+    "turn_width",
+    "brake_width",
+    "wall_strength",
+    "wall_distance",
+    "relaxation_time",
+    "gaze",
+    "view_angle",
+    "cohesion",
+    "repulsion",
+    "group_distance",
+    "neighbor_distance",
+)
+
+
+class _Crowd(NamedTuple):
+    """What the kernel reads of every agent, by row ``e * A + a``."""
+
+    position: Floats
+    velocity: Floats
+    desired: Floats
+    heading: Floats
+    """``[E * A, 3]``: unit direction to the goal, and its distance [m]."""
+    radius: Floats
+    max_speed: Floats
+    walking: NDArray[np.bool_]
+    seen: NDArray[np.bool_]
+    law: Floats
+    """``[E * A, 14]``: the parameters in the order of :data:`COLUMNS`."""
+
+
+class _Groups(NamedTuple):
+    """Who walks with whom: the group of a row are ``member[begin[row]:end[row]]``, with the row itself."""
+
+    member: Ints
+    begin: Ints
+    end: Ints
+
+
+class _Walls(NamedTuple):
+    """Walls for both variants: faces and corners (see :mod:`.surfaces`), and every segment ``[N, 4]``."""
+
+    face: Floats
+    corner: Floats
+    arm: Floats
+    first: Ints
+    segment: Floats
+
+
+@kernel
+def _pair(
+    x: float, y: float, wx: float, wy: float, anticipation: float, distance: float, turn: float, brake: float,
+    wrapped: bool,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the force in units of the strength by someone at -x, -y who moves by w relative to the own velocity.
+
+    Brakes along the interaction direction t, and turns across it, away from the side on which the other is.
+    """
+    gap = math.sqrt(x * x + y * y)
+    if gap == 0.0:
+        return 0.0, 0.0
+    nx, ny = x / gap, y / gap
+    tx, ty = anticipation * wx + nx, anticipation * wy + ny
+    length = math.sqrt(tx * tx + ty * ty)
+    reach = distance * length
+    if reach <= 0.0:
+        return 0.0, 0.0
+    tx, ty = tx / length, ty / length
+    angle = math.atan2(ty, tx) - math.atan2(ny, nx)
+    if wrapped and angle > math.pi:
+        angle -= 2.0 * math.pi
+    elif wrapped and angle <= -math.pi:
+        angle += 2.0 * math.pi
+    along = math.exp(-gap / reach - (brake * reach * angle) ** 2)
+    across = math.exp(-gap / reach - (turn * reach * angle) ** 2)
+    across = -across if angle > 0.0 else across if angle < 0.0 else 0.0
+    return along * tx - across * ty, along * ty + across * tx
+
+
+@kernel
+def _with_group(
+    row: int, begin: int, end: int, member: Ints, place: Floats, velocity: Floats, seen: NDArray[np.bool_], law: Floats
+) -> tuple[float, float]:
+    """Return the acceleration that keeps a group together, in sight and apart (Moussaïd et al. 2010)."""
+    x, y = place[row, 0], place[row, 1]
+    gaze, angle, cohesion, repulsion, apart = law[row, 8], law[row, 9], law[row, 10], law[row, 11], law[row, 12]
+    ax = ay = sx = sy = 0.0
+    others = 0
+    for k in range(begin, end):
+        mate = member[k]
+        if mate == row or not seen[mate]:
+            continue
+        dx, dy = x - place[mate, 0], y - place[mate, 1]
+        gap = math.sqrt(dx * dx + dy * dy)
+        if 0.0 < gap < apart:
+            ax, ay = ax + repulsion * dx / gap, ay + repulsion * dy / gap
+        sx, sy = sx - dx, sy - dy
+        others += 1
+    length = math.sqrt(sx * sx + sy * sy)
+    if length == 0.0:
+        return ax, ay
+    if length / (others + 1) > 0.5 * others:
+        ax, ay = ax + cohesion * sx / length, ay + cohesion * sy / length
+    vx, vy = velocity[row, 0], velocity[row, 1]
+    speed = math.sqrt(vx * vx + vy * vy)
+    if speed > 0.0:
+        turned = math.acos(min(1.0, max(-1.0, (vx * sx + vy * sy) / (speed * length)))) - angle
+        if turned > 0.0:
+            ax, ay = ax - gaze * turned * vx, ay - gaze * turned * vy
+    return ax, ay
+
+
+@kernel
+def _with_group_as_package(
+    row: int, begin: int, end: int, member: Ints, place: Floats, heading: Floats, seen: NDArray[np.bool_], law: Floats
+) -> tuple[float, float]:
+    """Return the acceleration by the group as PySocialForce 1.1.2 computes it.
+
+    Its cohesion takes the distance to the centre as 0, and its factors of gaze and cohesion are 1 whatever it reads.
+    """
+    x, y = place[row, 0], place[row, 1]
+    ax = ay = sx = sy = 0.0
+    others = 0
+    for k in range(begin, end):
+        mate = member[k]
+        if mate == row or not seen[mate]:
+            continue
+        dx, dy = x - place[mate, 0], y - place[mate, 1]
+        if dx * dx + dy * dy <= law[row, 12] ** 2:
+            ax, ay = ax + law[row, 11] * dx, ay + law[row, 11] * dy
+        sx, sy = sx - dx, sy - dy
+        others += 1
+    if others == 0:
+        return 0.0, 0.0
+    soft = 0.5 * (math.tanh(-0.5 * others) + 1.0) / (others + 1)
+    ax, ay = ax + soft * sx, ay + soft * sy
+    ex, ey, distance = heading[row, 0], heading[row, 1], heading[row, 2]
+    if distance > 0.0:
+        size = (sx * ex + sy * ey) / (others * distance)
+        ax, ay = ax + size * ex, ay + size * ey
+    return ax, ay
+
+
+@kernel
+def _from_points(x: float, y: float, strength: float, distance: float, segment: Floats) -> tuple[float, float]:
+    """Return the acceleration by walls as PySocialForce takes them: as points, ten per metre."""
+    ax = ay = 0.0
+    for k in range(len(segment)):
+        sx, sy = segment[k, 0], segment[k, 1]
+        ex, ey = segment[k, 2] - sx, segment[k, 3] - sy
+        length = math.sqrt(ex * ex + ey * ey)
+        count = math.floor(length * POINTS)
+        if count < 1.0:
+            continue
+        step = 1.0 / max(1.0, count - 1.0)
+        foot = ((x - sx) * ex + (y - sy) * ey) / (length * length)
+        span = (SIGHT + BODY) / length
+        low = math.floor(min(max((foot - span) / step, 0.0), count))
+        high = math.ceil(min(max((foot + span) / step + 1.0, 0.0), count))
+        for n in range(int(low), int(high)):
+            dx, dy = x - sx - ex * (n * step), y - sy - ey * (n * step)
+            gap = math.sqrt(dx * dx + dy * dy)
+            if 0.0 < gap and gap - BODY < SIGHT:
+                size = strength * math.exp((BODY - gap) / distance) / gap
+                ax, ay = ax + size * dx, ay + size * dy
+    return ax, ay
+
+
+@kernel(parallel=True)
+def _choose(
+    crowd: _Crowd, near: Neighbors, groups: _Groups, walls: _Walls, package: bool, dt: float, out: Floats
+) -> None:
+    """Choose the next velocity of every agent, row by row."""
+    for part in prange((len(out) + CHUNK - 1) // CHUNK):
+        _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, groups, walls, package, dt, out)
+
+
+@kernel
+def _choose_part(
+    start: int, stop: int, crowd: _Crowd, near: Neighbors, groups: _Groups, walls: _Walls, package: bool, dt: float,
+    out: Floats,
+) -> None:  # fmt: skip
+    # fields are taken out of the tuples here: inside the loop each access would count references
+    place, velocity, desired, heading, radius, top, walking, seen, law = crowd
+    agent, number, order = near
+    member, begin, end = groups
+    face, corner, arm, first, segment = walls
+    A = number.shape[1]
+    for m in range(start, stop):
+        row = order[m]
+        if not walking[row] or (package and heading[row, 2] < ARRIVED):
+            continue
+        e, a = row // A, row % A
+        x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
+        fx = fy = 0.0
+        for n in range(A if package else number[e, a]):
+            other = row - a + (n if package else agent[e, a, n])
+            if other != row and seen[other]:
+                px, py = _pair(
+                    x - place[other, 0], y - place[other, 1], velocity[other, 0] - vx, velocity[other, 1] - vy,
+                    law[row, 1], law[row, 2], law[row, 3], law[row, 4], not package,
+                )  # fmt: skip
+                fx, fy = fx + px, fy + py
+        ax = (desired[row, 0] - vx) / law[row, 7] + law[row, 0] * fx
+        ay = (desired[row, 1] - vy) / law[row, 7] + law[row, 0] * fy
+        if package:
+            px, py = _from_points(x, y, law[row, 5], law[row, 6], segment)
+            qx, qy = _with_group_as_package(row, begin[row], end[row], member, place, heading, seen, law)
+        else:
+            px, py = _from_surfaces(x, y, radius[row], law[row, 5], law[row, 6], law[row, 13], face, corner, arm, first)
+            qx, qy = _with_group(row, begin[row], end[row], member, place, velocity, seen, law)
+        vx, vy = vx + dt * (ax + px + qx), vy + dt * (ay + py + qy)
+        speed = math.sqrt(vx * vx + vy * vy)
+        if speed > top[row]:
+            vx, vy = vx / speed * top[row], vy / speed * top[row]
+        out[row, 0], out[row, 1] = vx, vy
+
+
+@kernel
+def _from_surfaces(
+    x: float, y: float, radius: float, strength: float, distance: float, sight: float,
+    face: Floats, corner: Floats, arm: Floats, first: Ints,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the acceleration by walls, which falls off with the clearance of the body."""
+    ax = ay = 0.0
+    for k in range(len(face) + len(corner)):
+        gap, nx, ny = feel(face, corner, arm, first, k, x, y, radius + sight)
+        if gap < math.inf:
+            size = strength * math.exp((radius - gap) / distance)
+            ax, ay = ax + size * nx, ay + size * ny
+    return ax, ay
+
+
+@dataclass(frozen=True)
+class GroupForce(CrowdModel):
+    """Agents brake and turn aside for each other as measured in experiments, and groups keep together and in sight.
+
+    Args:
+        strength: of the force between two agents [m/s^2].
+        anticipation: weight of the relative velocity in the direction of interaction [s/m].
+        distance: range of the force per length of that direction [m].
+        turn_width, brake_width: how fast turning and braking end beside that direction [1/(m rad)].
+        wall_strength: acceleration by a wall at contact [m/s^2].
+        wall_distance: over which it falls off [m].
+        relaxation_time: time [s] in which the desired velocity is taken up again.
+        gaze: braking of who has the group behind, per angle out of view and speed [1/(s rad)].
+        view_angle: half the field of view [rad].
+        cohesion: pull of who is farther than ``(N - 1) / 2`` m from the centre of a group of N [m/s^2].
+        repulsion: push between members nearer than ``group_distance`` [m/s^2].
+        group_distance: [m].
+        neighbor_distance: neighbours and walls are nearer than this [m], walls measured from the body.
+        max_neighbors: only so many neighbours count, the nearest; a fraction is rounded to the nearest whole number.
+        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+        variant: ``moussaid``, or ``pysocialforce``, what version 1.1.2 of that package does. Then the angle between
+            direction of interaction and neighbour is not brought to -pi..pi, everyone counts however far, the speed
+            aimed at is the maximum speed, who is nearer than 0.5 m to the goal stops at once, walls are rows of points
+            before bodies of 0.35 m, gaze pulls along the way to the goal, repulsion grows with the distance, and
+            ``gaze``, ``view_angle``, ``cohesion`` and both limits of neighbours are not read.
+
+    Groups are the agents of one environment with the same number in ``scene.group``. There is no contact force: in
+    crowds too dense to walk bodies overlap.
+
+    Source: Moussaïd et al. 2010 (groups), Moussaïd et al. 2009, doi:10.1098/rspb.2009.0405 (pairs); strength, walls and
+    group distance as in PySocialForce 1.1.2.
+
+    Raises:
+        InputError: a parameter is not finite or below its minimum, or the variant is unknown.
+
+    >>> ahead = Scene.of([[0, 0], [3, 0.1]], [[1, 0], [-1, 0]], preferred_velocity=[[1, 0], [-1, 0]])
+    >>> GroupForce().velocity(ahead, dt=0.1).round(3).tolist()
+    [[[0.889, -0.093], [-0.889, 0.093]]]
+    """
+
+    paper: ClassVar[Paper] = Paper(
+        "Mehdi Moussaïd, Niriaska Perozo, Simon Garnier, Dirk Helbing, Guy Theraulaz",
+        2010,
+        "The walking behaviour of pedestrian social groups and its impact on crowd dynamics",
+        "PLoS ONE 5(4), e10047",
+        "10.1371/journal.pone.0010047",
+    )
+
+    strength: PerAgent = parameter(5.1, unit="m/s^2", low=1.0, high=10.0, source="PySocialForce 1.1.2")
+    anticipation: PerAgent = parameter(2.0, unit="s/m", low=0.5, high=4.0, source="Moussaïd et al. 2009")
+    distance: PerAgent = parameter(0.35, unit="m", low=0.1, high=1.0, source="Moussaïd et al. 2009")
+    turn_width: PerAgent = parameter(2.0, unit="1/(m rad)", low=0.5, high=5.0, source="Moussaïd et al. 2009")
+    brake_width: PerAgent = parameter(3.0, unit="1/(m rad)", low=0.5, high=6.0, source="Moussaïd et al. 2009")
+    wall_strength: PerAgent = parameter(10.0, unit="m/s^2", low=1.0, high=20.0, source="PySocialForce 1.1.2")
+    wall_distance: PerAgent = parameter(
+        0.2, unit="m", low=0.05, high=0.5, source="PySocialForce 1.1.2", minimum=1e-3
+    )
+    relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.2, high=1.5, source="PySocialForce 1.1.2", minimum=1e-3)
+    gaze: PerAgent = parameter(4.0, unit="1/(s rad)", low=0.0, high=8.0, source="Moussaïd et al. 2010")
+    view_angle: PerAgent = parameter(0.5 * math.pi, unit="rad", low=0.5, high=math.pi, source="Moussaïd et al. 2010")
+    cohesion: PerAgent = parameter(3.0, unit="m/s^2", low=0.0, high=6.0, source="Moussaïd et al. 2010")
+    repulsion: PerAgent = parameter(1.0, unit="m/s^2", low=0.0, high=4.0, source="Moussaïd et al. 2010")
+    group_distance: PerAgent = parameter(0.55, unit="m", low=0.3, high=1.2, source="PySocialForce 1.1.2")
+    neighbor_distance: PerAgent = parameter(10.0, unit="m", low=1.0, high=15.0, source="own choice")
+    max_neighbors: PerAgent = parameter(50.0, unit="1", low=1.0, high=100.0, source="own choice")
+    max_speed: PerAgent | None = None
+    variant: str = "moussaid"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_limit(self, self.max_speed)
+        if self.variant not in VARIANTS:
+            near = did_you_mean(self.variant, VARIANTS)
+            raise InputError(f"GroupForce: variant {self.variant!r} is unknown{near}; choose {' or '.join(VARIANTS)}")
+
+    def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
+        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
+        wish, walking = wishes(scene, dt), walkers(scene)
+        package = self.variant == "pysocialforce"
+        law = np.stack([per_agent(getattr(self, name), scene.shape, name) for name in COLUMNS], axis=-1)
+        top = speed_limit(self.max_speed, scene)
+        heading = _heading(scene, wish)
+        seen = scene.active & scene.visible
+        crowd = _Crowd(
+            rows(scene.position),
+            rows(scene.velocity),
+            rows(heading[..., :2] * top[..., None] if package else wish),
+            rows(heading),
+            rows(scene.radius),
+            rows(top),
+            rows(walking),
+            rows(seen),
+            rows(law),
+        )
+        most = np.rint(per_agent(0.0 if package else self.max_neighbors, scene.shape, "max_neighbors"))
+        near = nearest(scene.position, law[..., -1], most, seen, walking)
+        walls = _Walls(*surfaces_of(scene.walls), np.ascontiguousarray(scene.walls.segments()))
+        out = kept(scene)
+        _choose(crowd, near, _groups_of(scene), walls, package, float(dt), rows(out))
+        return out
+
+
+def _heading(scene: Scene, wish: Floats) -> Floats:
+    """Return ``[E, A, 3]``: unit direction to the goal and its distance, inf when only a velocity is wished."""
+    away = wish if scene.preferred_velocity is not None else scene.goal - scene.position
+    away = np.where(scene.active[..., None], away, 0.0)
+    distance = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2)
+    direction = away / np.where(distance > 0.0, distance, 1.0)[..., None]
+    if scene.preferred_velocity is not None:
+        distance = np.full(scene.shape, np.inf)
+    return np.concatenate([direction, distance[..., None]], axis=-1)
+
+
+def _groups_of(scene: Scene) -> _Groups:
+    environment = np.repeat(np.arange(scene.shape[0]), scene.shape[1])
+    group = scene.group.reshape(-1)
+    begin, end = np.zeros((2, len(group)), dtype=np.int64)
+    member = np.flatnonzero((group >= 0) & scene.active.reshape(-1))
+    member = member[np.lexsort((group[member], environment[member]))]
+    if len(member) > 0:
+        first = np.flatnonzero(np.diff(group[member], prepend=-1) | np.diff(environment[member], prepend=-1))
+        size = np.diff(first, append=len(member))
+        begin[member] = np.repeat(first, size)
+        end[member] = np.repeat(first + size, size)
+    return _Groups(member, begin, end)

@@ -1,0 +1,130 @@
+"""Linear programs of ORCA (van den Berg et al. 2011): the best velocity that keeps to the left of some lines.
+
+A line is a row ``x, y, ux, uy``: a point and a unit direction in velocity space; what lies on its left is allowed.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.kernels import kernel
+
+__all__ = ["best_velocity"]
+
+Array = NDArray[np.float64]
+
+PARALLEL = 1e-5
+"""Lines count as parallel when the sine of their angle is not above this."""
+
+
+@kernel
+def best_velocity(
+    lines: Array, fixed: int, count: int, speed: float, wish_x: float, wish_y: float, spare: Array
+) -> tuple[float, float]:
+    """Return the velocity nearest to the wish, not above ``speed``, on the left of every line.
+
+    When no velocity is on the left of all lines, the largest violation of the lines from ``fixed`` on becomes as small
+    as possible; the ``fixed`` lines before (walls) never give way. ``spare`` is room for as many lines.
+    """
+    if wish_x * wish_x + wish_y * wish_y > speed * speed:
+        length = math.sqrt(wish_x * wish_x + wish_y * wish_y)
+        x, y = wish_x / length * speed, wish_y / length * speed
+    else:
+        x, y = wish_x, wish_y
+    failed, x, y = _plane(lines, count, speed, wish_x, wish_y, False, x, y)
+    if failed < count:
+        x, y = _least_violation(lines, fixed, count, failed, speed, x, y, spare)
+    return x, y
+
+
+@kernel
+def _on_line(
+    lines: Array, k: int, speed: float, wish_x: float, wish_y: float, along: bool
+) -> tuple[bool, float, float]:
+    """Return whether line k has an allowed point, and the best: nearest to the wish, or farthest ``along`` it."""
+    x, y, ux, uy = lines[k, 0], lines[k, 1], lines[k, 2], lines[k, 3]
+    across = ux * y - uy * x
+    half2 = speed * speed - across * across
+    if half2 < 0.0:
+        return False, 0.0, 0.0
+    middle = -(x * ux + y * uy)
+    half = math.sqrt(half2)
+    low, high = middle - half, middle + half
+    for i in range(k):
+        vx, vy = lines[i, 2], lines[i, 3]
+        turn = ux * vy - uy * vx
+        side = vx * (y - lines[i, 1]) - vy * (x - lines[i, 0])
+        if abs(turn) <= PARALLEL:
+            if side < 0.0:
+                return False, 0.0, 0.0
+            continue
+        if turn > 0.0:
+            high = min(high, side / turn)
+        else:
+            low = max(low, side / turn)
+        if low > high:
+            return False, 0.0, 0.0
+    if along:
+        t = high if wish_x * ux + wish_y * uy > 0.0 else low
+    else:
+        t = min(high, max(low, ux * (wish_x - x) + uy * (wish_y - y)))
+    return True, x + t * ux, y + t * uy
+
+
+@kernel
+def _plane(
+    lines: Array, count: int, speed: float, wish_x: float, wish_y: float, along: bool, x: float, y: float
+) -> tuple[int, float, float]:
+    """Take the lines one by one, from the best point x, y of the disc; return the first that fails, or ``count``."""
+    for k in range(count):
+        if lines[k, 2] * (lines[k, 1] - y) - lines[k, 3] * (lines[k, 0] - x) > 0.0:
+            found, new_x, new_y = _on_line(lines, k, speed, wish_x, wish_y, along)
+            if not found:
+                return k, x, y
+            x, y = new_x, new_y
+    return count, x, y
+
+
+@kernel
+def _least_violation(
+    lines: Array, fixed: int, count: int, failed: int, speed: float, x: float, y: float, spare: Array
+) -> tuple[float, float]:
+    """Move away from the worst line, from the failed one on, while lines before it are violated no more than it."""
+    for k in range(fixed):
+        for c in range(4):
+            spare[k, c] = lines[k, c]
+    worst = 0.0
+    for i in range(failed, count):
+        ux, uy = lines[i, 2], lines[i, 3]
+        if ux * (lines[i, 1] - y) - uy * (lines[i, 0] - x) <= worst:
+            continue
+        held = fixed
+        for j in range(fixed, i):
+            held += _bisector(lines, i, j, spare, held)
+        passed, new_x, new_y = _plane(spare, held, speed, -uy, ux, True, -uy * speed, ux * speed)
+        if passed == held:  # else only rounding has failed: keep the velocity so far
+            x, y = new_x, new_y
+        worst = ux * (lines[i, 1] - y) - uy * (lines[i, 0] - x)
+    return x, y
+
+
+@kernel
+def _bisector(lines: Array, i: int, j: int, spare: Array, at: int) -> int:
+    """Write the line where lines i and j are equally violated to ``spare[at]``; return 0 when there is none."""
+    x, y, ux, uy = lines[i, 0], lines[i, 1], lines[i, 2], lines[i, 3]
+    ox, oy, vx, vy = lines[j, 0], lines[j, 1], lines[j, 2], lines[j, 3]
+    turn = ux * vy - uy * vx
+    if abs(turn) <= PARALLEL:
+        if ux * vx + uy * vy > 0.0:
+            return 0
+        spare[at, 0], spare[at, 1] = 0.5 * (x + ox), 0.5 * (y + oy)
+    else:
+        t = (vx * (y - oy) - vy * (x - ox)) / turn
+        spare[at, 0], spare[at, 1] = x + t * ux, y + t * uy
+    dx, dy = vx - ux, vy - uy
+    length = math.sqrt(dx * dx + dy * dy)
+    spare[at, 2], spare[at, 3] = dx / length, dy / length
+    return 1

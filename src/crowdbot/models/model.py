@@ -1,0 +1,152 @@
+"""CrowdModel: the contract of every microscopic model of walking people."""
+
+from __future__ import annotations
+
+import abc
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import InputError
+from ..core.neighbors import SMALL
+from ..core.paper import Paper
+from ..core.parameter import PerAgent, check_parameters, parameters, per_agent
+from ..core.scene import Scene
+
+__all__ = ["CrowdModel", "check_limit", "kept", "rows", "speed_limit", "spread", "walkers", "wishes"]
+
+LARGEST = 1e9
+"""No position [m], speed [m/s] or parameter may be larger: beyond it squares of squares overflow."""
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class CrowdModel(abc.ABC):
+    """How people choose their next velocity.
+
+    A model is a frozen dataclass; its parameters are fields made by :func:`crowdbot.core.parameter`, each a number for
+    all or an array that broadcasts to ``[E, A]``. The same scene, step and stream give the same bytes, alone or in a
+    batch, with any number of threads.
+
+    Raises:
+        InputError: a parameter is not finite, below its minimum or absurdly large.
+
+    >>> class Straight(CrowdModel):
+    ...     paper = Paper("Nobody", 2020, "Walking straight", "Nowhere")
+    ...
+    ...     def velocity(self, scene, dt, rng=None):
+    ...         return wishes(scene, dt)
+    >>> scene = Scene.of([[0.0, 0.0]], goal=[[9.0, 0.0]], preferred_speed=1.0)
+    >>> Straight().step(scene, 0.5).position.tolist()
+    [[[0.5, 0.0]]]
+    """
+
+    paper: ClassVar[Paper]
+
+    def __post_init__(self) -> None:
+        check_parameters(self)
+        for row in parameters(self):
+            largest = np.max(np.asarray(getattr(self, row.name), dtype=float), initial=0.0)
+            if largest > LARGEST:
+                raise InputError(
+                    f"{type(self).__name__}: {row.name} = {largest} [{row.unit}] is not allowed,"
+                    f" it must be at most {LARGEST:g}"
+                )
+
+    @abc.abstractmethod
+    def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
+        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s].
+
+        All agents choose from the same old scene. External agents keep their velocity, absent ones get 0.
+
+        Raises:
+            InputError: ``dt`` is not positive, or a value of the scene is not finite or absurdly large.
+        """
+
+    def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
+        """Return the scene ``dt`` [s] later."""
+        return scene.advanced(self.velocity(scene, dt, rng), dt)
+
+
+def walkers(scene: Scene) -> NDArray[np.bool_]:
+    """Return ``[E, A]``: the agents that a model moves, active and not external."""
+    return np.asarray(scene.active & ~scene.external)
+
+
+def wishes(scene: Scene, dt: float) -> Floats:
+    """Return the desired velocities ``[E, A, 2]`` [m/s], 0 for absent agents, after a check of everything models read.
+
+    Raises:
+        InputError: ``dt`` is not positive, or a value of an active agent is not finite or larger than 1e9.
+    """
+    if not (math.isfinite(dt) and dt > 0.0):
+        raise InputError(f"time step {dt} s is not allowed, it must be above 0 and finite")
+    aim = ("goal", "preferred_speed") if scene.preferred_velocity is None else ()
+    for name in ("position", "velocity", "radius", "max_speed", *aim):
+        _check(name, getattr(scene, name), scene.active)
+    with np.errstate(invalid="ignore", over="ignore"):  # absent agents may hold anything
+        desired = np.where(scene.active[..., None], scene.desired_velocity(dt), 0.0)
+    _check("preferred velocity", desired, scene.active)
+    return desired
+
+
+def kept(scene: Scene) -> Floats:
+    """Return velocities ``[E, A, 2]`` [m/s] for a model to fill: external agents keep theirs, all others have 0."""
+    return np.where((scene.active & scene.external)[..., None], scene.velocity, 0.0)
+
+
+def check_limit(model: CrowdModel, max_speed: PerAgent | None) -> None:
+    """Raise :class:`InputError` unless a model's own maximum speed is None, or finite and not below 0."""
+    if max_speed is None:
+        return
+    value = np.asarray(max_speed, dtype=float)
+    wrong = value[~((value >= 0.0) & (value <= LARGEST))]
+    if wrong.size:
+        raise InputError(
+            f"{type(model).__name__}: max_speed = {wrong.flat[0]} [m/s] is not allowed, it must be from 0 to"
+            f" {LARGEST:g}, or left out to take the maximum speed of the scene"
+        )
+
+
+def speed_limit(max_speed: PerAgent | None, scene: Scene) -> Floats:
+    """Return the maximum speeds ``[E, A]`` [m/s]: the model's own, or those of the scene when it has none."""
+    return scene.max_speed if max_speed is None else per_agent(max_speed, scene.shape, "max_speed")
+
+
+def rows(value: NDArray[Any]) -> NDArray[Any]:
+    """Return ``[E, A, ...]`` as rows ``[E * A, ...]``, in the one form that kernels are compiled for (C, writeable)."""
+    E, A = value.shape[:2]
+    return np.require(value, requirements=["C", "W"]).reshape(E * A, *value.shape[2:])
+
+
+def spread(whole: Callable[..., None], part: Callable[..., None], out: Floats, *values: Any) -> None:
+    """Fill the rows of ``out`` [E * A, ...] by a kernel: all by one thread when they are few, else by all threads.
+
+    Args:
+        whole: parallel kernel of ``values`` and ``out``, which calls ``part`` for :data:`CHUNK` rows at a time.
+        part: kernel of the first row, the row after the last, ``values`` and ``out``.
+        out: what they fill.
+        values: what they read.
+    """
+    if len(out) <= SMALL:
+        part(0, len(out), *values, out)
+    else:
+        whole(*values, out)
+
+
+def _check(name: str, value: Floats, active: NDArray[np.bool_]) -> None:
+    fits = np.abs(value) <= LARGEST  # False for NaN too
+    if value.ndim == 3:
+        fits = fits[..., 0] & fits[..., 1]
+    wrong = active & ~fits
+    if np.any(wrong):
+        e, a = np.argwhere(wrong)[0]
+        raise InputError(
+            f"scene: {name} {value[e, a]} of agent {a} in environment {e} is not finite or larger than {LARGEST:g};"
+            " mark absent agents active=False"
+        )

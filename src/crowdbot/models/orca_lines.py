@@ -1,0 +1,278 @@
+"""Lines of ORCA: which velocities keep clear of a neighbour, and of a wall (van den Berg et al. 2011).
+
+A line is a row ``x, y, ux, uy``: a point and a unit direction in velocity space; what lies on its left is allowed.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.geometry import nearest_on_segment
+from ..core.kernels import kernel
+from ..core.walls import Walls
+
+__all__ = ["Edges", "avoid_agent", "avoid_edge", "edges_in_reach", "edges_of"]
+
+Array = NDArray[np.float64]
+
+COVERED = 1e-5
+"""An edge is left out when lines before cover it up to this [m/s]."""
+
+
+class Edges(NamedTuple):
+    """Walls as kernels read them: edge k runs from corner k to corner ``next[k]``, solid on its left."""
+
+    corner: Array
+    """``[M, 2]`` start of the edge [m]."""
+    direction: Array
+    """``[M, 2]`` unit direction of the edge."""
+    previous: NDArray[np.int64]
+    next: NDArray[np.int64]
+    convex: NDArray[np.bool_]
+
+
+def edges_of(walls: Walls) -> Edges:
+    """Return the edges of ``walls``."""
+    along = walls.end - walls.start
+    length = np.sqrt(along[:, :1] ** 2 + along[:, 1:] ** 2)
+    direction = along / np.where(length > 0.0, length, 1.0)
+    return Edges(
+        np.require(walls.start, np.float64, ["C", "W"]),
+        direction,
+        np.require(walls.previous, np.int64, ["C", "W"]),
+        np.require(walls.next, np.int64, ["C", "W"]),
+        np.require(walls.convex, np.bool_, ["C", "W"]),
+    )
+
+
+@kernel
+def avoid_agent(
+    lines: Array,
+    at: int,
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    other_vx: float,
+    other_vy: float,
+    reach: float,
+    horizon: float,
+    dt: float,
+    share: float,
+    side: float,
+) -> None:
+    """Write the line of one neighbour to ``lines[at]``.
+
+    Args:
+        lines, at: where to write.
+        x, y: position of the neighbour relative to the own [m].
+        vx, vy, other_vx, other_vy: own velocity and its [m/s].
+        reach: sum of the radii [m].
+        horizon: no contact before this [s].
+        dt: time step [s], in which an overlap is to end.
+        share: how much of the change is mine: 1/2, or 1 when the other does not react.
+        side: 1 or -1, where to go when nothing else decides.
+    """
+    wx, wy = vx - other_vx, vy - other_vy
+    distance2 = x * x + y * y
+    apart = distance2 > reach * reach
+    inverse = 1.0 / horizon if apart else 1.0 / dt
+    cx, cy = wx - inverse * x, wy - inverse * y  # from the centre of the cut-off disc to the relative velocity
+    length2 = cx * cx + cy * cy
+    inward = cx * x + cy * y
+    if not apart or (inward < 0.0 and inward * inward > reach * reach * length2):
+        length = math.sqrt(length2)
+        if length > 0.0:
+            nx, ny = cx / length, cy / length
+        elif distance2 > 0.0:
+            nx, ny = -x / math.sqrt(distance2), -y / math.sqrt(distance2)
+        else:
+            nx, ny = side, 0.0  # same place, same velocity
+        ux, uy = ny, -nx
+        change = reach * inverse - length
+        px, py = change * nx, change * ny
+    else:
+        leg = math.sqrt(distance2 - reach * reach)
+        if x * cy - y * cx > 0.0:
+            ux, uy = (x * leg - y * reach) / distance2, (x * reach + y * leg) / distance2
+        else:
+            ux, uy = -(x * leg + y * reach) / distance2, -(y * leg - x * reach) / distance2
+        along = wx * ux + wy * uy
+        px, py = along * ux - wx, along * uy - wy
+    lines[at, 0], lines[at, 1] = vx + share * px, vy + share * py
+    lines[at, 2], lines[at, 3] = ux, uy
+
+
+@kernel
+def edges_in_reach(
+    corner: Array, following: NDArray[np.int64], x: float, y: float, reach: float, found: NDArray[np.int64], gap2: Array
+) -> int:
+    """Find the edges seen from their free side and strictly nearer than ``reach``, nearest first; return how many."""
+    held = 0
+    for k in range(len(corner)):
+        ax, ay = corner[k, 0], corner[k, 1]
+        bx, by = corner[following[k], 0], corner[following[k], 1]
+        if (ax - x) * (by - ay) - (ay - y) * (bx - ax) >= 0.0:
+            continue
+        nx, ny = nearest_on_segment(x, y, ax, ay, bx, by)
+        d2 = (nx - x) ** 2 + (ny - y) ** 2
+        if not d2 < reach * reach:
+            continue
+        n = held
+        while n > 0 and d2 < gap2[n - 1]:
+            gap2[n], found[n] = gap2[n - 1], found[n - 1]
+            n -= 1
+        gap2[n], found[n] = d2, k
+        held += 1
+    return held
+
+
+@kernel
+def avoid_edge(
+    lines: Array,
+    at: int,
+    a: int,
+    corner: Array,
+    direction: Array,
+    previous: NDArray[np.int64],
+    following: NDArray[np.int64],
+    convex: NDArray[np.bool_],
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    radius: float,
+    horizon: float,
+) -> int:
+    """Write the line of the edge from corner a to the next to ``lines[at]``; return 1, or 0 when it needs none."""
+    b = following[a]
+    ax, ay, bx, by = corner[a, 0] - x, corner[a, 1] - y, corner[b, 0] - x, corner[b, 1] - y
+    ex, ey = bx - ax, by - ay
+    inverse = 1.0 / horizon
+    if _is_covered(lines, at, ax, ay, bx, by, radius, inverse):
+        return 0
+    s = -(ax * ex + ay * ey) / (ex * ex + ey * ey)
+    off2 = (ax + s * ex) ** 2 + (ay + s * ey) ** 2
+    r2 = radius * radius
+    if s < 0.0 and ax * ax + ay * ay <= r2:
+        return _stop_at(lines, at, -ay, ax) if convex[a] else 0
+    if s > 1.0 and bx * bx + by * by <= r2:
+        behind = bx * direction[b, 1] - by * direction[b, 0] < 0.0
+        return _stop_at(lines, at, -by, bx) if convex[b] and not behind else 0
+    if 0.0 <= s <= 1.0 and off2 <= r2:
+        return _stop_at(lines, at, -direction[a, 0], -direction[a, 1])
+    left, right = a, b  # corners that bound the cone
+    if off2 <= r2:  # seen so obliquely that one corner hides the other
+        left = right = a if s < 0.0 else b
+        if not convex[left]:
+            return 0
+    return _cone(lines, at, a, left, right, corner, direction, previous, convex, x, y, vx, vy, radius, inverse)
+
+
+@kernel
+def _is_covered(
+    lines: Array, count: int, ax: float, ay: float, bx: float, by: float, radius: float, inverse: float
+) -> bool:
+    """Return whether one of the lines so far already keeps clear of both ends of an edge."""
+    for k in range(count):
+        px, py, ux, uy = lines[k, 0], lines[k, 1], lines[k, 2], lines[k, 3]
+        of_a = (inverse * ax - px) * uy - (inverse * ay - py) * ux - inverse * radius
+        of_b = (inverse * bx - px) * uy - (inverse * by - py) * ux - inverse * radius
+        if of_a >= -COVERED and of_b >= -COVERED:
+            return True
+    return False
+
+
+@kernel
+def _stop_at(lines: Array, at: int, ux: float, uy: float) -> int:
+    """Write a line through standing still, for a wall that is touched already."""
+    length = math.sqrt(ux * ux + uy * uy)
+    if length == 0.0:
+        return 0
+    lines[at, 0] = lines[at, 1] = 0.0
+    lines[at, 2], lines[at, 3] = ux / length, uy / length
+    return 1
+
+
+@kernel
+def _leg(px: float, py: float, radius: float, turn: float) -> tuple[float, float]:
+    """Return the unit direction of the tangent to a disc at p, on its left (``turn`` 1) or right (-1)."""
+    distance2 = px * px + py * py
+    leg = math.sqrt(max(0.0, distance2 - radius * radius))
+    return (px * leg - turn * py * radius) / distance2, (turn * px * radius + py * leg) / distance2
+
+
+@kernel
+def _cone(
+    lines: Array,
+    at: int,
+    a: int,
+    left: int,
+    right: int,
+    corner: Array,
+    direction: Array,
+    previous: NDArray[np.int64],
+    convex: NDArray[np.bool_],
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    radius: float,
+    inverse: float,
+) -> int:
+    """Find the legs of the velocity obstacle between two corners, then write the line where the velocity is nearest."""
+    lx, ly = corner[left, 0] - x, corner[left, 1] - y
+    rx, ry = corner[right, 0] - x, corner[right, 1] - y
+    mlx, mly = -direction[a, 0], -direction[a, 1]
+    mrx, mry = direction[a, 0], direction[a, 1]
+    left_open = right_open = True
+    if convex[left]:
+        mlx, mly = _leg(lx, ly, radius, 1.0)
+        before = previous[left]
+        if mly * direction[before, 0] - mlx * direction[before, 1] >= 0.0:  # points into the edge before
+            mlx, mly, left_open = -direction[before, 0], -direction[before, 1], False
+    if convex[right]:
+        mrx, mry = _leg(rx, ry, radius, -1.0)
+        if mrx * direction[right, 1] - mry * direction[right, 0] <= 0.0:  # points into the edge after
+            mrx, mry, right_open = direction[right, 0], direction[right, 1], False
+    same = left == right
+    clx, cly, crx, cry = inverse * lx, inverse * ly, inverse * rx, inverse * ry
+    reach = inverse * radius
+    cx, cy = crx - clx, cry - cly
+    t = 0.5 if same else ((vx - clx) * cx + (vy - cly) * cy) / (cx * cx + cy * cy)
+    tl = (vx - clx) * mlx + (vy - cly) * mly
+    tr = (vx - crx) * mrx + (vy - cry) * mry
+    if (t < 0.0 and tl < 0.0) or (same and tl < 0.0 and tr < 0.0):
+        return _around(lines, at, clx, cly, vx, vy, reach)
+    if t > 1.0 and tr < 0.0:
+        return _around(lines, at, crx, cry, vx, vy, reach)
+    to_cut = math.inf if same or t < 0.0 or t > 1.0 else (vx - clx - t * cx) ** 2 + (vy - cly - t * cy) ** 2
+    to_left = math.inf if tl < 0.0 else (vx - clx - tl * mlx) ** 2 + (vy - cly - tl * mly) ** 2
+    to_right = math.inf if tr < 0.0 else (vx - crx - tr * mrx) ** 2 + (vy - cry - tr * mry) ** 2
+    if to_cut <= to_left and to_cut <= to_right:
+        return _beside(lines, at, clx, cly, -direction[a, 0], -direction[a, 1], reach)
+    if to_left <= to_right:
+        return _beside(lines, at, clx, cly, mlx, mly, reach) if left_open else 0
+    return _beside(lines, at, crx, cry, -mrx, -mry, reach) if right_open else 0
+
+
+@kernel
+def _around(lines: Array, at: int, cx: float, cy: float, vx: float, vy: float, reach: float) -> int:
+    """Write the tangent of the disc about c at the point nearest to the velocity."""
+    length = math.sqrt((vx - cx) ** 2 + (vy - cy) ** 2)
+    nx, ny = (vx - cx) / length, (vy - cy) / length
+    lines[at, 0], lines[at, 1] = cx + reach * nx, cy + reach * ny
+    lines[at, 2], lines[at, 3] = ny, -nx
+    return 1
+
+
+@kernel
+def _beside(lines: Array, at: int, cx: float, cy: float, ux: float, uy: float, reach: float) -> int:
+    """Write the line with direction u that passes c at ``reach`` on its left."""
+    lines[at, 0], lines[at, 1] = cx - reach * uy, cy + reach * ux
+    lines[at, 2], lines[at, 3] = ux, uy
+    return 1

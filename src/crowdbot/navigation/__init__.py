@@ -1,0 +1,6 @@
+"""Navigators: who steers a robot. Contract :class:`Navigator`; what it knows is an :class:`Observation`."""
+
+from .navigator import Limits, Navigator, Observation, People
+from .straight import Straight
+
+__all__ = ["Limits", "Navigator", "Observation", "People", "Straight"]

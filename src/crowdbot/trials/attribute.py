@@ -1,0 +1,252 @@
+"""The grammar of trials: what a field of the tree is called in XML, what it may be, and what it means.
+
+Trials are frozen dataclasses whose fields are made by the functions below. The reader, the writer and the checks walk
+over :func:`outline` and know nothing else, so that a new element is a new dataclass and nothing more.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import importlib
+import math
+import re
+import types
+import typing
+from dataclasses import dataclass
+from typing import Any
+
+from crowdbot.core import InputError
+from crowdbot.core.errors import did_you_mean
+
+__all__ = ["Part", "Plug", "Rule", "attribute", "check", "child", "children", "mounted", "outline", "plugged", "shown"]
+
+LARGEST = 1e6
+"""No number in a trial may be larger than this, whatever its unit."""
+
+UNWRITABLE = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What one attribute may be; ``unit`` and ``about`` are for people."""
+
+    about: str
+    unit: str = ""
+    at_least: float | None = None
+    above: float | None = None
+    at_most: float | None = None
+    choices: tuple[str, ...] = ()
+    pattern: str = ""
+    points: int = 0
+
+    def problem(self, value: Any) -> str:
+        """Return what is wrong with a value as the end of a sentence, empty when it is right.
+
+        >>> Rule("number of people", at_least=0).problem(-3)
+        'must be at least 0'
+        """
+        if isinstance(value, str):
+            return self._wrong_word(value)
+        if isinstance(value, bool) or value is None:
+            return ""
+        if isinstance(value, tuple):
+            return self._wrong_points(value)
+        low, high = getattr(value, "extent", (value, value))
+        if not (math.isfinite(low) and math.isfinite(high)):
+            return "is not finite"
+        if self.above is not None and low <= self.above:
+            return f"must be above {self._amount(self.above)}{self._reach(low, high)}"
+        if self.at_least is not None and low < self.at_least:
+            return f"must be at least {self._amount(self.at_least)}{self._reach(low, high)}"
+        limit = LARGEST if self.at_most is None else self.at_most
+        if high > limit:
+            return f"must be at most {self._amount(limit)}{self._reach(low, high)}"
+        if self.above is None and self.at_least is None and low < -LARGEST:
+            return f"must be at least {self._amount(-LARGEST)}"
+        return ""
+
+    def _wrong_word(self, value: str) -> str:
+        if UNWRITABLE.search(value):
+            return "holds a character that XML cannot hold"
+        if self.choices and value not in self.choices:
+            return f"must be {' or '.join(self.choices)}{did_you_mean(value, self.choices)}"
+        if self.pattern and not re.fullmatch(self.pattern, value):
+            return f"must match {self.pattern} (a letter, then letters, digits or underscores)"
+        return ""
+
+    def _wrong_points(self, value: tuple[tuple[float, float], ...]) -> str:
+        if len(set(value)) < self.points:
+            return f"must be at least {self.points} different points, such as 0,0 4,0 4,2"
+        if not all(math.isfinite(number) for point in value for number in point):
+            return "is not finite"
+        if any(abs(number) > LARGEST for point in value for number in point):
+            return f"must lie within {self._amount(LARGEST)} of the origin"
+        return ""
+
+    def _amount(self, value: float) -> str:
+        return f"{value:g} {self.unit}".rstrip()
+
+    def _reach(self, low: float, high: float) -> str:
+        return "" if low == high else f", and it reaches from {low:g} to {high:g}"
+
+
+@dataclass(frozen=True)
+class Plug:
+    """The room and the contract of a part that users can bring: the XML says ``type="..."``."""
+
+    room: str
+    contract: str
+
+    def places(self) -> tuple[types.ModuleType, type]:
+        """Return the room and the contract class."""
+        room = importlib.import_module(f"crowdbot.{self.room}")
+        return room, getattr(room, self.contract)
+
+
+@dataclass(frozen=True)
+class Part:
+    """One field of an element.
+
+    Fields:
+        name: in Python.
+        word: in XML: of the attribute, or of the child element.
+        role: ``attribute``, ``child``, ``children``, ``plugged`` (a child element that is a plug) or ``mounted``
+            (a plug whose attributes stand in this element).
+        kind: type of the value (of one child).
+        required: whether it must be given.
+        default: when it is not.
+        rule: of an attribute.
+        plug: of a plug.
+        about: one line for people.
+        at_most: largest number of child elements.
+    """
+
+    name: str
+    word: str
+    role: str
+    kind: Any
+    required: bool
+    default: Any
+    rule: Rule | None
+    plug: Plug | None
+    about: str
+    at_most: int = 1
+
+    def wrong(self, value: Any) -> str:
+        """Return what is wrong with a value as the end of a sentence; a default is always right."""
+        is_default = not self.required and value == self.default
+        return "" if self.rule is None or is_default else self.rule.problem(value)
+
+
+def attribute(
+    default: Any = dataclasses.MISSING,
+    *,
+    about: str,
+    unit: str = "",
+    at_least: float | None = None,
+    above: float | None = None,
+    at_most: float | None = None,
+    choices: tuple[str, ...] = (),
+    pattern: str = "",
+    points: int = 0,
+) -> Any:
+    """Make a field that is an XML attribute: a number, a word, true or false, points, a distribution."""
+    rule = Rule(about, unit, at_least, above, at_most, choices, pattern, points)
+    return dataclasses.field(default=default, metadata={"role": "attribute", "rule": rule, "about": about})
+
+
+def child(factory: Any = dataclasses.MISSING, *, about: str) -> Any:
+    """Make a field that is one child element."""
+    return dataclasses.field(default_factory=factory, metadata={"role": "child", "about": about})
+
+
+def children(word: str, *, about: str, at_most: int = 10_000) -> Any:
+    """Make a field that is any number of child elements up to ``at_most``, each called ``word``."""
+    row = {"role": "children", "word": word, "about": about, "at_most": at_most}
+    return dataclasses.field(default=(), metadata=row)
+
+
+def plugged(room: str, contract: str, *, about: str) -> Any:
+    """Make a field that is a child element with a ``type`` from a room, or with an address."""
+    return dataclasses.field(metadata={"role": "plugged", "plug": Plug(room, contract), "about": about})
+
+
+def mounted(room: str, contract: str, *, about: str) -> Any:
+    """Make a field whose ``type`` and attributes stand in the element itself."""
+    return dataclasses.field(metadata={"role": "mounted", "plug": Plug(room, contract), "about": about})
+
+
+@functools.cache
+def outline(cls: type) -> tuple[Part, ...]:
+    """Return the fields of an element in the order in which they are written."""
+    hints = typing.get_type_hints(cls)
+    parts = []
+    for field in dataclasses.fields(cls):
+        if "role" not in field.metadata:
+            continue
+        row = field.metadata
+        kind = typing.get_args(hints[field.name])[0] if row["role"] == "children" else hints[field.name]
+        required = field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
+        default = field.default_factory() if field.default_factory is not dataclasses.MISSING else field.default
+        word = row.get("word", field.name.replace("_", "-"))
+        parts.append(
+            Part(
+                field.name,
+                word,
+                row["role"],
+                kind,
+                required,
+                default,
+                row.get("rule"),
+                row.get("plug"),
+                row["about"],
+                row.get("at_most", 1),
+            )
+        )
+    return tuple(parts)
+
+
+def check(element: Any) -> None:
+    """Bring the fields of an element to their types and raise :class:`InputError` when a value is not allowed.
+
+    To be called in ``__post_init__``. Lists become tuples, and a number becomes a distribution where one is due.
+    """
+    cls: type = type(element)
+    for part in outline(cls):
+        value = getattr(element, part.name)
+        if part.role == "attribute":
+            value = _brought(element, part, value)
+        elif part.role == "children":
+            value = tuple(value)
+            if len(value) > part.at_most:
+                raise InputError(f"{cls.__name__}: {len(value)} {part.name} are too many, at most {part.at_most}")
+        object.__setattr__(element, part.name, value)
+        wrong = part.wrong(value)
+        if wrong:
+            raise InputError(f"{type(element).__name__}: {part.name}={shown(value)} {wrong}")
+        if part.plug and not isinstance(value, part.plug.places()[1]):
+            raise InputError(
+                f"{type(element).__name__}: {part.name} is a {type(value).__name__}, it must be a {part.plug.contract}"
+            )
+
+
+def _brought(element: Any, part: Part, value: Any) -> Any:
+    try:
+        if hasattr(part.kind, "of"):
+            return part.kind.of(value)
+        if part.kind in (int, float) and not isinstance(value, bool | str):
+            exact = part.kind(value)
+            if exact == value or math.isnan(value):
+                return exact
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InputError(f"{type(element).__name__}: {part.name}={shown(value)} {error}") from None
+    if type(value) is part.kind:
+        return value
+    raise InputError(f"{type(element).__name__}: {part.name}={shown(value)} is not a {part.kind.__name__}")
+
+
+def shown(value: Any, limit: int = 60) -> str:
+    """Return a value in quotes for a message, cut when it is long."""
+    text = str(value)
+    return f'"{text if len(text) <= limit else text[: limit - 3] + "..."}"'

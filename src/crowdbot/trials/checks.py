@@ -1,0 +1,194 @@
+"""What makes a trial impossible although every value is allowed: places, overlaps, people who do not fit, periods."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core import FreeClock, InputError, TrialError
+
+from .spawn import place
+from .stage import Obstacle, Stage, area
+from .trial import Recording, Robot, Spawner, Trial
+
+__all__ = ["Checked", "check_trial", "problems_of"]
+
+MOST_VALUES = 100_000_000
+"""An episode is held in memory: recorded scenes times agents must not exceed this."""
+Problems = Iterator[tuple[Any, str]]
+
+
+@dataclass(frozen=True)
+class Checked:
+    """The parts of a trial that are there; None for those that could not be read."""
+
+    stage: Stage | None
+    spawners: Sequence[Spawner]
+    robots: Sequence[Robot]
+    step: float | None
+    seed: int
+    duration: float | None
+    recording: Recording | None
+
+    @classmethod
+    def of(cls, values: dict[str, Any]) -> Checked:
+        """Take the parts from the fields of a trial that could be read."""
+        return cls(
+            values.get("stage"),
+            values.get("spawners", ()),
+            values.get("robots", ()),
+            values.get("step"),
+            values.get("seed", 0),
+            values.get("duration"),
+            values.get("recording"),
+        )
+
+
+def check_trial(trial: Trial, seed: int | None = None) -> None:
+    """Raise :class:`TrialError` with every problem of a trial.
+
+    Args:
+        trial: made in Python or read.
+        seed: places people with it; None is the trial's own.
+    """
+    parts = {name: getattr(trial, name) for name in Checked.__dataclass_fields__}
+    checked = Checked(**(parts if seed is None else parts | {"seed": seed}))
+    found = [f"trial {trial.name!r}: {_called(thing)} {sentence}" for thing, sentence in problems_of(checked)]
+    if found:
+        raise TrialError(*found)
+
+
+def problems_of(checked: Checked) -> list[tuple[Any, str]]:
+    """Return every problem: the element that has it, and the end of a sentence about it."""
+    too_large = [*_size(checked)]
+    found = [*_periods(checked), *_names(checked), *too_large]
+    if checked.stage is None:
+        return found
+    shapes = [*_stage_shapes(checked.stage)]
+    zones = {id(s): [*_zone_shapes(s)] for s in checked.spawners}
+    found += shapes + [problem for row in zones.values() for problem in row]
+    if shapes:
+        return found
+    good = [spawner for spawner in checked.spawners if not zones[id(spawner)]]
+    lost = {id(s): [*_zone_places(checked.stage, s)] for s in good}
+    found += [problem for row in lost.values() for problem in row]
+    found += _robots(checked.stage, checked.robots)
+    standing = [spawner for spawner in good if not lost[id(spawner)] and not too_large]
+    return found + place(checked.stage, standing, checked.robots, checked.seed)[1]
+
+
+def _periods(checked: Checked) -> Problems:
+    if checked.step is None:
+        return
+    clock = FreeClock(checked.step)
+    periods: list[tuple[Any, str, float]] = []
+    if checked.recording:
+        periods += [(checked.recording, f"recording {n}", getattr(checked.recording, n)) for n in ("period", "markers")]
+    for robot in checked.robots:
+        periods.append((robot, "control-period", robot.control_period))
+        periods += [(mount, f"rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate) for mount in robot.sensors]
+    for thing, name, period in periods:
+        try:
+            clock.every(period)
+        except InputError:
+            yield thing, f"{name} {period:g} s is not a whole number of time steps of {checked.step:g} s"
+
+
+def _names(checked: Checked) -> Problems:
+    robots = [robot.name for robot in checked.robots]
+    for k, robot in enumerate(checked.robots):
+        if robot.name in robots[:k]:
+            yield robot, f"name {robot.name!r} is taken by another robot; give each its own"
+        mounts = [mount.name for mount in robot.sensors]
+        for n, mount in enumerate(robot.sensors):
+            if mount.name in mounts[:n]:
+                yield mount, f"name {mount.name!r} is taken by another sensor of this robot; give each its own"
+
+
+def _size(checked: Checked) -> Problems:
+    if checked.duration is None or checked.recording is None:
+        return
+    if checked.recording.period > checked.duration:
+        yield (
+            checked.recording,
+            f"recording period {checked.recording.period:g} s is longer than the duration of {checked.duration:g} s",
+        )
+    agents = sum(spawner.count for spawner in checked.spawners) + len(checked.robots)
+    scenes = checked.duration / checked.recording.period
+    if scenes * agents > MOST_VALUES:
+        yield (
+            checked.recording,
+            f"recording period {checked.recording.period:g} s makes {scenes:.0f} scenes of {agents} agents, more than"
+            f" {MOST_VALUES} places together; take a longer period, a shorter duration or fewer people",
+        )
+
+
+def _stage_shapes(stage: Stage) -> Problems:
+    for obstacle in stage.obstacles:
+        if wrong := _crooked(obstacle.points):
+            yield obstacle, f"points {wrong}"
+    if stage.walkable and (wrong := _crooked(stage.walkable)):
+        yield stage, f"walkable {wrong}"
+
+
+def _zone_shapes(spawner: Spawner) -> Problems:
+    for name in ("zone", "goal"):
+        if wrong := _crooked(getattr(spawner, name)):
+            yield spawner, f"{name} {wrong}"
+
+
+def _crooked(points: Any) -> str:
+    import shapely
+
+    if len(set(points)) < 3:
+        return "must be at least 3 different points"
+    polygon = area(points)
+    if not polygon.is_valid:
+        return f"is no simple polygon: {shapely.is_valid_reason(polygon).lower()}; list its corners in order"
+    return "" if polygon.area > 0.0 else "has no area"
+
+
+def _zone_places(stage: Stage, spawner: Spawner) -> Problems:
+    for name, points in (("spawn zone", spawner.zone), ("goal zone", spawner.goal)):
+        zone = area(points)
+        block = stage.obstacle_around(zone)
+        if not stage.holds(zone):
+            yield spawner, f"{name} reaches outside the walkable area; move it, or make the area larger"
+        elif block is not None:
+            yield spawner, f"{name} lies inside obstacle {block + 1} of the stage; nobody can be there, move it"
+
+
+def _robots(stage: Stage, robots: Sequence[Robot]) -> Problems:
+    import shapely
+
+    for k, robot in enumerate(robots):
+        for name, spot, reach in (
+            ("starts", robot.position, 0.0),
+            ("has its goal", robot.goal.position, robot.goal.tolerance),
+        ):
+            room = float(stage.clearance([spot])[0])
+            block = stage.obstacle_around(shapely.Point(spot))
+            if not stage.holds(shapely.Point(spot)):
+                yield robot, f"{name} at {spot[0]:g},{spot[1]:g} outside the walkable area"
+            elif block is not None:
+                yield robot, f"{name} at {spot[0]:g},{spot[1]:g} inside obstacle {block + 1} of the stage"
+            elif room + reach < robot.radius:
+                yield robot, f"{name} {room:.2f} m from a wall, and its radius is {robot.radius:g} m"
+        for other in robots[:k]:
+            away = float(np.hypot(robot.x - other.x, robot.y - other.y))
+            if away < robot.radius + other.radius:
+                yield (
+                    robot,
+                    f"starts {away:.2f} m from robot {other.name!r}, and their radii add up to"
+                    f" {robot.radius + other.radius:g} m",
+                )
+
+
+def _called(thing: Any) -> str:
+    if isinstance(thing, Obstacle):
+        return "obstacle"
+    name = getattr(thing, "name", "")
+    return type(thing).__name__.lower() + (f" {name!r}" if name else "")

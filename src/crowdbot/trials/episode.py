@@ -1,0 +1,251 @@
+"""Episode: what happened in one run of a trial, as arrays over recorded instants."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Pose
+from crowdbot.data import Trajectories
+from crowdbot.metrics import navigation_metrics
+from crowdbot.sensors import Reading, Scan
+
+from .simulation import Frame
+from .trial import Trial
+
+__all__ = ["Digest", "Episode", "Log", "ScanRow", "tracks_of"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ScanRow:
+    """One scan of one sensor.
+
+    Fields:
+        time: [s].
+        pose: x, y [m] and heading [rad] of the sensor in the world.
+        angles, ranges: ``[R]`` [rad], [m]; ranges as in :class:`crowdbot.sensors.Scan`.
+        hit: ``[R]`` index of the agent that was hit, -1 nothing, -2 a wall.
+    """
+
+    time: float
+    pose: tuple[float, float, float]
+    angles: Floats
+    ranges: Floats
+    hit: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Episode:
+    """What happened in one run: T recorded instants, A agents (people first, then robots), R robots.
+
+    Fields:
+        trial, seed: what was run.
+        outcome: ``success``, ``collision`` or ``timeout``; ``finished`` when there was no robot, ``interrupted`` when
+            it was stopped from outside.
+        steps: number of time steps done.
+        times: ``[T]`` [s].
+        position, velocity: ``[T, A, 2]`` [m], [m/s]; 0 for who is not there.
+        heading: ``[T, A]`` [rad].
+        radius: ``[A]`` [m].
+        active: ``[T, A]`` who is there.
+        ids: ``[A]`` identity in recordings and tracks.
+        robots: indices of the robots, in the order of the trial.
+        twists, commands: ``[T, R, 3]`` forward [m/s], turn [rad/s], left [m/s]: how each robot moves, and what it is
+            asked to do from this instant on.
+        readings: by ``robot/sensor``, everything that was measured.
+        metrics: of the first robot; those of others are called ``name.metric``. See ``NAVIGATION_METRICS``.
+        digest: hash of every recorded array, reading, command and the outcome; equal exactly when these are.
+    """
+
+    trial: Trial
+    seed: int
+    outcome: str
+    steps: int
+    times: Floats
+    position: Floats
+    velocity: Floats
+    heading: Floats
+    radius: Floats
+    active: NDArray[np.bool_]
+    ids: NDArray[np.int64]
+    robots: tuple[int, ...]
+    twists: Floats
+    commands: Floats
+    readings: Mapping[str, tuple[Reading, ...]]
+    metrics: Mapping[str, float]
+    digest: str
+
+    @property
+    def walls(self) -> tuple[Floats, ...]:
+        """Rings ``[N, 2]`` [m] of the stage."""
+        return self.trial.stage.rings
+
+    @property
+    def scans(self) -> tuple[ScanRow, ...]:
+        """What the first laser scanner of the first robot measured."""
+        for readings in self.readings.values():
+            rows = tuple(_scan_row(reading) for reading in readings if isinstance(reading, Scan))
+            if rows:
+                return rows
+        return ()
+
+    def tracks(self, dt: float = 0.4) -> Trajectories:
+        """Return people and robots every ``dt`` [s] as trajectories; frame k is at k times ``dt``.
+
+        Raises:
+            InputError: ``dt`` is not a whole number of recording periods.
+        """
+        return tracks_of(self, self.trial.name, dt)
+
+
+def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
+    """Return the trajectories of an episode, run or read."""
+    wanted = np.arange(math.floor(float(view.times[-1]) / dt + 1e-9) + 1) * dt
+    rows = np.clip(np.searchsorted(view.times, wanted - 1e-6), 0, len(view.times) - 1)
+    if np.any(np.abs(view.times[rows] - wanted) > 1e-6):
+        period = float(view.times[1] - view.times[0])
+        raise InputError(f"tracks every {dt} s: the episode was recorded every {period:g} s, dt must be a multiple")
+    frame, agent = np.nonzero(view.active[rows])
+    place = view.position[rows[frame], agent]
+    return Trajectories(
+        view.ids[agent],
+        frame,
+        place[:, 0],
+        place[:, 1],
+        frame_rate=1.0 / dt,
+        frame_step=1,
+        name=name,
+        note="simulated",
+        robots=frozenset(int(view.ids[robot]) for robot in view.robots),
+        walls=tuple(view.walls),
+    )
+
+
+class Digest:
+    """The hash of an episode, made while it runs."""
+
+    def __init__(self) -> None:
+        self._sum = hashlib.blake2b(digest_size=16)
+
+    def take(self, frame: Frame) -> None:
+        """Add an instant: every array of its readings, then, when it is due, of its scene."""
+        for robot, mount, reading in frame.readings:
+            self._sum.update(f"reading {frame.nanoseconds} {robot.name}/{mount.name}\n".encode())
+            for field in dataclasses.fields(reading):
+                self._sum.update(_bytes(getattr(reading, field.name)))
+        if frame.due:
+            self._sum.update(f"frame {frame.nanoseconds}\n".encode())
+            for array in (*_present(frame), frame.twists, frame.commands):
+                self._sum.update(_bytes(array))
+
+    def ended(self, outcome: str) -> str:
+        """Return the hash of everything so far and the outcome."""
+        whole = self._sum.copy()
+        whole.update(f"outcome {outcome}\n".encode())
+        return whole.hexdigest()
+
+
+class Log:
+    """Keeps what an episode is made of while it runs."""
+
+    def __init__(self, trial: Trial, seed: int) -> None:
+        self.trial, self.seed = trial, seed
+        self.frames: list[tuple[NDArray[Any], ...]] = []
+        self.times: list[float] = []
+        self.radius: Floats = np.zeros(0)
+        self.readings: dict[str, list[Reading]] = {}
+        self.digest = Digest()
+
+    def take(self, frame: Frame) -> None:
+        """Keep an instant."""
+        self.digest.take(frame)
+        for robot, mount, reading in frame.readings:
+            self.readings.setdefault(f"{robot.name}/{mount.name}", []).append(reading)
+        if frame.due:
+            self.times.append(frame.nanoseconds / 1e9)
+            self.radius = frame.scene.radius[0]
+            self.frames.append((*_present(frame), frame.twists, frame.commands))
+
+    def episode(self, outcome: str, steps: int) -> Episode:
+        """Return the episode."""
+        columns = [np.stack(column) for column in zip(*self.frames, strict=True)]
+        position, velocity, heading, active, twists, commands = columns
+        agents = position.shape[1]
+        robots = tuple(range(agents - len(self.trial.robots), agents))
+        episode = Episode(
+            self.trial,
+            self.seed,
+            outcome,
+            steps,
+            np.array(self.times),
+            position,
+            velocity,
+            heading,
+            self.radius,
+            active,
+            np.arange(agents, dtype=np.int64),
+            robots,
+            twists,
+            commands,
+            {name: tuple(rows) for name, rows in self.readings.items()},
+            {},
+            self.digest.ended(outcome),
+        )
+        return dataclasses.replace(episode, metrics=_metrics(episode))
+
+
+def _bytes(value: Any) -> bytes:
+    if isinstance(value, Pose):
+        value = np.column_stack([value.position, value.heading])
+    array = np.ascontiguousarray(value)
+    return repr(value).encode() if array.dtype.hasobject else array.tobytes()
+
+
+def _present(frame: Frame) -> tuple[NDArray[Any], ...]:
+    """Return position, velocity, heading and active of E = 1, 0 for who is not there."""
+    scene = frame.scene
+    here = scene.active[0]
+    return (
+        np.where(here[:, None], scene.position[0], 0.0),
+        np.where(here[:, None], scene.velocity[0], 0.0),
+        np.where(here, scene.heading[0], 0.0),
+        here.copy(),
+    )
+
+
+def _metrics(episode: Episode) -> dict[str, float]:
+    """Return the metrics of every robot; the outcome of a single one is that of the run, judged in every time step."""
+    segments = episode.trial.stage.as_walls().segments()
+    found: dict[str, float] = {}
+    for number, (agent, robot) in enumerate(zip(episode.robots, episode.trial.robots, strict=True)):
+        values = navigation_metrics(
+            episode.times,
+            episode.position,
+            episode.velocity,
+            episode.radius,
+            episode.active,
+            agent,
+            np.array(robot.goal.position),
+            robot.goal.tolerance,
+            heading=episode.heading[:, agent],
+            walls=segments if len(segments) else None,
+        )
+        if len(episode.robots) == 1:
+            values |= {name: float(episode.outcome == name) for name in ("success", "collision", "timeout")}
+            values["time_to_goal"] = values["duration"] if episode.outcome == "success" else math.nan
+        found |= {(name if number == 0 else f"{robot.name}.{name}"): value for name, value in values.items()}
+    return found
+
+
+def _scan_row(scan: Scan) -> ScanRow:
+    (x, y), heading = scan.pose.position[0], scan.pose.heading[0]
+    return ScanRow(scan.time, (float(x), float(y), float(heading)), scan.angles, scan.ranges[0], scan.hit[0])

@@ -1,0 +1,177 @@
+"""ROS 2 messages: what crowdbot knows, in the types of ROS 2 Humble and people_msgs, as CDR bytes.
+
+Frames follow REP-103 and REP-105: ``map``, ``<robot>/base_link``, ``<robot>/<sensor>``. Ranges follow REP-117.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+from crowdbot.core import Scene
+
+from .episode_file import MAP
+
+__all__ = ["Messages"]
+
+PERSON = """string name
+geometry_msgs/Point position
+geometry_msgs/Point velocity
+float64 reliability
+string[] tagnames
+string[] tags
+"""
+PEOPLE = "std_msgs/Header header\npeople_msgs/Person[] people\n"
+TAGS = ["radius", "heading"]
+
+
+@functools.cache
+def _store() -> Any:
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    store.register(get_types_from_msg(PERSON, "people_msgs/msg/Person"))
+    store.register(get_types_from_msg(PEOPLE, "people_msgs/msg/People"))
+    return store
+
+
+class Messages:
+    """Makes messages and their bytes."""
+
+    def __init__(self) -> None:
+        self.store = _store()
+
+    def definition(self, kind: str) -> str:
+        """Return the text of a message type with everything it is made of, as ``ros2msg`` schemas hold it."""
+        return str(self.store.generate_msgdef(kind, ros_version=2)[0])
+
+    def encoded(self, message: Any) -> bytes:
+        """Return the CDR bytes of a message."""
+        return bytes(self.store.serialize_cdr(message, message.__msgtype__))
+
+    def decoded(self, data: bytes, kind: str) -> Any:
+        """Return the message that CDR bytes hold."""
+        return self.store.deserialize_cdr(data, kind)
+
+    def make(self, kind: str, **fields: Any) -> Any:
+        """Return a message of a type such as ``geometry_msgs/msg/Point``."""
+        return self.store.types[kind](**fields)
+
+    def header(self, nanoseconds: int, frame: str = MAP) -> Any:
+        """Return a header."""
+        return self.make("std_msgs/msg/Header", stamp=self.stamp(nanoseconds), frame_id=frame)
+
+    def stamp(self, nanoseconds: int) -> Any:
+        """Return a time."""
+        seconds, rest = divmod(nanoseconds, 1_000_000_000)
+        return self.make("builtin_interfaces/msg/Time", sec=seconds, nanosec=rest)
+
+    def clock(self, nanoseconds: int) -> Any:
+        """Return ``rosgraph_msgs/Clock``."""
+        return self.make("rosgraph_msgs/msg/Clock", clock=self.stamp(nanoseconds))
+
+    def people(self, nanoseconds: int, scene: Scene, agents: Iterable[int]) -> Any:
+        """Return ``people_msgs/People``: who is there; the name is the id, radius [m] and heading [rad] are tags."""
+        everyone = [
+            self.make(
+                "people_msgs/msg/Person",
+                name=str(a),
+                position=self.point(*scene.position[0, a].tolist()),
+                velocity=self.point(*scene.velocity[0, a].tolist()),
+                reliability=1.0,
+                tagnames=TAGS,
+                tags=[repr(float(scene.radius[0, a])), repr(float(scene.heading[0, a]))],
+            )
+            for a in agents
+            if scene.active[0, a]
+        ]
+        return self.make("people_msgs/msg/People", header=self.header(nanoseconds), people=everyone)
+
+    def odometry(self, nanoseconds: int, name: str, x: float, y: float, heading: float, twist: Sequence[float]) -> Any:
+        """Return ``nav_msgs/Odometry``: the true pose in the map, and the twist forward, turn, left in the robot."""
+        forward, turn, left = map(float, twist)
+        return self.make(
+            "nav_msgs/msg/Odometry",
+            header=self.header(nanoseconds),
+            child_frame_id=f"{name}/base_link",
+            pose=self.make(
+                "geometry_msgs/msg/PoseWithCovariance", pose=self.pose(x, y, heading), covariance=np.zeros(36)
+            ),
+            twist=self.make(
+                "geometry_msgs/msg/TwistWithCovariance",
+                twist=self.twist(forward, turn, left),
+                covariance=np.zeros(36),
+            ),
+        )
+
+    def scan(
+        self,
+        nanoseconds: int,
+        frame: str,
+        sensor: Any,
+        angles: NDArray[np.float64],
+        ranges: NDArray[np.float64],
+        hit: NDArray[np.int64],
+    ) -> Any:
+        """Return ``sensor_msgs/LaserScan``; intensities hold what was hit: an id, -1 nothing, -2 a wall."""
+        return self.make(
+            "sensor_msgs/msg/LaserScan",
+            header=self.header(nanoseconds, frame),
+            angle_min=float(angles[0]),
+            angle_max=float(angles[-1]),
+            angle_increment=float(sensor.step),
+            time_increment=0.0,
+            scan_time=1.0 / float(sensor.rate),
+            range_min=float(sensor.range_min),
+            range_max=float(sensor.range_max),
+            ranges=ranges.astype(np.float32),
+            intensities=hit.astype(np.float32),
+        )
+
+    def transforms(self, nanoseconds: int, rows: Iterable[tuple[str, str, float, float, float]]) -> Any:
+        """Return ``tf2_msgs/TFMessage`` of rows: parent frame, child frame, x, y [m], heading [rad]."""
+        return self.make(
+            "tf2_msgs/msg/TFMessage",
+            transforms=[
+                self.make(
+                    "geometry_msgs/msg/TransformStamped",
+                    header=self.header(nanoseconds, parent),
+                    child_frame_id=child,
+                    transform=self.make(
+                        "geometry_msgs/msg/Transform",
+                        translation=self.vector(x, y, 0.0),
+                        rotation=self.quaternion(heading),
+                    ),
+                )
+                for parent, child, x, y, heading in rows
+            ],
+        )
+
+    def twist(self, forward: float, turn: float, left: float) -> Any:
+        """Return ``geometry_msgs/Twist``."""
+        return self.make(
+            "geometry_msgs/msg/Twist",
+            linear=self.vector(float(forward), float(left), 0.0),
+            angular=self.vector(0.0, 0.0, float(turn)),
+        )
+
+    def point(self, x: float, y: float, z: float = 0.0) -> Any:
+        """Return a point."""
+        return self.make("geometry_msgs/msg/Point", x=float(x), y=float(y), z=float(z))
+
+    def vector(self, x: float, y: float, z: float) -> Any:
+        """Return a vector."""
+        return self.make("geometry_msgs/msg/Vector3", x=x, y=y, z=z)
+
+    def quaternion(self, heading: float) -> Any:
+        """Return the rotation about z."""
+        half = 0.5 * heading
+        return self.make("geometry_msgs/msg/Quaternion", x=0.0, y=0.0, z=math.sin(half), w=math.cos(half))
+
+    def pose(self, x: float, y: float, heading: float, z: float = 0.0) -> Any:
+        """Return a pose."""
+        return self.make("geometry_msgs/msg/Pose", position=self.point(x, y, z), orientation=self.quaternion(heading))

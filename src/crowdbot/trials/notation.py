@@ -1,0 +1,86 @@
+"""Numbers and points as they stand in a trial: ``0,0 4,0 4,2``."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from typing import Any
+
+from crowdbot.core import InputError
+
+__all__ = ["Points", "number", "plain"]
+
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
+
+
+def number(text: str, otherwise: str = "is not a number") -> float:
+    """Return the finite number that a text is, in the plain notation ``-1.5e-3``.
+
+    Raises:
+        InputError: it is none.
+
+    >>> number(" -1.5e-3 ")
+    -0.0015
+    """
+    text = text.strip()
+    if NUMBER.fullmatch(text):
+        value = float(text)
+        if math.isfinite(value):
+            return value
+        raise InputError("is not finite")
+    if text.lstrip("+-").lower() in ("nan", "inf", "infinity"):
+        raise InputError("is not finite")
+    raise InputError(otherwise)
+
+
+def plain(value: float) -> str:
+    """Return the shortest text that reads back as the same number.
+
+    >>> plain(4.0), plain(0.1)
+    ('4', '0.1')
+    """
+    return repr(float(value)).removesuffix(".0")
+
+
+class Points(tuple[tuple[float, float], ...]):
+    """Points x, y [m], written ``0,0 4,0 4,2``.
+
+    >>> Points.parse("0,0 4,0  4,2.5"), str(Points.of([[0, 0], [4, 0]]))
+    (((0.0, 0.0), (4.0, 0.0), (4.0, 2.5)), '0,0 4,0')
+    """
+
+    __slots__ = ()
+
+    @classmethod
+    def parse(cls, text: str) -> Points:
+        """Read points that are separated by blanks, with a comma between x and y."""
+        points = []
+        for place in re.sub(r"\s*,\s*", ",", text.strip()).split():
+            pair = place.split(",")
+            if len(pair) != 2:
+                raise InputError(f"has {place[:40]!r} where a point x,y should be, such as 0,0 4,0 4,2")
+            try:
+                points.append((number(pair[0]), number(pair[1])))
+            except InputError as error:
+                raise InputError(f"has the point {place[:40]!r}, which {error}") from None
+        return cls(points)
+
+    @classmethod
+    def of(cls, value: Iterable[Any] | str) -> Points:
+        """Make points of any ``[N, 2]`` numbers or of a text."""
+        if isinstance(value, cls):
+            return value
+        if isinstance(value, str):
+            return cls.parse(value)
+        try:
+            pairs = [tuple(float(part) for part in point) for point in value]
+        except (TypeError, ValueError):
+            pairs = [()]
+        if any(len(pair) != 2 for pair in pairs):
+            raise InputError("must be points x, y")
+        return cls((pair[0], pair[1]) for pair in pairs)
+
+    def __str__(self) -> str:
+        """Return the text that :meth:`parse` reads."""
+        return " ".join(f"{plain(x)},{plain(y)}" for x, y in self)

@@ -1,0 +1,215 @@
+"""Trial: everything of a simulation as one tree of frozen dataclasses. The XML of a trial is this tree."""
+
+# ruff: noqa: RUF009 - attribute, child, children, plugged and mounted return dataclass fields
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from crowdbot.models import CrowdModel
+from crowdbot.navigation import Navigator
+from crowdbot.sensors import Sensor
+from crowdbot.world import Drive
+
+from .attribute import attribute, check, child, children, mounted, plugged
+from .distribution import Distribution
+from .notation import Points
+from .stage import Stage
+
+if TYPE_CHECKING:
+    from .episode import Episode
+
+__all__ = ["End", "Goal", "Mount", "Recording", "Robot", "Spawner", "Trial"]
+
+NAME = "[A-Za-z][A-Za-z0-9_]*"
+"""Names of robots and sensors become names of ROS topics and frames."""
+WALKING_SPEED = Distribution("normal", (1.34, 0.26))
+"""Free walking speed [m/s] (Weidmann 1993, Transporttechnik der Fussgaenger, https://doi.org/10.3929/ethz-a-000687810)."""
+BODY_RADIUS = Distribution("uniform", (0.2, 0.3))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spawner:
+    """People who are placed at random in a zone, and walk to a random point of a goal zone.
+
+    Raises:
+        InputError: a value is not allowed.
+
+    >>> Spawner(count=3, zone=[(0, 0), (2, 0), (2, 2)], goal="8,0 9,0 9,2", radius=0.25).speed.extent
+    (0.56, 2.12)
+    """
+
+    name: str = attribute("", about="name for messages")
+    count: int = attribute(about="number of people", at_least=0, at_most=100_000)
+    zone: Points = attribute(about="corners of the spawn zone x,y; centres of people lie inside", unit="m", points=3)
+    goal: Points = attribute(about="corners of the goal zone x,y", unit="m", points=3)
+    speed: Distribution = attribute(WALKING_SPEED, about="preferred speed", unit="m/s", above=0.0, at_most=10.0)
+    radius: Distribution = attribute(BODY_RADIUS, about="radius of the body", unit="m", above=0.0, at_most=5.0)
+    arrival: str = attribute("leave", about="what people do in the goal zone", choices=("leave", "stay"))
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True)
+class Goal:
+    """Where a robot has to go: it has arrived when its centre is within the tolerance."""
+
+    x: float = attribute(about="place", unit="m")
+    y: float = attribute(about="place", unit="m")
+    tolerance: float = attribute(0.3, about="how near its centre must come", unit="m", above=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def position(self) -> tuple[float, float]:
+        """``x, y`` [m]."""
+        return self.x, self.y
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mount:
+    """A sensor and where it sits on its robot (x forward, y left)."""
+
+    name: str = attribute("scan", about="last part of its topic", pattern=NAME)
+    sensor: Sensor = mounted("sensors", "Sensor", about="what measures")
+    x: float = attribute(0.0, about="forward of the robot's centre", unit="m")
+    y: float = attribute(0.0, about="left of the robot's centre", unit="m")
+    heading: float = attribute(0.0, about="counter-clockwise from forward", unit="rad")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Robot:
+    """A robot: where it begins and has to go, how it moves, what it sees with and who steers it."""
+
+    name: str = attribute("robot", about="first part of its topics", pattern=NAME)
+    x: float = attribute(about="start", unit="m")
+    y: float = attribute(about="start", unit="m")
+    heading: float = attribute(0.0, about="start, counter-clockwise from +x", unit="rad")
+    radius: float = attribute(0.3, about="radius of the disc that holds it", unit="m", above=0.0, at_most=10.0)
+    visible: bool = attribute(True, about="whether the crowd reacts to it")
+    control_period: float = attribute(0.1, about="time between two commands", unit="s", above=0.0)
+    goal: Goal = child(about="where it has to go")
+    drive: Drive = plugged("world", "Drive", about="how it moves")
+    navigator: Navigator = plugged("navigation", "Navigator", about="who steers it")
+    sensors: tuple[Mount, ...] = children("sensor", about="what it sees with", at_most=50)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def position(self) -> tuple[float, float]:
+        """Start ``x, y`` [m]."""
+        return self.x, self.y
+
+
+@dataclass(frozen=True)
+class End:
+    """What ends a trial before its duration is over."""
+
+    goal: bool = attribute(True, about="every robot has reached its goal")
+    collision: bool = attribute(True, about="a robot touches a person, a wall or another robot")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True)
+class Recording:
+    """How often what is recorded. A trial ends at a recorded instant."""
+
+    period: float = attribute(0.1, about="time between two recorded scenes", unit="s", above=0.0)
+    markers: float = attribute(0.5, about="time between two sets of shapes for viewers", unit="s", above=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trial:
+    """One simulation: a stage, people, robots, and when it ends.
+
+    A trial made in Python is checked like one from a file when it runs, or with :meth:`check`.
+
+    Raises:
+        InputError: a value is not allowed.
+
+    >>> from crowdbot.models import ORCA
+    >>> trial = Trial(name="alone", duration=2.0, crowd=ORCA())
+    >>> Trial.parse(trial.xml()) == trial
+    True
+    """
+
+    name: str = attribute(about="name of the trial", pattern=r"\S.{0,79}")
+    about: str = attribute("", about="one line for people")
+    duration: float = attribute(about="longest simulated time", unit="s", above=0.0, at_most=86_400.0)
+    step: float = attribute(0.05, about="time step of the world", unit="s", at_least=0.001, at_most=1.0)
+    seed: int = attribute(0, about="seed of everything random", at_least=-(2**53), at_most=2**53)
+    stage: Stage = child(Stage, about="where people and robots can be")
+    crowd: CrowdModel = plugged("models", "CrowdModel", about="how people walk")
+    spawners: tuple[Spawner, ...] = children("spawner", about="people", at_most=1000)
+    robots: tuple[Robot, ...] = children("robot", about="robots", at_most=100)
+    end: End = child(End, about="what ends the trial")
+    recording: Recording = child(Recording, about="how often what is recorded")
+    folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
+    """Where code that the trial names lies; not part of the tree."""
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @classmethod
+    def load(cls, source: str | Path, *, trust: bool = False) -> Trial:
+        """Read a trial file or a built-in trial; see :func:`crowdbot.trials.load_trial`."""
+        from .builtin import load_trial
+
+        return load_trial(source, trust=trust)
+
+    @classmethod
+    def parse(
+        cls, text: str | bytes, *, place: str = "trial", folder: Path | None = None, trust: bool = False
+    ) -> Trial:
+        """Read a trial from an XML text; see :func:`crowdbot.trials.reading.read_trial`."""
+        from .reading import read_trial
+
+        return read_trial(text, place=place, folder=folder, trust=trust)
+
+    def xml(self) -> str:
+        """Return the XML text of this trial; reading it gives an equal trial."""
+        from .writing import xml
+
+        return xml(self)
+
+    def check(self, seed: int | None = None) -> None:
+        """Raise :class:`TrialError` with everything that is wrong: places, overlaps, people who do not fit, periods."""
+        from .checks import check_trial
+
+        check_trial(self, seed)
+
+    def run(
+        self,
+        seed: int | None = None,
+        out: Path | str | None = None,
+        progress: Callable[[float], None] | None = None,
+    ) -> Episode:
+        """Run the trial; see :func:`crowdbot.trials.run`."""
+        from .run import run
+
+        return run(self, seed=seed, out=out, progress=progress)
+
+    @property
+    def people(self) -> int:
+        """Number of people of all spawners."""
+        return sum(spawner.count for spawner in self.spawners)
+
+    @property
+    def ticks(self) -> int:
+        """Number of time steps until the duration is over."""
+        return max(1, math.ceil(round(self.duration / self.step, 6)))

@@ -1,0 +1,206 @@
+"""Drives: how a robot's base follows a commanded twist. Limits first, then exact motion along a circle arc."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from crowdbot.core import InputError, Pose, Twist
+from crowdbot.core.kernels import kernel
+
+__all__ = ["DifferentialDrive", "Drive", "Omnidirectional", "Twists", "moved"]
+
+Floats = NDArray[np.float64]
+
+
+@kernel
+def _arc(place: Floats, heading: Floats, forward: Floats, left: Floats, turn: Floats, dt: float) -> None:
+    """Move every pose along its arc: the chord lies half the turn away from the heading."""
+    for e in range(len(heading)):
+        half = 0.5 * turn[e] * dt
+        shrink = math.sin(half) / half if abs(half) > 1e-4 else 1.0 - half * half / 6.0
+        cos, sin = math.cos(heading[e] + half), math.sin(heading[e] + half)
+        place[e, 0] += (cos * forward[e] - sin * left[e]) * shrink * dt
+        place[e, 1] += (sin * forward[e] + cos * left[e]) * shrink * dt
+        heading[e] = math.pi - (math.pi - heading[e] - 2.0 * half) % (2.0 * math.pi)
+
+
+@kernel
+def _world_velocity(heading: Floats, forward: Floats, left: Floats) -> Floats:
+    velocity = np.empty((len(heading), 2))
+    for e in range(len(heading)):
+        cos, sin = math.cos(heading[e]), math.sin(heading[e])
+        velocity[e, 0] = cos * forward[e] - sin * left[e]
+        velocity[e, 1] = sin * forward[e] + cos * left[e]
+    return velocity
+
+
+@dataclass(frozen=True)
+class Twists:
+    """The twist of one robot in every environment, in its own frame.
+
+    Fields:
+        forward, left: ``[E]`` [m/s].
+        turn: ``[E]`` counter-clockwise [rad/s].
+
+    >>> Twists.of(Twist(0.5, 0.1), 2).forward.tolist()
+    [0.5, 0.5]
+    """
+
+    forward: Floats
+    turn: Floats
+    left: Floats
+
+    @classmethod
+    def of(cls, twist: Twist | Twists, count: int) -> Twists:
+        """Make twists for ``count`` environments, from one for all or from one each.
+
+        Raises:
+            InputError: a number is not finite, or there is neither one twist nor one for each environment.
+        """
+        return cls(*(_each(name, getattr(twist, name), count) for name in ("forward", "turn", "left")))
+
+    def at(self, environment: int) -> Twist:
+        """Return the twist in one environment."""
+        return Twist(float(self.forward[environment]), float(self.turn[environment]), float(self.left[environment]))
+
+    def velocity(self, heading: Floats) -> Floats:
+        """Return the velocity ``[E, 2]`` [m/s] in the world of robots with these headings ``[E]`` [rad]."""
+        return _world_velocity(np.ascontiguousarray(heading), self.forward, self.left)
+
+
+@dataclass(frozen=True)
+class Drive(ABC):
+    """What a robot's base can do with a command."""
+
+    @abstractmethod
+    def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
+        """Return pose and twist ``dt`` [s] later.
+
+        Args:
+            pose: positions ``[E, 2]`` [m] and headings ``[E]`` [rad] now.
+            twist: how the robot moves now.
+            command: how it is asked to move.
+            dt: time step [s].
+
+        Raises:
+            InputError: a command is not finite or ``dt`` is not positive.
+        """
+
+
+@dataclass(frozen=True)
+class DifferentialDrive(Drive):
+    """Two driven wheels: forward and turn, never sideways (the ``left`` part of a command is not followed).
+
+    The command is cut to the speed limits, the change of the twist to the accelerations times ``dt``; the new twist
+    then holds for the whole step, along the exact circle arc.
+
+    Fields:
+        max_speed: forwards and backwards [m/s].
+        max_turn_rate: [rad/s].
+        max_acceleration: speeding up and braking [m/s2].
+        max_turn_acceleration: [rad/s2].
+
+    Raises:
+        InputError: a limit is not finite or not above 0.
+
+    >>> drive = DifferentialDrive(max_speed=1.0, max_turn_rate=2.0, max_acceleration=1.0, max_turn_acceleration=4.0)
+    >>> pose, twist = drive.step(Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(), 1), Twist(5.0, 0.0), dt=0.5)
+    >>> twist.at(0), pose.position.tolist()
+    (Twist(forward=0.5, turn=0.0, left=0.0), [[0.25, 0.0]])
+    """
+
+    max_speed: float = 1.0
+    max_turn_rate: float = 1.5
+    max_acceleration: float = 1.0
+    max_turn_acceleration: float = 3.0
+
+    def __post_init__(self) -> None:
+        _check_limits(self)
+
+    def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
+        """Return pose and twist ``dt`` [s] later; see :class:`DifferentialDrive`."""
+        wanted = Twists.of(command, len(pose.heading))
+        _check_step(dt)
+        forward = _towards(twist.forward, wanted.forward, self.max_speed, self.max_acceleration * dt)
+        turn = _towards(twist.turn, wanted.turn, self.max_turn_rate, self.max_turn_acceleration * dt)
+        after = Twists(forward, turn, np.zeros_like(forward))
+        return moved(pose, after, dt), after
+
+
+@dataclass(frozen=True)
+class Omnidirectional(Drive):
+    """Wheels that also roll sideways, as Pepper's: the velocity is limited as a vector, the turn on its own.
+
+    Fields and errors as in :class:`DifferentialDrive`.
+
+    >>> drive = Omnidirectional(max_acceleration=10.0)
+    >>> _, twist = drive.step(Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(), 1), Twist(0.0, 0.0, left=3.0), dt=0.5)
+    >>> twist.at(0)
+    Twist(forward=0.0, turn=0.0, left=1.0)
+    """
+
+    max_speed: float = 1.0
+    max_turn_rate: float = 1.5
+    max_acceleration: float = 1.0
+    max_turn_acceleration: float = 3.0
+
+    def __post_init__(self) -> None:
+        _check_limits(self)
+
+    def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
+        """Return pose and twist ``dt`` [s] later; see :class:`Omnidirectional`."""
+        wanted = Twists.of(command, len(pose.heading))
+        _check_step(dt)
+        forward, left = _shortened(wanted.forward, wanted.left, self.max_speed)
+        push, slide = _shortened(forward - twist.forward, left - twist.left, self.max_acceleration * dt)
+        turn = _towards(twist.turn, wanted.turn, self.max_turn_rate, self.max_turn_acceleration * dt)
+        after = Twists(twist.forward + push, turn, twist.left + slide)
+        return moved(pose, after, dt), after
+
+
+def moved(pose: Pose, twist: Twists, dt: float) -> Pose:
+    """Return the pose after ``dt`` [s] at a constant twist, exactly: a circle arc, or a line when it does not turn.
+
+    >>> quarter = moved(Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(1.0, math.pi / 2), 1), 1.0)
+    >>> (quarter.position * math.pi / 2).round(9).tolist(), float(quarter.heading[0]) == math.pi / 2
+    ([[1.0, 1.0]], True)
+    """
+    place, heading = np.array(pose.position, dtype=np.float64), np.array(pose.heading, dtype=np.float64)
+    _arc(place, heading, twist.forward, twist.left, twist.turn, dt)
+    return Pose(place, heading)
+
+
+def _each(name: str, value: ArrayLike, count: int) -> Floats:
+    array = np.asarray(value, dtype=np.float64)
+    if array.shape not in ((), (count,)):
+        raise InputError(f"twist: {name} has shape {list(array.shape)}, it must be one number or [{count}]")
+    if not np.all(np.isfinite(array)):
+        raise InputError(f"twist: {name} = {array.tolist()} is not finite; a robot needs finite numbers [m/s], [rad/s]")
+    return np.ascontiguousarray(np.broadcast_to(array, (count,)))
+
+
+def _towards(now: Floats, wanted: Floats, limit: float, change: float) -> Floats:
+    return np.clip(np.clip(wanted, -limit, limit), now - change, now + change)
+
+
+def _shortened(x: Floats, y: Floats, limit: float) -> tuple[Floats, Floats]:
+    length = np.sqrt(x * x + y * y)
+    share = np.minimum(1.0, limit / np.maximum(length, 1e-300))
+    return x * share, y * share
+
+
+def _check_limits(drive: DifferentialDrive | Omnidirectional) -> None:
+    for name in ("max_speed", "max_turn_rate", "max_acceleration", "max_turn_acceleration"):
+        value = getattr(drive, name)
+        if not 0.0 < value < math.inf:
+            raise InputError(f"{type(drive).__name__}: {name} = {value} must be finite and above 0")
+
+
+def _check_step(dt: float) -> None:
+    if not 0.0 < dt < math.inf:
+        raise InputError(f"time step {dt} s of a drive must be finite and above 0")

@@ -1,0 +1,47 @@
+"""The kernel cache: keyed by sources, placed where asked, warm in the next process."""
+
+import os
+import subprocess
+import sys
+
+PROGRAM = """
+import sys
+from crowdbot.core import kernels
+from crowdbot.core.geometry import ray_to_disc
+before = kernels.is_cold()
+assert ray_to_disc(0.0, 0.0, 1.0, 0.0, 5.0, 0.0, 1.0) == 4.0
+print(before, kernels.is_cold(), sum(ray_to_disc.stats.cache_hits.values()))
+"""
+
+
+def _run(folder):
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM],
+        env={**os.environ, "CROWDBOT_CACHE": str(folder)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.split()
+
+
+def test_cold_then_warm(tmp_path):
+    assert _run(tmp_path) == ["True", "False", "0"]
+    assert _run(tmp_path) == ["False", "False", "1"]
+
+
+def test_the_key_changes_with_any_kernel_source(tmp_path, monkeypatch):
+    from crowdbot.core import kernels
+
+    package = tmp_path / "crowdbot"
+    (package / "core").mkdir(parents=True)
+    (package / "models").mkdir()
+    (package / "core" / "kernels.py").write_text("")
+    model = package / "models" / "model.py"
+    model.write_text("@kernel\ndef f(x): return x\n")
+    monkeypatch.setattr(kernels, "__file__", str(package / "core" / "kernels.py"))
+    first = kernels._source_key()
+    model.write_text("@kernel\ndef f(x): return 2 * x\n")
+    second = kernels._source_key()
+    (package / "models" / "words.py").write_text("no kernel here")
+    assert first != second == kernels._source_key()

@@ -1,0 +1,138 @@
+"""Neighbour search: the grid, brute force and a plain NumPy twin give the same neighbours in the same order."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from crowdbot.core import InputError
+from crowdbot.core.neighbors import CROWD, Neighbors, nearest
+
+
+def twin(position, reach, most, seen, asking):
+    """Return lists of neighbours: sort everybody by distance, then by index."""
+    E, A = position.shape[:2]
+    answer = []
+    for e in range(E):
+        for a in range(A):
+            dx, dy = position[e, :, 0] - position[e, a, 0], position[e, :, 1] - position[e, a, 1]
+            d2 = dx * dx + dy * dy
+            order = sorted((float(d2[j]), j) for j in range(A) if j != a and seen[e, j] and d2[j] < reach[e, a] ** 2)
+            wanted = most[e, a] if asking[e, a] else 0
+            answer.append([j for _, j in order[:wanted]])
+    return answer
+
+
+def lists(found: Neighbors):
+    flat = zip(
+        found.agent.reshape(found.number.size, -1 if found.agent.size else 0), found.number.reshape(-1), strict=True
+    )
+    return [row[:count].tolist() for row, count in flat]
+
+
+def same(position, reach, most, seen=True, asking=True):
+    """Check both ways of searching against the twin."""
+    shape = position.shape[:2]
+    reach, most = np.broadcast_to(reach, shape), np.broadcast_to(most, shape)
+    seen, asking = np.broadcast_to(seen, shape), np.broadcast_to(asking, shape)
+    expected = twin(position, reach, most, seen, asking)
+    for method in ("brute", "grid", "auto"):
+        found = nearest(position, reach, most, seen, asking, method=method)
+        assert lists(found) == expected, method
+        assert sorted(found.order.tolist()) == list(range(shape[0] * shape[1]))
+        for row, count in zip(
+            found.agent.reshape(found.number.size, -1 if found.agent.size else 0), found.number.reshape(-1), strict=True
+        ):
+            assert np.all(row[count:] == -1)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    seed=st.integers(0, 2**32),
+    E=st.integers(1, 3),
+    A=st.integers(1, 60),
+    width=st.sampled_from([0.0, 0.5, 8.0, 60.0, 5000.0]),
+    height=st.sampled_from([0.0, 4.0, 60.0]),
+    far=st.sampled_from([0.0, -3e5, 7e11]),
+)
+def test_both_ways_agree_with_sorting(seed, E, A, width, height, far):
+    rng = np.random.default_rng(seed)
+    position = rng.uniform(0.0, 1.0, (E, A, 2)) * [width, height] + far
+    if A > 3:
+        position[:, 1] = position[:, 0]  # somebody in the same place
+        position[:, 2] = position[:, 0] + [1e6, -1e6]  # and somebody far away from all others
+    reach = rng.uniform(0.0, 0.5 * (width + height) + 1.0, (E, A))
+    most = rng.integers(0, 12, (E, A))
+    same(position, reach, most, rng.random((E, A)) < 0.8, rng.random((E, A)) < 0.8)
+
+
+def test_equal_distances_are_sorted_by_index():
+    side = np.arange(12.0)
+    lattice = np.stack(np.meshgrid(side, side), axis=-1).reshape(1, -1, 2)
+    shuffled = lattice[:, np.random.default_rng(3).permutation(144)]
+    for most in (3, 5, 9, 143):
+        same(shuffled, 2.5, most)
+    same(np.concatenate([shuffled] * 2, axis=1), 1.5, 7)  # everybody twice
+
+
+def test_the_reach_is_open():
+    row = np.array([[[0.0, 0.0], [3.0, 4.0], [-3.0, -3.9]]])
+    found = nearest(row, 5.0, 9)
+    assert lists(found)[0] == [2]
+    same(row, 5.0, 9)
+
+
+@pytest.mark.parametrize("reach", [0.0, -2.0, np.inf, 1e200, 1e-200])
+def test_strange_reaches(reach):
+    position = np.random.default_rng(0).uniform(0.0, 9.0, (1, 40, 2))
+    for method in ("brute", "grid"):
+        found = nearest(position, reach, 39, method=method)
+        assert np.all(found.number == (39 if reach > 1.0 else 0))
+
+
+@pytest.mark.parametrize("size", [1e-300, 1e-12, 1e17, 1e150])
+def test_strange_sizes(size):
+    position = np.random.default_rng(0).uniform(-size, size, (2, 70, 2))
+    same(position, 0.3 * size, 5)
+    same(position, 5.0, 5)
+
+
+def test_whoever_is_not_finite_is_nowhere():
+    position = np.random.default_rng(0).uniform(0.0, 9.0, (1, 50, 2))
+    position[0, 7], position[0, 8, 1] = np.nan, np.inf
+    for method in ("brute", "grid"):
+        found = nearest(position, 100.0, 49, method=method)
+        assert found.number[0, 7] == found.number[0, 8] == 0
+        assert not np.any(np.isin(found.agent, [7, 8]))
+
+
+def test_alone_or_in_a_batch():
+    position = np.random.default_rng(1).uniform(0.0, 30.0, (4, CROWD + 40, 2))
+    together = nearest(position, 4.0, 8)
+    for e in range(4):
+        alone = nearest(position[e : e + 1], 4.0, 8)
+        assert np.array_equal(alone.agent[0], together.agent[e])
+        assert np.array_equal(alone.number[0], together.number[e])
+
+
+def test_nobody_and_one():
+    for shape in ((1, 0, 2), (0, 3, 2), (2, 1, 2)):
+        for method in ("brute", "grid"):
+            found = nearest(np.zeros(shape), 5.0, 4, method=method)
+            assert found.number.shape == shape[:2]
+            assert found.number.sum() == 0
+
+
+def test_read_only_arrays_are_fine_and_stay_as_they_are():
+    position = np.random.default_rng(1).uniform(0.0, 5.0, (1, 20, 2))
+    position.setflags(write=False)
+    before = position.copy()
+    assert nearest(position, 2.0, 4).number.max() <= 4
+    assert np.array_equal(position, before)
+
+
+def test_unknown_method():
+    with pytest.raises(InputError, match=r"'gird', did you mean 'grid'\?; choose auto, brute, grid"):
+        nearest(np.zeros((1, 2, 2)), 5.0, 4, method="gird")

@@ -1,0 +1,127 @@
+"""Clocks, streams of randomness, parameters, poses, papers and the error tree."""
+
+import math
+import time
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from crowdbot.core import (
+    CrowdbotError,
+    ExternalClock,
+    FreeClock,
+    InputError,
+    MissingExtra,
+    PacedClock,
+    Paper,
+    Pose,
+    TrialError,
+    check_parameters,
+    errors,
+    parameter,
+    parameters,
+    per_agent,
+    stream,
+    wrap,
+)
+
+
+def test_time_is_exact_after_a_day_of_ticks():
+    clock = FreeClock(0.1)
+    clock.tick = 864_000
+    assert clock.time == 86_400.0
+
+
+def test_every_wants_whole_ticks():
+    assert FreeClock(0.05).every(0.4) == 8
+    with pytest.raises(InputError, match="0.12 s is not a whole number of time steps of 0.05 s"):
+        FreeClock(0.05).every(0.12)
+
+
+@pytest.mark.parametrize("dt", [0.0, -1.0, math.nan, 1e9])
+def test_a_wrong_step_is_refused(dt):
+    with pytest.raises(InputError, match="is outside"):
+        FreeClock(dt)
+
+
+def test_external_time_never_goes_back():
+    clock = ExternalClock(0.1)
+    assert clock.due(250_000_000) == 2
+    clock.advance()
+    clock.advance()
+    assert clock.due(250_000_000) == 0
+    with pytest.raises(InputError, match="went back"):
+        clock.due(1)
+
+
+def test_paced_time_does_not_run_ahead():
+    clock = PacedClock(0.01, rate=2.0)
+    begin = time.monotonic()
+    for _ in range(6):
+        clock.advance()
+    assert time.monotonic() - begin >= 0.06 / 2.0 * 0.99
+    assert clock.time == 0.06
+
+
+@given(st.integers(-(2**70), 2**70), st.text(max_size=5), st.integers())
+def test_streams_repeat_and_differ(seed, name, number):
+    draws = {
+        tuple(stream(seed, *path).integers(2**62, size=2)) for path in ((name,), (name, number), (name, str(number)))
+    }
+    assert len(draws) == 3
+    assert tuple(stream(seed, name).integers(2**62, size=2)) in draws
+
+
+def test_stream_values_are_pinned():
+    assert stream(0, "spawner", 3).integers(1_000_000, size=3).tolist() == [907676, 615294, 744122]
+    assert stream(2026).integers(1_000_000, size=3).tolist() == [83049, 535409, 421730]
+
+
+@dataclass(frozen=True)
+class _Model:
+    tau: float = parameter(0.5, unit="s", low=0.1, high=1.5, source="test", minimum=0.01)
+
+
+def test_parameter_tables():
+    (row,) = parameters(_Model)
+    assert (row.name, row.unit, row.low, row.high) == ("tau", "s", 0.1, 1.5)
+    check_parameters(_Model(0.2))
+    for wrong in (math.nan, 0.0, np.array([0.5, math.inf])):
+        with pytest.raises(InputError, match="_Model: tau"):
+            check_parameters(_Model(wrong))
+
+
+def test_per_agent_broadcasts_or_says_why_not():
+    assert per_agent([[1.0], [2.0]], (2, 3)).tolist() == [[1.0] * 3, [2.0] * 3]
+    with pytest.raises(InputError, match=r"tau has shape \(4,\), which does not broadcast to \[E, A\] = \[2, 3\]"):
+        per_agent(np.ones(4), (2, 3), "tau")
+
+
+@given(st.floats(-1e3, 1e3))
+def test_wrap_keeps_the_direction(angle):
+    turned = wrap(angle)
+    assert -math.pi < turned <= math.pi
+    assert math.cos(turned) == pytest.approx(math.cos(angle), abs=1e-9)
+
+
+def test_mounted_pose():
+    part = Pose.of((1.0, 1.0), math.pi / 2).mounted(2.0, 0.5, 0.1)
+    np.testing.assert_allclose(part.position, [[0.5, 3.0]])
+    assert part.heading[0] == pytest.approx(math.pi / 2 + 0.1)
+
+
+def test_the_error_tree_is_what_it_draws():
+    kinds = [getattr(errors, name) for name in errors.__all__ if name[0].isupper()]
+    assert all(issubclass(kind, CrowdbotError) for kind in kinds)
+    assert {kind.__name__ for kind in kinds} == {
+        n for n in errors.__doc__.replace("(", " ").split() if n in errors.__all__
+    }
+    assert TrialError("one", "two").problems == ("one", "two")
+    assert "pip install 'crowdbot[learn]'" in str(MissingExtra("training", "learn"))
+
+
+def test_bibtex():
+    assert "@article{reynolds1987" in Paper("C. Reynolds", 1987, "Flocks", "SIGGRAPH", "10.1145/37401.37406").bibtex()

@@ -1,0 +1,73 @@
+"""The documents are true: their code runs, their commands exist, their links lead somewhere."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from crowdbot.cli import COMMANDS
+
+ROOT = Path(__file__).parents[2]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def _blocks(page, language):
+    return re.findall(rf"```{language}\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.S)
+
+
+PYTHON = [(page.name, number, code) for page in PAGES for number, code in enumerate(_blocks(page, "python"))]
+
+
+@pytest.mark.parametrize(("page", "number", "code"), PYTHON, ids=[f"{p}-{n}" for p, n, _ in PYTHON])
+def test_python_blocks_run(page, number, code, tmp_path):
+    program = tmp_path / "block.py"
+    program.write_text(code, encoding="utf-8")
+    done = subprocess.run([sys.executable, "-W", "error", str(program)], capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+
+
+def test_the_readme_shows_a_prediction_and_a_trial():
+    predict, trial = _blocks(ROOT / "README.md", "python")
+    assert len([line for line in predict.splitlines() if line.strip()]) <= 12
+    assert len([line for line in trial.splitlines() if line.strip()]) <= 4
+
+
+def test_the_navigator_of_the_guide_steers_a_robot(tmp_path):
+    from crowdbot.trials import load_trial
+
+    (code,) = _blocks(ROOT / "CONTRIBUTING.md", "python")
+    (tmp_path / "shy.py").write_text(code, encoding="utf-8")
+    trial = (ROOT / "src" / "crowdbot" / "assets" / "trials" / "frontal.xml").read_text(encoding="utf-8")
+    file = tmp_path / "frontal.xml"
+    file.write_text(
+        re.sub(r"<navigator [^>]*/>", '<navigator type="shy.py:Shy" space="0.8"/>', trial), encoding="utf-8"
+    )
+    episode = load_trial(file).run()
+    assert episode.outcome in ("success", "timeout", "collision")
+    assert type(episode.trial.robots[0].navigator).__name__ == "Shy"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+def test_links_and_pictures_exist(page):
+    targets = re.findall(r"\]\(([^)#]+)", page.read_text(encoding="utf-8"))
+    missing = [t for t in targets if not t.startswith("http") and not (page.parent / t).exists()]
+    assert missing == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+def test_commands_exist(page):
+    named = set(re.findall(r"crowdbot ([a-z]+)", "\n".join(re.findall(r"```\n(.*?)```", page.read_text(), flags=re.S))))
+    assert named <= set(COMMANDS)
+
+
+def test_make_knows_the_two_commands():
+    for target in ("demo", "test"):
+        done = subprocess.run(
+            ["make", "--dry-run", target], cwd=ROOT, capture_output=True, text=True, env={**os.environ, "MAKEFLAGS": ""}
+        )
+        assert done.returncode == 0, done.stderr
+        assert "crowdbot demo" in done.stdout or "pytest" in done.stdout
+    assert (ROOT / ".ci" / "run").read_text(encoding="utf-8").strip().endswith("exec make test")

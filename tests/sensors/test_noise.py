@@ -1,0 +1,92 @@
+"""Noise: statistics, text, and draws that do not depend on what else is measured."""
+
+import math
+
+import numpy as np
+import pytest
+
+from crowdbot.core import InputError, plug, stream
+from crowdbot.sensors import Gaussian, Lidar2D, Noise, Offset, Peak, disturbed
+
+
+def test_gaussian_has_its_mean_and_standard_deviation():
+    drawn = Gaussian(0.2).draw((200_000,), stream(1, "noise"))
+    assert abs(drawn.mean()) < 4 * 0.2 / math.sqrt(200_000)
+    assert drawn.std() == pytest.approx(0.2, rel=0.01)
+    assert np.mean(np.abs(drawn) < 0.2) == pytest.approx(0.6827, abs=0.005)
+
+
+def test_peak_comes_with_its_probability_and_height():
+    drawn = Peak(0.03, -1.5).draw((200_000,), stream(2, "noise"))
+    assert set(np.unique(drawn).tolist()) == {-1.5, 0.0}
+    assert np.mean(drawn != 0.0) == pytest.approx(0.03, abs=0.0015)
+
+
+def test_several_noises_add_up():
+    drawn = disturbed(np.full((1, 100_000), 5.0), (Gaussian(0.1), Offset(0.3), Peak(0.5, 2.0)), stream(3))
+    assert drawn.mean() == pytest.approx(5.0 + 0.3 + 1.0, abs=0.02)
+    assert drawn.std() == pytest.approx(math.hypot(0.1, 1.0), rel=0.01)
+
+
+def test_the_infinite_stays_infinite():
+    drawn = disturbed(np.array([[np.inf, -np.inf, 1.0]]), (Gaussian(1.0), Peak(1.0, 3.0)), stream(4))
+    assert drawn[0, 0] == np.inf
+    assert drawn[0, 1] == -np.inf
+    assert np.isfinite(drawn[0, 2])
+
+
+def test_each_environment_draws_as_if_alone():
+    values = np.arange(12.0).reshape(3, 4)
+    noise = (Gaussian(0.1), Peak(0.5, 1.0))
+    together = disturbed(values, noise, [stream(9, "scan", e) for e in range(3)])
+    for e in range(3):
+        alone = disturbed(values[e : e + 1], noise, stream(9, "scan", e))
+        assert alone.tobytes() == together[e : e + 1].tobytes()
+
+
+def test_what_is_measured_does_not_change_the_draws():
+    near, far = np.ones((1, 50)), np.full((1, 50), np.inf)
+    one, two = stream(5), stream(5)
+    disturbed(near, (Gaussian(0.1), Peak(0.1, 1.0)), one)
+    disturbed(far, (Gaussian(0.1), Peak(0.1, 1.0)), two)
+    assert one.random() == two.random()
+
+
+@pytest.mark.parametrize(
+    "noise", [(), (Gaussian(0.01),), (Gaussian(0.01), Peak(0.001, 1.0)), (Offset(-0.25), Gaussian(0.0), Offset(1e-7))]
+)
+def test_text_goes_both_ways(noise):
+    assert Noise.parse(" ".join(map(str, noise))) == noise
+
+
+def test_text_is_read_as_trial_files_write_it():
+    assert Noise.parse("gaussian(0.01) peak(0.001, 1.0)") == (Gaussian(0.01), Peak(0.001, 1.0))
+    assert Noise.parse(" Offset( -2 ), gaussian(.5)+peak(1,2)") == (Offset(-2.0), Gaussian(0.5), Peak(1.0, 2.0))
+    assert plug.read(Lidar2D, {"noise": "gaussian(0.02)", "rays": "90"}) == Lidar2D(rays=90, noise=Gaussian(0.02))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("gausian(0.1)", "unknown noise 'gausian'.*did you mean 'gaussian'"),
+        ("gaussian", "list of name"),
+        ("gaussian(0.1", "list of name"),
+        ("gaussian(a)", "must be numbers: gaussian\\(sd\\)"),
+        ("peak(0.1)", "has 1 values, it takes peak\\(probability, height\\)"),
+        ("gaussian(-1)", "sd = -1.0 must be finite and at least 0"),
+        ("gaussian(nan)", "sd = nan"),
+        ("peak(1.5, 2)", "probability = 1.5 must be between 0 and 1"),
+        ("peak(0.5, inf)", "height = inf must be finite"),
+        ("offset(nan)", "value = nan must be finite"),
+    ],
+)
+def test_wrong_text_is_explained(text, message):
+    with pytest.raises(InputError, match=message):
+        Noise.parse(text)
+
+
+def test_noise_needs_a_generator():
+    with pytest.raises(InputError, match="needs a generator"):
+        disturbed(np.ones((1, 2)), (Gaussian(0.1),), None)
+    with pytest.raises(InputError, match="2 generators were given for 3 environments"):
+        disturbed(np.ones((3, 2)), (Gaussian(0.1),), [stream(0), stream(1)])

@@ -1,0 +1,325 @@
+"""Trial files: what is read, every kind of mistake with its sentence, and XML -> Trial -> XML."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from trial_texts import GOOD, SHY, changed, written
+
+from crowdbot.core import InputError, TrialError
+from crowdbot.models import ORCA
+from crowdbot.navigation import Straight
+from crowdbot.sensors import Gaussian, Lidar2D
+from crowdbot.trials import (
+    Distribution,
+    End,
+    Goal,
+    Mount,
+    Obstacle,
+    Recording,
+    Robot,
+    Spawner,
+    Stage,
+    Trial,
+    Wall,
+    builtin_trials,
+    load_trial,
+)
+from crowdbot.world import DifferentialDrive
+
+
+def test_a_good_file_is_the_tree() -> None:
+    trial = Trial.parse(GOOD)
+    assert (trial.name, trial.duration, trial.step, trial.seed, trial.people) == ("small", 4.0, 0.05, 3, 4)
+    assert trial.stage.obstacles[0].points == ((0.0, 1.5), (1.0, 1.5), (1.0, 2.5), (0.0, 2.5))
+    assert trial.crowd == ORCA(time_horizon=2.0)
+    assert trial.spawners[1].speed == Distribution("uniform", (1.0, 1.4))
+    robot = trial.robots[0]
+    assert (robot.position, robot.goal.position, robot.visible) == ((-2.0, -2.4), (3.0, -2.4), True)
+    assert robot.drive == DifferentialDrive(max_speed=1.0)
+    assert robot.navigator == Straight()
+    assert robot.sensors[0].sensor == Lidar2D(rays=90, noise=Gaussian(0.01))
+    assert (robot.sensors[0].name, robot.sensors[0].x) == ("scan", 0.1)
+    assert trial.end == End(goal=True, collision=False)
+    assert trial.recording == Recording(period=0.1)
+
+
+def test_reading_what_was_written_gives_the_same_trial() -> None:
+    for trial in (Trial.parse(GOOD), *(load_trial(name) for name in builtin_trials())):
+        text = trial.xml()
+        assert Trial.parse(text) == trial
+        assert Trial.parse(text).xml() == text
+
+
+numbers = st.floats(-50.0, 50.0, allow_nan=False)
+words = st.text(st.characters(codec="utf-8", exclude_categories=("Cs", "Cc")), max_size=12)
+
+
+@st.composite
+def trials(draw: st.DrawFn) -> Trial:
+    """Make trials that are possible."""
+    corner = draw(st.tuples(numbers, numbers))
+    zone = [corner, (corner[0] + 3.0, corner[1]), (corner[0], corner[1] + 3.0)]
+    low = draw(st.floats(0.1, 1.0))
+    distribution = draw(
+        st.sampled_from([f"uniform({low!r}, 2.5)", f"normal(1.5, {low / 4!r})", repr(low), "normal(1, 0.5, 0.3, 2)"])
+    )
+    robot = Robot(
+        name=draw(st.from_regex(r"\A[A-Za-z][A-Za-z0-9_]{0,6}\Z")),
+        x=draw(numbers),
+        y=draw(numbers),
+        visible=draw(st.booleans()),
+        goal=Goal(draw(numbers), draw(numbers), draw(st.floats(0.1, 2.0))),
+        drive=DifferentialDrive(max_speed=draw(st.floats(0.1, 3.0))),
+        navigator=Straight(),
+        sensors=[Mount(sensor=Lidar2D(rays=draw(st.integers(1, 99)), noise=(Gaussian(low),)), heading=draw(numbers))],
+    )
+    return Trial(
+        name=draw(st.from_regex(r"\A[a-z&<\"' ]{0,8}x\Z").map(lambda text: text.strip())),
+        about=draw(words),
+        duration=draw(st.floats(0.1, 100.0)),
+        seed=draw(st.integers(-(2**53), 2**53)),
+        crowd=ORCA(time_horizon=draw(st.floats(0.1, 9.0))),
+        stage=Stage(
+            walkable=draw(st.sampled_from([(), [(-99, -99), (99, -99), (99, 99), (-99, 99)]])),
+            walls=[Wall([(corner[0], 60.0 + 1e-9), (0.1, 77)])],
+            obstacles=[Obstacle([(60, 60), (60 + low, 60), (60, 61)])],
+        ),
+        spawners=[Spawner(count=draw(st.integers(0, 3)), zone=zone, goal=zone, speed=distribution)],
+        robots=draw(st.sampled_from([[], [robot]])),
+        end=End(draw(st.booleans()), draw(st.booleans())),
+    )
+
+
+@settings(max_examples=40, deadline=None)
+@given(trials())
+def test_any_trial_survives_the_way_through_xml(trial: Trial) -> None:
+    text = trial.xml()
+    assert Trial.parse(text) == trial
+    assert Trial.parse(text).xml() == text
+
+
+MISTAKES = {
+    "unknown element": (
+        "<crowd ",
+        "<spawnner/><crowd ",
+        r":7: <spawnner> is no element of <trial>, did you mean 'spawner'\?; it takes <stage>, <crowd>, <spawner>",
+    ),
+    "unknown attribute": (
+        'count="2"',
+        'cuont="2"',
+        r":8: <spawner> has no attribute 'cuont', did you mean 'count'\?; it takes name, count, zone",
+    ),
+    "misspelt attribute of a model": (
+        'time-horizon="2"',
+        'time-horizn="2"',
+        r":7: <crowd> has no attribute 'time-horizn', did you mean 'time-horizon'\?",
+    ),
+    "misspelt attribute of a sensor": (
+        'rays="90"',
+        'rais="90"',
+        r":14: <sensor> has no attribute 'rais', did you mean 'rays'\?; it takes .*heading",
+    ),
+    "negative radius": ('radius="0.25"', 'radius="-0.25"', r':9: <spawner> radius="-0.25" must be above 0 m$'),
+    "negative radius of a robot": ('radius="0.3"', 'radius="-1"', r':10: <robot> radius="-1" must be above 0 m$'),
+    "radius that can be negative": (
+        'radius="0.25"',
+        'radius="normal(0.2, 0.1)"',
+        r"must be above 0 m, and it reaches from -0.1 to 0.5",
+    ),
+    "nan": ('duration="4"', 'duration="nan"', r':2: <trial> duration="nan" is not finite'),
+    "infinite": ('x="-2"', 'x="1e999"', r':10: <robot> x="1e999" is not finite'),
+    "nan point": ("-5,-2 -3,-2", "nan,-2 -3,-2", r":8: <spawner> zone=.* has the point 'nan,-2', which is not finite"),
+    "no number": ('step="0.05"', 'step="fast"', r':2: <trial> step="fast" is not a number'),
+    "no whole number": ('count="2"', 'count="2.5"', r':8: <spawner> count="2.5" must be a whole number'),
+    "negative count": ('count="2"', 'count="-2"', r':8: <spawner> count="-2" must be at least 0'),
+    "no distribution": (
+        'speed="uniform(1, 1.4)"',
+        'speed="unifrom(1, 1.4)"',
+        r":9: <spawner> speed=.* 'unifrom' is no distribution, did you mean 'uniform'\?",
+    ),
+    "too few numbers": ("uniform(1, 1.4)", "uniform(1)", r"uniform takes 2 numbers, not 1"),
+    "no truth": ('collision="false"', 'collision="no"', r':16: <end> collision="no" must be true or false'),
+    "wrong choice": (
+        'name="west"',
+        'name="west" arrival="leaves"',
+        r'arrival="leaves" must be leave or stay, did you mean .leave.\?',
+    ),
+    "missing attribute": (' name="small"', "", r":2: <trial> needs the attribute 'name': name of the trial"),
+    "missing element": (
+        '<navigator type="straight"/>',
+        "",
+        r":10: <robot> needs the element <navigator>: who steers it",
+    ),
+    "missing type": ('type="orca" ', "", r":7: <crowd> needs the attribute 'type': .*orca.* or an address"),
+    "unknown type": (
+        '"straight"',
+        '"straigth"',
+        r":13: <navigator> unknown navigator 'straigth', did you mean 'straight'",
+    ),
+    "element twice": ("<end ", '<crowd type="orca"/><end ', r":16: <crowd> stands in <trial> twice; one is allowed"),
+    "stray text": ("<end ", "hello<end ", r":2: <trial> holds the text 'hello'; values are written as attributes"),
+    "value of a model": ('time-horizon="2"', 'time-horizon="-2"', r":7: <crowd> .*-2.* is not allowed"),
+    "value of a drive": (
+        'max-speed="1"',
+        'max-speed="0"',
+        r":12: <drive> .*max_speed = 0.0 must be finite",
+    ),
+    "noise": ("gaussian(0.01)", "gausian(0.01)", r":14: <sensor> .*unknown noise 'gausian'.*did you mean 'gaussian'"),
+    "period": (
+        "<end ",
+        '<recording period="0.12"/><end ',
+        r"<recording> recording period 0.12 s is not a whole number",
+    ),
+    "sensor rate": (
+        'rays="90"',
+        'rate="7"',
+        r":14: <sensor> rate 7 Hz: 0.142857 s is not a whole number",
+    ),
+    "control period": ('x="-2"', 'x="-2" control-period="0.07"', r":10: <robot> control-period 0.07 s is not a whole"),
+    "zone in an obstacle": (
+        "-5,-2 -3,-2 -3,1 -5,1",
+        "0.2,1.7 0.8,1.7 0.8,2.3",
+        r":8: <spawner> spawn zone lies inside obstacle 1 of the stage; nobody can be there",
+    ),
+    "zone in a wall": (
+        "-5,-2 -3,-2 -3,1 -5,1",
+        "-5,2.85 5,2.85 5,2.95 -5,2.95",
+        r":8: <spawner> spawn zone of 1.00 m2 leaves no room for a single body beside walls",
+    ),
+    "goal in an obstacle": (
+        "4,-2 5,-2 5,1 4,1",
+        "0.2,1.7 0.8,1.7 0.8,2.3",
+        r":8: <spawner> goal zone lies inside obstacle 1 of the stage",
+    ),
+    "zone outside": (
+        "-5,-2 -3,-2 -3,1 -5,1",
+        "-9,-2 -3,-2 -3,1 -9,1",
+        r":8: <spawner> spawn zone reaches outside the walkable area",
+    ),
+    "crooked zone": (
+        "-5,-2 -3,-2 -3,1 -5,1",
+        "-5,-2 -3,1 -3,-2 -5,1",
+        r":8: <spawner> zone is no simple polygon: self-intersection.*list its corners in order",
+    ),
+    "too many people": (
+        'count="2"',
+        'count="90"',
+        r":8: <spawner> only \d\d of 90 people fit into the spawn zone of 6.00 m2",
+    ),
+    "robot in an obstacle": (
+        'x="-2" y="-2.4"',
+        'x="0.5" y="2"',
+        r":10: <robot> starts at 0.5,2 inside obstacle 1 of the stage",
+    ),
+    "robot near a wall": (
+        'y="-2.4" radius',
+        'y="-2.8" radius',
+        r":10: <robot> starts 0.20 m from a wall",
+    ),
+    "robot outside": ('x="-2" y', 'x="-22" y', r":10: <robot> starts at -22,-2.4 outside the walkable area"),
+    "goal out of reach": ('<goal x="3" y="-2.4"', '<goal x="30" y="0"', r":10: <robot> has its goal at 30,0 outside"),
+    "name of a robot": ('robot name="robot"', 'robot name="my robot"', r':10: <robot> name="my robot" must match'),
+    "wrong root": ("<trial ", "<simulation ", r"mismatched tag"),
+    "no XML": ("<stage ", "<stage <", r":3: this is not well-formed XML: not well-formed"),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_mistake_is_named_with_its_line(mistake: str, tmp_path: Path) -> None:
+    old, new, sentence = MISTAKES[mistake]
+    path = written(tmp_path / "in", changed(old, new))
+    with pytest.raises(TrialError) as found:
+        load_trial(path).run(out=tmp_path / "out")
+    assert re.search(sentence, str(found.value)), str(found.value)
+    assert all(problem.startswith(f"{path}:") for problem in found.value.problems)
+    assert len(found.value.problems) == 1 or mistake in ("unknown attribute", "wrong root")
+    assert not (tmp_path / "out").exists()
+
+
+def test_all_mistakes_are_said_at_once_in_the_order_of_the_lines() -> None:
+    text = GOOD
+    for old, new in (
+        ('duration="4"', 'duration="-4"'),
+        ('type="orca"', 'type="orka"'),
+        ('count="2" zone="-5', 'count="500" zone="-5'),
+        ('radius="0.25"', 'radius="-0.25"'),
+        ('x="-2" y="-2.4"', 'x="0.5" y="2"'),
+        ('rays="90"', 'rais="90" rate="7x"'),
+        ("<end ", "<finish/><end "),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    with pytest.raises(TrialError) as found:
+        Trial.parse(text, place="t.xml")
+    lines = [int(re.match(r"t\.xml:(\d+): ", problem)[1]) for problem in found.value.problems]  # type: ignore[index]
+    assert lines == sorted(lines)
+    assert {2, 7, 8, 9, 14, 16} <= set(lines)
+    assert lines.count(14) == 2, found.value.problems
+
+
+def test_two_robots_must_not_overlap_nor_share_a_name() -> None:
+    text = GOOD.replace("<end ", GOOD[GOOD.index("<robot") : GOOD.index("<end")] + "<end ")
+    with pytest.raises(TrialError, match=r"starts 0.00 m from robot 'robot'") as found:
+        Trial.parse(text)
+    assert any("name 'robot' is taken by another robot" in problem for problem in found.value.problems)
+
+
+def test_a_trial_made_in_python_is_checked_too() -> None:
+    zone = [(0, 0), (1, 0), (1, 1)]
+    with pytest.raises(InputError, match=r'Spawner: radius="-0.2" must be above 0 m'):
+        Spawner(count=1, zone=zone, goal=zone, radius=-0.2)
+    with pytest.raises(InputError, match="Spawner: zone=.* must be at least 3 different points"):
+        Spawner(count=1, zone=[(0, 0), (1, 1)], goal=zone)
+    with pytest.raises(InputError, match="drive is a Straight, it must be a Drive"):
+        Robot(x=0, y=0, goal=Goal(1, 1), drive=Straight(), navigator=Straight())  # type: ignore[arg-type]
+    trial = Trial(name="full", duration=1, crowd=ORCA(), spawners=[Spawner(name="s", count=99, zone=zone, goal=zone)])
+    with pytest.raises(TrialError, match=r"trial 'full': spawner 's' only \d+ of 99 people fit"):
+        trial.check()
+    with pytest.raises(TrialError, match="fit"):
+        trial.run()
+
+
+def test_what_xml_cannot_hold_is_refused() -> None:
+    with pytest.raises(InputError, match="holds a character that XML cannot hold"):
+        Trial(name="bell\x07", duration=1, crowd=ORCA())
+    import numpy as np
+
+    trial = Trial(name="each", duration=1, crowd=ORCA(time_horizon=np.array([1.0, 2.0])))
+    with pytest.raises(InputError, match=r"time-horizon = .* cannot be written as an attribute"):
+        trial.xml()
+
+
+def test_code_comes_from_the_folder_of_the_trial_only(tmp_path: Path) -> None:
+    (tmp_path / "shy.py").write_text(SHY)
+    inside = written(tmp_path, changed('type="straight"', 'type="shy.py:Shy" space="0.7"'))
+    trial = load_trial(inside)
+    assert trial.robots[0].navigator.space == 0.7  # type: ignore[attr-defined]
+    assert 'type="shy.py:Shy" space="0.7"' in trial.xml()
+    outside = written(tmp_path / "deep", changed('type="straight"', 'type="../shy.py:Shy"'))
+    with pytest.raises(TrialError, match=r":13: <navigator> the file '../shy.py' lies outside .*--trust"):
+        load_trial(outside)
+    trusted = load_trial(outside, trust=True)
+    assert 'type="../shy.py:Shy"' in trusted.xml()
+    with pytest.raises(TrialError, match=r"the module 'os' is not loaded from here; pass --trust"):
+        Trial.parse(changed('type="straight"', 'type="os:Shy"'))
+
+
+def test_a_trial_is_found_by_name_or_says_what_there_is(tmp_path: Path) -> None:
+    assert load_trial("crossing-flows").name == "crossing-flows"
+    assert dataclasses.replace(load_trial("frontal"), seed=5).seed == 5
+    with pytest.raises(TrialError, match=r"there is no trial 'crossing-flow', did you mean 'crossing-flows'\?"):
+        load_trial("crossing-flow")
+    with pytest.raises(TrialError, match=r"there is no trial file .*missing\.xml$"):
+        load_trial(tmp_path / "missing.xml")
+    with pytest.raises(TrialError, match="is not a file"):
+        load_trial(tmp_path)
+    with pytest.raises(TrialError, match=r"empty\.xml is empty; a trial is an XML file"):
+        load_trial(written(tmp_path, "", "empty.xml"))
+    with pytest.raises(TrialError, match=r":1: the root element is <world>, it must be <trial>"):
+        load_trial(written(tmp_path, "<world/>", "world.xml"))

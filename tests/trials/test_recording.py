@@ -1,0 +1,298 @@
+"""Recordings: one MCAP file that other tools open, equal to the episode, and never half a file."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mcap.reader import make_reader
+from rosbags.highlevel import AnyReader
+from trial_texts import GOOD, changed
+
+import crowdbot
+from crowdbot import data
+from crowdbot.core import EpisodeError, InputError, Pose, Scene
+from crowdbot.sensors import Reading, Sensor
+from crowdbot.trials import Episode, Mount, Recorded, Trial, read_episode
+
+TRIAL = Trial.parse(GOOD)
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Episode]:
+    """Return a file and the episode it was written from."""
+    folder = tmp_path_factory.mktemp("episode")
+    return folder / "episode.mcap", TRIAL.run(out=folder)
+
+
+def test_the_file_is_the_episode(recorded: tuple[Path, Episode]) -> None:
+    path, episode = recorded
+    read = read_episode(path)
+    assert os.listdir(path.parent) == ["episode.mcap"]
+    for name in ("times", "active", "ids", "radius", "commands"):
+        assert np.array_equal(getattr(read, name), getattr(episode, name)), name
+    people = slice(0, 4)
+    for name in ("position", "velocity", "heading"):
+        assert np.array_equal(getattr(read, name)[:, people], getattr(episode, name)[:, people]), name
+        assert np.allclose(getattr(read, name), getattr(episode, name), rtol=0, atol=1e-12), name
+    assert np.array_equal(read.position[:, 4], episode.position[:, 4])
+    assert (read.robots, read.outcome, read.digest, read.seed) == ((4,), episode.outcome, episode.digest, 3)
+    assert (read.steps, read.name, read.version) == (episode.steps, "small", crowdbot.__version__)
+    assert Trial.parse(read.xml) == TRIAL
+    assert [ring.tolist() for ring in read.walls] == [ring.tolist() for ring in episode.walls]
+    assert read.metrics == pytest.approx(dict(episode.metrics), nan_ok=True)
+    assert len(read.scans) == len(episode.scans) == 41
+    for one, two in zip(read.scans, episode.scans, strict=True):
+        assert one.time == two.time
+        assert np.allclose(one.pose, two.pose, rtol=0, atol=1e-12)
+        assert np.array_equal(one.ranges, two.ranges.astype(np.float32).astype(np.float64))
+        assert np.array_equal(one.hit, two.hit)
+        assert np.allclose(one.angles, two.angles, atol=1e-5)
+    for one, two in ((read.tracks(), episode.tracks()), (read.tracks(0.1), data.load(path))):
+        assert np.array_equal(one.x, two.x)
+        assert np.array_equal(one.id, two.id)
+        assert np.array_equal(one.frame, two.frame)
+
+
+def expected(episode: Episode) -> dict[str, int]:
+    count = len(episode.times)
+    topics = dict.fromkeys(("/clock", "/tf", "/people", "/robot/odom", "/robot/cmd_vel", "/robot/scan"), count)
+    return topics | {"/crowd/markers": 9}
+
+
+def test_rosbags_opens_the_file(recorded: tuple[Path, Episode]) -> None:
+    path, episode = recorded
+    count: Counter[str] = Counter()
+    with AnyReader([path]) as reader:
+        for connection, stamp, raw in reader.messages():
+            count[connection.topic] += 1
+            message: Any = reader.deserialize(raw, connection.msgtype)
+            header = getattr(message, "header", None)
+            assert header is None or header.stamp.sec * 10**9 + header.stamp.nanosec == stamp
+            k = round(stamp / 1e8)
+            if connection.topic == "/people":
+                assert [int(person.name) for person in message.people] == np.flatnonzero(episode.active[k, :4]).tolist()
+                assert [person.position.x for person in message.people] == episode.position[k, :4, 0].tolist()
+            if connection.topic == "/robot/odom":
+                assert (message.header.frame_id, message.child_frame_id) == ("map", "robot/base_link")
+                assert message.pose.pose.position.y == episode.position[k, 4, 1]
+            if connection.topic == "/robot/scan":
+                assert message.header.frame_id == "robot/scan"
+                assert message.ranges.shape == (90,)
+            if connection.topic == "/tf":
+                frames = [(t.header.frame_id, t.child_frame_id) for t in message.transforms]
+                assert frames == [("map", "robot/base_link"), ("robot/base_link", "robot/scan")]
+            if connection.topic == "/crowd/markers":
+                assert Counter(marker.ns for marker in message.markers) == {
+                    "clear": 1, "people": 4, "robots": 1, "goals": 1, "walls": 1,
+                }  # fmt: skip
+    assert dict(count) == expected(episode)
+
+
+def test_the_mcap_reader_alone_opens_the_file(recorded: tuple[Path, Episode]) -> None:
+    path, episode = recorded
+    with path.open("rb") as stream:
+        reader = make_reader(stream, validate_crcs=True)
+        assert reader.get_header().profile == "ros2"
+        assert reader.get_header().library == f"crowdbot {crowdbot.__version__}"
+        summary = reader.get_summary()
+        assert summary is not None
+        assert summary.statistics is not None
+        counts = {summary.channels[k].topic: n for k, n in summary.statistics.channel_message_counts.items()}
+        assert counts == expected(episode)
+        kinds = {c.topic: summary.schemas[c.schema_id] for c in summary.channels.values()}
+        assert kinds["/people"].name == "people_msgs/msg/People"
+        assert kinds["/people"].encoding == "ros2msg"
+        assert b"MSG: people_msgs/Person\nstring name\ngeometry_msgs/Point position" in kinds["/people"].data
+        stamps = [message.log_time for _, _, message in reader.iter_messages(topics=["/clock"])]
+        assert stamps == [round(t * 1e9) for t in episode.times]
+        metadata = next(record.metadata for record in reader.iter_metadata() if record.name == "crowdbot")
+    assert set(metadata) == {
+        "format", "trial", "trial_name", "seed", "version", "python", "numpy", "numba", "digest", "outcome", "steps",
+        "people", "metrics", "walls", "robots",
+    }  # fmt: skip
+    assert json.loads(metadata["robots"])[0]["name"] == "robot"
+    assert json.loads(metadata["metrics"])["path_length"] == episode.metrics["path_length"]
+
+
+def test_the_same_run_writes_the_same_file_over_an_old_one(recorded: tuple[Path, Episode], tmp_path: Path) -> None:
+    target = tmp_path / "a" / "b" / "mine.mcap"
+    target.parent.mkdir(parents=True)
+    target.write_text("old")
+    TRIAL.run(out=target)
+    assert target.read_bytes() == recorded[0].read_bytes()
+    assert os.listdir(target.parent) == ["mine.mcap"]
+
+
+def test_ctrl_c_leaves_a_whole_file(tmp_path: Path) -> None:
+    def press(share: float) -> None:
+        if 0.49 < share < 0.505:
+            signal.raise_signal(signal.SIGINT)
+
+    episode = TRIAL.run(out=tmp_path / "out", progress=press)
+    assert episode.outcome == "interrupted"
+    read = read_episode(tmp_path / "out" / "episode.mcap")
+    assert (read.outcome, read.steps, read.digest) == ("interrupted", 42, episode.digest)
+    assert np.array_equal(read.position[:, :4], episode.position[:, :4])
+    assert len(data.load(tmp_path / "out" / "episode.mcap")) == int(episode.active.sum())
+
+
+def test_ctrl_c_from_the_keyboard_leaves_a_whole_file(tmp_path: Path) -> None:
+    code = (
+        "import sys; from crowdbot.trials import Trial\n"
+        "say = lambda share: print(share, flush=True)\n"
+        "print(Trial.parse(sys.stdin.read()).run(out=sys.argv[1], progress=say).outcome)"
+    )
+    text = changed('duration="4"', 'duration="4000"')
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, str(tmp_path)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    assert process.stdin is not None
+    assert process.stdout is not None
+    process.stdin.write(text)
+    process.stdin.close()
+    process.stdout.readline()
+    process.send_signal(signal.SIGINT)
+    said = process.stdout.read()
+    process.stdout.close()
+    assert process.wait() == 0
+    assert said.split()[-1] == "interrupted"
+    read = read_episode(tmp_path / "episode.mcap")
+    assert read.outcome == "interrupted"
+    assert len(read.times) == 1 + read.steps // 2
+    assert os.listdir(tmp_path) == ["episode.mcap"]
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Thermometer(Sensor):
+    """Measures something that has no message."""
+
+    def measure(self, scene: Scene, pose: Pose, rng: Any = None) -> Reading:
+        return Reading(scene.time, pose)
+
+
+def test_nothing_is_left_behind_when_a_run_fails(tmp_path: Path) -> None:
+    def fail(share: float) -> None:
+        raise RuntimeError("a bug")
+
+    with pytest.raises(RuntimeError, match="a bug"):
+        TRIAL.run(out=tmp_path / "a" / "b", progress=fail)
+    (tmp_path / "kept").mkdir()
+    with pytest.raises(RuntimeError, match="a bug"):
+        TRIAL.run(out=tmp_path / "kept", progress=fail)
+    warm = dataclasses.replace(TRIAL.robots[0], sensors=[Mount(name="warm", sensor=Thermometer())])
+    with pytest.raises(EpisodeError, match=r"sensor 'robot/warm' gives a Reading, which has no ROS message yet"):
+        dataclasses.replace(TRIAL, robots=[warm]).run(out=tmp_path / "c")
+    assert os.listdir(tmp_path) == ["kept"]
+    assert os.listdir(tmp_path / "kept") == []
+
+
+def test_a_trial_that_has_no_xml_is_not_recorded(tmp_path: Path) -> None:
+    @dataclasses.dataclass(frozen=True, kw_only=True)
+    class Local(Thermometer):
+        pass
+
+    local = dataclasses.replace(TRIAL.robots[0], sensors=[Mount(name="warm", sensor=Local())])
+    with pytest.raises(InputError, match="Local cannot be named in a trial file: move it to a module"):
+        dataclasses.replace(TRIAL, robots=[local]).run(out=tmp_path / "c")
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_place_that_cannot_be_written_is_said(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(InputError, match=r"file is a file, so no episode can be written in it; give a folder"):
+        TRIAL.run(out=tmp_path / "file")
+    with pytest.raises(EpisodeError, match=r"episode.mcap cannot be written: Not a directory; give another place"):
+        TRIAL.run(out=tmp_path / "file" / "deeper")
+    (tmp_path / "folder.mcap").mkdir()
+    with pytest.raises(InputError, match=r"folder.mcap is a folder; give the name of a file"):
+        TRIAL.run(out=tmp_path / "folder.mcap")
+
+
+def test_files_that_are_no_episodes_are_refused_in_a_sentence(recorded: tuple[Path, Episode], tmp_path: Path) -> None:
+    whole = recorded[0].read_bytes()
+
+    def refused(content: bytes) -> str:
+        path = tmp_path / "x.mcap"
+        path.write_bytes(content)
+        with pytest.raises(EpisodeError) as found:
+            read_episode(path)
+        assert "\n" not in str(found.value)
+        return str(found.value).removeprefix(f"{path} ")
+
+    assert refused(b"") == "is empty"
+    assert refused(b"id,frame,x,y\n1,2,3,4\n").startswith("is not an MCAP file: it begins with b'id,frame'")
+    assert refused(whole[:8]).startswith("is cut off")
+    for share in (0.1, 0.5, 0.9, 0.999):
+        assert refused(whole[: int(share * len(whole))]).startswith("is cut off: its end is missing")
+    hole = whole[: len(whole) // 2] + bytes(2000) + whole[len(whole) // 2 + 2000 :]
+    assert refused(hole).startswith("is damaged")
+    with pytest.raises(EpisodeError, match="there is no episode file"):
+        read_episode(tmp_path / "none.mcap")
+    with pytest.raises(EpisodeError, match=r"is not a file; give the episode.mcap itself"):
+        read_episode(tmp_path)
+
+
+def test_other_mcap_files_are_refused(tmp_path: Path) -> None:
+    from mcap.writer import Writer
+
+    path = tmp_path / "other.mcap"
+    for metadata, sentence in (({}, "not an episode of crowdbot"), ({"seed": "1"}, "not an episode of crowdbot")):
+        with path.open("wb") as stream:
+            writer = Writer(stream)
+            writer.start()
+            if metadata:
+                writer.add_metadata("crowdbot", metadata)
+            writer.finish()
+        with pytest.raises(EpisodeError, match=sentence):
+            read_episode(path)
+    keys = dict.fromkeys(Recorded.__dataclass_fields__, "") | dict.fromkeys(
+        (
+            "trial",
+            "trial_name",
+            "seed",
+            "version",
+            "digest",
+            "outcome",
+            "steps",
+            "people",
+            "metrics",
+            "walls",
+            "robots",
+        ),
+        "nonsense",
+    )
+    with path.open("wb") as stream:
+        writer = Writer(stream)
+        writer.start()
+        writer.add_metadata("crowdbot", keys)
+        writer.finish()
+    with pytest.raises(EpisodeError, match="does not hold what its record 'crowdbot' says"):
+        read_episode(path)
+
+
+def test_damaged_bytes_never_show_a_stack_trace(recorded: tuple[Path, Episode], tmp_path: Path) -> None:
+    whole = recorded[0].read_bytes()
+    chance = np.random.default_rng(0)
+    path = tmp_path / "x.mcap"
+    wrong: list[str] = []
+    for _ in range(60):
+        content = bytearray(whole)
+        for place in chance.integers(8, len(whole) - 8, 20):
+            content[place] ^= 1 << int(chance.integers(8))
+        path.write_bytes(bytes(content))
+        try:
+            read_episode(path)
+        except EpisodeError as error:
+            wrong.append(str(error))
+    assert len(wrong) > 50
+    assert all("damaged" in sentence or "does not hold" in sentence for sentence in wrong)

@@ -1,0 +1,50 @@
+"""Small trials that the tests of this room share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+GOOD = """<?xml version="1.0" encoding="UTF-8"?>
+<trial name="small" about="four people and a robot" duration="4" step="0.05" seed="3">
+  <stage walkable="-6,-3 6,-3 6,3 -6,3">
+    <wall points="-6,2.9 6,2.9"/>
+    <obstacle points="0,1.5 1,1.5 1,2.5 0,2.5"/>
+  </stage>
+  <crowd type="orca" time-horizon="2"/>
+  <spawner name="east" count="2" zone="-5,-2 -3,-2 -3,1 -5,1" goal="4,-2 5,-2 5,1 4,1"/>
+  <spawner name="west" count="2" zone="3,-2 5,-2 5,1" goal="-5,-2 -4,-2 -4,1" speed="uniform(1, 1.4)" radius="0.25"/>
+  <robot name="robot" x="-2" y="-2.4" radius="0.3">
+    <goal x="3" y="-2.4" tolerance="0.3"/>
+    <drive type="differential-drive" max-speed="1"/>
+    <navigator type="straight"/>
+    <sensor name="scan" x="0.1" type="lidar2d" rays="90" noise="gaussian(0.01)"/>
+  </robot>
+  <end collision="false"/>
+</trial>
+"""
+
+SHY = """from dataclasses import dataclass
+from crowdbot.core import Twist
+from crowdbot.navigation import Navigator
+
+@dataclass(frozen=True)
+class Shy(Navigator):
+    space: float = 1.0
+
+    def act(self, observation):
+        return Twist() if observation.nearest < self.space else observation.towards_goal(0.8)
+"""
+
+
+def changed(old: str, new: str) -> str:
+    """Return the good trial with one thing changed."""
+    assert GOOD.count(old) >= 1, old
+    return GOOD.replace(old, new, 1)
+
+
+def written(folder: Path, text: str | bytes, name: str = "trial.xml") -> Path:
+    """Write a trial file."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / name
+    path.write_bytes(text.encode() if isinstance(text, str) else text)
+    return path
