@@ -80,4 +80,4 @@ if TYPE_CHECKING:
     from .trials import Episode as Episode
     from .trials import Trial as Trial
     from .trials import load_trial as load_trial
-    from .trials import replay as replay
+    from .trials.replay import replay as replay

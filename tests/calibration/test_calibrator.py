@@ -21,8 +21,8 @@ class Shy(CrowdModel):
     """Everyone walks to the goal and is pushed away by who is nearer than ``space`` and their radii."""
 
     paper: ClassVar[Paper] = Paper("Nobody", 2020, "Shyness", "Nowhere")
-    strength: PerAgent = parameter(0.0, unit="1/s", low=0.0, high=4.0, source="test")  # noqa: RUF009
-    space: PerAgent = parameter(1.0, unit="m", low=0.2, high=3.0, source="test")  # noqa: RUF009
+    strength: PerAgent = parameter(0.0, unit="1/s", low=0.0, high=4.0, source="test")
+    space: PerAgent = parameter(1.0, unit="m", low=0.2, high=3.0, source="test")
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> np.ndarray:
         away = scene.position[:, :, None] - scene.position[:, None, :]

@@ -20,8 +20,8 @@ class Drifting(CrowdModel):
     """Everyone keeps a share of the desired velocity and is pushed sideways by everyone else's nearness."""
 
     paper: ClassVar[Paper] = Paper("Nobody", 2020, "Drifting", "Nowhere")
-    share: PerAgent = parameter(1.0, unit="1", low=0.2, high=2.0, source="test")  # noqa: RUF009
-    push: PerAgent = parameter(0.0, unit="1/s", low=0.0, high=1.0, source="test")  # noqa: RUF009
+    share: PerAgent = parameter(1.0, unit="1", low=0.2, high=2.0, source="test")
+    push: PerAgent = parameter(0.0, unit="1/s", low=0.0, high=1.0, source="test")
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> np.ndarray:
         share, push = per_agent(self.share, scene.shape), per_agent(self.push, scene.shape)

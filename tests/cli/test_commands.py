@@ -107,7 +107,7 @@ def test_list_knows_every_kind(capsys):
     } <= set(found)
     assert {"orca", "social-force"} <= set(found["models"])
     assert {"straight", "orca"} <= set(found["navigators"])
-    assert set(found["protocols"]) == {"all", "sgan", "partial", "timesplit"}
+    assert {"all", "sgan", "partial", "timesplit"} <= set(found["protocols"])
     assert "crossing-flows" in found["trials"]
     assert all(line and "\n" not in line for names in found.values() for line in names.values())
 

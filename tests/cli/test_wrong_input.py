@@ -16,7 +16,7 @@ TRIAL = """<trial name="t" duration="2" step="0.05">
 ZONE = "0,-3 3,-3 3,3 0,3"
 
 
-def _refused(capsys, tmp_path, arguments, *words):
+def _assert_refused(capsys, tmp_path, arguments, *words):
     before = sorted(tmp_path.rglob("*"))
     status = main(arguments)
     said = capsys.readouterr()
@@ -48,28 +48,28 @@ def _file(tmp_path, name, content):
     ],
 )
 def test_recordings(capsys, tmp_path, name, content, words):
-    _refused(capsys, tmp_path, ["predict", "--data", _file(tmp_path, name, content)], *words)
+    _assert_refused(capsys, tmp_path, ["predict", "--data", _file(tmp_path, name, content)], *words)
 
 
 def test_a_missing_recording(capsys, tmp_path):
-    _refused(capsys, tmp_path, ["predict", "--data", str(tmp_path / "absent.txt")], "absent.txt")
+    _assert_refused(capsys, tmp_path, ["predict", "--data", str(tmp_path / "absent.txt")], "absent.txt")
 
 
 def test_a_recording_that_is_too_short_says_why(capsys, tmp_path):
     path = _file(tmp_path, "short.txt", "\n".join(f"{10 * k}\t1\t{0.5 * k}\t0.0" for k in range(6)))
-    _refused(capsys, tmp_path, ["predict", "--data", path], "short.txt", "20")
+    _assert_refused(capsys, tmp_path, ["predict", "--data", path], "short.txt", "20")
 
 
 def test_unknown_words_say_what_may_be_meant(capsys, tmp_path):
     path = _file(tmp_path, "one.txt", OBSMAT_ROWS)
-    _refused(capsys, tmp_path, ["predict", "--data", path, "--predictor", "kalmann"], "did you mean 'kalman'")
-    _refused(capsys, tmp_path, ["predict", "--data", path, "--protocol", "sgam"], "did you mean 'sgan'")
-    _refused(capsys, tmp_path, ["predict", "--data", path, "--set", "displacements"], "NAME=VALUE")
-    _refused(capsys, tmp_path, ["predict", "--data", path, "--set", "speed=3"], "has no attribute 'speed'")
-    _refused(capsys, tmp_path, ["list", "model"], "did you mean 'models'")
-    _refused(capsys, tmp_path, ["run", "crossing-flow"], "did you mean 'crossing-flows'")
-    _refused(capsys, tmp_path, ["cite", "orka"], "did you mean 'orca'")
-    _refused(capsys, tmp_path, ["bench", "orca"], "known are")
+    _assert_refused(capsys, tmp_path, ["predict", "--data", path, "--predictor", "kalmann"], "did you mean 'kalman'")
+    _assert_refused(capsys, tmp_path, ["predict", "--data", path, "--protocol", "sgam"], "did you mean 'sgan'")
+    _assert_refused(capsys, tmp_path, ["predict", "--data", path, "--set", "displacements"], "NAME=VALUE")
+    _assert_refused(capsys, tmp_path, ["predict", "--data", path, "--set", "speed=3"], "has no attribute 'speed'")
+    _assert_refused(capsys, tmp_path, ["list", "model"], "did you mean 'models'")
+    _assert_refused(capsys, tmp_path, ["run", "crossing-flow"], "did you mean 'crossing-flows'")
+    _assert_refused(capsys, tmp_path, ["cite", "orka"], "did you mean 'orca'")
+    _assert_refused(capsys, tmp_path, ["bench", "orca"], "known are")
 
 
 @pytest.mark.parametrize(
@@ -87,7 +87,7 @@ def test_unknown_words_say_what_may_be_meant(capsys, tmp_path):
 )
 def test_trials(capsys, tmp_path, text, words):
     path = _file(tmp_path, "t.xml", text)
-    _refused(capsys, tmp_path, ["run", path, "--out", str(tmp_path / "out")], *words)
+    _assert_refused(capsys, tmp_path, ["run", path, "--out", str(tmp_path / "out")], *words)
     assert main(["check", path]) == 2
 
 
@@ -97,7 +97,9 @@ def test_an_entity_bomb_and_external_entities_are_refused(capsys, tmp_path):
     body = '<trial name="t" duration="2" about="&{};"><crowd type="orca"/></trial>'
     for number, declared in enumerate((bomb, f'<!ENTITY e11 SYSTEM "file://{secret}">')):
         text = f"<!DOCTYPE trial [{declared}]>" + body.format("e11")
-        error = _refused(capsys, tmp_path, ["run", _file(tmp_path, f"bomb{number}.xml", text)], f"bomb{number}.xml:1")
+        error = _assert_refused(
+            capsys, tmp_path, ["run", _file(tmp_path, f"bomb{number}.xml", text)], f"bomb{number}.xml:1"
+        )
         assert "do not read me" not in error
 
 
@@ -107,9 +109,9 @@ def test_episodes(capsys, tmp_path):
     capsys.readouterr()
     for name, content in (("cut.mcap", whole[: len(whole) // 2]), ("head.mcap", whole[:20]), ("none.mcap", b"")):
         path = _file(tmp_path, name, content)
-        _refused(capsys, tmp_path, ["replay", path], name)
-        _refused(capsys, tmp_path, ["predict", "--data", path], name)
-    _refused(capsys, tmp_path, ["replay", str(tmp_path / "absent.mcap")], "absent.mcap")
+        _assert_refused(capsys, tmp_path, ["replay", path], name)
+        _assert_refused(capsys, tmp_path, ["predict", "--data", path], name)
+    _assert_refused(capsys, tmp_path, ["replay", str(tmp_path / "absent.mcap")], "absent.mcap")
 
 
 def test_an_unknown_command_is_a_usage_error(capsys):

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import InputError
-from crowdbot.core.neighbors import CROWD, Neighbors, nearest
+from crowdbot.core.neighbors import CROWD, SMALL, Neighbors, nearest
 
 
 def twin(position, reach, most, seen, asking):
@@ -68,6 +68,12 @@ def test_both_ways_agree_with_sorting(seed, E, A, width, height, far):
     same(position, reach, most, rng.random((E, A)) < 0.8, rng.random((E, A)) < 0.8)
 
 
+def test_a_grid_with_an_even_number_of_rows():
+    rng = np.random.default_rng(0)
+    for A in range(20, 70, 5):  # the row above the last is the first again, which also lies below
+        same(rng.uniform(0.0, 1.0, (6, A, 2)) * [8.0, 4.0], 4.0, 11)
+
+
 def test_equal_distances_are_sorted_by_index():
     side = np.arange(12.0)
     lattice = np.stack(np.meshgrid(side, side), axis=-1).reshape(1, -1, 2)
@@ -109,9 +115,10 @@ def test_whoever_is_not_finite_is_nowhere():
 
 
 def test_alone_or_in_a_batch():
-    position = np.random.default_rng(1).uniform(0.0, 30.0, (4, CROWD + 40, 2))
+    position = np.random.default_rng(1).uniform(0.0, 30.0, (9, SMALL // 8, 2))
     together = nearest(position, 4.0, 8)
-    for e in range(4):
+    assert SMALL // 8 > CROWD
+    for e in range(9):
         alone = nearest(position[e : e + 1], 4.0, 8)
         assert np.array_equal(alone.agent[0], together.agent[e])
         assert np.array_equal(alone.number[0], together.number[e])

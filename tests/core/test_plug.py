@@ -51,7 +51,7 @@ room.Walker, room.FastWalker, room.SlowWalker, room.number = Walker, FastWalker,
         ("ORCA", "orca"),
         ("VBM", "vbm"),
         ("Lidar2D", "lidar2d"),
-        ("RGBCamera", "rgb-camera"),
+        ("RGBCamera", "rgbcamera"),
     ],
 )
 def test_kebab(name, spoken):

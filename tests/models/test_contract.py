@@ -12,7 +12,7 @@ from model_crowds import PILLAR, ROOM, crowd, renumbered
 
 import crowdbot.models as room
 from crowdbot.core import InputError, Paper, Scene, parameters, stream
-from crowdbot.core.neighbors import CROWD
+from crowdbot.core.neighbors import CROWD, SMALL
 from crowdbot.core.plug import built_in, find, kebab, read
 
 MODELS = list(built_in(room, room.CrowdModel).values())
@@ -99,13 +99,13 @@ def test_alone_in_a_batch_or_twice_the_bytes_are_the_same(kind):
         scene = crowd(3, A=A)
         alone = velocity(kind(), scene)
         assert np.array_equal(velocity(kind(), scene), alone)
-        for copy in velocity(kind(), scene.repeated(3)):
+        for copy in velocity(kind(), scene.repeated(SMALL // A + 1)):  # by several threads
             assert np.array_equal(copy, alone[0])
 
 
 @every_model
 def test_the_number_of_threads_does_not_matter(kind):
-    scene = crowd(4, A=CROWD + 200, E=2)
+    scene = crowd(4, A=SMALL // 2 + 50, E=2)
     most = numba.get_num_threads()
     results = []
     for count in (1, min(2, numba.config.NUMBA_NUM_THREADS)):

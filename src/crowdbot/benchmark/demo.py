@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -100,6 +101,7 @@ def _predicted(
     found = []
     for number, predictor in enumerate((ConstantVelocity(), ConstantAcceleration(), Kalman(), simulated), start=1):
         score = evaluate(predictor, past, future, seed=seed)
+        score = dataclasses.replace(score, predictor=predictor.name.partition("(")[0])  # its parameters stand below
         found.append(Predicted(predictor.predict(past, PREDICT, rng=stream(seed, "report")), score))
         progress(number / 4)
     return found

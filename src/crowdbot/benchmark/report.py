@@ -110,16 +110,17 @@ def _prediction_table(predicted: Sequence[Predicted], future: Windows) -> str:
     best, marked = min(one.score.ade for one in predicted), ' class="best"'
     rows = "".join(
         f"<tr{marked if one.score.ade == best else ''}><td>{html.escape(one.score.predictor)}</td>"
-        f"<td>{one.score.windows}</td><td>{one.score.persons}</td><td>{one.score.ade:.3f}</td>"
-        f"<td>{one.score.fde:.3f}</td><td>{1e3 * one.score.seconds_per_window:.2f}</td></tr>"
+        + "".join(f"<td>{cell}</td>" for cell in one.score.cells())
+        + "</tr>"
         for one in predicted
     )
+    head = "".join(f"<th>{name}</th>" for name in ("predictor", *predicted[0].score.columns))
     horizon = future.dt * future.position.shape[1]
     return (
-        "<table><thead><tr><th>predictor</th><th>windows</th><th>persons</th><th>ADE [m]</th><th>FDE [m]</th>"
-        f"<th>ms per window</th></tr></thead><tbody>{rows}</tbody></table>"
+        f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
         f'<p class="hint">Protocol {html.escape(predicted[0].score.protocol)}, {horizon:.1f} s ahead every'
-        f" {future.dt} s; means over persons. ADE: mean distance over the horizon; FDE: distance at its end.</p>"
+        f" {future.dt} s; means over persons. ADE: mean distance over the horizon; FDE: distance at its end;"
+        " collisions: share of people predicted to come closer than 0.2 m to another, centre to centre.</p>"
     )
 
 

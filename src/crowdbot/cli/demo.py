@@ -6,7 +6,7 @@ import argparse
 import time
 from pathlib import Path
 
-from .output import add_json, note, number, print_json, print_metrics, print_table, progress
+from .output import add_json, note, print_json, print_metrics, print_table, progress
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -36,15 +36,8 @@ def main(options: argparse.Namespace) -> int:
     print_metrics(f"{episode.trial.name}, seed {episode.seed}: {episode.outcome}", episode.metrics)
     print_table(
         "prediction of the people near the robot, next 4.8 s",
-        ("predictor", "windows", "persons", "ADE [m]", "FDE [m]", "ms/window"),
-        [
-            (
-                s.predictor,
-                *(number(v) for v in (s.windows, s.persons, s.ade, s.fde)),
-                number(1e3 * s.seconds_per_window, 2),
-            )
-            for s in done.scores
-        ],
+        ("predictor", *done.scores[0].columns),
+        [(score.predictor, *score.cells()) for score in done.scores],
         caption=done.caption,
     )
     print(f"recorded  {done.episode_file}")

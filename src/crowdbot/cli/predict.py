@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .output import Progress, add_json, note, number, print_json, print_table, progress
+from .output import Progress, add_json, note, print_json, print_table, progress
 
 if TYPE_CHECKING:
     from crowdbot.metrics import Score
@@ -35,6 +35,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add("--fps", type=float, metavar="F", help="rows a second of one track, when the file does not say")
     add("--format", metavar="NAME", help="crowdbot list formats; default: found by content")
     add("--time-base", default="true", metavar="NAME", help="true or published, for the ETH file with two time bases")
+    add("--units", metavar="NAME", help="m, cm or px, when the file does not say")
+    add("--late", default="skip", metavar="NAME", help="people who appear while observed: skip or extrapolate")
     add("--seed", type=int, default=0, help="seed of predictors that sample")
     add_json(parser)
 
@@ -44,19 +46,22 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.metrics import Score
 
     predictor = chosen(options.predictor, options.model, assignments(options.set))
+    notes: dict[str, None] = {}
     with progress(options.json) as report:
-        scores = {str(path): _score(path, predictor, options, report) for path in options.data}
+        scores = {str(path): _score(path, predictor, options, report, notes) for path in options.data}
     total = Score.total(list(scores.values()))
     if options.json:
         print_json(as_json(total, scores))
         return 0
-    rows = [(Path(name).name, *_cells(score)) for name, score in scores.items()]
+    for sentence in notes:
+        note(sentence)
+    rows = [(Path(name).name, *score.cells()) for name, score in scores.items()]
     if len(scores) > 1:
-        rows.append(("together", *_cells(total)))
+        rows.append(("together", *total.cells()))
     best = f", best of {options.samples} per {options.best_of}" if options.samples > 1 else ""
     print_table(
         f"{total.predictor}, {options.observe} observed + {options.predict} predicted rows",
-        ("recording", "windows", "persons", "ADE [m]", "FDE [m]", "s/window"),
+        ("recording", *total.columns),
         rows,
         caption=f"protocol {total.protocol}{best}; means over persons",
     )
@@ -102,17 +107,20 @@ def chosen(name: str, model: str | None, values: Mapping[str, str]) -> Predictor
     return dataclasses.replace(plug.read(kind, own), model=crowd)  # type: ignore[no-any-return]
 
 
-def _score(path: Path, predictor: Predictor, options: argparse.Namespace, report: Progress) -> Score:
+def _score(
+    path: Path, predictor: Predictor, options: argparse.Namespace, report: Progress, notes: dict[str, None]
+) -> Score:
     from crowdbot.data import load
     from crowdbot.prediction import evaluate
 
-    tracks = load(path, fps=options.fps, format=options.format, time_base=options.time_base)
+    tracks = load(path, options.fps, options.format, options.units, options.time_base)
+    if tracks.units == "px" and tracks.homography is not None:
+        tracks = tracks.metres()
     if tracks.robots and options.fps is None:
         tracks = tracks.resample(EPISODE_STEP)
-    if tracks.note and not options.json:
-        note(f"{path.name}: {tracks.note}")
-    past, future = tracks.windows(options.observe, options.predict, protocol=options.protocol, near=options.near)
-    what = f"{path.name}"
+    if tracks.note:
+        notes[f"{path.name}: {tracks.note}"] = None
+    past, future = tracks.windows(options.observe, options.predict, options.protocol, options.near, options.late)
     return evaluate(
         predictor,
         past,
@@ -120,7 +128,7 @@ def _score(path: Path, predictor: Predictor, options: argparse.Namespace, report
         samples=options.samples,
         best_of=options.best_of,
         seed=options.seed,
-        progress=lambda share: report(what, share),
+        progress=lambda share: report(path.name, share),
     )
 
 
@@ -132,8 +140,3 @@ def _five(score: Score) -> dict[str, float]:
         "fde": score.fde,
         "seconds_per_window": score.seconds_per_window,
     }
-
-
-def _cells(score: Score) -> list[str]:
-    five = _five(score)
-    return [*(number(five[key]) for key in ("windows", "persons", "ade", "fde")), f"{five['seconds_per_window']:.2g}"]

@@ -22,8 +22,8 @@ from numba.core import config
 
 __all__ = ["cache_folder", "is_cold", "kernel"]
 
-# GNU OpenMP lets idle threads spin by default: beside one other busy process a step of 1 ms then takes 50 ms (measured).
-# It reads this when the first parallel kernel starts; what the user has set stays.
+# GNU OpenMP lets idle threads spin: beside another busy process a step of 1 ms then takes 50 ms (measured). It reads
+# this when the first parallel kernel starts; what the user has set stays.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 STALE_DAYS = 30

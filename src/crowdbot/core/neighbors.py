@@ -28,10 +28,12 @@ CHUNK = 64
 """Agents that one thread takes at a time."""
 SMALL = 512
 """Up to this many agents one thread does it all: waking the others would take longer than the work (measured)."""
-CROWD = 160
-"""From this number of agents on the grid is faster than brute force (measured)."""
+CROWD = 32
+"""From this number of agents on the grid is faster than brute force (measured: 32 in a batch, 150 alone)."""
 PER_CELL = 2.0
 """Agents in one cell, on average."""
+GUESS = 0.25
+"""Where the search begins: squared radius per neighbour wanted, in squared widths of a cell."""
 SLACK = 1e-12
 """Relative width added where rounding could hide a neighbour behind the border of a cell."""
 
@@ -129,7 +131,7 @@ def _rows(value: ArrayLike, shape: tuple[int, int], kind: Any) -> NDArray[Any]:
 def _sorted(seekers: _Seekers, seen: NDArray[np.bool_], E: int, in_cells: bool) -> _Grid:
     """Sort all agents into cells, or leave them as they are in one large cell per environment."""
     rows = len(seen)
-    shape, size = np.ones((E, 2), dtype=np.int64), np.ones(E)
+    shape, size = np.ones((E, 2), dtype=np.int64), np.full(E, 1e100)
     order = np.arange(rows, dtype=np.int32)
     place = np.where(seen[:, None], seekers.place, np.nan)
     A = rows // max(E, 1)
@@ -232,10 +234,15 @@ def _search_part(begin: int, end: int, seekers: _Seekers, grid: _Grid, agent: Ro
         held = int(np.int64(0))  # a plain 0 would be a type of its own and compile what follows twice
         most = min(capacity[row], widest)
         if asking[row] and most > 0 and reach[row] > 0.0:
-            x, y, limit2 = place[row, 0], place[row, 1], reach[row] * reach[row]
-            held = _look_around(
-                first, e, sizes[e], shape[e, 0], shape[e, 1], order, points, x, y, row, limit2, most, near, near2
-            )
+            x, y, size, reach2 = place[row, 0], place[row, 1], sizes[e], reach[row] * reach[row]
+            limit2 = min(reach2, (GUESS * most + 0.5) * size * size)
+            while True:
+                held = _look_around(
+                    first, e, size, shape[e, 0], shape[e, 1], order, points, x, y, row, limit2, most, near, near2
+                )
+                if held == most or limit2 == reach2:
+                    break
+                limit2 = min(reach2, 4.0 * limit2)
         number[row] = held
         for n in range(held):
             agent[row, n] = near[n] - e * A
@@ -274,6 +281,8 @@ def _look_around(
         if visit > 0 and min(above, below) ** 2 > limit2:
             break
         gap = above if visit % 2 == 1 else below if visit > 0 else 0.0
+        if 2 * ring == rows:  # the same row of cells above and below, around the end of the grid
+            gap = min(above, below)
         if gap * gap > limit2:
             continue
         width = math.sqrt(limit2 - gap * gap) + slack

@@ -28,10 +28,10 @@ __all__ = ["built_in", "find", "kebab", "problems", "read"]
 def kebab(name: str) -> str:
     """Return a class name as it is written on the command line and in XML.
 
-    >>> kebab("ConstantVelocity"), kebab("ORCA"), kebab("Lidar2D"), kebab("ORCANavigator")
-    ('constant-velocity', 'orca', 'lidar2d', 'orca-navigator')
+    >>> kebab("ConstantVelocity"), kebab("ORCA"), kebab("Lidar2D"), kebab("PLEdestrians")
+    ('constant-velocity', 'orca', 'lidar2d', 'pledestrians')
     """
-    return re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "-", name).lower()
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", "-", name).lower()
 
 
 def built_in(room: types.ModuleType, contract: type) -> dict[str, type]:

@@ -33,7 +33,8 @@ class Score:
         miss_rate: share of persons whose final error is above 2 m; NaN in pixels.
         collisions: share of persons, in windows with at least two, predicted closer than 0.2 m to another; NaN when
             there are none, and in pixels. ``together`` is how many persons that is a share of.
-        horizon: mean error [m] at each step of ``dt`` [s]; ``there`` is how many persons were still there.
+        horizon: mean error [m] at each step; ``there`` is how many persons were still there.
+        dt: the step [s]; NaN for recordings with different steps together.
         seconds_per_window: time to predict one window [s], NaN when it was not measured.
         units: ``m``; or ``px``, and then every [m] above is pixels.
     """
@@ -92,14 +93,14 @@ class Score:
         """Return the score of several recordings together, every mean taken over all their persons.
 
         Raises:
-            InputError: there is no score, or they differ in predictor, protocol, samples, rule or horizon.
+            InputError: there is no score, or they differ in predictor, protocol, samples, rule, units or horizon.
         """
         if not scores:
             raise InputError("a total needs at least one score")
         if len(scores) == 1:
             return scores[0]
         first = scores[0]
-        for name in ("predictor", "protocol", "samples", "best_of", "dt", "units"):
+        for name in ("predictor", "protocol", "samples", "best_of", "units"):
             values = [getattr(one, name) for one in scores]
             if any(value != values[0] for value in values):
                 raise InputError(f"scores with different {name} cannot be added up: {', '.join(map(repr, values))}")
@@ -121,6 +122,7 @@ class Score:
             together=sum(one.together for one in scores),
             horizon=tuple(map(_mean, zip(*(one.horizon for one in scores), strict=True), zip(*there, strict=True))),
             there=tuple(sum(counts) for counts in zip(*there, strict=True)),
+            dt=first.dt if all(one.dt == first.dt for one in scores) else math.nan,
             seconds_per_window=_mean([one.seconds_per_window for one in scores], windows),
         )
 
@@ -128,10 +130,22 @@ class Score:
         """Return every field by its name, for JSON."""
         return dataclasses.asdict(self)
 
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Heads of the columns of :meth:`cells`."""
+        return ("windows", "persons", f"ADE [{self.units}]", f"FDE [{self.units}]", "collisions", "ms/window")
+
+    def cells(self) -> tuple[str, ...]:
+        """Return the main numbers as words for a table; what was not measured is ``-``."""
+        clash = "-" if math.isnan(self.collisions) else f"{100.0 * self.collisions:.1f} %"
+        time = "-" if math.isnan(self.seconds_per_window) else f"{1e3 * self.seconds_per_window:.3g}"
+        return (str(self.windows), str(self.persons), f"{self.ade:.3f}", f"{self.fde:.3f}", clash, time)
+
     def __str__(self) -> str:
         """Return one paragraph that carries protocol, predictor and counts."""
         best = f", best of {self.samples} per {self.best_of}" if self.samples > 1 else ""
-        reach = f"{len(self.horizon)} steps of {self.dt:g} s"
+        length = "different lengths" if math.isnan(self.dt) else f"{self.dt:g} s"
+        reach = f"{len(self.horizon)} steps of {length}"
         time = "" if math.isnan(self.seconds_per_window) else f", {1e3 * self.seconds_per_window:.3g} ms a window"
         miss = "" if math.isnan(self.miss_rate) else f", missed by 2 m {100 * self.miss_rate:.1f} %"
         clash = "" if math.isnan(self.collisions) else f", collisions {100 * self.collisions:.1f} %"

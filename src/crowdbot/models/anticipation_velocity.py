@@ -18,7 +18,7 @@ from crowdbot.core.parameter import PerAgent, parameter, per_agent
 from crowdbot.core.scene import Scene
 
 from .collision_free_speed import is_hidden, way_to, within
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
+from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
 
 __all__ = ["AnticipationVelocity"]
 
@@ -79,16 +79,53 @@ def _away_from_walls(
     return (ux / length, uy / length) if length > 0.0 else (0.0, 0.0)
 
 
+@kernel
+def _influence(
+    dx: float, dy: float, gx: float, gy: float, wx: float, wy: float, ox: float, oy: float, facing: float,
+    contact: float, strength: float, scale: float, ahead: float, other_ahead: float, side: float,
+) -> float:  # fmt: skip
+    """Return how strongly a neighbour turns the direction to the left of the desired one, g.
+
+    Args:
+        dx, dy: from here to it [m].
+        gx, gy: desired direction.
+        wx, wy: own velocity [m/s].
+        ox, oy: its velocity [m/s].
+        facing: its heading [rad].
+        contact: sum of the radii [m].
+        strength, scale: of the influence, [1] and [m].
+        ahead, other_ahead: how far I foresee, and it [s].
+        side: where to go when it will be exactly ahead, 1 left or -1 right.
+    """
+    distance = math.sqrt(dx * dx + dy * dy)
+    closing = ((wx - ox) * dx + (wy - oy) * dy) / distance if distance > 0.0 else 0.0
+    left = max(0.0, distance - contact - closing * ahead)
+    against = 1.5 - 0.5 * (gx * math.cos(facing) + gy * math.sin(facing))
+    aside = gx * (dy + oy * other_ahead) - gy * (dx + ox * other_ahead)
+    way = side if abs(aside) < ALIGNED else -math.copysign(1.0, aside)
+    return way * strength * against * math.exp(-left / scale)
+
+
+@kernel
+def _turn(ux: float, uy: float, hx: float, hy: float, gx: float, gy: float, share: float) -> tuple[float, float]:
+    """Return the heading h turned by a share of the way to u; at once when only one of them leads to the goal at g."""
+    if (gx * ux + gy * uy) * (gx * hx + gy * hy) < 0.0:
+        return ux, uy
+    ux, uy = hx + (ux - hx) * share, hy + (uy - hy) * share
+    length = math.sqrt(ux * ux + uy * uy)
+    return (ux / length, uy / length) if length > 0.0 else (hx, hy)
+
+
 @kernel(parallel=True)
-def _choose(crowd: _Crowd, near: Neighbors, walls: Floats, dt: float, out: Floats, turned: Floats) -> None:
+def _choose(crowd: _Crowd, near: Neighbors, walls: Floats, dt: float, turned: Floats, out: Floats) -> None:
     """Choose the next velocity and heading of every agent, row by row."""
     for part in prange((len(out) + CHUNK - 1) // CHUNK):
-        _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, walls, dt, out, turned)
+        _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, walls, dt, turned, out)
 
 
 @kernel
 def _choose_part(
-    begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Floats, dt: float, out: Floats, turned: Floats
+    begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Floats, dt: float, turned: Floats, out: Floats
 ) -> None:
     # fields are taken out of the tuples here: inside the loop each access would count references
     place, velocity, heading, desired, radius, top, strength, scale = crowd[:8]
@@ -96,7 +133,7 @@ def _choose_part(
     agent, number, order = near
     A = agent.shape[1]
     found = np.empty(len(walls), dtype=np.int64)
-    seen = np.empty((agent.shape[2], 3))  # where a neighbour is from here, and the least distance from it
+    seen = np.empty((agent.shape[2], 3))  # where a neighbour is from here, and the sum of the radii
     for k in range(begin, end):
         row = order[k]
         wish = math.sqrt(desired[row, 0] ** 2 + desired[row, 1] ** 2)
@@ -107,45 +144,26 @@ def _choose_part(
         gx, gy = desired[row, 0] / wish, desired[row, 1] / wish
         hx, hy = math.cos(heading[row]), math.sin(heading[row])
         count = within(walls, x, y, reach[row], found)
-        aside = 0.0  # the sum of all influences: they point across the desired direction, to its left
-        held = 0
+        aside, held = 0.0, 0
         for n in range(number[e, a]):
-            other = row - a + agent[e, a, n]
-            dx, dy = place[other, 0] - x, place[other, 1] - y
+            o = row - a + agent[e, a, n]
+            dx, dy, contact = place[o, 0] - x, place[o, 1] - y, radius[row] + radius[o]
             if is_hidden(walls, found, count, x, y, dx, dy):
                 continue
-            contact = radius[row] + radius[other]
             seen[held, 0], seen[held, 1], seen[held, 2] = dx, dy, contact
             held += 1
-            if gx * dx + gy * dy < 0.0 and hx * dx + hy * dy < 0.0:
-                continue
-            distance = math.sqrt(dx * dx + dy * dy)
-            closing = 0.0
-            if distance > 0.0:
-                closing = ((velocity[row, 0] - velocity[other, 0]) * dx + (velocity[row, 1] - velocity[other, 1]) * dy)
-                closing /= distance
-            left = max(0.0, distance - contact - closing * anticipation[row])
-            against = 1.5 - 0.5 * (gx * math.cos(heading[other]) + gy * math.sin(heading[other]))
-            ahead = anticipation[other]
-            place_left = gx * (dy + velocity[other, 1] * ahead) - gy * (dx + velocity[other, 0] * ahead)
-            if abs(place_left) < ALIGNED:
-                way = side[row]
-            else:
-                way = -1.0 if place_left > 0.0 else 1.0
-            aside += way * strength[row] * against * math.exp(-left / scale[row])
+            if gx * dx + gy * dy >= 0.0 or hx * dx + hy * dy >= 0.0:
+                aside += _influence(
+                    dx, dy, gx, gy, velocity[row, 0], velocity[row, 1], velocity[o, 0], velocity[o, 1], heading[o],
+                    contact, strength[row], scale[row], anticipation[row], anticipation[o], side[row],
+                )  # fmt: skip
         length = math.sqrt(1.0 + aside * aside)
-        ux, uy = (gx - aside * gy) / length, (gy + aside * gx) / length
-        if (gx * ux + gy * uy) * (gx * hx + gy * hy) >= 0.0:
-            share = dt / reaction[row]
-            ux, uy = hx + (ux - hx) * share, hy + (uy - hy) * share
-            length = math.sqrt(ux * ux + uy * uy)
-            ux, uy = (ux / length, uy / length) if length > 0.0 else (hx, hy)
+        ux, uy = _turn((gx - aside * gy) / length, (gy + aside * gx) / length, hx, hy, gx, gy, dt / reaction[row])
         ux, uy = _away_from_walls(walls, found, count, x, y, radius[row] + buffer[row], pushout[row], ux, uy)
-        free = math.inf
+        speed = min(wish, top[row])
         for n in range(held):
-            free = min(free, way_to(seen[n, 0], seen[n, 1], ux, uy, seen[n, 2]))
-        speed = min(max(0.0, free / gap[row]), wish, top[row])
-        if speed < CREEP and not math.isnan(shuffle[row]):
+            speed = min(speed, max(0.0, way_to(seen[n, 0], seen[n, 1], ux, uy, seen[n, 2])) / gap[row])
+        if speed < min(CREEP, wish) and not math.isnan(shuffle[row]):
             speed = shuffle[row] * min(CREEP, top[row])
         out[row, 0], out[row, 1] = speed * ux, speed * uy
         if ux != 0.0 or uy != 0.0:
@@ -162,14 +180,15 @@ class AnticipationVelocity(CrowdModel):
         time_gap: time to the next one ahead at the chosen speed [s].
         anticipation_time: how far people foresee the way of the others [s].
         reaction_time: in which the heading follows the chosen direction [s]; no less than the time step counts.
-        wall_buffer: from this distance between body and wall on [m] nobody walks towards the wall.
+        wall_buffer: nearer to a wall than the radius and this [m] nobody walks towards it; up to twice that distance
+            the way bends off the wall.
         pushout: there, how much of the direction leads away from the wall.
         neighbor_distance: neighbours and walls are no farther than this [m], and not hidden by a wall.
         max_neighbors: only so many of them count, the nearest; a fraction is rounded to the nearest whole number.
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
 
     The heading is a state of its own (``Scene.heading``) and turns even in those who stand; :meth:`step` writes it.
-    With ``rng``, who would be slower than 0.01 m/s shuffles forward, backward or not at all, and who meets somebody
+    With ``rng``, who is slowed down below 0.01 m/s shuffles forward, backward or not at all, and who meets somebody
     exactly head on takes a random side; without, nobody shuffles, and all pass on the right.
 
     Source: Xu, Chraibi, Seyfried 2021, doi:10.1016/j.trc.2021.103464, as in JuPedSim 1.4.2.
@@ -182,7 +201,7 @@ class AnticipationVelocity(CrowdModel):
     [[[1.3, 0.0], [-1.3, 0.0]]]
     >>> nearer = meeting.replace(position=meeting.position * [0.5, 1.0])
     >>> AnticipationVelocity().velocity(nearer, dt=0.1).round(3).tolist()
-    [[[1.173, -0.56], [-1.173, 0.56]]]
+    [[[1.17, -0.566], [-1.17, 0.566]]]
     """
 
     paper: ClassVar[Paper] = Paper(
@@ -201,7 +220,9 @@ class AnticipationVelocity(CrowdModel):
     wall_buffer: PerAgent = parameter(0.1, unit="m", low=0.0, high=0.5, source="JuPedSim 1.4.2")
     pushout: PerAgent = parameter(0.3, unit="1", low=0.0, high=1.0, source="JuPedSim 1.4.2")
     neighbor_distance: PerAgent = parameter(3.0, unit="m", low=1.0, high=5.0, source="JuPedSim 1.4.2")
-    max_neighbors: PerAgent = parameter(50.0, unit="1", low=5.0, high=100.0, source="chosen here: more are never needed")
+    max_neighbors: PerAgent = parameter(
+        50.0, unit="1", low=5.0, high=100.0, source="chosen here: more are never needed"
+    )
     max_speed: PerAgent | None = None
 
     def __post_init__(self) -> None:
@@ -219,12 +240,12 @@ class AnticipationVelocity(CrowdModel):
 
     def _move(self, scene: Scene, dt: float, rng: np.random.Generator | None) -> tuple[Floats, Floats]:
         wish, walking = wishes(scene, dt), walkers(scene)
-        reach = per_agent(self.neighbor_distance, scene.shape, "neighbor_distance")
-        most = np.rint(per_agent(self.max_neighbors, scene.shape, "max_neighbors"))
-        near = nearest(scene.position, reach, most, scene.active & scene.visible, walking)
-        names = ("strength", "range", "time_gap", "anticipation_time", "reaction_time", "wall_buffer", "pushout")
-        values = {name: per_agent(getattr(self, name), scene.shape, name) for name in names}
-        values["reaction_time"] = np.maximum(values["reaction_time"], dt)
+
+        def value(name: str) -> Floats:
+            return per_agent(getattr(self, name), scene.shape, name)
+
+        seen = scene.active & scene.visible
+        near = nearest(scene.position, value("neighbor_distance"), np.rint(value("max_neighbors")), seen, walking)
         side, shuffle = np.full(scene.shape, -1.0), np.full(scene.shape, np.nan)
         if rng is not None:
             side = 2.0 * rng.integers(0, 2, scene.shape) - 1.0
@@ -236,12 +257,18 @@ class AnticipationVelocity(CrowdModel):
             rows(wish),
             rows(scene.radius),
             rows(speed_limit(self.max_speed, scene)),
-            *(rows(value) for value in values.values()),
-            rows(reach),
+            rows(value("strength")),
+            rows(value("range")),
+            rows(value("time_gap")),
+            rows(value("anticipation_time")),
+            rows(np.maximum(value("reaction_time"), dt)),
+            rows(value("wall_buffer")),
+            rows(value("pushout")),
+            rows(value("neighbor_distance")),
             rows(side),
             rows(shuffle),
             rows(walking),
         )
         out, heading = kept(scene), scene.heading.copy()
-        _choose(crowd, near, np.require(scene.walls.segments(), requirements="CW"), float(dt), rows(out), rows(heading))
+        spread(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments(), float(dt), rows(heading))
         return out, heading

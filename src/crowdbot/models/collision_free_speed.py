@@ -17,7 +17,7 @@ from crowdbot.core.paper import Paper
 from crowdbot.core.parameter import PerAgent, parameter, per_agent
 from crowdbot.core.scene import Scene
 
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
+from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
 
 __all__ = ["CollisionFreeSpeed", "is_hidden", "way_to", "within"]
 
@@ -49,7 +49,7 @@ class _Crowd(NamedTuple):
 @kernel
 def within(walls: Floats, x: float, y: float, reach: float, found: NDArray[np.int64]) -> int:
     """Write the segments of ``walls`` that are no farther than ``reach`` from x, y to ``found``; return how many."""
-    count = np.int64(0)  # a plain 0 would be a type of its own and compile all that follows twice
+    count = int(np.int64(0))  # a plain 0 would be a type of its own and compile all that follows twice
     for m in range(len(walls)):
         nx, ny = nearest_on_segment(x, y, walls[m, 0], walls[m, 1], walls[m, 2], walls[m, 3])
         if (nx - x) ** 2 + (ny - y) ** 2 <= reach * reach:
@@ -132,10 +132,9 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Fl
             ux, uy = ux / length, uy / length
         else:
             ux, uy = math.cos(heading[row]), math.sin(heading[row])
-        free = math.inf
+        speed = min(wish, top[row])
         for n in range(held):
-            free = min(free, way_to(seen[n, 0], seen[n, 1], ux, uy, seen[n, 2]))
-        speed = min(wish, top[row], max(0.0, free / gap[row]))
+            speed = min(speed, max(0.0, way_to(seen[n, 0], seen[n, 1], ux, uy, seen[n, 2])) / gap[row])
         out[row, 0], out[row, 1] = speed * ux, speed * uy
 
 
@@ -192,20 +191,26 @@ class CollisionFreeSpeed(CrowdModel):
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         wish, walking = wishes(scene, dt), walkers(scene)
-        reach = per_agent(self.neighbor_distance, scene.shape, "neighbor_distance")
-        most = np.rint(per_agent(self.max_neighbors, scene.shape, "max_neighbors"))
-        near = nearest(scene.position, reach, most, scene.active & scene.visible, walking)
-        names = ("strength", "range", "wall_strength", "wall_range", "time_gap")
+
+        def value(name: str) -> Floats:
+            return per_agent(getattr(self, name), scene.shape, name)
+
+        seen = scene.active & scene.visible
+        near = nearest(scene.position, value("neighbor_distance"), np.rint(value("max_neighbors")), seen, walking)
         crowd = _Crowd(
             rows(scene.position),
             rows(scene.heading),
             rows(wish),
             rows(scene.radius),
             rows(speed_limit(self.max_speed, scene)),
-            *(rows(per_agent(getattr(self, name), scene.shape, name)) for name in names),
-            rows(reach),
+            rows(value("strength")),
+            rows(value("range")),
+            rows(value("wall_strength")),
+            rows(value("wall_range")),
+            rows(value("time_gap")),
+            rows(value("neighbor_distance")),
             rows(walking),
         )
         out = kept(scene)
-        _choose(crowd, near, np.require(scene.walls.segments(), requirements="CW"), rows(out))
+        spread(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments())
         return out

@@ -233,12 +233,8 @@ class EscapePanic(CrowdModel):
     body: PerAgent = parameter(1.2e5, unit="kg/s^2", low=1e4, high=1.2e5, source="Helbing et al. 2000")
     friction: PerAgent = parameter(2.4e5, unit="kg/(m s)", low=0.0, high=2.4e5, source="Helbing et al. 2000")
     mass: PerAgent = parameter(80.0, unit="kg", low=40.0, high=120.0, source="Helbing et al. 2000", minimum=1e-3)
-    relaxation_time: PerAgent = parameter(
-        0.5, unit="s", low=0.1, high=1.5, source="Helbing et al. 2000", minimum=1e-3
-    )
-    neighbor_distance: PerAgent = parameter(
-        3.0, unit="m", low=1.0, high=10.0, source="the repulsion is nothing beyond"
-    )
+    relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="Helbing et al. 2000", minimum=1e-3)
+    neighbor_distance: PerAgent = parameter(3.0, unit="m", low=1.0, high=10.0, source="the repulsion is nothing beyond")
     max_neighbors: PerAgent = parameter(
         40.0, unit="1", low=1.0, high=60.0, source="so many that leaving out the others does not show"
     )
@@ -287,9 +283,7 @@ class EscapePanic(CrowdModel):
             rows(walking),
             rows(np.stack(law, axis=-1)),
         )
-        near = nearest(
-            scene.position, reach, np.rint(value("max_neighbors")), scene.active & scene.visible, walking
-        )
+        near = nearest(scene.position, reach, np.rint(value("max_neighbors")), scene.active & scene.visible, walking)
         walls = _Walls(*surfaces_of(scene.walls), np.ascontiguousarray(scene.walls.segments()))
         place, velocity = scene.position.copy(), scene.velocity.copy()
         after = np.where(walking[..., None], 0.0, velocity)

@@ -306,7 +306,7 @@ class GroupForce(CrowdModel):
 
     >>> ahead = Scene.of([[0, 0], [3, 0.1]], [[1, 0], [-1, 0]], preferred_velocity=[[1, 0], [-1, 0]])
     >>> GroupForce().velocity(ahead, dt=0.1).round(3).tolist()
-    [[[0.889, -0.093], [-0.889, 0.093]]]
+    [[[0.911, -0.092], [-0.911, 0.092]]]
     """
 
     paper: ClassVar[Paper] = Paper(
@@ -323,9 +323,7 @@ class GroupForce(CrowdModel):
     turn_width: PerAgent = parameter(2.0, unit="1/(m rad)", low=0.5, high=5.0, source="Moussaïd et al. 2009")
     brake_width: PerAgent = parameter(3.0, unit="1/(m rad)", low=0.5, high=6.0, source="Moussaïd et al. 2009")
     wall_strength: PerAgent = parameter(10.0, unit="m/s^2", low=1.0, high=20.0, source="PySocialForce 1.1.2")
-    wall_distance: PerAgent = parameter(
-        0.2, unit="m", low=0.05, high=0.5, source="PySocialForce 1.1.2", minimum=1e-3
-    )
+    wall_distance: PerAgent = parameter(0.2, unit="m", low=0.05, high=0.5, source="PySocialForce 1.1.2", minimum=1e-3)
     relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.2, high=1.5, source="PySocialForce 1.1.2", minimum=1e-3)
     gaze: PerAgent = parameter(4.0, unit="1/(s rad)", low=0.0, high=8.0, source="Moussaïd et al. 2010")
     view_angle: PerAgent = parameter(0.5 * math.pi, unit="rad", low=0.5, high=math.pi, source="Moussaïd et al. 2010")

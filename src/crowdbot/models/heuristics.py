@@ -17,7 +17,7 @@ from crowdbot.core.paper import Paper
 from crowdbot.core.parameter import PerAgent, parameter, per_agent
 from crowdbot.core.scene import Scene
 
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
+from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
 
 __all__ = ["Heuristics"]
 
@@ -217,11 +217,11 @@ class Heuristics(CrowdModel):
         max_neighbors: only so many of them count, the nearest; a fraction is rounded to the nearest whole number.
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
 
-    In direction a, the free way f(a) is what one can walk at the desired speed before touching somebody who keeps
-    walking, or a wall. The direction with the least distance from the end of the free way to the point at sight distance
-    straight ahead is chosen among 61 (equal ones: the one on the side of the present velocity, else on the right), and
-    then the speed v = min(desired, free way as all stand now / relaxation time). Chosen here: the field of view is about
-    the desired direction, and who touches somebody is hindered only from going nearer.
+    In direction a, the free way f(a) is what one can walk at the desired speed before touching a wall, or somebody who
+    keeps walking. Among 61 directions the one is chosen whose free way ends nearest to the point at sight distance in
+    the desired direction (equal ones: on the side of the present velocity, else on the right), then the speed
+    min(desired, free way as all stand now / relaxation time). Chosen here: the field of view is about the desired
+    direction, and who touches somebody is hindered only from going nearer.
 
     Source: Moussaid, Helbing, Theraulaz 2011, doi:10.1073/pnas.1016507108.
 
@@ -230,7 +230,7 @@ class Heuristics(CrowdModel):
 
     >>> meeting = Scene.of([[0, 0], [5, 0.1]], [[1.3, 0], [-1.3, 0]], goal=[[9, 0], [-9, 0.1]])
     >>> Heuristics().velocity(meeting, dt=0.1).round(3).tolist()
-    [[[1.299, -0.034], [-1.299, 0.034]]]
+    [[[1.296, -0.045], [-1.296, 0.045]]]
     """
 
     paper: ClassVar[Paper] = Paper(
@@ -284,5 +284,5 @@ class Heuristics(CrowdModel):
             rows(walking),
         )
         out = kept(scene)
-        _choose(crowd, near, np.require(scene.walls.segments(), requirements="CW"), float(dt), rows(out))
+        spread(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments(), float(dt))
         return out

@@ -104,7 +104,7 @@ class ORCA(CrowdModel):
 
     >>> ahead = Scene.of([[0, 0], [3, 0.1]], [[1, 0], [-1, 0]], preferred_velocity=[[1, 0], [-1, 0]])
     >>> ORCA().velocity(ahead, dt=0.1).round(3).tolist()
-    [[[0.994, -0.097], [-0.994, 0.097]]]
+    [[[0.982, -0.132], [-0.982, 0.132]]]
     """
 
     paper: ClassVar[Paper] = Paper(

@@ -82,29 +82,40 @@ def avoid_agent(
     apart = distance2 > reach * reach
     inverse = 1.0 / horizon if apart else 1.0 / dt
     cx, cy = wx - inverse * x, wy - inverse * y  # from the centre of the cut-off disc to the relative velocity
-    length2 = cx * cx + cy * cy
     inward = cx * x + cy * y
-    if not apart or (inward < 0.0 and inward * inward > reach * reach * length2):
-        length = math.sqrt(length2)
-        if length > 0.0:
-            nx, ny = cx / length, cy / length
-        elif distance2 > 0.0:
-            nx, ny = -x / math.sqrt(distance2), -y / math.sqrt(distance2)
-        else:
-            nx, ny = side, 0.0  # same place, same velocity
+    if not apart or (inward < 0.0 and inward * inward > reach * reach * (cx * cx + cy * cy)):
+        nx, ny = _way_out(cx, cy, x, y, side)
         ux, uy = ny, -nx
-        change = reach * inverse - length
+        change = reach * inverse - math.sqrt(cx * cx + cy * cy)
         px, py = change * nx, change * ny
     else:
-        leg = math.sqrt(distance2 - reach * reach)
-        if x * cy - y * cx > 0.0:
-            ux, uy = (x * leg - y * reach) / distance2, (x * reach + y * leg) / distance2
-        else:
-            ux, uy = -(x * leg + y * reach) / distance2, -(y * leg - x * reach) / distance2
+        turn = 1.0 if x * cy - y * cx > 0.0 else -1.0
+        ux, uy = _leg(x, y, reach, turn)
+        ux, uy = turn * ux, turn * uy
         along = wx * ux + wy * uy
         px, py = along * ux - wx, along * uy - wy
     lines[at, 0], lines[at, 1] = vx + share * px, vy + share * py
     lines[at, 2], lines[at, 3] = ux, uy
+
+
+@kernel
+def _way_out(cx: float, cy: float, x: float, y: float, side: float) -> tuple[float, float]:
+    """Return the unit vector along c; without c the one away from x, y; without that one to the given side."""
+    length = math.sqrt(cx * cx + cy * cy)
+    if length > 0.0:
+        return cx / length, cy / length
+    distance = math.sqrt(x * x + y * y)
+    if distance > 0.0:
+        return -x / distance, -y / distance
+    return side, 0.0
+
+
+@kernel
+def _leg(px: float, py: float, radius: float, turn: float) -> tuple[float, float]:
+    """Return the unit direction of the tangent to a disc at p, on its left (``turn`` 1) or right (-1)."""
+    distance2 = px * px + py * py
+    leg = math.sqrt(max(0.0, distance2 - radius * radius))
+    return (px * leg - turn * py * radius) / distance2, (turn * px * radius + py * leg) / distance2
 
 
 @kernel
@@ -199,11 +210,36 @@ def _stop_at(lines: Array, at: int, ux: float, uy: float) -> int:
 
 
 @kernel
-def _leg(px: float, py: float, radius: float, turn: float) -> tuple[float, float]:
-    """Return the unit direction of the tangent to a disc at p, on its left (``turn`` 1) or right (-1)."""
-    distance2 = px * px + py * py
-    leg = math.sqrt(max(0.0, distance2 - radius * radius))
-    return (px * leg - turn * py * radius) / distance2, (turn * px * radius + py * leg) / distance2
+def _legs(
+    lx: float,
+    ly: float,
+    rx: float,
+    ry: float,
+    a: int,
+    left: int,
+    right: int,
+    direction: Array,
+    previous: NDArray[np.int64],
+    convex: NDArray[np.bool_],
+    radius: float,
+) -> tuple[float, float, bool, float, float, bool]:
+    """Return the directions of the left and right leg of the cone, and whether each belongs to this edge.
+
+    A leg does not point into the neighbouring edge: then it follows that edge, which has a line of its own.
+    """
+    mlx, mly = -direction[a, 0], -direction[a, 1]
+    mrx, mry = direction[a, 0], direction[a, 1]
+    left_own = right_own = True
+    if convex[left]:
+        mlx, mly = _leg(lx, ly, radius, 1.0)
+        before = previous[left]
+        if mly * direction[before, 0] - mlx * direction[before, 1] >= 0.0:
+            mlx, mly, left_own = -direction[before, 0], -direction[before, 1], False
+    if convex[right]:
+        mrx, mry = _leg(rx, ry, radius, -1.0)
+        if mrx * direction[right, 1] - mry * direction[right, 0] <= 0.0:
+            mrx, mry, right_own = direction[right, 0], direction[right, 1], False
+    return mlx, mly, left_own, mrx, mry, right_own
 
 
 @kernel
@@ -224,21 +260,10 @@ def _cone(
     radius: float,
     inverse: float,
 ) -> int:
-    """Find the legs of the velocity obstacle between two corners, then write the line where the velocity is nearest."""
+    """Write the line of the velocity obstacle between two corners, where it is nearest to the velocity."""
     lx, ly = corner[left, 0] - x, corner[left, 1] - y
     rx, ry = corner[right, 0] - x, corner[right, 1] - y
-    mlx, mly = -direction[a, 0], -direction[a, 1]
-    mrx, mry = direction[a, 0], direction[a, 1]
-    left_open = right_open = True
-    if convex[left]:
-        mlx, mly = _leg(lx, ly, radius, 1.0)
-        before = previous[left]
-        if mly * direction[before, 0] - mlx * direction[before, 1] >= 0.0:  # points into the edge before
-            mlx, mly, left_open = -direction[before, 0], -direction[before, 1], False
-    if convex[right]:
-        mrx, mry = _leg(rx, ry, radius, -1.0)
-        if mrx * direction[right, 1] - mry * direction[right, 0] <= 0.0:  # points into the edge after
-            mrx, mry, right_open = direction[right, 0], direction[right, 1], False
+    mlx, mly, left_own, mrx, mry, right_own = _legs(lx, ly, rx, ry, a, left, right, direction, previous, convex, radius)
     same = left == right
     clx, cly, crx, cry = inverse * lx, inverse * ly, inverse * rx, inverse * ry
     reach = inverse * radius
@@ -256,8 +281,8 @@ def _cone(
     if to_cut <= to_left and to_cut <= to_right:
         return _beside(lines, at, clx, cly, -direction[a, 0], -direction[a, 1], reach)
     if to_left <= to_right:
-        return _beside(lines, at, clx, cly, mlx, mly, reach) if left_open else 0
-    return _beside(lines, at, crx, cry, -mrx, -mry, reach) if right_open else 0
+        return _beside(lines, at, clx, cly, mlx, mly, reach) if left_own else 0
+    return _beside(lines, at, crx, cry, -mrx, -mry, reach) if right_own else 0
 
 
 @kernel

@@ -17,7 +17,7 @@ from crowdbot.core.parameter import PerAgent, parameter, per_agent
 from crowdbot.core.scene import Scene
 
 from .linear_program import best_velocity
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
+from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
 from .orca_lines import Edges, avoid_agent, avoid_edge, edges_in_reach, edges_of
 
 __all__ = ["PLEdestrians"]
@@ -100,7 +100,7 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, edges: Ed
         e, a = row // A, row % A
         x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
         reach = wall_horizon[row] * top[row] + radius[row]
-        fixed = np.int64(0)  # a plain 0 would be a type of its own and compile all that follows twice
+        fixed = int(np.int64(0))  # a plain 0 would be a type of its own and compile all that follows twice
         for n in range(edges_in_reach(corner, following, x, y, reach, found, gap2)):
             fixed += avoid_edge(
                 lines, fixed, found[n], corner, direction, previous, following, convex,
@@ -134,11 +134,11 @@ class PLEdestrians(CrowdModel):
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
 
     Walking at speed v costs e_s + e_w v^2 per second and kilogram; over a planning time t that is
-    E(v) = t (e_s + e_w |v|^2) + 2 |g - t v| sqrt(e_s e_w) to a goal at g. Only sqrt(e_s / e_w) changes which velocity is
-    best: it is the speed of a free walk, so the preferred speed of the scene takes its place (the paper's 2.23 J/(kg s)
-    and 1.26 J s/(kg m^2) give 1.33 m/s). E is convex, and so are the permitted velocities: what is chosen is the true
-    minimum. Against ORCA, who is in the way is passed more by turning less and slowing down more. A scene with a preferred
-    velocity in place of goals has goals infinitely far away, where both models agree.
+    E(v) = t (e_s + e_w |v|^2) + 2 |g - t v| sqrt(e_s e_w) to a goal at g. Only sqrt(e_s / e_w) decides which velocity
+    is best: it is the speed of a free walk, so the preferred speed of the scene takes its place (the paper's 2.23
+    J/(kg s) and 1.26 J s/(kg m^2) give 1.33 m/s). E is convex, and so are the permitted velocities: what is chosen is
+    the true minimum. Against ORCA, who is hindered near the goal rather slows down than turns. Scenes with preferred
+    velocities in place of goals have goals infinitely far away, and there both models agree.
 
     Source: Guy, Chhugani, Curtis, Dubey, Lin, Manocha 2010, doi:10.2312/SCA/SCA10/119-128.
 
@@ -147,7 +147,7 @@ class PLEdestrians(CrowdModel):
 
     >>> ahead = Scene.of([[0, 0], [3, 0.1]], [[1.3, 0], [-1.3, 0]], goal=[[6, 0], [-6, 0.1]])
     >>> PLEdestrians().velocity(ahead, dt=0.1).round(3).tolist()
-    [[[1.287, -0.122], [-1.287, 0.122]]]
+    [[[1.215, -0.164], [-1.254, 0.169]]]
     """
 
     paper: ClassVar[Paper] = Paper(
@@ -202,5 +202,5 @@ class PLEdestrians(CrowdModel):
             rows(walking),
         )
         out = kept(scene)
-        _choose(crowd, near, edges_of(scene.walls), float(dt), rows(out))
+        spread(_choose, _choose_part, rows(out), crowd, near, edges_of(scene.walls), float(dt))
         return out
