@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 STEP, OBSERVE, PREDICT, NEAR = 0.4, 8, 12, 5.0
-EAST, WEST, ROBOT, PATH = "#9ec5e8", "#f0b3a6", "#00796b", "#0072b2"
+EAST, WEST, ROBOT, PATH, TRUTH = "#9ec5e8", "#f0b3a6", "#00796b", "#0072b2", "#333333"
 
 
 def draw(path: str) -> None:

@@ -129,7 +129,8 @@ def problems(cls: type, attributes: Mapping[str, str], also: Iterable[str] = ())
     for key, text in attributes.items():
         name = key.replace("-", "_")
         if name not in fields:
-            found.append(f"has no attribute {key[:40]!r}{did_you_mean(key, known)}; it takes {', '.join(known) or 'none'}")
+            takes = ", ".join(known) or "none"
+            found.append(f"has no attribute {key[:40]!r}{did_you_mean(key, known)}; it takes {takes}")
             continue
         try:
             _convert(text, hints[name], key)

@@ -1,6 +1,5 @@
 """Stage: where people and robots can be, and its geometry."""
 
-# ruff: noqa: RUF009 - attribute, child, children, plugged and mounted return dataclass fields
 from __future__ import annotations
 
 import functools

@@ -1,6 +1,5 @@
 """Trial: everything of a simulation as one tree of frozen dataclasses. The XML of a trial is this tree."""
 
-# ruff: noqa: RUF009 - attribute, child, children, plugged and mounted return dataclass fields
 from __future__ import annotations
 
 import dataclasses
