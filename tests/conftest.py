@@ -1,4 +1,7 @@
-"""What tests share: where the real recordings and the reference steps of other engines lie."""
+"""What tests share: where the real recordings and reference steps lie, and how properties are searched.
+
+Property tests draw the same examples every time, so that a run can be trusted and repeated; ``HUNT=1`` draws new ones.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,11 @@ import os
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("same", derandomize=True, deadline=None)
+settings.register_profile("hunt", deadline=None)
+settings.load_profile("hunt" if os.environ.get("HUNT") else "same")
 
 
 def _shared(folder: str) -> Path:

@@ -32,7 +32,7 @@ def lists(found: Neighbors):
     return [row[:count].tolist() for row, count in flat]
 
 
-def same(position, reach, most, seen=True, asking=True):
+def check_against_twin(position, reach, most, seen=True, asking=True):
     """Check both ways of searching against the twin."""
     shape = position.shape[:2]
     reach, most = np.broadcast_to(reach, shape), np.broadcast_to(most, shape)
@@ -65,13 +65,13 @@ def test_both_ways_agree_with_sorting(seed, E, A, width, height, far):
         position[:, 2] = position[:, 0] + [1e6, -1e6]  # and somebody far away from all others
     reach = rng.uniform(0.0, 0.5 * (width + height) + 1.0, (E, A))
     most = rng.integers(0, 12, (E, A))
-    same(position, reach, most, rng.random((E, A)) < 0.8, rng.random((E, A)) < 0.8)
+    check_against_twin(position, reach, most, rng.random((E, A)) < 0.8, rng.random((E, A)) < 0.8)
 
 
 def test_a_grid_with_an_even_number_of_rows():
     rng = np.random.default_rng(0)
     for A in range(20, 70, 5):  # the row above the last is the first again, which also lies below
-        same(rng.uniform(0.0, 1.0, (6, A, 2)) * [8.0, 4.0], 4.0, 11)
+        check_against_twin(rng.uniform(0.0, 1.0, (6, A, 2)) * [8.0, 4.0], 4.0, 11)
 
 
 def test_equal_distances_are_sorted_by_index():
@@ -79,15 +79,15 @@ def test_equal_distances_are_sorted_by_index():
     lattice = np.stack(np.meshgrid(side, side), axis=-1).reshape(1, -1, 2)
     shuffled = lattice[:, np.random.default_rng(3).permutation(144)]
     for most in (3, 5, 9, 143):
-        same(shuffled, 2.5, most)
-    same(np.concatenate([shuffled] * 2, axis=1), 1.5, 7)  # everybody twice
+        check_against_twin(shuffled, 2.5, most)
+    check_against_twin(np.concatenate([shuffled] * 2, axis=1), 1.5, 7)  # everybody twice
 
 
 def test_the_reach_is_open():
     row = np.array([[[0.0, 0.0], [3.0, 4.0], [-3.0, -3.9]]])
     found = nearest(row, 5.0, 9)
     assert lists(found)[0] == [2]
-    same(row, 5.0, 9)
+    check_against_twin(row, 5.0, 9)
 
 
 @pytest.mark.parametrize("reach", [0.0, -2.0, np.inf, 1e200, 1e-200])
@@ -101,8 +101,8 @@ def test_strange_reaches(reach):
 @pytest.mark.parametrize("size", [1e-300, 1e-12, 1e17, 1e150])
 def test_strange_sizes(size):
     position = np.random.default_rng(0).uniform(-size, size, (2, 70, 2))
-    same(position, 0.3 * size, 5)
-    same(position, 5.0, 5)
+    check_against_twin(position, 0.3 * size, 5)
+    check_against_twin(position, 5.0, 5)
 
 
 def test_whoever_is_not_finite_is_nowhere():

@@ -46,7 +46,7 @@ def brute_force(lidar, scene, pose):
             if distance < best:
                 best, hit[e, k] = distance, WALL
                 cosine = abs(ux * (by - ay) - uy * (bx - ax)) / math.hypot(bx - ax, by - ay)
-        if best > lidar.range_max or cosine < math.cos(lidar.max_incidence) - 1e-15:
+        if best > lidar.range_max or cosine < math.cos(lidar.max_incidence) - 1e-12:
             hit[e, k] = NOTHING
         else:
             ranges[e, k] = best if best >= lidar.range_min else -math.inf

@@ -78,9 +78,8 @@ def papers(name: str) -> list[Paper]:
 def cite(thing: Any) -> str:
     """Return the papers behind a name, a class or an instance, one a line.
 
-    >>> print(cite("orca").splitlines()[0])
-    van den Berg, Guy, Lin & Manocha (2011). Reciprocal n-body collision avoidance. Robotics Research, \
-STAR 70, 3-19. https://doi.org/10.1007/978-3-642-19457-3_1
+    >>> cite("orca").endswith("https://doi.org/10.1007/978-3-642-19457-3_1")
+    True
     """
     found = papers(thing) if isinstance(thing, str) else _papers_of(thing)
     return "\n".join(str(paper) for paper in found)

@@ -10,14 +10,16 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from ..core.errors import InputError, did_you_mean
-from ..core.geometry import nearest_on_segment
-from ..core.kernels import kernel
-from ..core.neighbors import CHUNK, Neighbors, nearest
-from ..core.paper import Paper
-from ..core.parameter import PerAgent, parameter, per_agent
-from ..core.scene import Scene
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
+from crowdbot.core.errors import InputError, did_you_mean
+from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.core.kernels import kernel
+from crowdbot.core.neighbors import CHUNK, Neighbors, nearest
+from crowdbot.core.paper import Paper
+from crowdbot.core.parameter import PerAgent, parameter, per_agent
+from crowdbot.core.scene import Scene
+
+from .laws import law_of, shortened
+from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
 from .surfaces import Surfaces, at_corner, surfaces_of
 
 __all__ = ["Boids"]
@@ -36,6 +38,19 @@ TOUCH = 1e-6
 CANDIDATES = 32
 """So many near agents are searched for the one whose body is nearest."""
 
+LAW = (
+    "goal_gain",
+    "zone_factor",
+    "zone_gain",
+    "look_ahead",
+    "margin",
+    "separation",
+    "alignment",
+    "cohesion",
+    "flock_distance",
+    "max_acceleration",
+)
+
 
 class _Crowd(NamedTuple):
     """What the kernel reads of every agent, by row ``e * A + a``."""
@@ -46,16 +61,8 @@ class _Crowd(NamedTuple):
     radius: Floats
     max_speed: Floats
     walking: NDArray[np.bool_]
-    goal_gain: Floats
-    look_ahead: Floats
-    margin: Floats
-    separation: Floats
-    alignment: Floats
-    cohesion: Floats
-    flock: Floats
-    max_acceleration: Floats
-    zone: Floats
-    zone_gain: Floats
+    law: Floats
+    """``[E * A, 10]`` in the order of :data:`LAW`, or ``[1, 10]`` for all."""
 
 
 @kernel
@@ -85,10 +92,17 @@ def _nearest_time(x: float, y: float, vx: float, vy: float, ahead: float) -> flo
 
 @kernel
 def _from_people(
-    row: int, a: int, place: Floats, velocity: Floats, radius: Floats, agent: NDArray[np.int32], number: int,
-    ahead: float, margin: float, separation: float, alignment: float, cohesion: float, flock: float,
-) -> tuple[float, float]:  # fmt: skip
+    row: int,
+    a: int,
+    place: Floats,
+    velocity: Floats,
+    radius: Floats,
+    agent: NDArray[np.int32],
+    number: int,
+    law: Floats,
+) -> tuple[float, float]:
     """Return the acceleration by neighbours: away from whom one would come near, and with the flock."""
+    ahead, margin, separation, alignment, cohesion, flock = law[3], law[4], law[5], law[6], law[7], law[8]
     x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
     ax = ay = 0.0
     dx = dy = dvx = dvy = 0.0
@@ -121,7 +135,7 @@ def _from_walls(
         ux, uy = face[k, 4], face[k, 5]
         height = (x - face[k, 0]) * uy - (y - face[k, 1]) * ux
         closing = vy * ux - vx * uy
-        if height <= 0.0 or height - closing * ahead >= reach and height >= reach:
+        if height <= 0.0 or (height >= reach and height - closing * ahead >= reach):
             continue
         time = 0.0 if closing <= 0.0 else ahead if height >= closing * ahead else height / closing
         tx, ty = x + vx * time, y + vy * time
@@ -143,7 +157,7 @@ def _from_walls(
 @kernel
 def _as_simulator(
     row: int, a: int, place: Floats, radius: Floats, agent: NDArray[np.int32], number: int, zone: float, gain: float,
-    wall: Floats,
+    segment: Floats,
 ) -> tuple[float, float]:  # fmt: skip
     """Return the push of the CrowdBot simulator: by one agent and one wall, the nearest."""
     x, y, own = place[row, 0], place[row, 1], radius[row]
@@ -156,8 +170,8 @@ def _as_simulator(
         if length - radius[other] < nearest_body:
             nearest_body, distance, ox, oy = length - radius[other], length, dx, dy
     to_wall, wx, wy = math.inf, 0.0, 0.0
-    for k in range(len(wall)):
-        fx, fy = nearest_on_segment(x, y, wall[k, 0], wall[k, 1], wall[k, 2], wall[k, 3])
+    for k in range(len(segment)):
+        fx, fy = nearest_on_segment(x, y, segment[k, 0], segment[k, 1], segment[k, 2], segment[k, 3])
         length = math.sqrt((x - fx) ** 2 + (y - fy) ** 2)
         if length < to_wall:
             to_wall, wx, wy = length, x - fx, y - fy
@@ -174,21 +188,20 @@ def _as_simulator(
 
 @kernel(parallel=True)
 def _choose(
-    crowd: _Crowd, near: Neighbors, walls: Surfaces, wall: Floats, simulator: bool, dt: float, out: Floats
+    crowd: _Crowd, near: Neighbors, walls: Surfaces, segment: Floats, simulator: bool, dt: float, out: Floats
 ) -> None:
     """Choose the next velocity of every agent, row by row."""
     for part in prange((len(out) + CHUNK - 1) // CHUNK):
-        _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, walls, wall, simulator, dt, out)
+        _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, walls, segment, simulator, dt, out)
 
 
 @kernel
 def _choose_part(
-    begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Surfaces, wall: Floats, simulator: bool, dt: float,
+    begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Surfaces, segment: Floats, simulator: bool, dt: float,
     out: Floats,
 ) -> None:  # fmt: skip
     # fields are taken out of the tuples here: inside the loop each access would count references
-    place, velocity, desired, radius, top, walking, gain, ahead, margin, separation = crowd[:10]
-    alignment, cohesion, flock, most, zone, zone_gain = crowd[10:]
+    place, velocity, desired, radius, top, walking, laws = crowd
     agent, number, order = near
     face, corner, arm, first = walls
     A = agent.shape[1]
@@ -198,30 +211,20 @@ def _choose_part(
             continue
         e, a = row // A, row % A
         vx, vy = velocity[row, 0], velocity[row, 1]
-        ax, ay = gain[row] * (desired[row, 0] - vx), gain[row] * (desired[row, 1] - vy)
+        law = laws[row if len(laws) > 1 else 0]
+        ax, ay = law[0] * (desired[row, 0] - vx), law[0] * (desired[row, 1] - vy)
         if simulator:
             px, py = _as_simulator(
-                row, a, place, radius, agent[e, a], number[e, a], zone[row], zone_gain[row], wall
-            )  # fmt: skip
+                row, a, place, radius, agent[e, a], number[e, a], law[1] * radius[row], law[2], segment
+            )
             ax, ay = ax + px, ay + py
         else:
-            px, py = _from_people(
-                row, a, place, velocity, radius, agent[e, a], number[e, a],
-                ahead[row], margin[row], separation[row], alignment[row], cohesion[row], flock[row],
-            )  # fmt: skip
+            px, py = _from_people(row, a, place, velocity, radius, agent[e, a], number[e, a], law)
             qx, qy = _from_walls(
-                place[row, 0], place[row, 1], vx, vy, radius[row], ahead[row], margin[row], separation[row],
-                face, corner, arm, first,
-            )  # fmt: skip
-            ax, ay = _shortened(ax + px + qx, ay + py + qy, most[row])
-        out[row, 0], out[row, 1] = _shortened(vx + ax * dt, vy + ay * dt, top[row])
-
-
-@kernel
-def _shortened(x: float, y: float, longest: float) -> tuple[float, float]:
-    """Return the vector x, y, not longer than ``longest``."""
-    length = math.sqrt(x * x + y * y)
-    return (x, y) if length <= longest else (x / length * longest, y / length * longest)
+                place[row, 0], place[row, 1], vx, vy, radius[row], law[3], law[4], law[5], face, corner, arm, first
+            )
+            ax, ay = shortened(ax + px + qx, ay + py + qy, law[9])
+        out[row, 0], out[row, 1] = shortened(vx + ax * dt, vy + ay * dt, top[row])
 
 
 @dataclass(frozen=True)
@@ -275,7 +278,7 @@ class Boids(CrowdModel):
     flock_distance: PerAgent = parameter(3.0, unit="m", low=1.0, high=10.0, source="own choice")
     neighbor_distance: PerAgent = parameter(6.0, unit="m", low=1.0, high=15.0, source="look_ahead at walking speed")
     max_neighbors: PerAgent = parameter(
-        30.0, unit="1", low=1.0, high=60.0, source="so many that leaving out the others does not show"
+        30.0, unit="1", low=1.0, high=60.0, source="crowdbot: all who matter up to 1 person/m^2"
     )
     max_acceleration: PerAgent = parameter(5.0, unit="m/s^2", low=1.0, high=20.0, source="UMANS, default of agents")
     zone_factor: PerAgent = parameter(
@@ -298,20 +301,14 @@ class Boids(CrowdModel):
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         wish, walking = wishes(scene, dt), walkers(scene)
         simulator = self.variant == "crowdbot"
-
-        def value(name: str) -> Floats:
-            return per_agent(getattr(self, name), scene.shape, name)
-
         seen = scene.active & scene.visible
-        zone = value("zone_factor") * np.where(scene.active, scene.radius, 1.0)
-        reach, most = value("neighbor_distance"), np.rint(value("max_neighbors"))
+        reach = per_agent(self.neighbor_distance, scene.shape, "neighbor_distance")
+        most = np.rint(per_agent(self.max_neighbors, scene.shape, "max_neighbors"))
+        top = self.max_speed
         if simulator:  # whoever is in the zone, or has a body nearer than someone in it
+            zone = per_agent(self.zone_factor, scene.shape, "zone_factor") * np.where(scene.active, scene.radius, 0.0)
             reach, most = zone + np.max(scene.radius, where=seen, initial=0.0), np.full(scene.shape, CANDIDATES)
-        top = SIMULATOR_SPEED if simulator and self.max_speed is None else self.max_speed
-        law = (
-            "goal_gain", "look_ahead", "margin", "separation", "alignment", "cohesion", "flock_distance",
-            "max_acceleration",
-        )  # fmt: skip
+            top = SIMULATOR_SPEED if top is None else top
         crowd = _Crowd(
             rows(scene.position),
             rows(scene.velocity),
@@ -319,12 +316,10 @@ class Boids(CrowdModel):
             rows(scene.radius),
             rows(speed_limit(top, scene)),
             rows(walking),
-            *(rows(value(name)) for name in law),
-            rows(zone),
-            rows(value("zone_gain")),
+            law_of(self, LAW, scene.shape),
         )
         near = nearest(scene.position, reach, most, seen, walking)
+        walls = surfaces_of(scene.walls), np.ascontiguousarray(scene.walls.segments())
         out = kept(scene)
-        wall = np.ascontiguousarray(scene.walls.segments())
-        _choose(crowd, near, surfaces_of(scene.walls), wall, simulator, float(dt), rows(out))
+        spread(_choose, _choose_part, rows(out), crowd, near, *walls, simulator, float(dt))
         return out

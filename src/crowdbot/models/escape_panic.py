@@ -10,13 +10,15 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from ..core.errors import InputError, did_you_mean
-from ..core.geometry import nearest_on_segment
-from ..core.kernels import kernel
-from ..core.neighbors import CHUNK, Neighbors, nearest
-from ..core.paper import Paper
-from ..core.parameter import PerAgent, parameter, per_agent
-from ..core.scene import Scene
+from crowdbot.core.errors import InputError, did_you_mean
+from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.core.kernels import kernel
+from crowdbot.core.neighbors import CHUNK, SMALL, Neighbors, nearest
+from crowdbot.core.paper import Paper
+from crowdbot.core.parameter import PerAgent, parameter, per_agent
+from crowdbot.core.scene import Scene
+
+from .laws import law_of, shortened
 from .model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
 from .surfaces import feel, surfaces_of
 
@@ -34,6 +36,10 @@ STEEPEST = 300.0
 MOST_STEPS = 1000
 """No more sub-steps than this in one step: a huge time step has longer ones."""
 
+MEMORY = "escape-panic"
+"""Under this name a scene remembers how much faster everyone was at the end of the last step than on average."""
+LAW = ("strength", "body", "friction", "mass", "distance", "relaxation_time", "neighbor_distance")
+
 
 class _Crowd(NamedTuple):
     """What the kernel reads of every agent, by row ``e * A + a``."""
@@ -41,10 +47,9 @@ class _Crowd(NamedTuple):
     desired: Floats
     radius: Floats
     max_speed: Floats
-    moving: NDArray[np.bool_]
     walking: NDArray[np.bool_]
     law: Floats
-    """``[E * A, 6]``: strength, body and friction per mass, the distance of the strength, relaxation time, reach."""
+    """``[E * A, 7]`` in the order of :data:`LAW`, or ``[1, 7]`` for all."""
 
 
 class _Walls(NamedTuple):
@@ -70,7 +75,7 @@ def _next_velocity(
 ) -> tuple[float, float]:  # fmt: skip
     """Return the velocity after a sub-step of ``h`` [s]; friction is taken at its end, so that it cannot overshoot."""
     x, y, vx, vy, own = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1], radius[row]
-    strength, body, friction, distance, relaxation = law[row, 0], law[row, 1], law[row, 2], law[row, 3], law[row, 4]
+    strength, body, friction, distance, relaxation = law[0] / law[3], law[1] / law[3], law[2] / law[3], law[4], law[5]
     ax, ay = (desired[row, 0] - vx) / relaxation, (desired[row, 1] - vy) / relaxation
     xx = xy = yy = 0.0  # sum of rates times t t^T, t the directions along surfaces
     for n in range(number):
@@ -87,7 +92,7 @@ def _next_velocity(
             ax, ay = ax - slide * ny, ay + slide * nx
             xx, xy, yy = xx + rate * ny * ny, xy - rate * nx * ny, yy + rate * nx * nx
     for k in range(len(face) + len(corner)):
-        gap, nx, ny = feel(face, corner, arm, first, k, x, y, own + law[row, 5])
+        gap, nx, ny = feel(face, corner, arm, first, k, x, y, own + law[6])
         if gap < math.inf:
             size = _squeeze(own - gap, strength, distance, body)
             rate = friction * max(0.0, own - gap)
@@ -106,7 +111,7 @@ def _next_as_simulator(
 ) -> tuple[float, float]:  # fmt: skip
     """Return the velocity after a step of the CrowdBot simulator: pushes grow with distance, walls end at 1.4 radii."""
     x, y, vx, vy, own = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1], radius[row]
-    strength, body, friction, distance, relaxation = law[row, 0], law[row, 1], law[row, 2], law[row, 3], law[row, 4]
+    strength, body, friction, distance, relaxation = law[0] / law[3], law[1] / law[3], law[2] / law[3], law[4], law[5]
     ax, ay = (desired[row, 0] - vx) / relaxation, (desired[row, 1] - vy) / relaxation
     pressed = False
     for n in range(number):
@@ -139,23 +144,23 @@ def _next_as_simulator(
 
 @kernel(parallel=True)
 def _walk(
-    place: Floats, velocity: Floats, after: Floats, crowd: _Crowd, near: Neighbors, walls: _Walls,
+    place: Floats, velocity: Floats, after: Floats, total: Floats, crowd: _Crowd, near: Neighbors, walls: _Walls,
     simulator: bool, steps: int, h: float,
 ) -> None:  # fmt: skip
-    """Move everyone by ``steps`` sub-steps of ``h`` [s]; place and velocity are overwritten."""
+    """Move everyone by sub-steps of ``h`` [s], in place; ``total`` adds up the velocities."""
     parts = (len(place) + CHUNK - 1) // CHUNK
     for _ in range(steps):
-        if parts == 1:  # starting threads would take longer
+        if len(place) <= SMALL:  # starting threads would take longer
             _walk_part(0, len(place), place, velocity, after, crowd, near, walls, simulator, h)
         else:
             for part in prange(parts):
                 end = min((part + 1) * CHUNK, len(place))
                 _walk_part(part * CHUNK, end, place, velocity, after, crowd, near, walls, simulator, h)
         for row in range(len(place)):
-            if crowd.moving[row]:
-                for i in range(2):
-                    velocity[row, i] = after[row, i]
-                    place[row, i] += h * velocity[row, i]
+            for i in range(2):
+                velocity[row, i] = after[row, i]
+                total[row, i] += velocity[row, i]
+                place[row, i] += h * velocity[row, i]
 
 
 @kernel
@@ -164,7 +169,7 @@ def _walk_part(
     walls: _Walls, simulator: bool, h: float,
 ) -> None:  # fmt: skip
     # fields are taken out of the tuples here: inside the loop each access would count references
-    desired, radius, top, _, walking, law = crowd
+    desired, radius, top, walking, laws = crowd
     agent, number, order = near
     face, corner, arm, first, segment = walls
     A = agent.shape[1]
@@ -173,17 +178,14 @@ def _walk_part(
         if not walking[row]:
             continue
         e, a = row // A, row % A
-        mates, count = agent[e, a], number[e, a]
+        mates, count, law = agent[e, a], number[e, a], laws[row if len(laws) > 1 else 0]
         if simulator:
             x, y = _next_as_simulator(row, a, mates, count, place, velocity, desired, radius, law, segment, h)
         else:
             x, y = _next_velocity(
                 row, a, mates, count, place, velocity, desired, radius, law, face, corner, arm, first, h
             )  # fmt: skip
-        speed = math.sqrt(x * x + y * y)
-        if speed > top[row]:
-            x, y = x / speed * top[row], y / speed * top[row]
-        after[row, 0], after[row, 1] = x, y
+        after[row, 0], after[row, 1] = shortened(x, y, top[row])
 
 
 @dataclass(frozen=True)
@@ -205,8 +207,9 @@ class EscapePanic(CrowdModel):
             with the distance of their centres, agents in contact feel nobody else, every wall segment nearer than 1.4
             radii pushes, and a time step is never cut.
 
-    All people move in every part of a step, external agents go straight on; neighbours are searched once. ``velocity``
-    returns the velocities at the end, ``step`` also takes the places from there. Friction uses the velocity at the end
+    All people move in every part of a step, external agents go straight on; neighbours are searched once. The velocity
+    of a step is the mean of its parts, so that places are right; how much faster everyone was at the end is remembered
+    in ``scene.memory["escape-panic"]`` [m/s] for the next step, 0 at first. Friction uses the velocity at the end
     of each part, which is the same law for short steps and cannot overshoot in long ones. A wall made of many segments
     pushes like one wall; who stands inside of a solid wall does not feel it.
 
@@ -236,7 +239,7 @@ class EscapePanic(CrowdModel):
     relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="Helbing et al. 2000", minimum=1e-3)
     neighbor_distance: PerAgent = parameter(3.0, unit="m", low=1.0, high=10.0, source="the repulsion is nothing beyond")
     max_neighbors: PerAgent = parameter(
-        40.0, unit="1", low=1.0, high=60.0, source="so many that leaving out the others does not show"
+        40.0, unit="1", low=1.0, high=60.0, source="crowdbot: all who matter up to 1 person/m^2"
     )
     max_speed: PerAgent | None = None
     longest_step: float = 0.01
@@ -247,45 +250,52 @@ class EscapePanic(CrowdModel):
         check_limit(self, self.max_speed)
         if not 1e-6 <= self.longest_step < math.inf:
             raise InputError(
-                f"EscapePanic: longest_step = {self.longest_step} [s] is not allowed, it must be finite and at least 1e-6"
+                f"EscapePanic: longest_step = {self.longest_step} [s] is not allowed,"
+                " it must be finite and at least 1e-6"
             )
         if self.variant not in VARIANTS:
             near = did_you_mean(self.variant, VARIANTS)
             raise InputError(f"EscapePanic: variant {self.variant!r} is unknown{near}; choose {' or '.join(VARIANTS)}")
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] after ``dt`` [s]; ``rng`` is not used."""
-        return self._moved(scene, dt)[1]
+        """Return the mean velocities ``[E, A, 2]`` [m/s] over the next ``dt`` [s]; ``rng`` is not used."""
+        return self._moved(scene, dt)[0]
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
-        """Return the scene ``dt`` [s] later; ``rng`` is not used."""
-        place, velocity = self._moved(scene, dt)
-        after = scene.advanced(velocity, dt)
-        return after.replace(position=np.where(walkers(scene)[..., None], place, after.position))
+        """Return the scene ``dt`` [s] later, which remembers the last velocities; ``rng`` is not used."""
+        mean, last = self._moved(scene, dt)
+        return scene.advanced(mean, dt).replace(memory={**scene.memory, MEMORY: last - mean})
 
     def _moved(self, scene: Scene, dt: float) -> tuple[Floats, Floats]:
+        """Return the mean and the last velocities ``[E, A, 2]`` [m/s]."""
         wish, walking = wishes(scene, dt), walkers(scene)
         simulator = self.variant == "crowdbot"
-
-        def value(name: str) -> Floats:
-            return per_agent(getattr(self, name), scene.shape, name)
-
         steps = 1 if simulator else min(MOST_STEPS, max(1, math.ceil(dt / self.longest_step - 1e-9)))
-        mass, reach = value("mass"), value("neighbor_distance")
-        law = [value("strength") / mass, value("body") / mass, value("friction") / mass]
-        law += [value("distance"), value("relaxation_time"), reach]
+        reach = per_agent(self.neighbor_distance, scene.shape, "neighbor_distance")
+        most = np.rint(per_agent(self.max_neighbors, scene.shape, "max_neighbors"))
         top = speed_limit(SIMULATOR_SPEED if simulator and self.max_speed is None else self.max_speed, scene)
         crowd = _Crowd(
             rows(wish),
             rows(scene.radius),
             rows(top),
-            rows(scene.active),
             rows(walking),
-            rows(np.stack(law, axis=-1)),
+            law_of(self, LAW, scene.shape),
         )
-        near = nearest(scene.position, reach, np.rint(value("max_neighbors")), scene.active & scene.visible, walking)
+        near = nearest(scene.position, reach, most, scene.active & scene.visible, walking)
         walls = _Walls(*surfaces_of(scene.walls), np.ascontiguousarray(scene.walls.segments()))
-        place, velocity = scene.position.copy(), scene.velocity.copy()
-        after = np.where(walking[..., None], 0.0, velocity)
-        _walk(rows(place), rows(velocity), rows(after), crowd, near, walls, simulator, steps, dt / steps)
-        return place, np.where(walking[..., None], velocity, kept(scene))
+        out = kept(scene)
+        velocity = np.where(walking[..., None], scene.velocity + _remembered(scene), out)
+        place, after, total = scene.position.copy(), out.copy(), np.zeros_like(out)
+        _walk(rows(place), rows(velocity), rows(after), rows(total), crowd, near, walls, simulator, steps, dt / steps)
+        return np.where(walking[..., None], total / steps, out), velocity
+
+
+def _remembered(scene: Scene) -> Floats:
+    """Return ``[E, A, 2]`` [m/s], what the last step has left in the memory of the scene."""
+    excess = np.asarray(scene.memory.get(MEMORY, np.zeros_like(scene.velocity)), dtype=np.float64)
+    if excess.shape != scene.velocity.shape or not np.all(np.isfinite(excess[scene.active])):
+        raise InputError(
+            f"scene: memory {MEMORY!r} has shape {list(excess.shape)} or is not finite, it must be finite and"
+            f" {list(scene.velocity.shape)}; leave it out to begin anew"
+        )
+    return excess

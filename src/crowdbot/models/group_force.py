@@ -10,13 +10,15 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from ..core.errors import InputError, did_you_mean
-from ..core.kernels import kernel
-from ..core.neighbors import CHUNK, Neighbors, nearest
-from ..core.paper import Paper
-from ..core.parameter import PerAgent, parameter, per_agent
-from ..core.scene import Scene
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
+from crowdbot.core.errors import InputError, did_you_mean
+from crowdbot.core.kernels import kernel
+from crowdbot.core.neighbors import CHUNK, Neighbors, nearest
+from crowdbot.core.paper import Paper
+from crowdbot.core.parameter import PerAgent, parameter, per_agent
+from crowdbot.core.scene import Scene
+
+from .laws import law_of, shortened
+from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
 from .surfaces import feel, surfaces_of
 
 __all__ = ["GroupForce"]
@@ -33,7 +35,11 @@ SIGHT = 3.35
 """It feels points of walls nearer than this [m] to the body."""
 POINTS = 10.0
 """It takes so many points of a wall per metre."""
-COLUMNS = (
+NOTHING = 30.0
+"""A force that has fallen off by this exponent, to 1e-13, is left out."""
+STEEPEST = 300.0
+"""Largest exponent of the push by walls, so that it stays a number however deep a body is in them."""
+LAW = (
     "strength",
     "anticipation",
     "distance",
@@ -64,7 +70,7 @@ class _Crowd(NamedTuple):
     walking: NDArray[np.bool_]
     seen: NDArray[np.bool_]
     law: Floats
-    """``[E * A, 14]``: the parameters in the order of :data:`COLUMNS`."""
+    """``[E * A, 14]`` in the order of :data:`LAW`, or ``[1, 14]`` for all."""
 
 
 class _Groups(NamedTuple):
@@ -103,15 +109,17 @@ def _pair(
     reach = distance * length
     if reach <= 0.0:
         return 0.0, 0.0
+    if gap > NOTHING * reach:
+        return 0.0, 0.0
     tx, ty = tx / length, ty / length
-    angle = math.atan2(ty, tx) - math.atan2(ny, nx)
-    if wrapped and angle > math.pi:
-        angle -= 2.0 * math.pi
-    elif wrapped and angle <= -math.pi:
-        angle += 2.0 * math.pi
-    along = math.exp(-gap / reach - (brake * reach * angle) ** 2)
-    across = math.exp(-gap / reach - (turn * reach * angle) ** 2)
-    across = -across if angle > 0.0 else across if angle < 0.0 else 0.0
+    if wrapped:
+        angle = math.atan2(nx * ty - ny * tx, nx * tx + ny * ty)
+    else:
+        angle = math.atan2(ty, tx) - math.atan2(ny, nx)
+    along, across = gap / reach + (brake * reach * angle) ** 2, gap / reach + (turn * reach * angle) ** 2
+    along = math.exp(-along) if along < NOTHING else 0.0
+    across = math.exp(-across) if across < NOTHING and angle != 0.0 else 0.0
+    across = -across if angle > 0.0 else across
     return along * tx - across * ty, along * ty + across * tx
 
 
@@ -121,7 +129,7 @@ def _with_group(
 ) -> tuple[float, float]:
     """Return the acceleration that keeps a group together, in sight and apart (Moussaïd et al. 2010)."""
     x, y = place[row, 0], place[row, 1]
-    gaze, angle, cohesion, repulsion, apart = law[row, 8], law[row, 9], law[row, 10], law[row, 11], law[row, 12]
+    gaze, angle, cohesion, repulsion, apart = law[8], law[9], law[10], law[11], law[12]
     ax = ay = sx = sy = 0.0
     others = 0
     for k in range(begin, end):
@@ -164,8 +172,8 @@ def _with_group_as_package(
         if mate == row or not seen[mate]:
             continue
         dx, dy = x - place[mate, 0], y - place[mate, 1]
-        if dx * dx + dy * dy <= law[row, 12] ** 2:
-            ax, ay = ax + law[row, 11] * dx, ay + law[row, 11] * dy
+        if dx * dx + dy * dy <= law[12] ** 2:
+            ax, ay = ax + law[11] * dx, ay + law[11] * dy
         sx, sy = sx - dx, sy - dy
         others += 1
     if others == 0:
@@ -198,7 +206,7 @@ def _from_points(x: float, y: float, strength: float, distance: float, segment: 
         for n in range(int(low), int(high)):
             dx, dy = x - sx - ex * (n * step), y - sy - ey * (n * step)
             gap = math.sqrt(dx * dx + dy * dy)
-            if 0.0 < gap and gap - BODY < SIGHT:
+            if 0.0 < gap < BODY + SIGHT:
                 size = strength * math.exp((BODY - gap) / distance) / gap
                 ax, ay = ax + size * dx, ay + size * dy
     return ax, ay
@@ -219,7 +227,7 @@ def _choose_part(
     out: Floats,
 ) -> None:  # fmt: skip
     # fields are taken out of the tuples here: inside the loop each access would count references
-    place, velocity, desired, heading, radius, top, walking, seen, law = crowd
+    place, velocity, desired, heading, radius, top, walking, seen, laws = crowd
     agent, number, order = near
     member, begin, end = groups
     face, corner, arm, first, segment = walls
@@ -228,7 +236,7 @@ def _choose_part(
         row = order[m]
         if not walking[row] or (package and heading[row, 2] < ARRIVED):
             continue
-        e, a = row // A, row % A
+        e, a, law = row // A, row % A, laws[row if len(laws) > 1 else 0]
         x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
         fx = fy = 0.0
         for n in range(A if package else number[e, a]):
@@ -236,22 +244,19 @@ def _choose_part(
             if other != row and seen[other]:
                 px, py = _pair(
                     x - place[other, 0], y - place[other, 1], velocity[other, 0] - vx, velocity[other, 1] - vy,
-                    law[row, 1], law[row, 2], law[row, 3], law[row, 4], not package,
+                    law[1], law[2], law[3], law[4], not package,
                 )  # fmt: skip
                 fx, fy = fx + px, fy + py
-        ax = (desired[row, 0] - vx) / law[row, 7] + law[row, 0] * fx
-        ay = (desired[row, 1] - vy) / law[row, 7] + law[row, 0] * fy
+        ax = (desired[row, 0] - vx) / law[7] + law[0] * fx
+        ay = (desired[row, 1] - vy) / law[7] + law[0] * fy
         if package:
-            px, py = _from_points(x, y, law[row, 5], law[row, 6], segment)
+            px, py = _from_points(x, y, law[5], law[6], segment)
             qx, qy = _with_group_as_package(row, begin[row], end[row], member, place, heading, seen, law)
         else:
-            px, py = _from_surfaces(x, y, radius[row], law[row, 5], law[row, 6], law[row, 13], face, corner, arm, first)
+            px, py = _from_surfaces(x, y, radius[row], law[5], law[6], law[13], face, corner, arm, first)
             qx, qy = _with_group(row, begin[row], end[row], member, place, velocity, seen, law)
-        vx, vy = vx + dt * (ax + px + qx), vy + dt * (ay + py + qy)
-        speed = math.sqrt(vx * vx + vy * vy)
-        if speed > top[row]:
-            vx, vy = vx / speed * top[row], vy / speed * top[row]
-        out[row, 0], out[row, 1] = vx, vy
+        ax, ay = ax + px + qx, ay + py + qy
+        out[row, 0], out[row, 1] = shortened(vx + dt * ax, vy + dt * ay, top[row])
 
 
 @kernel
@@ -264,7 +269,7 @@ def _from_surfaces(
     for k in range(len(face) + len(corner)):
         gap, nx, ny = feel(face, corner, arm, first, k, x, y, radius + sight)
         if gap < math.inf:
-            size = strength * math.exp((radius - gap) / distance)
+            size = strength * math.exp(min((radius - gap) / distance, STEEPEST))
             ax, ay = ax + size * nx, ay + size * ny
     return ax, ay
 
@@ -277,7 +282,8 @@ class GroupForce(CrowdModel):
         strength: of the force between two agents [m/s^2].
         anticipation: weight of the relative velocity in the direction of interaction [s/m].
         distance: range of the force per length of that direction [m].
-        turn_width, brake_width: how fast turning and braking end beside that direction [1/(m rad)].
+        turn_width: how fast turning ends beside that direction [1/(m rad)].
+        brake_width: how fast braking does [1/(m rad)].
         wall_strength: acceleration by a wall at contact [m/s^2].
         wall_distance: over which it falls off [m].
         relaxation_time: time [s] in which the desired velocity is taken up again.
@@ -346,7 +352,6 @@ class GroupForce(CrowdModel):
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         wish, walking = wishes(scene, dt), walkers(scene)
         package = self.variant == "pysocialforce"
-        law = np.stack([per_agent(getattr(self, name), scene.shape, name) for name in COLUMNS], axis=-1)
         top = speed_limit(self.max_speed, scene)
         heading = _heading(scene, wish)
         seen = scene.active & scene.visible
@@ -359,13 +364,15 @@ class GroupForce(CrowdModel):
             rows(top),
             rows(walking),
             rows(seen),
-            rows(law),
+            law_of(self, LAW, scene.shape),
         )
         most = np.rint(per_agent(0.0 if package else self.max_neighbors, scene.shape, "max_neighbors"))
-        near = nearest(scene.position, law[..., -1], most, seen, walking)
+        near = nearest(
+            scene.position, per_agent(self.neighbor_distance, scene.shape, "neighbor_distance"), most, seen, walking
+        )
         walls = _Walls(*surfaces_of(scene.walls), np.ascontiguousarray(scene.walls.segments()))
         out = kept(scene)
-        _choose(crowd, near, _groups_of(scene), walls, package, float(dt), rows(out))
+        spread(_choose, _choose_part, rows(out), crowd, near, _groups_of(scene), walls, package, float(dt))
         return out
 
 
@@ -385,7 +392,9 @@ def _groups_of(scene: Scene) -> _Groups:
     group = scene.group.reshape(-1)
     begin, end = np.zeros((2, len(group)), dtype=np.int64)
     member = np.flatnonzero((group >= 0) & scene.active.reshape(-1))
-    member = member[np.lexsort((group[member], environment[member]))]
+    place = scene.position.reshape(-1, 2)[member]
+    # by place within a group: sums do not depend on the numbers of its members
+    member = member[np.lexsort((place[:, 1], place[:, 0], group[member], environment[member]))]
     if len(member) > 0:
         first = np.flatnonzero(np.diff(group[member], prepend=-1) | np.diff(environment[member], prepend=-1))
         size = np.diff(first, append=len(member))

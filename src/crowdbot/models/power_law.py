@@ -10,12 +10,14 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from ..core.kernels import kernel
-from ..core.neighbors import CHUNK, Neighbors, nearest
-from ..core.paper import Paper
-from ..core.parameter import PerAgent, parameter, per_agent
-from ..core.scene import Scene
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
+from crowdbot.core.kernels import kernel
+from crowdbot.core.neighbors import CHUNK, Neighbors, nearest
+from crowdbot.core.paper import Paper
+from crowdbot.core.parameter import PerAgent, parameter, per_agent
+from crowdbot.core.scene import Scene
+
+from .laws import law_of, shortened
+from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
 from .surfaces import Surfaces, at_corner, surfaces_of
 
 __all__ = ["PowerLaw"]
@@ -27,6 +29,8 @@ SHRUNK = 0.99
 STRONGEST = 1e12
 """No single force [m/s^2] counts as more: the law has no bound where two discs just graze."""
 
+LAW = ("strength", "exponent", "time_horizon", "relaxation_time", "max_acceleration")
+
 
 class _Crowd(NamedTuple):
     """What the kernel reads of every agent, by row ``e * A + a``."""
@@ -36,12 +40,9 @@ class _Crowd(NamedTuple):
     desired: Floats
     radius: Floats
     max_speed: Floats
-    strength: Floats
-    exponent: Floats
-    horizon: Floats
-    relaxation: Floats
-    max_acceleration: Floats
     walking: NDArray[np.bool_]
+    law: Floats
+    """``[E * A, 5]`` in the order of :data:`LAW`, or ``[1, 5]`` for all."""
 
 
 @kernel
@@ -98,7 +99,9 @@ def _from_face(
     tx, ty = x + vx * time, y + vy * time
     if (tx - face[k, 0]) * ux + (ty - face[k, 1]) * uy <= 0.0 or (tx - face[k, 2]) * ux + (ty - face[k, 3]) * uy >= 0.0:
         return 0.0, 0.0
-    size = min(_steepness(time, strength, exponent, horizon) / closing, STRONGEST)
+    size = _steepness(time, strength, exponent, horizon) / closing
+    if not size < STRONGEST:  # inf and NaN too
+        size = STRONGEST
     return size * uy, -size * ux
 
 
@@ -112,7 +115,7 @@ def _choose(crowd: _Crowd, near: Neighbors, walls: Surfaces, dt: float, out: Flo
 @kernel
 def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Surfaces, dt: float, out: Floats) -> None:
     # fields are taken out of the tuples here: inside the loop each access would count references
-    place, velocity, desired, radius, top, strength, exponent, horizon, relaxation, most, walking = crowd
+    place, velocity, desired, radius, top, walking, laws = crowd
     agent, number, order = near
     face, corner, arm, first = walls
     A = agent.shape[1]
@@ -122,8 +125,9 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Su
             continue
         e, a = row // A, row % A
         x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
-        k, m, t = strength[row], exponent[row], horizon[row]
-        ax, ay = (desired[row, 0] - vx) / relaxation[row], (desired[row, 1] - vy) / relaxation[row]
+        law = laws[row if len(laws) > 1 else 0]
+        k, m, t = law[0], law[1], law[2]
+        ax, ay = (desired[row, 0] - vx) / law[3], (desired[row, 1] - vy) / law[3]
         for i in range(number[e, a]):
             other = row - a + agent[e, a, i]
             fx, fy, _ = _from_disc(
@@ -138,15 +142,8 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Su
             fx, fy, time = _from_disc(x - corner[c, 0], y - corner[c, 1], vx, vy, radius[row], k, m, t)
             if time < math.inf and at_corner(corner, arm, first, c, x + vx * time, y + vy * time):
                 ax, ay = ax + fx, ay + fy
-        ax, ay = _shortened(ax, ay, most[row])
-        out[row, 0], out[row, 1] = _shortened(vx + ax * dt, vy + ay * dt, top[row])
-
-
-@kernel
-def _shortened(x: float, y: float, longest: float) -> tuple[float, float]:
-    """Return the vector x, y, not longer than ``longest``."""
-    length = math.sqrt(x * x + y * y)
-    return (x, y) if length <= longest else (x / length * longest, y / length * longest)
+        ax, ay = shortened(ax, ay, law[4])
+        out[row, 0], out[row, 1] = shortened(vx + ax * dt, vy + ay * dt, top[row])
 
 
 @dataclass(frozen=True)
@@ -178,7 +175,7 @@ class PowerLaw(CrowdModel):
 
     >>> ahead = Scene.of([[0, 0], [3, 0.1]], [[1, 0], [-1, 0]], preferred_velocity=[[1, 0], [-1, 0]])
     >>> PowerLaw().velocity(ahead, dt=0.1).round(3).tolist()
-    [[[0.878, -0.031], [-0.878, 0.031]]]
+    [[[0.94, -0.012], [-0.94, 0.012]]]
     """
 
     paper: ClassVar[Paper] = Paper(
@@ -199,7 +196,7 @@ class PowerLaw(CrowdModel):
         10.0, unit="m", low=1.0, high=15.0, source="Karamouzas et al. 2014, as remembered"
     )
     max_neighbors: PerAgent = parameter(
-        40.0, unit="1", low=1.0, high=60.0, source="so many that leaving out the others does not show"
+        64.0, unit="1", low=1.0, high=64.0, source="crowdbot: all within 5 m up to 0.8 people/m^2"
     )
     max_acceleration: PerAgent = parameter(
         20.0, unit="m/s^2", low=1.0, high=20.0, source="Karamouzas et al. 2014, as remembered"
@@ -213,14 +210,10 @@ class PowerLaw(CrowdModel):
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         wish, walking = wishes(scene, dt), walkers(scene)
-
-        def value(name: str) -> Floats:
-            return per_agent(getattr(self, name), scene.shape, name)
-
         near = nearest(
             scene.position,
-            value("neighbor_distance"),
-            np.rint(value("max_neighbors")),
+            per_agent(self.neighbor_distance, scene.shape, "neighbor_distance"),
+            np.rint(per_agent(self.max_neighbors, scene.shape, "max_neighbors")),
             scene.active & scene.visible,
             walking,
         )
@@ -230,13 +223,9 @@ class PowerLaw(CrowdModel):
             rows(wish),
             rows(scene.radius),
             rows(speed_limit(self.max_speed, scene)),
-            rows(value("strength")),
-            rows(value("exponent")),
-            rows(value("time_horizon")),
-            rows(value("relaxation_time")),
-            rows(value("max_acceleration")),
             rows(walking),
+            law_of(self, LAW, scene.shape),
         )
         out = kept(scene)
-        _choose(crowd, near, surfaces_of(scene.walls), float(dt), rows(out))
+        spread(_choose, _choose_part, rows(out), crowd, near, surfaces_of(scene.walls), float(dt))
         return out

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.kernels import kernel
-from ..core.walls import Walls
+from crowdbot.core.kernels import kernel
+from crowdbot.core.walls import Walls
 
 __all__ = ["Surfaces", "at_corner", "feel", "surfaces_of"]
 
@@ -62,17 +62,17 @@ def surfaces_of(walls: Walls) -> Surfaces:
 def at_corner(corner: Floats, arm: Floats, first: NDArray[np.int64], c: int, x: float, y: float) -> bool:
     """Return whether corner c is nearer to x, y than the rest of all edges that meet there."""
     dx, dy = x - corner[c, 0], y - corner[c, 1]
+    near = True
     for k in range(first[c], first[c + 1]):
-        if dx * arm[k, 0] + dy * arm[k, 1] > 0.0:
-            return False
-    return True
+        near = near and dx * arm[k, 0] + dy * arm[k, 1] <= 0.0
+    return near
 
 
 @kernel
 def feel(
     face: Floats, corner: Floats, arm: Floats, first: NDArray[np.int64], k: int, x: float, y: float, reach: float
 ) -> tuple[float, float, float]:
-    """Return distance and unit normal of surface k, faces first, from x, y; inf when it is not felt within ``reach``."""
+    """Return distance and unit normal of surface k, faces first, at x, y; inf when it is not felt within ``reach``."""
     if k < len(face):
         ux, uy = face[k, 4], face[k, 5]
         dx, dy = x - face[k, 0], y - face[k, 1]

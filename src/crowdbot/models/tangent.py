@@ -10,7 +10,6 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from crowdbot.core.geometry import nearest_on_segment, time_to_contact, time_to_segment
 from crowdbot.core.kernels import kernel
 from crowdbot.core.neighbors import CHUNK, Neighbors, nearest
 from crowdbot.core.paper import Paper
@@ -18,6 +17,7 @@ from crowdbot.core.parameter import PerAgent, parameter, per_agent
 from crowdbot.core.scene import Scene
 
 from .model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
+from .tangent_threats import MOST, RETREAT, THREAT, insert, least_change, threat_of_neighbor, threat_of_wall
 
 __all__ = ["Tangent"]
 
@@ -25,30 +25,6 @@ Floats = NDArray[np.float64]
 
 REACTION = 3.5
 """Walkers with the default errors react when contact is this near [s] (measured on the original)."""
-CONTACT = 0.5
-"""Who passes first reacts only when contact is this near [s] (measured on the original)."""
-STILL = 0.1
-"""Who is slower than this [m/s] is in nobody's way by walking: one passes on the nearer side."""
-ALONG, AGAINST = math.cos(math.radians(15.0)), math.cos(math.radians(165.0))
-"""Beyond these crossing angles there is no first and second."""
-FACING = math.cos(math.radians(112.5))
-"""Beyond this crossing angle both react early."""
-CROSSING = np.radians(np.array([45.0, 90.0, 135.0]))
-"""Crossing angles [rad] at which the strategies of who gives way were measured:"""
-CLEARANCE = np.array([1.35, 0.95, 0.975])
-"""share of the clearance that is kept,"""
-BRAKING = np.array([0.5, 0.0, 0.6])
-"""share of braking; the rest is the least change."""
-RETREAT = 1.0
-"""Time [s] in which overlapping personal areas part, and in which a walker may reach the goal."""
-MOST = 8
-"""Only so many neighbours are avoided at a time, the most urgent, and as many walls."""
-THREAT = 12
-"""Numbers of a threat: kind, apex (2), first tangent (2), second tangent or candidate (2), where it is (2), allowed side,
-clearance, time to contact."""
-CONE, LINE, WALL = 0.0, 1.0, 2.0
-"""Kinds of threats: pass on either side, on one side, or stay on the near side of a straight line."""
-SLACK = 1e-9
 
 
 class _Crowd(NamedTuple):
@@ -69,154 +45,151 @@ class _Crowd(NamedTuple):
     walking: NDArray[np.bool_]
 
 
-@kernel
-def _between(knots: Floats, x: float) -> float:
-    """Return the value at a crossing angle, straight between the measured ones."""
-    cell = 0 if x < CROSSING[1] else 1
-    share = (x - CROSSING[cell]) / (CROSSING[cell + 1] - CROSSING[cell])
-    share = min(1.0, max(0.0, share))
-    return knots[cell] + share * (knots[cell + 1] - knots[cell])
+@kernel(parallel=True)
+def _choose(crowd: _Crowd, near: Neighbors, walls: Floats, dt: float, out: Floats) -> None:
+    """Choose the next velocity of every agent, row by row."""
+    for part in prange((len(out) + CHUNK - 1) // CHUNK):
+        _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, walls, dt, out)
 
 
 @kernel
-def _threat(
-    out: Floats, x: float, y: float, bx: float, by: float, ox: float, oy: float, clearance: float, reaction: float,
-    horizon: float, external: bool, top: float, side: float,
-) -> bool:  # fmt: skip
-    """Write what a neighbour at x, y (relative) with velocity o means for a walker with velocity b; False: nothing."""
-    distance2 = x * x + y * y
-    wx, wy = bx - ox, by - oy
-    if distance2 < clearance * clearance:
-        return _overlap(out, x, y, wx, wy, ox, oy, clearance, 1.0 if external else 0.5, side)
-    w2, closing = wx * wx + wy * wy, x * wx + y * wy
-    if closing <= 0.0 or x * bx + y * by < 0.0:
-        return False
-    b2, o2 = bx * bx + by * by, ox * ox + oy * oy
-    dot, cross = bx * ox + by * oy, bx * oy - by * ox
-    length = math.sqrt(b2 * o2)
-    one_sided = not external and o2 > STILL * STILL and b2 > STILL * STILL
-    one_sided = one_sided and AGAINST * length < dot < ALONG * length
-    second = False
-    keep = clearance
-    angle = 0.0
-    if one_sided:
-        mine, its = (x * oy - y * ox) / cross, (x * by - y * bx) / cross  # when each is at the crossing
-        tie = abs(mine - its) <= SLACK * (abs(mine) + abs(its))
-        second = bx * y - by * x < 0.0 if tie else mine > its  # at a tie, who has the other on the right gives way
-        if second:
-            angle = math.atan2(abs(cross), dot)
-            keep = clearance * _between(CLEARANCE, angle)
-    miss2 = (x * wy - y * wx) ** 2 / w2
-    if miss2 >= keep * keep:
-        return False
-    contact = (closing - math.sqrt((keep * keep - miss2) * w2)) / w2
-    late = one_sided and not second and dot > FACING * length
-    if contact >= (CONTACT if late else min(horizon, reaction * math.pow(clearance / 0.66, 0.79))):
-        return False
-    speed = math.sqrt(w2)
-    nx, ny = -wy / speed * keep, wx / speed * keep
-    out[1], out[2], out[7], out[8], out[10], out[11] = ox, oy, x, y, keep, contact
-    out[3], out[4] = _direction(x + nx, y + ny)
-    out[5], out[6] = _direction(x - nx, y - ny)
-    out[0], out[9] = CONE, 1.0
-    if one_sided:
-        # where the other comes from seen along the relative velocity: there is behind
-        left_is_behind = wx * oy - wy * ox < 0.0
-        if left_is_behind != second:
-            out[3], out[4], out[9] = out[5], out[6], -1.0
-        out[0] = LINE
-        out[5], out[6] = _onto(out, bx, by)
-        if second:
-            _brake(out, bx, by, _between(BRAKING, angle), top)
-    return True
-
-
-@kernel
-def _direction(x: float, y: float) -> tuple[float, float]:
-    length = math.sqrt(x * x + y * y)
-    return x / length, y / length
-
-
-@kernel
-def _onto(threat: Floats, vx: float, vy: float) -> tuple[float, float]:
-    """Return the point of the first tangent that is nearest to a velocity."""
-    along = (vx - threat[1]) * threat[3] + (vy - threat[2]) * threat[4]
-    if threat[0] != WALL:
-        along = max(0.0, along)
-    return threat[1] + along * threat[3], threat[2] + along * threat[4]
-
-
-@kernel
-def _brake(threat: Floats, bx: float, by: float, share: float, top: float) -> None:
-    """Move the candidate along its tangent towards the velocity that only changes speed."""
-    across = bx * threat[4] - by * threat[3]
-    if share == 0.0 or across == 0.0:
-        return
-    factor = (threat[1] * threat[4] - threat[2] * threat[3]) / across
-    if factor >= 0.0 and factor * factor * (bx * bx + by * by) <= top * top:
-        threat[5] += share * (factor * bx - threat[5])
-        threat[6] += share * (factor * by - threat[6])
-
-
-@kernel
-def _overlap(
-    out: Floats, x: float, y: float, wx: float, wy: float, ox: float, oy: float, clearance: float, share: float,
-    side: float,
-) -> bool:  # fmt: skip
-    """Write that personal areas overlap: to part is a straight line in velocity space."""
-    distance = math.sqrt(x * x + y * y)
-    nx, ny = (x / distance, y / distance) if distance > 0.0 else (side, 0.0)
-    part = share * (clearance - distance) / RETREAT
-    if wx * nx + wy * ny <= -part:
-        return False
-    _line(out, ox - part * nx, oy - part * ny, nx, ny, 0.0)
-    return True
-
-
-@kernel
-def _line(out: Floats, px: float, py: float, nx: float, ny: float, contact: float) -> None:
-    """Write a straight border through p that velocities may not pass towards n."""
-    out[0], out[1], out[2], out[3], out[4], out[7], out[8] = WALL, px, py, -ny, nx, nx, ny
-    out[11] = contact
-
-
-@kernel
-def _wall(
-    out: Floats, wall: Floats, x: float, y: float, bx: float, by: float, radius: float, horizon: float
-) -> bool:
-    """Write what a wall means for a walker at x, y with velocity b; False: nothing."""
-    nx, ny = nearest_on_segment(x, y, wall[0], wall[1], wall[2], wall[3])
-    nx, ny = nx - x, ny - y
-    distance = math.sqrt(nx * nx + ny * ny)
-    reach = math.sqrt(bx * bx + by * by) * horizon + radius
-    if distance == 0.0 or distance > reach:
-        return False
-    nx, ny = nx / distance, ny / distance
-    allowed = (distance - radius) / horizon
-    if bx * nx + by * ny <= allowed + SLACK:
-        return False
-    contact = time_to_segment(x, y, bx, by, radius, wall[0], wall[1], wall[2], wall[3])
-    if contact >= horizon:
-        return False
-    _line(out, allowed * nx, allowed * ny, nx, ny, contact)
-    return True
-
-
-@kernel
-def _is_free(threats: Floats, count: int, vx: float, vy: float) -> bool:
-    """Return whether a velocity passes all threats."""
-    for k in range(count):
-        wx, wy = vx - threats[k, 1], vy - threats[k, 2]
-        ahead = wx * threats[k, 7] + wy * threats[k, 8]
-        if threats[k, 0] == WALL:
-            if ahead > SLACK:
-                return False
+def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Floats, dt: float, out: Floats) -> None:
+    # fields are taken out of the tuples here: inside the loop each access would count references
+    (place, velocity, desired, comfort, remaining, radius, area, top, reaction, horizon, wall_horizon, external,
+     walking) = crowd  # fmt: skip
+    agent, number, order = near
+    A = agent.shape[1]
+    threats, lines = np.empty((MOST, THREAT)), np.empty((2 * MOST, 5))
+    new, best = np.zeros(THREAT), np.empty(3)
+    for k in range(begin, end):
+        row = order[k]
+        px, py = desired[row, 0], desired[row, 1]
+        if not walking[row] or (px == 0.0 and py == 0.0):
             continue
-        if ahead <= 0.0:
-            continue
-        first = threats[k, 9] * (threats[k, 3] * wy - threats[k, 4] * wx)
-        if first >= -SLACK:
-            continue
-        if threats[k, 0] == LINE or threats[k, 5] * wy - threats[k, 6] * wx > SLACK:
-            return False
-    return True
+        e, a = row // A, row % A
+        x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
+        tx, ty = px, py
+        for turn in range(2):  # first what is wrong with walking on like this, then with walking as desired
+            bx, by = (vx, vy) if turn == 0 else (px, py)
+            count = int(np.int64(0))  # a plain 0 would be a type of its own
+            for n in range(number[e, a]):
+                other = row - a + agent[e, a, n]
+                if threat_of_neighbor(new, place[other, 0] - x, place[other, 1] - y, bx, by, velocity[other, 0],
+                           velocity[other, 1], area[row] + area[other], reaction[row], horizon[row], external[other],
+                           top[row], 1.0 if row < other else -1.0):  # fmt: skip
+                    count = insert(threats, count, new)
+            for m in range(len(walls)):
+                if threat_of_wall(new, walls[m], x, y, bx, by, radius[row], wall_horizon[row]):
+                    count = insert(threats, count, new)
+            if count > 0:
+                tx, ty = least_change(threats, count, lines, best, bx, by, comfort[row], top[row])
+                break
+        out[row, 0], out[row, 1] = _changed(vx, vy, tx, ty, comfort[row] * dt, top[row], remaining[row] / RETREAT)
+
+
+@kernel
+def _changed(
+    vx: float, vy: float, tx: float, ty: float, most: float, top: float, arriving: float
+) -> tuple[float, float]:
+    """Return the velocity on the way to its target, limited in change, in speed and near the goal."""
+    dx, dy = tx - vx, ty - vy
+    change = math.sqrt(dx * dx + dy * dy)
+    if change > most:
+        dx, dy = dx * most / change, dy * most / change
+    x, y = vx + dx, vy + dy
+    speed, limit = math.sqrt(x * x + y * y), min(top, arriving)
+    if speed > limit:
+        x, y = x * limit / speed, y * limit / speed
+    return x, y
+
+
+@dataclass(frozen=True)
+class Tangent(CrowdModel):
+    """Walkers who see that they will come too close to another change their velocity as little as passes the other.
+
+    Velocities that only just pass a neighbour lie on two tangents in velocity space. Who would arrive second at the
+    crossing gives way early and passes behind; the first reacts only shortly before contact. Who meets nearly head on,
+    walks nearly the same way, or faces something that does not give way (external agents, standing ones) passes on the
+    nearer side. Of all velocities that pass everyone the least change is chosen, at the corners if need be; when there
+    is none, the velocity that is safe the longest. Velocity changes by no more than the comfort speed in a second.
+
+    Args:
+        personal_area: radius [m] of the area that others are kept out of; the body's, where that is larger.
+        direction_error: of perceiving others (g_beta); the larger, the later a walker reacts; 0 reacts at once.
+        speed_error: of perceiving others (g_gamma), likewise.
+        time_horizon: no reaction earlier than this before contact [s].
+        wall_horizon: walls are not touched before this [s].
+        neighbor_distance: neighbours are nearer than this [m].
+        max_neighbors: only so many of them count, the nearest.
+        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+
+    The comfort speed is the preferred speed of the scene, or the length of the preferred velocity. The paper's own law
+    of errors is not reproduced: the time of reaction and how much who gives way brakes are fitted to the behaviour of
+    the implementation in the CrowdBot simulator. Walls are our own law: towards a wall that would be touched within the
+    horizon a walker goes no faster than it takes to reach it just then.
+
+    Source: Pettré, Ondřej, Olivier, Cretual, Donikian 2009, doi:10.1145/1599470.1599495.
+
+    Raises:
+        InputError: a parameter is not finite or below its minimum.
+
+    >>> crossing = Scene.of([[-2.1, 0], [0, -2]], [[1, 0], [0, 1]], goal=[[9, 0], [0, 9]], preferred_speed=1.0)
+    >>> Tangent().velocity(crossing, dt=0.1).round(3).tolist()
+    [[[0.918, -0.057], [0.0, 1.0]]]
+    """
+
+    paper: ClassVar[Paper] = Paper(
+        "Julien Pettré, Jan Ondřej, Anne-Hélène Olivier, Armel Cretual, Stéphane Donikian",
+        2009,
+        "Experiment-based modeling, simulation and validation of interactions between virtual walkers",
+        "Symposium on Computer Animation (SCA)",
+        "10.1145/1599470.1599495",
+    )
+
+    personal_area: PerAgent = parameter(0.33, unit="m", low=0.15, high=0.6, source="CrowdBot simulator")
+    direction_error: PerAgent = parameter(0.5, unit="1", low=0.0, high=1.0, source="CrowdBot simulator (g_beta)")
+    speed_error: PerAgent = parameter(0.25, unit="1", low=0.0, high=1.0, source="CrowdBot simulator (g_gamma)")
+    time_horizon: PerAgent = parameter(15.0, unit="s", low=1.0, high=15.0, source="CrowdBot simulator")
+    wall_horizon: PerAgent = parameter(1.5, unit="s", low=0.5, high=4.0, source="chosen", minimum=1e-3)
+    neighbor_distance: PerAgent = parameter(15.0, unit="m", low=3.0, high=15.0, source="CrowdBot simulator")
+    max_neighbors: PerAgent = parameter(15.0, unit="1", low=1.0, high=20.0, source="CrowdBot simulator")
+    max_speed: PerAgent | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_limit(self, self.max_speed)
+
+    def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
+        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
+        wish, walking = wishes(scene, dt), walkers(scene)
+
+        def each(name: str) -> Floats:
+            return per_agent(getattr(self, name), scene.shape, name)
+
+        most = np.rint(each("max_neighbors"))
+        near = nearest(scene.position, each("neighbor_distance"), most, scene.active & scene.visible, walking)
+        comfort, remaining = _pace(scene, wish)
+        with np.errstate(divide="ignore"):  # without errors walkers react at once
+            errors = (each("direction_error") / 0.5) ** 0.62 * (each("speed_error") / 0.25) ** 0.38
+            reaction = REACTION / errors
+        crowd = _Crowd(
+            rows(scene.position), rows(scene.velocity), rows(wish), rows(comfort), rows(remaining),
+            rows(scene.radius), rows(np.maximum(each("personal_area"), scene.radius)),
+            rows(speed_limit(self.max_speed, scene)), rows(reaction), rows(each("time_horizon")),
+            rows(each("wall_horizon")), rows(scene.external), rows(walking),
+        )  # fmt: skip
+        out = kept(scene)
+        _choose(crowd, near, scene.walls.segments(), float(dt), rows(out))
+        return out
+
+
+def _pace(scene: Scene, wish: Floats) -> tuple[Floats, Floats]:
+    """Return comfort speeds [m/s], present ones where higher, and distances to the goal [m], each ``[E, A]``."""
+    moving = np.where(scene.active[..., None], scene.velocity, 0.0)
+    speed = np.sqrt(moving[..., 0] ** 2 + moving[..., 1] ** 2)
+    if scene.preferred_velocity is not None:
+        desired = np.sqrt(wish[..., 0] ** 2 + wish[..., 1] ** 2)
+        return np.maximum(desired, speed), np.full(scene.shape, np.inf)
+    away = np.where(scene.active[..., None], scene.goal - scene.position, 0.0)
+    comfort = np.where(scene.active, scene.preferred_speed, 0.0)
+    return np.maximum(comfort, speed), np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2)

@@ -292,8 +292,10 @@ class VBM(CrowdModel):
         neighbor_distance: agents are seen nearer than this [m].
         max_neighbors: only so many of them are seen, the nearest.
         wall_distance: walls are seen nearer than this [m].
-        time_scale, distance_scale: spreads of the cost over time [s] and distance [m] of closest approach.
-        speed_scale, angle_scale: spreads of the desire for the desired speed [m/s] and direction [rad].
+        time_scale: spread of the cost over the time of closest approach [s].
+        distance_scale: spread of the cost over the distance of closest approach [m].
+        speed_scale: spread of the desire for the desired speed [m/s].
+        angle_scale: spread of the desire for the desired direction [rad].
         max_acceleration: of speeding up [m/s^2].
         max_turn: sideways acceleration of turning [m/s^2]; standing agents turn at once.
         gain: of the step down the slope; higher walks back to the desired way sooner.

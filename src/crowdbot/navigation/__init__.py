@@ -2,6 +2,7 @@
 
 from .navigator import Limits, Navigator, Observation, People
 from .orca import ORCA
+from .reachable import Caution, reachable
 from .straight import Straight
 
-__all__ = ["ORCA", "Limits", "Navigator", "Observation", "People", "Straight"]
+__all__ = ["ORCA", "Caution", "Limits", "Navigator", "Observation", "People", "Straight", "reachable"]

@@ -10,22 +10,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot import models
-from crowdbot.core import InputError, Paper, Scene, Twist, wrap
+from crowdbot.core import InputError, Paper, Scene, Twist
 
 from .navigator import SLOWING_TIME, Navigator, Observation
+from .reachable import reachable
 
 __all__ = ["ORCA"]
-
-STANDING = 0.02
-"""A chosen speed [m/s] below this means to stand."""
 
 
 @dataclass(frozen=True)
 class ORCA(Navigator):
-    """Chooses the velocity of reciprocal collision avoidance, turns towards it and drives the part that lies ahead.
+    """Chooses the velocity of reciprocal collision avoidance, then the nearest twist that its drive can reach.
 
     The robot takes the people it sees for walkers who go on with their velocity and give way as much as ``share``
-    leaves to them. A differential drive cannot take the chosen velocity at once: ``safety`` pays for that.
+    leaves to them. A drive cannot take the chosen velocity at once. So the twists within reach of its accelerations are
+    tried, and the one is taken that comes nearest to that velocity and touches nobody (:func:`reachable`).
 
     Fields:
         speed: [m/s], cut to what the drive can do.
@@ -55,7 +54,7 @@ class ORCA(Navigator):
     paper: ClassVar[Paper] = models.ORCA.paper
 
     speed: float = 1.0
-    safety: float = 0.15
+    safety: float = 0.05
     share: float = 1.0
     time_horizon: float = 1.5
     time_horizon_walls: float = 1.0
@@ -74,13 +73,8 @@ class ORCA(Navigator):
             raise InputError(f"navigator ORCA: share = {self.share} must be 0.5 or 1")
 
     def act(self, observation: Observation) -> Twist:
-        """Return the twist towards the chosen velocity."""
-        vx, vy = self.velocity(observation)
-        speed = math.hypot(vx, vy)
-        if speed < STANDING:
-            return Twist()
-        angle = wrap(math.atan2(vy, vx) - observation.heading)
-        return Twist(max(0.0, speed * math.cos(angle)), observation.turn_by(angle))
+        """Return the twist within reach that comes nearest to the chosen velocity."""
+        return reachable(observation, self.velocity(observation), self.speed)
 
     def velocity(self, observation: Observation) -> tuple[float, float]:
         """Return the velocity [m/s] in the world that a robot without a drive would take."""

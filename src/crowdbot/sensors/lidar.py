@@ -228,7 +228,7 @@ class Lidar2D(Sensor):
         )
         back = distance <= self.range_max
         if self.max_incidence < math.pi / 2:
-            back &= facing >= math.cos(self.max_incidence)
+            back &= facing >= math.cos(self.max_incidence) - 1e-12  # the limit itself returns, whatever the rounding
         measured = disturbed(np.where(back, distance, np.inf), self.noises, rng)
         near = back & ((distance < self.range_min) | (measured < self.range_min))
         far = ~back | (measured > self.range_max)

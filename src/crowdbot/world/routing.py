@@ -1,0 +1,371 @@
+"""Router: the shortest way around walls, for a whole crowd at once."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import prange
+from numpy.typing import ArrayLike, NDArray
+
+from crowdbot.core import InputError, Scene, Walls
+from crowdbot.core.errors import did_you_mean
+from crowdbot.core.kernels import kernel
+from crowdbot.core.neighbors import CHUNK
+
+from .free_space import corners, room_for
+from .wall_cells import BLIND, WallCells, sees, wall_cells
+
+__all__ = ["WAY", "Router", "Ways"]
+
+Floats = NDArray[np.float64]
+Rows = NDArray[np.int32]
+
+WAY = "way"
+"""Name in the memory of a scene ``[E, A, 8]``: the way that each agent follows."""
+NEAR = 1.0
+"""From this far [m] one may cut the corner that one walks to."""
+MOVED = 1.0
+"""A goal that moves farther than this [m] asks for a new way, though it be in sight of the last corner."""
+MOST_CORNERS = 3000
+CHOICES = ("error", "nearest")
+
+ASKED, AIM, CORNER, LAST, BEHIND, BENT = 0, 2, 4, 5, 6, 7
+"""Columns of a way: goal that was asked for x, y; where the way ends x, y; the next corner; the last one; the one just
+passed; whether it ends elsewhere than was asked for."""
+STRAIGHT, UNPLANNED, LOST = -1, -2, -3
+"""Instead of the next corner: the end is in sight; there is no plan yet; none was found."""
+
+
+class _Map(NamedTuple):
+    """What kernels read of a router."""
+
+    wall: Floats
+    first: Rows
+    member: Rows
+    frame: Floats
+    node: Floats
+    length: Floats
+    after: Rows
+
+
+class Ways(NamedTuple):
+    """Where to walk next.
+
+    Fields:
+        subgoal: ``[E, A, 2]`` [m], in sight.
+        length: ``[E, A]`` of the whole way to the goal [m].
+        way: ``[E, A, 8]``, to be handed back in the next step.
+    """
+
+    subgoal: Floats
+    length: Floats
+    way: Floats
+
+
+@kernel(parallel=True)
+def _connect(wall: Floats, first: Rows, member: Rows, frame: Floats, node: Floats, length: Floats) -> None:
+    """Measure the way between corners that are in sight of each other."""
+    for i in prange(len(node)):
+        for j in range(i):
+            x, y, tx, ty = node[i, 0], node[i, 1], node[j, 0], node[j, 1]
+            if sees(wall, first, member, frame, x, y, tx, ty, BLIND, BLIND):
+                length[i, j] = length[j, i] = math.sqrt((tx - x) ** 2 + (ty - y) ** 2)
+
+
+@kernel
+def _shorten(length: Floats, after: Rows) -> None:
+    """Turn lengths of single legs into those of shortest ways, and find the corner after i on the way to j (Floyd)."""
+    N = len(length)
+    for k in range(N):
+        for i in range(N):
+            head = length[i, k]
+            if head == math.inf or i == k:
+                continue
+            step = after[i, k]
+            for j in range(N):
+                total = head + length[k, j]
+                if total < length[i, j]:
+                    length[i, j] = total
+                    after[i, j] = step
+
+
+@kernel
+def _far(ax: float, ay: float, bx: float, by: float) -> float:
+    return math.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay))
+
+
+@kernel
+def _plan(
+    map_: _Map, x: float, y: float, gx: float, gy: float, seen: NDArray[np.int64], reach: Floats
+) -> tuple[int, int]:
+    """Return the first and the last corner of the shortest way from x, y to g; STRAIGHT twice, or LOST twice."""
+    wall, first, member, frame, node, length, _after = map_
+    if sees(wall, first, member, frame, x, y, gx, gy, BLIND, BLIND):
+        return STRAIGHT, STRAIGHT
+    count = 0
+    for v in range(len(node)):
+        if sees(wall, first, member, frame, node[v, 0], node[v, 1], gx, gy, BLIND, BLIND):
+            seen[count], reach[count] = v, _far(node[v, 0], node[v, 1], gx, gy)
+            count += 1
+    best, begin, last = math.inf, LOST, LOST
+    for u in range(len(node)):
+        head = _far(x, y, node[u, 0], node[u, 1])
+        total, end = math.inf, LOST
+        for n in range(count):
+            way = head + length[u, seen[n]] + reach[n]
+            if way < total:
+                total, end = way, seen[n]
+        if total < best and sees(wall, first, member, frame, x, y, node[u, 0], node[u, 1], BLIND, BLIND):
+            best, begin, last = total, u, end
+    return begin, last
+
+
+@kernel
+def _keep(map_: _Map, x: float, y: float, way: Floats) -> int:
+    """Go on along a way: cut corners that are near, take what is in sight; return UNPLANNED when sight is lost."""
+    wall, first, member, frame, node, _length, after = map_
+    gx, gy = way[AIM], way[AIM + 1]
+    u, w, behind = int(way[CORNER]), int(way[LAST]), int(way[BEHIND])
+    if u >= 0 and sees(wall, first, member, frame, x, y, gx, gy, BLIND, BLIND):
+        way[BEHIND] = -1.0
+        return STRAIGHT
+    moved = False
+    while u >= 0:
+        tx, ty, following = gx, gy, STRAIGHT
+        if u != w:
+            following = int(after[u, w])
+            tx, ty = node[following, 0], node[following, 1]
+        near = _far(x, y, node[u, 0], node[u, 1]) <= NEAR
+        ex, ey = (node[u, 0], node[u, 1]) if near else (BLIND, BLIND)
+        if not sees(wall, first, member, frame, x, y, tx, ty, ex, ey):
+            break
+        behind = u if near else -1
+        u, moved = following, True
+    if not moved:
+        tx, ty = (node[u, 0], node[u, 1]) if u >= 0 else (gx, gy)
+        ex, ey = (node[behind, 0], node[behind, 1]) if behind >= 0 else (BLIND, BLIND)
+        if not sees(wall, first, member, frame, x, y, tx, ty, ex, ey):
+            return UNPLANNED
+    way[BEHIND] = behind
+    return u
+
+
+@kernel(parallel=True)
+def _follow(map_: _Map, place: Floats, goal: Floats, asking: NDArray[np.bool_], way: Floats) -> None:
+    """Follow or plan the ways of all rows."""
+    for part in prange((len(way) + CHUNK - 1) // CHUNK):
+        _follow_part(part * CHUNK, min((part + 1) * CHUNK, len(way)), map_, place, goal, asking, way)
+
+
+@kernel
+def _follow_part(
+    begin: int, end: int, map_: _Map, place: Floats, goal: Floats, asking: NDArray[np.bool_], way: Floats
+) -> None:
+    wall, first, member, frame, node = map_[:5]
+    seen, reach = np.empty(len(node), dtype=np.int64), np.empty(len(node))
+    for row in range(begin, end):
+        if not asking[row]:
+            continue
+        mine = way[row]
+        x, y, gx, gy = place[row, 0], place[row, 1], goal[row, 0], goal[row, 1]
+        same = gx == mine[ASKED] and gy == mine[ASKED + 1]
+        u = int(mine[CORNER])
+        if not same and mine[BENT] == 0.0 and u > UNPLANNED and _far(gx, gy, mine[ASKED], mine[ASKED + 1]) <= MOVED:
+            mine[AIM], mine[AIM + 1] = gx, gy
+            w = int(mine[LAST])
+            same = u < 0 or sees(wall, first, member, frame, node[w, 0], node[w, 1], gx, gy, BLIND, BLIND)
+        if not same:
+            mine[ASKED], mine[ASKED + 1], mine[AIM], mine[AIM + 1], mine[BENT] = gx, gy, gx, gy, 0.0
+            u = UNPLANNED
+        if u > UNPLANNED:
+            u = _keep(map_, x, y, mine)
+        if u <= UNPLANNED:
+            u, last = _plan(map_, x, y, mine[AIM], mine[AIM + 1], seen, reach)
+            mine[LAST], mine[BEHIND] = last, -1.0
+        mine[CORNER] = u
+
+
+@dataclass(frozen=True, eq=False)
+class Router:
+    """The shortest ways around walls for bodies of one size, made once for a stage; see :meth:`of`.
+
+    Ways bend at corners (visibility graph). Everybody walks to the farthest corner of the own way that is in sight, and
+    plans anew when pushed so far that the next one is out of sight. Who is nearer to a wall than the radius still
+    finds the way, and corners may be cut to half of it, so that nobody has to stand on one point.
+
+    Fields:
+        radius: ways keep this far [m] from walls; the largest radius of a body is a good choice.
+        unreachable: what is done about a goal in or behind walls: ``error``, or ``nearest`` to walk to the nearest
+            place that can be reached.
+        walls: around which ways lead.
+
+    >>> router = Router.of([[(2.0, -3.0), (2.0, 1.0)]], radius=0.25)
+    >>> router.towards([[0.0, 0.0], [0.0, 2.0]], [[4.0, 0.0], [4.0, 2.0]]).round(2).tolist()
+    [[1.9, 1.25], [4.0, 2.0]]
+    """
+
+    radius: float
+    unreachable: str
+    walls: Walls = field(repr=False)
+    _map: _Map = field(repr=False)
+    _parts: list[Any] = field(repr=False)
+
+    @classmethod
+    def of(cls, walls: Any, radius: float = 0.3, unreachable: str = "error") -> Router:
+        """Make the router of some walls (anything that :meth:`crowdbot.core.Walls.of` takes).
+
+        Raises:
+            InputError: a value is not allowed, there is no room at all, or there are too many corners.
+        """
+        walls = Walls.of(walls)
+        if not 0.0 < radius < math.inf:
+            raise InputError(f"Router: radius {radius} m must be finite and above 0")
+        if unreachable not in CHOICES:
+            near = did_you_mean(str(unreachable), CHOICES)
+            raise InputError(f"Router: unreachable = {unreachable!r} is unknown{near}; choose {' or '.join(CHOICES)}")
+        node, parts = corners(walls, radius), room_for(walls, radius)
+        if len(node) > MOST_CORNERS:
+            raise InputError(
+                f"Router: ways may bend at {len(node)} points, {MOST_CORNERS} are the most;"
+                " give walls fewer corners (shapely.simplify)"
+            )
+        if not parts:
+            raise InputError(f"Router: nowhere between the walls is room for a body of radius {radius} m")
+        cells = wall_cells(walls.segments(), radius)
+        length, after = _graph(cells, node)
+        return cls(radius, unreachable, walls, _Map(*cells, node, length, after), parts)
+
+    def towards(self, position: ArrayLike, goal: ArrayLike) -> Floats:
+        """Return for each position ``[..., 2]`` [m] where to walk next on the shortest way to its goal ``[..., 2]``.
+
+        Raises:
+            InputError: a goal cannot be reached, or a number is not finite.
+        """
+        place = np.asarray(position, dtype=np.float64)
+        batch = place.reshape(1, -1, 2)
+        aims = np.broadcast_to(np.asarray(goal, dtype=np.float64), place.shape).reshape(1, -1, 2)
+        if not (np.all(np.isfinite(batch)) and np.all(np.isfinite(aims))):
+            raise InputError("Router: a position or goal is not finite")
+        return self.follow(batch, aims).subgoal.reshape(place.shape)
+
+    def follow(
+        self, position: Floats, goal: Floats, way: Floats | None = None, asking: NDArray[np.bool_] | None = None
+    ) -> Ways:
+        """Return where to walk next, which is fast for who has a way already.
+
+        Args:
+            position, goal: ``[E, A, 2]`` [m].
+            way: ``[E, A, 8]`` of the step before; None plans anew.
+            asking: ``[E, A]`` who needs a way; None: all.
+
+        Raises:
+            InputError: a goal cannot be reached.
+        """
+        E, A = position.shape[:2]
+        asks = np.ones((E, A), np.bool_) if asking is None else np.ascontiguousarray(asking)
+        new = fresh((E, A)) if way is None else np.array(way, dtype=np.float64)
+        rows, place = new.reshape(-1, 8), np.array(position, dtype=np.float64).reshape(-1, 2)
+        aims = np.array(goal, dtype=np.float64).reshape(-1, 2)
+        _follow(self._map, place, aims, asks.reshape(-1), rows)
+        next_ = self._next(rows)
+        stray = np.flatnonzero(asks.reshape(-1) & (rows[:, CORNER] == LOST))
+        for k in stray:
+            next_[k] = self._rescue(rows[k], place[k], divmod(int(k), A))
+        next_ = np.where(asks.reshape(-1, 1), next_, place)
+        length = np.hypot(*(next_ - place).T) + self._rest(rows)
+        return Ways(next_.reshape(E, A, 2), length.reshape(E, A), new)
+
+    def led(self, scene: Scene) -> Scene:
+        """Return the scene in which goals lie straight ahead on people's ways, as far away as the ways are long."""
+        asking = scene.active & ~scene.external
+        subgoal, length, way = self.follow(scene.position, scene.goal, scene.memory.get(WAY), asking)
+        away = subgoal - scene.position
+        distance = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2)
+        ahead = scene.position + away * (length / np.maximum(distance, 1e-12))[..., None]
+        bends = asking & (way[..., CORNER] != STRAIGHT) & (distance > 0.0)
+        aim = np.where(bends[..., None], ahead, np.where(asking[..., None], subgoal, scene.goal))
+        return scene.replace(goal=aim, memory={**scene.memory, WAY: way})
+
+    def holds(self, points: ArrayLike) -> NDArray[np.bool_]:
+        """Return ``[N]`` whether a body has room at points ``[N, 2]`` [m]."""
+        import shapely
+
+        places = shapely.points(np.asarray(points, dtype=np.float64))
+        return np.asarray(np.any([shapely.intersects(part, places) for part in self._parts], axis=0))
+
+    def _next(self, rows: Floats) -> Floats:
+        corner = rows[:, CORNER].astype(np.int64)
+        turning = corner >= 0
+        out = rows[:, AIM : AIM + 2].copy()
+        out[turning] = self._map.node[corner[turning]]
+        return out
+
+    def _rest(self, rows: Floats) -> Floats:
+        """Return how long the ways are from the next corner on."""
+        out = np.zeros(len(rows))
+        turning = np.flatnonzero(rows[:, CORNER] >= 0)
+        corner, last = rows[turning, CORNER].astype(np.int64), rows[turning, LAST].astype(np.int64)
+        tail = np.hypot(*(self._map.node[last] - rows[turning, AIM : AIM + 2]).T)
+        out[turning] = self._map.length[corner, last] + tail
+        return out
+
+    def _rescue(self, way: Floats, place: Floats, who: tuple[int, int]) -> Floats:
+        """Fill the way of somebody for whom none was found, and return where to walk next.
+
+        Either the goal cannot be reached, or the place is so narrow that no corner is in sight: then out of there.
+        """
+        import shapely
+
+        goal = way[ASKED : ASKED + 2].copy()
+        part = int(np.argmin(shapely.distance(self._parts, shapely.Point(place))))
+        if not self._reaches(part, goal):
+            if self.unreachable == "error":
+                raise InputError(
+                    f"Router: the goal ({goal[0]:g}, {goal[1]:g}) of agent {who[1]} in environment {who[0]} cannot be"
+                    f" reached from ({place[0]:g}, {place[1]:g}) by a body of radius {self.radius} m: it lies in a wall"
+                    " or beyond walls; move it, or choose unreachable='nearest'"
+                )
+            way[AIM : AIM + 2], way[BENT] = self._nearest(part, goal), 1.0
+        seen, reach = np.empty(len(self._map.node), dtype=np.int64), np.empty(len(self._map.node))
+        way[CORNER], way[LAST] = _plan(self._map, place[0], place[1], way[AIM], way[AIM + 1], seen, reach)
+        if way[CORNER] != LOST:
+            return np.asarray(self._next(way[None])[0])
+        way[CORNER] = UNPLANNED
+        return self._nearest(part, place)
+
+    def _reaches(self, part: int, goal: Floats) -> bool:
+        """Return whether a goal is in this part of free space, or between it and a wall."""
+        import shapely
+
+        away = shapely.distance(self._parts, shapely.Point(goal))
+        end = self._nearest(part, goal)
+        cells = self._map[:4]
+        return bool(away[part] <= away.min() and sees(*cells, end[0], end[1], goal[0], goal[1], BLIND, BLIND))
+
+    def _nearest(self, part: int, place: Floats) -> Floats:
+        import shapely
+
+        line = shapely.shortest_line(self._parts[part], shapely.Point(place))
+        return np.asarray(shapely.get_coordinates(line)[0])
+
+
+def fresh(shape: tuple[int, int]) -> Floats:
+    """Return ways ``[E, A, 8]`` of which none is planned yet."""
+    way = np.full((*shape, 8), np.nan)
+    way[..., CORNER] = UNPLANNED
+    way[..., BENT] = 0.0
+    return way
+
+
+def _graph(cells: WallCells, node: Floats) -> tuple[Floats, Rows]:
+    """Return the lengths of shortest ways between all corners, and the corner after i on the way to j."""
+    N = len(node)
+    length = np.full((N, N), np.inf)
+    _connect(*cells, node, length)
+    np.fill_diagonal(length, 0.0)
+    after = np.where(np.isfinite(length), np.arange(N, dtype=np.int32), np.int32(-1)).astype(np.int32)
+    _shorten(length, after)
+    return length, after
