@@ -7,14 +7,14 @@ import math
 
 import numpy as np
 
+from crowdbot import models
 from crowdbot.core import Scene, stream
 from crowdbot.metrics import navigation_metrics
-from crowdbot.models import ORCA as OrcaCrowd
 from crowdbot.navigation import ORCA, Limits, Observation, Straight
 from crowdbot.world import DifferentialDrive, PlanarWorld, Twists
 
 WAYS = {"across": ((0.0, 0.6), (0.0, 0.6)), "diagonal": ((-4.0, 0.6), (4.0, 0.6)), "along": ((-8.0, 3.5), (8.0, 3.5))}
-"""Start and goal of the robot: x [m], and distance [m] from the right wall at the start, from the left one at the goal."""
+"""Start and goal of the robot: x [m], and its distance [m] from the right wall (start) or the left one (goal)."""
 DRIVE = DifferentialDrive(max_speed=1.0, max_turn_rate=1.5, max_acceleration=1.0, max_turn_acceleration=3.0)
 LIMITS = Limits(1.0, 1.5, 1.0, 3.0)
 CONTROL = 2
@@ -83,7 +83,7 @@ def round_again(scene, length):
 def run(navigator, seeds, way="across", *, crowd=None, width=7.0, length=20.0, count=40, visible=True, limit=40.0):
     """Return the navigation metrics of each seed."""
     scene = start_scene(seeds, way, width, length, count, visible)
-    world = PlanarWorld(scene, crowd or OrcaCrowd(), {0: DRIVE}, DT)
+    world = PlanarWorld(scene, crowd or models.ORCA(), {0: DRIVE}, DT)
     goal, radius, walls = scene.goal[:, 0], scene.radius, scene.walls.segments()
     steps, E = round(limit / DT), len(seeds)
     logs, last, held = [scene], np.full(E, steps), np.zeros((2, E))
@@ -122,11 +122,9 @@ def share(rows, name):
 
 
 def table(seeds=range(50)):
-    from crowdbot.models import SocialForce
-
     settings = [(way, 7.0, 20.0 if way == "across" else 30.0) for way in WAYS] + [("diagonal", 10.0, 40.0)]
     print("crowd, robot is, way, corridor, navigator: success collision timeout | time [s] efficiency compliance")
-    for crowd, visible in ((OrcaCrowd(), True), (OrcaCrowd(), False), (SocialForce(), True)):
+    for crowd, visible in ((models.ORCA(), True), (models.ORCA(), False), (models.SocialForce(), True)):
         for way, width, length in settings:
             for navigator in (Straight(), ORCA()):
                 rows = run(navigator, seeds, way, crowd=crowd, width=width, length=length, visible=visible)

@@ -3,16 +3,17 @@
 from .catalogue import catalogue, cite, papers
 from .demo import Demo, run_demo
 from .report import Predicted, write_report
-from .speed import MEASUREMENTS, Row, measure
+from .speed import Row, measure
+from .workloads import measurements
 
 __all__ = [
-    "MEASUREMENTS",
     "Demo",
     "Predicted",
     "Row",
     "catalogue",
     "cite",
     "measure",
+    "measurements",
     "papers",
     "run_demo",
     "write_report",

@@ -54,14 +54,12 @@ class EpisodeError(InputError):
 
 
 class UnknownName(InputError, LookupError):
-    """A name that no room knows."""
+    """A name that no room knows; ``address`` says whether the address of a class would do as well."""
 
-    def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
+    def __init__(self, kind: str, name: str, known: Iterable[str], address: bool = False) -> None:
         known = sorted(known)
-        super().__init__(
-            f"unknown {kind} {name!r}{did_you_mean(name, known)}; known are {', '.join(known)}"
-            " (or an address: package.module:Name, file.py:Name)"
-        )
+        also = " (or an address: package.module:Name, file.py:Name)" if address else ""
+        super().__init__(f"unknown {kind} {name!r}{did_you_mean(name, known)}; known are {', '.join(known)}{also}")
 
 
 class MissingExtra(CrowdbotError, ImportError):

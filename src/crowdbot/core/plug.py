@@ -68,7 +68,7 @@ def find(name: str, room: types.ModuleType, contract: type, *, folder: Path | No
     if short in plain:
         return plain[short]
     if ":" not in name:
-        raise UnknownName(_spoken(contract), name, known)
+        raise UnknownName(_spoken(contract), name, known, address=True)
     place, _, attribute = name.rpartition(":")
     module = _load_file(place, folder or Path.cwd(), trust) if place.endswith(".py") else _load(place, trust)
     value = getattr(module, attribute, None)

@@ -17,6 +17,7 @@ from crowdbot.core.paper import Paper
 from crowdbot.core.parameter import PerAgent, parameter, per_agent
 from crowdbot.core.scene import Scene
 
+from .group_bonds import Groups, bond, bond_as_package, groups_of
 from .laws import law_of, shortened
 from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
 from .surfaces import feel, surfaces_of
@@ -73,14 +74,6 @@ class _Crowd(NamedTuple):
     """``[E * A, 14]`` in the order of :data:`LAW`, or ``[1, 14]`` for all."""
 
 
-class _Groups(NamedTuple):
-    """Who walks with whom: the group of a row are ``member[begin[row]:end[row]]``, with the row itself."""
-
-    member: Ints
-    begin: Ints
-    end: Ints
-
-
 class _Walls(NamedTuple):
     """Walls for both variants: faces and corners (see :mod:`.surfaces`), and every segment ``[N, 4]``."""
 
@@ -107,84 +100,17 @@ def _pair(
     tx, ty = anticipation * wx + nx, anticipation * wy + ny
     length = math.sqrt(tx * tx + ty * ty)
     reach = distance * length
-    if reach <= 0.0:
-        return 0.0, 0.0
-    if gap > NOTHING * reach:
+    if reach <= 0.0 or gap > NOTHING * reach:
         return 0.0, 0.0
     tx, ty = tx / length, ty / length
+    angle = math.atan2(ty, tx) - math.atan2(ny, nx)
     if wrapped:
         angle = math.atan2(nx * ty - ny * tx, nx * tx + ny * ty)
-    else:
-        angle = math.atan2(ty, tx) - math.atan2(ny, nx)
     along, across = gap / reach + (brake * reach * angle) ** 2, gap / reach + (turn * reach * angle) ** 2
     along = math.exp(-along) if along < NOTHING else 0.0
     across = math.exp(-across) if across < NOTHING and angle != 0.0 else 0.0
     across = -across if angle > 0.0 else across
     return along * tx - across * ty, along * ty + across * tx
-
-
-@kernel
-def _with_group(
-    row: int, begin: int, end: int, member: Ints, place: Floats, velocity: Floats, seen: NDArray[np.bool_], law: Floats
-) -> tuple[float, float]:
-    """Return the acceleration that keeps a group together, in sight and apart (Moussaïd et al. 2010)."""
-    x, y = place[row, 0], place[row, 1]
-    gaze, angle, cohesion, repulsion, apart = law[8], law[9], law[10], law[11], law[12]
-    ax = ay = sx = sy = 0.0
-    others = 0
-    for k in range(begin, end):
-        mate = member[k]
-        if mate == row or not seen[mate]:
-            continue
-        dx, dy = x - place[mate, 0], y - place[mate, 1]
-        gap = math.sqrt(dx * dx + dy * dy)
-        if 0.0 < gap < apart:
-            ax, ay = ax + repulsion * dx / gap, ay + repulsion * dy / gap
-        sx, sy = sx - dx, sy - dy
-        others += 1
-    length = math.sqrt(sx * sx + sy * sy)
-    if length == 0.0:
-        return ax, ay
-    if length / (others + 1) > 0.5 * others:
-        ax, ay = ax + cohesion * sx / length, ay + cohesion * sy / length
-    vx, vy = velocity[row, 0], velocity[row, 1]
-    speed = math.sqrt(vx * vx + vy * vy)
-    if speed > 0.0:
-        turned = math.acos(min(1.0, max(-1.0, (vx * sx + vy * sy) / (speed * length)))) - angle
-        if turned > 0.0:
-            ax, ay = ax - gaze * turned * vx, ay - gaze * turned * vy
-    return ax, ay
-
-
-@kernel
-def _with_group_as_package(
-    row: int, begin: int, end: int, member: Ints, place: Floats, heading: Floats, seen: NDArray[np.bool_], law: Floats
-) -> tuple[float, float]:
-    """Return the acceleration by the group as PySocialForce 1.1.2 computes it.
-
-    Its cohesion takes the distance to the centre as 0, and its factors of gaze and cohesion are 1 whatever it reads.
-    """
-    x, y = place[row, 0], place[row, 1]
-    ax = ay = sx = sy = 0.0
-    others = 0
-    for k in range(begin, end):
-        mate = member[k]
-        if mate == row or not seen[mate]:
-            continue
-        dx, dy = x - place[mate, 0], y - place[mate, 1]
-        if dx * dx + dy * dy <= law[12] ** 2:
-            ax, ay = ax + law[11] * dx, ay + law[11] * dy
-        sx, sy = sx - dx, sy - dy
-        others += 1
-    if others == 0:
-        return 0.0, 0.0
-    soft = 0.5 * (math.tanh(-0.5 * others) + 1.0) / (others + 1)
-    ax, ay = ax + soft * sx, ay + soft * sy
-    ex, ey, distance = heading[row, 0], heading[row, 1], heading[row, 2]
-    if distance > 0.0:
-        size = (sx * ex + sy * ey) / (others * distance)
-        ax, ay = ax + size * ex, ay + size * ey
-    return ax, ay
 
 
 @kernel
@@ -214,7 +140,7 @@ def _from_points(x: float, y: float, strength: float, distance: float, segment: 
 
 @kernel(parallel=True)
 def _choose(
-    crowd: _Crowd, near: Neighbors, groups: _Groups, walls: _Walls, package: bool, dt: float, out: Floats
+    crowd: _Crowd, near: Neighbors, groups: Groups, walls: _Walls, package: bool, dt: float, out: Floats
 ) -> None:
     """Choose the next velocity of every agent, row by row."""
     for part in prange((len(out) + CHUNK - 1) // CHUNK):
@@ -223,7 +149,7 @@ def _choose(
 
 @kernel
 def _choose_part(
-    start: int, stop: int, crowd: _Crowd, near: Neighbors, groups: _Groups, walls: _Walls, package: bool, dt: float,
+    start: int, stop: int, crowd: _Crowd, near: Neighbors, groups: Groups, walls: _Walls, package: bool, dt: float,
     out: Floats,
 ) -> None:  # fmt: skip
     # fields are taken out of the tuples here: inside the loop each access would count references
@@ -251,10 +177,14 @@ def _choose_part(
         ay = (desired[row, 1] - vy) / law[7] + law[0] * fy
         if package:
             px, py = _from_points(x, y, law[5], law[6], segment)
-            qx, qy = _with_group_as_package(row, begin[row], end[row], member, place, heading, seen, law)
+            qx, qy = bond_as_package(
+                row, begin[row], end[row], member, seen, place, heading, law[11], law[12]
+            )  # fmt: skip
         else:
             px, py = _from_surfaces(x, y, radius[row], law[5], law[6], law[13], face, corner, arm, first)
-            qx, qy = _with_group(row, begin[row], end[row], member, place, velocity, seen, law)
+            qx, qy = bond(
+                row, begin[row], end[row], member, seen, place, velocity, law[8], law[9], law[10], law[11], law[12]
+            )
         ax, ay = ax + px + qx, ay + py + qy
         out[row, 0], out[row, 1] = shortened(vx + dt * ax, vy + dt * ay, top[row])
 
@@ -372,7 +302,7 @@ class GroupForce(CrowdModel):
         )
         walls = _Walls(*surfaces_of(scene.walls), np.ascontiguousarray(scene.walls.segments()))
         out = kept(scene)
-        spread(_choose, _choose_part, rows(out), crowd, near, _groups_of(scene), walls, package, float(dt))
+        spread(_choose, _choose_part, rows(out), crowd, near, groups_of(scene), walls, package, float(dt))
         return out
 
 
@@ -385,19 +315,3 @@ def _heading(scene: Scene, wish: Floats) -> Floats:
     if scene.preferred_velocity is not None:
         distance = np.full(scene.shape, np.inf)
     return np.concatenate([direction, distance[..., None]], axis=-1)
-
-
-def _groups_of(scene: Scene) -> _Groups:
-    environment = np.repeat(np.arange(scene.shape[0]), scene.shape[1])
-    group = scene.group.reshape(-1)
-    begin, end = np.zeros((2, len(group)), dtype=np.int64)
-    member = np.flatnonzero((group >= 0) & scene.active.reshape(-1))
-    place = scene.position.reshape(-1, 2)[member]
-    # by place within a group: sums do not depend on the numbers of its members
-    member = member[np.lexsort((place[:, 1], place[:, 0], group[member], environment[member]))]
-    if len(member) > 0:
-        first = np.flatnonzero(np.diff(group[member], prepend=-1) | np.diff(environment[member], prepend=-1))
-        size = np.diff(first, append=len(member))
-        begin[member] = np.repeat(first, size)
-        end[member] = np.repeat(first + size, size)
-    return _Groups(member, begin, end)

@@ -113,13 +113,14 @@ def _plan(
     best, begin, last = math.inf, LOST, LOST
     for u in range(len(node)):
         head = _far(x, y, node[u, 0], node[u, 1])
-        total, end = math.inf, LOST
+        if head + _far(node[u, 0], node[u, 1], gx, gy) >= best:
+            continue
+        if not sees(wall, first, member, frame, x, y, node[u, 0], node[u, 1], BLIND, BLIND):
+            continue
         for n in range(count):
-            way = head + length[u, seen[n]] + reach[n]
-            if way < total:
-                total, end = way, seen[n]
-        if total < best and sees(wall, first, member, frame, x, y, node[u, 0], node[u, 1], BLIND, BLIND):
-            best, begin, last = total, u, end
+            total = head + length[u, seen[n]] + reach[n]
+            if total < best:
+                best, begin, last = total, u, seen[n]
     return begin, last
 
 

@@ -1,0 +1,39 @@
+"""Chance that depends on who one is, not on where one stands in an array: the same alone, in a batch, renumbered."""
+
+from __future__ import annotations
+
+import hashlib
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["uniform"]
+
+STEP = np.uint64(0x9E3779B97F4A7C15)
+MIX1 = np.uint64(0xBF58476D1CE4E5B9)
+MIX2 = np.uint64(0x94D049BB133111EB)
+
+
+def uniform(seed: ArrayLike, person: ArrayLike, *path: str | int) -> NDArray[np.float64]:
+    """Return a number in [0, 1) for every person, evenly distributed (SplitMix64 of all that it depends on).
+
+    Args:
+        seed: ``[E, 1]`` or a number, of each environment.
+        person: ``[E, A]`` identity numbers.
+        path: what the number is for.
+
+    >>> bool(uniform(7, [[3, 4]], "side")[0, 0] == uniform([[7]], [[5, 3]], "side")[0, 1])
+    True
+    """
+    text = "\x1f".join(f"{type(p).__name__}:{p}" for p in path)
+    state = np.uint64(int.from_bytes(hashlib.blake2b(text.encode(), digest_size=8).digest(), "little"))
+    with np.errstate(over="ignore"):
+        for word in (seed, person):
+            state = _mixed(state + STEP + np.asarray(word, dtype=np.int64).astype(np.uint64))
+    return np.asarray((state >> np.uint64(11)).astype(np.float64) * 2.0**-53)
+
+
+def _mixed(state: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    state = (state ^ (state >> np.uint64(30))) * MIX1
+    state = (state ^ (state >> np.uint64(27))) * MIX2
+    return state ^ (state >> np.uint64(31))

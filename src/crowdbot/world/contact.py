@@ -1,0 +1,318 @@
+"""Contacts of bodies: people who overlap after a step are pushed apart, and nobody ends up in a wall."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numba import prange
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Scene, Walls
+from crowdbot.core.errors import did_you_mean
+from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.core.kernels import kernel
+from crowdbot.core.neighbors import CHUNK, Neighbors, nearest
+
+from .wall_cells import WallCells, wall_cells
+
+__all__ = ["BodyContact", "Surfaces"]
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Rows = NDArray[np.int32]
+
+VARIANTS = ("position", "force")
+MOST = 24
+"""So many neighbours can push at a time, the nearest."""
+SPARE = 0.5
+"""Neighbours are looked for this many radii farther than they touch, because pushes move them."""
+TOUCH = 1.0 - 1e-9
+"""Bodies at this share of the sum of their radii do not overlap."""
+PASSES = 4
+"""So many walls can push one after the other."""
+REACH = 0.5
+"""Steps up to this length [m] are searched for crossed walls in the cells of the grid, longer ones among all walls."""
+GOLDEN = math.pi * (3.0 - math.sqrt(5.0))
+
+
+class _Bodies(NamedTuple):
+    """What the kernel reads of every agent, by row ``e * A + a``."""
+
+    before: Floats
+    chosen: Floats
+    radius: Floats
+    pushed: Bools
+    """Whether it gives way."""
+
+
+@kernel(parallel=True)
+def _push(
+    bodies: _Bodies, near: Neighbors, cells: WallCells, solid: Bools, gain: float, place: Floats, out: Floats
+) -> None:
+    """Push everybody once, from ``place`` to ``out``."""
+    for part in prange((len(out) + CHUNK - 1) // CHUNK):
+        _push_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), bodies, near, cells, solid, gain, place, out)
+
+
+@kernel
+def _push_part(
+    begin: int, end: int, bodies: _Bodies, near: Neighbors, cells: WallCells, solid: Bools, gain: float,
+    place: Floats, out: Floats,
+) -> None:  # fmt: skip
+    before, chosen, radius, pushed = bodies
+    agent, number, order = near
+    wall, first, member, frame = cells
+    A = agent.shape[1]
+    for k in range(begin, end):
+        row = order[k]
+        x, y, r = place[row, 0], place[row, 1], radius[row]
+        out[row, 0], out[row, 1] = x, y
+        if not pushed[row]:
+            continue
+        e, a = row // A, row % A
+        px, py, count = 0.0, 0.0, 0
+        for n in range(number[e, a]):
+            other = row - a + agent[e, a, n]
+            touch = r + radius[other]
+            dx, dy = x - place[other, 0], y - place[other, 1]
+            d2 = dx * dx + dy * dy
+            if d2 >= (touch * TOUCH) ** 2:
+                continue
+            if d2 == 0.0:
+                dx, dy = _apart(before, row, other)
+                d2 = 1e-300
+            distance = math.sqrt(d2)
+            length = math.sqrt(dx * dx + dy * dy)
+            share = 0.5 if pushed[other] or gain > 0.0 else 1.0
+            px += share * (touch - distance) * dx / length
+            py += share * (touch - distance) * dy / length
+            count += 1
+        if count > 0:
+            x, y = _shifted(x, y, px, py, count, gain, chosen[row, 0], chosen[row, 1], r)
+        if len(wall) > 0:
+            x, y = _out_of_walls(wall, first, member, frame, solid, before[row, 0], before[row, 1], x, y, r)
+        out[row, 0], out[row, 1] = x, y
+
+
+@kernel
+def _apart(before: Floats, row: int, other: int) -> tuple[float, float]:
+    """Return a direction for two who are at the same place: where they came from, else one by their numbers."""
+    dx, dy = before[row, 0] - before[other, 0], before[row, 1] - before[other, 1]
+    if dx != 0.0 or dy != 0.0:
+        return dx, dy
+    side = 1.0 if row > other else -1.0
+    angle = GOLDEN * abs(row - other)
+    return side * math.cos(angle), side * math.sin(angle)
+
+
+@kernel
+def _shifted(
+    x: float, y: float, px: float, py: float, count: int, gain: float, cx: float, cy: float, r: float
+) -> tuple[float, float]:
+    """Return x, y after a push p of ``count`` bodies, no farther than r from where one had chosen to go, c.
+
+    By position (``gain`` 0) pushes of many are averaged, a little too far; by force they are added, and damped so that
+    they cannot overshoot.
+    """
+    share = 1.5 / (count + 0.5) if gain == 0.0 else 2.0 * gain / (1.0 + 2.0 * count * gain)
+    x, y = x + share * px, y + share * py
+    far = math.sqrt((x - cx) ** 2 + (y - cy) ** 2)
+    if far > r:
+        x, y = cx + (x - cx) * r / far, cy + (y - cy) * r / far
+    return x, y
+
+
+@kernel
+def _out_of_walls(
+    wall: Floats, first: Rows, member: Rows, frame: Floats, solid: Bools,
+    bx: float, by: float, x: float, y: float, r: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Return x, y moved out of walls by a body of radius r that was at b before; it stays on its side of them."""
+    for _ in range(PASSES):
+        m = _crossed(wall, first, member, frame, solid, bx, by, x, y)
+        if m < 0:
+            m = _nearest_wall(wall, first, member, frame, x, y, r)
+            if m < 0:
+                return x, y
+            x, y = _off(wall[m], solid[m], False, bx, by, x, y, r)
+        else:
+            x, y = _off(wall[m], solid[m], True, bx, by, x, y, r)
+    return (x, y) if _crossed(wall, first, member, frame, solid, bx, by, x, y) < 0 else (bx, by)
+
+
+@kernel
+def _cell(frame: Floats, x: float, y: float) -> int:
+    """Return the cell of x, y; -1 outside."""
+    i, j = math.floor((x - frame[0]) / frame[2]), math.floor((y - frame[1]) / frame[2])
+    if i < 0.0 or j < 0.0 or i >= frame[3] or j >= frame[4]:
+        return -1
+    return int(j) * int(frame[3]) + int(i)
+
+
+@kernel
+def _crossed(
+    wall: Floats, first: Rows, member: Rows, frame: Floats, solid: Bools, bx: float, by: float, x: float, y: float
+) -> int:
+    """Return the first wall that the way from b to x, y goes through, -1 for none; out of a solid one may go."""
+    dx, dy = x - bx, y - by
+    if dx == 0.0 and dy == 0.0:
+        return -1
+    short = dx * dx + dy * dy <= frame[5] * frame[5]
+    begin, end = 0, len(wall)
+    if short:
+        cell = _cell(frame, x, y)
+        if cell < 0:
+            return -1
+        begin, end = first[cell], first[cell + 1]
+    found, soonest = -1, math.inf
+    for k in range(begin, end):
+        m = member[k] if short else k
+        ax, ay, wx, wy = wall[m, 0], wall[m, 1], wall[m, 2] - wall[m, 0], wall[m, 3] - wall[m, 1]
+        from_, to = wx * (by - ay) - wy * (bx - ax), wx * (y - ay) - wy * (x - ax)
+        if not ((from_ < 0.0 <= to) or (to <= 0.0 < from_ and not solid[m])):
+            continue
+        t = from_ / (from_ - to)
+        along = ((bx + t * dx - ax) * wx + (by + t * dy - ay) * wy) / (wx * wx + wy * wy)
+        if 0.0 <= along <= 1.0 and t < soonest:
+            found, soonest = m, t
+    return found
+
+
+@kernel
+def _nearest_wall(wall: Floats, first: Rows, member: Rows, frame: Floats, x: float, y: float, r: float) -> int:
+    """Return the nearest wall that is nearer than r, -1 for none."""
+    cell = _cell(frame, x, y)
+    found, least = -1, (r * TOUCH) ** 2
+    if cell >= 0:
+        for k in range(first[cell], first[cell + 1]):
+            m = member[k]
+            nx, ny = nearest_on_segment(x, y, wall[m, 0], wall[m, 1], wall[m, 2], wall[m, 3])
+            d2 = (x - nx) ** 2 + (y - ny) ** 2
+            if d2 < least:
+                found, least = m, d2
+    return found
+
+
+@kernel
+def _off(
+    wall: Floats, solid: bool, crossed: bool, bx: float, by: float, x: float, y: float, r: float
+) -> tuple[float, float]:
+    """Return x, y moved to the distance r from one wall: on the side of b, or where it is; out of a solid."""
+    ax, ay, ex, ey = wall[0], wall[1], wall[2] - wall[0], wall[3] - wall[1]
+    nx, ny = nearest_on_segment(x, y, ax, ay, wall[2], wall[3])
+    dx, dy = x - nx, y - ny
+    left = ex * (y - ay) - ey * (x - ax)
+    inner = abs(dx * ex + dy * ey) <= 1e-9 * (abs(left) + 1e-300)
+    length = math.sqrt(ex * ex + ey * ey)
+    side = 1.0 if ex * (by - ay) - ey * (bx - ax) > 0.0 else -1.0
+    if solid and (crossed or (inner and left > 0.0)):
+        side = -1.0
+    elif not crossed and (dx != 0.0 or dy != 0.0):
+        distance = math.sqrt(dx * dx + dy * dy)
+        return nx + dx / distance * r, ny + dy / distance * r
+    return nx - side * ey / length * r, ny + side * ex / length * r
+
+
+class Surfaces(NamedTuple):
+    """Walls as bodies meet them.
+
+    Fields:
+        walls: what they are made of.
+        cells: sorted into a grid.
+        solid: ``[M]`` whether the left side of a wall is solid.
+        reach: largest radius of a body [m] that they serve.
+    """
+
+    walls: Walls
+    cells: WallCells
+    solid: Bools
+    reach: float
+
+    @classmethod
+    def of(cls, walls: Walls, reach: float) -> Surfaces:
+        """Sort walls for bodies up to a radius of ``reach`` [m]."""
+        thin = walls.previous == walls.next
+        once = ~thin | (np.arange(len(walls)) < walls.next)
+        wide = max(REACH, float(reach))
+        return cls(walls, wall_cells(walls.segments(), wide), ~thin[once], wide)
+
+
+@dataclass(frozen=True)
+class BodyContact:
+    """What bodies do when they overlap after a step of the crowd: they are pushed apart, and out of walls.
+
+    Agents that are moved from outside push others and are not pushed; who is invisible pushes nobody. Nobody is pushed
+    farther than the own radius in a step, and nobody goes through a wall, at any time step. Velocities change with the
+    push, up to the maximum speed.
+
+    Fields:
+        variant: ``position`` ends overlaps at once, as far as there is room; ``force`` is an acceleration of
+            ``stiffness`` times the overlap, as in UMANS (van Toll et al. 2020), damped where it would overshoot.
+        stiffness: acceleration for each metre of overlap [1/s^2], of ``force``.
+        iterations: how often ``position`` looks at all contacts in a step.
+
+    Raises:
+        InputError: a value is not allowed.
+
+    >>> near = Scene.of([[0.0, 0.0], [0.4, 0.0]], radius=0.25)
+    >>> BodyContact().settled(near, near, dt=0.1).position.round(9).tolist()
+    [[[-0.05, 0.0], [0.45, 0.0]]]
+    """
+
+    variant: str = "position"
+    stiffness: float = 62.5
+    iterations: int = 8
+
+    def __post_init__(self) -> None:
+        if self.variant not in VARIANTS:
+            near = did_you_mean(str(self.variant), VARIANTS)
+            raise InputError(f"BodyContact: variant {self.variant!r} is unknown{near}; choose {' or '.join(VARIANTS)}")
+        if not 0.0 < self.stiffness <= 1e9:
+            raise InputError(f"BodyContact: stiffness {self.stiffness} 1/s^2 must be above 0 and at most 1e9")
+        if not 1 <= self.iterations <= 1000:
+            raise InputError(f"BodyContact: iterations = {self.iterations}, it must be from 1 to 1000")
+
+    def settled(self, before: Scene, after: Scene, dt: float, surfaces: Surfaces | None = None) -> Scene:
+        """Return the scene ``after`` a step of ``dt`` [s] from ``before``, with people pushed apart."""
+        here = after.active
+        radius = np.where(here, after.radius, 0.0)
+        largest = radius.max(axis=1, initial=0.0)
+        if surfaces is None:
+            surfaces = Surfaces.of(after.walls, largest.max(initial=0.0))
+        pushed = here & ~after.external
+        seen = here & after.visible
+        near = nearest(after.position, radius + (1.0 + SPARE) * largest[:, None], MOST, seen, pushed)
+        place = np.where(here[..., None], after.position, 0.0)
+        bodies = _Bodies(
+            np.where(here[..., None], before.position, 0.0).reshape(-1, 2),
+            place.reshape(-1, 2).copy(),
+            radius.reshape(-1),
+            pushed.reshape(-1),
+        )
+        gain = self.stiffness * dt * dt if self.variant == "force" else 0.0
+        now, then = bodies.chosen.copy(), bodies.chosen.copy()
+        for _ in range(self.iterations if gain == 0.0 else 1):
+            _push(bodies, near, surfaces.cells, surfaces.solid, gain, now, then)
+            if np.array_equal(now, then):
+                break
+            now, then = then, now
+        else:
+            then = now
+        return _moved(after, then.reshape(place.shape), pushed, dt)
+
+
+def _moved(scene: Scene, place: Floats, pushed: Bools, dt: float) -> Scene:
+    """Return the scene with people at other places, and velocities to match."""
+    shift = np.where(pushed[..., None], place - np.where(pushed[..., None], scene.position, 0.0), 0.0)
+    changed = pushed & np.any(shift != 0.0, axis=-1)
+    velocity = scene.velocity + shift / dt
+    speed, old = np.hypot(velocity[..., 0], velocity[..., 1]), np.hypot(scene.velocity[..., 0], scene.velocity[..., 1])
+    limit = np.maximum(old, scene.max_speed)
+    velocity = velocity * np.minimum(1.0, limit / np.maximum(speed, 1e-300))[..., None]
+    return scene.replace(
+        position=np.where(changed[..., None], place, scene.position),
+        velocity=np.where(changed[..., None], velocity, scene.velocity),
+    )

@@ -1,0 +1,128 @@
+"""Every navigator keeps its contract; Straight and ORCA do what they are for."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from crowdbot import models, navigation
+from crowdbot.core import InputError, Twist, Walls, plug
+from crowdbot.navigation import ORCA, Limits, Observation, People, Straight
+
+NAVIGATORS = plug.built_in(navigation, navigation.Navigator)
+LIMITS = Limits(1.0, 1.5, 1.0, 3.0)
+
+
+def meeting(people=(), **changes):
+    """Return what a robot at the origin knows, looking and going along x; people are x, y, vx, vy."""
+    rows = np.array(people, dtype=float).reshape(-1, 4)
+    known = {"pose": (0.0, 0.0, 0.0), "goal": (9.0, 0.0), "radius": 0.3, "limits": LIMITS, "dt": 0.1}
+    known["people"] = People(rows[:, :2], rows[:, 2:], np.full(len(rows), 0.25))
+    return Observation(**(known | changes))
+
+
+def test_the_room_shows_its_contracts():
+    assert set(NAVIGATORS) == {"orca", "straight"}
+    assert all(hasattr(navigation, name) for name in navigation.__all__)
+
+
+@pytest.mark.parametrize("kind", NAVIGATORS.values(), ids=list(NAVIGATORS))
+class TestEveryNavigator:
+    def test_is_a_frozen_spec_that_text_makes(self, kind):
+        navigator = plug.read(kind, {"speed": "0.7"})
+        assert navigator == kind(speed=0.7)
+        with pytest.raises(dataclasses.FrozenInstanceError):
+            navigator.speed = 1.0
+
+    def test_goes_ahead_when_free(self, kind):
+        twist = kind().act(meeting())
+        assert isinstance(twist, Twist)
+        assert twist.forward > 0.0
+        assert abs(twist.turn) < 1e-9
+
+    def test_keeps_its_own_speed_and_the_limits(self, kind):
+        rushing = meeting(twist=Twist(0.4), goal=(3.0, 3.0))
+        twist = kind(speed=0.4).act(rushing)
+        assert 0.0 <= twist.forward <= 0.4
+        assert abs(twist.turn) <= LIMITS.max_turn_rate
+        slow = meeting(limits=Limits(0.3, 0.2, 1.0, 3.0), goal=(0.0, 5.0))
+        assert kind().act(slow).forward <= 0.3
+        assert abs(kind().act(slow).turn) <= 0.2
+
+    def test_is_a_pure_function(self, kind):
+        seen = meeting([(2.0, 0.3, -1.0, 0.0), (1.0, -2.0, 0.0, 1.0)], twist=Twist(0.6, 0.1))
+        assert kind().act(seen) == kind().act(seen)
+
+    def test_mirrors_what_is_mirrored(self, kind):
+        left = kind().act(meeting([(2.5, 0.3, -1.0, 0.0)], twist=Twist(0.8), goal=(9.0, 1.0)))
+        right = kind().act(meeting([(2.5, -0.3, -1.0, 0.0)], twist=Twist(0.8), goal=(9.0, -1.0)))
+        assert left.forward == pytest.approx(right.forward, abs=1e-9)
+        assert left.turn == pytest.approx(-right.turn, abs=1e-9)
+
+    @pytest.mark.parametrize("speed", [0.0, -1.0, math.nan, math.inf])
+    def test_explains_a_wrong_speed(self, kind, speed):
+        with pytest.raises(InputError, match=f"{kind.__name__}: speed = {speed}"):
+            kind(speed=speed)
+
+
+def test_straight_is_blind():
+    assert Straight().act(meeting([(0.7, 0.0, -1.0, 0.0)])) == Straight().act(meeting())
+
+
+@pytest.mark.parametrize(("side", "sign"), [(0.15, -1.0), (-0.15, 1.0)])
+def test_orca_passes_on_the_free_side(side, sign):
+    twist = ORCA().act(meeting([(2.5, side, -1.0, 0.0)], twist=Twist(0.8)))
+    assert math.copysign(1.0, twist.turn) == sign
+    assert abs(twist.turn) > 0.05
+
+
+def test_orca_brakes_for_someone_who_blocks_the_way():
+    wall = [(1.0, y, 0.0, 0.0) for y in np.arange(-3.0, 3.1, 0.5)]
+    assert ORCA().act(meeting(wall, twist=Twist(0.6))).forward < 0.3
+
+
+def test_orca_takes_all_or_half_of_the_avoidance():
+    seen = meeting([(2.0, 0.1, -1.0, 0.0)], twist=Twist(0.9))
+    alone = abs(ORCA(share=1.0).velocity(seen)[1])
+    half = abs(ORCA(share=0.5).velocity(seen)[1])
+    assert 0.0 < half < alone
+
+
+def test_the_velocity_is_that_of_the_model():
+    seen = meeting([(2.0, 0.1, -1.0, 0.0)], twist=Twist(0.9), walls=Walls.of([[(-5.0, -1.0), (9.0, -1.0)]]))
+    wish = np.array([[1.0, 0.0], [-1.0, 0.0]])
+    from crowdbot.core import Scene
+
+    scene = Scene.of(
+        [[0.0, 0.0], [2.0, 0.1]],
+        [[0.9, 0.0], [-1.0, 0.0]],
+        radius=[0.35, 0.25],
+        preferred_velocity=wish,
+        max_speed=1.0,
+        external=[False, True],
+        walls=seen.walls,
+    )
+    expected = models.ORCA(6.0, 15, 1.5, 1.0).velocity(scene, 0.3)[0, 0]
+    np.testing.assert_array_equal(ORCA().velocity(seen), expected)
+
+
+def test_far_people_change_nothing():
+    assert ORCA().act(meeting([(8.0, 0.0, -1.0, 0.0)])) == ORCA().act(meeting())
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"time_horizon": 0.0}, "time_horizon = 0.0 must be finite and above 0"),
+        ({"time_horizon_walls": -1.0}, "time_horizon_walls = -1.0"),
+        ({"neighbor_distance": math.nan}, "neighbor_distance = nan"),
+        ({"max_neighbors": 0}, "max_neighbors = 0"),
+        ({"reaction": math.inf}, "reaction = inf"),
+        ({"safety": -0.1}, "safety = -0.1 m must be finite and at least 0"),
+        ({"share": 0.7}, "share = 0.7 must be 0.5 or 1"),
+    ],
+)
+def test_orca_explains_wrong_values(values, message):
+    with pytest.raises(InputError, match=message):
+        ORCA(**values)
