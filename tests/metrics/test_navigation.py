@@ -95,7 +95,7 @@ def test_time_limit():
 
 
 def test_a_wall_counts_only_when_given():
-    wall = np.array([[1.0, -1.0, 1.0, 1.0]])
+    wall = np.array([[1.05, -1.0, 1.05, 1.0]])
     assert ended(walk((0, 0), (1, 0), 30), goal=(2, 0), walls=wall) == ("collision", 8)
     assert ended(walk((0, 0), (1, 0), 30), goal=(2, 0)).name == "success"
 
@@ -335,16 +335,14 @@ def test_a_free_straight_run_by_hand():
 
 
 def test_a_collision_by_hand():
-    found = measured(walk((0, 0), (1, 0), 30), walk((1, 0), (0, 0), 30))
+    found = measured(walk((0, 0), (1, 0), 30), walk((1.05, 0), (0, 0), 30))
     assert (found["collision"], found["contacts"], found["robot_caused_contacts"]) == (1.0, 1.0, 1.0)
     assert math.isnan(found["time_to_goal"])
     assert found["max_impact_speed"] == pytest.approx(1.0)
     assert found["max_penetration"] == pytest.approx(2 * R)
     assert found["min_clearance"] == pytest.approx(-2 * R)
     assert found["min_ttc"] == 0.0
-    assert found["contact_time"] == pytest.approx(
-        1.7 - 0.4
-    )  # the 2nd edge is passed at 1.6 s, in the step before 1.7 s
+    assert found["contact_time"] == pytest.approx(1.7 - 0.45)  # clear again at 1.65 s, within the step to 1.7 s
 
 
 def test_time_to_collision_shares():

@@ -39,7 +39,7 @@ def slope(function, at, h=2e-4):
 def smooth(time, at):
     """Return whether a collision is sure nearby, and neither grazing nor too near or far."""
     around = [time(at + step) for step in 0.03 * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])]
-    return 0.05 < min(around) and max(around) < min(2.9, 1.05 * min(around))
+    return min(around) > 0.05 and max(around) < min(2.9, 1.05 * min(around))
 
 
 def test_one_step_agrees_with_umans(reference, capsys):

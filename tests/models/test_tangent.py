@@ -40,7 +40,7 @@ def crossing(angle, ahead, aside=0.0, model=None):
 
 def within(value, low, high):
     """Return whether a value is in the measured range, 20 % wider."""
-    return 0.8 * low <= value <= 1.2 * high
+    return 0.8 * low <= value <= 1.2 * high + 1e-9
 
 
 TABLE = {

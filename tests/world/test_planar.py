@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from crowdbot.core import InputError, Paper, Scene, Twist, stream
+from crowdbot.metrics import swept_distance
 from crowdbot.models import ORCA, CrowdModel
 from crowdbot.world import Contact, DifferentialDrive, Omnidirectional, PlanarWorld, Twists
 
@@ -68,6 +69,24 @@ def test_people_make_way_for_a_robot_they_see():
         ways.append(max(abs(scene.position[0, 1, 1] - 0.05) for scene in scenes))
     assert ways[0] > 0.3
     assert ways[1] < 1e-9
+
+
+def standing_in_a_flow(berth):
+    """Return the smallest clearance of a robot that stands still while people walk past it both ways."""
+    places = [[0.0, 0.0], *([x, 0.1 * k - 0.5] for k, x in enumerate(np.linspace(-8.0, 8.0, 10)))]
+    goals = [[0.0, 0.0], *([-30.0 * np.sign(x), y] for x, y in places[1:])]
+    start = Scene.of(places, goal=goals, external=np.arange(11) == 0, radius=0.25)
+    world = PlanarWorld(start, ORCA(), {0: FAST}, dt=0.1, berth=berth)
+    paths = np.stack([start.position[0], *(scene.position[0] for scene in run(world, 80, Twist()))])
+    away = paths[:, 1:] - paths[:, :1]
+    assert np.array_equal(world.scene.radius, start.radius)
+    return float(np.min(swept_distance(away[:-1], away[1:]))) - 0.5
+
+
+def test_people_keep_a_berth_of_robots():
+    touching, apart = standing_in_a_flow(0.0), standing_in_a_flow(0.2)
+    assert abs(touching) < 0.02
+    assert apart == pytest.approx(0.2, abs=0.02)
 
 
 def test_same_seed_same_bytes():
@@ -181,6 +200,7 @@ def test_a_spawner_may_change_the_scene_between_steps():
     [
         ({"drives": {12: FAST}}, "drive is given for agent 12, but the scene has agents 0 to 9"),
         ({"drives": {1: FAST}}, "agent 1 has a drive but is not external"),
+        ({"berth": -0.1}, "berth -0.1 m must be finite and at least 0"),
         ({"leave_radius": -0.5}, "leave_radius -0.5 m must be finite and above 0"),
         ({"dt": 0.0}, "time step 0.0 s is outside"),
     ],

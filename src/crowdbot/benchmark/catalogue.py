@@ -99,7 +99,7 @@ def _classes(kind: str) -> dict[str, type]:
 
 
 def _first_line(thing: Any) -> str:
-    return (inspect.getdoc(thing) or "").split("\n\n")[0].replace("\n", " ")
+    return (inspect.getdoc(thing) or "").split("\n\n")[0].replace("\n", " ").replace("``", "")
 
 
 def _trials() -> dict[str, str]:

@@ -67,6 +67,7 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
 
     kinds = built_in(models, models.CrowdModel)
     found: dict[str, Callable[[], Measurement | Gauge]] = {}
+    del kinds["mixture"]  # costs what its models cost
     for name, kind in kinds.items():
         found[f"{name}-1000"] = functools.partial(_crowd_of, kind, 1000)
         if name != "cost-model":

@@ -24,7 +24,7 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.core.kernels import cache_folder, is_cold
 
     if is_cold() and not options.json:
-        note(f"first run: compiling the kernels (ORCA, social force, LiDAR) into {cache_folder()}, about a minute")
+        note(f"first run: compiling the kernels (ORCA, social force, LiDAR) into {cache_folder()}, up to a minute")
     begin = time.perf_counter()
     with progress(options.json) as report:
         done = run_demo(options.out, seed=options.seed, progress=report)

@@ -22,5 +22,5 @@ def main(options: argparse.Namespace) -> int:
         print_json(kinds)
         return 0
     for kind, entries in kinds.items():
-        print_table(kind, ("name", "about"), [(name, line) for name, line in entries.items()])
+        print_table(kind, ("name", "about"), [*entries.items()], words=2)
     return 0

@@ -38,15 +38,17 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def print_table(title: str, head: Sequence[str], rows: Sequence[Sequence[str]], caption: str = "") -> None:
-    """Print a table on stdout; the first column is aligned left, the others right."""
+def print_table(
+    title: str, head: Sequence[str], rows: Sequence[Sequence[str]], caption: str = "", words: int = 1
+) -> None:
+    """Print a table on stdout; the first ``words`` columns are aligned left, the others right."""
     from rich import box
     from rich.console import Console
     from rich.table import Table
 
     table = Table(title=title, caption=caption, box=box.SIMPLE_HEAD, title_justify="left", caption_justify="left")
     for index, name in enumerate(head):
-        table.add_column(name, justify="left" if index == 0 else "right", overflow="fold")
+        table.add_column(name, justify="left" if index < words else "right", overflow="fold")
     for row in rows:
         table.add_row(*row)
     wide = None if sys.stdout.isatty() else 120

@@ -120,12 +120,12 @@ def _first_touch(
     begin = float(times[k])
     step = float(times[k] - times[k - 1]) if k > 0 else 0.0
     entered = k == 0 or not active[k - 1, person] or math.dist(*position[k - 1 : k + 1, person]) > JUMP * step
-    if not entered and math.dist(position[k - 1, person], position[k - 1, robot]) > reach:
+    if not entered:
         own = (position[k, robot] - position[k - 1, robot]) / step
         other = (position[k, person] - position[k - 1, person]) / step
         before = position[k - 1, person] - position[k - 1, robot]
         closing = other - own
-        after = min(step, _touch(before, closing, reach))
+        after = min(step, max(0.0, _touch(before, closing, reach)))
         away = before + closing * after
         begin = float(times[k - 1]) + after
     length = math.hypot(away[0], away[1])

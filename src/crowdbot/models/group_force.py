@@ -36,8 +36,8 @@ SIGHT = 3.35
 """It feels points of walls nearer than this [m] to the body."""
 POINTS = 10.0
 """It takes so many points of a wall per metre."""
-NOTHING = 30.0
-"""A force that has fallen off by this exponent, to 1e-13, is left out."""
+NOTHING = 20.0
+"""A force that has fallen off by this exponent, to 2e-9, is left out."""
 STEEPEST = 300.0
 """Largest exponent of the push by walls, so that it stays a number however deep a body is in them."""
 LAW = (
@@ -102,11 +102,15 @@ def _pair(
     reach = distance * length
     if reach <= 0.0 or gap > NOTHING * reach:
         return 0.0, 0.0
-    tx, ty = tx / length, ty / length
-    angle = math.atan2(ty, tx) - math.atan2(ny, nx)
-    if wrapped:
-        angle = math.atan2(nx * ty - ny * tx, nx * tx + ny * ty)
-    along, across = gap / reach + (brake * reach * angle) ** 2, gap / reach + (turn * reach * angle) ** 2
+    tx, ty, far = tx / length, ty / length, gap / reach
+    ahead, aside = nx * tx + ny * ty, nx * ty - ny * tx
+    least = reach * min(turn, brake) * (abs(aside) if ahead > 0.0 else 1.0)  # an angle is larger than its sine
+    if far + least * least > NOTHING:
+        return 0.0, 0.0
+    angle = math.atan2(aside, ahead)
+    if not wrapped:
+        angle = math.atan2(ty, tx) - math.atan2(ny, nx)
+    along, across = far + (brake * reach * angle) ** 2, far + (turn * reach * angle) ** 2
     along = math.exp(-along) if along < NOTHING else 0.0
     across = math.exp(-across) if across < NOTHING and angle != 0.0 else 0.0
     across = -across if angle > 0.0 else across

@@ -115,7 +115,7 @@ def _choose(crowd: _Crowd, near: Neighbors, walls: Surfaces, dt: float, out: Flo
 @kernel
 def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Surfaces, dt: float, out: Floats) -> None:
     # fields are taken out of the tuples here: inside the loop each access would count references
-    place, velocity, desired, radius, top, walking, laws = crowd
+    place, velocity, desired, radius, top, walking, law = crowd
     agent, number, order = near
     face, corner, arm, first = walls
     A = agent.shape[1]
@@ -125,9 +125,9 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Su
             continue
         e, a = row // A, row % A
         x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
-        law = laws[row if len(laws) > 1 else 0]
-        k, m, t = law[0], law[1], law[2]
-        ax, ay = (desired[row, 0] - vx) / law[3], (desired[row, 1] - vy) / law[3]
+        own = row if len(law) > 1 else 0
+        k, m, t, relaxation, most = law[own, 0], law[own, 1], law[own, 2], law[own, 3], law[own, 4]
+        ax, ay = (desired[row, 0] - vx) / relaxation, (desired[row, 1] - vy) / relaxation
         for i in range(number[e, a]):
             other = row - a + agent[e, a, i]
             fx, fy, _ = _from_disc(
@@ -142,7 +142,7 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Su
             fx, fy, time = _from_disc(x - corner[c, 0], y - corner[c, 1], vx, vy, radius[row], k, m, t)
             if time < math.inf and at_corner(corner, arm, first, c, x + vx * time, y + vy * time):
                 ax, ay = ax + fx, ay + fy
-        ax, ay = shortened(ax, ay, law[4])
+        ax, ay = shortened(ax, ay, most)
         out[row, 0], out[row, 1] = shortened(vx + ax * dt, vy + ay * dt, top[row])
 
 

@@ -28,7 +28,7 @@ FACING = math.cos(math.radians(112.5))
 """Beyond this crossing angle both react early."""
 CROSSING = np.radians(np.array([45.0, 90.0, 135.0]))
 """Crossing angles [rad] at which the strategies of who gives way were measured:"""
-CLEARANCE = np.array([1.35, 0.92, 0.985])
+CLEARANCE = np.array([1.35, 0.92, 0.989])
 """share of the clearance that is kept,"""
 BRAKING = np.array([0.5, 0.0, 0.1])
 """share of braking; the rest is the least change."""

@@ -1,7 +1,32 @@
-"""Worlds: what turns commands into the next scene. Contracts :class:`World` and :class:`Drive`."""
+"""Worlds: what turns commands into the next scene. Contracts :class:`World`, :class:`Drive` and :class:`Stop`."""
 
+from .contact import BodyContact
 from .drive import DifferentialDrive, Drive, Omnidirectional, Twists, moved
+from .flow import Source
+from .journey import Journey, Journeys
+from .limits import CrowdLimits
 from .planar import PlanarWorld
+from .routing import Router
+from .stop import Direction, Point, Stop, Zone
 from .world import Contact, World
 
-__all__ = ["Contact", "DifferentialDrive", "Drive", "Omnidirectional", "PlanarWorld", "Twists", "World", "moved"]
+__all__ = [
+    "BodyContact",
+    "Contact",
+    "CrowdLimits",
+    "DifferentialDrive",
+    "Direction",
+    "Drive",
+    "Journey",
+    "Journeys",
+    "Omnidirectional",
+    "PlanarWorld",
+    "Point",
+    "Router",
+    "Source",
+    "Stop",
+    "Twists",
+    "World",
+    "Zone",
+    "moved",
+]

@@ -26,7 +26,9 @@ def uniform(seed: ArrayLike, person: ArrayLike, *path: str | int) -> NDArray[np.
     True
     """
     text = "\x1f".join(f"{type(p).__name__}:{p}" for p in path)
-    state = np.uint64(int.from_bytes(hashlib.blake2b(text.encode(), digest_size=8).digest(), "little"))
+    state: NDArray[np.uint64] = np.array(
+        int.from_bytes(hashlib.blake2b(text.encode(), digest_size=8).digest(), "little"), dtype=np.uint64
+    )
     with np.errstate(over="ignore"):
         for word in (seed, person):
             state = _mixed(state + STEP + np.asarray(word, dtype=np.int64).astype(np.uint64))

@@ -27,10 +27,10 @@ Rows = NDArray[np.int32]
 VARIANTS = ("position", "force")
 MOST = 24
 """So many neighbours can push at a time, the nearest."""
-SPARE = 0.5
+SPARE = 0.25
 """Neighbours are looked for this many radii farther than they touch, because pushes move them."""
-TOUCH = 1.0 - 1e-9
-"""Bodies at this share of the sum of their radii do not overlap."""
+TOUCH = 1.0 - 1e-4
+"""Bodies, and walls, that come as near as this share of touching are left alone."""
 PASSES = 4
 """So many walls can push one after the other."""
 REACH = 0.5

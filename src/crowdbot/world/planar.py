@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,14 @@ from crowdbot.core import FreeClock, InputError, Pose, Scene, Twist, stream
 from crowdbot.metrics import swept_distance
 from crowdbot.models import CrowdModel
 
+from .contact import BodyContact, Surfaces
 from .drive import Drive, Twists
+from .flow import Source
+from .journey import Journeys
+from .limits import CrowdLimits
+from .routing import Router
+from .stop import Zone
+from .traffic import Traffic
 from .world import Contact, World
 
 __all__ = ["PlanarWorld"]
@@ -24,30 +32,43 @@ class PlanarWorld(World):
     """People and robots as discs in the plane, E environments at once.
 
     In a step the crowd and the robots move from the same old scene: people see where robots are, not where they will
-    be, and the reverse. People see robots as agents that are moved from outside. There are no forces between bodies:
-    overlaps are reported in :attr:`contacts`, never resolved, and a robot that is driven into a wall passes through it.
-    The crowd draws from its own stream of randomness, so that sensors and navigators do not change it.
+    be, and the reverse. People see robots as agents that are moved from outside. Without a ``contact`` there are no
+    forces between bodies: overlaps are reported in :attr:`contacts`, never resolved. A robot that is driven into a wall
+    passes through it. The crowd draws from its own stream of randomness, so that sensors and navigators do not change
+    it. All that follows ``berth`` is off unless asked for.
 
     Args:
         scene: at the beginning; robots are agents with ``external=True``.
         model: how people walk.
         drives: the drive of each robot by its agent index.
         dt: time step [s].
-        seed: of the crowd's randomness.
+        seed: of the crowd's randomness. Journeys, sources and the symmetry breaker of environment e draw as those of a
+            world with this environment alone and the seed ``seed + e``.
         leave_radius: people nearer to their goal than this [m] leave (``active=False``); None: they stay. Robots
             never leave.
         berth: how much wider people take a robot to be [m]. Discs of a crowd model pass one another at zero clearance;
             without a berth ORCA people touch even a robot that stands still.
+        router: leads people around walls to their goals.
+        contact: what happens to people whose bodies overlap after a step.
+        limits: of speed and acceleration, after the model.
+        journeys: goals one after the other; they replace those of the scene.
+        sources: where people come in; they take the places of absent agents.
+        exits: zones in which everybody leaves, robots apart.
+        symmetry: everyone's preferred direction is off by up to this angle [rad], each by the own, so that people who
+            meet exactly head on do not stop for ever; 1e-3 is enough.
+        substeps: the crowd takes so many steps in one step of the world, robots meanwhile go on straight.
+        ids: ``[A]`` or ``[E, A]`` int, who people are; chance follows them. None: 0 to A - 1.
 
     Attributes:
         clock: who counts the time.
         twists: how each robot moves now.
         contacts: robot and other pairs whose clearance fell below 0 during the last step, on straight ways between
             the two scenes.
+        ids: ``[E, A]`` who is who now; people who come in have new identities.
 
     Raises:
-        InputError: a drive belongs to no agent, or to one that is not external; dt, leave_radius or
-            berth has a value that is not allowed.
+        InputError: a drive belongs to no agent, or to one that is not external; a goal cannot be reached; a value is
+            not allowed.
 
     >>> from crowdbot.models import ORCA
     >>> from crowdbot.world import DifferentialDrive
@@ -65,11 +86,86 @@ class PlanarWorld(World):
     seed: int = 0
     leave_radius: float | None = None
     berth: float = 0.1
+    router: Router | None = None
+    contact: BodyContact | None = None
+    limits: CrowdLimits | None = None
+    journeys: Journeys | None = None
+    sources: Sequence[Source] = ()
+    exits: Sequence[Zone] = ()
+    symmetry: float = 0.0
+    substeps: int = 1
+    ids: Any = None
     clock: FreeClock = field(init=False)
     twists: dict[int, Twists] = field(init=False)
     contacts: tuple[Contact, ...] = field(init=False, default=())
 
     def __post_init__(self) -> None:
+        self._check()
+        self.clock = FreeClock(self.dt)
+        self.twists = {robot: self._initial_twist(robot) for robot in sorted(self.drives)}
+        self._begin = self.scene.time
+        self._rng = stream(self.seed, "crowd")
+        self._traffic = Traffic.of(
+            self.scene, self.model, self.seed, self.ids, self.router, self.journeys, self.sources
+        )
+        self.ids = self._traffic.ids
+        self.scene = self._traffic.begun(self.scene)
+        self._surfaces: Surfaces | None = None
+
+    def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
+        """Go one time step on and return the new scene; see :class:`World`."""
+        asked = self._checked(commands)
+        before = self.scene
+        earlier, crowd = self._walked(before)
+        after = self._driven(before, crowd, asked)
+        after = self._settled(earlier, after)
+        self.clock.advance()
+        after = after.replace(time=self._begin + self.clock.time)
+        after.check()
+        self.contacts = self._touching(before, after)
+        if self.leave_radius is not None:
+            after = _left(after, self.leave_radius)
+        for zone in self.exits:
+            after = _out(after, zone)
+        self.scene = self._traffic.gone_on(after, self.clock.time)
+        return self.scene
+
+    @property
+    def waiting(self) -> NDArray[np.int64]:
+        """How many people wait to come in, ``[E]``."""
+        return self._traffic.waiting
+
+    def pose(self, robot: int) -> Pose:
+        """Return where a robot is in every environment."""
+        return Pose(self.scene.position[:, robot].copy(), self.scene.heading[:, robot].copy())
+
+    def _walked(self, before: Scene) -> tuple[Scene, Scene]:
+        """Return the scene before the last substep of the crowd, and after it."""
+        wide = before.radius.copy()
+        wide[:, list(self.twists)] += self.berth
+        crowd = earlier = self._traffic.felt(before, self.symmetry).replace(radius=wide)
+        h = self.dt / self.substeps
+        for k in range(self.substeps):
+            if k > 0:
+                crowd = self._settled(earlier, crowd.replace(radius=before.radius)).replace(radius=wide)
+            earlier = crowd
+            crowd = self.model.step(earlier, h, self._rng)
+            if self.limits is not None:
+                crowd = self.limits.kept(earlier, crowd, h)
+        own = {"radius": before.radius, "goal": before.goal, "preferred_velocity": before.preferred_velocity}
+        return earlier, crowd.replace(**own, memory={**earlier.memory, **crowd.memory})
+
+    def _settled(self, earlier: Scene, after: Scene) -> Scene:
+        """Return the scene with bodies that overlap pushed apart."""
+        if self.contact is None:
+            return after
+        largest = float(after.radius[after.active].max(initial=0.0))
+        known = self._surfaces
+        if known is None or known.walls is not after.walls or known.reach < largest:
+            self._surfaces = known = Surfaces.of(after.walls, largest)
+        return self.contact.settled(earlier, after, self.dt / self.substeps, known)
+
+    def _check(self) -> None:
         agents = self.scene.shape[1]
         for robot in self.drives:
             if not 0 <= robot < agents:
@@ -80,33 +176,10 @@ class PlanarWorld(World):
             raise InputError(f"berth {self.berth} m must be finite and at least 0")
         if self.leave_radius is not None and not 0.0 < self.leave_radius < math.inf:
             raise InputError(f"leave_radius {self.leave_radius} m must be finite and above 0, or None")
-        self.clock = FreeClock(self.dt)
-        self.twists = {robot: self._initial_twist(robot) for robot in sorted(self.drives)}
-        self._begin = self.scene.time
-        self._rng = stream(self.seed, "crowd")
-
-    def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
-        """Go one time step on and return the new scene; see :class:`World`."""
-        asked = self._checked(commands)
-        before = self.scene
-        crowd = self.model.step(before.replace(radius=self._felt(before)), self.dt, self._rng)
-        after = self._driven(before, crowd.replace(radius=before.radius), asked)
-        self.clock.advance()
-        after = after.replace(time=self._begin + self.clock.time)
-        after.check()
-        self.contacts = self._touching(before, after)
-        self.scene = after if self.leave_radius is None else _left(after, self.leave_radius)
-        return self.scene
-
-    def pose(self, robot: int) -> Pose:
-        """Return where a robot is in every environment."""
-        return Pose(self.scene.position[:, robot].copy(), self.scene.heading[:, robot].copy())
-
-    def _felt(self, scene: Scene) -> NDArray[np.float64]:
-        """Return the radii as people take them: robots wider by the berth."""
-        radius = scene.radius.copy()
-        radius[:, list(self.twists)] += self.berth
-        return radius
+        if not 0.0 <= self.symmetry <= math.pi:
+            raise InputError(f"symmetry {self.symmetry} rad must be from 0 to pi")
+        if isinstance(self.substeps, bool) or not isinstance(self.substeps, int) or not 1 <= self.substeps <= 10_000:
+            raise InputError(f"substeps = {self.substeps!r} must be a whole number from 1 to 10000")
 
     def _initial_twist(self, robot: int) -> Twists:
         heading, velocity = self.scene.heading[:, robot], self.scene.velocity[:, robot]
@@ -153,3 +226,8 @@ def _left(scene: Scene, radius: float) -> Scene:
     away = scene.goal - scene.position
     arrived = away[..., 0] ** 2 + away[..., 1] ** 2 < radius * radius
     return scene.replace(active=scene.active & ~(arrived & ~scene.external))
+
+
+def _out(scene: Scene, exit_: Zone) -> Scene:
+    there = exit_.contains(scene.position.reshape(-1, 2)).reshape(scene.shape)
+    return scene.replace(active=scene.active & ~(there & ~scene.external))

@@ -268,20 +268,29 @@ class Router:
         E, A = position.shape[:2]
         asks = np.ones((E, A), np.bool_) if asking is None else np.ascontiguousarray(asking)
         new = fresh((E, A)) if way is None else np.array(way, dtype=np.float64)
-        rows, place = new.reshape(-1, 8), np.array(position, dtype=np.float64).reshape(-1, 2)
-        aims = np.array(goal, dtype=np.float64).reshape(-1, 2)
+        rows, place = new.reshape(-1, 8), np.where(asks[..., None], position, 0.0).reshape(-1, 2)
+        aims = np.where(asks[..., None], goal, 0.0).reshape(-1, 2)
         _follow(self._map, place, aims, asks.reshape(-1), rows)
         next_ = self._next(rows)
         stray = np.flatnonzero(asks.reshape(-1) & (rows[:, CORNER] == LOST))
         for k in stray:
             next_[k] = self._rescue(rows[k], place[k], divmod(int(k), A))
-        next_ = np.where(asks.reshape(-1, 1), next_, place)
         length = np.hypot(*(next_ - place).T) + self._rest(rows)
-        return Ways(next_.reshape(E, A, 2), length.reshape(E, A), new)
+        subgoal = np.where(asks[..., None], next_.reshape(E, A, 2), position)
+        return Ways(subgoal, np.where(asks, length.reshape(E, A), 0.0), new)
 
-    def led(self, scene: Scene) -> Scene:
-        """Return the scene in which goals lie straight ahead on people's ways, as far away as the ways are long."""
-        asking = scene.active & ~scene.external
+    def led(self, scene: Scene, asking: NDArray[np.bool_] | None = None) -> Scene:
+        """Return the scene in which goals lie straight ahead on people's ways, as far away as the ways are long.
+
+        Args:
+            scene: with the ways of the step before in its memory.
+            asking: ``[E, A]`` whom it leads; None: all who walk.
+
+        Raises:
+            InputError: a goal cannot be reached.
+        """
+        if asking is None:
+            asking = scene.active & ~scene.external
         subgoal, length, way = self.follow(scene.position, scene.goal, scene.memory.get(WAY), asking)
         away = subgoal - scene.position
         distance = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2)

@@ -1,0 +1,162 @@
+"""Journeys: where people go, one stop after the other, and what they do at the end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Scene
+from crowdbot.core.errors import did_you_mean
+
+from .stop import Luck, Stop
+
+__all__ = ["JOURNEY", "STOP", "Journey", "Journeys"]
+
+Floats = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+JOURNEY, STOP = "journey", "stop"
+"""Names in the memory of a scene ``[E, A]``: the index of the journey, -1 for none, and of the stop one goes to."""
+THENS = ("leave", "stay")
+
+
+@dataclass(frozen=True)
+class Journey:
+    """Stops that one person after the other goes to, in order.
+
+    Fields:
+        stops: at least one.
+        then: at the last one people ``leave`` or ``stay``.
+
+    Raises:
+        InputError: there is no stop, or something is none.
+
+    >>> from crowdbot.world import Point, Zone
+    >>> Journey((Point(5.0, 0.0), Zone(((9, 0), (11, 0), (10, 1)))), then="stay").then
+    'stay'
+    """
+
+    stops: tuple[Stop, ...]
+    then: str = "leave"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "stops", tuple(self.stops))
+        if not self.stops or not all(isinstance(stop, Stop) for stop in self.stops):
+            raise InputError(f"Journey: stops = {self.stops!r}, it must be one or more of Point, Direction, Zone")
+        if self.then not in THENS:
+            raise InputError(
+                f"Journey: then = {self.then!r}{did_you_mean(str(self.then), THENS)}; choose leave or stay"
+            )
+
+
+@dataclass(frozen=True)
+class Journeys:
+    """The journeys of a crowd.
+
+    Fields:
+        journeys: on one of which people are.
+        which: ``[A]`` or ``[E, A]`` int: its index, -1 for whoever keeps the goal of the scene.
+
+    Raises:
+        InputError: an index is not that of a journey.
+
+    >>> from crowdbot.world import Point
+    >>> both = Journeys((Journey((Point(0.0, 5.0),)), Journey((Point(9.0, 5.0),))), which=[0, 1, -1])
+    >>> both.begun(Scene.of([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), np.array([0]), np.array([[0, 1, 2]])).goal.tolist()
+    [[[0.0, 5.0], [9.0, 5.0], [2.0, 0.0]]]
+    """
+
+    journeys: tuple[Journey, ...]
+    which: int | Sequence[int] | Numbers = 0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "journeys", tuple(self.journeys))
+        which = np.asarray(self.which)
+        if which.dtype.kind not in "iu" or np.any((which < -1) | (which >= len(self.journeys))):
+            raise InputError(
+                f"Journeys: which = {which.tolist()} must name journeys 0 to {len(self.journeys) - 1}, or -1 for none"
+            )
+
+    def begun(
+        self, scene: Scene, seeds: Numbers, ids: Numbers, holds: Callable[[Floats], Bools] | None = None
+    ) -> Scene:
+        """Return the scene in which everybody is on the way to the first stop.
+
+        Args:
+            scene: at the beginning.
+            seeds: ``[E]``.
+            ids: ``[E, A]`` who people are.
+            holds: whether a body has room at points ``[N, 2]``.
+        """
+        try:
+            which = np.broadcast_to(np.asarray(self.which, dtype=np.float64), scene.shape)
+        except ValueError:
+            raise InputError(
+                f"Journeys: which has shape {list(np.shape(self.which))}, it must fit [E, A] = {list(scene.shape)}"
+            ) from None
+        memory = {**scene.memory, JOURNEY: which, STOP: np.zeros(scene.shape)}
+        return self.aimed(scene.replace(memory=memory), which >= 0, seeds, ids, holds)
+
+    def gone_on(
+        self, scene: Scene, seeds: Numbers, ids: Numbers, holds: Callable[[Floats], Bools] | None = None
+    ) -> Scene:
+        """Return the scene in which whoever has reached a stop is on the way to the next, or has left."""
+        stop, active = scene.memory[STOP].copy(), scene.active.copy()
+        renewed = np.zeros(scene.shape, dtype=np.bool_)
+        for number, k, rows in self._parties(scene):
+            journey = self.journeys[number]
+            at = journey.stops[k]
+            there = np.zeros(scene.shape, dtype=np.bool_)
+            there[rows] = at.reached(scene.position[rows], scene.goal[rows])
+            stop[there] = k + 1
+            if k + 1 < len(journey.stops):
+                renewed |= there
+            if at.moves:
+                renewed |= rows & ~there
+            if k + 1 == len(journey.stops) and journey.then == "leave":
+                active &= ~there
+        on = scene.replace(active=active, memory={**scene.memory, STOP: stop})
+        return self.aimed(on, renewed & active, seeds, ids, holds)
+
+    def aimed(
+        self,
+        scene: Scene,
+        who: Bools,
+        seeds: Numbers,
+        ids: Numbers,
+        holds: Callable[[Floats], Bools] | None = None,
+    ) -> Scene:
+        """Return the scene in which those ``who`` ``[E, A]`` have the goal of their stop."""
+        if not np.any(who):
+            return scene
+        goal = scene.goal.copy()
+        seed = np.broadcast_to(seeds[:, None], scene.shape)
+        for number, k, rows in self._parties(scene):
+            mine = rows & who
+            if np.any(mine):
+                luck = Luck(seed[mine], ids[mine], (STOP, number, k), holds)
+                goal[mine] = self.journeys[number].stops[k].goal(scene.position[mine], luck)
+        return scene.replace(goal=goal)
+
+    def routed(self, scene: Scene) -> Bools:
+        """Return ``[E, A]`` whom a router may lead."""
+        out = np.ones(scene.shape, dtype=np.bool_)
+        for number, k, rows in self._parties(scene):
+            if not self.journeys[number].stops[k].routed:
+                out[rows] = False
+        return out
+
+    def _parties(self, scene: Scene) -> list[tuple[int, int, Bools]]:
+        """Return for every journey and stop who is on the way there, where somebody is."""
+        walking = scene.active & ~scene.external
+        found = []
+        for number, journey in enumerate(self.journeys):
+            mine = walking & (scene.memory[JOURNEY] == number)
+            if np.any(mine):
+                stops = enumerate(mine & (scene.memory[STOP] == k) for k in range(len(journey.stops)))
+                found += [(number, k, rows) for k, rows in stops if np.any(rows)]
+        return found
