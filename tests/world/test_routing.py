@@ -14,7 +14,7 @@ from crowdbot.core import InputError, Scene, Walls
 from crowdbot.world import Router
 from crowdbot.world.free_space import corners, inside, room_for
 from crowdbot.world.routing import CORNER, STRAIGHT
-from crowdbot.world.wall_cells import BLIND, sees, wall_cells
+from crowdbot.world.wall_cells import sees, wall_cells
 
 ROOM = [(0.0, 0.0), (0.0, 12.0), (20.0, 12.0), (20.0, 0.0)]  # clockwise: people are inside
 MAZE = [
@@ -94,14 +94,14 @@ def test_sight_is_what_shapely_says():
     answers = []
     for _ in range(300):
         p, q = rng.uniform(-3.0, 15.0, (2, 2))
-        answers.append(sees(*cells, *p, *q, BLIND, BLIND))
+        answers.append(sees(*cells, *p, *q, 1.0))
         assert answers[-1] == in_sight(walls, p, q, 0.3)
     assert 50 < sum(answers) < 250
 
 
 def test_without_walls_everything_is_in_sight():
     cells = wall_cells(np.zeros((0, 4)), 0.3)
-    assert sees(*cells, 0.0, 0.0, 1e6, -1e6, BLIND, BLIND)
+    assert sees(*cells, 0.0, 0.0, 1e6, -1e6, 1.0)
     assert Router.of([]).towards([[1.0, 2.0]], [[9.0, 9.0]]).tolist() == [[9.0, 9.0]]
 
 
@@ -185,7 +185,7 @@ def test_whoever_is_pushed_about_still_arrives(seed):
         if t > 300:
             return np.zeros_like(place)
         push = rng.normal(0.0, 0.15, place.shape)
-        free = [sees(*cells, *p, *(p + d), BLIND, BLIND) for p, d in zip(place, push, strict=True)]
+        free = [sees(*cells, *p, *(p + d), 1.0) for p, d in zip(place, push, strict=True)]
         return np.where(np.array(free)[:, None], push, 0.0)
 
     track = walked(router, start, goal, shove=shove)

@@ -13,13 +13,14 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import models
-from ..core import InputError, Parameter, parameters, stream
-from ..core.plug import find, kebab
-from ..data.forecast import Forecast
-from ..data.windows import Windows
-from ..models import CrowdModel, goals
-from ..models.goals import Goal
+from crowdbot import models
+from crowdbot.core import InputError, Parameter, parameters, stream
+from crowdbot.core.plug import find, kebab
+from crowdbot.data.forecast import Forecast
+from crowdbot.data.windows import Windows
+from crowdbot.models import CrowdModel, goals
+from crowdbot.models.goals import Goal
+
 from .costs import Cost
 from .rollout import Rollout
 from .search import Search

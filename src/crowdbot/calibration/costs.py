@@ -10,8 +10,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import Paper
-from ..data.windows import Windows
+from crowdbot.core import Paper
+from crowdbot.data.windows import Windows
 
 __all__ = ["AbsoluteDifference", "Cost", "Simulate"]
 

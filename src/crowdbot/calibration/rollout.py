@@ -8,12 +8,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import InputError, Scene, Walls
-from ..data.forecast import Forecast
-from ..data.motion import bridged, cut, observed_velocity
-from ..data.windows import Windows
-from ..models import CrowdModel
-from ..models.goals import Goal
+from crowdbot.core import InputError, Scene, Walls
+from crowdbot.data.forecast import Forecast
+from crowdbot.data.motion import bridged, cut, observed_velocity
+from crowdbot.data.windows import Windows
+from crowdbot.models import CrowdModel
+from crowdbot.models.goals import Goal
 
 __all__ = ["Rollout"]
 

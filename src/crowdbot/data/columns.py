@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import DataError
+from crowdbot.core.errors import DataError
+
 from .rows import frame_step, integers, where
 
 __all__ = [

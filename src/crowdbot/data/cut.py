@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import DataError, InputError, did_you_mean
+from crowdbot.core.errors import DataError, InputError, did_you_mean
+
 from .rows import Runs, runs
 from .windows import Windows
 

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import DataError
+from crowdbot.core.errors import DataError
+
 from .assemble import assemble
 from .source import MAX_BYTES, Given, Reader, Source, parsing
 from .trajectories import Trajectories

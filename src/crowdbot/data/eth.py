@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import DataError
+from crowdbot.core.errors import DataError
+
 from .assemble import assemble
 from .source import Given, Reader, Source
 from .trajectories import Trajectories

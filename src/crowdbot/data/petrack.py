@@ -11,7 +11,8 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import DataError
+from crowdbot.core.errors import DataError
+
 from .assemble import assemble
 from .source import Given, Reader, Source
 from .trajectories import Trajectories

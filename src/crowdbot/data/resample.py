@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import DataError, InputError
+from crowdbot.core.errors import DataError, InputError
+
 from .source import MAX_ROWS
 
 if TYPE_CHECKING:

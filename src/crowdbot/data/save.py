@@ -11,7 +11,8 @@ from typing import IO, Any
 
 import numpy as np
 
-from ..core.errors import DataError, InputError, did_you_mean
+from crowdbot.core.errors import DataError, InputError, did_you_mean
+
 from .rows import runs
 from .tables import ROBOT
 from .trajectories import PrimaryScene, Trajectories

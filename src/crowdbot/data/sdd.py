@@ -9,7 +9,8 @@ import re
 
 import numpy as np
 
-from ..core.errors import DataError
+from crowdbot.core.errors import DataError
+
 from .assemble import assemble
 from .source import Given, Reader, Source
 from .trajectories import Trajectories

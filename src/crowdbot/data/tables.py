@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ..core.errors import DataError
+from crowdbot.core.errors import DataError
+
 from .assemble import assemble
 from .columns import (
     Columns,

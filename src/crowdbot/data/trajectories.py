@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.errors import DataError, InputError, did_you_mean
+from crowdbot.core.errors import DataError, InputError, did_you_mean
+
 from .cut import past_at, windows_of
 from .resample import resampled
 from .rows import check_rows, floats, frame_step, integers, runs

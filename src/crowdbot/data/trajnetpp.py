@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ..core.errors import DataError
+from crowdbot.core.errors import DataError
+
 from .assemble import assemble
 from .rows import LARGEST
 from .source import Given, Reader, Source

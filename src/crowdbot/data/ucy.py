@@ -13,7 +13,8 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import DataError
+from crowdbot.core.errors import DataError
+
 from .assemble import assemble
 from .source import MAX_ROWS, Given, Reader, Source
 from .trajectories import Trajectories

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import InputError
-from ..data.forecast import Forecast
-from ..data.windows import Windows
+from crowdbot.core import InputError
+from crowdbot.data.forecast import Forecast
+from crowdbot.data.windows import Windows
 
 __all__ = [
     "PersonErrors",

@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from ..core import InputError
-from ..data.forecast import Forecast
-from ..data.windows import Windows
+from crowdbot.core import InputError
+from crowdbot.data.forecast import Forecast
+from crowdbot.data.windows import Windows
+
 from .displacement import PersonErrors, miss_rate, person_errors
 
 __all__ = ["Score", "score"]

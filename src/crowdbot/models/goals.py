@@ -9,9 +9,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import InputError
-from ..core.parameter import check_parameters, parameter
-from ..data.windows import Windows
+from crowdbot.core.errors import InputError
+from crowdbot.core.parameter import check_parameters, parameter
+from crowdbot.data.windows import Windows
 
 __all__ = ["CurrentDirection", "Goal", "GroundTruth"]
 

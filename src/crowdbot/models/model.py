@@ -11,11 +11,11 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import InputError
-from ..core.neighbors import SMALL
-from ..core.paper import Paper
-from ..core.parameter import PerAgent, check_parameters, parameters, per_agent
-from ..core.scene import Scene
+from crowdbot.core.errors import InputError
+from crowdbot.core.neighbors import SMALL
+from crowdbot.core.paper import Paper
+from crowdbot.core.parameter import PerAgent, check_parameters, parameters, per_agent
+from crowdbot.core.scene import Scene
 
 __all__ = ["CrowdModel", "check_limit", "kept", "rows", "speed_limit", "spread", "walkers", "wishes"]
 

@@ -9,11 +9,12 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from ..core.kernels import kernel
-from ..core.neighbors import CHUNK, Neighbors, nearest
-from ..core.paper import Paper
-from ..core.parameter import PerAgent, parameter, per_agent
-from ..core.scene import Scene
+from crowdbot.core.kernels import kernel
+from crowdbot.core.neighbors import CHUNK, Neighbors, nearest
+from crowdbot.core.paper import Paper
+from crowdbot.core.parameter import PerAgent, parameter, per_agent
+from crowdbot.core.scene import Scene
+
 from .linear_program import best_velocity
 from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
 from .orca_lines import Edges, avoid_agent, avoid_edge, edges_in_reach, edges_of

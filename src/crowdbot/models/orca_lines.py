@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.geometry import nearest_on_segment
-from ..core.kernels import kernel
-from ..core.walls import Walls
+from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.core.kernels import kernel
+from crowdbot.core.walls import Walls
 
 __all__ = ["Edges", "avoid_agent", "avoid_edge", "edges_in_reach", "edges_of"]
 

@@ -10,13 +10,14 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from ..core.errors import InputError, did_you_mean
-from ..core.geometry import nearest_on_segment
-from ..core.kernels import kernel
-from ..core.neighbors import CHUNK, Neighbors, nearest
-from ..core.paper import Paper
-from ..core.parameter import PerAgent, parameter, per_agent
-from ..core.scene import Scene
+from crowdbot.core.errors import InputError, did_you_mean
+from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.core.kernels import kernel
+from crowdbot.core.neighbors import CHUNK, Neighbors, nearest
+from crowdbot.core.paper import Paper
+from crowdbot.core.parameter import PerAgent, parameter, per_agent
+from crowdbot.core.scene import Scene
+
 from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
 
 __all__ = ["SocialForce"]

@@ -9,10 +9,11 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import InputError, Paper
-from ..data.forecast import Forecast
-from ..data.motion import observed_velocity
-from ..data.windows import Windows
+from crowdbot.core import InputError, Paper
+from crowdbot.data.forecast import Forecast
+from crowdbot.data.motion import observed_velocity
+from crowdbot.data.windows import Windows
+
 from .predictor import Predictor, window_streams
 
 __all__ = ["ConstantAcceleration", "ConstantVelocity", "SampledConstantVelocity"]

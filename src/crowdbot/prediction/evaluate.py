@@ -6,10 +6,11 @@ import dataclasses
 import time
 from collections.abc import Callable
 
-from ..core import InputError, stream
-from ..data.forecast import Forecast
-from ..data.windows import Windows
-from ..metrics import PersonErrors, Score, person_errors
+from crowdbot.core import InputError, stream
+from crowdbot.data.forecast import Forecast
+from crowdbot.data.windows import Windows
+from crowdbot.metrics import PersonErrors, Score, person_errors
+
 from .predictor import Predictor
 
 __all__ = ["evaluate"]

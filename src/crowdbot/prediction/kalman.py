@@ -9,9 +9,10 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import InputError, Paper
-from ..data.forecast import Forecast
-from ..data.windows import Windows
+from crowdbot.core import InputError, Paper
+from crowdbot.data.forecast import Forecast
+from crowdbot.data.windows import Windows
+
 from .predictor import Predictor
 
 __all__ = ["Kalman"]

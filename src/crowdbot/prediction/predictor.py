@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import InputError, stream
-from ..core.plug import kebab
-from ..data.forecast import Forecast
-from ..data.windows import Windows
+from crowdbot.core import InputError, stream
+from crowdbot.core.plug import kebab
+from crowdbot.data.forecast import Forecast
+from crowdbot.data.windows import Windows
 
 __all__ = ["Predictor", "window_streams"]
 

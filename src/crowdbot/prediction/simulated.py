@@ -7,11 +7,12 @@ from typing import cast
 
 import numpy as np
 
-from ..calibration import Fit, Rollout, named_goal, named_model
-from ..data.forecast import Forecast
-from ..data.windows import Windows
-from ..models import ORCA, CrowdModel
-from ..models.goals import CurrentDirection, Goal
+from crowdbot.calibration import Fit, Rollout, named_goal, named_model
+from crowdbot.data.forecast import Forecast
+from crowdbot.data.windows import Windows
+from crowdbot.models import ORCA, CrowdModel
+from crowdbot.models.goals import CurrentDirection, Goal
+
 from .predictor import Predictor
 
 __all__ = ["Simulated"]

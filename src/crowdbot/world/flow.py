@@ -56,7 +56,7 @@ class Source:
         most: no more people than this; None: no limit.
         speed: preferred [m/s], a number or something to draw from.
         radius: of bodies [m], likewise.
-        model: which model of a mixture they walk by; None: what stood there before.
+        model: the index of the model of a mixture that they walk by.
 
     Raises:
         InputError: a value is not allowed.
@@ -76,7 +76,7 @@ class Source:
     most: int | None = None
     speed: float | Draw = 1.34
     radius: float | Draw = 0.25
-    model: int | None = None
+    model: int = 0
 
     def __post_init__(self) -> None:
         if not 0.0 < self.rate <= MOST_RATE:
@@ -257,15 +257,11 @@ class Arrivals:
             return changed
 
         place = np.stack([x, y], axis=-1)
-        memory = {name: put(value, self._fresh.get(name, 0.0)) for name, value in scene.memory.items() if name != MODEL}
+        memory = {name: put(value, self._fresh.get(name, 0.0)) for name, value in scene.memory.items()}
         if JOURNEY in memory:
             memory[JOURNEY] = put(memory[JOURNEY], self._first_journey + source)
-        if MODEL in scene.memory:
-            models = [scene.memory[MODEL][one.e, one.a] for one in entries]
-            named = [self._sources[one.source].model for one in entries]
-            memory[MODEL] = put(
-                scene.memory[MODEL], [m if n is None else n for m, n in zip(models, named, strict=True)]
-            )
+        if MODEL in memory:
+            memory[MODEL] = put(memory[MODEL], [self._sources[k].model for k in source])
         return scene.replace(
             position=put(scene.position, place),
             velocity=put(scene.velocity, 0.0),

@@ -16,7 +16,7 @@ from crowdbot.core.kernels import kernel
 from crowdbot.core.neighbors import CHUNK
 
 from .free_space import corners, room_for
-from .wall_cells import BLIND, WallCells, sees, wall_cells
+from .wall_cells import WallCells, distance2, sees, wall_cells
 
 __all__ = ["WAY", "Router", "Ways"]
 
@@ -24,17 +24,18 @@ Floats = NDArray[np.float64]
 Rows = NDArray[np.int32]
 
 WAY = "way"
-"""Name in the memory of a scene ``[E, A, 8]``: the way that each agent follows."""
-NEAR = 1.0
-"""From this far [m] one may cut the corner that one walks to."""
+"""Name in the memory of a scene ``[E, A, 9]``: the way that each agent follows."""
+CUT = 0.5
+"""Who comes as near as this share of the radius to the next leg of the way may take it, before it is in sight."""
 MOVED = 1.0
 """A goal that moves farther than this [m] asks for a new way, though it be in sight of the last corner."""
 MOST_CORNERS = 3000
 CHOICES = ("error", "nearest")
 
-ASKED, AIM, CORNER, LAST, BEHIND, BENT = 0, 2, 4, 5, 6, 7
-"""Columns of a way: goal that was asked for x, y; where the way ends x, y; the next corner; the last one; the one just
-passed; whether it ends elsewhere than was asked for."""
+ASKED, AIM, FROM, CORNER, LAST, BENT = 0, 2, 4, 6, 7, 8
+COLUMNS = 9
+"""Columns of a way: goal that was asked for x, y; where the way ends x, y; where the present leg begins x, y; the next
+corner; the last one; whether the way ends elsewhere than was asked for."""
 STRAIGHT, UNPLANNED, LOST = -1, -2, -3
 """Instead of the next corner: the end is in sight; there is no plan yet; none was found."""
 
@@ -57,7 +58,7 @@ class Ways(NamedTuple):
     Fields:
         subgoal: ``[E, A, 2]`` [m], in sight.
         length: ``[E, A]`` of the whole way to the goal [m].
-        way: ``[E, A, 8]``, to be handed back in the next step.
+        way: ``[E, A, 9]``, to be handed back in the next step.
     """
 
     subgoal: Floats
@@ -71,7 +72,7 @@ def _connect(wall: Floats, first: Rows, member: Rows, frame: Floats, node: Float
     for i in prange(len(node)):
         for j in range(i):
             x, y, tx, ty = node[i, 0], node[i, 1], node[j, 0], node[j, 1]
-            if sees(wall, first, member, frame, x, y, tx, ty, BLIND, BLIND):
+            if sees(wall, first, member, frame, x, y, tx, ty, 1.0):
                 length[i, j] = length[j, i] = math.sqrt((tx - x) ** 2 + (ty - y) ** 2)
 
 
@@ -103,11 +104,11 @@ def _plan(
 ) -> tuple[int, int]:
     """Return the first and the last corner of the shortest way from x, y to g; STRAIGHT twice, or LOST twice."""
     wall, first, member, frame, node, length, _after = map_
-    if sees(wall, first, member, frame, x, y, gx, gy, BLIND, BLIND):
+    if sees(wall, first, member, frame, x, y, gx, gy, 1.0):
         return STRAIGHT, STRAIGHT
     count = 0
     for v in range(len(node)):
-        if sees(wall, first, member, frame, node[v, 0], node[v, 1], gx, gy, BLIND, BLIND):
+        if sees(wall, first, member, frame, node[v, 0], node[v, 1], gx, gy, 1.0):
             seen[count], reach[count] = v, _far(node[v, 0], node[v, 1], gx, gy)
             count += 1
     best, begin, last = math.inf, LOST, LOST
@@ -115,7 +116,7 @@ def _plan(
         head = _far(x, y, node[u, 0], node[u, 1])
         if head + _far(node[u, 0], node[u, 1], gx, gy) >= best:
             continue
-        if not sees(wall, first, member, frame, x, y, node[u, 0], node[u, 1], BLIND, BLIND):
+        if not sees(wall, first, member, frame, x, y, node[u, 0], node[u, 1], 1.0):
             continue
         for n in range(count):
             total = head + length[u, seen[n]] + reach[n]
@@ -126,32 +127,31 @@ def _plan(
 
 @kernel
 def _keep(map_: _Map, x: float, y: float, way: Floats) -> int:
-    """Go on along a way: cut corners that are near, take what is in sight; return UNPLANNED when sight is lost."""
+    """Go on along a way, as far as is in sight, and return the next corner; UNPLANNED when the way is lost.
+
+    Between corners walls are no nearer than the radius to a leg of the way: who is nearer to it than that can walk
+    straight to its end, though a wall may come nearer than the radius then.
+    """
     wall, first, member, frame, node, _length, after = map_
     gx, gy = way[AIM], way[AIM + 1]
-    u, w, behind = int(way[CORNER]), int(way[LAST]), int(way[BEHIND])
-    if u >= 0 and sees(wall, first, member, frame, x, y, gx, gy, BLIND, BLIND):
-        way[BEHIND] = -1.0
+    u, w = int(way[CORNER]), int(way[LAST])
+    if u >= 0 and sees(wall, first, member, frame, x, y, gx, gy, 1.0):
+        way[FROM], way[FROM + 1] = x, y
         return STRAIGHT
-    moved = False
     while u >= 0:
+        ux, uy = node[u, 0], node[u, 1]
         tx, ty, following = gx, gy, STRAIGHT
         if u != w:
             following = int(after[u, w])
             tx, ty = node[following, 0], node[following, 1]
-        near = _far(x, y, node[u, 0], node[u, 1]) <= NEAR
-        ex, ey = (node[u, 0], node[u, 1]) if near else (BLIND, BLIND)
-        if not sees(wall, first, member, frame, x, y, tx, ty, ex, ey):
+        on_leg = distance2(x, y, ux, uy, tx, ty) < (CUT * frame[5]) ** 2
+        if not sees(wall, first, member, frame, x, y, tx, ty, 0.0 if on_leg else 1.0):
             break
-        behind = u if near else -1
-        u, moved = following, True
-    if not moved:
-        tx, ty = (node[u, 0], node[u, 1]) if u >= 0 else (gx, gy)
-        ex, ey = (node[behind, 0], node[behind, 1]) if behind >= 0 else (BLIND, BLIND)
-        if not sees(wall, first, member, frame, x, y, tx, ty, ex, ey):
-            return UNPLANNED
-    way[BEHIND] = behind
-    return u
+        way[FROM], way[FROM + 1] = ux, uy
+        u = following
+    tx, ty = (node[u, 0], node[u, 1]) if u >= 0 else (gx, gy)
+    on_leg = distance2(x, y, way[FROM], way[FROM + 1], tx, ty) < frame[5] ** 2
+    return u if sees(wall, first, member, frame, x, y, tx, ty, 0.0 if on_leg else 1.0) else UNPLANNED
 
 
 @kernel(parallel=True)
@@ -177,7 +177,7 @@ def _follow_part(
         if not same and mine[BENT] == 0.0 and u > UNPLANNED and _far(gx, gy, mine[ASKED], mine[ASKED + 1]) <= MOVED:
             mine[AIM], mine[AIM + 1] = gx, gy
             w = int(mine[LAST])
-            same = u < 0 or sees(wall, first, member, frame, node[w, 0], node[w, 1], gx, gy, BLIND, BLIND)
+            same = u < 0 or sees(wall, first, member, frame, node[w, 0], node[w, 1], gx, gy, 1.0)
         if not same:
             mine[ASKED], mine[ASKED + 1], mine[AIM], mine[AIM + 1], mine[BENT] = gx, gy, gx, gy, 0.0
             u = UNPLANNED
@@ -185,7 +185,7 @@ def _follow_part(
             u = _keep(map_, x, y, mine)
         if u <= UNPLANNED:
             u, last = _plan(map_, x, y, mine[AIM], mine[AIM + 1], seen, reach)
-            mine[LAST], mine[BEHIND] = last, -1.0
+            mine[LAST], mine[FROM], mine[FROM + 1] = last, x, y
         mine[CORNER] = u
 
 
@@ -194,8 +194,8 @@ class Router:
     """The shortest ways around walls for bodies of one size, made once for a stage; see :meth:`of`.
 
     Ways bend at corners (visibility graph). Everybody walks to the farthest corner of the own way that is in sight, and
-    plans anew when pushed so far that the next one is out of sight. Who is nearer to a wall than the radius still
-    finds the way, and corners may be cut to half of it, so that nobody has to stand on one point.
+    plans anew when pushed so far off the way that the next one is out of sight. Who is nearer to a wall than the radius
+    still finds the way, and corners may be cut to half of it, so that nobody has to stand on one point.
 
     Fields:
         radius: ways keep this far [m] from walls; the largest radius of a body is a good choice.
@@ -259,7 +259,7 @@ class Router:
 
         Args:
             position, goal: ``[E, A, 2]`` [m].
-            way: ``[E, A, 8]`` of the step before; None plans anew.
+            way: ``[E, A, 9]`` of the step before; None plans anew.
             asking: ``[E, A]`` who needs a way; None: all.
 
         Raises:
@@ -268,7 +268,7 @@ class Router:
         E, A = position.shape[:2]
         asks = np.ones((E, A), np.bool_) if asking is None else np.ascontiguousarray(asking)
         new = fresh((E, A)) if way is None else np.array(way, dtype=np.float64)
-        rows, place = new.reshape(-1, 8), np.where(asks[..., None], position, 0.0).reshape(-1, 2)
+        rows, place = new.reshape(-1, COLUMNS), np.where(asks[..., None], position, 0.0).reshape(-1, 2)
         aims = np.where(asks[..., None], goal, 0.0).reshape(-1, 2)
         _follow(self._map, place, aims, asks.reshape(-1), rows)
         next_ = self._next(rows)
@@ -353,7 +353,7 @@ class Router:
         away = shapely.distance(self._parts, shapely.Point(goal))
         end = self._nearest(part, goal)
         cells = self._map[:4]
-        return bool(away[part] <= away.min() and sees(*cells, end[0], end[1], goal[0], goal[1], BLIND, BLIND))
+        return bool(away[part] <= away.min() and sees(*cells, end[0], end[1], goal[0], goal[1], 1.0))
 
     def _nearest(self, part: int, place: Floats) -> Floats:
         import shapely
@@ -363,8 +363,8 @@ class Router:
 
 
 def fresh(shape: tuple[int, int]) -> Floats:
-    """Return ways ``[E, A, 8]`` of which none is planned yet."""
-    way = np.full((*shape, 8), np.nan)
+    """Return ways ``[E, A, 9]`` of which none is planned yet."""
+    way = np.full((*shape, COLUMNS), np.nan)
     way[..., CORNER] = UNPLANNED
     way[..., BENT] = 0.0
     return way

@@ -66,11 +66,12 @@ class Traffic:
         seeds = np.int64(seed) + np.arange(scene.shape[0], dtype=np.int64)
         who = _identities(ids, scene.shape)
         following = who.max(axis=1, initial=-1) + 1
-        named = [source.model for source in sources if source.model is not None]
-        mixture = model if isinstance(model, Mixture) and named else None
-        for name in named:
-            if not isinstance(model, Mixture) or not 0 <= name < len(model.models):
-                raise InputError(f"Source: model = {name}, but the crowd is no mixture that has a model of this number")
+        mixture = model if isinstance(model, Mixture) and sources else None
+        for source in sources:
+            if not 0 <= source.model < (1 if mixture is None else len(mixture.models)):
+                raise InputError(
+                    f"Source: model = {source.model}, but the crowd is no mixture that has a model of this number"
+                )
         if sources:
             first = journeys or Journeys((), -1)
             start = {WAY: fresh((1, 1))[0, 0], **getattr(model, "memory_at_start", {})}

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.kernels import kernel
 
-__all__ = ["BLIND", "WallCells", "distance2", "sees", "wall_cells"]
+__all__ = ["WallCells", "distance2", "sees", "wall_cells"]
 
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int32]
@@ -22,12 +22,6 @@ SLACK = 1.001
 """Walls are listed in cells a little farther away than needed, so that rounding loses none."""
 EXACT = 1.0 - 1e-6
 """Share of a clearance that counts as all of it."""
-EASE = 0.5
-"""Share of the clearance that is enough at a corner while one goes around it."""
-CORNER = 1.1
-"""A wall that has a corner comes this many reaches near to the place where one goes around it."""
-BLIND = math.nan
-"""Coordinate of no corner."""
 
 
 class WallCells(NamedTuple):
@@ -51,7 +45,7 @@ def wall_cells(segments: Floats, reach: float) -> WallCells:
     """Sort walls ``[M, 4]`` into cells, each into those nearer than ``reach`` [m].
 
     >>> cells = wall_cells(np.array([[0.0, 0.0, 4.0, 0.0]]), reach=0.5)
-    >>> sees(*cells, 2.0, 1.0, 2.0, -1.0, BLIND, BLIND), sees(*cells, 2.0, 1.0, 9.0, 0.6, BLIND, BLIND)
+    >>> sees(*cells, 2.0, 1.0, 2.0, -1.0, 1.0), sees(*cells, 2.0, 1.0, 9.0, 0.6, 1.0)
     (False, True)
     """
     wall = np.ascontiguousarray(segments, dtype=np.float64).reshape(-1, 4)
@@ -107,16 +101,14 @@ def distance2(x: float, y: float, ax: float, ay: float, bx: float, by: float) ->
 
 @kernel
 def sees(
-    wall: Floats, first: Rows, member: Rows, frame: Floats, x: float, y: float, tx: float, ty: float,
-    ex: float, ey: float,
+    wall: Floats, first: Rows, member: Rows, frame: Floats, x: float, y: float, tx: float, ty: float, share: float
 ) -> bool:  # fmt: skip
-    """Return whether one can walk straight from x, y to t: no wall is crossed or comes nearer than the reach.
+    """Return whether one can walk straight from x, y to t: no wall is crossed, or nearer than a share of the reach.
 
-    A wall that is nearer at one of the two ends may be as near on the way. Around the corner at e half of the reach is
-    enough; NaN is no corner.
+    A wall that is nearer at one of the two ends may be as near on the way.
     """
     dx, dy = tx - x, ty - y
-    size, columns, rows = frame[2], int(frame[3]), int(frame[4])
+    size, columns, rows, reach = frame[2], int(frame[3]), int(frame[4]), share * frame[5]
     begin, end = _inside(x - frame[0], dx, columns * size, 0.0, 1.0)
     begin, end = _inside(y - frame[1], dy, rows * size, begin, end)
     if begin > end:
@@ -134,7 +126,7 @@ def sees(
         cell = j * columns + i
         for k in range(first[cell], first[cell + 1]):
             m = member[k]
-            if _hinders(wall[m, 0], wall[m, 1], wall[m, 2], wall[m, 3], x, y, tx, ty, frame[5], ex, ey):
+            if _hinders(wall[m, 0], wall[m, 1], wall[m, 2], wall[m, 3], x, y, tx, ty, reach):
                 return False
         if i == last_i and j == last_j:
             break
@@ -160,8 +152,7 @@ def _inside(place: float, way: float, width: float, begin: float, end: float) ->
 
 @kernel
 def _hinders(
-    ax: float, ay: float, bx: float, by: float, px: float, py: float, qx: float, qy: float, reach: float,
-    ex: float, ey: float,
+    ax: float, ay: float, bx: float, by: float, px: float, py: float, qx: float, qy: float, reach: float
 ) -> bool:  # fmt: skip
     """Return whether wall a-b is in the way from p to q, crossed or nearer than the reach or than at p and q."""
     dx, dy = qx - px, qy - py
@@ -175,7 +166,4 @@ def _hinders(
     if near2 >= reach * reach * EXACT:
         return False
     at_p, at_q = distance2(px, py, ax, ay, bx, by), distance2(qx, qy, ax, ay, bx, by)
-    need2 = min(reach * reach, at_p, at_q)
-    if distance2(ex, ey, ax, ay, bx, by) <= (CORNER * reach) ** 2:
-        need2 = min(need2, EASE * EASE * reach * reach)
-    return near2 < need2 * EXACT
+    return near2 < min(reach * reach, at_p, at_q) * EXACT
