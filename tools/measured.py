@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import re
+import subprocess
 import sys
 from collections import Counter
 from pathlib import Path
@@ -40,6 +42,7 @@ def main(shared: Path) -> None:
     _baseline(splits / "all_data")
     _predictors(splits)
     _engines(shared / "reference" / "rvo2")
+    _other_engines()
     _navigation()
     _speed()
     print((Path(__file__).parent / "weak.md").read_text(encoding="utf-8").rstrip())
@@ -141,6 +144,18 @@ def _engines(folder: Path) -> None:
         "\nWhat remains are ties of neighbours and branches of infeasible programs, where RVO2 computes in single"
         "\nprecision and splits walls at the planes of its tree."
     )
+
+
+def _other_engines() -> None:
+    print("\n## Crowd models against other engines\n")
+    print("One step from the same state, as the tests print it; what remains is explained where the test stands.\n")
+    print("`pytest tests/models -q -s`\n\n```text")
+    command = [sys.executable, "-m", "pytest", "tests/models", "-q", "-s"]
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    for line in said.splitlines():
+        if re.search(r"[\d.]+% .*(within|median)|median .*%", line):
+            print(line.lstrip("."))
+    print("```")
 
 
 def _navigation() -> None:

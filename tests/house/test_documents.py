@@ -71,3 +71,8 @@ def test_make_knows_the_two_commands():
         assert done.returncode == 0, done.stderr
         assert "crowdbot demo" in done.stdout or "pytest" in done.stdout
     assert (ROOT / ".ci" / "run").read_text(encoding="utf-8").strip().endswith("exec make test")
+
+
+def test_the_page_of_models_is_made_from_the_models():
+    done = subprocess.run([sys.executable, ROOT / "tools" / "models.py"], capture_output=True, text=True, check=True)
+    assert (ROOT / "docs" / "models.md").read_text(encoding="utf-8") == done.stdout

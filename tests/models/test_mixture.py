@@ -83,6 +83,13 @@ def test_headings_and_memories_are_merged():
     assert scene.heading[0].tolist() == [1.0, 10.0, 100.0] * 2
 
 
+def test_what_models_remember_of_somebody_new():
+    class Calm(Counter):
+        memory_at_start: ClassVar[dict[str, float]] = {"calm": 1.0}
+
+    assert dict(Mixture((Counter(), Calm())).memory_at_start) == {"calm": 1.0}
+
+
 def test_a_step_follows_the_velocity():
     scene = crowd(5)
     mixture = Mixture(BOTH, halves(scene))

@@ -5,6 +5,8 @@ import math
 import numba
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from crowdbot.core import InputError, Scene, Twist, stream
 from crowdbot.models import ORCA, SocialForce
@@ -158,6 +160,11 @@ def test_everything_at_once_is_the_same_alone_in_a_batch_and_with_one_thread():
     assert alone.ids.max() > 15
 
 
+def test_any_whole_number_is_a_seed():
+    for seed in (2**200, -5):
+        assert everything(maze(1, A=4), seed).step({}).time == 0.1
+
+
 def test_everything_at_once_goes_along_when_people_are_renumbered():
     scene = maze(9, A=16)
     order = np.random.default_rng(0).permutation(16)
@@ -178,6 +185,34 @@ def test_a_world_can_go_on_from_a_scene_of_another():
         first.step({})
     second = everything(first.scene, sources=(), journeys=None)
     assert second.step({}).digest() == first.step({}).digest()
+
+
+def hostile_walls(rng):
+    """Return a room with boxes, slivers and screens that overlap, touch and stick out."""
+    boxes = [np.array([(0, 0), (1, 0), (1, 1), (0, 1)]) * rng.choice([1e-9, 0.05, 2.0], 2) for _ in range(4)]
+    lines = [np.array([(0.0, 0.0), rng.choice([1e-12, 1.0, 6.0], 2)]) for _ in range(3)]
+    return [ROOM, *(shape + rng.integers(0, 12, 2) for shape in [*boxes, *lines])]
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10_000))
+def test_an_impossible_crowd_on_an_impossible_stage_takes_bounded_steps(seed):
+    rng = np.random.default_rng(seed)
+    walls = hostile_walls(rng)
+    place = rng.integers(-2, 14, (1, 25, 2)) + rng.choice(
+        [0.0, 0.1, 0.5], (1, 25, 2)
+    )  # in walls, outside, in one place
+    scene = Scene.of(place, goal=rng.integers(-2, 14, (1, 25, 2)), radius=rng.choice([0.05, 0.3, 0.6], (1, 25)),
+                     active=rng.random(25) < 0.8, walls=walls)  # fmt: skip
+    on = {"router": Router.of(walls, 0.3, unreachable="nearest"), "contact": BodyContact(), "symmetry": 1e-3}
+    world = PlanarWorld(scene, ORCA(), {}, float(rng.choice([0.01, 0.1, 1.0])), **on)
+    for _ in range(15):
+        before = world.scene
+        after = world.step({})
+        assert np.all(np.isfinite(after.position[after.active]))
+        moved = np.hypot(*(after.position - before.position)[after.active].T)
+        # as far as the model goes, a radius for bodies, and out of a few walls
+        assert np.all(moved <= (before.max_speed * world.dt + 6.0 * before.radius)[after.active] + 1e-9)
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """Sources and exits: rates, room, identities, places in the arrays that are used again."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -149,6 +150,16 @@ def test_memories_of_who_left_are_forgotten():
     assert (memory["kept"][0, a], memory[STOP][0, a], memory[JOURNEY][0, a]) == (0.0, 0.0, 0.0)
     assert memory[WAY][0, a, CORNER] == UNPLANNED
     assert memory[JOURNEY][0, 3] == -1.0
+
+
+def test_memories_begin_as_the_model_says():
+    class Calm(ORCA):
+        memory_at_start: ClassVar[dict[str, float]] = {"kept": 0.5}
+
+    scene = empty(4).replace(memory={"kept": np.ones((1, 4))})
+    world = world_of(Source(DOOR, ACROSS, rate=9.0, most=1), scene=scene, model=Calm())
+    entries(world, 2.0)
+    assert sorted(world.scene.memory["kept"][0].tolist()) == [0.5, 1.0, 1.0, 1.0]
 
 
 def test_sources_do_not_change_each_other_nor_the_rest_of_the_crowd():

@@ -19,6 +19,7 @@ COMMANDS = {
     "check": "read a trial and say everything that is wrong with it",
     "cite": "print the papers behind a name",
     "bench": "measure speed on this machine",
+    "validate": "hold the crowd models against experiments with people",
 }
 
 

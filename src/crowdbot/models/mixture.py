@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -71,6 +71,12 @@ class Mixture(CrowdModel):
             if not isinstance(model, CrowdModel):
                 raise InputError(f"Mixture: {model!r} is not a crowd model")
         self._checked(np.asarray(self.which))
+
+    @property
+    def memory_at_start(self) -> Mapping[str, float]:
+        """What the memory of a scene holds for somebody new, by name, where that is not 0: as the models say it."""
+        parts = (getattr(model, "memory_at_start", {}) for model in self.models)
+        return {name: value for part in parts for name, value in part.items()}
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s], each agent's from its own model."""

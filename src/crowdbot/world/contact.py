@@ -50,17 +50,19 @@ class _Bodies(NamedTuple):
 
 @kernel(parallel=True)
 def _push(
-    bodies: _Bodies, near: Neighbors, cells: WallCells, solid: Bools, gain: float, place: Floats, out: Floats
-) -> None:
-    """Push everybody once, from ``place`` to ``out``."""
+    bodies: _Bodies, near: Neighbors, cells: WallCells, solid: Bools, gain: float, place: Floats, moved: Bools,
+    out: Floats, moves: Bools,
+) -> None:  # fmt: skip
+    """Push everybody once, from ``place`` to ``out``; ``moved`` says who was pushed the last time, ``moves`` who is."""
     for part in prange((len(out) + CHUNK - 1) // CHUNK):
-        _push_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), bodies, near, cells, solid, gain, place, out)
+        begin, end = part * CHUNK, min((part + 1) * CHUNK, len(out))
+        _push_part(begin, end, bodies, near, cells, solid, gain, place, moved, out, moves)
 
 
 @kernel
 def _push_part(
     begin: int, end: int, bodies: _Bodies, near: Neighbors, cells: WallCells, solid: Bools, gain: float,
-    place: Floats, out: Floats,
+    place: Floats, moved: Bools, out: Floats, moves: Bools,
 ) -> None:  # fmt: skip
     before, chosen, radius, pushed = bodies
     agent, number, order = near
@@ -69,32 +71,44 @@ def _push_part(
     for k in range(begin, end):
         row = order[k]
         x, y, r = place[row, 0], place[row, 1], radius[row]
-        out[row, 0], out[row, 1] = x, y
-        if not pushed[row]:
-            continue
+        out[row, 0], out[row, 1], moves[row] = x, y, False
         e, a = row // A, row % A
-        px, py, count = 0.0, 0.0, 0
+        anew = moved[row]
         for n in range(number[e, a]):
-            other = row - a + agent[e, a, n]
-            touch = r + radius[other]
-            dx, dy = x - place[other, 0], y - place[other, 1]
-            d2 = dx * dx + dy * dy
-            if d2 >= (touch * TOUCH) ** 2:
-                continue
-            if d2 == 0.0:
-                dx, dy = _apart(before, row, other)
-                d2 = 1e-300
-            distance = math.sqrt(d2)
-            length = math.sqrt(dx * dx + dy * dy)
-            share = 0.5 if pushed[other] or gain > 0.0 else 1.0
-            px += share * (touch - distance) * dx / length
-            py += share * (touch - distance) * dy / length
-            count += 1
+            anew = anew or moved[row - a + agent[e, a, n]]
+        if not pushed[row] or not anew:  # nothing has changed here since the last time
+            continue
+        px, py, count = _pressed(row, agent[e, a, : number[e, a]], row - a, place, before, radius, pushed, gain)
         if count > 0:
             x, y = _shifted(x, y, px, py, count, gain, chosen[row, 0], chosen[row, 1], r)
         if len(wall) > 0:
             x, y = _out_of_walls(wall, first, member, frame, solid, before[row, 0], before[row, 1], x, y, r)
+        moves[row] = x != place[row, 0] or y != place[row, 1]
         out[row, 0], out[row, 1] = x, y
+
+
+@kernel
+def _pressed(
+    row: int, near: Rows, begin: int, place: Floats, before: Floats, radius: Floats, pushed: Bools, gain: float
+) -> tuple[float, float, int]:
+    """Return the sum of what neighbours push one by, and how many do."""
+    px, py, count = 0.0, 0.0, 0
+    for n in range(len(near)):
+        other = begin + near[n]
+        touch = radius[row] + radius[other]
+        dx, dy = place[row, 0] - place[other, 0], place[row, 1] - place[other, 1]
+        d2 = dx * dx + dy * dy
+        if d2 >= (touch * TOUCH) ** 2:
+            continue
+        distance = math.sqrt(d2)
+        if d2 == 0.0:
+            dx, dy = _apart(before, row, other)
+        length = math.sqrt(dx * dx + dy * dy)
+        share = 0.5 if pushed[other] or gain > 0.0 else 1.0
+        px += share * (touch - distance) * dx / length
+        py += share * (touch - distance) * dy / length
+        count += 1
+    return px, py, count
 
 
 @kernel
@@ -294,14 +308,13 @@ class BodyContact:
         )
         gain = self.stiffness * dt * dt if self.variant == "force" else 0.0
         now, then = bodies.chosen.copy(), bodies.chosen.copy()
+        moved, moves = np.ones(len(now), dtype=np.bool_), np.zeros(len(now), dtype=np.bool_)
         for _ in range(self.iterations if gain == 0.0 else 1):
-            _push(bodies, near, surfaces.cells, surfaces.solid, gain, now, then)
-            if np.array_equal(now, then):
+            _push(bodies, near, surfaces.cells, surfaces.solid, gain, now, moved, then, moves)
+            now, then, moved, moves = then, now, moves, moved
+            if not np.any(moved):
                 break
-            now, then = then, now
-        else:
-            then = now
-        return _moved(after, then.reshape(place.shape), pushed, dt)
+        return _moved(after, now.reshape(place.shape), pushed, dt)
 
 
 def _moved(scene: Scene, place: Floats, pushed: Bools, dt: float) -> Scene:

@@ -93,7 +93,7 @@ class Journeys:
             holds: whether a body has room at points ``[N, 2]``.
         """
         try:
-            which = np.broadcast_to(np.asarray(self.which, dtype=np.float64), scene.shape)
+            which = np.broadcast_to(np.asarray(self.which, dtype=np.float64), scene.shape).copy()
         except ValueError:
             raise InputError(
                 f"Journeys: which has shape {list(np.shape(self.which))}, it must fit [E, A] = {list(scene.shape)}"

@@ -63,7 +63,7 @@ class Traffic:
         """
         if scene.preferred_velocity is not None and (router or journeys or sources):
             raise InputError("a scene with preferred velocities has no goals: routers, journeys and sources need goals")
-        seeds = np.int64(seed) + np.arange(scene.shape[0], dtype=np.int64)
+        seeds = np.array([(int(seed) + e) % 2**63 for e in range(scene.shape[0])], dtype=np.int64)
         who = _identities(ids, scene.shape)
         following = who.max(axis=1, initial=-1) + 1
         mixture = model if isinstance(model, Mixture) and sources else None

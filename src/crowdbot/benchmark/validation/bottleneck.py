@@ -1,0 +1,146 @@
+"""Bottleneck: flow out of a room over the width of its only way out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Scene
+from crowdbot.models import CrowdModel
+
+from .literature import SPECIFIC_FLOW
+from .scenario import (
+    RADIUS,
+    Check,
+    Floats,
+    Report,
+    Solid,
+    Verdict,
+    Walk,
+    deepest_overlap,
+    free_speeds,
+    inside_solids,
+    opening,
+    rings,
+    share,
+    starts,
+    stream_of,
+    walk_open,
+)
+
+__all__ = ["BOTTLENECK", "crossings"]
+
+PEOPLE = 60
+ROOM, HALF = 8.0, 3.0
+"""Length and half width of the room [m]."""
+LENGTH = 2.8
+"""Of the bottleneck [m], as in Seyfried et al. 2009."""
+WIDTHS = (0.8, 1.0, 1.2, 1.6, 2.0)
+SEEDS = 3
+SECONDS = 120.0
+TOLERANCE = 0.25
+"""Allowed mean relative distance of the flow to 1.9 persons per second and metre."""
+
+
+def run(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
+    """Measure the flow through every width; runs with other starts are along the axis E."""
+    widths, seeds, people, seconds = ((0.8, 1.2), 1, 20, 30.0) if quick else (WIDTHS, SEEDS, PEOPLE, SECONDS)
+    flows, passed, outside, overlap = [], [], [], []
+    for k, width in enumerate(widths):
+
+        def reported(part: float, done: int = k) -> None:
+            report((done + part) / len(widths))
+
+        walk = _leave(model, width, people, seeds, seconds, reported)
+        flow = [_flow(crossings(walk, 0.5 * LENGTH, e), people, seconds) for e in range(seeds)]
+        flows.append([f for f, _ in flow])
+        passed.append([count for _, count in flow])
+        outside.append(inside_solids(walk, _solids(width)))
+        overlap.append(deepest_overlap(walk))
+    return {
+        "width": list(widths),
+        "flows": flows,
+        "passed": passed,
+        "people": people,
+        "outside": max(outside),
+        "overlap": max(overlap),
+    }
+
+
+def judge(result: dict[str, Any]) -> Verdict:
+    """Compare the specific flow with the published one, and look who got stuck."""
+    width, flow = np.asarray(result["width"]), np.mean(result["flows"], axis=1)
+    stuck = np.asarray(result["passed"]) < result["people"]
+    specific = flow / width
+    distance = float(np.mean(np.abs(specific / SPECIFIC_FLOW - 1.0)))
+    words = []
+    if np.any(stuck):
+        worst = width[np.any(stuck, axis=1)]
+        words.append(
+            f"a crowd of {result['people']} clogs bottlenecks up to {worst.max():g} m wide"
+            f" ({int(stuck.sum())} of {stuck.size} runs)"
+        )
+    if distance > TOLERANCE and not np.all(np.any(stuck, axis=1)):
+        kind = "too much" if specific.mean() > SPECIFIC_FLOW else "too little"
+        words.append(f"{kind} flow through a bottleneck, {specific.mean():.1f} persons per second and metre")
+    if result["outside"] > 0.0:
+        words.append(f"up to {share(result['outside'])} are pushed through the walls at a bottleneck")
+    passed = distance <= TOLERANCE and not np.any(stuck) and result["outside"] == 0.0
+    return Verdict(f"{specific.mean():.2f} /(m s)", passed, "; ".join(words))
+
+
+BOTTLENECK = Check(
+    "bottleneck",
+    "bottleneck",
+    f"the flows through all widths are within {TOLERANCE:.0%} (mean) of {SPECIFIC_FLOW} persons per second and metre,"
+    " all people get out and nobody's centre enters a wall",
+    run,
+    judge,
+)
+
+
+def crossings(walk: Walk, x: float, e: int = 0) -> Floats:
+    """Return the sorted times [s] at which people of environment ``e`` first get beyond ``x`` [m]."""
+    beyond = (walk.position[:, e, :, 0] > x) & walk.present[:, e]
+    some = np.any(beyond, axis=0)
+    return np.sort(walk.times[np.argmax(beyond, axis=0)[some]])
+
+
+def _flow(times: Floats, people: int, seconds: float) -> tuple[float, int]:
+    """Return (n - 1) / (t_n - t_1), n who passed; t_n is the time limit when somebody is left behind."""
+    if len(times) < 2:
+        return 0.0, len(times)
+    last = float(times[-1]) if len(times) == people else seconds
+    return (len(times) - 1) / (last - float(times[0])), len(times)
+
+
+def _leave(model: CrowdModel, width: float, people: int, seeds: int, seconds: float, report: Report) -> Walk:
+    place, speed = np.zeros((seeds, people, 2)), np.zeros((seeds, people))
+    for e in range(seeds):
+        rng = stream_of("bottleneck", people, e)
+        place[e] = starts(people, (-ROOM + 0.3, -HALF + 0.3), (-1.0, HALF - 0.3), rng)
+        speed[e] = free_speeds((people,), rng)
+    crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(_solids(width)))
+
+    def goals(now: Floats) -> Floats:
+        ahead = opening(now, 0.3, 0.0, width)
+        ahead[..., 0] = np.where(now[..., 0] > 0.0, now[..., 0] + 3.0, 0.3)
+        return ahead
+
+    def left(now: Floats) -> NDArray[np.bool_]:
+        return np.asarray(now[..., 0] > LENGTH + 2.0)
+
+    return walk_open(model, crowd, goals, left, seconds, stream_of("bottleneck", "model", width), report)
+
+
+def _solids(width: float) -> list[Solid]:
+    half = 0.5 * width
+    return [
+        (0.0, half, LENGTH, HALF + 0.5),
+        (0.0, -HALF - 0.5, LENGTH, -half),
+        (-ROOM - 0.5, HALF, 0.0, HALF + 0.5),
+        (-ROOM - 0.5, -HALF - 0.5, 0.0, -HALF),
+        (-ROOM - 0.5, -HALF, -ROOM, HALF),
+    ]

@@ -1,0 +1,114 @@
+"""Corridor: speed over density of a one-way crowd in a plane, between two walls, on a closed track."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core import Scene
+from crowdbot.models import CrowdModel
+
+from .literature import weidmann_speed
+from .scenario import (
+    FREE_SPEED,
+    RADIUS,
+    STEP,
+    Check,
+    Report,
+    Verdict,
+    corridor_walls,
+    deepest_overlap,
+    free_speeds,
+    share,
+    starts,
+    stream_of,
+    walk_round,
+)
+
+__all__ = ["CORRIDOR", "corridor_crowd"]
+
+LENGTH, WIDTH = 12.0, 3.0
+DENSITIES = (0.25, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0)
+"""People per square metre."""
+QUICK = (0.5, 1.5, 3.0)
+WARM, MEASURED = 15.0, 15.0
+LIMIT = 0.25
+"""Allowed root mean square distance to Weidmann's curve [m/s]."""
+SPREAD = 0.05
+"""Deviation of free speeds [m/s]: RiMEA test 4 asks for nearly equal ones, 1.2 to 1.4 m/s."""
+
+
+def run(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
+    """Measure the mean forward speed at every density, all at once along the axis E."""
+    densities = QUICK if quick else DENSITIES
+    warm, measured = (4.0, 2.0) if quick else (WARM, MEASURED)
+    crowd = corridor_crowd([("one-way", d, 0) for d in densities], LENGTH, WIDTH, two_way=False, spread=SPREAD)
+    walk = walk_round(model, crowd, LENGTH, warm + measured, stream_of("corridor", "model"), report)
+    first = round(warm / (4.0 * STEP))
+    moved = (walk.position[-1, ..., 0] - walk.position[first, ..., 0]) / (walk.times[-1] - walk.times[first])
+    y, here = walk.position[..., 1], crowd.active
+    return {
+        "density": list(densities),
+        "speed": [float(moved[e, here[e]].mean()) for e in range(len(densities))],
+        "outside": float(np.mean(np.any((y < 0.0) | (y > WIDTH), axis=0)[here])),
+        "overlap": deepest_overlap(walk, LENGTH),
+    }
+
+
+def judge(result: dict[str, Any]) -> Verdict:
+    """Compare with Weidmann's curve, and look whether walls hold."""
+    density, speed = np.asarray(result["density"]), np.asarray(result["speed"])
+    curve = weidmann_speed(density)
+    distance = float(np.sqrt(np.mean((speed - curve) ** 2)))
+    dense = int(np.argmin(np.abs(density - 3.0)))
+    words = []
+    if speed[dense] > 0.7 * FREE_SPEED:
+        words.append(f"a one-way crowd of {density[dense]:g} people/m2 still walks at {speed[dense]:.2f} m/s")
+    elif np.any(speed[density <= 1.0] < 0.5 * curve[density <= 1.0]):
+        words.append("a one-way crowd is far too slow already at 1 person/m2")
+    elif distance > LIMIT:
+        words.append("one-way crowds are " + ("too fast" if np.mean(speed - curve) > 0.0 else "too slow"))
+    if result["outside"] > 0.0:
+        words.append(f"{share(result['outside'])} of a dense one-way crowd are pushed through the walls")
+    passed = distance <= LIMIT and result["outside"] == 0.0
+    return Verdict(f"{distance:.2f} m/s", passed, "; ".join(words))
+
+
+CORRIDOR = Check(
+    "corridor",
+    "corridor",
+    f"root mean square distance of the speeds to Weidmann's curve is at most {LIMIT:.2f} m/s and nobody's centre leaves"
+    " the corridor (with the file above this is RiMEA test 4)",
+    run,
+    judge,
+)
+
+
+def corridor_crowd(
+    runs: list[tuple[str, float, int]], length: float, width: float, *, two_way: bool, spread: float
+) -> Scene:
+    """Return crowds in a corridor, one run (name, density [1/m2], number) an environment; they walk from the start.
+
+    When ``two_way``, half of the people, drawn at random, walk towards -x.
+    """
+    counts = [round(density * length * width) for _, density, _ in runs]
+    E, A = len(counts), max(counts)
+    place, here, wish = np.zeros((E, A, 2)), np.zeros((E, A), dtype=np.bool_), np.zeros((E, A, 2))
+    for e, (name, _, number) in enumerate(runs):
+        count, rng = counts[e], stream_of("corridor", name, counts[e], number)
+        margin = RADIUS + 0.05
+        place[e, :count] = starts(count, (0.0, margin), (length, width - margin), rng)
+        side = np.where(rng.permutation(count) < count // 2, -1.0, 1.0) if two_way else np.ones(count)
+        wish[e, :count, 0] = side * free_speeds((count,), rng, spread)
+        here[e, :count] = True
+    speed = np.where(here, np.abs(wish[..., 0]), FREE_SPEED)
+    return Scene.of(
+        place,
+        0.5 * wish,
+        radius=RADIUS,
+        preferred_speed=speed,
+        preferred_velocity=wish,
+        active=here,
+        walls=corridor_walls(length, width),
+    )

@@ -1,0 +1,301 @@
+"""Evacuation: the RiMEA tests with a crowd: doors of a hall (9), a bottleneck between rooms (12), a corner (15)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Scene
+from crowdbot.models import CrowdModel
+
+from .scenario import (
+    RADIUS,
+    STEP,
+    Check,
+    Floats,
+    Report,
+    Solid,
+    Verdict,
+    Walk,
+    deepest_overlap,
+    free_speeds,
+    gate,
+    inside_solids,
+    opening,
+    rings,
+    share,
+    starts,
+    stream_of,
+    walk_open,
+)
+
+__all__ = ["DOORS", "LONG_CORNER", "TWO_ROOMS"]
+
+LIMIT = 240.0
+"""Time limit of a run [s]."""
+
+HALL, DEPTH = 15.0, 10.0
+DOOR = 1.0
+DOOR_PEOPLE = 250
+"""A quarter of the people of the guideline in a quarter of its hall of 30 x 20 m, with doors as wide as there."""
+LEAST, MOST = 1.6, 2.4
+"""Ratio of times that is about a doubling, as JuPedSim's system test reads it."""
+
+
+def run_doors(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
+    """Let a crowd leave a hall by four doors, then by two."""
+    people, limit = (40, 20.0) if quick else (DOOR_PEOPLE, LIMIT)
+    seconds, out, outside, overlap = [], [], [], []
+    for k, sides in enumerate(((-1.0, 1.0), (-1.0,))):
+
+        def reported(part: float, done: int = k) -> None:
+            report(0.5 * (done + part))
+
+        walk = _hall(model, people, sides, limit, reported)
+        y = walk.position[..., 1]
+        seconds.append(float(walk.times[-1]))
+        out.append(int(np.any(((y < -0.5) | (y > DEPTH + 0.5)) & walk.present, axis=0).sum()))
+        outside.append(inside_solids(walk, _hall_solids()))
+        overlap.append(deepest_overlap(walk))
+    return {
+        "seconds": seconds,
+        "limit": limit,
+        "out": out,
+        "people": people,
+        "outside": max(outside),
+        "overlap": max(overlap),
+    }
+
+
+def judge_doors(result: dict[str, Any]) -> Verdict:
+    """About twice the time with half of the doors."""
+    words, people = [], result["people"]
+    if min(result["out"]) < people:
+        stuck = people - min(result["out"])
+        words.append(f"{stuck} of {people} people do not find out of a hall in {result['limit']:g} s")
+        value = f"{min(result['out'])} of {people}"
+        ratio = 0.0
+    else:
+        ratio = result["seconds"][1] / result["seconds"][0]
+        value = f"{ratio:.2f} ({result['seconds'][0]:.0f}, {result['seconds'][1]:.0f} s)"
+        if not LEAST <= ratio <= MOST:
+            words.append(f"half of the doors of a hall take {ratio:.1f} times as long")
+    if result["outside"] > 0.0:
+        words.append(f"{share(result['outside'])} leave a hall through its walls")
+    return Verdict(value, not words, "; ".join(words))
+
+
+DOORS = Check(
+    "rimea-9",
+    "RiMEA 9",
+    f"{DOOR_PEOPLE} people leave a hall of {HALL:g} x {DEPTH:g} m by four doors of {DOOR:g} m, then by the two of one"
+    f" side, which takes {LEAST} to {MOST} times as long; nobody's centre enters a wall",
+    run_doors,
+    judge_doors,
+)
+
+ROOM_PEOPLE = 150
+SLOW = 0.3
+"""Who is slower than this [m/s] within 2 m before an opening is in a queue."""
+QUEUE = 5.0
+"""So many are a jam, fewer are none."""
+
+
+def run_rooms(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
+    """Let a crowd walk from one room through a corridor into another and out of it."""
+    people, limit = (30, 25.0) if quick else (ROOM_PEOPLE, LIMIT)
+    solids = _room_solids()
+    rng = stream_of("rimea-12", people)
+    place = starts(people, (0.3, 0.3), (8.5, 9.7), rng)
+    crowd = Scene.of(place, radius=RADIUS, preferred_speed=free_speeds((people,), rng), walls=rings(solids))
+
+    def goals(now: Floats) -> Floats:
+        x = now[..., 0]
+        door = opening(now, 10.3, 5.0, DOOR)
+        within = np.stack([x + 3.0, np.clip(now[..., 1], 4.75, 5.25)], axis=-1)
+        way = np.where((x > 10.0)[..., None], within, door)
+        way = np.where((x > 15.2)[..., None], opening(now, 25.3, 5.0, DOOR), way)
+        return np.where((x > 25.0)[..., None], within, way)
+
+    def left(now: Floats) -> NDArray[np.bool_]:
+        return np.asarray(now[..., 0] > 27.0)
+
+    walk = walk_open(model, crowd, goals, left, limit, stream_of("rimea-12", "model"), report)
+    return {
+        "out": int(np.any((walk.position[..., 0] > 25.3) & walk.present, axis=0).sum()),
+        "people": people,
+        "seconds": float(walk.times[-1]),
+        "queues": [_queue(walk, 10.0), _queue(walk, 25.0)],
+        "outside": inside_solids(walk, solids),
+        "overlap": deepest_overlap(walk),
+    }
+
+
+def judge_rooms(result: dict[str, Any]) -> Verdict:
+    """A queue in front of the corridor, and none in front of the exit."""
+    first, second = result["queues"]
+    words = []
+    if result["out"] < result["people"]:
+        words.append(f"{result['people'] - result['out']} of {result['people']} people do not get through two rooms")
+    if first < QUEUE:
+        words.append("no queue forms in front of a corridor of 1 m")
+    if second >= QUEUE:
+        words.append(f"a queue of {second:.0f} forms at an exit behind a corridor as wide as the exit")
+    if result["outside"] > 0.0:
+        words.append(f"{share(result['outside'])} go through the walls between two rooms")
+    return Verdict(f"{first:.0f} | {second:.0f}", not words, "; ".join(words))
+
+
+TWO_ROOMS = Check(
+    "rimea-12",
+    "RiMEA 12",
+    f"{ROOM_PEOPLE} people walk from a room of 10 x 10 m through a corridor of 5 x 1 m, a second room and an exit of 1"
+    f" m: a queue (95th percentile over time of the people within 2 m who are slower than {SLOW} m/s) of at least"
+    f" {QUEUE:g} in front of the corridor, of fewer at the exit; all get out, none through a wall",
+    run_rooms,
+    judge_rooms,
+)
+
+CORNER_CROWD = 125
+LONG, SHORT = 40.5, 25.0
+
+
+def run_long_corner(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
+    """Let a crowd walk down a wide corridor with a corner, and straight ones as long as its outer and inner walls."""
+    people, limit = (30, 50.0) if quick else (CORNER_CROWD, 120.0)
+    seconds, out, outside = [], [], []
+    for k, name in enumerate(("short", "corner", "long")):
+
+        def reported(part: float, done: int = k) -> None:
+            report((done + part) / 3.0)
+
+        walk, gone = _corner(model, name, people, limit, reported)
+        seconds.append(float(walk.times[-1]))
+        out.append(gone)
+        outside.append(inside_solids(walk, _corner_solids(name)))
+    return {"seconds": seconds, "out": out, "people": people, "outside": max(outside)}
+
+
+def judge_long_corner(result: dict[str, Any]) -> Verdict:
+    """The corner takes longer than the short corridor and less long than the long one."""
+    short, corner, long = result["seconds"]
+    words = []
+    if min(result["out"]) < result["people"]:
+        words.append("not everyone gets through a wide corridor with a corner in time")
+    elif not short <= corner <= long:
+        words.append(
+            f"a crowd takes {corner:.0f} s around a wide corner, straight on {short:.0f} s (inside) and {long:.0f} s"
+            " (outside)"
+        )
+    if result["outside"] > 0.0:
+        words.append(f"{share(result['outside'])} go through the walls of a wide corner")
+    return Verdict(f"{short:.0f} < {corner:.0f} < {long:.0f} s", not words, "; ".join(words))
+
+
+LONG_CORNER = Check(
+    "rimea-15",
+    "RiMEA 15",
+    f"{CORNER_CROWD} people in a corridor 10 m wide with a corner (lengths are half of the guideline's, the people a"
+    f" quarter) need longer than for the straight {SHORT:g} m of its inner wall and less long than for {LONG:g} m",
+    run_long_corner,
+    judge_long_corner,
+)
+
+
+def _hall_solids() -> list[Solid]:
+    solids: list[Solid] = [(-0.5, -0.5, 0.0, DEPTH + 0.5), (HALL, -0.5, HALL + 0.5, DEPTH + 0.5)]
+    half = 0.5 * DOOR
+    for y0, y1 in ((-0.5, 0.0), (DEPTH, DEPTH + 0.5)):
+        ends = [0.0, 0.25 * HALL - half, 0.25 * HALL + half, 0.75 * HALL - half, 0.75 * HALL + half, HALL]
+        solids += [(a, y0, b, y1) for a, b in zip(ends[::2], ends[1::2], strict=True)]
+    return solids
+
+
+def _hall(model: CrowdModel, people: int, sides: tuple[float, ...], limit: float, report: Report) -> Walk:
+    rng = stream_of("rimea-9", people)
+    place = starts(people, (0.3, 0.3), (HALL - 0.3, DEPTH - 0.3), rng)
+    crowd = Scene.of(place, radius=RADIUS, preferred_speed=free_speeds((people,), rng), walls=rings(_hall_solids()))
+
+    def goals(now: Floats) -> Floats:
+        x, y = now[..., 0], now[..., 1]
+        middle = np.where(x < 0.5 * HALL, 0.25 * HALL, 0.75 * HALL)
+        side = np.where(y < 0.5 * DEPTH, -1.0, 1.0) if len(sides) == 2 else np.full(y.shape, sides[0])
+        wall = np.where(side < 0.0, 0.0, DEPTH)
+        free = 0.5 * DOOR - RADIUS - 0.05
+        through = side * (y - wall) > -0.1
+        return np.stack(
+            [np.clip(x, middle - free, middle + free), np.where(through, y + 3.0 * side, wall + 0.3 * side)], axis=-1
+        )
+
+    def left(now: Floats) -> NDArray[np.bool_]:
+        return np.asarray((now[..., 1] < -1.5) | (now[..., 1] > DEPTH + 1.5))
+
+    return walk_open(model, crowd, goals, left, limit, stream_of("rimea-9", "model", len(sides)), report)
+
+
+def _room_solids() -> list[Solid]:
+    walls: list[Solid] = [(-0.5, -0.5, 0.0, 10.5)]
+    for x0, x1 in ((0.0, 10.0), (15.0, 25.0)):
+        walls += [(x0, -0.5, x1, 0.0), (x0, 10.0, x1, 10.5)]
+    for x0, x1 in ((10.0, 15.0), (25.0, 25.5)):
+        walls += [(x0, -0.5, x1, 4.5), (x0, 5.5, x1, 10.5)]
+    return walls
+
+
+def _queue(walk: Walk, x: float) -> float:
+    """Return the 95th percentile over time of who is slow within 2 m before the opening at ``x``, middle y = 5 m."""
+    second = round(1.0 / STEP)
+    place, present = walk.position[::second, 0], walk.present[::second, 0]
+    speed = np.hypot(*np.moveaxis(place[1:] - place[:-1], -1, 0))
+    away = place[1:] - np.array([x, 5.0])
+    near = (np.hypot(away[..., 0], away[..., 1]) < 2.0) & (away[..., 0] < 0.0) & present[1:] & present[:-1]
+    waiting = np.sum(near & (speed < SLOW), axis=1)
+    busy = np.any(near, axis=1)
+    return float(np.percentile(waiting[busy], 95.0)) if np.any(busy) else 0.0
+
+
+def _corner_solids(name: str) -> list[Solid]:
+    """Return the walls; people start at the top and walk down, then to the right around the corner."""
+    if name == "corner":
+        return [
+            (-0.5, -0.5, 0.0, 30.5),
+            (0.0, 30.0, 10.0, 30.5),
+            (10.0, 10.0, 18.0, 30.5),
+            (0.0, -0.5, 18.0, 0.0),
+        ]
+    top = LONG if name == "long" else SHORT
+    return [(-0.5, -4.0, 0.0, top + 0.5), (10.0, -4.0, 10.5, top + 0.5), (0.0, top, 10.0, top + 0.5)]
+
+
+def _corner(model: CrowdModel, name: str, people: int, limit: float, report: Report) -> tuple[Walk, int]:
+    top = {"corner": 30.0, "long": LONG, "short": SHORT}[name]
+    rng = stream_of("rimea-15", people)  # the same people at the same places of all three
+    place = starts(people, (0.3, -3.0), (9.7, -0.3), rng) + np.array([0.0, top])
+    crowd = Scene.of(
+        place, radius=RADIUS, preferred_speed=free_speeds((people,), rng), walls=rings(_corner_solids(name))
+    )
+    arrived: Callable[[Floats], NDArray[np.bool_]]
+
+    if name == "corner":
+
+        def goals(now: Floats) -> Floats:
+            there, passed = gate(now, (10.0, 10.0), (0.0, 0.0))
+            out = np.stack([now[..., 0] + 3.0, np.clip(now[..., 1], 0.3, 9.7)], axis=-1)
+            return np.where(passed[..., None], out, there)
+
+        def arrived(now: Floats) -> NDArray[np.bool_]:
+            return np.asarray(now[..., 0] > 15.0)
+
+    else:
+
+        def goals(now: Floats) -> Floats:
+            return np.asarray(now + np.array([0.0, -3.0]))
+
+        def arrived(now: Floats) -> NDArray[np.bool_]:
+            return np.asarray(now[..., 1] < 0.0)
+
+    walk = walk_open(model, crowd, goals, arrived, limit, stream_of("rimea-15", "model", name), report)
+    return walk, int(np.any(arrived(walk.position) & walk.present, axis=(0, 1)).sum())

@@ -1,0 +1,156 @@
+"""Lanes: two-way flow in a wide corridor (do lanes form?) and in a narrow one (does it jam?)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.models import CrowdModel
+
+from .corridor import corridor_crowd
+from .scenario import FREE_SPEED, Check, Floats, Report, Verdict, deepest_overlap, share, stream_of, walk_round
+
+__all__ = ["LANES", "NARROW", "lane_order"]
+
+LENGTH = 12.0
+WIDE, DENSITY, SEEDS = 4.0, 1.0, 4
+"""Width [m] and density [1/m2] of the recording bi_corr_400_b_03, and runs of each model."""
+NARROW_WIDTH = 2.0
+NARROW_DENSITIES = (0.5, 1.0, 1.5, 2.0)
+NARROW_SEEDS = 3
+BAND = 0.3
+"""People whose lateral distance is less than this [m] are in one band."""
+SECONDS, LAST = 60.0, 20.0
+NARROW_SECONDS, NARROW_LAST = 90.0, 10.0
+ORDER = 0.5
+"""Lanes have formed above this; the recordings reach about 0.5 to 1."""
+JAM = 0.1
+"""Slower than this share of the free speed is a jam."""
+
+
+def lane_order(y: Floats, direction: Floats) -> float:
+    """Return how far two directions have sorted into lanes: 0 as by chance, 1 completely, NaN when nobody is near.
+
+    For each person i with m others in its band (lateral distance below 0.3 m, anywhere along the corridor), phi_i =
+    (like - unlike)^2 / m^2 (Rex & Löwen 2007). Small bands look ordered by chance, so the mean of phi is compared with
+    what it is expected to be when the same directions are dealt out at random (the reduced order parameter of Nowak &
+    Schadschneider 2012): (mean phi - expected) / (1 - expected). For a band of m this is (1 + (m - 1) q) / m, with q =
+    ((sum of directions)^2 - N) / (N (N - 1)).
+
+    Args:
+        y: ``[N]`` lateral positions [m].
+        direction: ``[N]`` +1 or -1.
+
+    >>> lane_order(np.array([0.0, 0.1, 2.0, 2.1]), np.array([1.0, 1.0, -1.0, -1.0]))
+    1.0
+    """
+    N = len(y)
+    near = np.abs(y[:, None] - y[None, :]) < BAND
+    np.fill_diagonal(near, False)
+    band = near.sum(axis=1)
+    some = band > 0
+    if not np.any(some) or N < 3:
+        return float("nan")
+    m = band[some].astype(np.float64)
+    phi = float(np.mean((near[some] @ direction) ** 2 / m**2))
+    q = (float(direction.sum()) ** 2 - N) / (N * (N - 1))
+    chance = float(np.mean((1.0 + (m - 1.0) * q) / m))
+    return 1.0 if chance >= 1.0 else (phi - chance) / (1.0 - chance)
+
+
+def run_lanes(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
+    """Measure the order over time, the mean of some runs."""
+    seconds, last, seeds = (8.0, 4.0, 1) if quick else (SECONDS, LAST, SEEDS)
+    crowd = corridor_crowd([("two-way", DENSITY, k) for k in range(seeds)], LENGTH, WIDE, two_way=True, spread=0.26)
+    walk = walk_round(model, crowd, LENGTH, seconds, stream_of("lanes", "model"), report)
+    wish = crowd.preferred_velocity
+    assert wish is not None
+    side = np.sign(wish[..., 0])
+    every = slice(None, None, 5)
+    order = [[lane_order(y[e], side[e]) for e in range(seeds)] for y in walk.position[every, ..., 1]]
+    times = walk.times[every]
+    late = times >= seconds - last
+    y = walk.position[..., 1]
+    return {
+        "time": times.tolist(),
+        "order": np.mean(order, axis=1).tolist(),
+        "last_order": float(np.mean(np.asarray(order)[late])),
+        "speed": float(np.mean(_forward(walk.times, walk.position[..., 0], side, last))),
+        "outside": float(np.mean(np.any((y < 0.0) | (y > WIDE), axis=0))),
+        "overlap": deepest_overlap(walk, LENGTH),
+    }
+
+
+def judge_lanes(result: dict[str, Any]) -> Verdict:
+    """Look whether lanes have formed and people get on."""
+    words = []
+    if result["last_order"] < ORDER:
+        words.append(f"lanes hardly form in a two-way flow (order {result['last_order']:.2f})")
+    if result["speed"] < 0.5 * FREE_SPEED:
+        words.append(f"a two-way flow of 1 person/m2 in a 4 m corridor slows down to {result['speed']:.2f} m/s")
+    value = f"{result['last_order']:.2f}, {result['speed']:.2f} m/s"
+    return Verdict(value, not words, "; ".join(words))
+
+
+LANES = Check(
+    "lanes",
+    "lanes",
+    f"in a corridor 4 m wide, 1 person/m2, the order of the last {LAST:g} s is at least {ORDER} and people get on with"
+    " at least half of the free speed",
+    run_lanes,
+    judge_lanes,
+)
+
+
+def run_narrow(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
+    """Measure how fast people get on in a narrow corridor, over density and chance."""
+    seconds, last = (10.0, 4.0) if quick else (NARROW_SECONDS, NARROW_LAST)
+    densities, seeds = ((1.0, 2.0), 1) if quick else (NARROW_DENSITIES, NARROW_SEEDS)
+    runs = [("narrow", density, k) for density in densities for k in range(seeds)]
+    crowd = corridor_crowd(runs, LENGTH, NARROW_WIDTH, two_way=True, spread=0.26)
+    walk = walk_round(model, crowd, LENGTH, seconds, stream_of("narrow", "model"), report)
+    wish = crowd.preferred_velocity
+    assert wish is not None
+    forward = _forward(walk.times, walk.position[..., 0], np.sign(wish[..., 0]), last)
+    here, y = crowd.active, walk.position[..., 1]
+    speed = np.asarray([forward[e, here[e]].mean() for e in range(len(runs))]).reshape(len(densities), seeds)
+    return {
+        "density": list(densities),
+        "speeds": speed.tolist(),
+        "outside": float(np.mean(np.any((y < 0.0) | (y > NARROW_WIDTH), axis=0)[here])),
+        "overlap": deepest_overlap(walk, LENGTH),
+    }
+
+
+def judge_narrow(result: dict[str, Any]) -> Verdict:
+    """Count the jams."""
+    density, speed = np.asarray(result["density"]), np.asarray(result["speeds"])
+    jams = speed < JAM * FREE_SPEED
+    words = []
+    if np.any(jams):
+        first = density[np.any(jams, axis=1)][0]
+        words.append(
+            f"jams in a two-way corridor 2 m wide, from {first:g} people/m2 on ({int(jams.sum())} of {jams.size} runs)"
+        )
+    if result["outside"] > 0.0:
+        words.append(f"{share(result['outside'])} are pushed through the walls of a narrow two-way corridor")
+    return Verdict(f"{int(jams.sum())} of {jams.size} jam", not words, "; ".join(words))
+
+
+NARROW = Check(
+    "narrow",
+    "narrow two-way",
+    "in a corridor 2 m wide no run at 0.5 to 2 people/m2 jams (mean forward speed of the last"
+    f" {NARROW_LAST:g} of {NARROW_SECONDS:g} s below {JAM:.0%} of 1.34 m/s; people in experiments do not: Zhang et al."
+    " 2012), and nobody's centre leaves the corridor",
+    run_narrow,
+    judge_narrow,
+)
+
+
+def _forward(times: Floats, x: Floats, side: NDArray[np.float64], last: float) -> Floats:
+    """Return the speed ``[E, A]`` [m/s] in everyone's own direction over the last seconds."""
+    first = int(np.searchsorted(times, times[-1] - last - 1e-9))
+    return np.asarray(side * (x[-1] - x[first]) / (times[-1] - times[first]))

@@ -1,0 +1,141 @@
+"""Plots: one small picture a model, all on the same axes, with people in grey behind."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .literature import BOTTLENECK_FLOWS, SPECIFIC_FLOW, line_speed, weidmann_speed
+from .run import Validation
+
+__all__ = ["PLOTS", "draw"]
+
+COLUMNS = 5
+MODEL, PEOPLE, CURVE, BAD = "#0072b2", "#9a9a9a", "#e69f00", "#d55e00"
+"""Colours that people with colour blindness can tell apart (Okabe & Ito)."""
+
+Panel = Callable[[Any, dict[str, Any], dict[str, Any] | None], None]
+
+
+def draw(done: Validation, folder: Path) -> list[str]:
+    """Write one PNG a check and return their names.
+
+    Args:
+        done: what is drawn; models whose check ended with an error are left empty.
+        folder: where the files go.
+    """
+    names = []
+    for name, (title, x, y, panel) in PLOTS.items():
+        file = f"{name}.png"
+        _grid(done, name, title, x, y, panel, folder / file)
+        names.append(file)
+    return names
+
+
+def _grid(done: Validation, name: str, title: str, x: str, y: str, panel: Panel, file: Path) -> None:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    rows = -(-len(done.outcomes) // COLUMNS)
+    columns = min(COLUMNS, len(done.outcomes))
+    figure = Figure(figsize=(0.6 + 2.15 * columns, 1.35 + 1.75 * rows), dpi=100, layout="constrained")
+    canvas = FigureCanvasAgg(figure)
+    axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    people = (done.people or {}).get(name)
+    for axis, (model, checks) in zip(axes.flat, done.outcomes.items(), strict=False):
+        verdict = checks[name].verdict
+        axis.set_title(model, fontsize=10, color="black" if verdict.passed else BAD)
+        axis.grid(alpha=0.25, linewidth=0.6)
+        axis.tick_params(labelsize=8)
+        if "failed" not in checks[name].result:
+            panel(axis, checks[name].result, people)
+    for axis in axes.flat[len(done.outcomes) :]:
+        axis.set_visible(False)
+    for k in range(columns):  # the last row may be short: labels belong to the lowest picture of each column
+        lowest = axes[(len(done.outcomes) - 1 - k) // columns, k]
+        lowest.tick_params(labelbottom=True)
+        lowest.set_xlabel(x, fontsize=9)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=9, frameon=False)
+    figure.suptitle(f"{title} (red name: criterion not met)", fontsize=11)
+    figure.supylabel(y, fontsize=10)
+    _save(canvas, file)
+
+
+def _save(canvas: Any, file: Path) -> None:
+    """Write with a palette of 64 colours: a third of the bytes, no visible difference."""
+    from PIL import Image
+
+    buffer = io.BytesIO()
+    canvas.print_png(buffer)
+    picture = Image.open(io.BytesIO(buffer.getvalue())).convert("RGB")
+    picture.quantize(64, dither=Image.Dither.NONE).save(file, optimize=True)
+
+
+def _single_file(axis: Any, result: dict[str, Any], people: dict[str, Any] | None) -> None:
+    if people:
+        axis.errorbar(
+            people["density"], people["speed"], people["spread"], fmt="o", color=PEOPLE, markersize=3, linewidth=1,
+            label="people (n56 ring), deviation",
+        )  # fmt: skip
+    density = np.linspace(0.2, 2.7, 100)
+    axis.plot(density, line_speed(density), color=CURVE, linewidth=1.8, label="Seyfried et al. 2005")
+    axis.plot(result["density"], result["speed"], "s-", color=MODEL, markersize=3.5, linewidth=1.2, label="model")
+    axis.set(xlim=(0.0, 3.1), ylim=(-0.05, 1.75))
+
+
+def _corridor(axis: Any, result: dict[str, Any], people: dict[str, Any] | None) -> None:
+    if people:
+        for k, run in enumerate(people["runs"].values()):
+            label = "people (4 HERMES runs), deviation" if k == 0 else None
+            axis.errorbar(
+                run["density"], run["speed"], run["spread"], fmt="o", color=PEOPLE, markersize=2.5, linewidth=0.8,
+                label=label,
+            )  # fmt: skip
+    density = np.linspace(0.1, 5.0, 100)
+    axis.plot(density, weidmann_speed(density), color=CURVE, linewidth=1.8, label="Weidmann 1993")
+    axis.plot(result["density"], result["speed"], "s-", color=MODEL, markersize=3.5, linewidth=1.2, label="model")
+    axis.set(xlim=(0.0, 5.0), ylim=(-0.05, 1.75))
+
+
+def _lanes(axis: Any, result: dict[str, Any], people: dict[str, Any] | None) -> None:
+    for k, run in enumerate((people or {}).values()):
+        label = "people (3 recordings), mean over time" if k == 0 else None
+        axis.axhline(run["mean"], color=PEOPLE, linewidth=1.0, linestyle="--", label=label)
+    axis.plot(result["time"], result["order"], color=MODEL, linewidth=1.4, label="model, mean over runs")
+    axis.set(xlim=(0.0, 60.0), ylim=(-0.15, 1.05))
+
+
+def _narrow(axis: Any, result: dict[str, Any], people: dict[str, Any] | None) -> None:
+    for k, (density, speeds) in enumerate(zip(result["density"], result["speeds"], strict=True)):
+        label = "one run" if k == 0 else None
+        axis.plot([density] * len(speeds), speeds, "o", color=MODEL, markersize=3.5, label=label, alpha=0.7)
+    axis.plot(result["density"], np.mean(result["speeds"], axis=1), color=MODEL, linewidth=1.2, label="mean")
+    axis.axhline(0.134, color=BAD, linewidth=1.2, linestyle="--", label="slower is a jam")
+    axis.set(xlim=(0.25, 2.25), ylim=(-0.05, 1.55))
+
+
+def _bottleneck(axis: Any, result: dict[str, Any], people: list[dict[str, Any]] | None) -> None:
+    width = np.array([0.4, 2.6])
+    axis.plot(width, SPECIFIC_FLOW * width, color=CURVE, linewidth=1.8, label="1.9 per metre (Seyfried et al. 2009)")
+    axis.plot(*zip(*BOTTLENECK_FLOWS, strict=True), "^", color="black", markersize=3, label="Liddle et al. 2009")
+    if people:
+        axis.plot([d["width"] for d in people], [d["flow"] for d in people], "o", color=PEOPLE, markersize=4,
+                  label="people (4 recordings)")  # fmt: skip
+    axis.plot(result["width"], np.mean(result["flows"], axis=1), "s-", color=MODEL, markersize=3.5, linewidth=1.2,
+              label="model, mean over runs")  # fmt: skip
+    axis.set(xlim=(0.4, 2.6), ylim=(-0.3, 8.0))
+
+
+PLOTS: dict[str, tuple[str, str, str, Any]] = {
+    "single-file": ("Single file: speed over line density", "people per metre [1/m]", "speed [m/s]", _single_file),
+    "corridor": ("One-way corridor: speed over density", "people per area [1/m²]", "speed [m/s]", _corridor),
+    "lanes": ("Two-way flow, 4 m wide, 1 person/m²: order of lanes", "time [s]", "order (1 = pure lanes)", _lanes),
+    "narrow": ("Two-way flow, 2 m wide: forward speed after 80 s", "people per area [1/m²]", "speed [m/s]", _narrow),
+    "bottleneck": ("Bottleneck: flow over width", "width [m]", "flow [people/s]", _bottleneck),
+}
+"""Check -> title, label of x, label of y, what draws one picture."""

@@ -1,0 +1,183 @@
+"""RiMEA: the verification tests of the guideline that are about walking people and a few of them at most."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Scene
+from crowdbot.models import CrowdModel
+
+from .scenario import (
+    RADIUS,
+    STEP,
+    Check,
+    Floats,
+    Report,
+    Solid,
+    Verdict,
+    deepest_overlap,
+    free_speeds,
+    gate,
+    inside_solids,
+    rings,
+    share,
+    starts,
+    stream_of,
+    walk_open,
+)
+
+__all__ = ["CORNER", "CORRIDOR_TIME", "FREE_SPEEDS", "NOT_APPLICABLE"]
+
+NOT_APPLICABLE = {
+    2: "stairs up: there are no stairs, people walk in a plane",
+    3: "stairs down: as test 2",
+    4: "fundamental diagram: done above as single file and corridor",
+    5: "reaction times: when somebody sets off is the business of a trial, not of a model",
+    8: "parameter study in a building of three storeys: there are no storeys",
+    10: "routes to given exits: routes are given to models as goals",
+    11: "choice of an exit: as test 10",
+    13: "jam in front of stairs: as test 2",
+    14: "choice of a long or a short route: as test 10",
+}
+"""Tests of the guideline that are not run, and why."""
+
+SPEED = 1.33
+FASTEST, SLOWEST = 26.0, 34.0
+"""Allowed times [s] for 40 m at 1.33 m/s, from the guideline."""
+
+
+def run_corridor(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
+    """Let one person walk 40 m in a corridor 2 m wide, from standing."""
+    solids: list[Solid] = [(-2.0, 2.0, 44.0, 2.5), (-2.0, -0.5, 44.0, 0.0)]
+    crowd = Scene.of([[0.0, 1.0]], radius=RADIUS, preferred_speed=SPEED, walls=rings(solids))
+    distance = 40.0
+
+    def left(now: Floats) -> NDArray[np.bool_]:
+        return np.asarray(now[..., 0] >= distance)
+
+    rng = stream_of("rimea-1", "model")
+    walk = walk_open(model, crowd, lambda now: np.array([[[60.0, 1.0]]]), left, 60.0, rng, report)
+    arrived = bool(walk.position[-1, 0, 0, 0] >= distance)
+    return {"seconds": float(walk.times[-1]) if arrived else None, "way": float(walk.position[-1, 0, 0, 0])}
+
+
+def judge_corridor(result: dict[str, Any]) -> Verdict:
+    """Look whether the time is in the range of the guideline."""
+    if result["seconds"] is None:
+        way = f"{result['way']:.0f} m in 60 s"
+        return Verdict(way, False, f"alone in an empty corridor, people get only {way}")
+    seconds = result["seconds"]
+    passed = FASTEST <= seconds <= SLOWEST
+    words = "" if passed else f"alone in an empty corridor, people need {seconds:.0f} s for 40 m"
+    return Verdict(f"{seconds:.1f} s", passed, words)
+
+
+CORRIDOR_TIME = Check(
+    "rimea-1",
+    "RiMEA 1",
+    f"one person of 1.33 m/s needs {FASTEST:g} to {SLOWEST:g} s for 40 m of a corridor 2 m wide, from standing",
+    run_corridor,
+    judge_corridor,
+)
+
+CORNER_PEOPLE = 20
+CORNER_SECONDS = 60.0
+CORNER_SOLIDS: list[Solid] = [
+    (-2.0, -0.5, 12.5, 0.0),
+    (12.0, 0.0, 12.5, 18.0),
+    (-2.0, 2.0, 10.0, 18.0),
+]
+"""The corner of the guideline: two arms of a corridor 2 m wide, 12 m along their outer walls."""
+
+
+def run_corner(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
+    """Let twenty people walk around a corner to the left."""
+    rng = stream_of("rimea-6")
+    place = starts(CORNER_PEOPLE, (0.3, 0.25), (6.3, 1.75), rng)
+    speed = free_speeds((CORNER_PEOPLE,), rng)
+    crowd = Scene.of(place, radius=RADIUS, preferred_speed=speed, walls=rings(CORNER_SOLIDS))
+
+    def goals(now: Floats) -> Floats:
+        there, passed = gate(now, (10.0, 2.0), (12.0, 0.0))
+        out = np.stack([np.clip(now[..., 0], 10.3, 11.7), now[..., 1] + 3.0], axis=-1)
+        return np.where(passed[..., None], out, there)
+
+    def left(now: Floats) -> NDArray[np.bool_]:
+        return np.asarray(now[..., 1] > 12.0)
+
+    walk = walk_open(model, crowd, goals, left, CORNER_SECONDS, stream_of("rimea-6", "model"), report)
+    out = np.any((walk.position[..., 1] > 12.0) & walk.present, axis=0)
+    return {
+        "out": int(out.sum()),
+        "seconds": float(walk.times[-1]),
+        "outside": inside_solids(walk, CORNER_SOLIDS),
+        "overlap": deepest_overlap(walk),
+    }
+
+
+def judge_corner(result: dict[str, Any]) -> Verdict:
+    """Nobody may go through a wall, and all have to arrive."""
+    words = []
+    if result["outside"] > 0.0:
+        words.append(f"{share(result['outside'])} of {CORNER_PEOPLE} people cut a corner through its walls")
+    if result["out"] < CORNER_PEOPLE:
+        words.append(
+            f"{CORNER_PEOPLE - result['out']} of {CORNER_PEOPLE} people do not get around a corner in"
+            f" {CORNER_SECONDS:g} s"
+        )
+    value = f"{result['seconds']:.1f} s" if result["out"] == CORNER_PEOPLE else f"{result['out']} of {CORNER_PEOPLE}"
+    return Verdict(value, not words, "; ".join(words))
+
+
+CORNER = Check(
+    "rimea-6",
+    "RiMEA 6",
+    f"{CORNER_PEOPLE} people walk around a corner of a corridor 2 m wide in at most {CORNER_SECONDS:g} s and nobody's"
+    " centre enters a wall",
+    run_corner,
+    judge_corner,
+)
+
+WALKERS = 50
+WALKED = 20.0
+SPEED_TOLERANCE = 0.05
+
+
+def run_speeds(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
+    """Let fifty people of different speeds walk, each alone in an environment, from standing."""
+    speed = free_speeds((WALKERS, 1), stream_of("rimea-7"))
+    crowd = Scene.of(np.zeros((WALKERS, 1, 2)), radius=RADIUS, preferred_speed=speed)
+    rng = stream_of("rimea-7", "model")
+    walk = walk_open(
+        model,
+        crowd,
+        lambda now: now + np.array([100.0, 0.0]),
+        lambda now: np.zeros(now.shape[:2], dtype=np.bool_),
+        WALKED,
+        rng,
+        report,
+    )
+    last = round(5.0 / STEP)
+    reached = (walk.position[-1, :, 0, 0] - walk.position[-1 - last, :, 0, 0]) / (last * STEP)
+    return {"wanted": speed[:, 0].tolist(), "reached": reached.tolist()}
+
+
+def judge_speeds(result: dict[str, Any]) -> Verdict:
+    """Compare everyone's own speed with the one reached."""
+    worst = float(np.max(np.abs(np.divide(result["reached"], result["wanted"]) - 1.0)))
+    passed = worst <= SPEED_TOLERANCE
+    words = "" if passed else f"who walks alone is up to {worst:.0%} off the own free speed after {WALKED:g} s"
+    return Verdict(f"{worst:.1%}", passed, words)
+
+
+FREE_SPEEDS = Check(
+    "rimea-7",
+    "RiMEA 7",
+    f"{WALKERS} people with speeds of 1.34 +- 0.26 m/s, each alone, walk within {SPEED_TOLERANCE:.0%} of their own"
+    f" speed in the last 5 of {WALKED:g} s, from standing",
+    run_speeds,
+    judge_speeds,
+)

@@ -1,0 +1,310 @@
+"""What every test of the page shares: bodies and speeds, starting places, walls, closed tracks and open ways."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Scene, stream
+from crowdbot.models import CrowdModel
+
+__all__ = [
+    "FREE_SPEED",
+    "RADIUS",
+    "STEP",
+    "Check",
+    "Floats",
+    "Report",
+    "Verdict",
+    "Walk",
+    "corridor_walls",
+    "deepest_overlap",
+    "free_speeds",
+    "gate",
+    "inside_solids",
+    "opening",
+    "rings",
+    "share",
+    "starts",
+    "stream_of",
+    "walk_open",
+    "walk_round",
+]
+
+RADIUS = 0.2
+"""Of every body [m]; 0.2 m is JuPedSim's default, and shoulders are about 0.4 to 0.5 m wide."""
+FREE_SPEED = 1.34
+"""Mean speed of free walking [m/s]: Weidmann 1993, Transporttechnik der Fussgaenger, ETH Zurich."""
+SPREAD = 0.26
+"""Its standard deviation [m/s], of the same source."""
+STEP = 0.05
+"""Time step of all runs [s]; models that need a shorter one cut it themselves."""
+SEEN = 6.0
+"""On a closed track copies of people are seen up to so far [m] beyond its ends."""
+SEED = 20250
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Solid = tuple[float, float, float, float]
+"""A solid rectangle x0, y0, x1, y1 [m]."""
+Report = Callable[[float], None]
+"""Called with the share that is done, 0 to 1."""
+
+
+class Verdict(NamedTuple):
+    """What a test says of a model: a short value, whether the criterion holds, and plain words about a failure."""
+
+    value: str
+    passed: bool
+    words: str = ""
+
+
+class Check(NamedTuple):
+    """One test of the page.
+
+    Fields:
+        name: on the command line and in the cache.
+        title: of its column and section.
+        criterion: one sentence, what must hold to pass.
+        run: from a model, whether to be quick, and a report of progress to numbers that JSON can hold.
+        judge: from these numbers to the verdict.
+    """
+
+    name: str
+    title: str
+    criterion: str
+    run: Callable[[CrowdModel, bool, Report], dict[str, Any]]
+    judge: Callable[[dict[str, Any]], Verdict]
+
+
+class Walk(NamedTuple):
+    """The ways of people.
+
+    Fields:
+        times: ``[T]`` [s].
+        position: ``[T, E, A, 2]`` [m]; on a closed track it goes on growing round by round.
+        present: ``[T, E, A]``; whether the person is there.
+    """
+
+    times: Floats
+    position: Floats
+    present: Bools
+
+
+def stream_of(*path: str | int | float) -> np.random.Generator:
+    """Return the stream of a part of the page; the page has one seed, so that all models meet the same crowds."""
+    return stream(SEED, "validation", *(p if isinstance(p, int) else str(p) for p in path))
+
+
+def free_speeds(shape: tuple[int, ...], rng: np.random.Generator, spread: float = SPREAD) -> Floats:
+    """Return speeds of free walking ``[...]`` [m/s], normal about 1.34 m/s and cut at two deviations."""
+    return FREE_SPEED + spread * np.clip(rng.standard_normal(shape), -2.0, 2.0)
+
+
+def share(part: float) -> str:
+    """Return a share as a reader wants it.
+
+    >>> share(0.126), share(0.002)
+    ('13 %', 'less than 1 %')
+    """
+    return "less than 1 %" if 0.0 < part < 0.01 else f"{100.0 * part:.0f} %"
+
+
+def rings(solids: Sequence[Solid]) -> list[list[tuple[float, float]]]:
+    """Return solid rectangles as rings for :class:`crowdbot.core.Walls`."""
+    return [[(x0, y0), (x1, y0), (x1, y1), (x0, y1)] for x0, y0, x1, y1 in solids]
+
+
+def corridor_walls(length: float, width: float) -> list[list[tuple[float, float]]]:
+    """Return the two walls of a corridor along x, ``0 < y < width``, longer than the track at both ends."""
+    x0, x1 = -2.0 * SEEN, length + 2.0 * SEEN
+    return rings([(x0, -0.5, x1, 0.0), (x0, width, x1, width + 0.5)])
+
+
+def inside_solids(walk: Walk, solids: Sequence[Solid]) -> float:
+    """Return the share of people whose centre is ever inside of a solid: they walked through a wall."""
+    x, y = walk.position[..., 0], walk.position[..., 1]
+    wrong = np.zeros(walk.present.shape, dtype=np.bool_)
+    for x0, y0, x1, y1 in solids:
+        wrong |= (x > x0) & (x < x1) & (y > y0) & (y < y1)
+    return float(np.any(wrong & walk.present, axis=0)[walk.present[0]].mean())
+
+
+def opening(place: Floats, x: float, middle: float, width: float) -> Floats:
+    """Return the nearest points ``[E, A, 2]`` [m] of an opening across x where a body fits, seen from places."""
+    half = max(0.5 * width - RADIUS - 0.05, 0.0)
+    return np.stack([np.full(place.shape[:-1], x), np.clip(place[..., 1], middle - half, middle + half)], axis=-1)
+
+
+def gate(place: Floats, inner: Sequence[float], outer: Sequence[float]) -> tuple[Floats, Bools]:
+    """Return the nearest points of a gate around a corner, and who has passed it.
+
+    Args:
+        place: ``[E, A, 2]`` [m].
+        inner, outer: the two corners [m] that the gate lies between; people come with ``inner`` on their left.
+    """
+    start, along = np.asarray(inner, dtype=np.float64), np.subtract(outer, inner)
+    length = float(np.hypot(*along))
+    along = along / length
+    away = place - start
+    share = np.clip(away @ along, RADIUS + 0.05, length - RADIUS - 0.05)
+    passed = along[0] * away[..., 1] - along[1] * away[..., 0] > 0.0
+    return start + share[..., None] * along, passed
+
+
+def starts(count: int, low: Sequence[float], high: Sequence[float], rng: np.random.Generator) -> Floats:
+    """Return ``[count, 2]`` places [m] for centres between two corners: a lattice that is filled at random, shaken.
+
+    Raises:
+        InputError: so many bodies do not fit without overlap.
+    """
+    width, height = high[0] - low[0], high[1] - low[1]
+    columns = max(1, round(math.sqrt(count * (width + 0.5) / (height + 0.5))))
+    while True:
+        rows = -(-count // columns)
+        cell = width / columns, height / max(rows - 1, 1) if rows > 1 else height + 2.0 * RADIUS
+        if cell[1] >= 2.02 * RADIUS or cell[0] < 2.02 * RADIUS:
+            break
+        columns += 1
+    if min(cell) < 2.0 * RADIUS:
+        raise InputError(f"{count} bodies of radius {RADIUS} m do not fit into {width:.2f} x {height:.2f} m")
+    chosen = rng.permutation(columns * rows)[:count]
+    across = low[1] + (chosen % rows) * cell[1] if rows > 1 else np.full(count, 0.5 * (low[1] + high[1]))
+    along = low[0] + (chosen // rows + 0.5) * cell[0]
+    slack = 0.45 * np.maximum(np.asarray(cell) - 2.0 * RADIUS, 0.0)
+    shaken = np.stack([along, across], axis=1) + rng.uniform(-1.0, 1.0, (count, 2)) * np.minimum(slack, 0.2)
+    return np.clip(shaken, low, high)
+
+
+def walk_round(
+    model: CrowdModel, crowd: Scene, length: float, seconds: float, rng: np.random.Generator, report: Report
+) -> Walk:
+    """Let a crowd walk along x on a track whose end at ``length`` [m] is its beginning.
+
+    Everyone has a copy one length ahead or behind, whichever is nearer to the track, with the same velocity, heading
+    and memory. Copies are neighbours like all others, so that models that share the work of avoiding do so at the
+    seam; what they would do themselves is thrown away. Positions are kept every 0.2 s.
+
+    Raises:
+        InputError: a position is not finite.
+    """
+    A, steps = crowd.shape[1], round(seconds / STEP)
+    scene, rounds = _doubled(crowd), np.zeros(crowd.shape)
+    places = [crowd.position]
+    for k in range(steps):
+        scene = model.step(_closed(scene, A, length), STEP, rng)
+        place = scene.position.copy()
+        _check(place[:, :A], crowd.active, scene.time)
+        turn = np.floor(place[:, :A, 0] / length)
+        place[:, :A, 0] -= length * turn
+        rounds += turn
+        scene = scene.replace(position=place)
+        if (k + 1) % 4 == 0:
+            unrolled = place[:, :A].copy()
+            unrolled[..., 0] += length * rounds
+            places.append(unrolled)
+            report((k + 1) / steps)
+    times = 4.0 * STEP * np.arange(len(places), dtype=np.float64)
+    return Walk(times, np.stack(places), np.broadcast_to(crowd.active, (len(places), *crowd.shape)))
+
+
+def walk_open(
+    model: CrowdModel,
+    crowd: Scene,
+    goals: Callable[[Floats], Floats],
+    left: Callable[[Floats], Bools],
+    seconds: float,
+    rng: np.random.Generator,
+    report: Report,
+) -> Walk:
+    """Let a crowd walk until all have left or time is over; positions are kept at every step.
+
+    Everyone wishes to walk straight to the present goal at the preferred speed.
+
+    Args:
+        model: how they walk.
+        crowd: where they start.
+        goals: from places ``[E, A, 2]`` [m] to the goals of the next step: way points are the business of the test.
+        left: from positions ``[E, A, 2]`` to who has left ``[E, A]``; they vanish.
+        seconds: time limit [s].
+        rng: of the model.
+        report: called with the share of time or of people, whichever is more.
+
+    Raises:
+        InputError: a position is not finite.
+    """
+    scene, steps, count = crowd, round(seconds / STEP), max(1, int(crowd.active.sum()))
+    places, present = [crowd.position], [crowd.active]
+    for k in range(steps):
+        goal = goals(scene.position)
+        away = goal - scene.position
+        wish = away * (scene.preferred_speed / np.maximum(np.hypot(away[..., 0], away[..., 1]), 1e-9))[..., None]
+        scene = model.step(scene.replace(goal=goal, preferred_velocity=wish), STEP, rng)
+        _check(scene.position, scene.active, scene.time)
+        places.append(scene.position)
+        present.append(scene.active)
+        scene = scene.replace(active=scene.active & ~left(scene.position))
+        if k % 20 == 0:
+            report(max(k / steps, 1.0 - int(scene.active.sum()) / count))
+        if not scene.active.any():
+            break
+    report(1.0)
+    return Walk(STEP * np.arange(len(places), dtype=np.float64), np.stack(places), np.stack(present))
+
+
+def deepest_overlap(walk: Walk, length: float | None = None) -> float:
+    """Return how deep two bodies ever overlap [m], 0 when none do.
+
+    Args:
+        walk: looked at once a second.
+        length: of the track [m] when it is closed.
+    """
+    every = max(1, round(1.0 / float(walk.times[1] - walk.times[0])))
+    nearest = 2.0 * RADIUS
+    for place, present in zip(walk.position[::every], walk.present[::every], strict=True):
+        away = place[:, :, None] - place[:, None]
+        if length is not None:
+            away[..., 0] -= length * np.round(away[..., 0] / length)
+        distance = np.hypot(away[..., 0], away[..., 1])
+        pair = present[:, :, None] & present[:, None] & ~np.eye(place.shape[1], dtype=np.bool_)
+        nearest = min(nearest, float(np.min(distance[pair], initial=nearest)))
+    return 2.0 * RADIUS - nearest
+
+
+def _doubled(crowd: Scene) -> Scene:
+    def twice(value: Any) -> Any:
+        return np.concatenate([value, value], axis=1)
+
+    names = ("position", "velocity", "heading", "radius", "goal", "preferred_speed", "max_speed")
+    flags = ("active", "visible", "external", "group", "preferred_velocity")
+    return crowd.replace(**{name: twice(getattr(crowd, name)) for name in (*names, *flags)})
+
+
+def _closed(scene: Scene, A: int, length: float) -> Scene:
+    """Return the scene with the second half of its agents as copies of the first, one length away."""
+
+    def copied(value: Any) -> Any:
+        return np.concatenate([value[:, :A], value[:, :A]], axis=1)
+
+    place, active = copied(scene.position), copied(scene.active)
+    place[:, A:, 0] += np.where(place[:, A:, 0] < 0.5 * length, length, -length)
+    active[:, A:] &= (place[:, A:, 0] > -SEEN) & (place[:, A:, 0] < length + SEEN)
+    wish = scene.preferred_velocity
+    assert wish is not None
+    return scene.replace(
+        position=place,
+        velocity=copied(scene.velocity),
+        heading=copied(scene.heading),
+        goal=place + 1000.0 * wish,
+        active=active,
+        memory={name: copied(value) for name, value in scene.memory.items()},
+    )
+
+
+def _check(place: Floats, active: Bools, time: float) -> None:
+    if not np.all(np.isfinite(place[active])):
+        raise InputError(f"positions are not finite after {time:.1f} s")

@@ -1,0 +1,59 @@
+"""``crowdbot validate``: hold the crowd models against experiments and write the page about it."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from .output import add_json, note, print_json, print_table, progress
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("--models", metavar="A,B", help="which models, by name or address (default: all)")
+    parser.add_argument("--data", type=Path, metavar="DIR", help="folder of recordings to compare with")
+    parser.add_argument(
+        "--out", type=Path, default=Path("validate"), metavar="DIR", help="folder of the page (default validate)"
+    )
+    parser.add_argument("--quick", action="store_true", help="few people and short runs, to see that it works")
+    add_json(parser)
+
+
+def main(options: argparse.Namespace) -> int:
+    """Run the checks, write the page and print the table."""
+    from crowdbot.benchmark.validation import CHECKS, chosen, validate, write_page
+    from crowdbot.core.kernels import cache_folder, is_cold
+
+    if is_cold() and not options.json:
+        note(f"first run: compiling the kernels of all models into {cache_folder()}, a minute or two")
+    models, skipped = chosen([name for name in (options.models or "").split(",") if name])
+    kept = options.out / "validation"
+    try:
+        with progress(options.json) as report:
+            done = validate(models, kept, options.data, options.quick, report, skipped)
+    except KeyboardInterrupt:
+        note(f"what is done is kept in {kept}; the same command goes on from there")
+        raise
+    page = write_page(done, options.out, _command(options))
+    if options.json:
+        print_json({**done.as_dict(), "page": str(page)})
+        return 0
+    rows = []
+    for model, checks in done.outcomes.items():
+        wrong = [c.title for c in CHECKS if not checks[c.name].verdict.passed]
+        rows.append((model, f"{len(CHECKS) - len(wrong)} of {len(CHECKS)}", ", ".join(wrong) or "-"))
+    print_table("validation", ("model", "passed", "criteria that do not hold"), rows)
+    for model, why in skipped.items():
+        print(f"not run   {model}: {why}")
+    print(f"page      {page}")
+    return 0
+
+
+def _command(options: argparse.Namespace) -> str:
+    """Return the words that make the same page, without paths of this machine."""
+    words = ["crowdbot validate"]
+    if options.models:
+        words.append(f"--models {options.models}")
+    if options.data:
+        words.append("--data RECORDINGS")
+    return " ".join([*words, "--out docs", *(["--quick"] if options.quick else [])])
