@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from crowdbot.core import InputError, Scene, stream
+from crowdbot.models import ORCA, Mixture
 from crowdbot.models.vog import MEMORY, VOG
 
 ABREAST = np.array([[0.0, 0.0], [0.0, 1.0], [0.0, 2.0]])
@@ -264,3 +265,8 @@ def test_wrong_input_is_explained():
         VOG(group_neighbors=17.0)
     with pytest.raises(InputError, match="time_horizon = 0.0"):
         VOG(time_horizon=0.0)
+
+
+def test_a_person_who_comes_in_is_calm():
+    assert VOG().memory_at_start == {"vog_calm": 1.0}
+    assert Mixture((ORCA(), VOG())).memory_at_start == {"vog_calm": 1.0}

@@ -75,7 +75,7 @@ class Mixture(CrowdModel):
     @property
     def memory_at_start(self) -> Mapping[str, float]:
         """What the memory of a scene holds for somebody new, by name, where that is not 0: as the models say it."""
-        parts = (getattr(model, "memory_at_start", {}) for model in self.models)
+        parts = (model.memory_at_start for model in self.models)
         return {name: value for part in parts for name, value in part.items()}
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import abc
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -67,6 +67,11 @@ class CrowdModel(abc.ABC):
         Raises:
             InputError: ``dt`` is not positive, or a value of the scene is not finite or absurdly large.
         """
+
+    @property
+    def memory_at_start(self) -> Mapping[str, float]:
+        """What ``Scene.memory`` holds by name for a person who has just come in; most models keep nothing."""
+        return {}
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
         """Return the scene ``dt`` [s] later."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
@@ -345,6 +346,11 @@ class VOG(CrowdModel):
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         return self._chosen(scene, dt)[..., :2]
+
+    @property
+    def memory_at_start(self) -> Mapping[str, float]:
+        """A person who has just come in is calm."""
+        return {MEMORY: CALM}
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
         """Return the scene ``dt`` [s] later, which remembers how calm everyone is as ``vog_calm``."""

@@ -74,7 +74,7 @@ class Traffic:
                 )
         if sources:
             first = journeys or Journeys((), -1)
-            start = {WAY: fresh((1, 1))[0, 0], **getattr(model, "memory_at_start", {})}
+            start = {WAY: fresh((1, 1))[0, 0], **model.memory_at_start}
             arrivals = Arrivals(tuple(sources), seeds.tolist(), len(first.journeys), start)
             journeys = Journeys((*first.journeys, *(source.journey for source in sources)), first.which)
             return cls(seeds, who, following, router, journeys, arrivals, mixture)
