@@ -365,8 +365,7 @@ class VOG(CrowdModel):
             return per_agent(getattr(self, name), scene.shape, name)
 
         seen = scene.active & scene.visible
-        most = np.rint(each("max_neighbors"))
-        near = nearest(scene.position, each("neighbor_distance"), most, seen, walking)
+        near = nearest(scene.position, each("neighbor_distance"), np.rint(each("max_neighbors")), seen, walking)
         crowd = _Crowd(
             rows(scene.position), rows(scene.velocity), rows(wish), rows(scene.radius),
             rows(speed_limit(self.max_speed, scene)),
