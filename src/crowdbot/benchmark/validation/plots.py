@@ -61,7 +61,7 @@ def _grid(done: Validation, name: str, title: str, x: str, y: str, panel: Panel,
         lowest.set_xlabel(x, fontsize=9)
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=9, frameon=False)
-    figure.suptitle(f"{title} (red name: criterion not met)", fontsize=11)
+    figure.suptitle(f"{title} (orange name: criterion not met)", fontsize=11)
     figure.supylabel(y, fontsize=10)
     _save(canvas, file)
 
