@@ -178,8 +178,8 @@ def _memory() -> Gauge:
         "scene = crowd(100_000)\nfor _ in range(3): scene = ORCA().step(scene, 0.1)\n"
         "status = Path('/proc/self/status')\n"  # getrusage would count the parent's memory at the fork
         "if status.exists(): print(int(re.search(r'VmHWM:\\s+(\\d+)', status.read_text())[1]) / 2**10)\n"
-        "peak, unit = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, 2**20 if sys.platform == 'darwin' else 2**10\n"
-        "if not status.exists(): print(peak / unit)"
+        "peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
+        "if not status.exists(): print(peak / (2**20 if sys.platform == 'darwin' else 2**10))"
     )
     said = ""
     for _ in range(2):  # the first may have to compile, which takes more memory than the crowd

@@ -45,8 +45,8 @@ CHECKS: tuple[Check, ...] = (
 """In the order of the page."""
 
 LEFT_OUT = {
-    "cost-model": "composes models from costs; as it comes it takes the steps of orca, weighed by NumPy, which needs two"
-    " more minutes; --models cost-model runs it",
+    "cost-model": "composes models from costs; as it comes it takes the steps of orca, weighed by NumPy, which needs"
+    " two more minutes; --models cost-model runs it",
 }
 """Models that are run only when they are named, and why."""
 
