@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -73,7 +74,9 @@ def _save(canvas: Any, file: Path) -> None:
     buffer = io.BytesIO()
     canvas.print_png(buffer)
     picture = Image.open(io.BytesIO(buffer.getvalue())).convert("RGB")
-    picture.quantize(64, dither=Image.Dither.NONE).save(file, optimize=True)
+    draft = file.with_suffix(".part")
+    picture.quantize(64, dither=Image.Dither.NONE).save(draft, format="PNG", optimize=True)
+    os.replace(draft, file)
 
 
 def _single_file(axis: Any, result: dict[str, Any], people: dict[str, Any] | None) -> None:
