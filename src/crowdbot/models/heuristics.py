@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core.geometry import nearest_on_segment, ray_to_disc, time_to_segment
 from crowdbot.core.kernels import kernel
-from crowdbot.core.neighbors import CHUNK, Neighbors, nearest
+from crowdbot.core.neighbors import CHUNK, Neighbors
 from crowdbot.core.paper import Paper
 from crowdbot.core.parameter import PerAgent, parameter, per_agent
 from crowdbot.core.scene import Scene
 
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
+from .model import CrowdModel, check_limit, kept, neighbors_of, rows, speed_limit, spread, walkers, wishes
 
 __all__ = ["Heuristics"]
 
@@ -262,13 +262,7 @@ class Heuristics(CrowdModel):
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         wish, walking = wishes(scene, dt), walkers(scene)
-        near = nearest(
-            scene.position,
-            per_agent(self.neighbor_distance, scene.shape, "neighbor_distance"),
-            np.rint(per_agent(self.max_neighbors, scene.shape, "max_neighbors")),
-            scene.active & scene.visible,
-            walking,
-        )
+        near = neighbors_of(self, scene, walking)
         relaxation = np.maximum(per_agent(self.relaxation_time, scene.shape, "relaxation_time"), dt)
         stiffness = np.minimum(per_agent(self.contact_stiffness, scene.shape, "contact_stiffness"), 1.0 / dt**2)
         crowd = _Crowd(

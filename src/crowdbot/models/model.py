@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.errors import InputError
-from crowdbot.core.neighbors import SMALL
+from crowdbot.core.neighbors import SMALL, Neighbors, nearest
 from crowdbot.core.paper import Paper
 from crowdbot.core.parameter import PerAgent, check_parameters, parameters, per_agent
 from crowdbot.core.scene import Scene
 
-__all__ = ["CrowdModel", "check_limit", "kept", "rows", "speed_limit", "spread", "walkers", "wishes"]
+__all__ = ["CrowdModel", "check_limit", "kept", "neighbors_of", "rows", "speed_limit", "spread", "walkers", "wishes"]
 
 LARGEST = 1e9
 """No position [m], speed [m/s] or parameter may be larger: beyond it squares of squares overflow."""
@@ -121,6 +121,13 @@ def check_limit(model: CrowdModel, max_speed: PerAgent | None) -> None:
 def speed_limit(max_speed: PerAgent | None, scene: Scene) -> Floats:
     """Return the maximum speeds ``[E, A]`` [m/s]: the model's own, or those of the scene when it has none."""
     return scene.max_speed if max_speed is None else per_agent(max_speed, scene.shape, "max_speed")
+
+
+def neighbors_of(model: Any, scene: Scene, walking: NDArray[np.bool_]) -> Neighbors:
+    """Return whom those who walk see: the nearest visible ones by the model's neighbour distance and number."""
+    reach = per_agent(model.neighbor_distance, scene.shape, "neighbor_distance")
+    most = np.rint(per_agent(model.max_neighbors, scene.shape, "max_neighbors"))
+    return nearest(scene.position, reach, most, scene.active & scene.visible, walking)
 
 
 def rows(value: NDArray[Any]) -> NDArray[Any]:

@@ -11,13 +11,13 @@ from numba import prange
 from numpy.typing import NDArray
 
 from crowdbot.core.kernels import kernel
-from crowdbot.core.neighbors import CHUNK, Neighbors, nearest
+from crowdbot.core.neighbors import CHUNK, Neighbors
 from crowdbot.core.paper import Paper
 from crowdbot.core.parameter import PerAgent, parameter, per_agent
 from crowdbot.core.scene import Scene
 
 from .linear_program import best_velocity
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
+from .model import CrowdModel, check_limit, kept, neighbors_of, rows, speed_limit, spread, walkers, wishes
 from .orca_lines import Edges, avoid_agent, avoid_edge, edges_in_reach, edges_of
 
 __all__ = ["PLEdestrians"]
@@ -176,13 +176,7 @@ class PLEdestrians(CrowdModel):
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         wish, walking = wishes(scene, dt), walkers(scene)
-        near = nearest(
-            scene.position,
-            per_agent(self.neighbor_distance, scene.shape, "neighbor_distance"),
-            np.rint(per_agent(self.max_neighbors, scene.shape, "max_neighbors")),
-            scene.active & scene.visible,
-            walking,
-        )
+        near = neighbors_of(self, scene, walking)
         if scene.preferred_velocity is None:
             away = np.where(scene.active[..., None], scene.goal - scene.position, 0.0)
             distance = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2)

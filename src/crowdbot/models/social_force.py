@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from crowdbot.core.errors import InputError, did_you_mean
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.kernels import kernel
-from crowdbot.core.neighbors import CHUNK, Neighbors, nearest
+from crowdbot.core.neighbors import CHUNK, Neighbors
 from crowdbot.core.paper import Paper
 from crowdbot.core.parameter import PerAgent, parameter, per_agent
 from crowdbot.core.scene import Scene
 
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
+from .model import CrowdModel, check_limit, kept, neighbors_of, rows, speed_limit, spread, walkers, wishes
 
 __all__ = ["SocialForce"]
 
@@ -268,13 +268,7 @@ class SocialForce(CrowdModel):
         if umans and scene.preferred_velocity is None:  # there one has arrived when the goal is under the own disc
             away = scene.goal - scene.position
             wish[away[..., 0] ** 2 + away[..., 1] ** 2 <= scene.radius**2] = 0.0
-        near = nearest(
-            scene.position,
-            per_agent(self.neighbor_distance, scene.shape, "neighbor_distance"),
-            np.rint(per_agent(self.max_neighbors, scene.shape, "max_neighbors")),
-            scene.active & scene.visible,
-            walking,
-        )
+        near = neighbors_of(self, scene, walking)
         crowd = _Crowd(
             rows(scene.position),
             rows(scene.velocity),
