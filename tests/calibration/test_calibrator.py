@@ -2,111 +2,142 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from made_crowds import Shy, shy_crowd
 
-from crowdbot.calibration import Calibrator, Rollout
+from crowdbot.calibration import Calibrator, PopulationPrior, Space
 from crowdbot.calibration import calibrator as module
-from crowdbot.core import InputError, Paper, PerAgent, Scene, per_agent, stream
-from crowdbot.core.parameter import parameter
+from crowdbot.core import InputError
 from crowdbot.data import Windows
-from crowdbot.models import ORCA, CrowdModel, CurrentDirection
-
-
-@dataclass(frozen=True)
-class Shy(CrowdModel):
-    """Everyone walks to the goal and is pushed away by who is nearer than ``space`` and their radii."""
-
-    paper: ClassVar[Paper] = Paper("Nobody", 2020, "Shyness", "Nowhere")
-    strength: PerAgent = parameter(0.0, unit="1/s", low=0.0, high=4.0, source="test")
-    space: PerAgent = parameter(1.0, unit="m", low=0.2, high=3.0, source="test")
-
-    def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> np.ndarray:
-        away = scene.position[:, :, None] - scene.position[:, None, :]
-        distance = np.sqrt(np.sum(away**2, axis=-1))
-        both = scene.active[:, None, :] & scene.active[:, :, None] & ~np.eye(scene.shape[1], dtype=bool)
-        space = per_agent(self.space, scene.shape)[..., None] + scene.radius[:, None, :] + scene.radius[..., None]
-        near = np.where(both, np.maximum(0.0, space - distance), 0.0) / np.maximum(distance, 1e-9)
-        push = np.sum(away * near[..., None], axis=2) * per_agent(self.strength, scene.shape)[..., None]
-        return scene.desired_velocity(dt) + push
-
+from crowdbot.models import ORCA
 
 TRUTH = Shy(strength=1.5, space=1.2)
+FREE = ("strength", "space", "radius")
 
 
 @pytest.fixture(scope="module")
 def past() -> Windows:
-    """Eight windows of six people who meet in the middle of a circle, as ``TRUTH`` says, with radius 0.3 m."""
-    rng = stream(4, "shy")
-    W, T, A = 8, 8, 6
-    angle = np.arange(A) * 2.0 * np.pi / A + rng.normal(0.0, 0.1, (W, A))
-    out = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    aim = -(out + rng.normal(0.0, 0.1, out.shape)) * rng.uniform(1.0, 1.4, (W, A, 1))
-    position = np.zeros((W, T, A, 2))
-    position[:, 0], position[:, 1] = 4.0 * out, 4.0 * out + 0.4 * aim  # nobody is near anybody in the first step
-    everyone, nobody = np.ones((W, T, A), dtype=bool), np.zeros((W, A), dtype=bool)
-    frame, id = np.tile(np.arange(T), (W, 1)), np.tile(np.arange(A), (W, 1))
-    begun = Windows(position, everyone, nobody, nobody, id, frame, 0.4, "all", "made")
-    position[:, 1:] = Rollout(TRUTH, CurrentDirection(), radius=0.3).again(begun)[0]
-    return begun
+    return shy_crowd(TRUTH)
 
 
-def test_the_truth_is_nearly_found_and_predicts_better(past: Windows) -> None:
-    fit = Calibrator(Shy(), budget=400).fit(past, seed=1)
-    assert fit.cost < 0.2 * fit.default_cost
-    assert fit.evaluations == 400
+def shared(budget: int, **more: object) -> Calibrator:
+    return Calibrator(Shy(), "absolute", "random-search", budget=budget, shared=True, **more)  # type: ignore[arg-type]
+
+
+def each(budget: int, **more: object) -> Calibrator:
+    return Calibrator(Shy(), "absolute", "random-search", budget=budget, free=FREE, **more)  # type: ignore[arg-type]
+
+
+def test_the_shared_truth_is_nearly_found_and_predicts_better(past: Windows) -> None:
+    fit = shared(400).fit(past, seed=1)
+    assert fit.cost[0] < 0.2 * fit.given_cost[0]
+    assert fit.evaluations.tolist() == [400]
     assert (fit.windows, fit.persons) == (8, 48)
-    reach = fit.values["space"] + 2.0 * fit.values["radius"]
-    assert reach == pytest.approx(1.2 + 0.6, abs=0.3)  # only their sum acts in this model
-    assert fit.model == Shy(fit.values["strength"], fit.values["space"])
-    assert np.all(np.diff(fit.history) <= 0.0)
-    assert fit.history[-1] == fit.cost
+    values = {name: median for name, (median, _) in fit.table().items()}
+    assert values["space"] + 2.0 * values["radius"] == pytest.approx(1.2 + 0.6, abs=0.3)  # only their sum acts
+    assert fit.model == Shy(values["strength"], values["space"])
+    assert np.all(np.diff(fit.history[0]) <= 0.0)
+    assert fit.history[0, -1] == fit.cost[0]
+
+
+def test_everyone_s_own_parameters_fit_better_than_the_given_ones(past: Windows) -> None:
+    fit = each(300).fit(past, seed=1)
+    assert fit.values.shape == (8, 6, 3)
+    assert np.all(fit.cost < 0.75 * fit.given_cost)
+    assert fit.cost.shape == fit.evaluations.shape == (8,)
+    again = Calibrator(Shy(), "absolute", "random-search", budget=1, free=FREE)
+    kept = again.fit_each(past, [np.random.default_rng(0)] * 8, start=None)
+    np.testing.assert_array_equal(kept.cost, fit.given_cost)
+
+
+def test_what_is_found_costs_what_was_said(past: Windows) -> None:
+    fit = each(50).fit(past, seed=3)
+    told = each(2).fit(past, start=fit)
+    np.testing.assert_allclose(told.cost, fit.cost, rtol=1e-12)
+    assert np.array_equal(told.values, fit.values)
 
 
 def test_the_same_seed_gives_the_same_fit_and_another_another(past: Windows) -> None:
-    one, same, other = (Calibrator(Shy(), budget=20).fit(past, seed=seed) for seed in (1, 1, 2))
-    assert one.values == same.values
-    assert one.values != other.values
+    for scheme in (shared(20), each(20)):
+        one, same, other = (scheme.fit(past, seed=seed) for seed in (1, 1, 2))
+        assert np.array_equal(one.values, same.values)
+        assert not np.array_equal(one.values, other.values)
+
+
+def test_a_window_alone_is_fitted_as_among_others(past: Windows) -> None:
+    whole = each(30).fit(past, seed=5)
+    for w in (0, 3):
+        rngs = [np.random.Generator(rng.bit_generator) for rng in _streams(8)]
+        alone = each(30).fit_each(past[w : w + 1], [rngs[w]])
+        among = each(30).fit_each(past, _streams(8))
+        assert np.array_equal(alone.values[0], among.values[w])
+    assert whole.values.shape[0] == 8
+
+
+def _streams(count: int) -> list[np.random.Generator]:
+    return [np.random.default_rng(number) for number in range(count)]
 
 
 def test_a_fit_is_never_worse_than_what_was_given(past: Windows) -> None:
-    fit = Calibrator(TRUTH, radius=0.3, budget=1).fit(past)
-    assert fit.values == {"strength": 1.5, "space": 1.2, "radius": 0.3}
-    assert fit.cost == fit.default_cost
+    fit = Calibrator(TRUTH, "absolute", "random-search", radius=0.3, budget=1, shared=True).fit(past)
+    assert {name: median for name, (median, _) in fit.table().items()} == {
+        "strength": 1.5, "space": 1.2, "radius": 0.3,
+    }  # fmt: skip
+    assert fit.cost == fit.given_cost
 
 
 def test_pieces_that_fit_the_memory_change_nothing(past: Windows, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = Calibrator(Shy(), budget=20).fit(past)
+    whole = [scheme.fit(past) for scheme in (shared(20), each(20))]
     for agents in (1, 6 * 8 * 3):
         monkeypatch.setattr(module, "AGENTS_AT_ONCE", agents)
-        pieces = Calibrator(Shy(), budget=20).fit(past)
-        np.testing.assert_allclose(pieces.history, whole.history, rtol=1e-12)
-        assert pieces.values == whole.values
+        pieces = [scheme.fit(past) for scheme in (shared(20), each(20))]
+        for piece, one in zip(pieces, whole, strict=True):
+            np.testing.assert_allclose(piece.history, one.history, rtol=1e-12)
+            assert np.array_equal(piece.values, one.values)
 
 
 def test_several_recordings_are_fitted_together(past: Windows) -> None:
-    whole = Calibrator(Shy(), budget=20).fit(past)
-    parts = Calibrator(Shy(), budget=20).fit([past[:3], past[3:]])
+    whole = shared(20).fit(past)
+    parts = shared(20).fit([past[:3], past[3:]])
     np.testing.assert_allclose(parts.history, whole.history, rtol=1e-12)
     assert (parts.windows, parts.persons) == (whole.windows, whole.persons)
+    with pytest.raises(InputError, match="2 recordings can only be fitted together with shared parameters"):
+        each(20).fit([past[:3], past[3:]])
 
 
 def test_progress_is_told_and_ends_at_one(past: Windows, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "AGENTS_AT_ONCE", 6 * 8 * 4)
-    shares: list[float] = []
-    Calibrator(Shy(), budget=10).fit(past, progress=shares.append)
-    assert shares == sorted(shares)
-    assert len(shares) == 4
-    assert shares[-1] == 1.0
+    monkeypatch.setattr(module, "AGENTS_AT_ONCE", 6 * 4 * 100)
+    for scheme in (shared(10), each(10)):
+        shares: list[float] = []
+        scheme.fit(past, progress=shares.append)
+        assert shares == sorted(shares)
+        assert shares[-1] == 1.0
+
+
+def test_fixed_parameters_stay_and_free_ones_move(past: Windows) -> None:
+    fit = Calibrator(Shy(space=0.7), "absolute", "random-search", budget=50, free=("strength",)).fit(past)
+    assert fit.space.names == ("strength",)
+    assert fit.model.space == 0.7  # type: ignore[attr-defined]
+    assert fit.model.strength.shape == (8, 6)  # type: ignore[attr-defined]
+    assert fit.rollout.radius == 0.25
+    assert fit.rollout.preferred_speed is None
+
+
+def test_everyone_s_preferred_speed_is_one_of_the_parameters(past: Windows) -> None:
+    fit = Calibrator(TRUTH, "absolute", "random-search", budget=200, radius=0.3, free=("preferred-speed",)).fit(past)
+    assert fit.space.names == ("preferred_speed",)
+    begun = np.linalg.norm(past.position[:, 1] - past.position[:, 0], axis=-1) / past.dt
+    assert np.median(np.abs(fit.values[..., 0] - begun)) < 0.1
 
 
 def test_orca_is_calibrated_by_name(past: Windows) -> None:
-    fit = Calibrator(budget=6).fit(past[:3])
-    assert fit.scheme == "orca, absolute-difference, random-search, current-direction"
-    assert set(fit.values) == {
+    fit = Calibrator(budget=6, search="random-search", shared=True).fit(past[:3])
+    assert fit.scheme == "orca, progressive, random-search, current-direction"
+    assert set(fit.space.names) == {
         "neighbor_distance", "max_neighbors", "time_horizon", "time_horizon_walls", "radius",
     }  # fmt: skip
     assert isinstance(fit.model, ORCA)
@@ -116,27 +147,71 @@ def test_orca_is_calibrated_by_name(past: Windows) -> None:
     assert "6 evaluations" in str(fit)
 
 
+def test_people_are_known_again_in_other_windows(past: Windows) -> None:
+    fit = each(40).fit(past, seed=2)
+    moved = replace(past, id=past.id[:, ::-1], position=past.position[:, :, ::-1])
+    values = fit.values_of(moved)
+    np.testing.assert_array_equal(values[0, ::-1], fit.values[-1])  # the latest window with them
+    stranger = replace(past, id=past.id + 100)
+    medians = [median for median, _ in fit.table().values()]
+    np.testing.assert_allclose(fit.values_of(stranger), np.broadcast_to(medians, fit.values.shape))
+
+
 def test_only_the_past_decides(past: Windows) -> None:
-    peeked = Windows(*[*list(vars(past).values())[:2], ~past.scored, *list(vars(past).values())[3:]])
-    assert Calibrator(Shy(), budget=5).fit(past).values == Calibrator(Shy(), budget=5).fit(peeked).values
+    peeked = replace(past, scored=~past.scored)
+    for scheme in (shared(5), each(5)):
+        assert np.array_equal(scheme.fit(past).values, scheme.fit(peeked).values)
+
+
+def test_a_prior_draws_people_towards_the_population(past: Windows, tmp_path: Path) -> None:
+    fit = each(200).fit(past, seed=1)
+    prior = PopulationPrior.learned(fit, strength=0.5)
+    drawn = each(200, prior=prior).fit(past, seed=1)
+    spread = [np.std(one.values.reshape(-1, 3), axis=0) for one in (drawn, fit)]
+    assert np.all(spread[0] < spread[1])
+    prior.save(tmp_path / "prior.json")
+    again = PopulationPrior.load(tmp_path / "prior.json")
+    assert again.names == prior.names
+    np.testing.assert_allclose(again.covariance, prior.covariance)
+    space = Space(Shy(), FREE)
+    typical = prior.typical(space, fit.given)
+    assert np.all(prior.penalty(space, typical, fit.given) < 1e-6)
+    assert np.all(prior.penalty(space, fit.values, fit.given) >= 0.0)
+
+
+def test_a_prior_of_other_parameters_or_of_nobody_is_refused(past: Windows, tmp_path: Path) -> None:
+    prior = PopulationPrior.learned(each(5).fit(past))
+    with pytest.raises(InputError, match="it is of strength, space, radius, and strength are calibrated"):
+        Calibrator(Shy(), "absolute", "random-search", budget=5, free=("strength",), prior=prior).fit(past)
+    with pytest.raises(InputError, match="learned from fits of each person"):
+        PopulationPrior.learned(shared(5).fit(past))
+    with pytest.raises(InputError, match="a population prior is about each person's own parameters"):
+        shared(5, prior=prior)
+    (tmp_path / "wrong.json").write_text('{"names": ["a"], "mean": [1.0]}')
+    with pytest.raises(InputError, match=r"wrong\.json is not a population prior"):
+        PopulationPrior.load(tmp_path / "wrong.json")
+    with pytest.raises(InputError, match=r"absent\.json: cannot be read"):
+        PopulationPrior.load(tmp_path / "absent.json")
 
 
 def test_wrong_use_is_said_in_a_sentence(past: Windows) -> None:
     with pytest.raises(InputError, match="budget = 0 evaluations must be at least 1"):
-        Calibrator(Shy(), budget=0)
-    with pytest.raises(InputError, match=r"unknown cost 'absolute-distance', did you mean 'absolute-difference'\?"):
-        Calibrator(Shy(), cost="absolute-distance")
+        each(0)
+    with pytest.raises(InputError, match=r"unknown cost 'absolut', did you mean 'absolute'\?"):
+        Calibrator(Shy(), cost="absolut")
     with pytest.raises(InputError, match="unknown search 'greed'"):
         Calibrator(Shy(), search="greed")
-    with pytest.raises(InputError, match="needs at least 2 observed rows, made has 1"):
-        Calibrator(Shy(), budget=5).fit(
-            Windows(past.position[:, :1], past.present[:, :1], *list(vars(past).values())[2:])
-        )
+    with pytest.raises(InputError, match=r"shy has no parameter 'strenght' to calibrate, did you mean 'strength'\?"):
+        Calibrator(Shy(), free=("strenght",))
+    for scheme in (shared(5), each(5)):
+        with pytest.raises(InputError, match="needs at least 2 observed rows, made has 1"):
+            scheme.fit(replace(past, position=past.position[:, :1], present=past.present[:, :1]))
+        with pytest.raises(InputError, match="nobody in 8 windows of made can be compared by absolute"):
+            scheme.fit(replace(past, present=np.zeros_like(past.present)))
     with pytest.raises(InputError, match="nobody in 0 windows of no recording can be compared"):
-        Calibrator(Shy(), budget=5).fit([])
-    with pytest.raises(InputError, match="nobody in 8 windows of made can be compared"):
-        Calibrator(Shy(), budget=5).fit(
-            Windows(past.position, np.zeros_like(past.present), *list(vars(past).values())[2:])
-        )
-    with pytest.raises(InputError, match="strength .* must be one number, not one for each agent"):
-        Calibrator(Shy(strength=np.ones((8, 6)))).fit(past)
+        shared(5).fit([])
+    with pytest.raises(InputError, match="strength must be one number before it, not one for each agent"):
+        Calibrator(Shy(strength=np.ones((8, 6))), search="random-search").fit(past)
+    one = replace(past, present=past.present & (np.arange(6) == 0))
+    with pytest.raises(InputError, match="can be compared by inter-pedestrian; people must be .* with others"):
+        Calibrator(Shy(), "inter-pedestrian", "random-search", budget=5).fit(one)

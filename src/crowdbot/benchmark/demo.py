@@ -88,7 +88,8 @@ def _calibrated(trial: Trial, seed: int, progress: Callable[[float], None]) -> F
     from crowdbot.calibration import Calibrator
 
     past, _ = trial.run(seed=seed).tracks(STEP).windows(PREDICT, 1)
-    return Calibrator("orca", budget=BUDGET).fit(past[::4], seed=seed, progress=progress)
+    calibrator = Calibrator("orca", "absolute", "random-search", budget=BUDGET, shared=True)
+    return calibrator.fit(past[::4], seed=seed, progress=progress)
 
 
 def _predicted(
@@ -97,9 +98,9 @@ def _predicted(
     from crowdbot.core import stream
     from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, Kalman, Simulated, evaluate
 
-    simulated = Simulated(fit.model, radius=fit.values["radius"])
     found = []
-    for number, predictor in enumerate((ConstantVelocity(), ConstantAcceleration(), Kalman(), simulated), start=1):
+    predictors = (ConstantVelocity(), ConstantAcceleration(), Kalman(), Simulated.of(fit))
+    for number, predictor in enumerate(predictors, start=1):
         score = evaluate(predictor, past, future, seed=seed)
         score = dataclasses.replace(score, predictor=predictor.name.partition("(")[0])  # its parameters stand below
         found.append(Predicted(predictor.predict(past, PREDICT, rng=stream(seed, "report")), score))
@@ -110,7 +111,7 @@ def _predicted(
 def _commands(out: Path, episode: Episode, fit: Fit) -> dict[str, str]:
     file = out / "episode.mcap"
     scored = f"crowdbot predict --data {file} --near {NEAR:g} --predictor"
-    values = " ".join(f"{name.replace('_', '-')}={value!r}" for name, value in fit.values.items())
+    values = " ".join(f"{name.replace('_', '-')}={value!r}" for name, (value, _) in fit.table().items())
     return {
         f"crowdbot run {TRIAL} --seed {episode.seed} --out {out}": "the trial",
         f"crowdbot replay {file}": "the same bytes again",
@@ -127,6 +128,6 @@ def _seen(trial: Trial, fit: Fit) -> str:
     return (
         f"Predictors know the last {OBSERVE * STEP:.1f} s of everyone's true positions, without noise, and no goals."
         f" The crowd of this trial walks by {crowd}; the simulated predictor is ORCA, calibrated in"
-        f" {fit.evaluations} evaluations on a crowd with another seed. A simulated crowd is easier to predict than a"
+        f" {fit.evaluations[0]} evaluations on a crowd with another seed. A simulated crowd is easier to predict than a"
         " real one: for real recordings see crowdbot predict."
     )

@@ -1,19 +1,45 @@
 """Floor 3: which parameters make a crowd model walk like recorded people; a scheme is model x cost x search x goal."""
 
-from .calibrator import Calibrator, Fit, named_goal, named_model
-from .costs import AbsoluteDifference, Cost
+from .absolute import Absolute
+from .calibrator import Calibrator
+from .campaign import Campaign, FittedPiece
+from .cost import Cost
+from .fit import Fit
+from .futures import futures
+from .inter_pedestrian import InterPedestrian
+from .named import goal_for, kind_of_goal, named_cost, named_goal, named_model, named_search
+from .prior import PopulationPrior
+from .progressive import Progressive
+from .random_search import RandomSearch
+from .rehearsal import Rehearsal, Walked
 from .rollout import Rollout
-from .search import Found, RandomSearch, Search
+from .search import Found, Search
+from .space import Space
+from .weighted_sum import WeightedSum
 
 __all__ = [
-    "AbsoluteDifference",
+    "Absolute",
     "Calibrator",
+    "Campaign",
     "Cost",
     "Fit",
+    "FittedPiece",
     "Found",
+    "InterPedestrian",
+    "PopulationPrior",
+    "Progressive",
     "RandomSearch",
+    "Rehearsal",
     "Rollout",
     "Search",
+    "Space",
+    "Walked",
+    "WeightedSum",
+    "futures",
+    "goal_for",
+    "kind_of_goal",
+    "named_cost",
     "named_goal",
     "named_model",
+    "named_search",
 ]

@@ -3,126 +3,101 @@
 from __future__ import annotations
 
 import dataclasses
-import sys
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from types import ModuleType
+from dataclasses import dataclass
 from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot import models
-from crowdbot.core import InputError, Parameter, parameters, stream
-from crowdbot.core.plug import find, kebab
-from crowdbot.data.forecast import Forecast
+from crowdbot.core import InputError, Scene, stream
+from crowdbot.core.plug import kebab
 from crowdbot.data.windows import Windows
-from crowdbot.models import CrowdModel, goals
+from crowdbot.models import CrowdModel
 from crowdbot.models.goals import Goal
 
-from .costs import Cost
+from .cost import Cost
+from .fit import Fit
+from .named import named_cost, named_goal, named_model, named_search
+from .prior import PopulationPrior
+from .rehearsal import Rehearsal
 from .rollout import Rollout
-from .search import Search
+from .search import Found, Search
+from .space import RADIUS, Space
 
-__all__ = ["RADIUS", "Calibrator", "Fit", "named_goal", "named_model"]
+__all__ = ["Calibrator"]
 
 Floats = NDArray[np.float64]
-
-RADIUS = Parameter("radius", "m", 0.25, 0.1, 0.4, "half the width of shoulders", 0.01)
-"""People's radius: it belongs to the scene and not to a model, and is calibrated with the model's parameters."""
+Integers = NDArray[np.int64]
+Progress = Callable[[float], None]
+Report = Callable[[int], None]
+"""Told how many evaluations (candidates times windows) of a part are done."""
 
 AGENTS_AT_ONCE = 200_000
 """About so many agents (candidates x windows x people) are simulated in one batch."""
-
-
-@dataclass(frozen=True)
-class Fit:
-    """The result of a calibration, ready to predict.
-
-    Fields:
-        rollout: the fitted model with goal, people's radius and time step.
-        values: every calibrated parameter by its name.
-        cost, default_cost: mean cost over people with the fitted and with the given parameters.
-        evaluations: how many candidates were tried, ``history [evaluations]`` the smallest cost so far after each.
-        persons: how many people the cost is a mean of, in ``windows`` windows.
-        seconds: time of the search.
-        scheme: names of model, cost, search and goal.
-    """
-
-    rollout: Rollout
-    values: dict[str, float]
-    cost: float
-    default_cost: float
-    evaluations: int
-    history: Floats = field(repr=False)
-    windows: int
-    persons: int
-    seconds: float
-    scheme: str
-
-    @property
-    def model(self) -> CrowdModel:
-        """The fitted model."""
-        return self.rollout.model
-
-    def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return where the fitted crowd goes after the last observed row; deterministic models give K = 1."""
-        if steps < 1 or samples < 1:
-            raise InputError(f"a prediction needs at least 1 step and 1 sample, not {steps} and {samples}")
-        return self.rollout.forecast(past, steps, f"calibrated {self.scheme}", rng)
-
-    def __str__(self) -> str:
-        """Return one paragraph: scheme, costs, parameters."""
-        values = ", ".join(f"{name} {value:.3g}" for name, value in self.values.items())
-        return (
-            f"{self.scheme}: cost {self.cost:.4f} m, {self.default_cost:.4f} m before"
-            f" ({self.persons} persons in {self.windows} windows, {self.evaluations} evaluations,"
-            f" {self.seconds:.1f} s); {values}"
-        )
+CANDIDATES = 100
+"""Searches are expected to try about so many candidates at once."""
 
 
 @dataclass(frozen=True)
 class Calibrator:
-    """Fits one set of parameters, shared by everyone, to the observed rows of windows.
+    """Fits the parameters of a crowd to the observed rows of windows: a scheme is model x cost x search x goal.
 
-    All parameters in the model's table and the people's radius are searched in their calibration boxes; the given ones
-    are tried first, so that a fit is never worse than they are.
+    Every person has parameters of their own, and every window is a problem of its own, unless they are shared. The
+    given values are tried first, so that a fit is never worse than they are.
 
     Fields:
         model, cost, search, goal: values, or their names.
-        budget: how many parameter sets are tried.
+        budget: how many whole crowds are tried, for each window or, when shared, in all.
+        shared: one set of parameters for everyone.
+        free: names of the parameters that are calibrated: of the model, ``radius``, ``preferred_speed`` (not when
+            shared); empty means all.
+        prior: what is known of the parameters of a population; unusual people cost more.
         radius: people's radius before the fit [m].
         substep: longest time step of the simulation [s].
+        displacements: how many last displacements give velocities and observed speeds.
 
     Raises:
         InputError: a name is unknown, or the budget is below 1.
     """
 
     model: CrowdModel | str = "orca"
-    cost: Cost | str = "absolute-difference"
-    search: Search | str = "random-search"
+    cost: Cost | str = "progressive"
+    search: Search | str = "genetic"
     goal: Goal | str = "current-direction"
-    budget: int = 200
+    budget: int = 500
+    shared: bool = False
+    free: tuple[str, ...] = ()
+    prior: PopulationPrior | None = None
     radius: float = RADIUS.default
     substep: float = 0.1
+    displacements: int = 1
 
     def __post_init__(self) -> None:
-        room = sys.modules[__package__ or ""]
         for name, value in (
             ("model", named_model(self.model)),
-            ("cost", _named(self.cost, room, Cost)),
-            ("search", _named(self.search, room, Search)),
+            ("cost", named_cost(self.cost)),
+            ("search", named_search(self.search)),
             ("goal", named_goal(self.goal)),
         ):
             object.__setattr__(self, name, value)
         if self.budget < 1:
             raise InputError(f"calibration: budget = {self.budget} evaluations must be at least 1")
+        if self.shared and self.prior is not None:
+            raise InputError("calibration: a population prior is about each person's own parameters, not shared ones")
+        _ = self.space, self.rollout  # says what is wrong with a name or a number
 
     @property
-    def table(self) -> tuple[Parameter, ...]:
-        """What is calibrated: the parameters of the model, then the radius."""
-        return (*parameters(self.model), RADIUS)
+    def space(self) -> Space:
+        """What is calibrated."""
+        return Space(cast(CrowdModel, self.model), tuple(self.free), self.shared)
+
+    @property
+    def rollout(self) -> Rollout:
+        """The crowd before the calibration."""
+        model, goal = cast(CrowdModel, self.model), cast(Goal, self.goal)
+        return Rollout(model, goal, self.radius, None, self.substep, self.displacements)
 
     @property
     def scheme(self) -> str:
@@ -130,133 +105,185 @@ class Calibrator:
         return ", ".join(kebab(type(part).__name__) for part in (self.model, self.cost, self.search, self.goal))
 
     def fit(
-        self, past: Windows | Sequence[Windows], seed: int = 0, progress: Callable[[float], None] | None = None
+        self,
+        past: Windows | Sequence[Windows],
+        seed: int = 0,
+        progress: Progress | None = None,
+        start: Fit | None = None,
     ) -> Fit:
         """Search the parameters under which the crowd, simulated over the observed rows, is nearest to the recording.
 
         Args:
-            past: windows of at least two rows, of one recording or of several; their future is not looked at, unless
-                the goal does.
+            past: windows of at least two rows; their future is not looked at, unless the goal does. A shared fit may
+                be of several recordings.
             seed: of the search.
             progress: told the share that is done, 0 to 1.
+            start: an earlier fit, of the frame before: its values are tried early.
 
         Raises:
-            InputError: there are fewer than two rows, nobody can be compared, or a parameter is not one number.
+            InputError: there are too few rows, or nobody can be compared.
         """
         pasts = [past] if isinstance(past, Windows) else list(past)
-        for one in pasts:
-            if one.position.shape[1] < 2:
-                raise InputError(
-                    f"calibration needs at least 2 observed rows, {one.source} has {one.position.shape[1]}"
-                )
-        table = self.table
-        start = self._start()
-        low, high = np.array([row.low for row in table]), np.array([row.high for row in table])
-        task = _Task(self, pasts, progress)
-        default_cost = float(task(start[None])[0])
-        if task.persons == 0:
-            where = f"{task.windows} windows of {', '.join(one.source for one in pasts) or 'no recording'}"
-            raise InputError(f"calibration: nobody in {where} can be compared")
-        begin = time.perf_counter()
-        rng = stream(seed, "calibrate")
-        found = cast(Search, self.search).minimize(task, low, high, rng, self.budget, start[None])
-        seconds = time.perf_counter() - begin
+        if len(pasts) != 1 and not self.shared:
+            raise InputError(
+                f"calibration: {len(pasts)} recordings can only be fitted together with shared parameters; "
+                "fit each alone, or say shared=True"
+            )
+        if self.shared:
+            fit = self._fit_all(pasts, stream(seed, "calibrate"), progress)
+        else:
+            rngs = [stream(seed, "calibrate", w) for w in range(len(pasts[0]))]
+            fit = self.fit_each(pasts[0], rngs, progress, start)
+        if fit.persons == 0:
+            where = f"{fit.windows} windows of {', '.join(one.source for one in pasts) or 'no recording'}"
+            raise InputError(
+                f"calibration: nobody in {where} can be compared by {kebab(type(self.cost).__name__)};"
+                " people must be seen at enough rows, and with others where distances between them count"
+            )
+        return fit
+
+    def fit_each(
+        self,
+        past: Windows,
+        rngs: Sequence[np.random.Generator],
+        progress: Progress | None = None,
+        start: Fit | None = None,
+    ) -> Fit:
+        """Fit everyone's own parameters, window by window; ``rngs`` is one generator for each.
+
+        Windows in which nobody can be compared keep the given values and have the cost NaN.
+        """
+        space, begin = self.space, time.perf_counter()
+        given = space.given(past, self.radius, self.displacements)
+        starts = self._starts(past, given, start)
+        size = max(1, AGENTS_AT_ONCE // (CANDIDATES * max(1, past.position.shape[2])))
+        counted = np.zeros(past.id.shape, dtype=np.bool_)
+        found: list[Found] = []
+        for first in range(0, len(past), size):
+            part = slice(first, first + size)
+            task = _Task(self, past[part], given[part], _part_of(progress, first, len(past), self.budget))
+            search = cast(Search, self.search)
+            found.append(search.minimize(task, space.low, space.high, list(rngs[part]), self.budget, starts[:, part]))
+            counted[part] = task.counted
+        return self._fit(found, given, past, counted, begin)
+
+    def _fit_all(self, pasts: list[Windows], rng: np.random.Generator, progress: Progress | None) -> Fit:
+        space, begin = self.space, time.perf_counter()
+        windows = sum(len(past) for past in pasts)
+        parts: list[_Task] = []
+        for past in pasts:
+            size = max(1, AGENTS_AT_ONCE // max(1, past.position.shape[2]))
+            given = space.given(past, self.radius, self.displacements)
+            parts += [
+                _Task(self, past[first : first + size], given[first : first + size], None)
+                for first in range(0, len(past), size)
+            ]
+        task = _SharedTask(parts, _part_of(progress, 0, 1, self.budget))
+        given = parts[0].given[:1, :1] if parts and parts[0].given.size else np.zeros((1, 1, len(space.names)))
+        search = cast(Search, self.search)
+        found = search.minimize(task, space.low, space.high, [rng], self.budget, given[None])
+        counted = [part.counted.ravel() for part in parts]
+        nobody = np.zeros((0,), dtype=np.bool_)
+        fit = self._fit([found], given, None, np.concatenate(counted or [nobody])[None], begin)
+        return dataclasses.replace(fit, windows=windows)
+
+    def _fit(
+        self, found: list[Found], given: Floats, past: Windows | None, counted: NDArray[np.bool_], begin: float
+    ) -> Fit:
+        def joined(name: str, empty: tuple[int, ...]) -> NDArray[Any]:
+            return np.concatenate([getattr(one, name) for one in found] or [np.zeros(empty)])
+
+        history = joined("history", (0, self.budget))
         return Fit(
-            rollout=self.rollout(found.best[None]),
-            values={row.name: float(value) for row, value in zip(table, found.best, strict=True)},
-            cost=found.cost,
-            default_cost=default_cost,
-            evaluations=found.evaluations,
-            history=found.history,
-            windows=task.windows,
-            persons=task.persons,
-            seconds=seconds,
             scheme=self.scheme,
+            space=self.space,
+            base=self.rollout,
+            values=joined("best", given.shape),
+            given=given,
+            id=np.full(counted.shape, -1, dtype=np.int64) if past is None else past.id,
+            counted=counted,
+            cost=joined("cost", (0,)),
+            given_cost=history[:, 0],
+            evaluations=joined("evaluations", (0,)).astype(np.int64),
+            history=history,
+            seconds=time.perf_counter() - begin,
+            windows=len(found) if past is None else len(past),
         )
 
-    def rollout(self, values: Floats, copies: int = 1) -> Rollout:
-        """Return the simulation with parameters ``[P, D]`` of P candidates, each for ``copies`` windows along E."""
-        if len(values) * copies == 1:
-            numbers: Any = [float(value) for value in values[0]]
-        else:
-            numbers = [np.repeat(column, copies)[:, None] for column in values.T]
-        changed = {row.name: number for row, number in zip(self.table[:-1], numbers, strict=False)}
-        model = dataclasses.replace(cast(CrowdModel, self.model), **changed)
-        return Rollout(model, cast(Goal, self.goal), numbers[-1], self.substep)
-
-    def _start(self) -> Floats:
-        """Return the given parameters ``[D]``."""
-        values = [*(getattr(self.model, row.name) for row in self.table[:-1]), self.radius]
-        for row, value in zip(self.table, values, strict=True):
-            if np.ndim(value) > 0:
-                raise InputError(f"calibration: {row.name} of {self.scheme} must be one number, not one for each agent")
-        return np.array(values, dtype=float)
+    def _starts(self, past: Windows, given: Floats, start: Fit | None) -> Floats:
+        """Return what is tried first ``[S, W, A, D]``: the given values, those of the frame before, typical ones."""
+        starts = [given]
+        if start is not None:
+            starts.append(start.values_of(past))
+        if self.prior is not None:
+            starts.append(self.prior.typical(self.space, given))
+        if past.position.shape[1] > 2:  # speeds over all rows, which are less noisy than those of the last one
+            starts.append(self.space.given(past, self.radius, past.position.shape[1] - 1))
+        return np.stack(starts)
 
 
 class _Task:
-    """The function that a search minimises: mean cost over people ``[P]`` of candidates ``[P, D]``."""
+    """What a search minimises: the cost of everyone ``[P, L, A]`` for candidates ``[P, L, A, D]`` of windows ``[L]``.
 
-    def __init__(self, calibrator: Calibrator, pasts: list[Windows], progress: Callable[[float], None] | None) -> None:
-        self.calibrator = calibrator
-        self.pasts = pasts
-        self.progress = progress
-        self.windows = sum(len(past) for past in pasts)
-        self.persons = 0
+    ``counted [W, A]`` becomes known with the first evaluation.
+    """
+
+    def __init__(self, calibrator: Calibrator, past: Windows, given: Floats, report: Report | None) -> None:
+        if past.position.shape[1] < 2:
+            raise InputError(f"calibration needs at least 2 observed rows, {past.source} has {past.position.shape[1]}")
+        self.calibrator, self.space = calibrator, calibrator.space
+        self.given, self.report = given, report
+        self.rehearsal = Rehearsal(calibrator.rollout, past)
+        self.counted = np.zeros(past.id.shape, dtype=np.bool_)
         self.done = 0
 
-    def __call__(self, values: Floats) -> Floats:
+    def __call__(self, values: Floats, which: Integers) -> Floats:
+        people = max(1, values.shape[2] * len(which))
+        size = max(1, AGENTS_AT_ONCE // people)
+        pieces = [self._measured(values[first : first + size], which) for first in range(0, len(values), size)]
+        cost = np.concatenate(pieces)
+        if self.calibrator.prior is not None:
+            cost = cost + self.calibrator.prior.penalty(self.space, values, self.given[which])
+        self.counted[which] |= np.any(~np.isnan(cost), axis=0)
+        self.done += len(values) * len(which)
+        if self.report is not None:
+            self.report(self.done)
+        return cost
+
+    def _measured(self, values: Floats, which: Integers) -> Floats:
+        A, D = self.given.shape[1:]
+        everyone = np.broadcast_to(values, (len(values), len(which), A, D))
+
+        def candidate(rollout: Rollout, scene: Scene, copies: int) -> tuple[Rollout, Scene]:
+            each = np.repeat(everyone, copies, axis=1).reshape(-1, A, D)
+            return self.space.dressed(rollout, scene, each)
+
+        return cast(Cost, self.calibrator.cost).measure(self.rehearsal.walked(candidate, len(values), which))
+
+
+class _SharedTask:
+    """What a search of one set for everyone minimises: the mean cost of all people ``[P, 1, 1]``."""
+
+    def __init__(self, parts: list[_Task], report: Report | None) -> None:
+        self.parts = parts
+        self.report = report
+        self.done = 0
+
+    def __call__(self, values: Floats, which: Integers) -> Floats:
         total, persons = np.zeros(len(values)), np.zeros(len(values), dtype=np.int64)
-        for past in self.pasts:
-            people = max(1, past.position.shape[2])
-            windows = max(1, min(len(past), AGENTS_AT_ONCE // people))
-            candidates = max(1, AGENTS_AT_ONCE // (people * windows))
-            for first in range(0, len(past), windows):
-                for begin in range(0, len(values), candidates):
-                    some = slice(begin, begin + candidates)
-                    cost = self._measured(past[first : first + windows], values[some])
-                    total[some] += np.nansum(cost, axis=(1, 2))
-                    persons[some] += np.sum(~np.isnan(cost), axis=(1, 2))
-                    self._report(cost.shape[0] * cost.shape[1])
-        self.persons = int(persons[0])
-        return np.asarray(total / np.maximum(persons, 1))
-
-    def _measured(self, past: Windows, values: Floats) -> Floats:
-        def simulate(windows: Windows, row: int) -> Floats:
-            return self.calibrator.rollout(values, len(windows)).again(windows, row, len(values))
-
-        return cast(Cost, self.calibrator.cost).measure(past, simulate)
-
-    def _report(self, evaluated: int) -> None:
-        self.done += evaluated
-        if self.progress is not None:
-            whole = max(1, self.windows * (self.calibrator.budget + 1))
-            self.progress(min(1.0, self.done / whole))
+        for part in self.parts:
+            cost = part(values, np.arange(len(part.given)))
+            total += np.nansum(cost, axis=(1, 2))
+            persons += np.sum(~np.isnan(cost), axis=(1, 2))
+        self.done += len(values)
+        if self.report is not None:
+            self.report(self.done)
+        mean = np.where(persons > 0, total / np.maximum(persons, 1), np.nan)
+        return np.asarray(mean[:, None, None])
 
 
-def named_model(value: CrowdModel | str) -> CrowdModel:
-    """Return a crowd model from itself, its name or its address, with default parameters."""
-    return cast(CrowdModel, _named(value, models, CrowdModel))
-
-
-def named_goal(value: Goal | str) -> Goal:
-    """Return a goal from itself, its name or its address, with default parameters."""
-    return cast(Goal, _named(value, goals, Goal))
-
-
-def _named(value: object, room: ModuleType, contract: type) -> object:
-    """Return a value as it is, or an instance of the class that a name means.
-
-    Raises:
-        InputError: no class has this name, it cannot be made without arguments, or the value is not of the contract.
-    """
-    if isinstance(value, str):
-        kind = find(value, room, contract)
-        try:
-            return kind()
-        except TypeError:
-            raise InputError(
-                f"{kebab(kind.__name__)} needs values of its own: pass an instance, not its name"
-            ) from None
-    if not isinstance(value, contract):
-        raise InputError(f"{value!r} is not a {contract.__name__}, nor the name of one")
-    return value
+def _part_of(progress: Progress | None, first: int, whole: int, budget: int) -> Report | None:
+    """Return what tells the share that is done, from the evaluations done in a part that begins at window ``first``."""
+    if progress is None:
+        return None
+    return lambda done: progress(min(1.0, (first + done / budget) / whole))

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, Walls
-from crowdbot.data.forecast import Forecast
 from crowdbot.data.motion import bridged, cut, observed_velocity
 from crowdbot.data.windows import Windows
 from crowdbot.models import CrowdModel
@@ -30,19 +29,21 @@ class Rollout:
     """How observed people become a crowd that is simulated; W windows are the environments of one scene.
 
     Fields:
-        model: how they walk.
+        model: how they walk; its parameters are numbers or ``[W, A]``.
         goal: where they want to go; it is resolved from what is known at the start of the simulation.
         radius: a number or ``[W, A]`` [m].
+        preferred_speed: ``[W, A]`` [m/s], or None for the observed speed.
         substep: longest time step of the simulation [s]; a row of the recording is cut into equal steps.
-        displacements: how many last displacements give the velocity and the preferred speed at the start.
+        displacements: how many last displacements give the velocity and the observed speed at the start.
 
-    People start with their observed velocity; its length is the speed they prefer. Robots are external: the others
-    avoid them and they keep their velocity.
+    People start with their observed velocity. Robots are external: the others avoid them; they follow their plan when
+    it is known, otherwise they keep their velocity.
     """
 
     model: CrowdModel
     goal: Goal
     radius: float | Floats = 0.25
+    preferred_speed: Floats | None = None
     substep: float = 0.1
     displacements: int = 1
 
@@ -72,102 +73,47 @@ class Rollout:
         known = cut(whole, 0, max(row, 1) + 1)
         velocity = observed_velocity(known, 1 if row == 0 else self.displacements)
         here = whole.present[:, row]
-        speed = np.sqrt(velocity[..., 0] ** 2 + velocity[..., 1] ** 2)
         place = whole.position[:, row]
-        goal = np.where(here[..., None], self.goal.resolve(known), place)
-        return Scene.of(
+        scene = Scene.of(
             place,
             velocity,
             radius=self.radius,
-            goal=goal,
-            preferred_speed=speed,
-            max_speed=np.maximum(HASTE * speed, STANDING_HASTE),
+            goal=np.where(here[..., None], self.goal.resolve(known), place),
             active=here,
             external=past.robot,
             walls=Walls.of(past.walls),
         )
+        observed = np.sqrt(velocity[..., 0] ** 2 + velocity[..., 1] ** 2)
+        return with_speed(scene, observed if self.preferred_speed is None else self.preferred_speed)
 
     def ahead(self, past: Windows, steps: int, rng: np.random.Generator | None = None) -> Floats:
         """Return where everyone present at the last row goes: ``[W, steps, A, 2]`` [m]."""
-        place = np.zeros((len(past), steps, *past.position.shape[2:]))
-        scene = self.scene(past, past.position.shape[1] - 1)
-        if not np.any(scene.active):
-            return place
+        if not np.any(past.present[:, -1:]):
+            return np.zeros((len(past), steps, *past.position.shape[2:]))
+        return self.run(self.scene(past, past.position.shape[1] - 1), past, steps, rng)
+
+    def run(self, scene: Scene, past: Windows, steps: int, rng: np.random.Generator | None = None) -> Floats:
+        """Return where a scene goes in ``steps`` rows: ``[E, steps, A, 2]`` [m]; its E are copies of all windows."""
+        copies = len(scene.position) // max(1, len(past))
+        place = np.zeros((*scene.shape[:1], steps, *scene.shape[1:], 2))
         for step in range(steps):
-            scene = self._advanced(scene, past.dt, rng)
+            if past.plan is not None:
+                planned = np.tile(past.plan_at(step + 1), (copies, 1, 1))
+                known = ~np.isnan(planned[..., 0]) & scene.external
+                toward = (planned - scene.position) / past.dt
+                scene = scene.replace(velocity=np.where(known[..., None], toward, scene.velocity))
+            scene = self.advanced(scene, past.dt, rng)
             place[:, step] = scene.position
         return place
 
-    def forecast(self, past: Windows, steps: int, name: str, rng: np.random.Generator | None = None) -> Forecast:
-        """Return :meth:`ahead` as a forecast with one sample."""
-        return Forecast.of(self.ahead(past, steps, rng)[:, None], past.present[:, -1], past.dt, name)
-
-    def again(self, past: Windows, row: int = 0, copies: int = 1) -> Floats:
-        """Return the rows after ``row`` as the model would have made them: ``[copies, W, rows, A, 2]`` [m].
-
-        Everyone present at ``row`` but the robots is simulated until their last observed row; robots and people who
-        come later move as they were recorded. The copies lie along E, so parameters of the model may differ among
-        them: ``[copies * W, 1]``, copy by copy; ``radius`` likewise.
-        """
-        W, T, A, _ = past.position.shape
-        scene = _repeated(dataclasses.replace(self, radius=1.0).scene(past, row), copies)
-        radius = np.broadcast_to(np.asarray(self.radius, dtype=float), (copies * W, A))
-        scene = scene.replace(radius=radius.copy(), external=scene.external | ~scene.active)
-        place = np.zeros((copies * W, T - 1 - row, A, 2))
-        recorded = _recorded(bridged(past))
-        if not np.any(past.present):
-            return place.reshape(copies, W, T - 1 - row, A, 2)
-        for step in range(T - 1 - row):
-            scene = recorded.shown(scene, row + step, copies)
-            scene = self._advanced(scene, past.dt)
-            place[:, step] = scene.position
-        return place.reshape(copies, W, T - 1 - row, A, 2)
-
-    def _advanced(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
+    def advanced(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
+        """Return the scene one row later, in equal steps of at most ``substep``."""
         count = max(1, math.ceil(dt / self.substep - 1e-9))
         for _ in range(count):
             scene = self.model.step(scene, dt / count, rng)
         return scene
 
 
-@dataclasses.dataclass(frozen=True)
-class _Recorded:
-    """What was recorded: where everyone is, ``[W, T, A]`` who is there, and until which row ``[W, A]``."""
-
-    position: Floats
-    velocity: Floats
-    present: NDArray[np.bool_]
-    last: NDArray[np.int64]
-
-    def shown(self, scene: Scene, row: int, copies: int) -> Scene:
-        """Return the scene with external agents as recorded at ``row``, and without those who have gone for good."""
-        here, stays = _copied(self.present[:, row], copies), _copied(self.last >= row, copies)
-        moved = scene.external & here
-        place = np.where(moved[..., None], _copied(self.position[:, row], copies), scene.position)
-        velocity = np.where(moved[..., None], _copied(self.velocity[:, row], copies), scene.velocity)
-        heading = np.where(moved, np.arctan2(velocity[..., 1], velocity[..., 0]), scene.heading)
-        active = np.where(scene.external, here, scene.active & stays)
-        return scene.replace(position=place, velocity=velocity, heading=heading, active=active)
-
-
-def _recorded(past: Windows) -> _Recorded:
-    T = past.position.shape[1]
-    both = past.present[:, :-1] & past.present[:, 1:]
-    velocity = np.zeros_like(past.position)
-    velocity[:, :-1] = np.where(both[..., None], np.diff(past.position, axis=1) / past.dt, 0.0)
-    last = T - 1 - np.argmax(past.present[:, ::-1], axis=1)
-    return _Recorded(past.position, velocity, past.present, last)
-
-
-def _repeated(scene: Scene, copies: int) -> Scene:
-    """Return ``copies`` of all environments one after the other along E."""
-    arrays = {
-        field.name: _copied(getattr(scene, field.name), copies)
-        for field in dataclasses.fields(scene)
-        if isinstance(getattr(scene, field.name), np.ndarray)
-    }
-    return scene.replace(**arrays)
-
-
-def _copied(values: NDArray, copies: int) -> NDArray:  # type: ignore[type-arg]
-    return np.tile(values, (copies, *(1,) * (values.ndim - 1)))
+def with_speed(scene: Scene, speed: Floats) -> Scene:
+    """Return the scene in which people prefer ``speed`` [E, A] and can go somewhat faster than that."""
+    return scene.replace(preferred_speed=speed, max_speed=np.maximum(HASTE * speed, STANDING_HASTE))

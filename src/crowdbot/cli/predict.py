@@ -1,142 +1,153 @@
-"""``crowdbot predict``: score a predictor on recordings of people."""
+"""``crowdbot predict``: score predictors on recordings of people."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, note, print_json, print_table, progress
+from .recordings import add_recordings, recordings, tell_notes
+from .schemes import add_scheme, frame_line, recipes
 
 if TYPE_CHECKING:
     from crowdbot.metrics import Score
-    from crowdbot.prediction import Predictor
-
-EPISODE_STEP = 0.4
-"""A recorded trial has no annotation rate of its own: it is scored at the field's 0.4 s."""
+    from crowdbot.prediction import Part, Piece, Result, Study
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
+    add_recordings(parser)
     add = parser.add_argument
     add(
-        "--data", nargs="+", type=Path, required=True, metavar="PATH", help="recordings, scored one by one and together"
-    )
-    add("--predictor", default="constant-velocity", metavar="NAME", help="crowdbot list predictors, or file.py:Name")
-    add("--model", metavar="NAME", help="crowd model of the predictor `simulated`: crowdbot list models")
-    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="parameters of the predictor, or of its crowd model")
-    add("--observe", type=int, default=8, metavar="ROWS", help="observed rows (default 8)")
-    add("--predict", type=int, default=12, metavar="ROWS", help="predicted rows (default 12)")
-    add("--protocol", default="all", metavar="NAME", help="all, sgan, partial or timesplit (default all)")
+        "--predictor", nargs="+", default=["constant-velocity"], metavar="NAME",
+        help="one or several: crowdbot list predictors, or file.py:Name (default constant-velocity)",
+    )  # fmt: skip
+    add_scheme(parser, many=True)
     add("--samples", type=int, default=1, metavar="K", help="futures drawn from a predictor that samples")
     add("--best-of", default="person", metavar="RULE", help="how the best of K is chosen: person, scene or same")
-    add("--near", type=float, metavar="METRES", help="score only people this near to a recorded robot")
-    add("--fps", type=float, metavar="F", help="rows a second of one track, when the file does not say")
-    add("--format", metavar="NAME", help="crowdbot list formats; default: found by content")
-    add("--time-base", default="true", metavar="NAME", help="true or published, for the ETH file with two time bases")
-    add("--units", metavar="NAME", help="m, cm or px, when the file does not say")
-    add("--late", default="skip", metavar="NAME", help="people who appear while observed: skip or extrapolate")
-    add("--seed", type=int, default=0, help="seed of predictors that sample")
+    add("--live", action="store_true", help="frame by frame: calibrations begin with the fit of the frame before")
+    add("--workers", type=int, default=1, metavar="N", help="processes (default 1)")
+    add("--cluster", metavar="ADDRESS", help="run on a Ray cluster, such as auto; needs crowdbot[cluster]")
+    add("--out", type=Path, metavar="DIR", help="write tables and plots there; run again to go on after a stop")
+    add("--animate", type=int, metavar="FRAME", help="with --out: also an animation of the predictions at this frame")
+    add("--seed", type=int, default=0, help="seed of predictors that sample or search")
     add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:
-    """Score the predictor on every recording and on all together."""
-    from crowdbot.metrics import Score
+    """Score every predictor on every recording and on all together."""
+    from crowdbot.core import InputError
+    from crowdbot.prediction import Study
 
-    predictor = chosen(options.predictor, options.model, assignments(options.set))
-    notes: dict[str, None] = {}
+    if options.animate is not None and options.out is None:
+        raise InputError("--animate writes a file: say where with --out DIR")
+    found = recordings(options)
+    study = Study(found, recipes(options), options.samples, options.best_of, options.seed, options.live)
+    keep = None if options.out is None else options.out / "parts"
     with progress(options.json) as report:
-        scores = {str(path): _score(path, predictor, options, report, notes) for path in options.data}
-    total = Score.total(list(scores.values()))
+        done = _done(study, options, keep, report)
+    results = study.results(done)
+    if options.out is not None:
+        _written(options, study, results)
     if options.json:
-        print_json(as_json(total, scores))
+        print_json(as_json(study, results))
         return 0
-    for sentence in notes:
-        note(sentence)
-    rows = [(Path(name).name, *score.cells()) for name, score in scores.items()]
-    if len(scores) > 1:
-        rows.append(("together", *total.cells()))
-    best = f", best of {options.samples} per {options.best_of}" if options.samples > 1 else ""
-    print_table(
-        f"{total.predictor}, {options.observe} observed + {options.predict} predicted rows",
-        ("recording", *total.columns),
-        rows,
-        caption=f"protocol {total.protocol}{best}; means over persons",
-    )
+    tell_notes(found)
+    _tables(options, study, results)
     return 0
 
 
-def as_json(total: Score, scores: Mapping[str, Score]) -> dict[str, Any]:
+def _done(study: Study, options: argparse.Namespace, keep: Path | None, report: Progress) -> list[tuple[Piece, Part]]:
+    """Run the study; each frame of a calibrated crowd is one line as soon as it is known."""
+    pieces = study.pieces()
+    whole: dict[tuple[str, str], int] = {}
+    for piece in pieces:
+        whole[piece.label] = whole.get(piece.label, 0) + piece.last - piece.first
+    done: list[tuple[Piece, Part]] = []
+    share: dict[tuple[str, str], int] = {}
+    said = False
+    for piece, part in study.run(options.workers, options.cluster, keep):
+        done.append((piece, part))
+        share[piece.label] = share.get(piece.label, 0) + piece.last - piece.first
+        report(" ".join(piece.label), share[piece.label] / whole[piece.label])
+        if not options.json and part.frames.calibrated:
+            if not said:
+                note(frame_line())
+                said = True
+            _frame_lines(part)
+    return done
+
+
+def _frame_lines(part: Part) -> None:
+    frames = part.frames
+    for row in zip(frames.frame, frames.people, frames.cost, frames.evaluations, frames.seconds, strict=True):
+        note(frame_line(*row))
+
+
+def _tables(options: argparse.Namespace, study: Study, results: list[Result]) -> None:
+    """Print one table a predictor, or with several predictors one a recording."""
+    from crowdbot.metrics import Score
+
+    best = f", best of {options.samples} per {options.best_of}" if options.samples > 1 else ""
+    caption = f"protocol {study.recordings[0].protocol}{best}; means over persons, 95 % by drawing persons"
+    reach = f"{options.observe} observed + {options.predict} predicted rows"
+    if len(study.recipes) == 1:
+        scores = [result.score for result in results]
+        rows = [result.recording.name for result in results]
+        if len(scores) > 1:
+            scores.append(Score.total(scores))
+            rows.append("together")
+        _table(f"{study.recipes[0].name}, {reach}", "recording", rows, scores, caption)
+        return
+    for recording in study.recordings:
+        own = [result for result in results if result.recording is recording]
+        title = f"{recording.name}, {reach}"
+        _table(title, "predictor", [result.recipe.name for result in own], [r.score for r in own], caption)
+
+
+def _table(title: str, head: str, rows: list[str], scores: list[Score], caption: str) -> None:
+    from crowdbot.metrics import Score
+
+    heads = Score.heads(scores)
+    cells = [(row, *score.cells(heads)) for row, score in zip(rows, scores, strict=True)]
+    print_table(title, (head, *heads), cells, caption=caption)
+
+
+def as_json(study: Study, results: list[Result]) -> dict[str, Any]:
     """Return the object that ``--json`` prints."""
+    from crowdbot.metrics import Score
+
     return {
-        "protocol": total.protocol,
-        "predictor": total.predictor,
-        "total": _five(total),
-        "data": {name: _five(score) for name, score in scores.items()},
+        "protocol": study.recordings[0].protocol,
+        "observe": study.recordings[0].observe,
+        "predict": study.recordings[0].predict,
+        "seed": study.seed,
+        "results": [
+            {
+                "predictor": recipe.name,
+                "total": Score.total([one.score for one in results if one.recipe is recipe]).as_dict(),
+                "data": {one.recording.path: one.score.as_dict() for one in results if one.recipe is recipe},
+            }
+            for recipe in study.recipes
+        ],
     }
 
 
-def assignments(words: list[str]) -> dict[str, str]:
-    """Return ``name=value`` words as a mapping."""
-    from crowdbot.core import InputError
+def _written(options: argparse.Namespace, study: Study, results: list[Result]) -> None:
+    """Write the scores, every frame, the plots and, when asked for, the animation."""
+    import json
 
-    wrong = next((word for word in words if "=" not in word), None)
-    if wrong is not None:
-        raise InputError(f"--set takes NAME=VALUE, not {wrong!r}")
-    return {name: value for name, _, value in (word.partition("=") for word in words)}
+    from crowdbot.benchmark.prediction_plots import animate, plot_errors, plot_frames
 
+    from .output import plain
 
-def chosen(name: str, model: str | None, values: Mapping[str, str]) -> Predictor:
-    """Return the predictor by name with its parameters; the crowd model's own parameters go to the model."""
-    import dataclasses
-
-    from crowdbot import models, prediction
-    from crowdbot.core import InputError, plug
-
-    kind = plug.find(name, prediction, prediction.Predictor)
-    fields = {field.name for field in dataclasses.fields(kind)}
-    if "model" not in fields:
-        if model is not None:
-            raise InputError(f"--model is for predictors that simulate a crowd; {plug.kebab(kind.__name__)} does not")
-        return plug.read(kind, values)  # type: ignore[no-any-return]
-    own = {key: value for key, value in values.items() if key.replace("-", "_") in fields}
-    rest = {key: value for key, value in values.items() if key not in own}
-    crowd = plug.read(plug.find(model or "orca", models, models.CrowdModel), rest)
-    return dataclasses.replace(plug.read(kind, own), model=crowd)  # type: ignore[no-any-return]
-
-
-def _score(
-    path: Path, predictor: Predictor, options: argparse.Namespace, report: Progress, notes: dict[str, None]
-) -> Score:
-    from crowdbot.data import load
-    from crowdbot.prediction import evaluate
-
-    tracks = load(path, options.fps, options.format, options.units, options.time_base)
-    if tracks.units == "px" and tracks.homography is not None:
-        tracks = tracks.metres()
-    if tracks.robots and options.fps is None:
-        tracks = tracks.resample(EPISODE_STEP)
-    if tracks.note:
-        notes[f"{path.name}: {tracks.note}"] = None
-    past, future = tracks.windows(options.observe, options.predict, options.protocol, options.near, options.late)
-    return evaluate(
-        predictor,
-        past,
-        future,
-        samples=options.samples,
-        best_of=options.best_of,
-        seed=options.seed,
-        progress=lambda share: report(path.name, share),
-    )
-
-
-def _five(score: Score) -> dict[str, float]:
-    return {
-        "windows": score.windows,
-        "persons": score.persons,
-        "ade": score.ade,
-        "fde": score.fde,
-        "seconds_per_window": score.seconds_per_window,
-    }
+    scores = json.dumps(plain(as_json(study, results)), indent=2, allow_nan=False)
+    (options.out / "scores.json").write_text(scores + "\n", encoding="utf-8")
+    study.table(results).to_parquet(options.out / "frames.parquet", index=False)
+    plot_errors(results, options.out / "errors.png")
+    plot_frames(results, options.out / "frames.png")
+    names = ["scores.json", "frames.parquet", "errors.png", "frames.png"]
+    if options.animate is not None:
+        names += [animate(study, options.animate, options.out / f"frame-{options.animate}.gif").name]
+    note(f"wrote {', '.join(names)} in {options.out}")

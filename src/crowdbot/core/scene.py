@@ -169,16 +169,20 @@ class Scene:
         active[:, agent] = False
         return dataclasses.replace(self, active=active)
 
-    def repeated(self, count: int) -> Scene:
-        """Return ``count`` copies of this scene along the E axis (E must be 1), as a calibration population needs."""
-        if self.shape[0] != 1:
-            raise InputError(f"only a scene with E = 1 can be repeated, this one has E = {self.shape[0]}")
+    def environments(self, chosen: ArrayLike) -> Scene:
+        """Return the environments of the indices ``chosen``, one after the other along E; one may come many times.
+
+        >>> pair = Scene.of(np.zeros((2, 3, 2)))
+        >>> pair.environments([1, 0, 1, 1]).shape
+        (4, 3)
+        """
+        index = np.asarray(chosen, dtype=np.int64)
         arrays: dict[str, Any] = {
-            part.name: np.repeat(getattr(self, part.name), count, axis=0)
+            part.name: getattr(self, part.name)[index]
             for part in dataclasses.fields(self)
             if isinstance(getattr(self, part.name), np.ndarray)
         }
-        memory = {name: np.repeat(value, count, axis=0) for name, value in self.memory.items()}
+        memory = {name: value[index] for name, value in self.memory.items()}
         return dataclasses.replace(self, **arrays, memory=memory)
 
     def digest(self) -> str:

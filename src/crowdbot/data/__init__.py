@@ -3,6 +3,7 @@
 from .cut import PROTOCOLS
 from .forecast import Forecast
 from .load import FORMATS, load
+from .recording import Recording
 from .save import save
 from .trajectories import PrimaryScene, Trajectories
 from .ucy import TO_METRES as UCY_TO_METRES
@@ -14,6 +15,7 @@ __all__ = [
     "UCY_TO_METRES",
     "Forecast",
     "PrimaryScene",
+    "Recording",
     "Trajectories",
     "Windows",
     "load",

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+
+from crowdbot.core.errors import InputError
 
 __all__ = ["Windows"]
 
@@ -27,6 +30,7 @@ class Windows:
         source: name of the recording.
         walls: rings ``[N, 2]`` [m] of what cannot be walked on, empty when unknown.
         units: ``m``, or ``px`` when the recording was not turned into metres: then every [m] above is pixels.
+        plan: ``[W, S, A, 2]`` [m], where robots are known to be at the next S rows, NaN for everyone else; or None.
     """
 
     position: NDArray[np.float64]
@@ -40,6 +44,7 @@ class Windows:
     source: str
     walls: tuple[NDArray[np.float64], ...] = ()
     units: str = "m"
+    plan: NDArray[np.float64] | None = None
 
     def __len__(self) -> int:
         """Return the number of windows."""
@@ -48,4 +53,42 @@ class Windows:
     def __getitem__(self, chosen: slice | NDArray[np.int64] | NDArray[np.bool_]) -> Windows:
         """Return some of the windows."""
         arrays = {n: getattr(self, n)[chosen] for n in ("position", "present", "scored", "robot", "id", "frame")}
-        return dataclasses.replace(self, **arrays)
+        return dataclasses.replace(self, **arrays, plan=None if self.plan is None else self.plan[chosen])
+
+    def planned(self, plans: Mapping[int, ArrayLike]) -> Windows:
+        """Return the windows with the known next rows of some robots: ``plans`` is identity -> ``[S, 2]`` [m].
+
+        Predictors answer for this plan: the robot moves along it, crowd models react, and at its end it stands.
+
+        Raises:
+            InputError: the plans differ in length, are empty or not finite, or an identity is in no window.
+
+        >>> here = np.ones((1, 2, 1), dtype=bool)
+        >>> past = Windows(np.zeros((1, 2, 1, 2)), here, ~here[:, 0], here[:, 0], np.array([[7]]),
+        ...     np.array([[0, 10]]), 0.4, "all", "street")
+        >>> past.planned({7: [[0.0, 0.4], [0.0, 0.8]]}).plan[0, :, 0].tolist()
+        [[0.0, 0.4], [0.0, 0.8]]
+        """
+        rows = {who: np.asarray(plan, dtype=float) for who, plan in plans.items()}
+        for who, plan in rows.items():
+            if plan.ndim != 2 or plan.shape[1] != 2 or len(plan) == 0 or not np.all(np.isfinite(plan)):
+                raise InputError(
+                    f"the plan of robot {who} has shape {list(plan.shape)}; it must be finite positions [S, 2], S >= 1"
+                )
+            if not np.any(self.id == who):
+                raise InputError(f"the plan is for robot {who}, who is in no window of {self.source}")
+        lengths = {len(plan) for plan in rows.values()}
+        if len(lengths) != 1:
+            raise InputError(f"there must be a plan, and all must have as many rows; they have {sorted(lengths)}")
+        W, _, A = self.present.shape
+        known = np.full((W, lengths.pop(), A, 2), np.nan)
+        for who, plan in rows.items():
+            window, person = np.nonzero(self.id == who)
+            known[window, :, person] = plan
+        return dataclasses.replace(self, plan=known)
+
+    def plan_at(self, step: int) -> NDArray[np.float64]:
+        """Return where planned robots are ``step`` rows ahead (from 1), ``[W, A, 2]`` [m], NaN for everyone else."""
+        if self.plan is None:
+            return np.full((len(self), self.present.shape[2], 2), np.nan)
+        return self.plan[:, min(step, self.plan.shape[1]) - 1]

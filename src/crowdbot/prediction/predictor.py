@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,8 +48,30 @@ class Predictor(ABC):
             InputError: there is no observed row, or steps or samples are below 1.
         """
 
+    def follow(
+        self,
+        past: Windows,
+        steps: int,
+        samples: int = 1,
+        rng: np.random.Generator | None = None,
+        memory: Any = None,
+    ) -> tuple[Forecast, Any]:
+        """Return the forecast, and what helps with the next frame of the same people.
+
+        Args:
+            past, steps, samples, rng: as of :meth:`predict`.
+            memory: what this returned with the frame before, or None.
+        """
+        return self.predict(past, steps, samples, rng), memory
+
     def forecast(self, past: Windows, position: NDArray[np.float64]) -> Forecast:
-        """Return positions ``[W, K, T, A, 2]`` [m] as this predictor's forecast, valid for who is present now."""
+        """Return positions ``[W, K, T, A, 2]`` [m] as this predictor's forecast, valid for who is present now.
+
+        Robots whose plan is known are where it says.
+        """
+        if past.plan is not None:
+            ahead = np.stack([past.plan_at(step) for step in range(1, position.shape[2] + 1)], axis=1)
+            position = np.where(np.isnan(ahead[:, None]), position, ahead[:, None])
         return Forecast.of(position, past.present[:, -1], past.dt, self.name)
 
     @staticmethod

@@ -1,19 +1,33 @@
-"""A simulated crowd as a predictor: any crowd model, started from what was observed."""
+"""A simulated crowd as a predictor: any crowd model, as given or calibrated on what was observed."""
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
-from crowdbot.calibration import Fit, Rollout, named_goal, named_model
+from crowdbot.calibration import (
+    Calibrator,
+    Cost,
+    Fit,
+    PopulationPrior,
+    Rollout,
+    Search,
+    futures,
+    named_cost,
+    named_goal,
+    named_model,
+    named_search,
+)
 from crowdbot.data.forecast import Forecast
 from crowdbot.data.windows import Windows
 from crowdbot.models import ORCA, CrowdModel
 from crowdbot.models.goals import CurrentDirection, Goal
 
-from .predictor import Predictor
+from .predictor import Predictor, window_streams
 
 __all__ = ["Simulated"]
 
@@ -22,12 +36,21 @@ __all__ = ["Simulated"]
 class Simulated(Predictor):
     """Everyone walks on as a crowd model says, all windows as one batch.
 
-    People start with the velocity of their last displacements and prefer to keep its length; robots go on with their
-    velocity and the others avoid them. Walls are those of the recording. K = 1.
+    People start with the velocity of their last displacements and prefer to keep its length; robots follow their plan
+    when it is known, else they keep their velocity, and the others avoid them. Walls are those of the recording. K is
+    1, unless the goal knows several destinations of a person.
+
+    With a cost or a search it is a scheme: before it predicts, everyone's parameters are calibrated on the observed
+    rows of each window. Windows in which nobody can be compared (one person alone and the distances between people as
+    cost) keep the given parameters.
 
     Fields:
         model: a crowd model or its name; its own paper describes it.
         goal: where people want to go, or its name.
+        cost, search: of the calibration, or their names; with one of them, the other is ``progressive``, ``genetic``.
+        budget: how many whole crowds each window is calibrated with.
+        free: names of the calibrated parameters; empty means all.
+        prior: what is known of the parameters of a population.
         radius: of people [m].
         substep: longest time step of the simulation [s]; force models need 0.05 or less.
         displacements: how many last displacements give the velocity.
@@ -38,6 +61,11 @@ class Simulated(Predictor):
 
     model: CrowdModel | str = field(default_factory=ORCA)
     goal: Goal | str = field(default_factory=CurrentDirection)
+    cost: Cost | str | None = None
+    search: Search | str | None = None
+    budget: int = 500
+    free: tuple[str, ...] = ()
+    prior: PopulationPrior | None = None
     radius: float = 0.25
     substep: float = 0.1
     displacements: int = 1
@@ -45,20 +73,67 @@ class Simulated(Predictor):
     def __post_init__(self) -> None:
         object.__setattr__(self, "model", named_model(self.model))
         object.__setattr__(self, "goal", named_goal(self.goal))
-        self.rollout()  # says what is wrong with a number
+        if self.cost is not None or self.search is not None:
+            object.__setattr__(self, "cost", named_cost(self.cost or "progressive"))
+            object.__setattr__(self, "search", named_search(self.search or "genetic"))
+            _ = self.calibrator  # says what is wrong
+        _ = self.rollout
 
     @classmethod
     def of(cls, fit: Fit) -> Simulated:
-        """Return the predictor of a calibrated crowd."""
-        rollout = fit.rollout
-        return cls(rollout.model, rollout.goal, float(rollout.radius), rollout.substep, rollout.displacements)
+        """Return the predictor of a crowd that was calibrated with shared parameters.
 
+        Raises:
+            InputError: everyone in the fit has parameters of their own.
+        """
+        rollout = fit.shared_rollout
+        return cls(
+            rollout.model,
+            rollout.goal,
+            radius=float(rollout.radius),
+            substep=rollout.substep,
+            displacements=rollout.displacements,
+        )
+
+    @property
     def rollout(self) -> Rollout:
-        """Return the simulation behind it."""
+        """The simulation behind it, before a calibration."""
         model, goal = cast(CrowdModel, self.model), cast(Goal, self.goal)
-        return Rollout(model, goal, self.radius, self.substep, self.displacements)
+        return Rollout(model, goal, self.radius, None, self.substep, self.displacements)
+
+    @property
+    def calibrator(self) -> Calibrator | None:
+        """What fits everyone's parameters before a prediction, or None."""
+        if self.cost is None or self.search is None:
+            return None
+        return Calibrator(
+            self.model, self.cost, self.search, self.goal, self.budget, False, tuple(self.free), self.prior,
+            self.radius, self.substep, self.displacements,
+        )  # fmt: skip
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
         """Return where people will be, see :meth:`Predictor.predict`."""
+        return self.follow(past, steps, samples, rng)[0]
+
+    def follow(
+        self,
+        past: Windows,
+        steps: int,
+        samples: int = 1,
+        rng: np.random.Generator | None = None,
+        memory: Any = None,
+    ) -> tuple[Forecast, Any]:
+        """Return the forecast and the fit behind it; given the fit of the frame before, its values are tried early."""
         self.check(past, steps, samples)
-        return self.rollout().forecast(past, steps, self.name, rng)
+        rngs = window_streams(rng, len(past))
+        calibrator = self.calibrator
+        if calibrator is None or past.position.shape[1] < 2:
+            return self._forecast(self.rollout, past, steps, samples, rngs), memory
+        fit = calibrator.fit_each(past, rngs, start=memory)
+        return self._forecast(fit.rollout, past, steps, samples, rngs), fit
+
+    def _forecast(
+        self, rollout: Rollout, past: Windows, steps: int, samples: int, rngs: Sequence[np.random.Generator]
+    ) -> Forecast:
+        place, weight = futures(rollout, past, steps, samples, rngs)
+        return dataclasses.replace(self.forecast(past, place), weight=weight)

@@ -1,0 +1,30 @@
+"""Absolute difference: how far simulated people are from where they were seen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .cost import Cost, mean_over_rows
+from .rehearsal import Walked
+
+__all__ = ["Absolute"]
+
+
+@dataclass(frozen=True)
+class Absolute(Cost):
+    """Mean distance [m] between simulated and recorded positions, over all rows, started once at the first one.
+
+    People count who are seen at the first row and at another one.
+
+    Source: Wolinski et al. (2014), doi 10.1111/cgf.12328.
+    """
+
+    def measure(self, walked: Walked) -> NDArray[np.float64]:
+        """Return the mean distance of every candidate and person, see :meth:`Cost.measure`."""
+        past = walked.past
+        away = walked.once - past.position[:, 1:]
+        counted = past.present[:, 1:] & (past.present[:, 0] & ~past.robot)[:, None]
+        return mean_over_rows(np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2), counted)

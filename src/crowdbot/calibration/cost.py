@@ -1,0 +1,48 @@
+"""Cost: the contract of how far a simulated crowd is from the recorded one."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Paper
+
+from .rehearsal import Walked
+
+__all__ = ["METRICS", "Cost", "mean_over_rows"]
+
+Floats = NDArray[np.float64]
+
+METRICS = Paper(
+    "Wolinski, Guy, Olivier, Lin, Manocha, Pettré",
+    2014,
+    "Parameter estimation and comparative evaluation of crowd simulations",
+    "Computer Graphics Forum",
+    "10.1111/cgf.12328",
+)
+"""Where the three costs of the field are from."""
+
+
+@dataclass(frozen=True)
+class Cost(ABC):
+    """A dissimilarity between what was recorded and what candidates make of it, person by person [m]."""
+
+    paper: ClassVar[Paper] = METRICS
+
+    @abstractmethod
+    def measure(self, walked: Walked) -> Floats:
+        """Return the cost ``[P, W, A]`` [m] of every candidate and person; NaN for people that do not count.
+
+        Who counts follows from the recording, not from the candidate. Robots never count.
+        """
+
+
+def mean_over_rows(distance: Floats, counted: NDArray[np.bool_]) -> Floats:
+    """Return the mean over the counted rows ``[P, W, A]`` of ``distance [P, W, T, A]``; NaN where no row counts."""
+    count = counted.sum(axis=1)
+    total = np.where(counted, distance, 0.0).sum(axis=2)
+    return np.where(count > 0, total / np.maximum(count, 1), np.nan)

@@ -1,0 +1,165 @@
+"""Fit: the result of a calibration, ready to predict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, stream
+from crowdbot.data.forecast import Forecast
+from crowdbot.data.windows import Windows
+from crowdbot.models import CrowdModel
+
+from .futures import futures
+from .rollout import Rollout
+from .space import PREFERRED_SPEED, Space
+
+__all__ = ["Fit"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Calibrated parameters: of every person of W windows, or one set for everyone.
+
+    Fields:
+        scheme: names of model, cost, search and goal.
+        space: which D parameters were calibrated.
+        base: the crowd before the calibration.
+        values: ``[W, A, D]``, or ``[1, 1, D]`` of a shared fit.
+        given: the values before the calibration, of the same shape.
+        id: ``[W, A]`` identity of the people, -1 for nobody.
+        counted: ``[W, A]``, whose cost was measured.
+        cost, given_cost: ``[W]`` mean over people with the calibrated and with the given values [m], NaN where nobody
+            counted; of a shared fit ``[1]``, the mean over all people.
+        evaluations: ``[W]``, how many whole crowds were tried.
+        history: ``[W, evaluations]``, the smallest cost so far after each of them.
+        seconds: time of the search.
+        windows: how many windows were looked at.
+    """
+
+    scheme: str
+    space: Space
+    base: Rollout = field(repr=False)
+    values: Floats = field(repr=False)
+    given: Floats = field(repr=False)
+    id: NDArray[np.int64] = field(repr=False)
+    counted: NDArray[np.bool_] = field(repr=False)
+    cost: Floats
+    given_cost: Floats
+    evaluations: NDArray[np.int64]
+    history: Floats = field(repr=False)
+    seconds: float
+    windows: int
+
+    @property
+    def shared(self) -> bool:
+        """Whether everyone has the same parameters."""
+        return self.space.shared
+
+    @property
+    def persons(self) -> int:
+        """How many people's costs were measured, each once a window."""
+        return int(self.counted.sum())
+
+    @property
+    def model(self) -> CrowdModel:
+        """The crowd model with the calibrated parameters: numbers of a shared fit, else ``[W, A]``."""
+        return self.rollout.model
+
+    @property
+    def rollout(self) -> Rollout:
+        """The calibrated crowd of the windows that it was calibrated on."""
+        return self.space.applied(self.base, self.values[0, 0] if self.shared else self.values)
+
+    @property
+    def shared_rollout(self) -> Rollout:
+        """The calibrated crowd of any windows.
+
+        Raises:
+            InputError: everyone has parameters of their own.
+        """
+        if not self.shared:
+            raise InputError("this fit has parameters of each person; it predicts the windows with these people")
+        return self.rollout
+
+    def table(self) -> dict[str, tuple[float, float]]:
+        """Return median and standard deviation over people of every calibrated parameter; 0 for a shared one."""
+        people = self.values[0] if self.shared else self.values[self.counted]
+        if len(people) == 0:
+            return {}
+        return {
+            name: (float(np.median(people[:, k])), float(np.std(people[:, k])))
+            for k, name in enumerate(self.space.names)
+        }
+
+    def values_of(self, past: Windows) -> Floats:
+        """Return the parameters of the people of windows ``[W, A, D]``.
+
+        Who was calibrated has the values of the latest window with them; everyone else the median of all, and the
+        observed preferred speed.
+        """
+        given = self.space.given(past, float(np.max(self.base.radius)), self.base.displacements)
+        if self.shared:
+            return np.broadcast_to(self.values, given.shape)
+        if np.array_equal(past.id, self.id):
+            return self.values
+        for column, (name, (median, _)) in enumerate(self.table().items()):
+            if name != PREFERRED_SPEED.name:
+                given[..., column] = median
+        known, place = self._people()
+        found = np.searchsorted(known, past.id)
+        found = np.minimum(found, max(0, len(known) - 1))
+        if len(known):
+            same = known[found] == past.id
+            given[same] = self.values.reshape(-1, given.shape[-1])[place[found[same]]]
+        return given
+
+    def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
+        """Return where the calibrated crowd goes after the last observed row.
+
+        Args:
+            past: the windows it was calibrated on, or others; see :meth:`values_of`.
+            steps: rows ahead.
+            samples: futures, when the goal knows several destinations; otherwise there is one.
+            rng: draws them.
+
+        Raises:
+            InputError: steps or samples are below 1.
+        """
+        if steps < 1 or samples < 1:
+            raise InputError(f"a prediction needs at least 1 step and 1 sample, not {steps} and {samples}")
+        rng = stream(0, "predict") if rng is None else rng
+        return self.forecast(past, steps, samples, rng.spawn(len(past)), f"calibrated {self.scheme}")
+
+    def forecast(
+        self, past: Windows, steps: int, samples: int, rngs: Sequence[np.random.Generator], name: str
+    ) -> Forecast:
+        """Return the forecast under a name; ``rngs`` is one generator for every window."""
+        rollout = self.space.applied(self.base, self.values[0, 0] if self.shared else self.values_of(past))
+        place, weight = futures(rollout, past, steps, samples, rngs)
+        made = Forecast.of(place, past.present[:, -1], past.dt, name)
+        return Forecast(made.position, weight, made.valid, past.dt, name)
+
+    def __str__(self) -> str:
+        """Return one paragraph: scheme, costs, parameters."""
+        values = ", ".join(
+            f"{name} {median:.3g}" + ("" if self.shared else f" (sd {spread:.2g})")
+            for name, (median, spread) in self.table().items()
+        )
+        who = "one set for everyone" if self.shared else "each person's own"
+        return (
+            f"{self.scheme}: cost {np.nanmean(self.cost):.4f} m, {np.nanmean(self.given_cost):.4f} m before"
+            f" ({self.persons} persons in {self.windows} windows, {int(self.evaluations.sum())} evaluations,"
+            f" {self.seconds:.1f} s); {who}: {values}"
+        )
+
+    def _people(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return who was calibrated, sorted, and where their latest values are among the ``W * A`` ones."""
+        place = np.flatnonzero(self.counted.ravel())[::-1]
+        known, first = np.unique(self.id.ravel()[place], return_index=True)
+        return known, place[first]

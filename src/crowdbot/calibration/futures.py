@@ -1,0 +1,74 @@
+"""Several futures of one crowd: people have several destinations, and each future draws one for everybody."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Scene
+from crowdbot.core.parameter import parameters
+from crowdbot.data.windows import Windows
+
+from .rollout import Rollout
+
+__all__ = ["futures"]
+
+Floats = NDArray[np.float64]
+
+
+def futures(
+    rollout: Rollout, past: Windows, steps: int, samples: int, rngs: Sequence[np.random.Generator]
+) -> tuple[Floats, Floats]:
+    """Return up to ``samples`` futures ``[W, K, steps, A, 2]`` [m] and their weights ``[W, K]``.
+
+    With one sample, or when nobody has more than one destination, K is 1: everybody goes to the most probable one.
+    Otherwise everybody's destinations are drawn in proportion to their probabilities (systematic resampling, people
+    independent of each other); futures that are the same are one, which has their weight, and the places they leave
+    have weight 0.
+    """
+    choices = rollout.goal.choices(past) if samples > 1 else None
+    if choices is None or choices.weight.shape[-1] < 2 or not np.any(past.present[:, -1:]):
+        return rollout.ahead(past, steps)[:, None], np.ones((len(past), 1))
+    W, A = past.present.shape[0], past.present.shape[2]
+    chosen = np.stack([_drawn(weight, samples, rng) for weight, rng in zip(choices.weight, rngs, strict=True)], axis=1)
+    weight = np.stack([_merged(chosen[:, w]) for w in range(W)])
+    goal = np.take_along_axis(choices.position[None], chosen[..., None, None], axis=3)[:, :, :, 0]
+    copied = _copied(rollout, samples)
+    start = _base(rollout, past).environments(np.tile(np.arange(W), samples))
+    here = start.active & ~start.external
+    start = start.replace(goal=np.where(here[..., None], goal.reshape(samples * W, A, 2), start.goal))
+    place = copied.run(start, past, steps).reshape(samples, W, steps, A, 2)
+    return np.ascontiguousarray(np.swapaxes(place, 0, 1)), weight
+
+
+def _base(rollout: Rollout, past: Windows) -> Scene:
+    return rollout.scene(past, past.position.shape[1] - 1)
+
+
+def _drawn(weight: Floats, samples: int, rng: np.random.Generator) -> NDArray[np.int64]:
+    """Return one destination for every sample and person ``[K, A]``, from their probabilities ``[A, G]``."""
+    total = np.cumsum(weight, axis=1)
+    place = (np.arange(samples)[:, None] + rng.random(len(weight))) / samples * np.maximum(total[:, -1], 1e-300)
+    index = np.sum(place[..., None] >= total[None], axis=2)
+    return np.asarray(rng.permuted(np.minimum(index, weight.shape[1] - 1), axis=0), dtype=np.int64)
+
+
+def _merged(chosen: NDArray[np.int64]) -> Floats:
+    """Return the weight of each future ``[K]``: equal ones count at the first of them."""
+    _, first, count = np.unique(chosen, axis=0, return_index=True, return_counts=True)
+    weight = np.zeros(len(chosen))
+    weight[first] = count / len(chosen)
+    return weight
+
+
+def _copied(rollout: Rollout, copies: int) -> Rollout:
+    """Return the rollout of ``copies`` of the windows: what is ``[W, A]`` is repeated along E."""
+
+    def repeated(value: object) -> object:
+        return np.tile(value, (copies, 1)) if isinstance(value, np.ndarray) and value.ndim == 2 else value
+
+    changed = {row.name: repeated(getattr(rollout.model, row.name)) for row in parameters(rollout.model)}
+    return dataclasses.replace(rollout, model=dataclasses.replace(rollout.model, **changed))

@@ -1,0 +1,77 @@
+"""Parts of a scheme, from themselves or from their names."""
+
+from __future__ import annotations
+
+import sys
+from types import ModuleType
+from typing import cast
+
+from crowdbot import models
+from crowdbot.core import InputError
+from crowdbot.core.plug import find, kebab
+from crowdbot.data import Recording
+from crowdbot.models import CrowdModel, goals
+from crowdbot.models.goals import Goal, GroundTruth
+
+from .cost import Cost
+from .search import Search
+
+__all__ = ["goal_for", "kind_of_goal", "named_cost", "named_goal", "named_model", "named_search"]
+
+
+def named_model(value: CrowdModel | str) -> CrowdModel:
+    """Return a crowd model from itself, its name or its address, with default parameters."""
+    return cast(CrowdModel, _named(value, models, CrowdModel))
+
+
+def named_goal(value: Goal | str) -> Goal:
+    """Return a goal from itself, its name or its address, with default parameters."""
+    return cast(Goal, _named(value, goals, Goal))
+
+
+def kind_of_goal(name: str) -> type[Goal]:
+    """Return the class of a goal by its name or address."""
+    return cast(type[Goal], find(name, goals, Goal))
+
+
+def goal_for(name: str, recording: Recording) -> Goal:
+    """Return a goal for a recording: one that knows the future is given it, one that learns learns from it.
+
+    Raises:
+        InputError: the name is unknown, or the goal learns and no part of the recording was kept for it.
+    """
+    kind = kind_of_goal(name)
+    if issubclass(kind, GroundTruth):
+        return GroundTruth(*recording.windows)
+    if kind.learns:
+        return kind.learned(recording.known)
+    return named_goal(name)
+
+
+def named_cost(value: Cost | str) -> Cost:
+    """Return a cost from itself, its name or its address."""
+    return cast(Cost, _named(value, sys.modules[__package__ or ""], Cost))
+
+
+def named_search(value: Search | str) -> Search:
+    """Return a search from itself, its name or its address, with default parameters."""
+    return cast(Search, _named(value, sys.modules[__package__ or ""], Search))
+
+
+def _named(value: object, room: ModuleType, contract: type) -> object:
+    """Return a value as it is, or an instance of the class that a name means.
+
+    Raises:
+        InputError: no class has this name, it cannot be made without arguments, or the value is not of the contract.
+    """
+    if isinstance(value, str):
+        kind = find(value, room, contract)
+        try:
+            return kind()
+        except TypeError:
+            raise InputError(
+                f"{kebab(kind.__name__)} needs values of its own: pass an instance, not its name"
+            ) from None
+    if not isinstance(value, contract):
+        raise InputError(f"{value!r} is not a {contract.__name__}, nor the name of one")
+    return value

@@ -1,0 +1,189 @@
+"""``crowdbot calibrate``: which parameters make a crowd model walk like the people of a recording."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .output import Progress, add_json, note, number, plain, print_json, print_table, progress
+from .recordings import add_recordings, recordings, tell_notes
+from .schemes import add_scheme, assignments, crowd_model, frame_line, prior
+
+if TYPE_CHECKING:
+    from crowdbot.calibration import Calibrator, Fit, FittedPiece
+    from crowdbot.data import Recording
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    add_recordings(parser)
+    add_scheme(parser, many=False)
+    add = parser.add_argument
+    add("--shared", action="store_true", help="one set of parameters for everyone instead of each person's own")
+    add("--workers", type=int, default=1, metavar="N", help="processes (default 1)")
+    add("--cluster", metavar="ADDRESS", help="run on a Ray cluster, such as auto; needs crowdbot[cluster]")
+    add("--out", type=Path, metavar="DIR", help="write parameters and prior there; run again to go on after a stop")
+    add("--seed", type=int, default=0, help="seed of the search")
+    add_json(parser)
+
+
+def main(options: argparse.Namespace) -> int:
+    """Calibrate on the observed rows of every window of every recording."""
+    calibrator, goal = _calibrator(options)
+    found = recordings(options)
+    with progress(options.json) as report:
+        if options.shared:
+            fits = {"together": _shared(calibrator, goal, found, options, report)}
+        else:
+            fits = {one.path: _each(calibrator, goal, one, options, report) for one in found}
+    if options.out is not None:
+        _written(options.out, fits, options.shared)
+    if options.json:
+        print_json({name: as_json(fit) for name, fit in fits.items()})
+        return 0
+    tell_notes(found)
+    for name, fit in fits.items():
+        _table(Path(name).name, fit)
+    return 0
+
+
+def _calibrator(options: argparse.Namespace) -> tuple[Calibrator, str | None]:
+    """Return what calibrates, and the name of the goal when it needs the recording."""
+    from crowdbot.calibration import Calibrator, kind_of_goal
+
+    kind = kind_of_goal(options.goal or "current-direction")
+    late = kind.knows_future or kind.learns
+    parts: dict[str, Any] = {} if late or options.goal is None else {"goal": options.goal}
+    parts |= {name: getattr(options, name) for name in ("cost", "search") if getattr(options, name)}
+    calibrator = Calibrator(
+        crowd_model(options.model or "orca", assignments(options.set)),
+        budget=options.budget,
+        shared=options.shared,
+        free=tuple(options.free),
+        prior=prior(options.prior),
+        **parts,
+    )
+    return calibrator, options.goal if late else None
+
+
+def _each(
+    calibrator: Calibrator, goal: str | None, recording: Recording, options: argparse.Namespace, report: Progress
+) -> Fit:
+    from crowdbot.calibration import Campaign
+    from crowdbot.core import InputError
+
+    campaign = Campaign(recording, calibrator, goal, options.seed)
+    keep = None if options.out is None else options.out / "parts"
+    pieces: list[FittedPiece] = []
+    whole, done = len(campaign.past), 0
+    report(recording.name, 0.0)
+    if not options.json:
+        note(frame_line())
+    for piece in campaign.run(options.workers, options.cluster, keep):
+        pieces.append(piece)
+        done += piece.last - piece.first
+        if not options.json:
+            _tell(piece)
+        report(recording.name, done / whole)
+    fit = campaign.joined(pieces)
+    if fit.persons == 0:
+        raise InputError(
+            f"{recording.path}: nobody in {fit.windows} windows can be compared by {fit.scheme.split(', ')[1]};"
+            " people must be seen at enough rows, and with others where distances between them count"
+        )
+    return fit
+
+
+def _shared(
+    calibrator: Calibrator,
+    goal: str | None,
+    found: tuple[Recording, ...],
+    options: argparse.Namespace,
+    report: Progress,
+) -> Fit:
+    import dataclasses
+
+    from crowdbot.calibration import goal_for
+    from crowdbot.core import InputError
+
+    if goal is not None:
+        if len(found) > 1:
+            raise InputError(f"{goal} belongs to one recording: calibrate them one by one, not {len(found)} together")
+        calibrator = dataclasses.replace(calibrator, goal=goal_for(goal, found[0]))
+    pasts = [one.windows[0] for one in found]
+    return calibrator.fit(pasts, options.seed, lambda share: report("shared parameters", share))
+
+
+def _tell(piece: FittedPiece) -> None:
+    arrays = piece.arrays
+    seconds = float(arrays["seconds"].sum()) / max(1, piece.last - piece.first)
+    for frame, people, cost, count in zip(
+        piece.frame, piece.people, arrays["cost"], arrays["evaluations"], strict=True
+    ):
+        note(frame_line(frame, people, cost, count, seconds))
+
+
+def _table(name: str, fit: Fit) -> None:
+    import numpy as np
+
+    own = {row.name: row for row in fit.space.table}
+    rows = [
+        (parameter, number(median), "" if fit.shared else number(spread), own[parameter].unit)
+        for parameter, (median, spread) in fit.table().items()
+    ]
+    caption = (
+        f"mean cost {np.nanmean(fit.cost):.4f} m, {np.nanmean(fit.given_cost):.4f} m before;"
+        f" {fit.persons} persons in {fit.windows} windows, {int(fit.evaluations.sum())} crowds tried,"
+        f" {fit.seconds:.1f} s"
+    )
+    middle = ("shared", "", "unit") if fit.shared else ("median", "sd over people", "unit")
+    print_table(f"{name}: {fit.scheme}", ("parameter", *middle), rows, caption=caption)
+
+
+def as_json(fit: Fit) -> dict[str, Any]:
+    """Return what ``--json`` prints of a fit."""
+    import numpy as np
+
+    return {
+        "scheme": fit.scheme,
+        "cost": float(np.nanmean(fit.cost)),
+        "given_cost": float(np.nanmean(fit.given_cost)),
+        "persons": fit.persons,
+        "windows": fit.windows,
+        "evaluations": int(fit.evaluations.sum()),
+        "seconds": fit.seconds,
+        "shared": fit.shared,
+        "parameters": {name: {"median": m, "sd": s} for name, (m, s) in fit.table().items()},
+    }
+
+
+def _written(folder: Path, fits: dict[str, Fit], shared: bool) -> None:
+    """Write the summary, everyone's parameters and, of each person's own, the population prior."""
+    import json
+
+    from crowdbot.calibration import PopulationPrior
+
+    folder.mkdir(parents=True, exist_ok=True)
+    text = json.dumps(plain({name: as_json(fit) for name, fit in fits.items()}), indent=2, allow_nan=False)
+    (folder / "calibration.json").write_text(text + "\n", encoding="utf-8")
+    names = ["calibration.json"]
+    if not shared:
+        _people(fits).to_parquet(folder / "parameters.parquet", index=False)
+        PopulationPrior.learned(list(fits.values())).save(folder / "prior.json")
+        names += ["parameters.parquet", "prior.json"]
+    note(f"wrote {', '.join(names)} in {folder}")
+
+
+def _people(fits: dict[str, Fit]) -> Any:
+    """Return one row for each person and window: recording, window, id, cost of the window, parameters."""
+    import numpy as np
+    import pandas as pd
+
+    tables = []
+    for name, fit in fits.items():
+        window, person = np.nonzero(fit.counted)
+        columns = {"recording": name, "window": window, "id": fit.id[window, person], "window_cost": fit.cost[window]}
+        values = fit.values[window, person]
+        tables.append(pd.DataFrame(columns | {key: values[:, k] for k, key in enumerate(fit.space.names)}))
+    return pd.concat(tables, ignore_index=True)

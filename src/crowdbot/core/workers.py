@@ -1,0 +1,137 @@
+"""Independent jobs on several processes of this machine, or on the machines of a Ray cluster."""
+
+from __future__ import annotations
+
+import concurrent.futures.process
+import contextlib
+import multiprocessing
+import os
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+from .errors import CrowdbotError, InputError
+
+__all__ = ["Job", "Result", "each", "each_kept"]
+
+Job = TypeVar("Job")
+Result = TypeVar("Result")
+
+ATTEMPTS = 3
+"""A job whose process dies is tried so often."""
+
+
+def each(
+    function: Callable[[Job], Result], jobs: Sequence[Job], workers: int = 1, cluster: str | None = None
+) -> Iterator[tuple[int, Result]]:
+    """Yield the number of each job and its result, as they are done.
+
+    A process that is killed loses its own job only, which is tried again. Function, jobs and results must be picklable
+    unless there is one worker.
+
+    Args:
+        function: what is done; defined at the top of a module.
+        jobs: its arguments.
+        workers: processes; 1 works here, one job after the other.
+        cluster: address of a Ray cluster (``auto`` for the one of this machine's environment); then ``workers`` is how
+            many jobs run at once. It needs ``pip install crowdbot[cluster]``.
+
+    Raises:
+        InputError: there is no worker, or Ray is not installed.
+        CrowdbotError: a job killed its process again and again.
+
+    >>> sorted(each(abs, [-3, 4]))
+    [(0, 3), (1, 4)]
+    """
+    if workers < 1:
+        raise InputError(f"workers = {workers} must be at least 1")
+    if cluster is not None:
+        return _on_ray(function, jobs, workers, cluster)
+    if workers == 1 or len(jobs) < 2:
+        return ((number, function(job)) for number, job in enumerate(jobs))
+    return _in_processes(function, jobs, workers)
+
+
+def each_kept(
+    function: Callable[[Job], Result],
+    jobs: Sequence[Job],
+    files: Sequence[Path],
+    save: Callable[[Result, Path], None],
+    load: Callable[[Path], Result],
+    workers: int = 1,
+    cluster: str | None = None,
+) -> Iterator[tuple[int, Result]]:
+    """Yield what :func:`each` yields, but what a file keeps is loaded, and what is done is kept in a file.
+
+    An interrupted run goes on where it was. A file is written whole or not at all.
+
+    Args:
+        function, jobs, workers, cluster: as of :func:`each`.
+        files: one for each job, or none to keep nothing.
+        save, load: write and read a result.
+    """
+    left = [number for number in range(len(jobs)) if not files or not files[number].exists()]
+    for number in sorted(set(range(len(jobs))) - set(left)):
+        yield number, load(files[number])
+    for order, result in each(function, [jobs[number] for number in left], workers, cluster):
+        if files:
+            fresh = files[left[order]].with_suffix(".part")
+            fresh.parent.mkdir(parents=True, exist_ok=True)
+            save(result, fresh)
+            fresh.replace(files[left[order]])
+        yield left[order], result
+
+
+def _in_processes(function: Callable[[Job], Result], jobs: Sequence[Job], workers: int) -> Iterator[tuple[int, Result]]:
+    left = dict(enumerate(jobs))
+    for _ in range(ATTEMPTS):
+        with _threads_shared(workers):
+            pool = concurrent.futures.ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"))
+            running = {pool.submit(function, job): number for number, job in left.items()}
+        try:
+            for done in concurrent.futures.as_completed(running):
+                with contextlib.suppress(concurrent.futures.process.BrokenProcessPool):
+                    result = done.result()
+                    del left[running[done]]
+                    yield running[done], result
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+        if not left:
+            return
+    raise CrowdbotError(
+        f"{len(left)} of {len(jobs)} jobs were lost: their processes died {ATTEMPTS} times (out of memory?);"
+        " use fewer workers"
+    )
+
+
+@contextlib.contextmanager
+def _threads_shared(workers: int) -> Iterator[None]:
+    """Let each process that is started here use its share of the processor for compiled kernels."""
+    name, before = "NUMBA_NUM_THREADS", os.environ.get("NUMBA_NUM_THREADS")
+    os.environ[name] = str(max(1, (os.cpu_count() or 1) // workers))
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[name]
+        else:
+            os.environ[name] = before
+
+
+def _on_ray(
+    function: Callable[[Job], Result], jobs: Sequence[Job], workers: int, cluster: str
+) -> Iterator[tuple[int, Result]]:
+    try:
+        import ray
+    except ImportError:
+        raise InputError("a cluster needs Ray, which is not installed: pip install 'crowdbot[cluster]'") from None
+    ray.init(address=cluster, ignore_reinit_error=True, log_to_driver=False)
+    remote: Any = ray.remote(max_retries=ATTEMPTS - 1)(function)
+    waiting = list(enumerate(jobs))[::-1]
+    running: dict[Any, int] = {}
+    while waiting or running:
+        while waiting and len(running) < workers:
+            number, job = waiting.pop()
+            running[remote.remote(job)] = number
+        (ready, *_), _ = ray.wait(list(running))
+        yield running.pop(ready), ray.get(ready)
