@@ -15,6 +15,7 @@ COMMANDS = {
     "run": "run one trial and record it",
     "replay": "run a recorded episode again and check its digest",
     "predict": "score a predictor on recordings of people",
+    "degrade": "score predictors on noisy, hidden, swapped and false tracks, or write such a recording",
     "list": "name what is built in: models, predictors, trials, ...",
     "check": "read a trial and say everything that is wrong with it",
     "cite": "print the papers behind a name",

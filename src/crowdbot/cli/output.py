@@ -10,7 +10,17 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-__all__ = ["Progress", "add_json", "note", "number", "print_json", "print_metrics", "print_table", "progress"]
+__all__ = [
+    "Progress",
+    "add_json",
+    "json_text",
+    "note",
+    "number",
+    "print_json",
+    "print_metrics",
+    "print_table",
+    "progress",
+]
 
 Progress = Callable[[str, float], None]
 """Called with what is being done and the share that is done, 0 to 1."""
@@ -23,7 +33,12 @@ def add_json(parser: argparse.ArgumentParser) -> None:
 
 def print_json(value: Any) -> None:
     """Print one JSON object; numbers that JSON does not know (NaN, infinity) become null."""
-    print(json.dumps(_plain(value), indent=2, allow_nan=False))
+    print(json_text(value))
+
+
+def json_text(value: Any) -> str:
+    """Return what :func:`print_json` prints."""
+    return json.dumps(_plain(value), indent=2, allow_nan=False)
 
 
 def _plain(value: Any) -> Any:

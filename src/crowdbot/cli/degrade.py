@@ -1,0 +1,323 @@
+"""``crowdbot degrade``: score predictors on recordings as a tracker sees them, or write such a recording."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .output import Progress, add_json, json_text, note, print_json, print_table, progress
+
+if TYPE_CHECKING:
+    from crowdbot.data import Trajectories
+    from crowdbot.data.degrade import Chain, Degradation
+    from crowdbot.prediction import DegradedScore, Predictor, Task
+
+ALL = "all"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    add = parser.add_argument
+    add("--data", nargs="+", type=Path, required=True, metavar="PATH", help="recordings, scored together")
+    add(
+        "--by",
+        nargs="+",
+        required=True,
+        metavar="NAME",
+        help="crowdbot list degradations, each swept alone; A+B: one after the other, A is swept; all: every one",
+    )
+    add("--levels", nargs="+", type=float, metavar="X", help="levels of the sweep (default: its own)")
+    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="other parameters, also as occlusion.eye=3,1.5")
+    add("--predictor", nargs="+", metavar="NAME", help="crowdbot list predictors, or file.py:Name (default: all)")
+    add("--model", metavar="NAME", help="crowd model of the predictor `simulated`: crowdbot list models")
+    add("--out", type=Path, metavar="DIR", help="folder for degraded.json, degraded.png and degraded.svg")
+    add("--write", type=Path, metavar="FILE", help="write the degraded recording and score nothing")
+    add("--draws", type=int, default=3, metavar="N", help="how often each level is drawn; the band (default 3)")
+    add("--carry", type=int, default=0, metavar="ROWS", help="walk on who is lost at the last row, so long (default 0)")
+    add("--observe", type=int, default=8, metavar="ROWS", help="observed rows (default 8)")
+    add("--predict", type=int, default=12, metavar="ROWS", help="predicted rows (default 12)")
+    add("--protocol", default="all", metavar="NAME", help="all, sgan, partial or timesplit (default all)")
+    add("--samples", type=int, default=1, metavar="K", help="futures drawn from a predictor that samples")
+    add("--best-of", default="person", metavar="RULE", help="how the best of K is chosen: person, scene or same")
+    add("--near", type=float, metavar="METRES", help="score only people this near to a recorded robot")
+    add("--fps", type=float, metavar="F", help="rows a second of one track, when the file does not say")
+    add("--format", metavar="NAME", help="crowdbot list formats; default: found by content")
+    add("--time-base", default="true", metavar="NAME", help="true or published, for the ETH file with two time bases")
+    add("--units", metavar="NAME", help="m, cm or px, when the file does not say")
+    add("--seed", type=int, default=0, help="seed of the degradation, and of predictors that sample")
+    add_json(parser)
+
+
+def main(options: argparse.Namespace) -> int:
+    """Score the predictors level by level, or write the degraded recording."""
+    from .predict import assignments
+
+    values = assignments(options.set)
+    degradations = read_degradations(options.by, values)
+    if options.write is not None:
+        return _write(options, degradations)
+    _check_sweep(options, degradations, values)
+    predictors = _predictors(options)
+    recordings = [_recording(path, options) for path in options.data]
+    task = _task(options)
+    done: dict[str, list[DegradedScore]] = {}
+    interrupted = False
+    with progress(options.json) as report:
+        try:
+            _sweep(options, recordings, degradations, predictors, task, report, done)
+        except KeyboardInterrupt:
+            interrupted = True
+    files = _keep(options, done, task, not interrupted, plot=True) if done else []
+    if options.json:
+        print_json({**_page(options, done, task, not interrupted), "files": [str(file) for file in files]})
+    else:
+        _tables(done, recordings, task, files)
+    if interrupted:
+        kept = f" and kept in {options.out}" if files else ""
+        note(f"the levels that were done before the interrupt are shown{kept}")
+        raise KeyboardInterrupt
+    return 0
+
+
+def read_degradations(words: Sequence[str], values: Mapping[str, str]) -> list[Degradation | Chain]:
+    """Return what ``--by`` names, with the parameters of ``--set``.
+
+    A parameter goes to everything that has it; ``occlusion.eye`` goes to the one.
+    """
+    from crowdbot.core import plug
+    from crowdbot.data import degrade
+
+    names = list(dict.fromkeys(words))
+    if ALL in names:
+        names = [*plug.built_in(degrade, degrade.Degradation)]
+    kinds = [[plug.find(part, degrade, degrade.Degradation) for part in name.split("+")] for name in names]
+    _check_names(values, {kind for parts in kinds for kind in parts})
+    found: list[Degradation | Chain] = []
+    for parts in kinds:
+        links = tuple(plug.read(kind, _own(kind, values)) for kind in parts)
+        found.append(links[0] if len(links) == 1 else degrade.Chain(links))
+    return found
+
+
+def _fields(kind: type) -> list[str]:
+    import dataclasses
+
+    return [field.name.replace("_", "-") for field in dataclasses.fields(kind)]
+
+
+def _own(kind: type, values: Mapping[str, str]) -> dict[str, str]:
+    """Return those values that are meant for this degradation."""
+    from crowdbot.core import plug
+
+    split = {key: key.replace("_", "-").rpartition(".") for key in values}
+    return {
+        field: values[key]
+        for key, (name, _, field) in split.items()
+        if field in _fields(kind) and name in ("", plug.kebab(kind.__name__))
+    }
+
+
+def _check_names(values: Mapping[str, str], kinds: set[type]) -> None:
+    from crowdbot.core import InputError, plug
+    from crowdbot.core.errors import did_you_mean
+
+    known = sorted({field for kind in kinds for field in _fields(kind)})
+    full = sorted(f"{plug.kebab(kind.__name__)}.{field}" for kind in kinds for field in _fields(kind))
+    for key in values:
+        word = key.replace("_", "-")
+        if word not in known and word not in full:
+            near = did_you_mean(word, [*known, *full])
+            raise InputError(f"--set {key}: no chosen degradation takes it{near}; they take {', '.join(full)}")
+
+
+def _check_sweep(
+    options: argparse.Namespace, degradations: Sequence[Degradation | Chain], values: Mapping[str, str]
+) -> None:
+    from crowdbot.core import InputError
+    from crowdbot.data.degrade import Chain
+
+    if options.levels is not None and len(degradations) > 1:
+        raise InputError(f"--levels belong to one degradation, not to {len(degradations)}; without it each has its own")
+    for degradation in degradations:
+        first = degradation.links[0] if isinstance(degradation, Chain) else degradation
+        if first.level in _own(type(first), values):
+            raise InputError(f"--set {first.level}: the sweep of {first.name} varies it; give --levels instead")
+    if options.out is not None and options.out.exists() and not options.out.is_dir():
+        raise InputError(f"--out {options.out} is a file; give a folder")
+
+
+def _predictors(options: argparse.Namespace) -> list[Predictor]:
+    import dataclasses
+
+    from crowdbot import prediction
+    from crowdbot.core import InputError, plug
+
+    from .predict import chosen
+
+    def simulates(name: str) -> bool:
+        kind = plug.find(name, prediction, prediction.Predictor)
+        return any(field.name == "model" for field in dataclasses.fields(kind))
+
+    names = [*dict.fromkeys(options.predictor or plug.built_in(prediction, prediction.Predictor))]
+    if options.model is not None and not any(map(simulates, names)):
+        raise InputError("--model is for predictors that simulate a crowd; none of them does")
+    return [chosen(name, options.model if simulates(name) else None, {}) for name in names]
+
+
+def _recording(path: Path, options: argparse.Namespace) -> Trajectories:
+    from crowdbot.data import load
+
+    from .predict import EPISODE_STEP
+
+    tracks = load(path, options.fps, options.format, options.units, options.time_base)
+    if tracks.units == "px" and tracks.homography is not None:
+        tracks = tracks.metres()
+    if tracks.robots and options.fps is None and options.write is None:
+        tracks = tracks.resample(EPISODE_STEP)
+    return tracks
+
+
+def _task(options: argparse.Namespace) -> Task:
+    from crowdbot.prediction import Task
+
+    names = ("observe", "predict", "protocol", "near", "samples", "best_of", "seed", "carry", "draws")
+    return Task(**{name: getattr(options, name) for name in names})
+
+
+def _sweep(
+    options: argparse.Namespace,
+    recordings: Sequence[Trajectories],
+    degradations: Sequence[Degradation | Chain],
+    predictors: Sequence[Predictor],
+    task: Task,
+    report: Progress,
+    done: dict[str, list[DegradedScore]],
+) -> None:
+    """Fill ``done``, degradation by degradation, and keep the file up to date."""
+    from crowdbot.prediction import sweep
+
+    for found in sweep(recordings, degradations, predictors, options.levels, task, report):
+        done.setdefault(found[0].degradation.name, []).extend(found)
+        _keep(options, done, task, complete=False, plot=False)
+
+
+def _keep(
+    options: argparse.Namespace, done: Mapping[str, list[DegradedScore]], task: Task, complete: bool, plot: bool
+) -> list[Path]:
+    """Write what is done into the folder ``--out`` and return the files."""
+    from crowdbot.core import InputError
+
+    if options.out is None:
+        return []
+    file = options.out / "degraded.json"
+    try:
+        options.out.mkdir(parents=True, exist_ok=True)
+        draft = file.with_suffix(".part")
+        draft.write_text(json_text(_page(options, done, task, complete)) + "\n", encoding="utf-8")
+        os.replace(draft, file)
+        if not plot:
+            return [file]
+        from crowdbot.benchmark.degraded_plot import draw_degraded
+
+        return [file, *draw_degraded(list(done.values()), options.out, _title(options, task))]
+    except OSError as error:
+        raise InputError(f"--out {options.out} cannot be written: {error.strerror or error}") from None
+
+
+def _title(options: argparse.Namespace, task: Task) -> str:
+    names = ", ".join(path.name for path in options.data)
+    return f"{names}: protocol {task.protocol}, {task.observe} observed + {task.predict} predicted rows"
+
+
+def _page(
+    options: argparse.Namespace, done: Mapping[str, list[DegradedScore]], task: Task, complete: bool
+) -> dict[str, Any]:
+    """Return what ``degraded.json`` and ``--json`` say."""
+    import dataclasses
+
+    return {
+        "data": [str(path) for path in options.data],
+        "task": dataclasses.asdict(task),
+        "complete": complete,
+        "degradations": {
+            name: {
+                "level": scores[0].degradation.level,
+                "unit": scores[0].degradation.unit,
+                "parameters": scores[0].degradation.told(level=False),
+                "rows": [score.as_dict() for score in scores],
+            }
+            for name, scores in done.items()
+        },
+    }
+
+
+def _tables(
+    done: Mapping[str, list[DegradedScore]], recordings: Sequence[Trajectories], task: Task, files: Sequence[Path]
+) -> None:
+    for tracks in recordings:
+        if tracks.note:
+            note(f"{tracks.name}: {tracks.note}")
+    names = ", ".join(tracks.name for tracks in recordings)
+    units = recordings[0].units
+    best = f", best of {task.samples} per {task.best_of}" if task.samples > 1 else ""
+    for name, scores in done.items():
+        degradation = scores[0].degradation
+        unit = "" if degradation.unit in ("1", degradation.level) else f" [{degradation.unit}]"
+        rest = ", ".join(f"{key} = {word}" for key, word in degradation.told(level=False).items())
+        predictors = list(dict.fromkeys(score.predictor for score in scores))
+        rows = []
+        for level in dict.fromkeys(score.level for score in scores):
+            here = {score.predictor: score for score in scores if score.level == level}
+            share = f"{100.0 * here[predictors[0]].coverage:.1f} %"
+            rows.append((f"{level:g}", share, *(_errors(here[predictor]) for predictor in predictors)))
+        print_table(
+            f"{name}{f' ({rest})' if rest else ''}: ADE / FDE [{units}] of {names}",
+            (f"{degradation.level}{unit}", "predicted", *map(_head, predictors)),
+            rows,
+            caption=f"protocol {task.protocol}, {task.observe} observed + {task.predict} predicted rows{best};"
+            f" {scores[0].asked} persons asked for, means over those who could be predicted;"
+            f" {max(score.draws for score in scores)} draws, seed {task.seed}{f', carried {task.carry} rows' if task.carry else ''}",
+        )
+    for file in files:
+        print(f"written   {file}")
+
+
+def _head(predictor: str) -> str:
+    """Return a name broken at its hyphens, so that many columns find place."""
+    import textwrap
+
+    return "\n".join(textwrap.wrap(predictor, 16))
+
+
+def _errors(score: DegradedScore) -> str:
+    return f"{score.score.ade:.3f} / {score.score.fde:.3f}" if score.score else "-"
+
+
+def _write(options: argparse.Namespace, degradations: Sequence[Degradation | Chain]) -> int:
+    """Write one degraded recording, and say what was done to it."""
+    import dataclasses
+
+    from crowdbot.core import InputError, stream
+    from crowdbot.data import save
+
+    if options.predictor or options.out is not None:
+        raise InputError("--write makes a recording and scores nothing; leave out --predictor and --out")
+    if len(options.data) > 1 or len(degradations) > 1 or len(options.levels or ()) > 1:
+        raise InputError("--write makes one recording: one --data, one --by (chain with A+B) and one of --levels")
+    degradation = degradations[0].at(options.levels[0]) if options.levels else degradations[0]
+    clean = _recording(options.data[0], options)
+    seen = degradation.apply(clean, stream(options.seed, "degrade", 0))
+    told = f"degraded by {degradation}, seed {options.seed}"
+    save(dataclasses.replace(seen.tracks, note="; ".join(filter(None, (clean.note, told)))), options.write)
+    counts = {"rows": (len(clean), len(seen.tracks)), "tracks": (len(clean.ids), len(seen.tracks.ids))}
+    if options.json:
+        parameters = {"name": degradation.name, "parameters": degradation.told(), "seed": options.seed}
+        print_json({"file": str(options.write), "degradation": parameters, **counts})
+        return 0
+    print(told)
+    print(", ".join(f"{what} {before} -> {after}" for what, (before, after) in counts.items()))
+    print(f"written   {options.write}")
+    return 0
