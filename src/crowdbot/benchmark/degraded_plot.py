@@ -22,6 +22,8 @@ STYLES = (
 COVERAGE = "#9a9a9a"
 FAR = 2.5
 """A line that goes this many times higher than all others leaves the picture."""
+SMALLEST = 1e-6
+"""Errors below this are none, nothing is measured against them."""
 
 
 def draw_degraded(sweeps: Sequence[Sequence[DegradedScore]], folder: Path, title: str = "") -> list[Path]:
@@ -116,7 +118,7 @@ def _limit(axis: Any, tops: dict[str, float], units: str) -> None:
     """Begin at 0, and let one predictor that is far worse than all others leave the picture."""
     axis.set_ylim(bottom=0.0)
     high = sorted(((top, name) for name, top in tops.items() if math.isfinite(top)), reverse=True)
-    if len(high) > 1 and high[0][0] > FAR * high[1][0]:
+    if len(high) > 1 and high[1][0] > SMALLEST and high[0][0] > FAR * high[1][0]:
         axis.set_ylim(top=1.2 * high[1][0])
         axis.text(
             0.98, 0.97, f"{high[0][1]}\ngoes on to {high[0][0]:.3g} {units}", transform=axis.transAxes, fontsize=7,

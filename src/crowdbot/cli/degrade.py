@@ -263,6 +263,7 @@ def _tables(
     names = ", ".join(tracks.name for tracks in recordings)
     units = recordings[0].units
     best = f", best of {task.samples} per {task.best_of}" if task.samples > 1 else ""
+    carried = f", carried {task.carry} rows" if task.carry else ""
     for name, scores in done.items():
         degradation = scores[0].degradation
         unit = "" if degradation.unit in ("1", degradation.level) else f" [{degradation.unit}]"
@@ -279,7 +280,7 @@ def _tables(
             rows,
             caption=f"protocol {task.protocol}, {task.observe} observed + {task.predict} predicted rows{best};"
             f" {scores[0].asked} persons asked for, means over those who could be predicted;"
-            f" {max(score.draws for score in scores)} draws, seed {task.seed}{f', carried {task.carry} rows' if task.carry else ''}",
+            f" {max(score.draws for score in scores)} draws, seed {task.seed}{carried}",
         )
     for file in files:
         print(f"written   {file}")

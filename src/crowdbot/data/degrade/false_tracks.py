@@ -45,13 +45,14 @@ class FalseTracks(Degradation):
         times = tracks.time[first]
         place = tracks.position[~seen.robot] if np.any(~seen.robot) else tracks.position
         low, high = place.min(axis=0), place.max(axis=0)
+        highest = int(tracks.id.max())
         id: list[NDArray[np.int64]] = []
         frame: list[NDArray[np.int64]] = []
         position: list[NDArray[np.float64]] = []
         for birth, life, begin, velocity in self._ghosts(float(times[-1]) + tracks.dt, rng):
-            rows = (times >= birth) & (times < birth + life)
-            if np.any(rows):
-                id.append(np.full(int(rows.sum()), tracks.ids[-1] + 1 + len(id), dtype=np.int64))
+            rows = slice(*np.searchsorted(times, (birth, birth + life)).tolist())
+            if rows.start < rows.stop:
+                id.append(np.full(rows.stop - rows.start, highest + 1 + len(id), dtype=np.int64))
                 frame.append(frames[rows])
                 position.append(low + begin * (high - low) + velocity * (times[rows] - birth)[:, None])
         if not id:
