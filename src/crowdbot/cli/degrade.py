@@ -69,8 +69,10 @@ def main(options: argparse.Namespace) -> int:
         try:
             _sweep(options, recordings, degradations, predictors, task, report, done)
         except KeyboardInterrupt:
+            if not done:
+                raise
             interrupted = True
-    files = _keep(options, done, task, not interrupted, plot=True) if done else []
+    files = _keep(options, done, task, not interrupted, plot=True)
     if options.json:
         print_json({**_page(options, done, task, not interrupted), "files": [str(file) for file in files]})
     else:
