@@ -20,6 +20,7 @@ KINDS = {
     "costs": ("calibration", "Cost"),
     "searches": ("calibration", "Search"),
     "predictors": ("prediction", "Predictor"),
+    "degradations": ("data.degrade", "Degradation"),
 }
 """Kinds of plugs: the room that holds them and the contract that they keep."""
 

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .output import Progress, add_json, note, number, plain, print_json, print_table, progress
+from .output import Progress, add_json, json_text, note, number, print_json, print_table, progress
 from .recordings import add_recordings, recordings, tell_notes
 from .schemes import add_scheme, assignments, crowd_model, frame_line, prior
 
@@ -20,6 +20,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_recordings(parser)
     add_scheme(parser, many=False)
     add = parser.add_argument
+    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="parameters of the crowd model before the fit")
     add("--shared", action="store_true", help="one set of parameters for everyone instead of each person's own")
     add("--workers", type=int, default=1, metavar="N", help="processes (default 1)")
     add("--cluster", metavar="ADDRESS", help="run on a Ray cluster, such as auto; needs crowdbot[cluster]")
@@ -160,12 +161,10 @@ def as_json(fit: Fit) -> dict[str, Any]:
 
 def _written(folder: Path, fits: dict[str, Fit], shared: bool) -> None:
     """Write the summary, everyone's parameters and, of each person's own, the population prior."""
-    import json
-
     from crowdbot.calibration import PopulationPrior
 
     folder.mkdir(parents=True, exist_ok=True)
-    text = json.dumps(plain({name: as_json(fit) for name, fit in fits.items()}), indent=2, allow_nan=False)
+    text = json_text({name: as_json(fit) for name, fit in fits.items()})
     (folder / "calibration.json").write_text(text + "\n", encoding="utf-8")
     names = ["calibration.json"]
     if not shared:

@@ -10,7 +10,17 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-__all__ = ["Progress", "add_json", "note", "number", "plain", "print_json", "print_metrics", "print_table", "progress"]
+__all__ = [
+    "Progress",
+    "add_json",
+    "json_text",
+    "note",
+    "number",
+    "print_json",
+    "print_metrics",
+    "print_table",
+    "progress",
+]
 
 Progress = Callable[[str, float], None]
 """Called with what is being done and the share that is done, 0 to 1."""
@@ -23,15 +33,19 @@ def add_json(parser: argparse.ArgumentParser) -> None:
 
 def print_json(value: Any) -> None:
     """Print one JSON object; numbers that JSON does not know (NaN, infinity) become null."""
-    print(json.dumps(plain(value), indent=2, allow_nan=False))
+    print(json_text(value))
 
 
-def plain(value: Any) -> Any:
-    """Return a value as JSON knows it: numbers that are not finite become null."""
+def json_text(value: Any) -> str:
+    """Return what :func:`print_json` prints."""
+    return json.dumps(_plain(value), indent=2, allow_nan=False)
+
+
+def _plain(value: Any) -> Any:
     if isinstance(value, dict):
-        return {str(key): plain(item) for key, item in value.items()}
+        return {str(key): _plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [plain(item) for item in value]
+        return [_plain(item) for item in value]
     if hasattr(value, "item") and not hasattr(value, "__len__"):
         value = value.item()
     if isinstance(value, float) and not math.isfinite(value):

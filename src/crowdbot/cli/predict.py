@@ -24,6 +24,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="one or several: crowdbot list predictors, or file.py:Name (default constant-velocity)",
     )  # fmt: skip
     add_scheme(parser, many=True)
+    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="parameters of the predictor or its crowd model")
     add("--samples", type=int, default=1, metavar="K", help="futures drawn from a predictor that samples")
     add("--best-of", default="person", metavar="RULE", help="how the best of K is chosen: person, scene or same")
     add("--live", action="store_true", help="frame by frame: calibrations begin with the fit of the frame before")
@@ -136,13 +137,11 @@ def as_json(study: Study, results: list[Result]) -> dict[str, Any]:
 
 def _written(options: argparse.Namespace, study: Study, results: list[Result]) -> None:
     """Write the scores, every frame, the plots and, when asked for, the animation."""
-    import json
-
     from crowdbot.benchmark.prediction_plots import animate, plot_errors, plot_frames
 
-    from .output import plain
+    from .output import json_text
 
-    scores = json.dumps(plain(as_json(study, results)), indent=2, allow_nan=False)
+    scores = json_text(as_json(study, results))
     (options.out / "scores.json").write_text(scores + "\n", encoding="utf-8")
     study.table(results).to_parquet(options.out / "frames.parquet", index=False)
     plot_errors(results, options.out / "errors.png")

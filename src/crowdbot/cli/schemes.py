@@ -31,7 +31,6 @@ def add_scheme(parser: argparse.ArgumentParser, many: bool) -> None:
     add("--budget", type=int, default=500, metavar="N", help="crowds tried for each window (default 500)")
     add("--free", nargs="+", default=[], metavar="NAME", help="parameters that are calibrated (default: all)")
     add("--prior", type=Path, metavar="FILE", help="what is known of parameters: made by crowdbot calibrate")
-    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="parameters of the predictor or its crowd model")
 
 
 def recipes(options: argparse.Namespace) -> tuple[Recipe, ...]:

@@ -65,6 +65,11 @@ class Recording:
         return self.tracks.split(self.learn)[0]
 
     @property
+    def rest(self) -> Trajectories:
+        """The part that is predicted."""
+        return self.tracks if self.learn == 0.0 else self.tracks.split(self.learn)[1]
+
+    @property
     def name(self) -> str:
         """Name of the file."""
         return Path(self.path).name
@@ -98,5 +103,4 @@ def _tracks(recording: Recording) -> Trajectories:
 
 @functools.lru_cache(maxsize=4)
 def _windows(recording: Recording) -> tuple[Windows, Windows]:
-    tracks = recording.tracks if recording.learn == 0.0 else recording.tracks.split(recording.learn)[1]
-    return tracks.windows(recording.observe, recording.predict, recording.protocol, recording.near, recording.late)
+    return recording.rest.windows(recording.observe, recording.predict, recording.protocol, recording.near, recording.late)

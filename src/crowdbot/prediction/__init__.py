@@ -1,8 +1,10 @@
 """Floor 4: where people will be in the next seconds; predictors, and their scores on recordings."""
 
 from .constant import ConstantAcceleration, ConstantVelocity, SampledConstantVelocity
+from .degraded import DegradedScore, Seen, Task, seen_windows, sweep
 from .evaluate import evaluate
 from .kalman import Kalman
+from .live import Live
 from .predictor import Predictor, window_streams
 from .recipe import Recipe
 from .simulated import Simulated
@@ -11,16 +13,22 @@ from .study import Frames, Part, Piece, Result, Study
 __all__ = [
     "ConstantAcceleration",
     "ConstantVelocity",
+    "DegradedScore",
     "Frames",
     "Kalman",
+    "Live",
     "Part",
     "Piece",
     "Predictor",
     "Recipe",
     "Result",
     "SampledConstantVelocity",
+    "Seen",
     "Simulated",
     "Study",
+    "Task",
     "evaluate",
+    "seen_windows",
+    "sweep",
     "window_streams",
 ]

@@ -1,0 +1,300 @@
+"""``crowdbot degrade``: score predictors on recordings as a tracker sees them, or write such a recording."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .output import Progress, add_json, json_text, note, print_json, print_table, progress
+from .recordings import add_recordings, recordings, tell_notes
+from .schemes import add_scheme, assignments, recipes
+
+if TYPE_CHECKING:
+    from crowdbot.data import Recording, Trajectories
+    from crowdbot.data.degrade import Chain, Degradation
+    from crowdbot.prediction import DegradedScore, Predictor, Task
+
+ALL = "all"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    add_recordings(parser)
+    add = parser.add_argument
+    add(
+        "--by",
+        nargs="+",
+        required=True,
+        metavar="NAME",
+        help="crowdbot list degradations, each swept alone; A+B: one after the other, A is swept; all: every one",
+    )
+    add("--levels", nargs="+", type=float, metavar="X", help="levels of the sweep (default: its own)")
+    add("--predictor", nargs="+", metavar="NAME", help="crowdbot list predictors, or file.py:Name (default: all)")
+    add_scheme(parser, many=True)
+    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="of the degradation, also occlusion.eye=3,1.5")
+    add("--out", type=Path, metavar="DIR", help="folder for degraded.json, degraded.png and degraded.svg")
+    add("--write", type=Path, metavar="FILE", help="write the degraded recording and score nothing")
+    add("--draws", type=int, default=3, metavar="N", help="how often each level is drawn; the band (default 3)")
+    add("--carry", type=int, default=0, metavar="ROWS", help="walk on who is lost at the last row, so long (default 0)")
+    add("--samples", type=int, default=1, metavar="K", help="futures drawn from a predictor that samples")
+    add("--best-of", default="person", metavar="RULE", help="how the best of K is chosen: person, scene or same")
+    add("--seed", type=int, default=0, help="seed of the degradation, and of predictors that sample")
+    add_json(parser)
+
+
+def main(options: argparse.Namespace) -> int:
+    """Score the predictors level by level, or write the degraded recording."""
+    values = assignments(options.set)
+    degradations = read_degradations(options.by, values)
+    if options.write is not None:
+        return _write(options, degradations)
+    _check_sweep(options, degradations, values)
+    found = recordings(options)
+    predictors = _predictors(options, found)
+    tracks = [one.rest for one in found]
+    task = _task(options)
+    done: dict[str, list[DegradedScore]] = {}
+    interrupted = False
+    with progress(options.json) as report:
+        try:
+            _sweep(options, tracks, degradations, predictors, task, report, done)
+        except KeyboardInterrupt:
+            if not done:
+                raise
+            interrupted = True
+    files = _keep(options, done, task, not interrupted, plot=True)
+    if options.json:
+        print_json({**_page(options, done, task, not interrupted), "files": [str(file) for file in files]})
+    else:
+        tell_notes(found)
+        _tables(done, tracks, task, files)
+    if interrupted:
+        kept = f" and kept in {options.out}" if files else ""
+        note(f"the levels that were done before the interrupt are shown{kept}")
+        raise KeyboardInterrupt
+    return 0
+
+
+def read_degradations(words: Sequence[str], values: Mapping[str, str]) -> list[Degradation | Chain]:
+    """Return what ``--by`` names, with the parameters of ``--set``.
+
+    A parameter goes to everything that has it; ``occlusion.eye`` goes to the one.
+    """
+    from crowdbot.core import plug
+    from crowdbot.data import degrade
+
+    names = list(dict.fromkeys(words))
+    if ALL in names:
+        names = [*plug.built_in(degrade, degrade.Degradation)]
+    kinds = [[plug.find(part, degrade, degrade.Degradation) for part in name.split("+")] for name in names]
+    _check_names(values, {kind for parts in kinds for kind in parts})
+    found: list[Degradation | Chain] = []
+    for parts in kinds:
+        links = tuple(plug.read(kind, _own(kind, values)) for kind in parts)
+        found.append(links[0] if len(links) == 1 else degrade.Chain(links))
+    return found
+
+
+def _fields(kind: type) -> list[str]:
+    import dataclasses
+
+    return [field.name.replace("_", "-") for field in dataclasses.fields(kind)]
+
+
+def _own(kind: type, values: Mapping[str, str]) -> dict[str, str]:
+    """Return those values that are meant for this degradation."""
+    from crowdbot.core import plug
+
+    split = {key: key.replace("_", "-").rpartition(".") for key in values}
+    return {
+        field: values[key]
+        for key, (name, _, field) in split.items()
+        if field in _fields(kind) and name in ("", plug.kebab(kind.__name__))
+    }
+
+
+def _check_names(values: Mapping[str, str], kinds: set[type]) -> None:
+    from crowdbot.core import InputError, plug
+    from crowdbot.core.errors import did_you_mean
+
+    known = sorted({field for kind in kinds for field in _fields(kind)})
+    full = sorted(f"{plug.kebab(kind.__name__)}.{field}" for kind in kinds for field in _fields(kind))
+    for key in values:
+        word = key.replace("_", "-")
+        if word not in known and word not in full:
+            near = did_you_mean(word, [*known, *full])
+            raise InputError(f"--set {key}: no chosen degradation takes it{near}; they take {', '.join(full)}")
+
+
+def _check_sweep(
+    options: argparse.Namespace, degradations: Sequence[Degradation | Chain], values: Mapping[str, str]
+) -> None:
+    from crowdbot.core import InputError
+    from crowdbot.data.degrade import Chain
+
+    if options.levels is not None and len(degradations) > 1:
+        raise InputError(f"--levels belong to one degradation, not to {len(degradations)}; without it each has its own")
+    for degradation in degradations:
+        first = degradation.links[0] if isinstance(degradation, Chain) else degradation
+        if first.level in _own(type(first), values):
+            raise InputError(f"--set {first.level}: the sweep of {first.name} varies it; give --levels instead")
+    if options.out is not None and options.out.exists() and not options.out.is_dir():
+        raise InputError(f"--out {options.out} is a file; give a folder")
+
+
+def _predictors(options: argparse.Namespace, found: Sequence[Recording]) -> list[Predictor]:
+    """Return what is scored; a goal that learns does so from the clean begin of the one recording."""
+    from crowdbot import prediction
+    from crowdbot.core import InputError, plug
+
+    options.predictor = [*dict.fromkeys(options.predictor or plug.built_in(prediction, prediction.Predictor))]
+    options.set = []  # they are parameters of the degradation here
+    made = recipes(options)
+    late = next((one.goal for one in made if one.goal is not None), None)
+    if late is not None and len(found) > 1:
+        raise InputError(f"the goal {late} belongs to one recording: degrade them one by one, not {len(found)} together")
+    return [one.prepared(found[0]) for one in made]
+
+
+def _task(options: argparse.Namespace) -> Task:
+    from crowdbot.prediction import Task
+
+    names = ("observe", "predict", "protocol", "near", "samples", "best_of", "seed", "carry", "draws")
+    return Task(**{name: getattr(options, name) for name in names})
+
+
+def _sweep(
+    options: argparse.Namespace,
+    recordings: Sequence[Trajectories],
+    degradations: Sequence[Degradation | Chain],
+    predictors: Sequence[Predictor],
+    task: Task,
+    report: Progress,
+    done: dict[str, list[DegradedScore]],
+) -> None:
+    """Fill ``done``, degradation by degradation, and keep the file up to date."""
+    from crowdbot.prediction import sweep
+
+    for found in sweep(recordings, degradations, predictors, options.levels, task, report):
+        done.setdefault(found[0].degradation.name, []).extend(found)
+        _keep(options, done, task, complete=False, plot=False)
+
+
+def _keep(
+    options: argparse.Namespace, done: Mapping[str, list[DegradedScore]], task: Task, complete: bool, plot: bool
+) -> list[Path]:
+    """Write what is done into the folder ``--out`` and return the files."""
+    from crowdbot.core import InputError
+
+    if options.out is None:
+        return []
+    file = options.out / "degraded.json"
+    try:
+        options.out.mkdir(parents=True, exist_ok=True)
+        draft = file.with_suffix(".part")
+        draft.write_text(json_text(_page(options, done, task, complete)) + "\n", encoding="utf-8")
+        os.replace(draft, file)
+        if not plot:
+            return [file]
+        from crowdbot.benchmark.degraded_plot import draw_degraded
+
+        return [file, *draw_degraded(list(done.values()), options.out, _title(options, task))]
+    except OSError as error:
+        raise InputError(f"--out {options.out} cannot be written: {error.strerror or error}") from None
+
+
+def _title(options: argparse.Namespace, task: Task) -> str:
+    names = ", ".join(path.name for path in options.data)
+    return f"{names}: protocol {task.protocol}, {task.observe} observed + {task.predict} predicted rows"
+
+
+def _page(
+    options: argparse.Namespace, done: Mapping[str, list[DegradedScore]], task: Task, complete: bool
+) -> dict[str, Any]:
+    """Return what ``degraded.json`` and ``--json`` say."""
+    import dataclasses
+
+    return {
+        "data": [str(path) for path in options.data],
+        "task": dataclasses.asdict(task),
+        "complete": complete,
+        "degradations": {
+            name: {
+                "level": scores[0].degradation.level,
+                "unit": scores[0].degradation.unit,
+                "parameters": scores[0].degradation.told(level=False),
+                "rows": [score.as_dict() for score in scores],
+            }
+            for name, scores in done.items()
+        },
+    }
+
+
+def _tables(
+    done: Mapping[str, list[DegradedScore]], recordings: Sequence[Trajectories], task: Task, files: Sequence[Path]
+) -> None:
+    names = ", ".join(tracks.name for tracks in recordings)
+    units = recordings[0].units
+    best = f", best of {task.samples} per {task.best_of}" if task.samples > 1 else ""
+    carried = f", carried {task.carry} rows" if task.carry else ""
+    for name, scores in done.items():
+        degradation = scores[0].degradation
+        unit = "" if degradation.unit in ("1", degradation.level) else f" [{degradation.unit}]"
+        rest = ", ".join(f"{key} = {word}" for key, word in degradation.told(level=False).items())
+        predictors = list(dict.fromkeys(score.predictor for score in scores))
+        rows = []
+        for level in dict.fromkeys(score.level for score in scores):
+            here = {score.predictor: score for score in scores if score.level == level}
+            share = f"{100.0 * here[predictors[0]].coverage:.1f} %"
+            rows.append((f"{level:g}", share, *(_errors(here[predictor]) for predictor in predictors)))
+        print_table(
+            f"{name}{f' ({rest})' if rest else ''}: ADE / FDE [{units}] of {names}",
+            (f"{degradation.level}{unit}", "predicted", *map(_head, predictors)),
+            rows,
+            caption=f"protocol {task.protocol}, {task.observe} observed + {task.predict} predicted rows{best};"
+            f" {scores[0].asked} persons asked for, means over those who could be predicted;"
+            f" {max(score.draws for score in scores)} draws, seed {task.seed}{carried}",
+        )
+    for file in files:
+        print(f"written   {file}")
+
+
+def _head(predictor: str) -> str:
+    """Return a name broken at its hyphens, so that many columns find place."""
+    import textwrap
+
+    return "\n".join(textwrap.wrap(predictor, 16))
+
+
+def _errors(score: DegradedScore) -> str:
+    return f"{score.score.ade:.3f} / {score.score.fde:.3f}" if score.score else "-"
+
+
+def _write(options: argparse.Namespace, degradations: Sequence[Degradation | Chain]) -> int:
+    """Write one degraded recording, and say what was done to it."""
+    import dataclasses
+
+    from crowdbot.core import InputError, stream
+    from crowdbot.data import save
+
+    if options.predictor or options.out is not None:
+        raise InputError("--write makes a recording and scores nothing; leave out --predictor and --out")
+    if len(options.data) > 1 or len(degradations) > 1 or len(options.levels or ()) > 1:
+        raise InputError("--write makes one recording: one --data, one --by (chain with A+B) and one of --levels")
+    degradation = degradations[0].at(options.levels[0]) if options.levels else degradations[0]
+    clean = recordings(options)[0].tracks
+    seen = degradation.apply(clean, stream(options.seed, "degrade", 0))
+    told = f"degraded by {degradation}, seed {options.seed}"
+    save(dataclasses.replace(seen.tracks, note="; ".join(filter(None, (clean.note, told)))), options.write)
+    counts = {"rows": (len(clean), len(seen.tracks)), "tracks": (len(clean.ids), len(seen.tracks.ids))}
+    if options.json:
+        parameters = {"name": degradation.name, "parameters": degradation.told(), "seed": options.seed}
+        print_json({"file": str(options.write), "degradation": parameters, **counts})
+        return 0
+    print(told)
+    print(", ".join(f"{what} {before} -> {after}" for what, (before, after) in counts.items()))
+    print(f"written   {options.write}")
+    return 0

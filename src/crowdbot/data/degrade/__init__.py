@@ -1,0 +1,28 @@
+"""What trackers do to recordings: noise, gaps, occlusion, swapped, late and false tracks, each in one file."""
+
+from .chain import Chain
+from .correlated_noise import CorrelatedNoise
+from .degradation import GHOST, Degradation, Degraded, NobodySeen
+from .false_tracks import FalseTracks
+from .gaussian_noise import GaussianNoise
+from .heavy_tails import HeavyTails
+from .identity_switches import IdentitySwitches
+from .late_start import LateStart
+from .missing_frames import MissingFrames
+from .occlusion import Occlusion
+
+__all__ = [
+    "GHOST",
+    "Chain",
+    "CorrelatedNoise",
+    "Degradation",
+    "Degraded",
+    "FalseTracks",
+    "GaussianNoise",
+    "HeavyTails",
+    "IdentitySwitches",
+    "LateStart",
+    "MissingFrames",
+    "NobodySeen",
+    "Occlusion",
+]

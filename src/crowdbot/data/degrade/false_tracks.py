@@ -1,0 +1,72 @@
+"""False tracks: a tracker believes in people who are not there."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.parameter import parameter
+
+from .degradation import Degradation, Degraded
+
+__all__ = ["FalseTracks"]
+
+Ghost = tuple[float, float, NDArray[np.float64], NDArray[np.float64]]
+
+
+@dataclass(frozen=True)
+class FalseTracks(Degradation):
+    """Ghosts are born at a rate, walk straight on, and are gone after a while.
+
+    They are born anywhere in the rectangle that holds all people of the recording, as a Poisson process in time; their
+    lives are exponential, the components of their velocity normal. Their ids are above all others.
+
+    Fields:
+        rate: ghosts born a second in the whole area [1/s]; the level.
+        life: mean life [s].
+        speed: root mean square speed [m/s].
+    """
+
+    rate: float = parameter(0.2, unit="1/s", low=0.0, high=5.0, source="ours: one in five seconds")
+    life: float = parameter(4.0, unit="s", low=0.5, high=20.0, source="ours: ten rows of 0.4 s")
+    speed: float = parameter(0.5, unit="m/s", low=0.0, high=2.0, source="ours: slower than people")
+
+    level: ClassVar[str] = "rate"
+    levels: ClassVar[tuple[float, ...]] = (0.0, 0.2, 0.5, 1.0, 2.0)
+
+    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
+        """Return the recording with ghosts, see :meth:`Degradation.apply`."""
+        tracks = seen.tracks
+        frames, first = np.unique(tracks.frame, return_index=True)
+        times = tracks.time[first]
+        place = tracks.position[~seen.robot] if np.any(~seen.robot) else tracks.position
+        low, high = place.min(axis=0), place.max(axis=0)
+        highest = int(tracks.id.max())
+        id: list[NDArray[np.int64]] = []
+        frame: list[NDArray[np.int64]] = []
+        position: list[NDArray[np.float64]] = []
+        for birth, life, begin, velocity in self._ghosts(float(times[-1]) + tracks.dt, rng):
+            rows = slice(*np.searchsorted(times, (birth, birth + life)).tolist())
+            if rows.start < rows.stop:
+                id.append(np.full(rows.stop - rows.start, highest + 1 + len(id), dtype=np.int64))
+                frame.append(frames[rows])
+                position.append(low + begin * (high - low) + velocity * (times[rows] - birth)[:, None])
+        if not id:
+            return seen
+        return seen.added(np.concatenate(id), np.concatenate(frame), np.concatenate(position))
+
+    def _ghosts(self, seconds: float, rng: np.random.Generator) -> list[Ghost]:
+        """Return birth [s], life [s], place in the area (0 to 1) and velocity [m/s] of every ghost."""
+        found: list[Ghost] = []
+        birth = 0.0
+        while True:
+            birth += float(rng.exponential()) / self.rate
+            life = self.life * float(rng.exponential())
+            begin, velocity = rng.random(2), self.speed / math.sqrt(2.0) * rng.standard_normal(2)
+            if birth >= seconds:
+                return found
+            found.append((birth, life, begin, velocity))

@@ -1,0 +1,43 @@
+"""Late start: a tracker waits before it believes in a new track."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from crowdbot.core.errors import InputError
+from crowdbot.core.parameter import parameter
+
+from .degradation import Degradation, Degraded
+from .turns import rank
+
+__all__ = ["LateStart"]
+
+
+@dataclass(frozen=True)
+class LateStart(Degradation):
+    """A track is confirmed, and seen, only after its first rows.
+
+    A track that is never longer is never seen. Holes later in a track do not start it again. Nothing here is random.
+
+    Fields:
+        rows: rows of a track before it is confirmed; the level.
+    """
+
+    rows: int = parameter(3, unit="rows", low=0, high=10, source="ours: the usual three hits of multi-object trackers")
+
+    level: ClassVar[str] = "rows"
+    levels: ClassVar[tuple[float, ...]] = (0, 3, 6, 8, 10)
+    metric: ClassVar[bool] = False
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.rows != int(self.rows):
+            raise InputError(f"{self.name}: rows = {self.rows} must be a whole number")
+        object.__setattr__(self, "rows", int(self.rows))
+
+    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
+        """Return the recording without the first rows of its tracks, see :meth:`Degradation.apply`."""
+        return seen.kept(rank(seen.tracks.id, seen.tracks.frame) >= self.rows)

@@ -1,0 +1,45 @@
+"""Rows of many tracks at once: the first row of every track, then the second of every track, and so on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["rank", "turns"]
+
+Indices = NDArray[np.intp]
+
+
+def rank(id: NDArray[np.int64], frame: NDArray[np.int64]) -> Indices:
+    """Return how many rows of its own track come before each row ``[N]``.
+
+    >>> rank(np.array([7, 7, 3, 7]), np.array([0, 20, 10, 10])).tolist()
+    [0, 2, 0, 1]
+    """
+    order = np.lexsort((frame, id))
+    begins = np.searchsorted(id[order], id[order])
+    number = np.empty(len(id), dtype=np.intp)
+    number[order] = np.arange(len(id)) - begins
+    return number
+
+
+def turns(id: NDArray[np.int64], frame: NDArray[np.int64]) -> Iterator[tuple[Indices, Indices]]:
+    """Yield the rows of the tracks turn by turn, each time with the row before of the same tracks.
+
+    The first turn has no rows before.
+
+    >>> [(a.tolist(), b.tolist()) for a, b in turns(np.array([7, 3, 7]), np.array([0, 0, 10]))]
+    [([1, 0], []), ([2], [0])]
+    """
+    order = np.lexsort((frame, id))
+    before = np.empty(len(id), dtype=np.intp)
+    before[order[1:]] = order[:-1]
+    number = rank(id, frame)
+    by_turn = order[np.argsort(number[order], kind="stable")]
+    borders = np.searchsorted(number[by_turn], np.arange(int(number.max()) + 2))
+    for turn, (begin, end) in enumerate(pairwise(borders.tolist())):
+        rows = by_turn[begin:end]
+        yield rows, before[rows] if turn else rows[:0]

@@ -1,0 +1,332 @@
+"""Predictors on degraded recordings: the past as a tracker sees it, the future as it was."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, stream
+from crowdbot.data.degrade import GHOST, Chain, Degradation, Degraded, NobodySeen
+from crowdbot.data.trajectories import Trajectories
+from crowdbot.data.windows import Windows
+from crowdbot.metrics import Score
+
+from .evaluate import evaluate
+from .predictor import Predictor
+
+__all__ = ["DegradedScore", "Seen", "Task", "seen_windows", "sweep"]
+
+Integers = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is asked of every predictor at every level.
+
+    Fields:
+        observe, predict, protocol, near: as :meth:`Trajectories.windows` takes them, on the clean recording.
+        samples, best_of, seed: as :func:`evaluate` takes them; the seed is also that of the degradation.
+        carry: rows for which somebody who is not seen any more is walked on, see :func:`seen_windows`.
+        draws: how often the degradation is drawn anew; scores are means over all draws.
+    """
+
+    observe: int = 8
+    predict: int = 12
+    protocol: str = "all"
+    near: float | None = None
+    samples: int = 1
+    best_of: str = "person"
+    seed: int = 0
+    carry: int = 0
+    draws: int = 1
+
+    def __post_init__(self) -> None:
+        if self.carry < 0:
+            raise InputError(f"carry = {self.carry} must be a number of rows, at least 0")
+        if self.draws < 1:
+            raise InputError(f"draws = {self.draws} must be at least 1")
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Windows as they are seen in a degraded recording.
+
+    Fields:
+        past: rows of the degraded recording, people in slots by the ids that they have there.
+        future: who is truly at the place of each slot: ``scored`` and where they go; ghosts go nowhere.
+        asked: number of scored persons of the clean windows.
+        predictable: how many of them are seen at the last observed row, so that they can be predicted.
+    """
+
+    past: Windows
+    future: Windows
+    asked: int
+    predictable: int
+
+
+def seen_windows(past: Windows, future: Windows, degraded: Degraded, carry: int = 0) -> Seen:
+    """Return clean windows as they are seen in the degraded recording.
+
+    In a window are those people of the clean one who are seen at its last observed row, and every ghost that is. A
+    track brings the rows that it has under its id, whoever they belonged to. It is scored against the person who is
+    truly at its place at the last row. Nobody else is predicted: a person who is not seen there counts as asked only.
+
+    With ``carry``, a person seen last up to so many rows before the last one is walked on to it with the velocity of
+    their last two seen rows, as trackers do for a while; ghosts are not.
+
+    Args:
+        past, future: windows of the clean recording.
+        degraded: what is seen of it.
+        carry: rows.
+
+    >>> from crowdbot.data.degrade import LateStart
+    >>> tracks = Trajectories([7] * 4, range(4), range(4), [0.0] * 4, frame_rate=2.5)
+    >>> clean = tracks.windows(observe=2, predict=2)
+    >>> seen = seen_windows(*clean, LateStart(1).apply(tracks))
+    >>> seen.past.present[:, :, 0].tolist(), seen.predictable, seen.asked
+    ([[False, True]], 1, 1)
+    """
+    table = _Table.of(past, degraded)
+    window, row, clean = table.chosen(carry)
+    order = np.lexsort((degraded.tracks.id[row], window))
+    window, row, clean = window[order], row[order], clean[order]
+    slot = np.arange(len(window)) - np.searchsorted(window, window)
+    shape = len(past), int(slot.max(initial=-1)) + 1
+    id = np.full(shape, -1, dtype=np.int64)
+    id[window, slot] = degraded.tracks.id[row]
+    robot = np.isin(id, np.asarray(sorted(degraded.tracks.robots), dtype=np.int64))
+    position, present = table.rows(window, slot, degraded.tracks.id[row], shape[1])
+    if carry:
+        _coast(position, present, window, slot)
+    then = np.zeros((*future.present.shape[:2], shape[1], 2))
+    there = np.zeros(then.shape[:3], dtype=np.bool_)
+    scored = np.zeros(shape, dtype=np.bool_)
+    real = clean >= 0
+    who = window[real], slot[real]
+    then[who[0], :, who[1]] = future.position[who[0], :, clean[real]]
+    there[who[0], :, who[1]] = future.present[who[0], :, clean[real]]
+    scored[who] = future.scored[who[0], clean[real]]
+    seen: dict[str, Any] = {"id": id, "robot": robot}
+    return Seen(
+        dataclasses.replace(past, position=position, present=present, scored=np.zeros_like(scored), **seen),
+        dataclasses.replace(future, position=then, present=there, scored=scored, **seen),
+        asked=int(future.scored.sum()),
+        predictable=int(scored.sum()),
+    )
+
+
+@dataclass(frozen=True)
+class _Table:
+    """The rows of a degraded recording, found by frame and id, and the people of clean windows."""
+
+    degraded: Degraded
+    past: Windows
+    frames: Integers
+    first: Integers
+    ids: Integers
+    key: Integers
+
+    @classmethod
+    def of(cls, past: Windows, degraded: Degraded) -> _Table:
+        tracks = degraded.tracks
+        frames, first, place = np.unique(tracks.frame, return_index=True, return_inverse=True)
+        ids, number = np.unique(tracks.id, return_inverse=True)
+        key = place * len(ids) + number  # ascending: rows are sorted by frame, then id
+        return cls(degraded, past, frames, np.append(first, len(tracks)), ids, key)
+
+    def chosen(self, carry: int) -> tuple[Integers, Integers, Integers]:
+        """Return window, last seen row and slot among the clean people (-1 for a ghost) of everyone to be shown."""
+        window, row, clean = self._at(0)
+        for back in range(1, min(carry, self.past.position.shape[1] - 1) + 1):
+            more, older, person = self._at(back)
+            known = set(zip(window.tolist(), self.degraded.tracks.id[row].tolist(), strict=True))
+            people = set(zip(window.tolist(), clean.tolist(), strict=True))
+            found = zip(more.tolist(), self.degraded.tracks.id[older].tolist(), person.tolist(), strict=True)
+            new = np.array([p >= 0 and (w, i) not in known and (w, p) not in people for w, i, p in found], np.bool_)
+            window, row = np.append(window, more[new]), np.append(row, older[new])
+            clean = np.append(clean, person[new])
+        return window, row, clean
+
+    def _at(self, back: int) -> tuple[Integers, Integers, Integers]:
+        """Return the same of everyone who is seen ``back`` rows before the last observed one."""
+        frame = self.past.frame[:, -1 - back]
+        place = np.minimum(np.searchsorted(self.frames, frame), len(self.frames) - 1)
+        count = np.where(self.frames[place] == frame, self.first[place + 1] - self.first[place], 0)
+        window = np.repeat(np.arange(len(frame)), count)
+        row = np.arange(len(window)) - np.repeat(np.cumsum(count) - count, count) + self.first[place][window]
+        truth = self.degraded.truth[row]
+        clean = self._slots(window, truth)
+        kept = (clean >= 0) | (truth == GHOST)
+        return window[kept], row[kept], clean[kept]
+
+    def _slots(self, window: Integers, truth: Integers) -> Integers:
+        """Return the slots of people in their clean windows, -1 for who is not there."""
+        member, slot = np.nonzero(self.past.present[:, -1])
+        people = np.unique(np.concatenate([self.past.id[member, slot], truth]))
+        known = member * len(people) + np.searchsorted(people, self.past.id[member, slot])
+        order = np.argsort(known)
+        asked = window * len(people) + np.searchsorted(people, truth)
+        place = np.minimum(np.searchsorted(known[order], asked), len(known) - 1)
+        return np.where(known[order][place] == asked, slot[order][place], -1)
+
+    def rows(self, window: Integers, slot: Integers, id: Integers, people: int) -> tuple[NDArray[np.float64], Bools]:
+        """Return position ``[W, T, A, 2]`` [m] and present ``[W, T, A]`` of the tracks of these ids."""
+        W, T = self.past.frame.shape
+        position = np.zeros((W, T, people, 2))
+        present = np.zeros((W, T, people), dtype=np.bool_)
+        number = np.searchsorted(self.ids, id)
+        for step in range(T):
+            frame = self.past.frame[window, step]
+            place = np.minimum(np.searchsorted(self.frames, frame), len(self.frames) - 1)
+            key = place * len(self.ids) + number
+            row = np.minimum(np.searchsorted(self.key, key), len(self.key) - 1)
+            there = (self.frames[place] == frame) & (self.key[row] == key)
+            position[window[there], step, slot[there]] = self.degraded.tracks.position[row[there]]
+            present[window[there], step, slot[there]] = True
+        return position, present
+
+
+def _coast(position: NDArray[np.float64], present: Bools, window: Integers, slot: Integers) -> None:
+    """Walk tracks that end before the last row on to it, with the velocity of their last two rows."""
+    T = position.shape[1]
+    for w, a in zip(window.tolist(), slot.tolist(), strict=True):
+        if present[w, -1, a]:
+            continue
+        seen = np.flatnonzero(present[w, :, a])
+        last = seen[-1]
+        step = np.zeros(2)
+        if len(seen) > 1:
+            step = (position[w, last, a] - position[w, seen[-2], a]) / (last - seen[-2])
+        ahead = np.arange(1, T - last)
+        position[w, last + 1 :, a] = position[w, last, a] + ahead[:, None] * step
+        present[w, last + 1 :, a] = True
+
+
+@dataclass(frozen=True)
+class DegradedScore:
+    """The score of one predictor at one level of a degradation, over all recordings and draws.
+
+    Fields:
+        degradation: at this level.
+        predictor: name of the predictor.
+        level: value of the parameter that is varied.
+        asked: number of scored persons of the clean protocol.
+        draws: how often the degradation was drawn.
+        score: errors of those who could be predicted, in all draws; None when there was nobody.
+        low, high: smallest and largest ADE [m] of the draws, NaN when there was nobody.
+    """
+
+    degradation: Degradation | Chain
+    predictor: str
+    level: float
+    asked: int
+    draws: int
+    score: Score | None
+    low: float
+    high: float
+
+    @property
+    def coverage(self) -> float:
+        """Share of the scored persons who could be predicted."""
+        return (self.score.persons if self.score else 0) / (self.asked * self.draws)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the numbers by their names, for JSON."""
+        own = {
+            name: getattr(self, name) for name in ("predictor", "level", "coverage", "asked", "draws", "low", "high")
+        }
+        return {**own, "score": self.score.as_dict() if self.score else None}
+
+
+def sweep(
+    recordings: Sequence[Trajectories],
+    degradations: Sequence[Degradation | Chain],
+    predictors: Sequence[Predictor],
+    levels: Sequence[float] | None = None,
+    task: Task | None = None,
+    progress: Callable[[str, float], None] | None = None,
+) -> Iterator[list[DegradedScore]]:
+    """Yield, level by level, the score of every predictor, so that what is done stays when the rest is interrupted.
+
+    Who is scored, and where they go, is decided by the protocol on the clean recordings; what predictors see is the
+    degraded one. A level that changes nothing is :func:`evaluate`, and done once for all degradations.
+
+    Args:
+        recordings: clean ones.
+        degradations: what is done to them, each alone.
+        predictors: what is scored.
+        levels: of the degradations; None means those of each.
+        task: what is asked; None means ``Task()``.
+        progress: told the degradation and the share of it that is done, 0 to 1.
+
+    Raises:
+        InputError: a level is not allowed, or a recording cannot be cut or degraded so.
+    """
+    task = task or Task()
+    steps = [(one, [(v, one.at(v)) for v in (one.levels if levels is None else levels)]) for one in degradations]
+    for tracks in recordings:
+        for _, ladder in steps:
+            for _, one in ladder:
+                if not one.neutral:
+                    one.check(tracks)
+    cuts = [tracks.windows(task.observe, task.predict, task.protocol, task.near) for tracks in recordings]
+    clean: list[DegradedScore] = []
+    for degradation, ladder in steps:
+        for done, (level, one) in enumerate(ladder):
+            if progress is not None:
+                progress(degradation.name, done / len(ladder))
+            found = clean if one.neutral else []
+            found = found or _level(one, level, recordings, cuts, predictors, task)
+            if one.neutral:
+                clean = found = [dataclasses.replace(score, degradation=one, level=level) for score in found]
+            yield found
+        if progress is not None:
+            progress(degradation.name, 1.0)
+
+
+def _level(
+    degradation: Degradation | Chain,
+    level: float,
+    recordings: Sequence[Trajectories],
+    cuts: Sequence[tuple[Windows, Windows]],
+    predictors: Sequence[Predictor],
+    task: Task,
+) -> list[DegradedScore]:
+    """Return the scores of all predictors at one level."""
+    draws = 1 if degradation.neutral else task.draws
+    scores: list[list[list[Score]]] = [[[] for _ in range(draws)] for _ in predictors]
+    for draw in range(draws):
+        for tracks, (past, future) in zip(recordings, cuts, strict=True):
+            try:
+                degraded = degradation.apply(tracks, stream(task.seed, "degrade", draw))
+            except NobodySeen:  # a score of nobody, not a mistake: the coverage says it
+                continue
+            seen = seen_windows(past, future, degraded, task.carry)
+            if seen.predictable == 0:
+                continue
+            for predictor, own in zip(predictors, scores, strict=True):
+                score = evaluate(predictor, seen.past, seen.future, task.samples, task.best_of, task.seed)
+                own[draw].append(score)
+    asked = sum(int(future.scored.sum()) for _, future in cuts)
+    return [
+        _joined(degradation, predictor.name, level, asked, own)
+        for predictor, own in zip(predictors, scores, strict=True)
+    ]
+
+
+def _joined(
+    degradation: Degradation | Chain, predictor: str, level: float, asked: int, draws: list[list[Score]]
+) -> DegradedScore:
+    every = [score for draw in draws for score in draw]
+    means = [Score.total(draw).ade for draw in draws if draw]
+    if not every:
+        return DegradedScore(degradation, predictor, level, asked, len(draws), None, math.nan, math.nan)
+    total = dataclasses.replace(Score.total(every), source=" + ".join(dict.fromkeys(s.source for s in every)))
+    return DegradedScore(degradation, predictor, level, asked, len(draws), total, min(means), max(means))
