@@ -36,7 +36,8 @@ def kde_nll(forecast: Forecast, future: Windows, floor: float = FLOOR) -> Floats
 
     A forecast of one sample has no density, nor have samples that are equal or stand on a line: such steps are left out
     (TrajNet++), and the value is NaN where no step remains, as for who is not scored. It depends on the number of
-    samples: compare at equal numbers (TrajNet++ draws 100, Trajectron++ 2000), and few are a poor estimate.
+    samples: compare at equal numbers (TrajNet++ draws 100, Trajectron++ 2000), and few are a poor estimate. The value
+    has no lower bound, so people who nearly stand can rule the mean; :func:`energy_score` knows none of these troubles.
 
     Papers: Ivanovic, Pavone (2019), The Trajectron, arXiv 1810.05993 (the metric); Scott (1992), doi
     10.1002/9780470316849 (the width).

@@ -21,7 +21,7 @@ from .persons import PersonErrors, person_errors
 
 __all__ = ["Score", "score"]
 
-SAMPLED = ("NLL", "energy [m]", "energy [px]")
+SAMPLED = ("NLL", "energy")
 """Columns that a table of deterministic forecasts does without: they have no density, and their energy is the ADE."""
 
 
@@ -230,11 +230,15 @@ class Score:
             f"ADE [{self.units}]": f"{self.ade:.3f}",
             "95 %": "-" if math.isnan(low) else f"{low:.3f}-{high:.3f}",
             f"FDE [{self.units}]": f"{self.fde:.3f}",
-            "NLL": "-" if math.isnan(self.nll) else f"{self.nll:.2f}",
-            f"energy [{self.units}]": "-" if math.isnan(self.energy) else f"{self.energy:.3f}",
+            "NLL": "-" if math.isnan(self.nll) else f"{self.nll:.2f}{self._share_with_density()}",
+            "energy": "-" if math.isnan(self.energy) else f"{self.energy:.3f}",
             "collisions": "-" if math.isnan(self.collisions) else f"{100.0 * self.collisions:.1f} %",
             "ms/window": "-" if math.isnan(self.seconds_per_window) else f"{1e3 * self.seconds_per_window:.3g}",
         }
+
+    def _share_with_density(self) -> str:
+        """Return, in brackets, of how many percent of the persons the NLL is a mean; nothing when it is of all."""
+        return "" if self.dense == self.persons else f" ({100.0 * self.dense / self.persons:.0f} %)"
 
     def __str__(self) -> str:
         """Return one paragraph that carries protocol, predictor and counts."""
@@ -245,7 +249,7 @@ class Score:
         main = [
             f"ADE {self.ade:.3f} {self.units}" + ("" if math.isnan(low) else f" (95 %: {low:.3f} to {high:.3f})"),
             f"FDE {self.fde:.3f} {self.units}",
-            "" if math.isnan(self.nll) else f"NLL {self.nll:.2f} nat",
+            "" if math.isnan(self.nll) else f"NLL {self.nll:.2f} nat{self._share_with_density()}",
             "" if self.samples == 1 or math.isnan(self.energy) else f"energy {self.energy:.3f} {self.units}",
         ]
         more = [

@@ -1,8 +1,8 @@
 """Floor 4: where people will be in the next seconds; predictors, and their scores on recordings."""
 
-from .constant import ConstantAcceleration, ConstantVelocity, SampledConstantVelocity
+from .constant import ConstantAcceleration, ConstantVelocity, LeastSquares, SampledConstantVelocity
 from .evaluate import evaluate
-from .kalman import Kalman
+from .kalman import Kalman, KalmanAcceleration
 from .predictor import Predictor, window_streams
 from .simulated import Simulated
 
@@ -10,6 +10,8 @@ __all__ = [
     "ConstantAcceleration",
     "ConstantVelocity",
     "Kalman",
+    "KalmanAcceleration",
+    "LeastSquares",
     "Predictor",
     "SampledConstantVelocity",
     "Simulated",
