@@ -55,13 +55,14 @@ def main(options: argparse.Namespace) -> int:
         return 0
     for sentence in notes:
         note(sentence)
-    rows = [(Path(name).name, *score.cells()) for name, score in scores.items()]
+    heads = Score.heads([total, *scores.values()])
+    rows = [(Path(name).name, *score.cells(heads)) for name, score in scores.items()]
     if len(scores) > 1:
-        rows.append(("together", *total.cells()))
+        rows.append(("together", *total.cells(heads)))
     best = f", best of {options.samples} per {options.best_of}" if options.samples > 1 else ""
     print_table(
         f"{total.predictor}, {options.observe} observed + {options.predict} predicted rows",
-        ("recording", *total.columns),
+        ("recording", *heads),
         rows,
         caption=f"protocol {total.protocol}{best}; means over persons",
     )

@@ -1,4 +1,4 @@
-"""Floor 2: what is measured. Displacement errors of forecasts, and how robots moved among people."""
+"""Floor 2: what is measured. Errors, likelihood and collisions of forecasts, and how robots moved among people."""
 
 from .collisions import accompanied, collided, collision_share
 from .contacts import ContactEvent, cause_of, contact_events

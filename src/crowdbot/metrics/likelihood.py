@@ -22,7 +22,7 @@ FLAT = 1e-12
 """Samples on a line have no density in the plane: smallest over largest eigenvalue of their covariance."""
 EQUAL = 1e-9
 """Samples that scatter less than this [m] are the same sample."""
-NUMBERS_AT_ONCE = 1_000_000
+NUMBERS_AT_ONCE = 400_000
 """So many positions are held at once, however many people there are."""
 
 
