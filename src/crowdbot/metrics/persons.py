@@ -20,7 +20,7 @@ __all__ = ["MOST_FOR_ENERGY", "PersonErrors", "error_over_horizon", "person_erro
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-MOST_FOR_ENERGY = 200
+MOST_FOR_ENERGY = 100
 """With more samples the energy score, whose work grows with their square, would take longer than all the rest."""
 
 
@@ -38,7 +38,7 @@ class PersonErrors:
         true_collided: ``[N]``, the same share for others, robots too, where they truly walked.
         accompanied: ``[N]``, whether anyone else is truly there.
         nll: ``[N]`` [nat], see :func:`~crowdbot.metrics.kde_nll`; NaN where the samples have no density.
-        energy: ``[N]`` [m], see :func:`~crowdbot.metrics.energy_score`, over steps; NaN for more than 200 samples.
+        energy: ``[N]`` [m], see :func:`~crowdbot.metrics.energy_score`, over steps; NaN for more than 100 samples.
     """
 
     person: NDArray[np.int64]

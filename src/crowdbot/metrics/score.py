@@ -44,7 +44,7 @@ class Score:
         nll: negative log-likelihood by kernel densities [nat], a mean over the ``dense`` persons whose samples have a
             density; NaN for a deterministic forecast, see :func:`~crowdbot.metrics.kde_nll`.
         energy: energy score over steps [m], see :func:`~crowdbot.metrics.energy_score`: the ADE of a deterministic
-            forecast; NaN for more than 200 samples, where it would take longer than all the rest.
+            forecast; NaN for more than 100 samples, where it would take longer than all the rest.
         intervals: where the means are expected to lie, 95 %, see :func:`~crowdbot.metrics.bootstrap_interval`; NaN for
             a single person.
         horizon: mean error [m] at each step; ``there`` is how many persons were still there.
