@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from guesses import case, moved, scene, weighted, without_padding
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -12,31 +13,12 @@ from crowdbot.data import Forecast, Windows
 from crowdbot.metrics import (
     ade,
     best_of,
-    collided,
-    collision_share,
     distances,
     error_over_horizon,
     fde,
     miss_rate,
     person_errors,
 )
-
-
-def case(seed: int, W: int = 3, K: int = 4, T: int = 5, A: int = 6) -> tuple[Forecast, Windows]:
-    """Random forecasts and futures that end early, have holes, padding and a robot."""
-    rng = stream(seed, "displacement")
-    present = rng.random((W, T, A)) < 0.8
-    length = rng.integers(0, T + 1, (W, A))
-    present &= np.arange(T)[:, None] < length[:, None]
-    robot = np.zeros((W, A), dtype=bool)
-    robot[:, 0] = True
-    scored = present.any(axis=1) & ~robot & (rng.random((W, A)) < 0.8)
-    position = np.where(present[..., None], rng.normal(size=(W, T, A, 2)), 0.0)
-    id = np.tile(np.arange(A), (W, 1))
-    frame = np.tile(np.arange(T), (W, 1))
-    future = Windows(position, present, scored, robot, id, frame, 0.4, "partial", "test")
-    guess = rng.normal(size=(W, K, T, A, 2)) * 0.5
-    return Forecast.of(guess, np.ones((W, A), dtype=bool), 0.4, "guess"), future
 
 
 def slow_errors(forecast: Forecast, future: Windows, w: int, k: int, a: int) -> list[tuple[int, float]]:
@@ -87,20 +69,6 @@ def test_best_of_equals_its_slow_twin(seed: int, rule: str) -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_collided_equals_its_slow_twin(seed: int) -> None:
-    forecast, future = case(seed)
-    fast = collided(forecast, future, 0.4)
-    W, K, T, A, _ = forecast.position.shape
-    slow = np.zeros((W, K, A), dtype=bool)
-    for w, k, t, a, b in np.ndindex(W, K, T, A, A):
-        here = future.present[w, t] & future.scored[w]
-        if a != b and here[a] and here[b]:
-            slow[w, k, a] |= math.dist(forecast.position[w, k, t, a], forecast.position[w, k, t, b]) < 0.4
-    assert np.array_equal(fast, slow)
-    assert 0 < slow.sum() < slow.size
-
-
-@pytest.mark.parametrize("seed", range(3))
 def test_error_over_horizon_equals_its_slow_twin(seed: int) -> None:
     forecast, future = case(seed)
     every = ade(forecast, future)
@@ -110,20 +78,6 @@ def test_error_over_horizon_equals_its_slow_twin(seed: int) -> None:
             steps[t].append(distance)
     slow = [sum(s) / len(s) if s else math.nan for s in steps]
     np.testing.assert_allclose(error_over_horizon(forecast, future), slow, atol=1e-12)
-
-
-def test_collision_share_counts_people_who_have_company_and_weighs_samples() -> None:
-    position = np.array([[[0.0, 0.0], [0.1, 0.0], [9.0, 0.0]], [[0.0, 0.0], [0.3, 0.0], [9.0, 0.0]]])[None, :, None]
-    here = np.ones((1, 1, 3), dtype=bool)
-    future = Windows(
-        position[:, 0], here, here[:, 0], ~here[:, 0], np.array([[1, 2, 3]]), np.array([[0]]), 0.4, "all", "test"
-    )
-    forecast = Forecast(position, np.array([[0.75, 0.25]]), here[:, 0], 0.4, "two")
-    assert collision_share(forecast, future) == pytest.approx(2 / 3 * 0.75)
-    alone = Windows(
-        position[:, 0], here, np.array([[True, False, False]]), ~here[:, 0], future.id, future.frame, 0.4, "all", "test"
-    )
-    assert math.isnan(collision_share(forecast, alone))
 
 
 def test_miss_rate_counts_people_beyond_the_limit() -> None:
@@ -136,21 +90,9 @@ def test_miss_rate_counts_people_beyond_the_limit() -> None:
 @given(seed=st.integers(0, 10_000), angle=st.floats(-4, 4), shift=st.floats(-100, 100))
 def test_turning_and_shifting_the_world_changes_no_error(seed: int, angle: float, shift: float) -> None:
     forecast, future = case(seed)
-    turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
-    moved = Forecast.of(forecast.position @ turn + shift, forecast.valid, 0.4, "guess")
-    there = Windows(
-        future.position @ turn + shift,
-        future.present,
-        future.scored,
-        future.robot,
-        future.id,
-        future.frame,
-        0.4,
-        "",
-        "",
-    )
-    np.testing.assert_allclose(ade(moved, there), ade(forecast, future), atol=1e-9)
-    np.testing.assert_allclose(fde(moved, there), fde(forecast, future), atol=1e-9)
+    elsewhere, there = moved(forecast, future, angle, shift)
+    np.testing.assert_allclose(ade(elsewhere, there), ade(forecast, future), atol=1e-9)
+    np.testing.assert_allclose(fde(elsewhere, there), fde(forecast, future), atol=1e-9)
 
 
 @settings(max_examples=20, deadline=None)
@@ -177,11 +119,51 @@ def test_more_samples_are_never_worse_and_scene_is_never_better_than_person() ->
     assert person_errors(forecast, future, "scene").ade.mean() >= person_errors(forecast, future).ade.mean()
 
 
+@pytest.mark.parametrize("rule", ["person", "scene", "same"])
+@pytest.mark.parametrize("seed", range(5))
+def test_samples_that_weigh_nothing_count_nowhere(seed: int, rule: str) -> None:
+    forecast, future = case(seed, K=6)
+    forecast = weighted(forecast, seed)
+    padded = person_errors(forecast, future, rule)
+    parts = [person_errors(*one, rule) for one in without_padding(forecast, future)]
+    for name in ("ade", "fde", "distance", "collided", "true_collided", "nll", "energy"):
+        apart = np.concatenate([getattr(part, name) for part in parts])
+        np.testing.assert_allclose(getattr(padded, name), apart, atol=1e-12, err_msg=name)
+    assert np.isnan(ade(forecast, future)[:, -1]).all()
+    assert np.isnan(fde(forecast, future)[:, -1]).all()
+    count = sum(part.exists.sum(axis=0) for part in parts)
+    summed = sum(part.distance.sum(axis=0) for part in parts)[count > 0] / count[count > 0]
+    np.testing.assert_allclose(error_over_horizon(forecast, future, rule)[count > 0], summed, atol=1e-12)
+
+
+def test_a_perfect_sample_of_weight_zero_is_not_the_best() -> None:
+    truth = [[[0.0, 0.0]], [[1.0, 0.0]]]
+    off = [[[0.0, 3.0]], [[1.0, 4.0]]]
+    for rule in ("person", "scene", "same"):
+        errors = person_errors(*scene(truth, [truth, off, truth], [0.0, 1.0, 0.0]), rule)
+        assert (errors.ade.tolist(), errors.fde.tolist()) == ([3.5], [4.0])
+        assert errors.distance.tolist() == [[3.0, 4.0]]
+
+
+@pytest.mark.parametrize("weight", [[0.5, 0.6], [1.5, -0.5], [0.0, 0.0], [np.nan, 1.0]])
+def test_weights_that_are_no_shares_are_refused(weight: list[float]) -> None:
+    truth = [[[0.0, 0.0]]]
+    with pytest.raises(
+        InputError, match=r"guess: the weights of window 0 begin at .*; they must be at least 0 and add"
+    ):
+        ade(*scene(truth, [truth, truth], weight))
+
+
 def test_steps_that_do_not_count_have_no_distance() -> None:
     forecast, future = case(2)
     distance, counted = distances(forecast, future)
     assert np.all(distance[:, 0][~counted] == 0.0)
     assert not counted[:, :, 0].any()
+
+
+def test_a_row_says_whose_windows_it_belongs_to() -> None:
+    forecast, future = case(4)
+    assert np.array_equal(person_errors(forecast, future).person, future.id[future.scored])
 
 
 def test_what_does_not_belong_together_is_refused_in_a_sentence() -> None:

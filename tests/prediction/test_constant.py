@@ -10,7 +10,7 @@ import pytest
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Windows
-from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, SampledConstantVelocity
+from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, LeastSquares, SampledConstantVelocity
 
 Maker = Callable[..., Windows]
 
@@ -67,6 +67,48 @@ def test_constant_acceleration_equals_its_slow_twin(crowd: Maker, holes: float) 
         np.testing.assert_allclose(forecast.position[w, 0, :, a], slow_acceleration(rows, 5), atol=1e-10)
 
 
+@pytest.mark.parametrize("anchored", [False, True])
+@pytest.mark.parametrize("holes", [0.0, 0.3, 0.7])
+def test_least_squares_equals_its_slow_twin(crowd: Maker, holes: float, anchored: bool) -> None:
+    past = crowd(1, holes=holes)
+    forecast = LeastSquares(anchored).predict(past, 5)
+    for w, a, rows in people(past):
+        seen = [row for row in range(len(rows)) if rows[row] is not None]
+        place = np.array([rows[row] for row in seen])
+        if len(seen) == 1:
+            path = np.repeat(place, 5, axis=0)
+        else:
+            slope, start = np.polyfit(seen, place, 1)
+            now = place[-1] if anchored else start + 7 * slope
+            path = now + np.arange(1, 6)[:, None] * slope
+        np.testing.assert_allclose(forecast.position[w, 0, :, a], path, atol=1e-10)
+
+
+def test_all_displacements_are_the_mean_over_the_track(windows: Maker) -> None:
+    path = stream(3, "path").normal(size=(8, 2))
+    past = windows(path[None, :, None])
+    every = ConstantVelocity(7).predict(past, 3).position[0, 0, :, 0]
+    np.testing.assert_allclose(every, path[-1] + np.arange(1, 4)[:, None] * (path[-1] - path[0]) / 7, atol=1e-12)
+    assert np.array_equal(ConstantVelocity(10_000).predict(past, 3).position[0, 0, :, 0], every)
+
+
+@pytest.mark.parametrize("predictor", [ConstantVelocity(), ConstantVelocity(7), LeastSquares(), LeastSquares(True)])
+def test_who_walks_straight_and_evenly_goes_on_with_missing_rows_too(windows: Maker, predictor: object) -> None:
+    path = 1e4 + np.arange(20.0)[:, None] * [0.5, -0.2]
+    past = path[None, :8, None].copy()
+    past[0, [0, 3, 4]] = np.nan
+    forecast = predictor.predict(windows(past), 12)  # type: ignore[attr-defined]
+    np.testing.assert_allclose(forecast.position[0, 0, :, 0], path[8:], atol=1e-9)
+
+
+def test_two_points_make_a_line(windows: Maker) -> None:
+    past = np.full((1, 8, 1, 2), np.nan)
+    past[0, 5, 0], past[0, 7, 0] = [1.0, 1.0], [2.0, 3.0]
+    for anchored in (False, True):
+        forecast = LeastSquares(anchored).predict(windows(past), 2)
+        np.testing.assert_allclose(forecast.position[0, 0, :, 0], [[2.5, 4.0], [3.0, 5.0]], atol=1e-12)
+
+
 def test_a_parabola_is_continued(windows: Maker) -> None:
     time = np.arange(12.0)
     path = np.stack([time, time**2 / 10.0], axis=1)
@@ -86,6 +128,7 @@ def test_samples_turn_and_change_speed_as_told(windows: Maker) -> None:
 
 def test_parameters_show_in_the_name() -> None:
     assert ConstantVelocity(2).name == "constant-velocity(displacements=2)"
+    assert LeastSquares(anchored=True).name == "least-squares(anchored=True)"
     assert SampledConstantVelocity(speed_sd=0.0).name == "sampled-constant-velocity(speed_sd=0)"
 
 

@@ -12,18 +12,28 @@ import pytest
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Windows, load
-from crowdbot.prediction import ConstantVelocity, Kalman
+from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, Kalman, KalmanAcceleration
 
 Maker = Callable[..., Windows]
 
 
-def slow_filter(rows: list[np.ndarray | None], kalman: Kalman, dt: float) -> tuple[np.ndarray, float]:
-    """Textbook filter of one person, state (x, y, vx, vy): the state at the end and the negative log-likelihood."""
-    eye = np.eye(2)
-    F = np.block([[eye, dt * eye], [0 * eye, eye]])
-    Q = kalman.acceleration**2 * np.block([[dt**3 / 3 * eye, dt**2 / 2 * eye], [dt**2 / 2 * eye, dt * eye]])
-    H = np.block([eye, 0 * eye])
-    R = kalman.measurement**2 * eye
+def slow_filter(
+    rows: list[np.ndarray | None], kalman: Kalman | KalmanAcceleration, dt: float
+) -> tuple[np.ndarray, float]:
+    """Textbook filter of one person, state (x, y, vx, vy[, ax, ay]): the state at the end and the surprise [nat]."""
+    eye, r = np.eye(2), kalman.measurement**2
+    if isinstance(kalman, Kalman):
+        step = np.array([[1, dt], [0, 1]])
+        push = kalman.acceleration**2 * np.array([[dt**3 / 3, dt**2 / 2], [dt**2 / 2, dt]])
+        begin = [r, kalman.speed**2]
+    else:
+        step = np.array([[1, dt, dt**2 / 2], [0, 1, dt], [0, 0, 1]])
+        push = kalman.jerk**2 * np.array(
+            [[dt**5 / 20, dt**4 / 8, dt**3 / 6], [dt**4 / 8, dt**3 / 3, dt**2 / 2], [dt**3 / 6, dt**2 / 2, dt]]
+        )
+        begin = [r, kalman.speed**2, kalman.acceleration**2]
+    n = len(begin)
+    F, Q, H = np.kron(step, eye), np.kron(push, eye), np.kron(np.eye(n)[:1], eye)
     state, P, surprise = None, None, 0.0
     for row in rows:
         if state is not None:
@@ -31,36 +41,46 @@ def slow_filter(rows: list[np.ndarray | None], kalman: Kalman, dt: float) -> tup
         if row is None:
             continue
         if state is None:
-            state, P = np.array([*row, 0.0, 0.0]), np.diag([*np.diag(R), kalman.speed**2, kalman.speed**2])
+            state, P = np.concatenate([row, np.zeros(2 * n - 2)]), np.kron(np.diag(begin), eye)
             continue
-        S = H @ P @ H.T + R
+        S = H @ P @ H.T + r * eye
         wrong = row - H @ state
         surprise += 0.5 * (wrong @ np.linalg.solve(S, wrong) + math.log(np.linalg.det(2.0 * math.pi * S)))
         gain = P @ H.T @ np.linalg.inv(S)
-        state, P = state + gain @ wrong, (np.eye(4) - gain @ H) @ P
+        state, P = state + gain @ wrong, (np.eye(2 * n) - gain @ H) @ P
     return state, surprise
 
 
-@pytest.mark.parametrize("holes", [0.0, 0.4])
-def test_the_filter_equals_its_matrix_twin(crowd: Maker, holes: float) -> None:
+FILTERS = pytest.mark.parametrize(
+    "kalman",
+    [Kalman(acceleration=0.5, measurement=0.2, speed=1.2), KalmanAcceleration(0.4, 0.2, 1.2, 0.7)],
+    ids=["velocity", "acceleration"],
+)
+
+
+@FILTERS
+@pytest.mark.parametrize("holes", [0.0, 0.4, 0.8])
+def test_the_filter_equals_its_matrix_twin(crowd: Maker, holes: float, kalman: Kalman | KalmanAcceleration) -> None:
     past = crowd(2, holes=holes)
-    kalman = Kalman(acceleration=0.5, measurement=0.2, speed=1.2)
     forecast = kalman.predict(past, 3)
     surprise, rows_after_first = 0.0, 0
-    for w, a in np.argwhere(past.present.sum(axis=1) > 1):
+    for w, a in np.argwhere(past.present.any(axis=1)):
         rows = [past.position[w, t, a] if past.present[w, t, a] else None for t in range(8)]
         state, own = slow_filter(rows, kalman, past.dt)
         if not past.robot[w, a]:
             surprise += own
             rows_after_first += sum(row is not None for row in rows) - 1
         if rows[-1] is not None:
-            path = [state[:2] + (k + 1) * past.dt * state[2:] for k in range(3)]
+            motion = np.zeros((3, 2))
+            motion[: len(state) // 2] = state.reshape(-1, 2)
+            time = [(k + 1) * past.dt for k in range(3)]
+            path = [motion[0] + motion[1] * t + motion[2] * t**2 / 2 for t in time]
             np.testing.assert_allclose(forecast.position[w, 0, :, a], path, atol=1e-9)
     assert kalman.surprise(past) == pytest.approx(surprise / rows_after_first, abs=1e-9)
 
 
 def walked(windows: Maker, acceleration: float, measurement: float, speed: float, people: int = 4000) -> Windows:
-    """People who walk exactly as the filter supposes, in one window."""
+    """People who walk exactly as the filter of constant velocity supposes, in one window."""
     rng = stream(8, "walk")
     dt, T = 0.4, 8
     Q = acceleration**2 * np.array([[dt**3 / 3, dt**2 / 2], [dt**2 / 2, dt]])
@@ -83,6 +103,34 @@ def test_the_fit_finds_the_noise_that_was_put_in(windows: Maker) -> None:
     assert kalman.surprise(past) <= Kalman(0.4, 0.06, 1.1).surprise(past) + 1e-3
 
 
+def test_the_fit_of_the_other_filter_finds_its_noise(windows: Maker) -> None:
+    rng, dt, people = stream(9, "walk"), 0.4, 1500
+    true = KalmanAcceleration(jerk=0.5, measurement=0.05, speed=1.1, acceleration=0.6)
+    motion = rng.normal(size=(3, people, 2)) * np.array([0.0, true.speed, true.acceleration])[:, None, None]
+    step = np.array([[1, dt, dt**2 / 2], [0, 1, dt], [0, 0, 1]])
+    push = np.array([[dt**5 / 20, dt**4 / 8, dt**3 / 6], [dt**4 / 8, dt**3 / 3, dt**2 / 2], [dt**3 / 6, dt**2 / 2, dt]])
+    rows = []
+    for _ in range(8):
+        rows.append(motion[0] + rng.normal(0.0, true.measurement, (people, 2)))
+        kick = np.linalg.cholesky(true.jerk**2 * push) @ rng.normal(size=(3, 2 * people))
+        motion = np.tensordot(step, motion, 1) + kick.reshape(3, people, 2)
+    past = windows(np.stack(rows)[None])
+    fitted = KalmanAcceleration.fit(past)
+    for name in ("jerk", "measurement", "speed", "acceleration"):
+        assert getattr(fitted, name) == pytest.approx(getattr(true, name), rel=0.1), name
+    assert fitted.surprise(past) <= true.surprise(past) + 1e-6
+    assert fitted.surprise(past) < Kalman.fit(past).surprise(past)
+
+
+def test_without_noise_the_other_filter_is_constant_acceleration(windows: Maker) -> None:
+    time = np.arange(12.0)
+    path = np.stack([0.5 * time + 0.03 * time**2, 4.0 - 0.02 * time**2], axis=1)
+    past = windows(path[None, :8, None])
+    exact = KalmanAcceleration(jerk=1e-4, measurement=1e-4, speed=10.0, acceleration=10.0).predict(past, 4)
+    np.testing.assert_allclose(exact.position[0, 0, :, 0], path[8:], atol=1e-3)
+    np.testing.assert_allclose(exact.position, ConstantAcceleration().predict(past, 4).position, atol=1e-3)
+
+
 def test_without_measurement_noise_and_push_it_is_constant_velocity(windows: Maker, crowd: Maker) -> None:
     straight = windows(np.arange(8.0)[None, :, None, None] * np.array([[0.5, 0.1], [-0.3, 0.2]]))
     exact = Kalman(acceleration=1e-4, measurement=1e-4, speed=10.0).predict(straight, 12)
@@ -95,6 +143,9 @@ def test_a_slower_clock_with_slower_noise_changes_no_place(crowd: Maker) -> None
     one = Kalman(0.5, 0.1, 1.0).predict(past, 12)
     other = Kalman(0.5 / 8.0, 0.1, 0.25).predict(slow, 12)  # lengths keep, times grow fourfold: m s^-1.5 and m/s
     np.testing.assert_allclose(other.position, one.position, atol=1e-9)
+    one = KalmanAcceleration(0.5, 0.1, 1.0, 0.4).predict(past, 12)
+    other = KalmanAcceleration(0.5 / 32.0, 0.1, 0.25, 0.4 / 16.0).predict(slow, 12)  # m s^-2.5
+    np.testing.assert_allclose(other.position, one.position, atol=1e-9)
 
 
 def test_smoothing_helps_where_tracks_are_noisy(recorded: Callable[[str], object]) -> None:
@@ -104,20 +155,40 @@ def test_smoothing_helps_where_tracks_are_noisy(recorded: Callable[[str], object
     assert fitted.surprise(past) < Kalman().surprise(past)
 
 
-def test_the_defaults_are_the_fit_that_the_docs_name(recordings: Path) -> None:
+@pytest.fixture(scope="module")
+def training(recordings: Path) -> list[Windows]:
+    """Windows of the six recordings that the documentation names."""
     train = [
         recordings / "eth_ucy_splits" / "train" / f"{name}_train.txt" for name in ("crowds_zara03", "uni_examples")
     ]
     drone = [recordings / "sdd_trajnet" / "Train" / "stanford" / f"hyang_{number}.txt" for number in (4, 5, 6, 7)]
-    fitted = Kalman.fit(*[load(file, fps=2.5).windows()[0] for file in [*train, *drone]])
+    return [load(file, fps=2.5).windows()[0] for file in [*train, *drone]]
+
+
+def test_the_defaults_are_the_fit_that_the_docs_name(training: list[Windows]) -> None:
+    fitted = Kalman.fit(*training)
     assert fitted.acceleration == pytest.approx(Kalman().acceleration, abs=0.002)
     assert fitted.measurement == pytest.approx(Kalman().measurement, abs=0.0005)
     assert fitted.speed == pytest.approx(Kalman().speed, abs=0.002)
 
 
+def test_the_defaults_of_the_other_filter_are_the_most_likely_ones(training: list[Windows]) -> None:
+    best = KalmanAcceleration()
+    cost = best.surprise(*training)
+    for name in ("jerk", "measurement", "speed"):
+        for ratio in (1.03, 1.0 / 1.03):
+            other = dataclasses.replace(best, **{name: getattr(best, name) * ratio})
+            assert other.surprise(*training) > cost, name
+    assert dataclasses.replace(best, acceleration=0.05).surprise(*training) > cost
+    assert cost == pytest.approx(-1.374, abs=1e-3)
+    assert Kalman().surprise(*training) == pytest.approx(-1.482, abs=1e-3)
+
+
 def test_impossible_parameters_and_empty_training_data_are_refused(windows: Maker) -> None:
     with pytest.raises(InputError, match="kalman: measurement = 0 must be finite and above 0"):
         Kalman(measurement=0)
+    with pytest.raises(InputError, match="kalman-acceleration: jerk = inf must be finite and above 0"):
+        KalmanAcceleration(jerk=math.inf)
     with pytest.raises(InputError, match="at least one person who is seen at two rows"):
         Kalman.fit(windows(np.zeros((2, 1, 3, 2))))
     with pytest.raises(InputError, match="at least one person who is seen at two rows"):

@@ -34,7 +34,10 @@ def assert_mostly_equal(name: str, one: np.ndarray, other: np.ndarray) -> None:
 
 
 def test_built_in_names_are_those_of_the_field() -> None:
-    names = ["constant-acceleration", "constant-velocity", "kalman", "sampled-constant-velocity", "simulated"]
+    names = [
+        "constant-acceleration", "constant-velocity", "kalman", "kalman-acceleration", "least-squares",
+        "sampled-constant-velocity", "simulated",
+    ]  # fmt: skip
     assert list(KINDS) == names
     assert [KINDS[name]().name for name in names] == names
 
@@ -167,7 +170,7 @@ def test_renumbering_people_renumbers_the_forecast(name: str, crowd: Maker, seed
     assert_mostly_equal(name, other.position, one.position[..., order, :])
 
 
-@pytest.mark.parametrize("name", sorted(set(KINDS) - {"simulated", "kalman"}))
+@pytest.mark.parametrize("name", sorted(set(KINDS) - {"simulated", "kalman", "kalman-acceleration"}))
 def test_a_slower_clock_changes_no_place(name: str, crowd: Maker) -> None:
     past = crowd(3)
     slow = dataclasses.replace(past, dt=4.0 * past.dt)

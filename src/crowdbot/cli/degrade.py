@@ -155,7 +155,9 @@ def _predictors(options: argparse.Namespace, found: Sequence[Recording]) -> list
     made = recipes(options)
     late = next((one.goal for one in made if one.goal is not None), None)
     if late is not None and len(found) > 1:
-        raise InputError(f"the goal {late} belongs to one recording: degrade them one by one, not {len(found)} together")
+        raise InputError(
+            f"the goal {late} belongs to one recording: degrade them one by one, not {len(found)} together"
+        )
     return [one.prepared(found[0]) for one in made]
 
 

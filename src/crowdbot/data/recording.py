@@ -103,4 +103,6 @@ def _tracks(recording: Recording) -> Trajectories:
 
 @functools.lru_cache(maxsize=4)
 def _windows(recording: Recording) -> tuple[Windows, Windows]:
-    return recording.rest.windows(recording.observe, recording.predict, recording.protocol, recording.near, recording.late)
+    return recording.rest.windows(
+        recording.observe, recording.predict, recording.protocol, recording.near, recording.late
+    )

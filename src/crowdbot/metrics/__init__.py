@@ -1,20 +1,14 @@
-"""Floor 2: what is measured. Displacement errors of forecasts, and how robots moved among people."""
+"""Floor 2: what is measured. Errors, likelihood and collisions of forecasts, and how robots moved among people."""
 
+from .collisions import accompanied, collided, collision_share
 from .contacts import ContactEvent, cause_of, contact_events
-from .displacement import (
-    PersonErrors,
-    ade,
-    best_of,
-    collided,
-    collision_share,
-    distances,
-    error_over_horizon,
-    fde,
-    miss_rate,
-    person_errors,
-)
+from .displacement import ade, best_of, distances, fde, miss_rate
+from .energy import energy_score
+from .interval import Intervals, bootstrap_interval
+from .likelihood import kde_nll
 from .motion import heading_change, jerk, longest_stall, path_efficiency, path_length, stalled_time
 from .navigation import NAVIGATION_METRICS, Outcome, navigation_metrics, outcome
+from .persons import PersonErrors, error_over_horizon, person_errors
 from .proximity import (
     clearance,
     local_density,
@@ -30,21 +24,26 @@ from .score import Score, score
 __all__ = [
     "NAVIGATION_METRICS",
     "ContactEvent",
+    "Intervals",
     "Outcome",
     "PersonErrors",
     "Score",
+    "accompanied",
     "ade",
     "best_of",
+    "bootstrap_interval",
     "cause_of",
     "clearance",
     "collided",
     "collision_share",
     "contact_events",
     "distances",
+    "energy_score",
     "error_over_horizon",
     "fde",
     "heading_change",
     "jerk",
+    "kde_nll",
     "local_density",
     "longest_stall",
     "miss_rate",

@@ -1,12 +1,10 @@
-"""Distance between predicted and true positions: ADE, FDE, the best of K samples, misses, collisions.
+"""Distance between predicted and true positions: ADE, FDE, the best of K samples, misses.
 
 A person counts when the protocol scores them; a future that ends early counts for the steps that exist. ADE is the mean
-over these steps, FDE the distance at the last of them.
+over these steps, FDE the distance at the last of them. A sample whose weight is 0 is padding: it counts nowhere.
 """
 
 from __future__ import annotations
-
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,16 +14,16 @@ from crowdbot.data.forecast import Forecast
 from crowdbot.data.windows import Windows
 
 __all__ = [
-    "PersonErrors",
+    "MISS",
+    "RULES",
     "ade",
     "best_of",
-    "collided",
-    "collision_share",
+    "check",
+    "chosen_sample",
     "distances",
-    "error_over_horizon",
     "fde",
+    "mean_and_final",
     "miss_rate",
-    "person_errors",
 ]
 
 Floats = NDArray[np.float64]
@@ -34,19 +32,20 @@ Bools = NDArray[np.bool_]
 RULES = ("person", "scene", "same")
 MISS = 2.0
 """A person is missed when no sample ends within this distance [m] of the truth."""
-CONTACT = 0.2
-"""Two people closer than this [m] have collided (TrajNet++)."""
+SUM = 1e-6
+"""The weights of the samples of a window may miss the sum of 1 by this much."""
 
 
 def distances(forecast: Forecast, future: Windows) -> tuple[Floats, Bools]:
     """Return the distance to the truth ``[W, K, T, A]`` [m] and which steps count ``[W, T, A]``.
 
-    Steps that do not count have the distance 0.
+    Steps that do not count have the distance 0. Samples that weigh nothing have theirs too.
 
     Raises:
-        InputError: forecast and future do not belong together, or a scored person was not predicted.
+        InputError: forecast and future do not belong together, a scored person was not predicted, or the weights of
+            the samples are not shares.
     """
-    _check(forecast, future)
+    check(forecast, future)
     counted = future.present & future.scored[:, None]
     away = forecast.position - future.position[:, None]
     length = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2)
@@ -54,20 +53,23 @@ def distances(forecast: Forecast, future: Windows) -> tuple[Floats, Bools]:
 
 
 def ade(forecast: Forecast, future: Windows) -> Floats:
-    """Return the average displacement error ``[W, K, A]`` [m] over the steps that exist; NaN for who is not scored."""
-    return _mean(*distances(forecast, future))
+    """Return the average displacement error ``[W, K, A]`` [m] over the steps that exist.
+
+    It is NaN for who is not scored and for samples that weigh nothing.
+    """
+    return mean_and_final(forecast, *distances(forecast, future))[0]
 
 
 def fde(forecast: Forecast, future: Windows) -> Floats:
-    """Return the displacement error ``[W, K, A]`` [m] at the last step that exists; NaN for who is not scored."""
-    return _final(*distances(forecast, future))
+    """Return the displacement error ``[W, K, A]`` [m] at the last step that exists; NaN as in :func:`ade`."""
+    return mean_and_final(forecast, *distances(forecast, future))[1]
 
 
 def best_of(ade: Floats, fde: Floats, rule: str = "person") -> tuple[Floats, Floats]:
     """Return ADE and FDE ``[W, A]`` [m] of the best of K samples, from those of every sample ``[W, K, A]``.
 
     Args:
-        ade, fde: errors of every sample, NaN for people who are not scored.
+        ade, fde: errors of every sample, NaN for people who are not scored and for samples that do not count.
         rule: ``person``: the smallest over the samples for each person, ADE and FDE on their own (Social-STGCNN,
             Trajectron++); ``scene``: the sample with the smallest sum over the people of a window, ADE and FDE on
             their own (SGAN); ``same``: for each person the sample with the smallest ADE, which also gives the FDE
@@ -80,7 +82,7 @@ def best_of(ade: Floats, fde: Floats, rule: str = "person") -> tuple[Floats, Flo
     """
     if rule == "scene":
         return _sample(ade, _of_scene(ade)), _sample(fde, _of_scene(fde))
-    chosen = _choice(ade, rule)
+    chosen = chosen_sample(ade, rule)
     return _sample(ade, chosen), _sample(fde, chosen if rule == "same" else _of_person(fde))
 
 
@@ -90,92 +92,19 @@ def miss_rate(fde: Floats, limit: float = MISS) -> float:
     return float(np.mean(known > limit)) if len(known) else float("nan")
 
 
-def error_over_horizon(forecast: Forecast, future: Windows, rule: str = "person") -> Floats:
-    """Return the mean error ``[T]`` [m] at each future step over the people still there; NaN when nobody is.
-
-    Of K samples it follows the one with the best ADE, by person or by scene as ``rule`` says.
-    """
-    return person_errors(forecast, future, rule).over_horizon()
-
-
-def collided(forecast: Forecast, future: Windows, limit: float = CONTACT) -> Bools:
-    """Return ``[W, K, A]``: scored people who come closer than ``limit`` [m] to another scored person at any step.
-
-    Both are at their predicted positions of the same sample; a step counts while both are truly still there.
-    """
-    _check(forecast, future)
-    W, K, _, A, _ = forecast.position.shape
-    hit = np.zeros((W, K, A), dtype=np.bool_)
-    for window in np.flatnonzero(future.scored.sum(axis=1) > 1):  # one by one: most of the padded pairs are nobody
-        who = np.flatnonzero(future.scored[window])
-        here = future.present[window][:, who]
-        x, y = np.moveaxis(forecast.position[window][:, :, who], -1, 0)
-        dx, dy = x[..., :, None] - x[..., None, :], y[..., :, None] - y[..., None, :]
-        pair = here[:, :, None] & here[:, None, :] & ~np.eye(len(who), dtype=np.bool_)
-        hit[window][:, who] = np.any(pair & (dx * dx + dy * dy < limit * limit), axis=(1, 3))
-    return hit
+def mean_and_final(forecast: Forecast, distance: Floats, counted: Bools) -> tuple[Floats, Floats]:
+    """Return ADE and FDE ``[W, K, A]`` [m] from what :func:`distances` gave."""
+    count = counted.sum(axis=1)[:, None]
+    steps = counted.shape[1]
+    last = steps - 1 - np.argmax(counted[:, ::-1], axis=1)
+    end = np.take_along_axis(distance, last[:, None, None], axis=2)[:, :, 0]
+    counts = (count > 0) & (forecast.weight > 0.0)[:, :, None]
+    mean = distance.sum(axis=2) / np.maximum(count, 1)
+    return np.where(counts, mean, np.nan), np.where(counts, end, np.nan)
 
 
-def collision_share(forecast: Forecast, future: Windows, limit: float = CONTACT) -> float:
-    """Return the share of people in windows with at least two who come closer than ``limit`` [m] to another one.
-
-    It is a mean over people and (by their weight) samples; NaN when no window has two people.
-    """
-    together = future.scored & (future.scored.sum(axis=1) > 1)[:, None]
-    if not np.any(together):
-        return float("nan")
-    share = np.sum(collided(forecast, future, limit) * forecast.weight[:, :, None], axis=1)
-    return float(share[together].mean())
-
-
-@dataclass(frozen=True)
-class PersonErrors:
-    """Errors of N scored people, one row a person, of the best sample.
-
-    Fields:
-        ade, fde: ``[N]`` [m].
-        distance: ``[N, T]`` [m] of the sample with the best ADE; 0 where there is no true position.
-        exists: ``[N, T]``, where there is one.
-        collided: ``[N]``, share of the samples in which the person comes within 0.2 m of another.
-        together: ``[N]``, whether the window has another scored person.
-    """
-
-    ade: Floats
-    fde: Floats
-    distance: Floats
-    exists: Bools
-    collided: Floats
-    together: Bools
-
-    def over_horizon(self) -> Floats:
-        """Return the mean distance ``[T]`` [m] at each step over the people still there; NaN when nobody is."""
-        count = self.exists.sum(axis=0)
-        total = self.distance.sum(axis=0)
-        return np.where(count > 0, total / np.maximum(count, 1), np.nan)
-
-    @classmethod
-    def joined(cls, parts: list[PersonErrors]) -> PersonErrors:
-        """Return the people of several parts, in order."""
-        names = ("ade", "fde", "distance", "exists", "collided", "together")
-        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
-
-
-def person_errors(forecast: Forecast, future: Windows, rule: str = "person") -> PersonErrors:
-    """Return the errors of every scored person under the rule of :func:`best_of`, window by window."""
-    distance, counted = distances(forecast, future)
-    every = _mean(distance, counted)
-    best = best_of(every, _final(distance, counted), rule)
-    chosen = _choice(every, rule)
-    who = future.scored
-    index = np.broadcast_to(chosen, (len(who), 1, who.shape[1]))[:, :, None]
-    kept = np.take_along_axis(distance, index, axis=1)[:, 0]
-    hit = np.sum(collided(forecast, future) * forecast.weight[:, :, None], axis=1)
-    together = np.broadcast_to((who.sum(axis=1) > 1)[:, None], who.shape)
-    by_person = np.swapaxes(kept, 1, 2)[who], np.swapaxes(counted, 1, 2)[who]
-    return PersonErrors(best[0][who], best[1][who], *by_person, hit[who], together[who])
-
-
-def _check(forecast: Forecast, future: Windows) -> None:
+def check(forecast: Forecast, future: Windows) -> None:
+    """Raise :class:`InputError` unless a forecast can be held against a future, see :func:`distances`."""
     W, _, T, A, _ = forecast.position.shape
     if future.present.shape != (W, T, A):
         raise InputError(
@@ -191,26 +120,20 @@ def _check(forecast: Forecast, future: Windows) -> None:
             f"{forecast.predictor} did not predict person {future.id[window, person]} of window {window},"
             f" whom protocol {future.protocol!r} scores"
         )
+    weight = forecast.weight
+    shares = np.all(weight >= 0.0, axis=1) & (np.abs(weight.sum(axis=1) - 1.0) < SUM)
+    for window in np.flatnonzero(future.scored.any(axis=1) & ~shares)[:1]:
+        raise InputError(
+            f"{forecast.predictor}: the weights of window {window} begin at {weight[window].min():.4g} and add up to"
+            f" {weight[window].sum():.4g}; they must be at least 0 and add up to 1"
+        )
     unseen = future.scored & ~future.present.any(axis=1)
     if np.any(unseen):
         window, person = np.argwhere(unseen)[0]
         raise InputError(f"person {future.id[window, person]} of window {window} is scored but has no future")
 
 
-def _mean(distance: Floats, counted: Bools) -> Floats:
-    count = counted.sum(axis=1)[:, None]
-    return np.where(count > 0, distance.sum(axis=2) / np.maximum(count, 1), np.nan)
-
-
-def _final(distance: Floats, counted: Bools) -> Floats:
-    steps = counted.shape[1]
-    last = steps - 1 - np.argmax(counted[:, ::-1], axis=1)
-    end = np.take_along_axis(distance, last[:, None, None], axis=2)[:, :, 0]
-    there = np.asarray(counted.any(axis=1))
-    return np.where(there[:, None], end, np.nan)
-
-
-def _choice(error: Floats, rule: str) -> NDArray[np.int64]:
+def chosen_sample(error: Floats, rule: str) -> NDArray[np.int64]:
     """Return the sample ``[W, 1, A]`` (or ``[W, 1, 1]`` for a scene) with the smallest error."""
     if rule not in RULES:
         raise InputError(f"best-of rule {rule!r} is unknown, it must be one of {', '.join(RULES)}")
@@ -222,7 +145,8 @@ def _of_person(error: Floats) -> NDArray[np.int64]:
 
 
 def _of_scene(error: Floats) -> NDArray[np.int64]:
-    return np.asarray(np.argmin(np.nansum(error, axis=2), axis=1)[:, None, None])
+    void = np.isnan(error).all(axis=2)
+    return np.asarray(np.argmin(np.where(void, np.inf, np.nansum(error, axis=2)), axis=1)[:, None, None])
 
 
 def _sample(error: Floats, chosen: NDArray[np.int64]) -> Floats:

@@ -5,18 +5,24 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.data.forecast import Forecast
 from crowdbot.data.windows import Windows
 
-from .displacement import PersonErrors, miss_rate, person_errors
+from .displacement import MISS, miss_rate
+from .interval import Interval, Intervals, People
+from .persons import PersonErrors, person_errors
 
 __all__ = ["Score", "score"]
+
+SAMPLED = ("NLL", "energy")
+"""Columns that a table of deterministic forecasts does without: they have no density, and their energy is the ADE."""
 
 
 @dataclass(frozen=True)
@@ -30,14 +36,22 @@ class Score:
         windows: number of windows.
         persons: number of scored persons, counted once for each window.
         ade, fde: average and final displacement error [m].
-        samples: futures per person; ``best_of`` is the rule that chose among them.
+        samples: futures per person, those of weight 0 too; ``best_of`` is the rule that chose among them.
         miss_rate: share of persons whose final error is above 2 m; NaN in pixels.
         collisions: share of persons, in windows with at least two, predicted closer than 0.2 m to another; NaN when
             there are none, and in pixels. ``together`` is how many persons that is a share of.
+        true_collisions: the same share for others, robots too, where they truly walked; of ``accompanied`` persons.
+        nll: negative log-likelihood by kernel densities [nat], a mean over the ``dense`` persons whose samples have a
+            density; NaN for a deterministic forecast, see :func:`~crowdbot.metrics.kde_nll`.
+        energy: energy score over steps [m], see :func:`~crowdbot.metrics.energy_score`: the ADE of a deterministic
+            forecast; NaN for more than 100 samples, where it would take longer than all the rest.
+        intervals: where the means are expected to lie, 95 %, see :func:`~crowdbot.metrics.bootstrap_interval`; NaN for
+            a single person.
         horizon: mean error [m] at each step; ``there`` is how many persons were still there.
         dt: the step [s]; NaN for recordings with different steps together.
         seconds_per_window: time to predict one window [s], NaN when it was not measured.
         units: ``m``; or ``px``, and then every [m] above is pixels.
+        people: what the intervals are drawn from, so that totals have theirs; not part of the JSON.
     """
 
     predictor: str
@@ -57,10 +71,17 @@ class Score:
     dt: float
     seconds_per_window: float = math.nan
     units: str = "m"
+    true_collisions: float = math.nan
+    accompanied: int = 0
+    nll: float = math.nan
+    dense: int = 0
+    energy: float = math.nan
+    intervals: Intervals = field(default_factory=Intervals)
+    people: People | None = field(default=None, compare=False, repr=False)
 
     @classmethod
-    def of(cls, errors: PersonErrors, forecast: Forecast, future: Windows, best_of: str) -> Score:
-        """Summarise errors of people; forecast and future say where they come from and how many windows there are.
+    def of(cls, errors: PersonErrors, predictor: str, samples: int, future: Windows, best_of: str) -> Score:
+        """Summarise errors of people; the future says where they come from and how many windows there are.
 
         Raises:
             InputError: nobody is scored.
@@ -69,29 +90,41 @@ class Score:
         if persons == 0:
             raise InputError(f"protocol {future.protocol!r} scores nobody in {len(future)} windows of {future.source}")
         metric = future.units == "m"
-        together = int(errors.together.sum()) if metric else 0
+        together = errors.together & metric
+        accompanied = errors.accompanied & metric
+        people = People.of(errors.person, _values(errors, together, accompanied, metric))
         return cls(
-            predictor=forecast.predictor,
+            predictor=predictor,
             protocol=future.protocol,
             source=future.source,
             windows=len(future),
             persons=persons,
             ade=float(errors.ade.mean()),
             fde=float(errors.fde.mean()),
-            samples=forecast.samples,
+            samples=samples,
             best_of=best_of,
             miss_rate=miss_rate(errors.fde) if metric else math.nan,
-            collisions=float(errors.collided[errors.together].mean()) if together else math.nan,
-            together=together,
+            collisions=_known_mean(errors.collided[together]),
+            together=int(together.sum()),
             horizon=tuple(errors.over_horizon().tolist()),
             there=tuple(errors.exists.sum(axis=0).tolist()),
             dt=future.dt,
             units=future.units,
+            true_collisions=_known_mean(errors.true_collided[accompanied]),
+            accompanied=int(accompanied.sum()),
+            nll=_known_mean(errors.nll[~np.isnan(errors.nll)]),
+            dense=int(np.sum(~np.isnan(errors.nll))),
+            energy=_known_mean(errors.energy[~np.isnan(errors.energy)]),
+            intervals=people.intervals(),
+            people=people,
         )
 
     @classmethod
     def total(cls, scores: Sequence[Score]) -> Score:
         """Return the score of several recordings together, every mean taken over all their persons.
+
+        The intervals are drawn anew from the people of all of them; they are unknown when one score came back from
+        JSON and no longer knows its people.
 
         Raises:
             InputError: there is no score, or they differ in predictor, protocol, samples, rule, units or horizon.
@@ -111,49 +144,123 @@ class Score:
         persons = [one.persons for one in scores]
         windows = [one.windows for one in scores]
         there = [tuple(one.there) for one in scores]
+        known = [one.people for one in scores if one.people is not None]
+        people = People.joined(known) if len(known) == len(scores) else None
+
+        def mean(name: str, counts: Sequence[int]) -> float:
+            return _mean([getattr(one, name) for one in scores], counts)
+
         return dataclasses.replace(
             first,
             source=" + ".join(one.source for one in scores),
             windows=sum(windows),
             persons=sum(persons),
-            ade=_mean([one.ade for one in scores], persons),
-            fde=_mean([one.fde for one in scores], persons),
-            miss_rate=_mean([one.miss_rate for one in scores], persons),
-            collisions=_mean([one.collisions for one in scores], [one.together for one in scores]),
+            ade=mean("ade", persons),
+            fde=mean("fde", persons),
+            miss_rate=mean("miss_rate", persons),
+            collisions=mean("collisions", [one.together for one in scores]),
             together=sum(one.together for one in scores),
+            true_collisions=mean("true_collisions", [one.accompanied for one in scores]),
+            accompanied=sum(one.accompanied for one in scores),
+            nll=mean("nll", [one.dense for one in scores]),
+            dense=sum(one.dense for one in scores),
+            energy=mean("energy", persons),
             horizon=tuple(map(_mean, zip(*(one.horizon for one in scores), strict=True), zip(*there, strict=True))),
             there=tuple(sum(counts) for counts in zip(*there, strict=True)),
             dt=first.dt if all(one.dt == first.dt for one in scores) else math.nan,
-            seconds_per_window=_mean([one.seconds_per_window for one in scores], windows),
+            seconds_per_window=mean("seconds_per_window", windows),
+            intervals=people.intervals() if people is not None else Intervals(),
+            people=people,
         )
 
+    def difference(self, other: Score, name: str = "ade") -> tuple[float, Interval]:
+        """Return how much more ``name`` is here than there, and the 95 % interval of that, drawn by person.
+
+        The same people are drawn for both scores, so it is far narrower than the intervals of the two apart: a
+        predictor is better than another on such recordings when the interval of its ADE less theirs lies below 0.
+
+        Args:
+            other: another predictor on the same windows.
+            name: a field of :class:`~crowdbot.metrics.Intervals`.
+
+        Raises:
+            InputError: the name is unknown, the scores are not of the same people, or one came back from JSON.
+        """
+        if self.people is None or other.people is None:
+            raise InputError("a score that came back from JSON no longer knows its people: score the forecast again")
+        if (self.source, self.protocol) != (other.source, other.protocol):
+            raise InputError(
+                f"scores on {self.source} ({self.protocol}) and {other.source} ({other.protocol}) cannot be compared"
+                " person by person"
+            )
+        return self.people.minus(other.people, name)
+
     def as_dict(self) -> dict[str, Any]:
-        """Return every field by its name, for JSON."""
-        return dataclasses.asdict(self)
+        """Return every field but ``people`` by its name, for JSON."""
+        plain = dataclasses.asdict(dataclasses.replace(self, people=None))
+        del plain["people"]
+        return plain
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Heads of the columns of :meth:`cells`."""
-        return ("windows", "persons", f"ADE [{self.units}]", f"FDE [{self.units}]", "collisions", "ms/window")
+        """Heads of the columns of :meth:`cells`; those of samples and intervals are there when their numbers are."""
+        return Score.heads([self])
 
-    def cells(self) -> tuple[str, ...]:
-        """Return the main numbers as words for a table; what was not measured is ``-``."""
-        clash = "-" if math.isnan(self.collisions) else f"{100.0 * self.collisions:.1f} %"
-        time = "-" if math.isnan(self.seconds_per_window) else f"{1e3 * self.seconds_per_window:.3g}"
-        return (str(self.windows), str(self.persons), f"{self.ade:.3f}", f"{self.fde:.3f}", clash, time)
+    @staticmethod
+    def heads(scores: Sequence[Score]) -> tuple[str, ...]:
+        """Return the heads of the columns that at least one score has something to say in, for one table of all.
+
+        Hand them to :meth:`cells` of each.
+        """
+        told = {name: None for one in scores for name, word in one._words().items() if word != "-"}
+        kept = {"collisions", "ms/window", *told} - (set(SAMPLED) if all(one.samples == 1 for one in scores) else set())
+        order = dict.fromkeys(name for one in scores for name in one._words())
+        return tuple(name for name in order if name in kept)
+
+    def cells(self, columns: Sequence[str] | None = None) -> tuple[str, ...]:
+        """Return the main numbers as words for a table, by default those of :attr:`columns`; ``-`` is not measured."""
+        words = self._words()
+        return tuple(words.get(name, "-") for name in (self.columns if columns is None else columns))
+
+    def _words(self) -> dict[str, str]:
+        low, high = self.intervals.ade
+        return {
+            "windows": str(self.windows),
+            "persons": str(self.persons),
+            f"ADE [{self.units}]": f"{self.ade:.3f}",
+            "95 %": "-" if math.isnan(low) else f"{low:.3f}-{high:.3f}",
+            f"FDE [{self.units}]": f"{self.fde:.3f}",
+            "NLL": "-" if math.isnan(self.nll) else f"{self.nll:.2f}{self._share_with_density()}",
+            "energy": "-" if math.isnan(self.energy) else f"{self.energy:.3f}",
+            "collisions": "-" if math.isnan(self.collisions) else f"{100.0 * self.collisions:.1f} %",
+            "ms/window": "-" if math.isnan(self.seconds_per_window) else f"{1e3 * self.seconds_per_window:.3g}",
+        }
+
+    def _share_with_density(self) -> str:
+        """Return, in brackets, of how many percent of the persons the NLL is a mean; nothing when it is of all."""
+        return "" if self.dense == self.persons else f" ({100.0 * self.dense / self.persons:.0f} %)"
 
     def __str__(self) -> str:
         """Return one paragraph that carries protocol, predictor and counts."""
         best = f", best of {self.samples} per {self.best_of}" if self.samples > 1 else ""
         length = "different lengths" if math.isnan(self.dt) else f"{self.dt:g} s"
         reach = f"{len(self.horizon)} steps of {length}"
-        time = "" if math.isnan(self.seconds_per_window) else f", {1e3 * self.seconds_per_window:.3g} ms a window"
-        miss = "" if math.isnan(self.miss_rate) else f", missed by 2 m {100 * self.miss_rate:.1f} %"
-        clash = "" if math.isnan(self.collisions) else f", collisions {100 * self.collisions:.1f} %"
+        low, high = self.intervals.ade
+        main = [
+            f"ADE {self.ade:.3f} {self.units}" + ("" if math.isnan(low) else f" (95 %: {low:.3f} to {high:.3f})"),
+            f"FDE {self.fde:.3f} {self.units}",
+            "" if math.isnan(self.nll) else f"NLL {self.nll:.2f} nat{self._share_with_density()}",
+            "" if self.samples == 1 or math.isnan(self.energy) else f"energy {self.energy:.3f} {self.units}",
+        ]
+        more = [
+            f"{self.persons} persons in {self.windows} windows",
+            "" if math.isnan(self.miss_rate) else f"missed by {MISS:g} m {100 * self.miss_rate:.1f} %",
+            "" if math.isnan(self.collisions) else f"collisions {100 * self.collisions:.1f} %",
+            "" if math.isnan(self.seconds_per_window) else f"{1e3 * self.seconds_per_window:.3g} ms a window",
+        ]
         return (
-            f"{self.predictor} on {self.source}: ADE {self.ade:.3f} {self.units}, FDE {self.fde:.3f} {self.units}"
-            f" (protocol {self.protocol}, {reach}{best}; {self.persons} persons in {self.windows} windows"
-            f"{miss}{clash}{time})"
+            f"{self.predictor} on {self.source}: {', '.join(filter(None, main))}"
+            f" (protocol {self.protocol}, {reach}{best}; {', '.join(filter(None, more))})"
         )
 
 
@@ -175,7 +282,21 @@ def score(forecast: Forecast, future: Windows, best_of: str = "person") -> Score
     >>> print(score(Forecast.of(np.full((1, 1, 2, 1, 2), 0.1), here[:, 0], 0.4, "me"), future))
     me on street: ADE 0.141 m, FDE 0.141 m (protocol all, 2 steps of 0.4 s; 1 persons in 1 windows, missed by 2 m 0.0 %)
     """
-    return Score.of(person_errors(forecast, future, best_of), forecast, future, best_of)
+    errors = person_errors(forecast, future, best_of)
+    return Score.of(errors, forecast.predictor, forecast.samples, future, best_of)
+
+
+def _values(
+    errors: PersonErrors, together: NDArray[np.bool_], accompanied: NDArray[np.bool_], metric: bool
+) -> list[NDArray[np.float64]]:
+    """Return what the means are taken of, in the order of the intervals; NaN where a person has no part in it."""
+    missed = np.where(metric, errors.fde > MISS, np.nan)
+    clash = np.where(together, errors.collided, np.nan), np.where(accompanied, errors.true_collided, np.nan)
+    return [errors.ade, errors.fde, missed, *clash, errors.nll, errors.energy]
+
+
+def _known_mean(values: NDArray[np.float64]) -> float:
+    return float(values.mean()) if len(values) else math.nan
 
 
 def _mean(values: Sequence[float], counts: Sequence[int]) -> float:

@@ -1,9 +1,9 @@
 """Floor 4: where people will be in the next seconds; predictors, and their scores on recordings."""
 
-from .constant import ConstantAcceleration, ConstantVelocity, SampledConstantVelocity
+from .constant import ConstantAcceleration, ConstantVelocity, LeastSquares, SampledConstantVelocity
 from .degraded import DegradedScore, Seen, Task, seen_windows, sweep
 from .evaluate import evaluate
-from .kalman import Kalman
+from .kalman import Kalman, KalmanAcceleration
 from .live import Live
 from .predictor import Predictor, window_streams
 from .recipe import Recipe
@@ -16,6 +16,8 @@ __all__ = [
     "DegradedScore",
     "Frames",
     "Kalman",
+    "KalmanAcceleration",
+    "LeastSquares",
     "Live",
     "Part",
     "Piece",

@@ -1,4 +1,4 @@
-"""Predictors that keep a motion constant: velocity, acceleration, and a velocity with a random turn and speed."""
+"""Predictors that keep a motion constant: velocity, fitted line, acceleration, and a velocity with a random turn."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from crowdbot.data.windows import Windows
 
 from .predictor import Predictor, window_streams
 
-__all__ = ["ConstantAcceleration", "ConstantVelocity", "SampledConstantVelocity"]
+__all__ = ["ConstantAcceleration", "ConstantVelocity", "LeastSquares", "SampledConstantVelocity"]
 
 SCHOLLER = Paper(
     "Schöller, Aravantinos, Lay, Knoll",
@@ -31,8 +31,9 @@ SCHOLLER = Paper(
 class ConstantVelocity(Predictor):
     """Everyone goes on with the mean velocity of their last ``displacements`` steps.
 
-    One displacement is the strongest simple baseline on smooth tracks; more of them help on noisy ones. Somebody
-    seen at the last row only is expected to stand. Deterministic: K = 1.
+    One displacement is the strongest simple baseline on smooth tracks; more of them help on noisy ones, and as many as
+    there are, or more, mean the whole observed track. Holes are bridged by an even walk, tracks that begin late count
+    from their begin, and somebody seen at the last row only is expected to stand. Deterministic: K = 1.
 
     Paper: Schöller et al. (2020), doi 10.1109/LRA.2020.2969925.
 
@@ -61,6 +62,46 @@ class ConstantVelocity(Predictor):
         time = past.dt * np.arange(1, steps + 1)
         place = past.position[:, -1, None] + velocity[:, None] * time[:, None, None]
         return self.forecast(past, place[:, None])
+
+
+@dataclass(frozen=True)
+class LeastSquares(Predictor):
+    """Everyone goes on along the straight, even walk that fits all rows at which they were seen with least squares.
+
+    Only rows that were seen are fitted; with two of them it is the line through both, and somebody seen at one row is
+    expected to stand. Deterministic: K = 1.
+
+    Fields:
+        anchored: False: the walk goes on from where the fitted line is now, as the linear regression of the literature;
+            True: from where the person was last seen, with the velocity of the line.
+
+    >>> import numpy as np
+    >>> here = np.ones((1, 3, 1), dtype=bool)
+    >>> past = Windows(np.array([[[[0.0, 0.0]], [[1.0, 0.0]], [[5.0, 0.0]]]]), here, ~here[:, 0], ~here[:, 0],
+    ...     np.array([[7]]), np.array([[0, 10, 20]]), 0.4, "all", "street")
+    >>> LeastSquares().predict(past, 2).position[0, 0, :, 0, 0].tolist()
+    [7.0, 9.5]
+    >>> LeastSquares(anchored=True).predict(past, 2).position[0, 0, :, 0, 0].tolist()
+    [7.5, 10.0]
+    """
+
+    anchored: bool = False
+
+    def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
+        """Return where people will be, see :meth:`Predictor.predict`."""
+        self.check(past, steps, samples)
+        now = past.position[:, -1, None]
+        there = past.present[..., None]
+        row = np.arange(1 - past.present.shape[1], 1.0)[:, None, None]
+        count = np.maximum(there.sum(axis=1, keepdims=True), 1)
+        middle = np.sum(there * row, axis=1, keepdims=True) / count
+        away = np.where(there, past.position - now, 0.0)  # from now: far from the origin nothing is lost
+        late = np.where(there, row - middle, 0.0)
+        spread = np.sum(late * late, axis=1, keepdims=True)
+        velocity = np.sum(late * away, axis=1, keepdims=True) / np.where(spread > 0.0, spread, 1.0)
+        start = 0.0 if self.anchored else away.sum(axis=1, keepdims=True) / count - middle * velocity
+        step = np.arange(1.0, steps + 1.0)[:, None, None]
+        return self.forecast(past, (now + start + velocity * step)[:, None])
 
 
 @dataclass(frozen=True)

@@ -54,7 +54,7 @@ def evaluate(
     rng = stream(seed, "predict")
     errors: list[PersonErrors] = []
     last: Forecast | None = None
-    seconds = 0.0
+    seconds, drawn = 0.0, 1
     for first in range(0, len(past), size):
         part = slice(first, first + size)
         if last is None:
@@ -62,10 +62,11 @@ def evaluate(
         begin = time.perf_counter()
         last = predictor.predict(past[part], steps, samples, rng)
         seconds += time.perf_counter() - begin
+        drawn = max(drawn, last.samples)  # futures may be fewer where there are fewer goals
         errors.append(person_errors(last, future[part], best_of))
         if progress is not None:
             progress(min(1.0, (first + size) / len(past)))
     if last is None:
         raise InputError(f"there is no window to predict in {past.source}")
-    total = Score.of(PersonErrors.joined(errors), last, future, best_of)
+    total = Score.of(PersonErrors.joined(errors), last.predictor, drawn, future, best_of)
     return dataclasses.replace(total, seconds_per_window=seconds / len(past))

@@ -190,7 +190,7 @@ class Study:
                 parts = [part for _, part in sorted(mine, key=lambda pair: pair[0])]
                 frames = Frames.joined([part.frames for part in parts])
                 errors = PersonErrors.joined([part.errors for part in parts])
-                score = Score.of(errors, recipe.name, parts[0].samples, future, self.best_of)
+                score = Score.of(errors, recipe.name, max(part.samples for part in parts), future, self.best_of)
                 score = dataclasses.replace(score, seconds_per_window=float(frames.seconds.mean()))
                 found.append(Result(recording, recipe, score, frames))
         return found

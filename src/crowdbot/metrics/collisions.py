@@ -1,0 +1,101 @@
+"""Predicted collisions: who is predicted to walk through another, as predicted or as the other truly walked."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError
+from crowdbot.core.errors import did_you_mean
+from crowdbot.data.forecast import Forecast
+from crowdbot.data.windows import Windows
+
+from .displacement import check
+
+__all__ = ["CONTACT", "accompanied", "collided", "collision_share"]
+
+Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+
+CONTACT = 0.2
+"""Two people closer than this [m] have collided (TrajNet++)."""
+NEIGHBORS = ("predicted", "true")
+PAIRS_AT_ONCE = 500_000
+"""So many distances of pairs are held at once, however many samples there are."""
+
+
+def collided(forecast: Forecast, future: Windows, limit: float = CONTACT, neighbors: str = "predicted") -> Bools:
+    """Return ``[W, K, A]``: scored people who come closer than ``limit`` [m], centre to centre, to another at any step.
+
+    A step counts while both are truly still there; between steps nothing is looked at. Samples that weigh nothing
+    collide with nobody.
+
+    Args:
+        forecast, future: of the same windows.
+        limit: distance [m] that is too close.
+        neighbors: ``predicted``: the other scored people of the window, where the same sample predicts them (Col-I of
+            TrajNet++); ``true``: everyone else of the window where they truly walked, people who are not scored and
+            robots too (Col-II). Robots are never among those who collide, and who enters after the last observed step
+            is not in the window.
+
+    Raises:
+        InputError: forecast and future do not belong together, or the word for the neighbours is unknown.
+    """
+    check(forecast, future)
+    _known(neighbors)
+    W, K, _, A, _ = forecast.position.shape
+    hit = np.zeros((W, K, A), dtype=np.bool_)
+    for window in np.flatnonzero(
+        accompanied(future, neighbors).any(axis=1)
+    ):  # one by one: most padded pairs are nobody
+        here = future.present[window]
+        who = np.flatnonzero(future.scored[window])
+        others = who if neighbors == "predicted" else np.flatnonzero(here.any(axis=0))
+        pair = here[:, who, None] & here[:, None, others] & (who[:, None] != others)
+        size = max(1, PAIRS_AT_ONCE // pair.size)
+        counts = np.flatnonzero(forecast.weight[window] > 0.0)
+        for few in (counts[first : first + size] for first in range(0, len(counts), size)):
+            own = forecast.position[window, few][:, :, who]
+            there = own if neighbors == "predicted" else future.position[window][None, :, others]
+            dx, dy = (own[..., :, None, axis] - there[..., None, :, axis] for axis in (0, 1))
+            hit[window, few[:, None], who] = np.any(pair & (dx * dx + dy * dy < limit * limit), axis=(1, 3))
+    return hit
+
+
+def collision_share(forecast: Forecast, future: Windows, limit: float = CONTACT, neighbors: str = "predicted") -> float:
+    """Return the share of people with company who come closer than ``limit`` [m] to another one.
+
+    It is a mean over the people of :func:`accompanied` and, by their weight, over the samples; NaN when nobody has
+    company. What counts as a neighbour is said at :func:`collided`.
+    """
+    together = accompanied(future, neighbors)
+    hit = collided(forecast, future, limit, neighbors)
+    if not np.any(together):
+        return float("nan")
+    return float(mean_over_samples(forecast, hit)[together].mean())
+
+
+def accompanied(future: Windows, neighbors: str = "predicted") -> Bools:
+    """Return ``[W, A]``: scored people who have somebody to collide with.
+
+    With ``predicted`` neighbours these are the people of windows with at least two scored ones, with ``true``
+    neighbours those who have anyone else truly there at a step at which they are there themselves.
+    """
+    if _known(neighbors) == "predicted":
+        return np.asarray(future.scored & (future.scored.sum(axis=1) > 1)[:, None])
+    crowd = future.present.sum(axis=2, keepdims=True) > 1
+    return np.asarray(future.scored & np.any(future.present & crowd, axis=1))
+
+
+def mean_over_samples(forecast: Forecast, value: Bools) -> Floats:
+    """Return the mean ``[W, A]`` of values ``[W, K, A]`` over the samples by their weight."""
+    return np.asarray(np.sum(value * forecast.weight[:, :, None], axis=1))
+
+
+def _known(neighbors: str) -> str:
+    if neighbors not in NEIGHBORS:
+        allowed = " or ".join(NEIGHBORS)
+        raise InputError(
+            f"collisions with neighbors {neighbors!r}{did_you_mean(neighbors, NEIGHBORS)}: it is {allowed}"
+        )
+    return neighbors

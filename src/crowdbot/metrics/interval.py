@@ -1,0 +1,165 @@
+"""How sure a mean over people is: confidence intervals by the bootstrap, drawn by person and not by window.
+
+Windows of one person overlap, so their errors are almost the same number again and again; drawing windows would make
+the interval several times too narrow. Here whole people are drawn with all their windows (the cluster bootstrap,
+Davison, Hinkley (1997), Bootstrap Methods and their Application, section 3.8, doi 10.1017/CBO9780511802843). People who
+walk together still err together, which no interval here knows: in dense crowds it is too narrow rather than too wide.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, stream
+
+__all__ = ["Interval", "Intervals", "People", "bootstrap_interval"]
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Interval = tuple[float, float]
+
+RESAMPLES = 1000
+LEVEL = 0.95
+UNKNOWN: Interval = (math.nan, math.nan)
+DRAWS_AT_ONCE = 2_000_000
+"""So many people are drawn at once, however many there are."""
+
+
+@dataclass(frozen=True)
+class Intervals:
+    """Confidence intervals (low, high) of the means of a score, 95 % by the bootstrap over people; NaN when unknown."""
+
+    ade: Interval = UNKNOWN
+    fde: Interval = UNKNOWN
+    miss_rate: Interval = UNKNOWN
+    collisions: Interval = UNKNOWN
+    true_collisions: Interval = UNKNOWN
+    nll: Interval = UNKNOWN
+    energy: Interval = UNKNOWN
+
+
+NAMES = tuple(field.name for field in fields(Intervals))
+
+
+@dataclass(frozen=True)
+class People:
+    """Sums over the windows of each of M people: what means are made of, and intervals can be drawn from.
+
+    Fields:
+        id: ``[M]`` identity in the recording; people of several recordings stand one after another.
+        total, count: ``[M, 7]`` sum of the values that are known and their number, columns as in :class:`Intervals`.
+    """
+
+    id: Integers
+    total: Floats
+    count: Floats
+
+    @classmethod
+    def of(cls, id: Integers, values: Sequence[Floats]) -> People:
+        """Add up values ``[N]`` by the person ``[N]`` they belong to; NaN is no value."""
+        known, row = np.unique(id, return_inverse=True)
+        there = [~np.isnan(value) for value in values]
+        total = [
+            np.bincount(row[has], value[has], minlength=len(known)) for value, has in zip(values, there, strict=True)
+        ]
+        count = [np.bincount(row[has], minlength=len(known)).astype(np.float64) for has in there]
+        return cls(known, np.stack(total, axis=1), np.stack(count, axis=1))
+
+    @classmethod
+    def joined(cls, parts: Sequence[People]) -> People:
+        """Return the people of several recordings together: nobody is in two of them."""
+        arrays = ([getattr(part, name) for part in parts] for name in ("id", "total", "count"))
+        return cls(*map(np.concatenate, arrays))
+
+    def intervals(self) -> Intervals:
+        """Return the intervals of all means."""
+        return Intervals(*_percentiles(_resampled(self.total, self.count, RESAMPLES, 0), self.count, LEVEL))
+
+    def minus(self, other: People, name: str) -> tuple[float, Interval]:
+        """Return the difference of a mean to that of another predictor on the same people, and its interval.
+
+        The same people are drawn for both, so that what is hard for everyone cancels out.
+
+        Raises:
+            InputError: the name is unknown, or the others are other people.
+        """
+        if name not in NAMES:
+            raise InputError(f"there is no mean of {name!r}, there are {', '.join(NAMES)}")
+        column = NAMES.index(name)
+        if not (np.array_equal(self.id, other.id) and np.array_equal(self.count[:, column], other.count[:, column])):
+            raise InputError(f"scores of {name} of different people cannot be compared person by person")
+        total = np.stack([self.total[:, column], other.total[:, column]], axis=1)
+        count = np.stack([self.count[:, column]] * 2, axis=1)
+        whole = _ratio(total.sum(axis=0), count.sum(axis=0))
+        drawn = _resampled(total, count, RESAMPLES, 0)
+        return float(whole[0] - whole[1]), _percentiles(drawn[:, :1] - drawn[:, 1:], count[:, :1], LEVEL)[0]
+
+
+def bootstrap_interval(
+    values: Floats, person: Integers, resamples: int = RESAMPLES, level: float = LEVEL, seed: int = 0
+) -> Interval:
+    """Return the percentile interval (low, high) of a mean over windows, drawn by person.
+
+    Args:
+        values: ``[N]``, one for each person and window; NaN is no value.
+        person: ``[N]``, whose value it is. All values of a person are drawn together, as often as the person is.
+        resamples: how many times as many people as there are, are drawn with replacement.
+        level: share of the means of the resamples that lies inside.
+        seed: of the draws.
+
+    With less than two people it is (NaN, NaN).
+
+    Raises:
+        InputError: resamples are below 1, or the level is not between 0 and 1.
+
+    >>> import numpy as np
+    >>> rng = np.random.default_rng(1)
+    >>> own = rng.normal(size=50)  # 50 people, each of whom errs alike in 20 windows
+    >>> person = np.repeat(np.arange(50), 20)
+    >>> by_person = bootstrap_interval(own[person], person)
+    >>> by_window = bootstrap_interval(own[person], np.arange(1000))
+    >>> [round(high - low, 1) for low, high in (by_person, by_window)]
+    [0.5, 0.1]
+    """
+    if resamples < 1 or not 0.0 < level < 1.0:
+        raise InputError(f"an interval needs at least 1 resample and a level in 0..1, not {resamples} and {level}")
+    people = People.of(person, [values])
+    return _percentiles(_resampled(people.total, people.count, resamples, seed), people.count, level)[0]
+
+
+def _resampled(total: Floats, count: Floats, resamples: int, seed: int) -> Floats:
+    """Return the means ``[R, C]`` of R resamples of people with sums ``[M, C]``; NaN where no value was drawn."""
+    M = len(total)
+    rng = stream(seed, "bootstrap")
+    both = np.concatenate([total, count], axis=1)
+    means = np.full((resamples, total.shape[1]), np.nan)
+    size = max(1, DRAWS_AT_ONCE // max(M, 1))
+    for first in range(0, resamples if M > 1 else 0, size):
+        few = min(size, resamples - first)
+        drawn = rng.integers(0, M, (few, M)) + M * np.arange(few)[:, None]
+        times = np.bincount(drawn.ravel(), minlength=few * M).reshape(few, M).astype(np.float64)
+        # not a matrix product: its last bits depend on the number of threads
+        sums = np.einsum("rm,mc->rc", times, both)
+        means[first : first + few] = _ratio(*np.split(sums, 2, axis=1))
+    return means
+
+
+def _ratio(total: Floats, count: Floats) -> Floats:
+    return np.where(count > 0.0, total / np.maximum(count, 1.0), np.nan)
+
+
+def _percentiles(means: Floats, count: Floats, level: float) -> list[Interval]:
+    """Return the interval of every column; unknown where less than two of the people have a value."""
+    found = [UNKNOWN] * means.shape[1]
+    tail = 50.0 * (1.0 - level)
+    for column in np.flatnonzero(np.sum(count > 0.0, axis=0) > 1):
+        known = means[:, column][~np.isnan(means[:, column])]
+        if len(known) > 0:
+            low, high = np.percentile(known, [tail, 100.0 - tail])
+            found[column] = float(low), float(high)
+    return found

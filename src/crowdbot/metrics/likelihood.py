@@ -1,0 +1,91 @@
+"""How likely the truth was under the samples: the negative logarithm of a kernel density estimate."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.data.forecast import Forecast
+from crowdbot.data.windows import Windows
+
+from .displacement import check
+
+__all__ = ["FLOOR", "kde_nll"]
+
+Floats = NDArray[np.float64]
+
+FLOOR = -20.0
+"""Logarithms of the density are not let below this [nat], as in the Trajectron and in TrajNet++."""
+FLAT = 1e-12
+"""Samples on a line have no density in the plane: smallest over largest eigenvalue of their covariance."""
+EQUAL = 1e-9
+"""Samples that scatter less than this [m] are the same sample."""
+NUMBERS_AT_ONCE = 400_000
+"""So many positions are held at once, however many people there are."""
+
+
+def kde_nll(forecast: Forecast, future: Windows, floor: float = FLOOR) -> Floats:
+    """Return the negative log-likelihood ``[W, A]`` [nat] of the true positions under the samples, lower is better.
+
+    At every step a Gaussian kernel is laid on every sample, as ``scipy.stats.gaussian_kde`` does it: its covariance is
+    that of the weighted samples times ``n ** (-1 / 3)``, Scott's rule in the plane, where ``n = 1 / sum(weight ** 2)``
+    is the effective number of samples. The logarithm of the density [m^-2] at the true position is not let below
+    ``floor``, and the mean over the steps that exist is taken.
+
+    A forecast of one sample has no density, nor have samples that are equal or stand on a line: such steps are left out
+    (TrajNet++), and the value is NaN where no step remains, as for who is not scored. It depends on the number of
+    samples: compare at equal numbers (TrajNet++ draws 100, Trajectron++ 2000), and few are a poor estimate. The value
+    has no lower bound, so people who nearly stand can rule the mean; :func:`energy_score` knows none of these troubles.
+
+    Papers: Ivanovic, Pavone (2019), The Trajectron, arXiv 1810.05993 (the metric); Scott (1992), doi
+    10.1002/9780470316849 (the width).
+
+    Raises:
+        InputError: forecast and future do not belong together.
+
+    >>> import numpy as np
+    >>> here = np.ones((1, 1, 1), dtype=bool)
+    >>> future = Windows(np.zeros((1, 1, 1, 2)), here, here[:, 0], ~here[:, 0], np.array([[7]]),
+    ...     np.array([[10]]), 0.4, "all", "street")
+    >>> cross = np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])[None, :, None, None]
+    >>> [kde_nll(Forecast.of(at, here[:, 0], 0.4, "me"), future)[0, 0].round(3).item() for at in (cross, cross[:, :1])]
+    [2.161, nan]
+    """
+    check(forecast, future)
+    found = np.full(future.scored.shape, np.nan)
+    window, person = np.nonzero(future.scored)
+    if forecast.samples == 1:
+        return found
+    size = max(1, NUMBERS_AT_ONCE // (forecast.samples * forecast.steps))
+    for first in range(0, len(window), size):
+        w, a = window[first : first + size], person[first : first + size]
+        truth, there = future.position[w, :, a], future.present[w, :, a]
+        density = _log_density(forecast.position[w, :, :, a], forecast.weight[w], truth)
+        known = there & ~np.isnan(density)
+        steps = known.sum(axis=1)
+        total = -np.sum(np.where(known, np.maximum(density, floor), 0.0), axis=1)
+        found[w, a] = np.where(steps > 0, total / np.maximum(steps, 1), np.nan)
+    return found
+
+
+def _log_density(samples: Floats, weight: Floats, truth: Floats) -> Floats:
+    """Return the log density ``[N, T]`` at truth ``[N, T, 2]`` of samples ``[N, K, T, 2]`` with weights ``[N, K]``."""
+    share = weight[:, :, None]
+    power = np.sum(weight * weight, axis=1)[:, None]  # 1 / effective number of samples
+    x, y = (samples[..., axis] - np.sum(share * samples[..., axis], axis=1)[:, None] for axis in (0, 1))
+    unbiased = np.maximum(1.0 - power, np.finfo(np.float64).tiny)
+    xx, xy, yy = (np.sum(share * product, axis=1) / unbiased for product in (x * x, x * y, y * y))
+    middle, radius = (xx + yy) / 2.0, np.hypot((xx - yy) / 2.0, xy)
+    flat = (middle - radius <= FLAT * (middle + radius)) | (middle + radius <= EQUAL**2) | (power > 1.0 - 1e-9)
+    width = np.cbrt(power)  # Scott: n ** (-1 / (d + 4)), squared, d = 2
+    xx, xy, yy = (np.where(flat, one, value * width) for one, value in ((1.0, xx), (0.0, xy), (1.0, yy)))
+    determinant = xx * yy - xy * xy
+    dx, dy = (samples[..., axis] - truth[:, None, :, axis] for axis in (0, 1))
+    distance2 = (yy[:, None] * dx * dx - 2.0 * xy[:, None] * dx * dy + xx[:, None] * dy * dy) / determinant[:, None]
+    exponent = np.where(share > 0.0, -0.5 * distance2, -np.inf)
+    largest = exponent.max(axis=1)
+    kernels = np.sum(share * np.exp(exponent - largest[:, None]), axis=1)
+    density = largest + np.log(kernels) - 0.5 * np.log(determinant) - math.log(2.0 * math.pi)
+    return np.where(flat, np.nan, density)

@@ -1,0 +1,107 @@
+"""Errors of every scored person of many windows, one row for each person and window."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.data.forecast import Forecast
+from crowdbot.data.windows import Windows
+
+from .collisions import accompanied, collided, mean_over_samples
+from .displacement import best_of, chosen_sample, distances, mean_and_final
+from .energy import energy_score
+from .likelihood import kde_nll
+
+__all__ = ["MOST_FOR_ENERGY", "PersonErrors", "error_over_horizon", "person_errors"]
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+MOST_FOR_ENERGY = 100
+"""With more samples the energy score, whose work grows with their square, would take longer than all the rest."""
+
+
+@dataclass(frozen=True)
+class PersonErrors:
+    """Errors of N scored people, one row for each person and window; what is best is that of the best sample.
+
+    Fields:
+        person: ``[N]`` identity in the recording; the windows of one person overlap.
+        ade, fde: ``[N]`` [m].
+        distance: ``[N, T]`` [m] of the sample with the best ADE; 0 where there is no true position.
+        exists: ``[N, T]``, where there is one.
+        collided: ``[N]``, share of the samples in which the person comes within 0.2 m of another as predicted.
+        together: ``[N]``, whether the window has another scored person.
+        true_collided: ``[N]``, the same share for others, robots too, where they truly walked.
+        accompanied: ``[N]``, whether anyone else is truly there.
+        nll: ``[N]`` [nat], see :func:`~crowdbot.metrics.kde_nll`; NaN where the samples have no density.
+        energy: ``[N]`` [m], see :func:`~crowdbot.metrics.energy_score`, over steps; NaN for more than 100 samples.
+    """
+
+    person: NDArray[np.int64]
+    ade: Floats
+    fde: Floats
+    distance: Floats
+    exists: Bools
+    collided: Floats
+    together: Bools
+    true_collided: Floats
+    accompanied: Bools
+    nll: Floats
+    energy: Floats
+
+    def over_horizon(self) -> Floats:
+        """Return the mean distance ``[T]`` [m] at each step over the people still there; NaN when nobody is."""
+        count = self.exists.sum(axis=0)
+        total = self.distance.sum(axis=0)
+        return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+
+    @classmethod
+    def joined(cls, parts: list[PersonErrors]) -> PersonErrors:
+        """Return the people of several parts of one recording, in order."""
+        return cls(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(cls)))
+
+
+def person_errors(forecast: Forecast, future: Windows, rule: str = "person") -> PersonErrors:
+    """Return the errors of every scored person under the rule of :func:`best_of`, window by window."""
+    distance, counted = distances(forecast, future)
+    ade, fde = mean_and_final(forecast, distance, counted)
+    best = best_of(ade, fde, rule)
+    who = future.scored
+    kept = np.swapaxes(_followed(distance, ade, rule), 1, 2)
+    hit = [mean_over_samples(forecast, collided(forecast, future, neighbors=word)) for word in ("predicted", "true")]
+    few = forecast.samples <= MOST_FOR_ENERGY
+    return PersonErrors(
+        person=future.id[who],
+        ade=best[0][who],
+        fde=best[1][who],
+        distance=kept[who],
+        exists=np.swapaxes(counted, 1, 2)[who],
+        collided=hit[0][who],
+        together=accompanied(future)[who],
+        true_collided=hit[1][who],
+        accompanied=accompanied(future, "true")[who],
+        nll=kde_nll(forecast, future)[who],
+        energy=energy_score(forecast, future)[who] if few else np.full(int(who.sum()), np.nan),
+    )
+
+
+def error_over_horizon(forecast: Forecast, future: Windows, rule: str = "person") -> Floats:
+    """Return the mean error ``[T]`` [m] at each future step over the people still there; NaN when nobody is.
+
+    Of K samples it follows the one with the best ADE, by person or by scene as ``rule`` says.
+    """
+    distance, counted = distances(forecast, future)
+    kept = _followed(distance, mean_and_final(forecast, distance, counted)[0], rule)
+    count = counted.sum(axis=(0, 2))
+    return np.where(count > 0, kept.sum(axis=(0, 2)) / np.maximum(count, 1), np.nan)
+
+
+def _followed(distance: Floats, ade: Floats, rule: str) -> Floats:
+    """Return the distance ``[W, T, A]`` of the sample with the best ADE."""
+    W, _, _, A = distance.shape
+    index = np.broadcast_to(chosen_sample(ade, rule), (W, 1, A))[:, :, None]
+    return np.take_along_axis(distance, index, axis=1)[:, 0]
