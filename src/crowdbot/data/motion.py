@@ -87,7 +87,7 @@ def steady_velocity(past: Windows) -> NDArray[np.float64]:
     >>> track, nobody = np.stack([x, 0.0 * x], axis=1)[None, :, None], ~here[:, 0]
     >>> windows = Windows(track, here, nobody, nobody, np.array([[7]]), np.arange(8)[None], 1.0, "all", "street")
     >>> round(float(observed_velocity(windows)[0, 0, 0]), 2), round(float(steady_velocity(windows)[0, 0, 0]), 2)
-    (1.2, 1.01)
+    (1.2, 1.0)
     """
     known = bridged(past)
     W, T, A, _ = known.position.shape

@@ -71,9 +71,9 @@ class EnvironmentLayout(Goal):
     ((2, 2, 2), [[2.0, 1.6], [2.0, -9.6]])
     """
 
-    exits: Any
+    exits: tuple[float, ...] | Any
     walls: Any = ()
-    prior: Any = None
+    prior: tuple[float, ...] | Any = None
     straight: float = parameter(0.5, unit="1", low=0.05, high=0.95, source="crowdbot")
     certainty: float = parameter(1.5, unit="1/m", low=0.5, high=20.0, source="crowdbot")
     pull: float = parameter(0.4, unit="1", low=0.0, high=1.0, source="crowdbot")
@@ -146,10 +146,10 @@ class EnvironmentLayout(Goal):
         layout = cls.of(solid, hull(place), width, **values)
         found = [track_ends(tracks) for tracks in recordings]
         left = np.concatenate([ends[gone] for _, ends, gone in found])
-        centre = layout.exits.mean(axis=1)
+        centre = layout.routes.exits.mean(axis=1)
         nearest = np.argmin(length(left[:, None] - centre), axis=1)
         prior = 1.0 + np.bincount(nearest, minlength=len(centre))
-        return cls(layout.exits, solid, **{"prior": prior, "pace": pace, **values})
+        return cls(layout.routes.exits, solid, **{"prior": prior, "pace": pace, **values})
 
     def velocity(self, past: Windows) -> Floats:
         """Return the velocity ``[W, A, 2]`` [m/s], see :meth:`Goal.velocity`."""
@@ -176,7 +176,7 @@ class EnvironmentLayout(Goal):
         if past.units != "m":
             raise InputError(f"environment-layout: {past.source} is in {past.units}; turn it into metres first")
         velocity, here = self.velocity(past), past.present[:, -1]
-        turn = np.zeros((*here.shape, len(self.exits) + 1))
+        turn = np.zeros((*here.shape, len(self.routes.exits) + 1))
         weight = np.zeros(turn.shape)
         weight[here, 0] = 1.0
         moving = here & (length(velocity) > MOVING)
@@ -189,20 +189,19 @@ class EnvironmentLayout(Goal):
         place = known.position[:, -1][moving]
         aim, way = self.routes.next(place)
         heading = unit(velocity)
-        log = np.zeros((len(place), 1 + len(self.exits)))
+        log = np.zeros((len(place), 1 + len(self.routes.exits)))
         now = known.position.shape[1] - 1
         begin = np.argmax(known.present, axis=1)
         for row in (begin, np.maximum(begin, now // 2)):
             start = np.take_along_axis(known.position, row[:, None, :, None], axis=1)[:, 0][moving]
             before = self.routes.next(start)[1]
             log[:, 0] += 0.5 * np.sum((place - start) * heading, axis=-1)
-            nearer = np.where(np.isfinite(way) & np.isfinite(before), before, 0.0) - np.where(
-                np.isfinite(way), way, 0.0
-            )
-            log[:, 1:] += 0.5 * np.where(np.isfinite(way) & np.isfinite(before), nearer, -np.inf)
+            known_way = np.isfinite(way) & np.isfinite(before)
+            nearer = np.where(known_way, before, 0.0) - np.where(known_way, way, 0.0)
+            log[:, 1:] += 0.5 * np.where(known_way, nearer, -np.inf)
         log = self.certainty * (log - log[:, :1])
         with np.errstate(divide="ignore"):
-            log += np.log(np.concatenate([[self.straight], (1.0 - self.straight) * self.prior]))
+            log += np.log(np.concatenate([[self.straight], (1.0 - self.straight) * np.asarray(self.prior)]))
         weight = np.exp(log - log.max(axis=1, keepdims=True))
         weight /= np.sum(weight, axis=1, keepdims=True)
         off = aim - place[:, None]

@@ -90,7 +90,8 @@ class LearnedVelocity:
             return steady
         weight = self.weight[np.maximum(count, 1) - 1][..., most - offs.shape[1] :]
         change = np.sum(np.moveaxis(offs, 1, -2) * weight[..., None], axis=-2)
-        return np.where((count > 0)[..., None], steady + change, steady)
+        known_here = past.present[:, -1] & (count > 0)
+        return np.where(known_here[..., None], steady + change, steady)
 
 
 def pairs_of(recordings: tuple[Trajectories, ...], observe: int, lookahead: float) -> list[tuple[Windows, Windows]]:
@@ -134,7 +135,7 @@ def mean_velocity(past: Windows, future: Windows) -> Floats:
     steps = future.present.shape[1]
     last = steps - 1 - np.argmax(future.present[:, ::-1], axis=1)
     end = np.take_along_axis(future.position, last[:, None, :, None], axis=1)[:, 0]
-    return (end - past.position[:, -1]) / ((last + 1) * past.dt)[..., None]
+    return np.asarray((end - past.position[:, -1]) / ((last + 1) * past.dt)[..., None])
 
 
 def _least_distance(off: Floats, miss: Floats) -> Floats:

@@ -79,8 +79,8 @@ def typical_turn(votes: Floats, doubt: float = 0.0) -> Floats:
     >>> import numpy as np
     >>> votes = np.zeros(NODES)
     >>> votes[40] = 3.0
-    >>> [round(float(np.degrees(typical_turn(votes, doubt))), 3) for doubt in (0.0, 1.0, 3.0, 30.0)]
-    [30.0, 20.0, 0.0, 0.0]
+    >>> [round(float(np.degrees(typical_turn(votes, doubt))), 1) for doubt in (0.0, 1.0, 3.0, 30.0)]
+    [30.0, 29.0, 3.0, 0.3]
     """
     counted = votes.copy()
     counted[..., NODES // 2] += doubt
