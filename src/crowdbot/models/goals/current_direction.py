@@ -1,0 +1,66 @@
+"""The goal that needs nothing but the eyes: straight on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.errors import InputError
+from crowdbot.core.parameter import check_parameters, parameter
+from crowdbot.data.motion import steady_velocity
+from crowdbot.data.windows import Windows
+
+from .goal import Goal
+from .headings import ahead
+
+__all__ = ["CurrentDirection"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class CurrentDirection(Goal):
+    """A point far ahead in the direction of the last steps.
+
+    Args:
+        steps: velocity is averaged over this many last steps, or as many as there are without a gap.
+        horizon: how far ahead, in time at that velocity [s]; long enough not to be reached.
+        adaptive: average as much as the noise of the tracks asks for, see
+            :func:`crowdbot.data.motion.steady_velocity`; then ``steps`` stays 1.
+
+    Whoever was seen at the last step only stays there.
+
+    Raises:
+        InputError: ``steps`` is below 1 or given beside ``adaptive``, or ``horizon`` is not positive.
+    """
+
+    steps: int = 1
+    horizon: float = parameter(20.0, unit="s", low=5.0, high=60.0, source="crowdbot", minimum=0.1)
+    adaptive: bool = False
+
+    def __post_init__(self) -> None:
+        check_parameters(self)
+        if self.steps < 1:
+            raise InputError(f"current-direction: steps {self.steps} is not allowed, it must be at least 1")
+        if self.adaptive and self.steps != 1:
+            raise InputError(f"current-direction: steps {self.steps} and adaptive exclude each other, leave one out")
+
+    def resolve(self, past: Windows) -> Floats:
+        """Return the goals ``[W, A, 2]`` [m]; 0 for people who are not present at the last observed step."""
+        return ahead(past.position[:, -1], past.present[:, -1], self.velocity(past), self.horizon)
+
+    def velocity(self, past: Windows) -> Floats:
+        """Return the averaged velocity ``[W, A, 2]`` [m/s], see :meth:`Goal.velocity`."""
+        if self.adaptive:
+            return steady_velocity(past)
+        here = past.present[:, -1]
+        last = past.position[:, -1]
+        first, count = last.copy(), np.zeros(here.shape)
+        going = here.copy()
+        for back in range(1, min(self.steps, past.present.shape[1] - 1) + 1):
+            going &= past.present[:, -1 - back]
+            first[going] = past.position[:, -1 - back][going]
+            count += going
+        return (last - first) / (np.maximum(count, 1.0) * past.dt)[..., None]

@@ -1,0 +1,239 @@
+"""Destinations estimated from the layout of a place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.errors import InputError
+from crowdbot.core.paper import Paper
+from crowdbot.core.parameter import check_parameters, parameter
+from crowdbot.core.walls import Walls
+from crowdbot.data.motion import bridged, steady_velocity
+from crowdbot.data.trajectories import Trajectories
+from crowdbot.data.windows import Windows
+
+from .exits import hull, openings, track_ends
+from .goal import Choices, Goal
+from .headings import MOVING, ahead, angle_between, length, median, turned, unit
+from .learned_velocity import LearnedVelocity
+from .routes import Routes
+
+__all__ = ["EnvironmentLayout"]
+
+Floats = NDArray[np.float64]
+
+ZIEBART = Paper(
+    "Ziebart, Ratliff, Gallagher, Mertz, Peterson, Bagnell, Hebert, Dey, Srinivasa",
+    2009,
+    "Planning-based prediction for pedestrians",
+    "IEEE/RSJ International Conference on Intelligent Robots and Systems",
+    "10.1109/IROS.2009.5354147",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class EnvironmentLayout(Goal):
+    """The exits of a place, weighed by how people came nearer to each of them.
+
+    The posterior of an exit is its prior times exp(``certainty`` x progress); progress [m] is by how much the way to
+    it has become shorter, averaged over the whole observed part and its later half. That is the probability of the
+    observed way under noisy shortest-way walking, up to what all exits share (Ziebart et al. 2009). An exit behind a
+    wall is reached by way of the corners between. Straight on is a candidate, too: it stands for all that the layout
+    does not know.
+
+    People do not turn towards their exit at once: the heading to it is mixed with the current one. ``pull`` is the
+    share of the turn, more when what they walk towards is nearer than ``lookahead``. :meth:`resolve` is the median
+    direction of all candidates, :meth:`choices` has one for each; all lie ``horizon`` ahead, as crowd models walk
+    straight to a goal. :meth:`posterior` tells how probable each exit is.
+
+    Args:
+        exits: points ``[G, 2]`` or segments ``[G, 2, 2]`` [m], or as text the points x y x y.
+        walls: rings or lines that block view and way, as :class:`~crowdbot.core.Walls` takes them.
+        prior: ``[G]`` weights of the exits before anything was observed; default all alike.
+        straight: prior probability that people keep their direction, against all exits.
+        certainty: how straight people walk to their exit [1/m].
+        pull: share of the turn to the exit that is made.
+        lookahead: time [s] within which the rest of the turn is made.
+        horizon: how far ahead the goals are, in time at the observed velocity [s].
+        pace: how velocities are taken from the last displacements, when the place was recorded.
+
+    Raises:
+        InputError: there is no exit, or a value is not allowed.
+
+    Paper: Ziebart et al. (2009), doi 10.1109/IROS.2009.5354147.
+
+    >>> layout = EnvironmentLayout([(10.0, 0.0), (0.0, 10.0)], walls=[[(2.0, 1.0), (2.0, -9.0)]])
+    >>> layout.exits.shape, layout.routes.corners.round(1).tolist()
+    ((2, 2, 2), [[2.0, 1.6], [2.0, -9.6]])
+    """
+
+    exits: tuple[float, ...] | Any
+    walls: Any = ()
+    prior: tuple[float, ...] | Any = None
+    straight: float = parameter(0.5, unit="1", low=0.05, high=0.95, source="crowdbot")
+    certainty: float = parameter(1.5, unit="1/m", low=0.5, high=20.0, source="crowdbot")
+    pull: float = parameter(0.4, unit="1", low=0.0, high=1.0, source="crowdbot")
+    lookahead: float = parameter(0.5, unit="s", low=0.0, high=5.0, source="crowdbot")
+    horizon: float = parameter(20.0, unit="s", low=5.0, high=60.0, source="crowdbot", minimum=0.1)
+    pace: LearnedVelocity | None = None
+    routes: Routes = field(init=False, repr=False)
+
+    learns: ClassVar[bool] = True
+    paper: ClassVar[Paper] = ZIEBART
+
+    def __post_init__(self) -> None:
+        check_parameters(self)
+        exits = _segments(self.exits)
+        for name in ("straight", "pull"):
+            if getattr(self, name) > 1.0:
+                raise InputError(f"environment-layout: {name} = {getattr(self, name)} is a share, it is at most 1")
+        weight = np.ones(len(exits)) if self.prior is None else np.asarray(self.prior, dtype=np.float64)
+        if weight.shape != (len(exits),) or not (np.all(weight >= 0.0) and 0.0 < np.sum(weight) < np.inf):
+            raise InputError(
+                f"environment-layout: prior has shape {list(weight.shape)} for {len(exits)} exits;"
+                " it holds one weight each, none below 0 and not all 0"
+            )
+        object.__setattr__(self, "exits", exits)
+        object.__setattr__(self, "prior", weight / np.sum(weight))
+        object.__setattr__(self, "walls", Walls.of(self.walls))
+        object.__setattr__(self, "routes", Routes.of(exits, self.walls))
+
+    @classmethod
+    def of(cls, walls: Any = (), area: Any = None, width: float = 2.0, **values: Any) -> Self:
+        """Return the layout whose exits are the openings of the border of the walkable area.
+
+        Args:
+            walls: as above.
+            area: the border: one ring ``[N, 2]`` [m] or a shapely polygon; default the convex hull of the walls.
+            width: openings are cut into pieces about so wide [m].
+            values: other fields.
+
+        Raises:
+            InputError: there is no border, no opening, or a value is not allowed.
+        """
+        solid = Walls.of(walls)
+        if not (width > 0.0 and np.isfinite(width)):
+            raise InputError(f"environment-layout: width = {width} m must be finite and above 0")
+        if area is None and len(solid) < 2:
+            raise InputError("environment-layout: without walls and area nothing is known of the place, give exits")
+        border = hull(solid.start) if area is None else _ring(area)
+        return cls(openings(border, solid, width), solid, **values)
+
+    @classmethod
+    def learned(cls, *recordings: Trajectories, walls: Any = None, width: float = 2.0, **values: Any) -> Self:
+        """Return the layout of a place that was recorded.
+
+        The walkable area is the convex hull of where people were, its openings are the exits, and how many people
+        left nearest to each is the prior, one added. The velocity is learned, too.
+
+        Args:
+            recordings: of the place, in metres.
+            walls: default those of the first recording.
+            width: of an exit [m].
+            values: other fields.
+
+        Raises:
+            InputError: no recording is given, they are in pixels or differ in time step, or there is no opening.
+            DataError: a recording is too short to learn from.
+        """
+        pace = LearnedVelocity.learned(recordings)
+        solid = Walls.of(recordings[0].walls if walls is None else walls)
+        place = np.concatenate([tracks.position for tracks in recordings])
+        layout = cls.of(solid, hull(place), width, **values)
+        found = [track_ends(tracks) for tracks in recordings]
+        left = np.concatenate([ends[gone] for _, ends, gone in found])
+        centre = layout.routes.exits.mean(axis=1)
+        nearest = np.argmin(length(left[:, None] - centre), axis=1)
+        prior = 1.0 + np.bincount(nearest, minlength=len(centre))
+        return cls(layout.routes.exits, solid, **{"prior": prior, "pace": pace, **values})
+
+    def velocity(self, past: Windows) -> Floats:
+        """Return the velocity ``[W, A, 2]`` [m/s], see :meth:`Goal.velocity`."""
+        return steady_velocity(past) if self.pace is None else self.pace.velocity(past)
+
+    def resolve(self, past: Windows) -> Floats:
+        """Return one goal each ``[W, A, 2]`` [m], in the median direction; 0 for who is absent at the last row."""
+        velocity, turn, weight, here = self._candidates(past)
+        return ahead(past.position[:, -1], here, turned(velocity, median(turn, weight)), self.horizon)
+
+    def choices(self, past: Windows) -> Choices:
+        """Return straight on (slot 0) and the way to each exit (slots 1 to G) with their posterior."""
+        velocity, turn, weight, here = self._candidates(past)
+        place = np.where(here[..., None], past.position[:, -1], 0.0)
+        way = np.where(here[..., None, None], turned(velocity[:, :, None], turn), 0.0)
+        return Choices(place[:, :, None] + self.horizon * way, weight)
+
+    def posterior(self, past: Windows) -> Floats:
+        """Return how probable straight on and each exit are, ``[W, A, G + 1]``; 0 for who is absent."""
+        return self._candidates(past)[2]
+
+    def _candidates(self, past: Windows) -> tuple[Floats, Floats, Floats, NDArray[np.bool_]]:
+        """Return velocity ``[W, A, 2]``, turn [rad] and weight ``[W, A, G + 1]`` of candidates, and who is here."""
+        if past.units != "m":
+            raise InputError(f"environment-layout: {past.source} is in {past.units}; turn it into metres first")
+        velocity, here = self.velocity(past), past.present[:, -1]
+        turn = np.zeros((*here.shape, len(self.routes.exits) + 1))
+        weight = np.zeros(turn.shape)
+        weight[here, 0] = 1.0
+        moving = here & (length(velocity) > MOVING)
+        if np.any(moving):
+            turn[moving], weight[moving] = self._weighed(bridged(past), velocity[moving], moving)
+        return velocity, turn, weight, here
+
+    def _weighed(self, known: Windows, velocity: Floats, moving: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+        """Return turn [rad] and posterior ``[P, G + 1]`` of those who move."""
+        place = known.position[:, -1][moving]
+        aim, way = self.routes.next(place)
+        heading = unit(velocity)
+        log = np.zeros((len(place), 1 + len(self.routes.exits)))
+        now = known.position.shape[1] - 1
+        begin = np.argmax(known.present, axis=1)
+        for row in (begin, np.maximum(begin, now // 2)):
+            start = np.take_along_axis(known.position, row[:, None, :, None], axis=1)[:, 0][moving]
+            before = self.routes.next(start)[1]
+            log[:, 0] += 0.5 * np.sum((place - start) * heading, axis=-1)
+            known_way = np.isfinite(way) & np.isfinite(before)
+            nearer = np.where(known_way, before, 0.0) - np.where(known_way, way, 0.0)
+            log[:, 1:] += 0.5 * np.where(known_way, nearer, -np.inf)
+        log = self.certainty * (log - log[:, :1])
+        with np.errstate(divide="ignore"):
+            log += np.log(np.concatenate([[self.straight], (1.0 - self.straight) * np.asarray(self.prior)]))
+        weight = np.exp(log - log.max(axis=1, keepdims=True))
+        weight /= np.sum(weight, axis=1, keepdims=True)
+        off = aim - place[:, None]
+        soon = self.lookahead * length(velocity)[:, None] / np.maximum(length(off), 1e-9)
+        part = np.where(length(off) > 0.5, np.clip(soon, self.pull, 1.0), 0.0)  # nearer, a heading says nothing
+        turn = np.zeros_like(weight)
+        turn[:, 1:] = part * angle_between(heading[:, None], off)
+        return turn, weight
+
+
+def _segments(exits: Any) -> Floats:
+    """Return exits as segments ``[G, 2, 2]`` [m]."""
+    found = np.asarray(exits, dtype=np.float64)
+    if found.ndim == 1 and found.size % 2 == 0:
+        found = found.reshape(-1, 2)
+    if found.ndim == 2 and found.shape[1] == 2:
+        found = np.stack([found, found], axis=1)
+    if found.size == 0:
+        raise InputError(
+            "environment-layout: the layout has no exit; give exits as points, or an area whose border is not walled"
+            " all around"
+        )
+    if found.ndim != 3 or found.shape[1:] != (2, 2) or not np.all(np.isfinite(found)):
+        raise InputError(
+            f"environment-layout: exits have shape {list(found.shape)}; they are finite points [G, 2] or segments"
+            " [G, 2, 2] in metres"
+        )
+    return found
+
+
+def _ring(area: Any) -> Floats:
+    points = np.asarray(area.exterior.coords if hasattr(area, "exterior") else area, dtype=np.float64)
+    if points.ndim != 2 or len(points) < 3 or points.shape[1] < 2 or not np.all(np.isfinite(points)):
+        raise InputError("environment-layout: area is one ring of at least three finite points [N, 2]")
+    return points[:, :2]

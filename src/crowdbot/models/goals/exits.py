@@ -1,0 +1,117 @@
+"""Exits of a place: where tracks end, and where the border of the walkable area is open."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.walls import Walls
+from crowdbot.data.trajectories import Trajectories
+
+from .headings import length
+
+__all__ = ["clusters", "hull", "openings", "track_ends"]
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+MOST_ENDS = 3000
+"""So many end points are grouped; with more, every k-th of them."""
+STEP = 0.1
+"""The border is looked at in steps of about so much [m]."""
+NEAR_WALL = 0.3
+"""A border nearer than this to a wall [m] is covered by it."""
+NARROWEST = 0.5
+"""An opening is at least so wide [m]: a person fits through."""
+
+
+def track_ends(tracks: Trajectories) -> tuple[Integers, Floats, NDArray[np.bool_]]:
+    """Return the ids of people ``[P]``, where their tracks end ``[P, 2]``, and who was gone before the recording ended.
+
+    Who is still there at its last row was cut off, and says nothing about where people go.
+    """
+    order = np.lexsort((tracks.frame, tracks.id))
+    last = np.append(tracks.id[order][1:] != tracks.id[order][:-1], True)
+    rows = order[last]
+    rows = rows[~np.isin(tracks.id[rows], list(tracks.robots))]
+    gone = tracks.frame[rows] < tracks.frame[-1] - tracks.frame_step
+    return tracks.id[rows], tracks.position[rows], gone
+
+
+def clusters(points: Floats, width: float, fewest: int) -> Floats:
+    """Return the centres ``[G, 2]`` [m] of groups of points no wider than ``width`` [m], with at least ``fewest``.
+
+    Complete linkage: it knows no axes, so a turned place has turned groups.
+    """
+    from scipy.cluster.hierarchy import fcluster, linkage
+
+    if len(points) > MOST_ENDS:
+        points = points[:: -(-len(points) // MOST_ENDS)]
+    if len(points) == 1:
+        return points.copy() if fewest <= 1 else np.zeros((0, 2))
+    group = fcluster(linkage(points, "complete"), width, "distance")
+    centres = [points[group == g].mean(axis=0) for g in np.unique(group) if np.sum(group == g) >= fewest]
+    return np.array(centres).reshape(-1, 2)
+
+
+def hull(points: Floats) -> Floats:
+    """Return the convex hull ``[N, 2]`` of points, counter-clockwise, from the corner farthest from their mean on."""
+    from scipy.spatial import ConvexHull
+
+    corner = points[ConvexHull(points).vertices]
+    first = int(np.argmax(length(corner - points.mean(axis=0))))
+    return np.asarray(np.roll(corner, -first, axis=0))
+
+
+def openings(border: Floats, walls: Walls, width: float) -> Floats:
+    """Return where the ring ``border [N, 2]`` has no walls, in pieces ``[G, 2, 2]`` about ``width`` wide [m]."""
+    place = _along(border)
+    open_ = ~_covered(place, walls)
+    if not np.any(open_):
+        return np.zeros((0, 2, 2))
+    if not np.all(open_):  # begin at a wall, so that no opening is cut in two
+        first = int(np.argmin(open_))
+        place, open_ = np.roll(place, -first, axis=0), np.roll(open_, -first)
+    else:
+        place, open_ = np.concatenate([place, place[:1]]), np.append(open_, True)
+    edge = np.diff(np.concatenate([[0], open_.astype(np.int64), [0]]))
+    pieces = []
+    for start, end in zip(np.flatnonzero(edge == 1), np.flatnonzero(edge == -1), strict=True):
+        run = place[start:end]
+        far = np.concatenate([[0.0], np.cumsum(length(np.diff(run, axis=0)))])
+        if far[-1] < NARROWEST:
+            continue
+        count = max(1, round(far[-1] / width))
+        cut = np.searchsorted(far, np.linspace(0.0, far[-1], count + 1) - 1e-9)
+        pieces += [(run[a], run[b]) for a, b in itertools.pairwise(cut)]
+    return np.array(pieces, dtype=np.float64).reshape(-1, 2, 2)
+
+
+def _along(border: Floats) -> Floats:
+    """Return points along a ring, not much more than a step apart."""
+    parts = []
+    for start, end in zip(border, np.roll(border, -1, axis=0), strict=True):
+        count = max(1, round(float(length(end - start)) / STEP))
+        parts.append(start + (end - start) * (np.arange(count) / count)[:, None])
+    return np.concatenate(parts)
+
+
+def _covered(place: Floats, walls: Walls) -> NDArray[np.bool_]:
+    """Return which points are near a wall or inside what is solid."""
+    if len(walls) == 0:
+        return np.zeros(len(place), np.bool_)
+    along = walls.end - walls.start
+    share = np.sum((place[:, None] - walls.start) * along, axis=-1) / np.sum(along * along, axis=-1)
+    off = place[:, None] - walls.start - np.clip(share, 0.0, 1.0)[..., None] * along
+    return np.asarray((length(off).min(axis=1) < NEAR_WALL) | _inside(place, walls))
+
+
+def _inside(place: Floats, walls: Walls) -> NDArray[np.bool_]:
+    """Return which points lie inside a solid ring: those around which its edges turn once to the left."""
+    start, end = walls.start - place[:, None], walls.end - place[:, None]
+    cross = start[..., 0] * end[..., 1] - start[..., 1] * end[..., 0]
+    up = (start[..., 1] <= 0.0) & (end[..., 1] > 0.0) & (cross > 0.0)
+    down = (start[..., 1] > 0.0) & (end[..., 1] <= 0.0) & (cross < 0.0)
+    return np.asarray(np.sum(up, axis=1) - np.sum(down, axis=1) > 0)

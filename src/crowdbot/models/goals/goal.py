@@ -1,0 +1,103 @@
+"""Goal: the contract of everything that guesses where people are walking."""
+
+from __future__ import annotations
+
+import abc
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.errors import InputError
+from crowdbot.core.plug import kebab
+from crowdbot.data.motion import steady_velocity
+from crowdbot.data.trajectories import Trajectories
+from crowdbot.data.windows import Windows
+
+__all__ = ["Choices", "Goal"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Choices:
+    """Destinations that people may have: G slots for each person, in an order of the goal's own.
+
+    Fields:
+        position: ``[W, A, G, 2]`` [m], what to walk towards.
+        weight: ``[W, A, G]`` probability; sums to 1 for who is present at the last observed row, else 0. A slot that
+            is not used has weight 0.
+
+    Raises:
+        InputError: the shapes do not fit.
+    """
+
+    position: Floats
+    weight: Floats
+
+    def __post_init__(self) -> None:
+        if self.position.ndim != 4 or self.position.shape != (*self.weight.shape, 2):
+            raise InputError(
+                f"choices: position has shape {list(self.position.shape)} and weight {list(self.weight.shape)};"
+                " they must be [W, A, G, 2] and [W, A, G]"
+            )
+
+    def likeliest(self, count: int) -> Choices:
+        """Return ``count`` slots by falling weight, their weights scaled to sum to 1; padded when there are fewer.
+
+        >>> import numpy as np
+        >>> choices = Choices(np.arange(6.0).reshape(1, 1, 3, 2), np.array([[[0.25, 0.5, 0.25]]]))
+        >>> choices.likeliest(2).position[0, 0].tolist(), choices.likeliest(2).weight[0, 0].round(2).tolist()
+        ([[2.0, 3.0], [0.0, 1.0]], [0.67, 0.33])
+        """
+        order = np.argsort(-self.weight, axis=-1, kind="stable")[..., :count]
+        weight = np.take_along_axis(self.weight, order, axis=-1)
+        place = np.take_along_axis(self.position, order[..., None], axis=-2)
+        missing = count - weight.shape[-1]
+        if missing > 0:
+            weight = np.concatenate([weight, np.zeros((*weight.shape[:2], missing))], axis=-1)
+            place = np.concatenate([place, np.repeat(place[:, :, :1], missing, axis=2)], axis=2)
+        total = np.sum(weight, axis=-1, keepdims=True)
+        return Choices(place, weight / np.where(total > 0.0, total, 1.0))
+
+
+@dataclass(frozen=True)
+class Goal(abc.ABC):
+    """How the goals of people are guessed from what was observed of them.
+
+    A new goal is one class with :meth:`resolve`; it may look at ``past`` only, everyone's goal may use everyone's past
+    of the same window, and absent people get 0.
+    """
+
+    knows_future: ClassVar[bool] = False
+    """Whether it looks at what is to be predicted: then it is for evaluation only."""
+    learns: ClassVar[bool] = False
+    """Whether it is made for a place, by :meth:`learned` or with values of its own, and not by its name alone."""
+
+    @abc.abstractmethod
+    def resolve(self, past: Windows) -> Floats:
+        """Return one goal each ``[W, A, 2]`` [m], the best single guess; 0 for who is absent at the last row."""
+
+    def choices(self, past: Windows) -> Choices:
+        """Return the destinations that people may have and how probable each is; by default the one of resolve."""
+        here = past.present[:, -1]
+        return Choices(self.resolve(past)[:, :, None], here[:, :, None].astype(np.float64))
+
+    def velocity(self, past: Windows) -> Floats:
+        """Return the velocity ``[W, A, 2]`` [m/s] on which the goals are based, 0 for who is absent.
+
+        Its length is the speed at which people may be taken to walk on.
+        """
+        return steady_velocity(past)
+
+    @classmethod
+    def learned(cls, *recordings: Trajectories, **values: Any) -> Self:
+        """Return the goal as it is learned from recordings of one place; ``values`` are fields.
+
+        Raises:
+            InputError: this goal does not learn, or the recordings do not suit it.
+            DataError: a recording is too short to learn from.
+        """
+        name = kebab(cls.__name__)
+        raise InputError(f"{name} does not learn from recordings: make it by {cls.__name__}(...)")

@@ -1,0 +1,200 @@
+"""Destinations learned from recordings of the place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.errors import InputError
+from crowdbot.core.paper import Paper
+from crowdbot.core.parameter import check_parameters, parameter
+from crowdbot.data.trajectories import Trajectories
+from crowdbot.data.windows import Windows
+
+from .exits import clusters, track_ends
+from .goal import Choices, Goal
+from .headings import MOVING, ahead, angle_between, length, turned, unit
+from .learned_velocity import LearnedVelocity, mean_velocity, pairs_of
+from .votes import NODES, Ballot, poll, typical_turn
+
+__all__ = ["LearnedDestinations"]
+
+Floats = NDArray[np.float64]
+
+BENNEWITZ = Paper(
+    "Bennewitz, Burgard, Cielniak, Thrun",
+    2005,
+    "Learning motion patterns of people for compliant robot motion",
+    "International Journal of Robotics Research 24(1)",
+)
+STRAIGHT = np.radians(15.0)
+"""A turn of less counts as straight on, in part."""
+RAREST = 0.02
+"""An exit needs this share of all ends, and at least two."""
+MOST_VOTERS = 20_000
+"""So many rows of the recordings are kept; with more, every k-th of them."""
+CHUNK_PEOPLE = 512
+"""People whose votes are held at once."""
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedDestinations(Goal):
+    """Where people went who were here before, walking the same way.
+
+    Made by :meth:`learned` from recordings of the same place. The ends of their tracks are grouped into exits. Every
+    row of the recordings is a voter: it knows where somebody was, the heading, by how much they had turned
+    ``lookahead`` later, and at which exit they left. People are polled by voters near their place and heading: the
+    votes for each exit (and for straight on) are the weights of :meth:`choices`, the median turn of these voters is
+    the direction in which each is left for. :meth:`resolve` takes the median turn of all voters, with some votes for
+    no turn, so that where nobody has walked before people go straight on. The velocity itself is learned, too: how
+    much of a longer mean is in the next seconds.
+
+    All goals lie ``horizon`` ahead, in the direction in which people set out, as crowd models walk straight to a goal:
+    the places of the exits are in ``exits``.
+
+    Fields:
+        exits: ``[G, 2]`` [m].
+        voters: rows of the recordings.
+        pace: learned velocity.
+        reach: how far away others are asked [m], as a standard deviation.
+        spread: difference of headings, likewise [rad].
+        doubt: so many votes (times m/s) for no turn are added.
+        horizon: how far ahead the goals are, in time at the learned velocity [s].
+
+    Raises:
+        InputError: a value is not allowed; on use, windows have another time step or are in pixels.
+
+    Paper: after Bennewitz et al. (2005), who group whole tracks.
+    """
+
+    exits: Floats
+    voters: Ballot
+    pace: LearnedVelocity
+    reach: float = parameter(1.5, unit="m", low=0.5, high=3.0, source="crowdbot", minimum=0.05)
+    spread: float = parameter(0.15, unit="rad", low=0.05, high=0.6, source="crowdbot", minimum=0.01)
+    doubt: float = parameter(5.0, unit="m/s", low=0.0, high=50.0, source="crowdbot", minimum=0.0)
+    horizon: float = parameter(20.0, unit="s", low=5.0, high=60.0, source="crowdbot", minimum=0.1)
+
+    learns: ClassVar[bool] = True
+    paper: ClassVar[Paper] = BENNEWITZ
+
+    def __post_init__(self) -> None:
+        check_parameters(self)
+
+    @classmethod
+    def learned(
+        cls,
+        *recordings: Trajectories,
+        observe: int = 8,
+        lookahead: float = 1.6,
+        width: float = 3.0,
+        **values: Any,
+    ) -> Self:
+        """Return the goal as it is learned from recordings of one place.
+
+        Args:
+            recordings: of the place, in metres, with one time step; not what is to be predicted.
+            observe: most rows that the learned velocity looks at.
+            lookahead: how far ahead the direction should be right [s]; from a third of what will be predicted to all
+                of it.
+            width: of an exit [m].
+            values: fields ``reach``, ``spread``, ``doubt`` and ``horizon``.
+
+        Raises:
+            InputError: no recording is given, they are in pixels or differ in time step, or a value is not allowed.
+            DataError: a recording has no window that is long enough.
+        """
+        if not 0.0 < width < np.inf:
+            raise InputError(f"learned-destinations: width = {width} m must be finite and above 0")
+        pairs = pairs_of(recordings, observe, lookahead)
+        pace = LearnedVelocity.fitted(pairs)
+        ends = [track_ends(tracks) for tracks in recordings]
+        left = np.concatenate([place[gone] for _, place, gone in ends])
+        exits = clusters(left, width, max(2, round(RAREST * len(left)))) if len(left) else np.zeros((0, 2))
+        parts = [
+            _voters(past, future, pace, _exit_of(past.id, *end, exits, width))
+            for (past, future), end in zip(pairs, ends, strict=True)
+        ]
+        every = max(1, -(-sum(len(part.turn) for part in parts) // MOST_VOTERS))
+        voters = Ballot(*(np.ascontiguousarray(np.concatenate(column)[::every]) for column in zip(*parts, strict=True)))
+        return cls(exits, voters, pace, **values)
+
+    def velocity(self, past: Windows) -> Floats:
+        """Return the learned velocity ``[W, A, 2]`` [m/s], see :meth:`Goal.velocity`."""
+        return self.pace.velocity(past)
+
+    def resolve(self, past: Windows) -> Floats:
+        """Return one goal each ``[W, A, 2]`` [m], in the median direction; 0 for who is absent at the last row."""
+        velocity, here = self.velocity(past), past.present[:, -1]
+        asked = here & (length(velocity) > MOVING)
+        turn = np.zeros(here.shape)
+        if np.any(asked):
+            polled = self._polled(past.position[:, -1][asked], velocity[asked], False)
+            turn[asked] = polled[0]
+        return ahead(past.position[:, -1], here, turned(velocity, turn), self.horizon)
+
+    def choices(self, past: Windows) -> Choices:
+        """Return straight on (slot 0) and one way for each exit (slots 1 to G) with the share of votes for it."""
+        velocity, here = self.velocity(past), past.present[:, -1]
+        weight = np.zeros((*here.shape, len(self.exits) + 1))
+        turn = np.zeros(weight.shape)
+        weight[here, 0] = 1.0
+        asked = here & (length(velocity) > MOVING)
+        if np.any(asked):
+            _, weight[asked], turn[asked] = self._polled(past.position[:, -1][asked], velocity[asked], True)
+        place = np.where(here[..., None], past.position[:, -1], 0.0)
+        way = np.where(here[..., None, None], turned(velocity[:, :, None], turn), 0.0)
+        return Choices(place[:, :, None] + self.horizon * way, weight)
+
+    def _polled(self, place: Floats, velocity: Floats, by_exit: bool) -> tuple[Floats, Floats, Floats]:
+        """Return the median turn ``[P]``, and by way ``[P, G + 1]`` its weight and turn, of people ``[P, 2]``."""
+        count, ways = len(place), len(self.exits) + 1
+        heading = unit(velocity)
+        middle, weight, turn = np.zeros(count), np.zeros((count, ways)), np.zeros((count, ways))
+        for first in range(0, count, CHUNK_PEOPLE):
+            part = slice(first, min(first + CHUNK_PEOPLE, count))
+            votes = np.zeros((part.stop - first, ways + 1, NODES))
+            asked = np.ascontiguousarray(place[part]), heading[part]
+            poll(*asked, self.voters, len(self.exits), self.reach, self.spread, votes)
+            middle[part] = typical_turn(np.sum(votes, axis=1), self.doubt)
+            if by_exit:
+                known = np.sum(votes[:, :ways], axis=2)
+                known[:, 0] += max(self.doubt, 1e-9)
+                weight[part] = known / np.sum(known, axis=1, keepdims=True)
+                turn[part] = typical_turn(votes[:, :ways])
+                turn[part, 0] = typical_turn(votes[:, 0], self.doubt)
+        return middle, weight, turn
+
+
+def _exit_of(
+    id: NDArray[np.int64],
+    people: NDArray[np.int64],
+    place: Floats,
+    gone: NDArray[np.bool_],
+    exits: Floats,
+    width: float,
+) -> NDArray[np.int64]:
+    """Return the index of the exit ``[W, A]`` where each person's track ends, or the number of exits if unknown."""
+    known = np.full(len(people), len(exits))
+    if len(exits):
+        away = length(place[:, None] - exits)
+        nearest = np.argmin(away, axis=1)
+        known = np.where(gone & (away.min(axis=1) <= width), nearest, known)
+    return np.asarray(known[np.clip(np.searchsorted(people, id), 0, len(people) - 1)], dtype=np.int64)
+
+
+def _voters(past: Windows, future: Windows, pace: LearnedVelocity, exit: NDArray[np.int64]) -> Ballot:
+    velocity, after = pace.velocity(past), mean_velocity(past, future)
+    voting = future.scored & (length(velocity) > MOVING)
+    turn = np.where(length(after) > MOVING, angle_between(velocity, after), 0.0)[voting]
+    return Ballot(
+        past.position[:, -1][voting],
+        unit(velocity[voting]),
+        turn,
+        length(velocity[voting]),
+        np.maximum(0.0, 1.0 - np.abs(turn) / STRAIGHT),
+        exit[voting],
+    )

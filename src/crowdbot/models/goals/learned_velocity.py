@@ -1,0 +1,161 @@
+"""Velocities as a place teaches them: how much each of the last displacements tells of the next seconds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.errors import InputError
+from crowdbot.data.motion import bridged, cut, steady_velocity
+from crowdbot.data.trajectories import Trajectories
+from crowdbot.data.windows import Windows
+
+__all__ = ["LearnedVelocity", "mean_velocity", "pairs_of"]
+
+Floats = NDArray[np.float64]
+
+RIDGE = 0.01
+"""Pull of the weights towards 0, as a share of the mean square of what they weigh."""
+ROUNDS = 15
+"""Rounds of re-weighting; the weights settle in less."""
+SMALLEST = 0.05
+"""Residuals count as at least this share of the median one, else a perfect fit would count without bound."""
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedVelocity:
+    """A weighted mean of displacements around :func:`~crowdbot.data.motion.steady_velocity`.
+
+    The weights minimise the summed distance (not its square: who turns does not outweigh who goes straight) between
+    the velocity and the mean velocity of the seconds that followed. They are the same for x and y, so a place can be
+    turned. One row of weights for every length of history.
+
+    Fields:
+        weight: ``[N, N]``: row n - 1 holds the weights of the last n displacements, oldest first, at its end.
+        dt: time step of the recordings [s]; windows must have the same.
+    """
+
+    weight: Floats
+    dt: float
+
+    @classmethod
+    def learned(cls, recordings: tuple[Trajectories, ...], observe: int = 8, lookahead: float = 1.6) -> Self:
+        """Return what recordings of one place teach.
+
+        Args:
+            recordings: in metres, with one time step.
+            observe: most rows that are looked at.
+            lookahead: the seconds that are to be foretold.
+
+        Raises:
+            InputError: no recording is given, they are in pixels or differ in time step, or a value is not allowed.
+            DataError: a recording has no window that is long enough.
+        """
+        return cls.fitted(pairs_of(recordings, observe, lookahead))
+
+    @classmethod
+    def fitted(cls, pairs: list[tuple[Windows, Windows]]) -> Self:
+        """Return the weights that suit the people who are scored in pairs of past and future."""
+        most = pairs[0][0].position.shape[1] - 1
+        weight = np.zeros((most, most))
+        for count in range(1, most + 1):
+            offs, misses = zip(*(_sample(past, future, count) for past, future in pairs), strict=True)
+            weight[count - 1, most - count :] = _least_distance(np.concatenate(offs), np.concatenate(misses))
+        return cls(weight, pairs[0][0].dt)
+
+    def velocity(self, past: Windows) -> Floats:
+        """Return ``[W, A, 2]`` [m/s]; 0 for who was seen at the last row only, or is absent there.
+
+        Raises:
+            InputError: the windows are in pixels, or have another time step.
+        """
+        if past.units != "m":
+            raise InputError(
+                f"goals: {past.source} is in {past.units}, the place was learned in m; turn it into metres"
+            )
+        if not abs(past.dt - self.dt) <= 0.01 * self.dt:
+            raise InputError(
+                f"goals: {past.source} has steps of {past.dt:.4g} s, but the place was learned at steps of"
+                f" {self.dt:.4g} s; resample one of them"
+            )
+        steady = steady_velocity(past)
+        most = len(self.weight)
+        known = cut(bridged(past), max(0, past.position.shape[1] - 1 - most), past.position.shape[1])
+        offs, both = _offs(known, steady)
+        count = np.minimum(np.sum(both, axis=1), most)
+        if most == 0 or offs.shape[1] == 0:
+            return steady
+        weight = self.weight[np.maximum(count, 1) - 1][..., most - offs.shape[1] :]
+        change = np.sum(np.moveaxis(offs, 1, -2) * weight[..., None], axis=-2)
+        known_here = past.present[:, -1] & (count > 0)
+        return np.where(known_here[..., None], steady + change, steady)
+
+
+def pairs_of(recordings: tuple[Trajectories, ...], observe: int, lookahead: float) -> list[tuple[Windows, Windows]]:
+    """Return past and future windows of recordings to learn from; futures that end early are in, from two rows on."""
+    if not recordings:
+        raise InputError("goals: there is no recording to learn from, give at least one of the place")
+    if not 0.0 < lookahead < np.inf:
+        raise InputError(f"goals: lookahead = {lookahead} s must be finite and above 0")
+    dt = recordings[0].dt
+    for tracks in recordings:
+        if tracks.units != "m":
+            raise InputError(f"goals: {tracks.name} is in pixels; turn it into metres to learn from it")
+        if not abs(tracks.dt - dt) <= 0.01 * dt:
+            raise InputError(
+                f"goals: {recordings[0].name} has steps of {dt:.4g} s and {tracks.name} of {tracks.dt:.4g} s;"
+                " resample one of them"
+            )
+    steps = max(1, round(lookahead / dt))
+    return [tracks.windows(max(2, observe), steps, "partial") for tracks in recordings]
+
+
+def _offs(known: Windows, steady: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return how velocities of displacements differ from the steady one ``[W, n, A, 2]`` [m/s], and which there are."""
+    both = known.present[:, 1:] & known.present[:, :-1]
+    off = np.diff(known.position, axis=1) / known.dt - steady[:, None]
+    return np.where(both[..., None], off, 0.0), both
+
+
+def _sample(past: Windows, future: Windows, count: int) -> tuple[Floats, Floats]:
+    """Return differences ``[P, count, 2]`` and what the steady velocity missed ``[P, 2]`` [m/s] of scored people."""
+    rows = past.position.shape[1]
+    known = cut(past, rows - 1 - count, rows)
+    steady = steady_velocity(known)
+    counted = future.scored
+    off = np.moveaxis(_offs(bridged(known), steady)[0], 1, 2)[counted]
+    return off, (mean_velocity(past, future) - steady)[counted]
+
+
+def mean_velocity(past: Windows, future: Windows) -> Floats:
+    """Return the mean velocity ``[W, A, 2]`` [m/s] until the last future row at which each person is there."""
+    steps = future.present.shape[1]
+    last = steps - 1 - np.argmax(future.present[:, ::-1], axis=1)
+    end = np.take_along_axis(future.position, last[:, None, :, None], axis=1)[:, 0]
+    return np.asarray((end - past.position[:, -1]) / ((last + 1) * past.dt)[..., None])
+
+
+def _least_distance(off: Floats, miss: Floats) -> Floats:
+    """Return weights ``[n]`` that minimise the sum of ``|miss - weights off|`` by re-weighted least squares.
+
+    Sums are written out: the order in which a matrix product adds depends on the number of threads.
+    """
+    count = off.shape[1]
+    x, y = off.reshape(len(off), count, 2), miss
+    floor = max(SMALLEST * float(np.median(np.sqrt(np.sum(y * y, axis=-1)))), 1e-9)
+    worth = np.ones(len(y))
+    weight = np.zeros(count)
+    for _ in range(ROUNDS):
+        scaled = worth[:, None, None] * x
+        gram = np.array([[np.sum(scaled[:, i] * x[:, j]) for j in range(count)] for i in range(count)])
+        right = np.array([np.sum(scaled[:, i] * y) for i in range(count)])
+        scale = np.trace(gram) / count
+        if not scale > 1e-12 * len(y):
+            return weight  # everyone walked evenly: nothing to weigh
+        weight = np.linalg.solve(gram + RIDGE * scale * np.eye(count), right)
+        left = y - np.sum(x * weight[:, None], axis=1)
+        worth = 1.0 / np.maximum(np.sqrt(np.sum(left * left, axis=-1)), floor)
+    return weight
