@@ -47,7 +47,7 @@ def moved(place: np.ndarray, angle: float, shift: tuple[float, float]) -> np.nda
 def made(kind: type, past: Windows, angle: float = 0.0, shift: tuple[float, float] = (0.0, 0.0)) -> object:
     """Return a goal of a kind for the street, turned and shifted."""
     if kind is GroundTruth:
-        return GroundTruth(past)
+        return GroundTruth(past, past)
     if kind is EnvironmentLayout:
         exits = moved(np.array(EXITS), angle, shift)
         return EnvironmentLayout(exits, [moved(wall, angle, shift) for wall in WALLS])

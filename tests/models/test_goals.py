@@ -73,10 +73,10 @@ def test_the_ground_truth_is_the_last_place_seen():
     place = np.arange(12.0).reshape(1, 2, 3, 2)
     present = np.array([[[True, True, True], [True, False, True]]])
     future = windows(place, present)
-    goal = GroundTruth(future).resolve(walk())
+    goal = GroundTruth(walk(), future).resolve(walk())
     assert goal[0].tolist() == [[6.0, 7.0], [2.0, 3.0], [0.0, 0.0]]
     nobody = dataclasses.replace(future, present=np.zeros((1, 2, 3), dtype=bool))
-    assert GroundTruth(nobody).resolve(walk())[0].tolist() == [[1.2, 0.0], [5.0, 1.4], [0.0, 0.0]]
+    assert GroundTruth(walk(), nobody).resolve(walk())[0].tolist() == [[1.2, 0.0], [5.0, 1.4], [0.0, 0.0]]
 
 
 def test_only_the_ground_truth_knows_the_future():
@@ -85,12 +85,25 @@ def test_only_the_ground_truth_knows_the_future():
     assert not Goal.knows_future
 
 
+def test_the_ground_truth_of_some_windows_and_of_their_first_rows():
+    past = windows(np.arange(48.0).reshape(2, 4, 3, 2))
+    past = dataclasses.replace(past, frame=np.array([[0, 10, 20, 30], [10, 20, 30, 40]]))
+    future = dataclasses.replace(windows(np.arange(24.0).reshape(2, 2, 3, 2)), id=past.id)
+    truth = GroundTruth(past, future)
+    for window in (0, 1):
+        for row in (2, 4):
+            some = cut(past[window : window + 1], 0, row)
+            assert np.array_equal(truth.resolve(some)[0], future.position[window, -1])
+
+
 def test_the_ground_truth_of_other_people():
     future = windows(np.zeros((1, 2, 3, 2)), number=7)
-    with pytest.raises(InputError, match="cut from the same recording"):
-        GroundTruth(future).resolve(walk())
+    with pytest.raises(InputError, match="must be cut with one call"):
+        GroundTruth(walk(), future)
     with pytest.raises(InputError, match=r"people \[1, 3\] and the future \[2, 3\]"):
-        GroundTruth(windows(np.zeros((2, 2, 3, 2)))).resolve(walk())
+        GroundTruth(walk(), windows(np.zeros((2, 2, 3, 2))))
+    with pytest.raises(InputError, match="window 0 of .* is none of the 1 windows whose future is known"):
+        GroundTruth(walk(), walk()).resolve(future)
 
 
 @pytest.mark.parametrize("steps", [0, -3])
@@ -114,5 +127,5 @@ def test_nothing_given_is_changed():
     past = walk()
     before = past.position.copy()
     CurrentDirection(steps=3).resolve(past)
-    GroundTruth(past).resolve(past)
+    GroundTruth(past, past).resolve(past)
     assert np.array_equal(past.position, before)

@@ -93,13 +93,13 @@ def test_ground_truth_goals_end_where_people_went(windows: Maker) -> None:
     bent = path.copy()
     bent[:, 8:, :, 0] = path[:, 7:8, :, 0]
     past, future = windows(bent[:, :8]), windows(bent[:, 8:])
-    end = Simulated(Straight(), GroundTruth(future)).predict(past, 40).position[0, 0, -1, 0]
+    end = Simulated(Straight(), GroundTruth(past, future)).predict(past, 40).position[0, 0, -1, 0]
     np.testing.assert_allclose(end, future.position[0, -1, 0], atol=1e-6)
 
 
 def test_a_fit_predicts_the_same_as_its_predictor(crowd: Maker) -> None:
     past = crowd(4)
-    fit = Calibrator(budget=5).fit(past, seed=1)
+    fit = Calibrator(budget=5, search="random-search", shared=True).fit(past, seed=1)
     predictor = Simulated.of(fit)
     assert predictor.model == fit.model
     assert np.array_equal(predictor.predict(past, 12).position, fit.predict(past, 12).position)

@@ -101,7 +101,7 @@ def animate(study: Study, frame: int, file: Path) -> Path:
         for line, tracks in zip(lines, paths.values(), strict=True):
             line.set_data(*_until(tracks, reach))
 
-    animation = FuncAnimation(figure, draw, frames=steps * FRAMES_A_ROW + 1)  # type: ignore[arg-type]
+    animation = FuncAnimation(figure, draw, frames=steps * FRAMES_A_ROW + 1)
     animation.save(file, PillowWriter(fps=max(1, round(FRAMES_A_ROW / past.dt))))
     return file
 

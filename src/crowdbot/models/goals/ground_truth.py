@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import functools
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core.errors import InputError
+from crowdbot.data.motion import observed_velocity
 from crowdbot.data.windows import Windows
 
 from .goal import Goal
@@ -18,31 +20,57 @@ __all__ = ["GroundTruth"]
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class GroundTruth(Goal):
     """The last place where each person is seen in the future; for evaluation only.
 
     It tells how much of an error comes from not knowing the goals. Whoever is not seen in the future stays.
 
     Args:
-        future: the windows to be predicted, with the same people as the past.
+        past, future: windows cut with one call; any of them, or their first observed rows, may then be resolved.
 
     Raises:
-        InputError: past and future do not hold the same people.
+        InputError: past and future do not hold the same people; on resolving, a window is none of them.
     """
 
     knows_future: ClassVar[bool] = True
-    future: Windows
+    past: Windows = field(repr=False)
+    future: Windows = field(repr=False)
+
+    def __post_init__(self) -> None:
+        if not np.array_equal(self.past.id, self.future.id):
+            raise InputError(
+                f"ground-truth: the past has people {list(self.past.id.shape)} and the future"
+                f" {list(self.future.id.shape)}; both must be cut with one call"
+            )
 
     def resolve(self, past: Windows) -> Floats:
         """Return the goals ``[W, A, 2]`` [m]; 0 for people who are not present at the last observed step."""
-        if past.id.shape != self.future.id.shape or not np.array_equal(past.id, self.future.id):
-            raise InputError(
-                f"ground-truth: the past has people {list(past.id.shape)} and the future {list(self.future.id.shape)};"
-                " both must be cut from the same recording with the same windows"
-            )
+        future = self.future[self._places(past)]
         goal = np.where(past.present[:, -1, :, None], past.position[:, -1], 0.0)
-        for step in range(self.future.present.shape[1]):
-            seen = self.future.present[:, step] & past.present[:, -1]
-            goal[seen] = self.future.position[:, step][seen]
+        for step in range(future.present.shape[1]):
+            seen = future.present[:, step] & past.present[:, -1]
+            goal[seen] = future.position[:, step][seen]
         return goal
+
+    def velocity(self, past: Windows) -> Floats:
+        """Return the velocity of the last displacement ``[W, A, 2]`` [m/s]: the goal says nothing about the speed."""
+        return observed_velocity(past)
+
+    def _places(self, past: Windows) -> NDArray[np.int64]:
+        """Return which windows these are: known by their first frame and people."""
+        if past.id.shape == self.past.id.shape and np.array_equal(past.id, self.past.id):
+            return np.arange(len(past))
+        names = [(int(frame), id.tobytes()) for frame, id in zip(past.frame[:, 0], past.id, strict=True)]
+        missing = next((number for number, name in enumerate(names) if name not in self._known), None)
+        if missing is not None:
+            raise InputError(
+                f"ground-truth: window {missing} of {past.source}, from frame {past.frame[missing, 0]} on, is none of"
+                f" the {len(self.past)} windows whose future is known"
+            )
+        return np.array([self._known[name] for name in names], dtype=np.int64)
+
+    @functools.cached_property
+    def _known(self) -> dict[tuple[int, bytes], int]:
+        frames = zip(self.past.frame[:, 0], self.past.id, strict=True)
+        return {(int(frame), id.tobytes()): number for number, (frame, id) in enumerate(frames)}
