@@ -81,9 +81,9 @@ class LearnedVelocity:
                 f"goals: {past.source} has steps of {past.dt:.4g} s, but the place was learned at steps of"
                 f" {self.dt:.4g} s; resample one of them"
             )
-        steady = steady_velocity(past)
         most = len(self.weight)
         known = cut(bridged(past), max(0, past.position.shape[1] - 1 - most), past.position.shape[1])
+        steady = steady_velocity(known)
         offs, both = _offs(known, steady)
         count = np.minimum(np.sum(both, axis=1), most)
         if most == 0 or offs.shape[1] == 0:
