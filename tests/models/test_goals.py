@@ -10,6 +10,7 @@ import pytest
 from crowdbot import models
 from crowdbot.core import InputError
 from crowdbot.core.plug import find, read
+from crowdbot.data.motion import cut
 from crowdbot.data.windows import Windows
 from crowdbot.models import CurrentDirection, Goal, GroundTruth
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -12,7 +12,7 @@ import pytest
 from crowdbot.calibration import Calibrator
 from crowdbot.core import InputError, Paper, Scene
 from crowdbot.data import Windows
-from crowdbot.models import ORCA, CrowdModel, GroundTruth
+from crowdbot.models import ORCA, CrowdModel, CurrentDirection, GroundTruth
 from crowdbot.prediction import ConstantVelocity, Simulated
 
 Maker = Callable[..., Windows]
@@ -31,8 +31,7 @@ class Straight(CrowdModel):
 def test_without_interaction_it_is_constant_velocity(crowd: Maker) -> None:
     past = crowd(3, holes=0.2)
     for displacements in (1, 3):
-        simulated = Simulated(Straight(), displacements=displacements)
-        simulated = replace(simulated, goal=replace(simulated.goal, steps=displacements))
+        simulated = Simulated(Straight(), CurrentDirection(steps=displacements))
         expected = ConstantVelocity(displacements).predict(past, 12)
         np.testing.assert_allclose(simulated.predict(past, 12).position, expected.position, atol=1e-9)
 

@@ -56,7 +56,6 @@ class Calibrator:
         prior: what is known of the parameters of a population; unusual people cost more.
         radius: people's radius before the fit [m].
         substep: longest time step of the simulation [s].
-        displacements: how many last displacements give velocities and observed speeds.
 
     Raises:
         InputError: a name is unknown, or the budget is below 1.
@@ -72,7 +71,6 @@ class Calibrator:
     prior: PopulationPrior | None = None
     radius: float = RADIUS.default
     substep: float = 0.1
-    displacements: int = 1
 
     def __post_init__(self) -> None:
         for name, value in (
@@ -97,7 +95,7 @@ class Calibrator:
     def rollout(self) -> Rollout:
         """The crowd before the calibration."""
         model, goal = cast(CrowdModel, self.model), cast(Goal, self.goal)
-        return Rollout(model, goal, self.radius, None, self.substep, self.displacements)
+        return Rollout(model, goal, self.radius, None, self.substep)
 
     @property
     def scheme(self) -> str:
@@ -154,7 +152,7 @@ class Calibrator:
         Windows in which nobody can be compared keep the given values and have the cost NaN.
         """
         space, begin = self.space, time.perf_counter()
-        given = space.given(past, self.radius, self.displacements)
+        given = space.given(past, self.rollout)
         starts = self._starts(past, given, start)
         size = max(1, AGENTS_AT_ONCE // (CANDIDATES * max(1, past.position.shape[2])))
         counted = np.zeros(past.id.shape, dtype=np.bool_)
@@ -173,7 +171,7 @@ class Calibrator:
         parts: list[_Task] = []
         for past in pasts:
             size = max(1, AGENTS_AT_ONCE // max(1, past.position.shape[2]))
-            given = space.given(past, self.radius, self.displacements)
+            given = space.given(past, self.rollout)
             parts += [
                 _Task(self, past[first : first + size], given[first : first + size], None)
                 for first in range(0, len(past), size)
@@ -217,8 +215,7 @@ class Calibrator:
             starts.append(start.values_of(past))
         if self.prior is not None:
             starts.append(self.prior.typical(self.space, given))
-        if past.position.shape[1] > 2:  # speeds over all rows, which are less noisy than those of the last one
-            starts.append(self.space.given(past, self.radius, past.position.shape[1] - 1))
+        starts.append(self.space.with_mean_speed(past, given))
         return np.stack(starts)
 
 

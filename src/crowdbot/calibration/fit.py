@@ -103,7 +103,7 @@ class Fit:
         Who was calibrated has the values of the latest window with them; everyone else the median of all, and the
         observed preferred speed.
         """
-        given = self.space.given(past, float(np.max(self.base.radius)), self.base.displacements)
+        given = self.space.given(past, self.base)
         if self.shared:
             return np.broadcast_to(self.values, given.shape)
         if np.array_equal(past.id, self.id):

@@ -67,7 +67,7 @@ class Ledger:
         """
         candidates = candidates[: self.left]
         P, L, N, _ = candidates.shape
-        counts = self._counts[self.live]
+        counts = self.counts
         if not counts.all():
             candidates = np.where(counts[..., None], candidates, self._first[self.live])
         cost = np.ascontiguousarray(self.function(candidates, self.live), dtype=float)
@@ -96,7 +96,7 @@ class Ledger:
     def settle(self, *arrays: Floats) -> tuple[Floats, ...]:
         """Return the arrays ``[_, L, ...]`` with only those problems that are not done, and forget the others."""
         live = self.live
-        nobody = ~self._counts[live].any(axis=1)
+        nobody = ~self.counts.any(axis=1)
         self.cost[live[nobody]] = np.nan
         self._history[live[nobody]] = np.nan
         done = nobody | (self.cost[live] <= self.tolerance)
@@ -116,6 +116,25 @@ class Ledger:
     def draw(self, how: Callable[[np.random.Generator], NDArray[Any]]) -> NDArray[Any]:
         """Return what ``how`` draws for every problem that is not done, ``[P, ...]`` each, along axis 1."""
         return np.stack([how(self.rngs[number]) for number in self.live], axis=1)
+
+    @property
+    def counts(self) -> NDArray[np.bool_]:
+        """Who counts in the problems that are not done, ``[L, N]``."""
+        return self._counts[self.live]
+
+    @property
+    def progress(self) -> float:
+        """The share of the budget that is spent, 0 to 1."""
+        return self._spent / self.budget
+
+    def incumbent(self) -> Floats:
+        """Return the best whole-crowd candidates so far, ``[1, L, N, D]``, moved into the box."""
+        return np.clip(self.best[self.live], self.low, self.high)[None]
+
+    def folded(self, values: Floats) -> Floats:
+        """Return values mirrored at the sides of the box, and into it."""
+        inside = np.clip(values, self.low, self.high)
+        return np.clip(2.0 * inside - values, self.low, self.high)
 
     def anywhere(self, count: int) -> Floats:
         """Return ``count`` candidates ``[count, L, N, D]`` that lie uniformly at random in the box."""

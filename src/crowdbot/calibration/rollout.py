@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, Walls
-from crowdbot.data.motion import bridged, cut, observed_velocity
+from crowdbot.data.motion import bridged, cut
 from crowdbot.data.windows import Windows
 from crowdbot.models import CrowdModel
 from crowdbot.models.goals import Goal
@@ -32,9 +32,8 @@ class Rollout:
         model: how they walk; its parameters are numbers or ``[W, A]``.
         goal: where they want to go; it is resolved from what is known at the start of the simulation.
         radius: a number or ``[W, A]`` [m].
-        preferred_speed: ``[W, A]`` [m/s], or None for the observed speed.
+        preferred_speed: ``[W, A]`` [m/s], or None for the observed speed: that of the goal's velocity.
         substep: longest time step of the simulation [s]; a row of the recording is cut into equal steps.
-        displacements: how many last displacements give the velocity and the observed speed at the start.
 
     People start with their observed velocity. Robots are external: the others avoid them; they follow their plan when
     it is known, otherwise they keep their velocity.
@@ -45,7 +44,6 @@ class Rollout:
     radius: float | Floats = 0.25
     preferred_speed: Floats | None = None
     substep: float = 0.1
-    displacements: int = 1
 
     def __post_init__(self) -> None:
         if not 0.0 < self.substep < math.inf:
@@ -53,14 +51,12 @@ class Rollout:
         radius = np.asarray(self.radius, dtype=float)
         if not (np.all(radius > 0.0) and np.all(np.isfinite(radius))):
             raise InputError(f"simulation: radius = {radius.min()} m must be finite and above 0")
-        if self.displacements < 1:
-            raise InputError(f"simulation: displacements = {self.displacements} must be at least 1")
 
     def scene(self, past: Windows, row: int) -> Scene:
         """Return everyone at a row of the windows, E = W; who is not simulated from there on is external.
 
-        At row 0 the velocity is that towards the next row, later it is that of the last displacements. Holes in the
-        observed tracks are bridged.
+        The velocity is the one on which the goal is based, at row 0 that towards the next row. Holes in the observed
+        tracks are bridged.
 
         Raises:
             InputError: the windows are in pixels.
@@ -71,7 +67,7 @@ class Rollout:
             )
         whole = bridged(past)
         known = cut(whole, 0, max(row, 1) + 1)
-        velocity = observed_velocity(known, 1 if row == 0 else self.displacements)
+        velocity = self.goal.velocity(known)
         here = whole.present[:, row]
         place = whole.position[:, row]
         scene = Scene.of(

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Parameter, Scene, parameters
 from crowdbot.core.errors import did_you_mean
 from crowdbot.core.plug import kebab
-from crowdbot.data.motion import observed_velocity
+from crowdbot.data.motion import bridged, observed_velocity
 from crowdbot.data.windows import Windows
 from crowdbot.models import CrowdModel
 
@@ -84,22 +84,31 @@ class Space:
         """Upper end of the box ``[D]``."""
         return np.array([row.high for row in self.table])
 
-    def given(self, past: Windows, radius: float, displacements: int) -> Floats:
-        """Return what people have before a calibration: ``[W, A, D]``; speeds are those of the last displacements.
+    def given(self, past: Windows, rollout: Rollout) -> Floats:
+        """Return what people have before a calibration: ``[W, A, D]``; speeds are the observed ones.
 
         Raises:
             InputError: a free parameter of the model has one value for each agent already.
         """
-        velocity = observed_velocity(past, displacements)
+        velocity = rollout.goal.velocity(bridged(past))
         observed = np.sqrt(velocity[..., 0] ** 2 + velocity[..., 1] ** 2)
         values = np.zeros((*observed.shape, len(self.table)))
         for column, row in enumerate(self.table):
-            value = {RADIUS.name: radius, PREFERRED_SPEED.name: observed}.get(row.name)
+            value = {RADIUS.name: rollout.radius, PREFERRED_SPEED.name: observed}.get(row.name)
             if value is None:
                 value = getattr(self.model, row.name)
                 if np.ndim(value) > 0:
                     raise InputError(f"calibration: {row.name} must be one number before it, not one for each agent")
             values[..., column] = value
+        return values
+
+    def with_mean_speed(self, past: Windows, values: Floats) -> Floats:
+        """Return the values ``[W, A, D]`` with everyone's mean speed over all rows, less noisy than that at the end."""
+        values = values.copy()
+        velocity = observed_velocity(past, past.position.shape[1])
+        for column, name in enumerate(self.names):
+            if name == PREFERRED_SPEED.name:
+                values[..., column] = np.sqrt(velocity[..., 0] ** 2 + velocity[..., 1] ** 2)
         return values
 
     def applied(self, rollout: Rollout, values: Floats) -> Rollout:

@@ -36,8 +36,9 @@ __all__ = ["Simulated"]
 class Simulated(Predictor):
     """Everyone walks on as a crowd model says, all windows as one batch.
 
-    People start with the velocity of their last displacements and prefer to keep its length; robots follow their plan
-    when it is known, else they keep their velocity, and the others avoid them. Walls are those of the recording. K is
+    People start with the velocity on which their goal is based (that of the last displacement, for the current
+    direction) and prefer to keep its length; robots follow their plan when it is known, else they keep their velocity,
+    and the others avoid them. Walls are those of the recording. K is
     1, unless the goal knows several destinations of a person.
 
     With a cost or a search it is a scheme: before it predicts, everyone's parameters are calibrated on the observed
@@ -53,7 +54,6 @@ class Simulated(Predictor):
         prior: what is known of the parameters of a population.
         radius: of people [m].
         substep: longest time step of the simulation [s]; force models need 0.05 or less.
-        displacements: how many last displacements give the velocity.
 
     Raises:
         InputError: a name is unknown or a number is not above 0; on predicting, the windows are in pixels.
@@ -68,7 +68,6 @@ class Simulated(Predictor):
     prior: PopulationPrior | None = None
     radius: float = 0.25
     substep: float = 0.1
-    displacements: int = 1
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "model", named_model(self.model))
@@ -92,14 +91,13 @@ class Simulated(Predictor):
             rollout.goal,
             radius=float(rollout.radius),
             substep=rollout.substep,
-            displacements=rollout.displacements,
         )
 
     @property
     def rollout(self) -> Rollout:
         """The simulation behind it, before a calibration."""
         model, goal = cast(CrowdModel, self.model), cast(Goal, self.goal)
-        return Rollout(model, goal, self.radius, None, self.substep, self.displacements)
+        return Rollout(model, goal, self.radius, None, self.substep)
 
     @property
     def calibrator(self) -> Calibrator | None:
@@ -108,7 +106,7 @@ class Simulated(Predictor):
             return None
         return Calibrator(
             self.model, self.cost, self.search, self.goal, self.budget, False, tuple(self.free), self.prior,
-            self.radius, self.substep, self.displacements,
+            self.radius, self.substep,
         )  # fmt: skip
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
