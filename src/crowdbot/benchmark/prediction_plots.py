@@ -29,7 +29,7 @@ def plot_errors(results: Sequence[Result], file: Path) -> None:
     """Draw the ADE of every predictor with its 95 % interval, one panel a recording, the smallest on top."""
     panels = _by_recording(results)
     most = max(len(own) for own in panels.values())
-    figure, axes = _figure(1, len(panels), (1.5 + 4.2 * len(panels), 1.2 + 0.26 * min(most, SHOWN_ROWS)))
+    figure, axes = _figure(1, len(panels), (1.0 + 5.5 * len(panels), 1.2 + 0.26 * min(most, SHOWN_ROWS)))
     for axis, (recording, own) in zip(axes[0], panels.items(), strict=True):
         ranked = sorted(own, key=lambda one: one.score.ade)[:SHOWN_ROWS]
         for row, one in enumerate(ranked):
@@ -37,7 +37,7 @@ def plot_errors(results: Sequence[Result], file: Path) -> None:
             color = COLORS[0] if one.frames.calibrated else PEOPLE
             axis.barh(row, one.score.ade, color=color, height=0.7)
             axis.plot((low, high), (row, row), color="black", linewidth=1)
-        axis.set_yticks(range(len(ranked)), [one.recipe.name for one in ranked], fontsize=7)
+        axis.set_yticks(range(len(ranked)), [one.label for one in ranked], fontsize=7)
         axis.invert_yaxis()
         axis.set_xlabel(f"ADE [{own[0].score.units}], 95 % by drawing people", fontsize=8)
         axis.tick_params(axis="x", labelsize=8)
@@ -57,7 +57,7 @@ def plot_frames(results: Sequence[Result], file: Path) -> None:
             frames = one.frames
             for axis, values in zip(row, (frames.ade, frames.cost, 1e3 * frames.seconds), strict=True):
                 if not np.all(np.isnan(values)):
-                    axis.plot(frames.frame, values, color=color, linewidth=0.9, label=one.recipe.name)
+                    axis.plot(frames.frame, values, color=color, linewidth=0.9, label=one.label)
         unit = own[0].score.units
         for axis, name in zip(row, (f"error (ADE) [{unit}]", "minimum cost [m]", "time [ms]"), strict=True):
             axis.set_title(f"{recording.name}: {name}", fontsize=9)
@@ -83,7 +83,8 @@ def animate(study: Study, frame: int, file: Path) -> Path:
         raise InputError(f"an animation shows at most {MOST_LINES} predictors, not {len(study.recipes)}")
     recording, window = _window_at(study.recordings, frame)
     past, future = (one[window : window + 1] for one in recording.windows)
-    paths = {recipe.name: _paths(recipe, recording, past, study) for recipe in study.recipes}
+    labels = study.labels()
+    paths = {labels[recipe.name]: _paths(recipe, recording, past, study) for recipe in study.recipes}
     figure, axes = _figure(1, 1, (7.5, 7.0))
     axis = axes[0, 0]
     _background(axis, past, future, paths)

@@ -1,11 +1,16 @@
 """Floor 3: which parameters make a crowd model walk like recorded people; a scheme is model x cost x search x goal."""
 
 from .absolute import Absolute
+from .annealing import Annealing
 from .calibrator import Calibrator
 from .campaign import Campaign, FittedPiece
+from .cma_es import CMAES
+from .cooling import Cooling, Geometric
 from .cost import Cost
 from .fit import Fit
 from .futures import futures
+from .genetic import Genetic
+from .greedy import Greedy
 from .inter_pedestrian import InterPedestrian
 from .named import goal_for, kind_of_goal, named_cost, named_goal, named_model, named_search
 from .prior import PopulationPrior
@@ -18,13 +23,19 @@ from .space import Space
 from .weighted_sum import WeightedSum
 
 __all__ = [
+    "CMAES",
     "Absolute",
+    "Annealing",
     "Calibrator",
     "Campaign",
+    "Cooling",
     "Cost",
     "Fit",
     "FittedPiece",
     "Found",
+    "Genetic",
+    "Geometric",
+    "Greedy",
     "InterPedestrian",
     "PopulationPrior",
     "Progressive",

@@ -28,7 +28,7 @@ SHRINKAGE = 0.1
 """Share of the covariance that is taken as independent, so that it can always be inverted."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PopulationPrior:
     """A joint normal distribution over people of the (transformed) parameters of a model.
 
@@ -39,20 +39,19 @@ class PopulationPrior:
     Fields:
         names: of the D parameters.
         mean, covariance: ``[D]`` and ``[D, D]`` of the transformed parameters.
-        strength: the penalty [m] of a person whose parameters are one standard deviation away in one of D directions,
-            in the unit of the costs.
+        strength: twice the penalty [m] of a person whose parameters are one standard deviation away in one direction.
 
     >>> from crowdbot.models import ORCA
     >>> prior = PopulationPrior(("radius",), np.zeros(1), np.eye(1))
     >>> values = np.array([[[0.25]], [[0.39]]])
     >>> prior.penalty(Space(ORCA(), ("radius",)), values, values).round(4).tolist()
-    [[0.0], [0.1132]]
+    [[0.0], [0.5661]]
     """
 
-    names: tuple[str, ...]
+    names: tuple[str, ...] = field(repr=False)
     mean: Floats = field(repr=False)
     covariance: Floats = field(repr=False)
-    strength: float = 0.02
+    strength: float = 0.1
 
     def __post_init__(self) -> None:
         D = len(self.names)
@@ -67,7 +66,7 @@ class PopulationPrior:
             raise InputError(f"population prior: strength = {self.strength} must be finite and not below 0")
 
     @classmethod
-    def learned(cls, fits: Fit | Sequence[Fit], strength: float = 0.02) -> PopulationPrior:
+    def learned(cls, fits: Fit | Sequence[Fit], strength: float = 0.1) -> PopulationPrior:
         """Return the distribution of the parameters of everyone who was calibrated alone.
 
         Raises:
@@ -101,7 +100,7 @@ class PopulationPrior:
         self._check(space)
         away = _transformed(space, values, given) - self.mean
         square = np.sum(away @ np.linalg.inv(self.covariance) * away, axis=-1)
-        return np.asarray(0.5 * self.strength * square / len(self.names))
+        return np.asarray(0.5 * self.strength * square)
 
     def typical(self, space: Space, given: Floats) -> Floats:
         """Return the values ``[..., A, D]`` of the average person, with everyone's own observed speed."""

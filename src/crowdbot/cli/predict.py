@@ -104,7 +104,7 @@ def _tables(options: argparse.Namespace, study: Study, results: list[Result]) ->
     for recording in study.recordings:
         own = [result for result in results if result.recording is recording]
         title = f"{recording.name}, {reach}"
-        _table(title, "predictor", [result.recipe.name for result in own], [r.score for r in own], caption)
+        _table(title, "predictor", [result.label for result in own], [r.score for r in own], caption)
 
 
 def _table(title: str, head: str, rows: list[str], scores: list[Score], caption: str) -> None:

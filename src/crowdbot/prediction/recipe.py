@@ -48,6 +48,17 @@ class Recipe:
         inside = self.predictor.name.removeprefix("simulated").strip("()")
         return f"simulated({', '.join(part for part in (inside, f'goal={self.goal}') if part)})"
 
+    @property
+    def label(self) -> str:
+        """Short name for tables and plots: model, then cost and search of a calibration, then the goal."""
+        crowd = self.predictor
+        if not isinstance(crowd, Simulated):
+            return crowd.name
+        parts = [crowd.model, crowd.cost, crowd.search] if crowd.cost is not None else [crowd.model]
+        words = [kebab(type(part).__name__) for part in parts]
+        words.append(self.goal or kebab(type(crowd.goal).__name__))
+        return ", ".join([*words, "prior"] if crowd.prior is not None else words)
+
     def prepared(self, recording: Recording) -> Predictor:
         """Return the predictor for a recording.
 

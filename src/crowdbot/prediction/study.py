@@ -117,10 +117,11 @@ class Part:
 
 @dataclass(frozen=True)
 class Result:
-    """One predictor on one recording: its score, and what happened at each frame."""
+    """One predictor on one recording: its short label, its score, and what happened at each frame."""
 
     recording: Recording
     recipe: Recipe
+    label: str
     score: Score
     frames: Frames
 
@@ -154,6 +155,11 @@ class Study:
         if twice is not None:
             raise InputError(f"the predictor {twice} is named twice")
 
+    def labels(self) -> dict[str, str]:
+        """Return name -> short label of every predictor; the name itself where two would be called the same."""
+        short = [recipe.label for recipe in self.recipes]
+        return {one.name: one.label if short.count(one.label) == 1 else one.name for one in self.recipes}
+
     def pieces(self) -> list[Piece]:
         """Return the jobs, recording by recording and predictor by predictor."""
         found = []
@@ -181,7 +187,7 @@ class Study:
 
     def results(self, done: Sequence[tuple[Piece, Part]]) -> list[Result]:
         """Return score and frames of every recording and predictor, from the results of all pieces."""
-        found = []
+        found, labels = [], self.labels()
         for recording in self.recordings:
             _, future = recording.windows
             for recipe in self.recipes:
@@ -192,7 +198,7 @@ class Study:
                 errors = PersonErrors.joined([part.errors for part in parts])
                 score = Score.of(errors, recipe.name, max(part.samples for part in parts), future, self.best_of)
                 score = dataclasses.replace(score, seconds_per_window=float(frames.seconds.mean()))
-                found.append(Result(recording, recipe, score, frames))
+                found.append(Result(recording, recipe, labels[recipe.name], score, frames))
         return found
 
     @staticmethod
