@@ -108,7 +108,7 @@ MISTAKES = {
     "unknown element": (
         "<crowd ",
         "<spawnner/><crowd ",
-        r":7: <spawnner> is no element of <trial>, did you mean 'spawner'\?; it takes <stage>, <routing>, <crowd>, <contact>",
+        r":7: <spawnner> is no element of <trial>, did you mean 'spawner'\?; it takes <stage>, <routing>, <crowd>",
     ),
     "unknown attribute": (
         'count="2"',

@@ -35,6 +35,7 @@ class Checked:
     sources: Sequence[Source]
     exits: Sequence[Exit]
     robots: Sequence[Robot]
+    capacity: int | None
     step: float | None
     seed: int
     duration: float | None

@@ -48,6 +48,9 @@ def names(checked: Checked) -> Problems:
             yield journey, f"name {journey.name!r} is taken by another journey; give each its own"
         yield from _endless(journey)
     crowds = crowd_names(checked.crowd)
+    first = sum(spawner.count for spawner in checked.spawners)
+    if checked.capacity is not None and first > checked.capacity:
+        yield checked.spawners[-1], f"makes {first} people at the beginning, more than the capacity {checked.capacity}"
     for one in checked.people:
         yield from _goals(one)
         if one.journey and "journey" not in checked.broken:

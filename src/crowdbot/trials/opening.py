@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from crowdbot.core import Scene
 from crowdbot.models import CrowdModel
 from crowdbot.models.mixture import Mixture
 from crowdbot.navigation import Limits
-from crowdbot.world import Journeys, PlanarWorld, Router
+from crowdbot.world import Journeys, PlanarWorld, Router, Source
 
 from .crowd import Crowds, crowd_names
 from .people import Spawner
@@ -28,10 +29,8 @@ def world_of(trial: Trial, people: People, seed: int) -> PlanarWorld:
     the number of the own place. Free places have numbers below 0.
     """
     sources = [source.source(trial.journeys, crowd_names(trial.crowd)) for source in trial.sources]
-    end = trial.ticks * trial.step
-    spare = sum(source.come_by(end, seed, number) for number, source in enumerate(sources))
-    scene = start_scene(trial, people, spare)
     first = len(people)
+    scene = start_scene(trial, people, spare := _spare(trial, first, sources, seed))
     there = first + len(trial.robots)
     router = None if trial.routing is None else trial.routing.router(scene.walls)
     journeys = _journeys(trial, people, scene.shape[1])
@@ -91,6 +90,13 @@ def limits_of(drive: Any) -> Limits:
     """Return the limits of a drive by the names that drives use; a drive without them is taken as 1 m/s and 1 rad/s."""
     known = {name: float(getattr(drive, name)) for name in Limits._fields if hasattr(drive, name)}
     return Limits(**({"max_speed": 1.0, "max_turn_rate": 1.0} | known))
+
+
+def _spare(trial: Trial, first: int, sources: Sequence[Source], seed: int) -> int:
+    """Return how many free places are needed: as many as people ever come in, up to the capacity."""
+    end = trial.ticks * trial.step
+    come = sum(source.come_by(end, seed, number) for number, source in enumerate(sources))
+    return come if trial.capacity is None else min(come, max(0, trial.capacity - first))
 
 
 def _model(trial: Trial, people: People, agents: int) -> CrowdModel:

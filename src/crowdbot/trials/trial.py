@@ -126,6 +126,9 @@ class Trial:
     step: float = attribute(0.05, about="time step of the world", unit="s", at_least=0.001, at_most=1.0)
     substeps: int = attribute(1, about="steps of the crowd in a step of the world", at_least=1, at_most=10_000)
     seed: int = attribute(0, about="seed of everything random", at_least=-(2**53), at_most=2**53)
+    capacity: int | None = attribute(
+        None, about="most people there at a time, others wait outside", at_least=0, at_most=100_000
+    )
     berth: float = attribute(
         0.1, about="how much wider people take a robot to be", unit="m", at_least=0.0, at_most=10.0
     )
