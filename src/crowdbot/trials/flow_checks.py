@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +29,7 @@ Floats = NDArray[np.float64]
 BATCHES = 30
 """So many batches of points of a zone are tried for one where a body has room."""
 SPOTS = 6
-"""A way leads from a zone to another when one leads from one of so many points to one of as many."""
+"""So many points of a zone stand for all."""
 OVERLAP = 1e-9
 """Zones that share less than this [m2] touch only."""
 
@@ -152,30 +153,39 @@ def _straight_out(checked: Checked) -> Problems:
                 yield one, f"zone overlaps exit {called}, where people would leave at once; move one of them"
 
 
+class _Place(NamedTuple):
+    """Where a way begins or ends; ``anywhere`` in it, or where it suits the person best."""
+
+    points: Points
+    anywhere: bool = True
+
+    @classmethod
+    def of(cls, stop: Point | Direction | Zone) -> _Place | None:
+        """Return the place of a stop; None of a direction."""
+        if isinstance(stop, Point):
+            return cls(Points.of([(stop.x, stop.y)]))
+        return cls(stop.points, stop.aim == "random") if isinstance(stop, Zone) else None
+
+
 def _legs(checked: Checked, router: Router) -> Problems:
     """Yield ways around walls that lead nowhere, each once: into a journey or to a goal, and from stop to stop."""
     for one in checked.people:
         journey = next((journey for journey in checked.journeys if journey.name == one.journey), None)
-        first = one.goal or (journey and _place(journey.stops[0]))
+        first = _Place(one.goal) if one.goal else journey and _Place.of(journey.stops[0])
         what = "the goal zone" if one.goal else f"the first stop of journey {one.journey!r}"
-        if first and not _leads(router, one.zone, first):
+        if first and not _leads(router, _Place(one.zone), first):
             yield one, f"no way leads from its zone to {what} for a body of radius {router.radius:g} m"
     for journey in checked.journeys:
         for k, (here, there) in enumerate(itertools.pairwise(journey.stops), 2):
-            begin, end = _place(here), _place(there)
+            begin, end = _Place.of(here), _Place.of(there)
             if begin and end and not _leads(router, begin, end):
                 yield there, f"no way leads to stop {k} from the one before for a body of radius {router.radius:g} m"
 
 
-def _place(stop: Point | Direction | Zone) -> Points:
-    """Return the corners of a stop; none of a direction."""
-    if isinstance(stop, Point):
-        return Points.of([(stop.x, stop.y)])
-    return stop.points if isinstance(stop, Zone) else Points()
-
-
-def _leads(router: Router, begin: Points, end: Points) -> bool:
-    return any(_reached(router, here, there) for here in _any(router, begin) for there in _any(router, end))
+def _leads(router: Router, begin: _Place, end: _Place) -> bool:
+    begins, ends = _any(router, begin.points), _any(router, end.points)
+    every, last = (all if begin.anywhere else any), (all if end.anywhere else any)
+    return every(last(_reached(router, here, there) for there in ends) for here in begins)
 
 
 def _reached(router: Router, here: Floats, there: Floats) -> bool:
