@@ -165,6 +165,7 @@ class Log:
         self.trial, self.seed = trial, seed
         self.frames: list[tuple[NDArray[Any], ...]] = []
         self.times: list[float] = []
+        self.agents = trial.people + len(trial.robots)
         self.bodies: dict[int, float] = {}
         self.readings: dict[str, list[Reading]] = {}
         self.digest = Digest()
@@ -172,6 +173,7 @@ class Log:
     def take(self, frame: Frame) -> None:
         """Keep an instant."""
         self.digest.take(frame)
+        self.agents = max(self.agents, 1 + int(frame.ids.max(initial=-1)))
         for robot, mount, reading in frame.readings:
             self.readings.setdefault(f"{robot.name}/{mount.name}", []).append(reading)
         if frame.due:
@@ -185,8 +187,7 @@ class Log:
         ids, *arrays, twists, commands = ([*column] for column in zip(*self.frames, strict=True))
         first = self.trial.people
         robots = tuple(range(first, first + len(self.trial.robots)))
-        agents = max([first + len(robots), *(who + 1 for who in self.bodies)])
-        position, velocity, heading, active = (_by_person(column, ids, agents) for column in arrays)
+        position, velocity, heading, active = (_by_person(column, ids, self.agents) for column in arrays)
         episode = Episode(
             self.trial,
             self.seed,
@@ -196,9 +197,9 @@ class Log:
             position,
             velocity,
             heading,
-            np.array([self.bodies.get(who, 0.0) for who in range(agents)]),
+            np.array([self.bodies.get(who, 0.0) for who in range(self.agents)]),
             active,
-            np.arange(agents, dtype=np.int64),
+            np.arange(self.agents, dtype=np.int64),
             robots,
             np.stack(twists),
             np.stack(commands),
@@ -232,8 +233,7 @@ def _by_person(rows: Sequence[NDArray[Any]], ids: Sequence[NDArray[np.int64]], a
     """Return ``[T, agents, ...]``, a column for every id, of rows ``[A, ...]`` whose places belong to ``ids``."""
     out = np.zeros((len(rows), agents, *rows[0].shape[1:]), dtype=rows[0].dtype)
     for k, (row, who) in enumerate(zip(rows, ids, strict=True)):
-        known = (who >= 0) & (who < agents)
-        out[k, who[known]] = row[known]
+        out[k, who[who >= 0]] = row[who >= 0]
     return out
 
 
