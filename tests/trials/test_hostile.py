@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
-from trial_texts import GOOD, changed, written
+from trial_texts import FLOW, GOOD, changed, written
 
 from crowdbot.core import TrialError
 from crowdbot.trials import Trial, load_trial
@@ -99,12 +99,13 @@ def test_a_trial_that_would_fill_the_memory_is_refused() -> None:
     assert "more than 100000000 places together" in refused(text)
 
 
-def test_mutated_files_are_read_or_refused_in_a_sentence() -> None:
+@pytest.mark.parametrize(("good", "count"), [(GOOD, 400), (FLOW, 150)], ids=["good", "flow"])
+def test_mutated_files_are_read_or_refused_in_a_sentence(good: str, count: int) -> None:
     chance = random.Random(1)
     pool = ['"', "<", ">", "/", "&", "-", "nan", "1e999", "\x00", "é", " ", "\n", "robot", "zone", "uniform(", "9" * 30]
     read, problems = 0, []
-    for _ in range(400):
-        text = list(GOOD)
+    for _ in range(count):
+        text = list(good)
         for _ in range(chance.randint(1, 3)):
             place = chance.randrange(len(text))
             text[place : place + chance.randint(0, 3)] = chance.choice(pool)
@@ -112,6 +113,6 @@ def test_mutated_files_are_read_or_refused_in_a_sentence() -> None:
             read += isinstance(Trial.parse("".join(text)), Trial)
         except TrialError as error:
             problems += error.problems
-    assert 0 < read < 400
-    assert len(problems) >= 400 - read
+    assert 0 < read < count
+    assert len(problems) >= count - read
     assert all("\n" not in problem and len(problem) < 600 for problem in problems)

@@ -108,7 +108,7 @@ MISTAKES = {
     "unknown element": (
         "<crowd ",
         "<spawnner/><crowd ",
-        r":7: <spawnner> is no element of <trial>, did you mean 'spawner'\?; it takes <stage>, <crowd>, <spawner>",
+        r":7: <spawnner> is no element of <trial>, did you mean 'spawner'\?; it takes <stage>, <routing>, <crowd>",
     ),
     "unknown attribute": (
         'count="2"',
@@ -162,7 +162,7 @@ MISTAKES = {
         '"straigth"',
         r":13: <navigator> unknown navigator 'straigth', did you mean 'straight'",
     ),
-    "element twice": ("<end ", '<crowd type="orca"/><end ', r":16: <crowd> stands in <trial> twice; one is allowed"),
+    "element twice": ("<end ", "<stage/><end ", r":16: <stage> stands in <trial> twice; one is allowed"),
     "stray text": ("<end ", "hello<end ", r":2: <trial> holds the text 'hello'; values are written as attributes"),
     "value of a model": ('time-horizon="2"', 'time-horizon="-2"', r":7: <crowd> .*-2.* is not allowed"),
     "value of a drive": (

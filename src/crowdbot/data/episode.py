@@ -1,7 +1,8 @@
 """Our own recordings of trials, MCAP with ROS 2 messages: the people and the robots of an episode as tracks.
 
 Read are ``/people`` (people_msgs/msg/People; a person's name is the id), every ``.../odom`` (nav_msgs/msg/Odometry, a
-robot, pose in the frame of the world), and of the metadata record ``crowdbot`` the ``walls`` (JSON list of rings).
+robot, pose in the frame of the world), and of the metadata record ``crowdbot`` the ``walls`` (JSON list of rings) and
+the ids of ``robots``.
 """
 
 from __future__ import annotations
@@ -35,10 +36,11 @@ class _Heard:
     persons: list[tuple[int, str, float, float]] = field(default_factory=list)
     poses: dict[str, list[tuple[int, float, float]]] = field(default_factory=dict)
     walls: str = "[]"
+    robots: str = "[]"
 
 
 def read(source: Source, given: Given) -> Trajectories:
-    """Read people and robots; robots get ids above all people's, in the order of their channels."""
+    """Read people and robots; robots without an id get one above all people's, in the order of their channels."""
     with parsing(source, "MCAP"):
         heard = _listen(source)
     stamps = np.asarray(heard.stamps, dtype=np.int64)
@@ -46,7 +48,7 @@ def read(source: Source, given: Given) -> Trajectories:
     message = np.asarray([person[0] for person in heard.persons], dtype=np.int64)
     columns = [_numbered([person[1] for person in heard.persons]), frames[message]]
     columns += [np.asarray([person[axis] for person in heard.persons]) for axis in (2, 3)]
-    robots = _robots(heard, stamps, frames, first_id=int(columns[0].max(initial=0)) + 1)
+    robots = _robots(heard, stamps, frames, columns[0])
     id, frame, x, y = (np.concatenate(parts) for parts in zip(columns, *robots, strict=True))
     return assemble(
         source,
@@ -86,6 +88,7 @@ def _listen(source: Source) -> _Heard:
         for record in reader.iter_metadata():
             if record.name == METADATA:
                 heard.walls = record.metadata.get("walls", "[]")
+                heard.robots = record.metadata.get("robots", "[]")
         for _, channel, message in reader.iter_messages(topics=list(wanted)):
             _take(heard, channel.topic, store.deserialize_cdr(message.data, wanted[channel.topic]))
     return heard
@@ -132,11 +135,12 @@ def _numbered(names: list[str]) -> NDArray[np.int64]:
 
 
 def _robots(
-    heard: _Heard, stamps: NDArray[np.int64], frames: NDArray[np.int64], first_id: int
+    heard: _Heard, stamps: NDArray[np.int64], frames: NDArray[np.int64], people: NDArray[np.int64]
 ) -> list[list[NDArray[Any]]]:
     """Return id, frame, x, y of every robot at the stamps of /people, interpolated between its own."""
     found = []
-    for id, poses in enumerate((sorted(poses) for poses in heard.poses.values() if poses), first_id):
+    tracks = {topic: sorted(poses) for topic, poses in heard.poses.items() if poses}
+    for id, poses in zip(_robot_ids(heard, [*tracks], people), tracks.values(), strict=True):
         own = np.asarray([pose[0] - int(stamps[0]) for pose in poses], dtype=np.float64)
         at = (stamps - stamps[0]).astype(np.float64)
         inside = (at >= own[0]) & (at <= own[-1])
@@ -144,6 +148,18 @@ def _robots(
         if np.any(inside):
             found.append([np.full(int(inside.sum()), id), frames[inside], *place])
     return found
+
+
+def _robot_ids(heard: _Heard, topics: list[str], people: NDArray[np.int64]) -> list[int]:
+    """Return the ids that the metadata gives to robots when they are good for all, else new ones above all people's."""
+    try:
+        known = {f"/{robot['name']}{ODOMETRY_ENDING}": robot["id"] for robot in json.loads(heard.robots)}
+    except (ValueError, TypeError, KeyError, RecursionError):
+        known = {}
+    ids = [known.get(topic) for topic in topics]
+    if all(type(id) is int and id not in people for id in ids) and len(set(ids)) == len(ids):
+        return [int(id) for id in ids if id is not None]
+    return list(range(int(people.max(initial=0)) + 1, int(people.max(initial=0)) + 1 + len(topics)))
 
 
 def _walls(name: str, text: str) -> tuple[NDArray[np.float64], ...]:

@@ -13,7 +13,8 @@ import math
 import re
 import types
 import typing
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from crowdbot.core import InputError
@@ -113,13 +114,15 @@ class Part:
         word: in XML: of the attribute, or of the child element.
         role: ``attribute``, ``child``, ``children``, ``plugged`` (a child element that is a plug) or ``mounted``
             (a plug whose attributes stand in this element).
-        kind: type of the value (of one child).
+        kind: type of the value, of children of one of them.
         required: whether it must be given.
         default: when it is not.
         rule: of an attribute.
         plug: of a plug.
         about: one line for people.
         at_most: largest number of child elements.
+        elements: the child elements that it takes, by word.
+        into: what makes one value of all children and the reverse, see :func:`children`.
     """
 
     name: str
@@ -132,6 +135,13 @@ class Part:
     plug: Plug | None
     about: str
     at_most: int = 1
+    elements: Mapping[str, Any] = field(default_factory=dict)
+    into: Any = None
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """The child elements that it takes."""
+        return (self.word,) if self.role == "plugged" else tuple(self.elements)
 
     def wrong(self, value: Any) -> str:
         """Return what is wrong with a value as the end of a sentence; a default is always right."""
@@ -157,14 +167,28 @@ def attribute(
 
 
 def child(factory: Any = dataclasses.MISSING, *, about: str) -> Any:
-    """Make a field that is one child element."""
-    return dataclasses.field(default_factory=factory, metadata={"role": "child", "about": about})
+    """Make a field that is one child element; with None as its factory it may be left out, and is None then."""
+    row = {"role": "child", "about": about}
+    if factory is None:
+        return dataclasses.field(default=None, metadata=row)
+    return dataclasses.field(default_factory=factory, metadata=row)
 
 
-def children(word: str, *, about: str, at_most: int = 10_000) -> Any:
-    """Make a field that is any number of child elements up to ``at_most``, each called ``word``."""
-    row = {"role": "children", "word": word, "about": about, "at_most": at_most}
-    return dataclasses.field(default=(), metadata=row)
+def children(
+    words: str | Mapping[str, type], *, about: str, at_least: int = 0, at_most: int = 10_000, into: Any = None
+) -> Any:
+    """Make a field that is any number of child elements, from ``at_least`` (0 or 1) to ``at_most``, in their order.
+
+    Args:
+        words: what each is called; several kinds are given with their classes.
+        about: one line for people.
+        at_least: whether there must be one.
+        at_most: how many there may be.
+        into: makes one value of them: ``into.gathered(children)`` is the value, ``into.spread(value)`` the children,
+            ``into.problems(children)`` yields the index of every child that does not fit to the others, and why.
+    """
+    row = {"role": "children", "words": words, "about": about, "at_most": at_most, "into": into}
+    return dataclasses.field(metadata=row) if at_least else dataclasses.field(default=(), metadata=row)
 
 
 def plugged(room: str, contract: str, *, about: str) -> Any:
@@ -181,30 +205,36 @@ def mounted(room: str, contract: str, *, about: str) -> Any:
 def outline(cls: type) -> tuple[Part, ...]:
     """Return the fields of an element in the order in which they are written."""
     hints = typing.get_type_hints(cls)
-    parts = []
-    for field in dataclasses.fields(cls):
-        if "role" not in field.metadata:
-            continue
-        row = field.metadata
-        kind = typing.get_args(hints[field.name])[0] if row["role"] == "children" else hints[field.name]
-        required = field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
-        default = field.default_factory() if field.default_factory is not dataclasses.MISSING else field.default
-        word = row.get("word", field.name.replace("_", "-"))
-        parts.append(
-            Part(
-                field.name,
-                word,
-                row["role"],
-                kind,
-                required,
-                default,
-                row.get("rule"),
-                row.get("plug"),
-                row["about"],
-                row.get("at_most", 1),
-            )
-        )
-    return tuple(parts)
+    return tuple(_part(field, hints[field.name]) for field in dataclasses.fields(cls) if "role" in field.metadata)
+
+
+def _part(field: dataclasses.Field[Any], hint: Any) -> Part:
+    row = field.metadata
+    several = row["role"] == "children" and row["into"] is None
+    kind = typing.get_args(hint)[0] if several else _without_none(hint)
+    words = row.get("words", field.name.replace("_", "-"))
+    elements = dict(words) if isinstance(words, Mapping) else {words: kind}
+    default = field.default if field.default_factory is dataclasses.MISSING else field.default_factory()
+    return Part(
+        field.name,
+        next(iter(elements)),
+        row["role"],
+        kind,
+        default is dataclasses.MISSING,
+        default,
+        row.get("rule"),
+        row.get("plug"),
+        row["about"],
+        row.get("at_most", 1),
+        elements if row["role"] in ("child", "children") else {},
+        row.get("into"),
+    )
+
+
+def _without_none(hint: Any) -> Any:
+    """Return the type of a value that may be left out."""
+    options = [option for option in typing.get_args(hint) if option is not type(None)]
+    return options[0] if isinstance(hint, types.UnionType) and len(options) == 1 else hint
 
 
 def check(element: Any) -> None:
@@ -217,21 +247,41 @@ def check(element: Any) -> None:
         value = getattr(element, part.name)
         if part.role == "attribute":
             value = _brought(element, part, value)
-        elif part.role == "children":
-            value = tuple(value)
-            if len(value) > part.at_most:
-                raise InputError(f"{cls.__name__}: {len(value)} {part.name} are too many, at most {part.at_most}")
+        elif part.role == "children" and part.into is None:
+            value = _listed(element, part, value)
+        elif not (isinstance(value, _contract(part)) or (value is None and not part.required)):
+            raise InputError(
+                f"{cls.__name__}: {part.name} is a {type(value).__name__}, it must be a {_contract(part).__name__}"
+            )
         object.__setattr__(element, part.name, value)
         wrong = part.wrong(value)
         if wrong:
-            raise InputError(f"{type(element).__name__}: {part.name}={shown(value)} {wrong}")
-        if part.plug and not isinstance(value, part.plug.places()[1]):
-            raise InputError(
-                f"{type(element).__name__}: {part.name} is a {type(value).__name__}, it must be a {part.plug.contract}"
-            )
+            raise InputError(f"{cls.__name__}: {part.name}={shown(value)} {wrong}")
+
+
+def _contract(part: Part) -> type:
+    return part.plug.places()[1] if part.plug else part.kind
+
+
+def _listed(element: Any, part: Part, value: Any) -> tuple[Any, ...]:
+    name = type(element).__name__
+    if not isinstance(value, list | tuple):
+        raise InputError(f"{name}: {part.name} is a {type(value).__name__}, it must be a list")
+    if len(value) > part.at_most:
+        raise InputError(f"{name}: {len(value)} {part.name} are too many, at most {part.at_most}")
+    if part.required and not value:
+        raise InputError(f"{name}: {part.name} is empty; it must hold at least one: {part.about}")
+    kinds = tuple(part.elements.values())
+    for one in value:
+        if not isinstance(one, kinds):
+            known = " or ".join(kind.__name__ for kind in kinds)
+            raise InputError(f"{name}: {part.name} holds a {type(one).__name__}, it takes {known}")
+    return tuple(value)
 
 
 def _brought(element: Any, part: Part, value: Any) -> Any:
+    if value is None and part.default is None:
+        return value
     try:
         if hasattr(part.kind, "of"):
             return part.kind.of(value)

@@ -2,49 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+import dataclasses
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from crowdbot.core import FreeClock, InputError, TrialError
 
+from .checked import Checked, Problems
+from .flow_checks import expected, flows, names
 from .spawn import place
-from .stage import Obstacle, Stage, area
-from .trial import Recording, Robot, Spawner, Trial
+from .stage import Obstacle, Stage
+from .trial import Robot, Trial
+from .zones import areas, crooked
 
-__all__ = ["Checked", "check_trial", "problems_of"]
+__all__ = ["check_trial", "problems_of"]
 
 MOST_VALUES = 100_000_000
 """An episode is held in memory: recorded scenes times agents must not exceed this."""
-Problems = Iterator[tuple[Any, str]]
-
-
-@dataclass(frozen=True)
-class Checked:
-    """The parts of a trial that are there; None for those that could not be read."""
-
-    stage: Stage | None
-    spawners: Sequence[Spawner]
-    robots: Sequence[Robot]
-    step: float | None
-    seed: int
-    duration: float | None
-    recording: Recording | None
-
-    @classmethod
-    def of(cls, values: dict[str, Any]) -> Checked:
-        """Take the parts from the fields of a trial that could be read."""
-        return cls(
-            values.get("stage"),
-            values.get("spawners", ()),
-            values.get("robots", ()),
-            values.get("step"),
-            values.get("seed", 0),
-            values.get("duration"),
-            values.get("recording"),
-        )
+MOST_ARRIVALS = 100_000
 
 
 def check_trial(trial: Trial, seed: int | None = None) -> None:
@@ -54,8 +31,8 @@ def check_trial(trial: Trial, seed: int | None = None) -> None:
         trial: made in Python or read.
         seed: places people with it; None is the trial's own.
     """
-    parts = {name: getattr(trial, name) for name in Checked.__dataclass_fields__}
-    checked = Checked(**(parts if seed is None else parts | {"seed": seed}))
+    whole = Checked.all_of(trial)
+    checked = whole if seed is None else dataclasses.replace(whole, seed=seed)
     found = [f"trial {trial.name!r}: {_called(thing)} {sentence}" for thing, sentence in problems_of(checked)]
     if found:
         raise TrialError(*found)
@@ -64,19 +41,21 @@ def check_trial(trial: Trial, seed: int | None = None) -> None:
 def problems_of(checked: Checked) -> list[tuple[Any, str]]:
     """Return every problem: the element that has it, and the end of a sentence about it."""
     too_large = [*_size(checked)]
-    found = [*_periods(checked), *_names(checked), *too_large]
+    found = [*_periods(checked), *_names(checked), *names(checked), *too_large]
     if checked.stage is None:
         return found
-    shapes = [*_stage_shapes(checked.stage)]
-    zones = {id(s): [*_zone_shapes(s)] for s in checked.spawners}
-    found += shapes + [problem for row in zones.values() for problem in row]
-    if shapes:
+    zones = areas(checked)
+    shapes = [*_stage_shapes(checked.stage), *(problem for zone in zones for problem in zone.crooked())]
+    found += shapes
+    if any(thing is checked.stage or isinstance(thing, Obstacle) for thing, _ in shapes):
         return found
-    good = [spawner for spawner in checked.spawners if not zones[id(spawner)]]
-    lost = {id(s): [*_zone_places(checked.stage, s)] for s in good}
-    found += [problem for row in lost.values() for problem in row]
-    found += _robots(checked.stage, checked.robots)
-    standing = [spawner for spawner in good if not lost[id(spawner)] and not too_large]
+    bad = {id(thing) for thing, _ in shapes}
+    lost = [p for zone in zones if id(zone.element) not in bad for p in zone.misplaced(checked.stage)]
+    found += lost + [*_robots(checked.stage, checked.robots)]
+    bad |= {id(thing) for thing, _ in lost}
+    if not bad:
+        found += [*flows(checked)]
+    standing = [spawner for spawner in checked.spawners if id(spawner) not in bad and not too_large]
     return found + place(checked.stage, standing, checked.robots, checked.seed)[1]
 
 
@@ -116,7 +95,14 @@ def _size(checked: Checked) -> Problems:
             checked.recording,
             f"recording period {checked.recording.period:g} s is longer than the duration of {checked.duration:g} s",
         )
-    agents = sum(spawner.count for spawner in checked.spawners) + len(checked.robots)
+    coming = expected(checked)
+    if coming > MOST_ARRIVALS:
+        yield (
+            checked.sources[0],
+            f"lets people in, about {coming} together with other sources, more than {MOST_ARRIVALS}; take a lower rate,"
+            " an earlier end or fewer at most",
+        )
+    agents = sum(spawner.count for spawner in checked.spawners) + coming + len(checked.robots)
     scenes = checked.duration / checked.recording.period
     if scenes * agents > MOST_VALUES:
         yield (
@@ -128,37 +114,10 @@ def _size(checked: Checked) -> Problems:
 
 def _stage_shapes(stage: Stage) -> Problems:
     for obstacle in stage.obstacles:
-        if wrong := _crooked(obstacle.points):
+        if wrong := crooked(obstacle.points):
             yield obstacle, f"points {wrong}"
-    if stage.walkable and (wrong := _crooked(stage.walkable)):
+    if stage.walkable and (wrong := crooked(stage.walkable)):
         yield stage, f"walkable {wrong}"
-
-
-def _zone_shapes(spawner: Spawner) -> Problems:
-    for name in ("zone", "goal"):
-        if wrong := _crooked(getattr(spawner, name)):
-            yield spawner, f"{name} {wrong}"
-
-
-def _crooked(points: Any) -> str:
-    import shapely
-
-    if len(set(points)) < 3:
-        return "must be at least 3 different points"
-    polygon = area(points)
-    if not polygon.is_valid:
-        return f"is no simple polygon: {shapely.is_valid_reason(polygon).lower()}; list its corners in order"
-    return "" if polygon.area > 0.0 else "has no area"
-
-
-def _zone_places(stage: Stage, spawner: Spawner) -> Problems:
-    for name, points in (("spawn zone", spawner.zone), ("goal zone", spawner.goal)):
-        zone = area(points)
-        block = stage.obstacle_around(zone)
-        if not stage.holds(zone):
-            yield spawner, f"{name} reaches outside the walkable area; move it, or make the area larger"
-        elif block is not None:
-            yield spawner, f"{name} lies inside obstacle {block + 1} of the stage; nobody can be there, move it"
 
 
 def _robots(stage: Stage, robots: Sequence[Robot]) -> Problems:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -45,7 +45,10 @@ class ScanRow:
 
 @dataclass(frozen=True, eq=False)
 class Episode:
-    """What happened in one run: T recorded instants, A agents (people first, then robots), R robots.
+    """What happened in one run: T recorded instants, A agents, R robots.
+
+    Agents are everybody who was ever there: people at the beginning first, then robots, then people in the order in
+    which they came in. Each has a column of the arrays and the own id.
 
     Fields:
         trial, seed: what was run.
@@ -55,7 +58,7 @@ class Episode:
         times: ``[T]`` [s].
         position, velocity: ``[T, A, 2]`` [m], [m/s]; 0 for who is not there.
         heading: ``[T, A]`` [rad].
-        radius: ``[A]`` [m].
+        radius: ``[A]`` [m]; 0 for who was there between two recorded instants only.
         active: ``[T, A]`` who is there.
         ids: ``[A]`` identity in recordings and tracks.
         robots: indices of the robots, in the order of the trial.
@@ -144,7 +147,8 @@ class Digest:
                 self._sum.update(_bytes(getattr(reading, field.name)))
         if frame.due:
             self._sum.update(f"frame {frame.nanoseconds}\n".encode())
-            for array in (*_present(frame), frame.twists, frame.commands):
+            who = [] if np.array_equal(frame.ids, np.arange(len(frame.ids))) else [frame.ids]
+            for array in (*who, *_present(frame), frame.twists, frame.commands):
                 self._sum.update(_bytes(array))
 
     def ended(self, outcome: str) -> str:
@@ -161,26 +165,29 @@ class Log:
         self.trial, self.seed = trial, seed
         self.frames: list[tuple[NDArray[Any], ...]] = []
         self.times: list[float] = []
-        self.radius: Floats = np.zeros(0)
+        self.agents = trial.people + len(trial.robots)
+        self.bodies: dict[int, float] = {}
         self.readings: dict[str, list[Reading]] = {}
         self.digest = Digest()
 
     def take(self, frame: Frame) -> None:
         """Keep an instant."""
         self.digest.take(frame)
+        self.agents = max(self.agents, 1 + int(frame.ids.max(initial=-1)))
         for robot, mount, reading in frame.readings:
             self.readings.setdefault(f"{robot.name}/{mount.name}", []).append(reading)
         if frame.due:
             self.times.append(frame.nanoseconds / 1e9)
-            self.radius = frame.scene.radius[0]
-            self.frames.append((*_present(frame), frame.twists, frame.commands))
+            here = frame.scene.active[0]
+            self.bodies |= zip(frame.ids[here].tolist(), frame.scene.radius[0, here].tolist(), strict=True)
+            self.frames.append((frame.ids, *_present(frame), frame.twists, frame.commands))
 
     def episode(self, outcome: str, steps: int) -> Episode:
         """Return the episode."""
-        columns = [np.stack(column) for column in zip(*self.frames, strict=True)]
-        position, velocity, heading, active, twists, commands = columns
-        agents = position.shape[1]
-        robots = tuple(range(agents - len(self.trial.robots), agents))
+        ids, *arrays, twists, commands = ([*column] for column in zip(*self.frames, strict=True))
+        first = self.trial.people
+        robots = tuple(range(first, first + len(self.trial.robots)))
+        position, velocity, heading, active = (_by_person(column, ids, self.agents) for column in arrays)
         episode = Episode(
             self.trial,
             self.seed,
@@ -190,12 +197,12 @@ class Log:
             position,
             velocity,
             heading,
-            self.radius,
+            np.array([self.bodies.get(who, 0.0) for who in range(self.agents)]),
             active,
-            np.arange(agents, dtype=np.int64),
+            np.arange(self.agents, dtype=np.int64),
             robots,
-            twists,
-            commands,
+            np.stack(twists),
+            np.stack(commands),
             {name: tuple(rows) for name, rows in self.readings.items()},
             {},
             self.digest.ended(outcome),
@@ -220,6 +227,14 @@ def _present(frame: Frame) -> tuple[NDArray[Any], ...]:
         np.where(here, scene.heading[0], 0.0),
         here.copy(),
     )
+
+
+def _by_person(rows: Sequence[NDArray[Any]], ids: Sequence[NDArray[np.int64]], agents: int) -> NDArray[Any]:
+    """Return ``[T, agents, ...]``, a column for every id, of rows ``[A, ...]`` whose places belong to ``ids``."""
+    out = np.zeros((len(rows), agents, *rows[0].shape[1:]), dtype=rows[0].dtype)
+    for k, (row, who) in enumerate(zip(rows, ids, strict=True)):
+        out[k, who[who >= 0]] = row[who >= 0]
+    return out
 
 
 def _metrics(episode: Episode) -> dict[str, float]:

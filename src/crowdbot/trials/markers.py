@@ -20,26 +20,26 @@ ORANGE, BLUE, GREEN, GRAY = (0.9, 0.6, 0.0), (0.0, 0.45, 0.7), (0.0, 0.62, 0.45)
 """Colours that people with colour blindness can tell apart (Okabe & Ito)."""
 
 
-def markers(messages: Messages, nanoseconds: int, scene: Scene, robots: Sequence[Robot]) -> Any:
+def markers(messages: Messages, nanoseconds: int, scene: Scene, ids: NDArray[np.int64], robots: Sequence[Robot]) -> Any:
     """Return everything that is there as shapes; the array begins by deleting those before.
 
     Args:
         messages: makes the messages.
         nanoseconds: simulated time [ns].
-        scene: people first, then ``robots``; E is 1.
+        scene: E is 1; agents that are moved from outside are the ``robots``.
+        ids: ``[A]`` who is who.
         robots: in the order of the trial.
     """
     types = messages.store.types["visualization_msgs/msg/Marker"]
-    first = scene.shape[1] - len(robots)
     shapes = [_shape(messages, nanoseconds, "clear", 0, types.SPHERE, action=types.DELETEALL)]
     for agent in np.flatnonzero(scene.active[0]).tolist():
-        person = agent < first
+        person = not scene.external[0, agent]
         shapes.append(
             _disc(
                 messages,
                 nanoseconds,
                 "people" if person else "robots",
-                agent,
+                int(ids[agent]),
                 scene.position[0, agent],
                 float(scene.radius[0, agent]),
                 BODY_HEIGHT if person else ROBOT_HEIGHT,

@@ -74,12 +74,14 @@ class Messages:
         """Return ``rosgraph_msgs/Clock``."""
         return self.make("rosgraph_msgs/msg/Clock", clock=self.stamp(nanoseconds))
 
-    def people(self, nanoseconds: int, scene: Scene, agents: Iterable[int]) -> Any:
+    def people(self, nanoseconds: int, scene: Scene, ids: NDArray[np.int64]) -> Any:
         """Return ``people_msgs/People``: who is there; the name is the id, radius [m] and heading [rad] are tags."""
+        there = np.flatnonzero(scene.active[0] & ~scene.external[0])
+        agents = there[np.argsort(ids[there])].tolist()
         everyone = [
             self.make(
                 "people_msgs/msg/Person",
-                name=str(a),
+                name=str(ids[a]),
                 position=self.point(*scene.position[0, a].tolist()),
                 velocity=self.point(*scene.velocity[0, a].tolist()),
                 reliability=1.0,
@@ -87,7 +89,6 @@ class Messages:
                 tags=[repr(float(scene.radius[0, a])), repr(float(scene.heading[0, a]))],
             )
             for a in agents
-            if scene.active[0, a]
         ]
         return self.make("people_msgs/msg/People", header=self.header(nanoseconds), people=everyone)
 

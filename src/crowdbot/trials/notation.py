@@ -9,7 +9,10 @@ from typing import Any
 
 from crowdbot.core import InputError
 
-__all__ = ["Points", "number", "plain"]
+__all__ = ["NAME", "Points", "number", "plain"]
+
+NAME = "[A-Za-z][A-Za-z0-9_]*"
+"""Names that other parts refer to; those of robots and sensors become names of ROS topics and frames."""
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
 

@@ -15,7 +15,8 @@ from crowdbot.core import InputError, TrialError, plug
 from crowdbot.core.errors import did_you_mean
 
 from .attribute import Part, Plug, outline, shown
-from .checks import Checked, problems_of
+from .checked import Checked
+from .checks import problems_of
 from .markup import Element, parse
 from .notation import number
 from .trial import Trial
@@ -42,7 +43,7 @@ def read_trial(text: str | bytes, *, place: str = "trial", folder: Path | None =
     Traceback (most recent call last):
     crowdbot.core.errors.TrialError: trial:1: <trial> duration="-1" must be above 0 s
     trial:1: <crowd> has no attribute 'time-horizn', did you mean 'time-horizon'?; it takes neighbor-distance, \
-max-neighbors, time-horizon, time-horizon-walls, max-speed
+max-neighbors, time-horizon, time-horizon-walls, max-speed, name
     """
     try:
         data = text.encode() if isinstance(text, str) else text
@@ -53,7 +54,7 @@ max-neighbors, time-horizon, time-horizon-walls, max-speed
     if root.tag != ROOT:
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
     trial, values = reader.element(Trial, root)
-    for thing, sentence in problems_of(Checked.of(values)):
+    for thing, sentence in problems_of(Checked.of(values, reader.broken)):
         reader.say(reader.lines.get(id(thing), root.line), reader.words.get(id(thing), ROOT), sentence)
     reader.finish()
     assert isinstance(trial, Trial)
@@ -69,6 +70,8 @@ class _Reader:
         self.lines: dict[int, int] = {}
         self.words: dict[int, str] = {}
         self.made: list[Any] = []
+        self.broken: set[str] = set()
+        """Elements of which one could not be read, so that others may well have named it."""
 
     def say(self, line: int, tag: str, sentence: str) -> None:
         self.found.append((line, f"{self.place}:{line}: <{tag[:40]}> {sentence}"))
@@ -115,8 +118,8 @@ class _Reader:
         if part.role == "attribute":
             return any(key.replace("_", "-") == part.word for key in element.attributes)
         if part.role == "mounted":
-            return "type" in element.attributes
-        return any(inner.tag == part.word for inner in element.children)
+            return True
+        return any(inner.tag in part.words for inner in element.children)
 
     def _attributes(self, element: Element, parts: tuple[Part, ...]) -> dict[str, Any]:
         own = {part.word: part for part in parts if part.role == "attribute"}
@@ -152,8 +155,8 @@ class _Reader:
         return values
 
     def _children(self, element: Element, parts: tuple[Part, ...]) -> dict[str, Any]:
-        known = {part.word: part for part in parts if part.role in ("child", "children", "plugged")}
-        values: dict[str, Any] = {part.name: [] for part in known.values() if part.role == "children"}
+        known = {word: part for part in parts for word in part.words}
+        found: dict[str, list[Any]] = {part.name: [] for part in known.values()}
         if element.stray:
             self.say(element.line, element.tag, f"holds the text {element.stray!r}; values are written as attributes")
         count: Counter[str] = Counter()
@@ -164,21 +167,33 @@ class _Reader:
                 meant = did_you_mean(inner.tag, known)
                 self.say(inner.line, inner.tag, f"is no element of <{element.tag}>{meant}; it takes {words}")
                 continue
-            count[inner.tag] += 1
-            if count[inner.tag] > part.at_most:
+            count[part.name] += 1
+            if count[part.name] > part.at_most:
                 often = "twice; one is allowed" if part.at_most == 1 else f"more than {part.at_most} times"
                 self.say(inner.line, inner.tag, f"stands in <{element.tag}> {often}")
                 continue
             made = self._child(part, inner)
-            if made is not None and part.role == "children":
-                values[part.name].append(made)
-            elif made is not None:
-                values[part.name] = made
-        return {name: tuple(v) if isinstance(v, list) else v for name, v in values.items()}
+            if made is None:
+                self.broken.add(inner.tag)
+            else:
+                found[part.name].append(made)
+        gathered = {part.name: self._gathered(part, found[part.name]) for part in known.values()}
+        return {name: value for name, value in gathered.items() if value is not None}
+
+    def _gathered(self, part: Part, made: list[Any]) -> Any:
+        """Return the value of a field of which these child elements could be read, None when there is none."""
+        if part.role != "children":
+            return made[0] if made else None
+        if part.into is None:
+            return tuple(made) if made or not part.required else None
+        problems = list(part.into.problems(made))
+        for k, sentence in problems:
+            self.say(self.lines[id(made[k])], self.words[id(made[k])], sentence)
+        return part.into.gathered(made) if made and not problems else None
 
     def _child(self, part: Part, inner: Element) -> Any:
         if part.plug is None:
-            return self.element(part.kind, inner)[0]
+            return self.element(part.elements[inner.tag], inner)[0]
         for deeper in inner.children:
             self.say(deeper.line, deeper.tag, f"is no element of <{inner.tag}>; it takes none")
         if inner.stray:
@@ -232,4 +247,4 @@ def _kind(part: Part) -> str:
         return f"the attribute {part.word!r}: {part.about}{unit}"
     if part.role == "mounted":
         return "the attribute 'type'"
-    return f"the element <{part.word}>: {part.about}"
+    return f"the element {' or '.join(f'<{word}>' for word in part.words)}: {part.about}"

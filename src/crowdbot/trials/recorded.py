@@ -201,9 +201,9 @@ def _sort_in(found: _Contents, topic: str, now: int, message: Any) -> None:
 
 def _assembled(path: Path, metadata: Mapping[str, str], found: _Contents) -> Recorded:
     robots = json.loads(metadata["robots"])
-    first = int(metadata["people"])
+    places = [int(robot["id"]) for robot in robots]
     stamps = [now for now, _ in found.people]
-    shape = (len(stamps), first + len(robots))
+    shape = (len(stamps), int(metadata["people"]) + len(robots))
     arrays = _Arrays(
         np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(shape), np.zeros(shape[1]), np.zeros(shape, dtype=bool)
     )
@@ -212,9 +212,9 @@ def _assembled(path: Path, metadata: Mapping[str, str], found: _Contents) -> Rec
             arrays.person(k, person)
     commands = np.zeros((len(stamps), len(robots), 3))
     for r, robot in enumerate(robots):
-        arrays.radius[first + r] = float(robot["radius"])
+        arrays.radius[places[r]] = float(robot["radius"])
         for k, now in enumerate(stamps):
-            arrays.robot(k, first + r, found.odometry[robot["name"], now])
+            arrays.robot(k, places[r], found.odometry[robot["name"], now])
             asked = found.commands[robot["name"], now]
             commands[k, r] = asked.linear.x, asked.angular.z, asked.linear.y
     return Recorded(
@@ -227,7 +227,7 @@ def _assembled(path: Path, metadata: Mapping[str, str], found: _Contents) -> Rec
         arrays.radius,
         arrays.active,
         np.arange(shape[1], dtype=np.int64),
-        tuple(range(first, shape[1])),
+        tuple(places),
         commands,
         {topic: tuple(_scan(found, topic, *row) for row in rows) for topic, rows in found.scans.items()},
         tuple(np.array(ring, dtype=np.float64) for ring in json.loads(metadata["walls"])),

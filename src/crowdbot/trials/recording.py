@@ -79,7 +79,7 @@ class Recorder:
 
     def take(self, frame: Frame) -> None:
         """Write an instant."""
-        first = frame.scene.shape[1] - len(self.trial.robots)
+        first = self.trial.people
         now, make = frame.nanoseconds, self.messages
         self._write("/clock", make.clock(now), now)
         if self.trial.robots:
@@ -112,14 +112,14 @@ class Recorder:
 
     def _scene(self, frame: Frame, first: int) -> None:
         now, make, scene = frame.nanoseconds, self.messages, frame.scene
-        self._write("/people", make.people(now, scene, range(first)), now)
+        self._write("/people", make.people(now, scene, frame.ids), now)
         for k, (_, _, x, y, heading) in enumerate(self._poses(frame, first)):
             name = self.trial.robots[k].name
             self._write(f"/{name}/odom", make.odometry(now, name, x, y, heading, frame.twists[k]), now)
             self._write(f"/{name}/cmd_vel", make.twist(*frame.commands[k]), now)
         if now >= self._markers_due:
             self._markers_due = now - now % self._markers_every + self._markers_every
-            self._write("/crowd/markers", markers(make, now, scene, self.trial.robots), now)
+            self._write("/crowd/markers", markers(make, now, scene, frame.ids, self.trial.robots), now)
 
     def _poses(self, frame: Frame, first: int) -> list[tuple[str, str, float, float, float]]:
         scene = frame.scene
@@ -151,11 +151,10 @@ class Recorder:
             raise EpisodeError(f"{self.path} cannot be written: {error.strerror}") from None
 
     def _metadata(self, episode: Episode) -> dict[str, str]:
-        first = episode.position.shape[1] - len(self.trial.robots)
         robots = [
             {
                 "name": robot.name,
-                "id": int(episode.ids[first + k]),
+                "id": int(episode.ids[episode.robots[k]]),
                 "radius": robot.radius,
                 "goal": list(robot.goal.position),
                 "tolerance": robot.goal.tolerance,
@@ -172,7 +171,7 @@ class Recorder:
             "digest": episode.digest,
             "outcome": episode.outcome,
             "steps": str(episode.steps),
-            "people": str(first),
+            "people": str(len(episode.ids) - len(robots)),
             "metrics": as_json(episode.metrics),
             "walls": as_json([ring.tolist() for ring in episode.walls]),
             "robots": as_json(robots),

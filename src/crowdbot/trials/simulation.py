@@ -3,7 +3,7 @@
 The order of a step, from tick k to tick k + 1:
 
 1. the crowd and the robots move together from the scene of tick k (the world), the robots by the command they hold;
-2. time is at tick k + 1;
+2. time is at tick k + 1; people who are in an exit or at the end of their journey leave, and others come in;
 3. people who have reached their goal zone leave;
 4. contacts and arrivals are judged, swept over the step;
 5. sensors that are due measure the new scene;
@@ -15,6 +15,7 @@ At tick 0 only 5 to 7 happen. A sensor, a navigator and a recorder are due every
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -26,9 +27,9 @@ from crowdbot.core import InputError, Scene, TrialError, Twist, stream
 from crowdbot.metrics import wall_clearance
 from crowdbot.navigation import Limits, Observation
 from crowdbot.sensors import Reading, Scan
-from crowdbot.world import PlanarWorld
 
-from .spawn import People, place
+from .opening import limits_of, start_scene, world_of
+from .spawn import place
 from .stage import area
 from .trial import Mount, Robot, Trial
 
@@ -45,15 +46,17 @@ class Frame:
     Fields:
         tick: number of steps since the beginning.
         nanoseconds: simulated time [ns].
-        scene: people first, then robots; E is 1.
+        scene: people who were there at the beginning, robots, and who came in or left; E is 1.
+        ids: ``[A]`` who is who in the scene; a place may be taken by one person after the other.
         twists, commands: ``[R, 3]`` forward [m/s], turn [rad/s], left [m/s] of each robot: as it moves, as it is asked.
-        readings: what was measured at this instant, with who measured it.
+        readings: what was measured at this instant, with who measured it; scans hit people by their ids.
         due: whether the scene is to be recorded; otherwise only the readings are.
     """
 
     tick: int
     nanoseconds: int
     scene: Scene
+    ids: NDArray[np.int64]
     twists: NDArray[np.float64]
     commands: NDArray[np.float64]
     readings: tuple[tuple[Robot, Mount, Reading], ...]
@@ -71,6 +74,8 @@ class Carrier:
     sensor_every: tuple[int, ...]
     randomness: tuple[np.random.Generator, ...]
     readings: dict[str, Reading] = field(default_factory=dict)
+    seen: dict[str, NDArray[np.int64]] = field(default_factory=dict)
+    """Ids of those whom each sensor hit last."""
     command: Twist = field(default_factory=Twist)
     arrived: bool = False
 
@@ -101,12 +106,10 @@ class Simulation:
         if problems:
             raise TrialError(*(f"trial {trial.name!r}: spawner {s.name!r}: {sentence}" for s, sentence in problems))
         self.people = people
-        scene = start_scene(trial, people)
-        drives = {len(people) + k: robot.drive for k, robot in enumerate(trial.robots)}
-        self.world = PlanarWorld(scene, trial.crowd, drives, trial.step, seed)
+        self.world = world_of(trial, people, seed)
         self.carriers = [self._carrier(robot, len(people) + k) for k, robot in enumerate(trial.robots)]
         self.event: str | None = None
-        self._segments = scene.walls.segments()
+        self._segments = self.world.scene.walls.segments()
         self._exits = [self._exit(k) for k in range(len(trial.spawners))]
 
     def step(self) -> None:
@@ -127,6 +130,8 @@ class Simulation:
                 if self.tick % every == 0:
                     reading = mount.sensor.measure(others, pose.mounted(mount.x, mount.y, mount.heading), rng)
                     carrier.readings[mount.name] = reading
+                    if isinstance(reading, Scan):
+                        carrier.seen[mount.name] = self.ids[reading.seen(len(self.ids))[0]]
                     new.append((carrier.robot, mount, reading))
         return tuple(new)
 
@@ -143,9 +148,9 @@ class Simulation:
         """
         scene = self.world.scene
         seen = np.zeros(scene.shape[1], dtype=np.bool_)
+        for hit in carrier.seen.values():
+            seen |= np.isin(self.ids, hit)
         scans = [reading for reading in carrier.readings.values() if isinstance(reading, Scan)]
-        for scan in scans:
-            seen |= scan.seen(scene.shape[1])[0]
         return Observation.of(
             scene,
             carrier.agent,
@@ -163,9 +168,10 @@ class Simulation:
             self.tick,
             self.world.clock.nanoseconds,
             self.world.scene,
+            self.ids.copy(),
             _rows(twists),
             _rows([carrier.command for carrier in self.carriers]),
-            readings,
+            tuple((robot, mount, _by_id(reading, self.ids)) for robot, mount, reading in readings),
             due,
         )
 
@@ -174,26 +180,31 @@ class Simulation:
         """Number of steps since the beginning."""
         return self.world.clock.tick
 
+    @property
+    def ids(self) -> NDArray[np.int64]:
+        """Who is who ``[A]``."""
+        return np.asarray(self.world.ids[0])
+
     def _carrier(self, robot: Robot, agent: int) -> Carrier:
         every = self.world.clock.every
         return Carrier(
             robot,
             agent,
-            _limits(robot.drive),
+            limits_of(robot.drive),
             every(robot.control_period),
             tuple(every(1.0 / mount.sensor.rate) for mount in robot.sensors),
             tuple(stream(self.seed, "sensor", robot.name, mount.name) for mount in robot.sensors),
         )
 
     def _exit(self, spawner: int) -> tuple[NDArray[np.int64], Any]:
-        """Return the people of a spawner who leave, and the zone in which they do."""
+        """Return the people of a spawner who leave in a goal zone of theirs, and that zone."""
         import shapely
 
         spec = self.trial.spawners[spawner]
-        zone = area(spec.goal)
+        zone = area(spec.goal) if spec.goal else shapely.Polygon()
         shapely.prepare(zone)
-        leaving = self.people.spawner == spawner if spec.arrival == "leave" else np.zeros(len(self.people), bool)
-        return np.flatnonzero(leaving), zone
+        leaving = spec.goal and spec.arrival == "leave"
+        return np.flatnonzero((self.people.spawner == spawner) & bool(leaving)), zone
 
     def _let_leave(self) -> None:
         import shapely
@@ -201,7 +212,7 @@ class Simulation:
         scene = self.world.scene
         gone = np.zeros(scene.shape[1], dtype=np.bool_)
         for members, zone in self._exits:
-            there = members[scene.active[0, members]]
+            there = members[scene.active[0, members] & (self.ids[members] == members)]
             if len(there):
                 x, y = scene.position[0, there].T
                 away = np.hypot(*(scene.goal[0, there] - scene.position[0, there]).T)
@@ -223,31 +234,6 @@ class Simulation:
             self.event = "success"
 
 
-def start_scene(trial: Trial, people: People) -> Scene:
-    """Return the scene at the beginning, E = 1: people first, walking towards their goals, then standing robots."""
-    count = len(trial.robots)
-    away = people.goal - people.position
-    distance = np.hypot(away[:, 0], away[:, 1])
-    moving = away * (people.speed / np.maximum(distance, 1e-9))[:, None]
-    robots = np.array([robot.position for robot in trial.robots], dtype=np.float64).reshape(-1, 2)
-    goals = np.array([robot.goal.position for robot in trial.robots], dtype=np.float64).reshape(-1, 2)
-    tops = np.array([_limits(robot.drive).max_speed for robot in trial.robots])
-    heading = np.concatenate([np.arctan2(moving[:, 1], moving[:, 0]), [robot.heading for robot in trial.robots]])
-    own = np.arange(len(people) + count) < len(people)
-    return Scene.of(
-        np.concatenate([people.position, robots]),
-        np.concatenate([moving, np.zeros((count, 2))]),
-        heading=heading,
-        radius=np.concatenate([people.radius, [robot.radius for robot in trial.robots]]),
-        goal=np.concatenate([people.goal, goals]),
-        preferred_speed=np.concatenate([people.speed, tops]),
-        max_speed=np.concatenate([1.3 * people.speed, tops]),
-        visible=np.concatenate([np.ones(len(people), bool), [robot.visible for robot in trial.robots]]).astype(bool),
-        external=~own,
-        walls=trial.stage.as_walls(),
-    )
-
-
 def _asked(robot: Robot, observation: Observation) -> Twist:
     answer: Any = robot.navigator.act(observation)
     if not isinstance(answer, Twist):
@@ -258,10 +244,11 @@ def _asked(robot: Robot, observation: Observation) -> Twist:
     return Twist(*map(float, answer))
 
 
-def _limits(drive: Any) -> Limits:
-    """Return the limits of a drive by the names that drives use; a drive without them is taken as 1 m/s and 1 rad/s."""
-    known = {name: float(getattr(drive, name)) for name in Limits._fields if hasattr(drive, name)}
-    return Limits(**({"max_speed": 1.0, "max_turn_rate": 1.0} | known))
+def _by_id(reading: Reading, ids: NDArray[np.int64]) -> Reading:
+    """Return a reading in which people are named by who they are, not by their places among the agents."""
+    if not isinstance(reading, Scan) or np.array_equal(ids, np.arange(len(ids))):
+        return reading
+    return dataclasses.replace(reading, hit=np.where(reading.hit >= 0, ids[reading.hit], reading.hit))
 
 
 def _rows(twists: Sequence[Twist]) -> NDArray[np.float64]:

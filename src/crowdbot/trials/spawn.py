@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from crowdbot.core import stream
 
 from .notation import Points
+from .people import Spawner
 from .stage import Stage, area
-from .trial import Robot, Spawner
+from .trial import Robot
 
 __all__ = ["People", "place", "points_in"]
 
@@ -34,7 +35,7 @@ class People:
     """Where N people begin and want to go.
 
     Fields:
-        position, goal: ``[N, 2]`` [m].
+        position, goal: ``[N, 2]`` [m]; who goes on a journey has no goal yet but the own place.
         radius: ``[N]`` [m].
         speed: ``[N]`` preferred speed [m/s].
         spawner: ``[N]`` index of the spawner.
@@ -119,10 +120,11 @@ def _group(stage: Stage, spawner: Spawner, index: int, taken: _Taken, seed: int)
         taken.add(*found, float(r))
         position.append(found)
     count = len(position)
-    goal = _goals(stage, spawner, radius[:count], stream(seed, "spawner", index, "goal"))
+    where = np.array(position, dtype=np.float64).reshape(-1, 2)
+    aims = stream(seed, "spawner", index, "goal")
     return People(
-        np.array(position, dtype=np.float64).reshape(-1, 2),
-        goal,
+        where,
+        _goals(stage, spawner, radius[:count], aims) if spawner.goal else where,
         radius[:count],
         speed[:count],
         np.full(count, index, dtype=np.int64),

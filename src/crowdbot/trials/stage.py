@@ -86,6 +86,10 @@ class Stage:
         """Return whether a shapely geometry lies in the walkable area; without one everything does."""
         return not self.walkable or bool(self._area.buffer(1e-9).covers(shape))
 
+    def meets(self, shape: Any) -> bool:
+        """Return whether a shapely geometry has a part in the walkable area; without one everything has."""
+        return not self.walkable or bool(self._area.intersects(shape))
+
     def obstacle_around(self, shape: Any) -> int | None:
         """Return the index of an obstacle that a shapely geometry lies in, None when there is none."""
         found = self._blocks.query(shape, predicate="covered_by")

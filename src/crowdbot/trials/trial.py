@@ -15,43 +15,16 @@ from crowdbot.sensors import Sensor
 from crowdbot.world import Drive
 
 from .attribute import attribute, check, child, children, mounted, plugged
-from .distribution import Distribution
-from .notation import Points
+from .crowd import Contact, Crowd, Crowds, Limits, Routing
+from .journey import Exit, Journey
+from .notation import NAME
+from .people import Source, Spawner
 from .stage import Stage
 
 if TYPE_CHECKING:
     from .episode import Episode
 
-__all__ = ["End", "Goal", "Mount", "Recording", "Robot", "Spawner", "Trial"]
-
-NAME = "[A-Za-z][A-Za-z0-9_]*"
-"""Names of robots and sensors become names of ROS topics and frames."""
-WALKING_SPEED = Distribution("normal", (1.34, 0.26))
-"""Free walking speed [m/s] (Weidmann 1993, Transporttechnik der Fussgaenger, https://doi.org/10.3929/ethz-a-000687810)."""
-BODY_RADIUS = Distribution("uniform", (0.2, 0.3))
-
-
-@dataclass(frozen=True, kw_only=True)
-class Spawner:
-    """People who are placed at random in a zone, and walk to a random point of a goal zone.
-
-    Raises:
-        InputError: a value is not allowed.
-
-    >>> Spawner(count=3, zone=[(0, 0), (2, 0), (2, 2)], goal="8,0 9,0 9,2", radius=0.25).speed.extent
-    (0.56, 2.12)
-    """
-
-    name: str = attribute("", about="name for messages")
-    count: int = attribute(about="number of people", at_least=0, at_most=100_000)
-    zone: Points = attribute(about="corners of the spawn zone x,y; centres of people lie inside", unit="m", points=3)
-    goal: Points = attribute(about="corners of the goal zone x,y", unit="m", points=3)
-    speed: Distribution = attribute(WALKING_SPEED, about="preferred speed", unit="m/s", above=0.0, at_most=10.0)
-    radius: Distribution = attribute(BODY_RADIUS, about="radius of the body", unit="m", above=0.0, at_most=5.0)
-    arrival: str = attribute("leave", about="what people do in the goal zone", choices=("leave", "stay"))
-
-    def __post_init__(self) -> None:
-        check(self)
+__all__ = ["End", "Goal", "Mount", "Recording", "Robot", "Trial"]
 
 
 @dataclass(frozen=True)
@@ -151,10 +124,30 @@ class Trial:
     about: str = attribute("", about="one line for people")
     duration: float = attribute(about="longest simulated time", unit="s", above=0.0, at_most=86_400.0)
     step: float = attribute(0.05, about="time step of the world", unit="s", at_least=0.001, at_most=1.0)
+    substeps: int = attribute(1, about="steps of the crowd in a step of the world", at_least=1, at_most=10_000)
     seed: int = attribute(0, about="seed of everything random", at_least=-(2**53), at_most=2**53)
+    capacity: int | None = attribute(
+        None, about="most people there at a time, others wait outside", at_least=0, at_most=100_000
+    )
+    berth: float = attribute(
+        0.1, about="how much wider people take a robot to be", unit="m", at_least=0.0, at_most=10.0
+    )
+    symmetry: float = attribute(
+        0.0,
+        about="how far everyone's direction may be off, so that nobody stops face to face",
+        unit="rad",
+        at_least=0.0,
+        at_most=math.pi,
+    )
     stage: Stage = child(Stage, about="where people and robots can be")
-    crowd: CrowdModel = plugged("models", "CrowdModel", about="how people walk")
+    routing: Routing | None = child(None, about="people find their way around walls")
+    crowd: CrowdModel = children({"crowd": Crowd}, into=Crowds, about="how people walk", at_least=1, at_most=20)
+    contact: Contact | None = child(None, about="bodies that overlap are pushed apart")
+    limits: Limits | None = child(None, about="what people cannot go beyond")
+    journeys: tuple[Journey, ...] = children("journey", about="stops to go to one after the other", at_most=1000)
     spawners: tuple[Spawner, ...] = children("spawner", about="people", at_most=1000)
+    sources: tuple[Source, ...] = children("source", about="people who come in", at_most=1000)
+    exits: tuple[Exit, ...] = children("exit", about="where people leave", at_most=1000)
     robots: tuple[Robot, ...] = children("robot", about="robots", at_most=100)
     end: End = child(End, about="what ends the trial")
     recording: Recording = child(Recording, about="how often what is recorded")
@@ -205,7 +198,7 @@ class Trial:
 
     @property
     def people(self) -> int:
-        """Number of people of all spawners."""
+        """Number of people of all spawners, who are there at the beginning."""
         return sum(spawner.count for spawner in self.spawners)
 
     @property

@@ -49,14 +49,17 @@ def _element(tag: str, thing: Any, folder: Path | None) -> Element:
 def _add(element: Element, part: Part, value: Any, folder: Path | None) -> None:
     if part.role == "attribute":
         element.attributes[part.word] = _text(value, part.word)
-    elif part.role == "child":
-        element.children.append(_element(part.word, value, folder))
-    elif part.role == "children":
-        element.children += [_element(part.word, one, folder) for one in value]
+    elif part.role in ("child", "children"):
+        ones = part.into.spread(value) if part.into else (value if part.role == "children" else (value,))
+        element.children += [_element(_word(part, one), one, folder) for one in ones]
     elif part.role == "plugged":
         element.children.append(Element(part.word, _plug(part, value, folder)))
     else:
         element.attributes |= _plug(part, value, folder)
+
+
+def _word(part: Part, value: Any) -> str:
+    return next(word for word, kind in part.elements.items() if isinstance(value, kind))
 
 
 def _plug(part: Part, value: Any, folder: Path | None) -> dict[str, str]:

@@ -93,6 +93,18 @@ class Source:
             if isinstance(value, int | float) and not 0.0 < value < math.inf:
                 raise InputError(f"Source: {name} = {value} must be finite and above 0")
 
+    def come_by(self, time: float, seed: int, number: int = 0) -> int:
+        """Return how many people come by a time [s] as the source ``number`` of a world with this seed.
+
+        >>> from crowdbot.world import Point
+        >>> door = Zone(((0, 0), (1, 0), (1, 2), (0, 2)))
+        >>> Source(door, Journey((Point(9.0, 1.0),)), rate=0.5, timing="regular").come_by(9.0, seed=0)
+        5
+        """
+        queue = _Queue.of(self, int(seed) % 2**63, number)
+        queue.fill(time)
+        return queue.come
+
 
 @dataclass
 class _Queue:

@@ -1,0 +1,102 @@
+"""Journeys: where people go, one stop after the other, and the exits where they go out."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from crowdbot import world
+
+from .attribute import attribute, check, children
+from .notation import NAME, Points
+
+__all__ = ["Direction", "Exit", "Journey", "Point", "Zone"]
+
+TOLERANCE = 0.3
+
+
+@dataclass(frozen=True)
+class Point:
+    """A stop at a point."""
+
+    x: float = attribute(about="place", unit="m")
+    y: float = attribute(about="place", unit="m")
+    tolerance: float = attribute(TOLERANCE, about="how near one must come", unit="m", above=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def stop(self) -> world.Stop:
+        """Return the stop of a world."""
+        return world.Point(self.x, self.y, self.tolerance)
+
+
+@dataclass(frozen=True)
+class Direction:
+    """A direction to walk in for ever, so the last stop of a journey; no routing leads there."""
+
+    heading: float = attribute(
+        about="counter-clockwise from +x", unit="rad", at_least=-2.0 * math.pi, at_most=2.0 * math.pi
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def stop(self) -> world.Stop:
+        """Return the stop of a world."""
+        return world.Direction(self.heading)
+
+
+@dataclass(frozen=True)
+class Zone:
+    """A stop in a polygon."""
+
+    points: Points = attribute(about="corners of the zone x,y", unit="m", points=3)
+    aim: str = attribute(
+        "nearest", about="one goes to its nearest point, or to a random one of one's own", choices=("nearest", "random")
+    )
+    tolerance: float = attribute(TOLERANCE, about="how near to the own point is near enough", unit="m", above=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def stop(self) -> world.Stop:
+        """Return the stop of a world."""
+        return world.Zone(self.points, self.aim, self.tolerance)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Journey:
+    """Stops that people go to one after the other; spawners and sources name it.
+
+    >>> Journey(name="home", stops=[Point(5, 0), Zone([(9, 0), (10, 0), (10, 2)])]).then
+    'leave'
+    """
+
+    name: str = attribute(about="name that spawners and sources choose it by", pattern=NAME)
+    then: str = attribute("leave", about="what people do at the last stop", choices=("leave", "stay"))
+    stops: tuple[Point | Direction | Zone, ...] = children(
+        {"point": Point, "direction": Direction, "zone": Zone}, about="where they go", at_least=1, at_most=1000
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def journey(self) -> world.Journey:
+        """Return the journey of a world."""
+        return world.Journey(tuple(stop.stop() for stop in self.stops), self.then)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Exit:
+    """A zone in which everybody leaves, wherever they wanted to go; robots stay."""
+
+    name: str = attribute("", about="name for messages")
+    zone: Points = attribute(about="corners of the zone x,y", unit="m", points=3)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def out(self) -> world.Zone:
+        """Return the exit of a world."""
+        return world.Zone(self.zone)

@@ -1,0 +1,96 @@
+"""Where people come from: spawners place them before a trial begins, sources let them in while it runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from crowdbot import world
+
+from .attribute import attribute, check
+from .distribution import Distribution
+from .journey import Journey
+from .notation import Points
+
+__all__ = ["Source", "Spawner"]
+
+WALKING_SPEED = Distribution("normal", (1.34, 0.26))
+"""Free walking speed [m/s] (Weidmann 1993, Transporttechnik der Fussgaenger, https://doi.org/10.3929/ethz-a-000687810)."""
+BODY_RADIUS = Distribution("uniform", (0.2, 0.3))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spawner:
+    """People who are placed at random in a zone, and walk to a random point of a goal zone, or on a journey.
+
+    Raises:
+        InputError: a value is not allowed.
+
+    >>> Spawner(count=3, zone=[(0, 0), (2, 0), (2, 2)], goal="8,0 9,0 9,2", radius=0.25).speed.extent
+    (0.56, 2.12)
+    """
+
+    name: str = attribute("", about="name for messages")
+    count: int = attribute(about="number of people", at_least=0, at_most=100_000)
+    zone: Points = attribute(about="corners of the spawn zone x,y; centres of people lie inside", unit="m", points=3)
+    goal: Points = attribute(Points(), about="corners of the goal zone x,y, without a journey", unit="m", points=3)
+    journey: str = attribute("", about="name of their journey, without a goal zone")
+    speed: Distribution = attribute(WALKING_SPEED, about="preferred speed", unit="m/s", above=0.0, at_most=10.0)
+    radius: Distribution = attribute(BODY_RADIUS, about="radius of the body", unit="m", above=0.0, at_most=5.0)
+    arrival: str = attribute("leave", about="what people do in the goal zone", choices=("leave", "stay"))
+    crowd: str = attribute("", about="name of their crowd, by default the first")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """People who come in while the trial runs, at random places of a zone, as soon as there is room for them.
+
+    Raises:
+        InputError: a value is not allowed.
+
+    >>> Source(zone=[(0, 0), (2, 0), (2, 2)], goal="8,0 9,0 9,2", rate=0.5, begin=10).expected(60.0)
+    26.0
+    """
+
+    name: str = attribute("", about="name for messages")
+    zone: Points = attribute(about="corners of the zone x,y where they come in", unit="m", points=3)
+    goal: Points = attribute(Points(), about="corners of the goal zone x,y, without a journey", unit="m", points=3)
+    journey: str = attribute("", about="name of their journey, without a goal zone")
+    rate: float = attribute(about="people for each second", unit="1/s", above=0.0, at_most=1e4)
+    timing: str = attribute("poisson", about="they come at random, or evenly", choices=("poisson", "regular"))
+    begin: float = attribute(0.0, about="when the first may come", unit="s", at_least=0.0, at_most=86_400.0)
+    end: float = attribute(math.inf, about="when nobody comes any more", unit="s", above=0.0, at_most=86_400.0)
+    most: int | None = attribute(None, about="no more people than this", at_least=0, at_most=100_000)
+    speed: Distribution = attribute(WALKING_SPEED, about="preferred speed", unit="m/s", above=0.0, at_most=10.0)
+    radius: Distribution = attribute(BODY_RADIUS, about="radius of the body", unit="m", above=0.0, at_most=5.0)
+    arrival: str = attribute("leave", about="what people do in the goal zone", choices=("leave", "stay"))
+    crowd: str = attribute("", about="name of their crowd, by default the first")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def expected(self, duration: float) -> float:
+        """Return how many people come within a duration [s]: evenly the most, at random the mean."""
+        come = self.rate * max(0.0, min(self.end, duration) - self.begin) + 1.0
+        return come if self.most is None else min(come, float(self.most))
+
+    def source(self, journeys: Sequence[Journey], crowds: Sequence[str]) -> world.Source:
+        """Return the source of a world, given the journeys and the names of the crowds of the trial."""
+        named = next((one.journey() for one in journeys if one.name == self.journey), None)
+        goal = named or world.Journey((world.Zone(self.goal, aim="random"),), self.arrival)
+        return world.Source(
+            world.Zone(self.zone),
+            goal,
+            self.rate,
+            self.timing,
+            self.begin,
+            self.end,
+            self.most,
+            self.speed,
+            self.radius,
+            crowds.index(self.crowd) if self.crowd else 0,
+        )
