@@ -120,7 +120,7 @@ def _spoken(value: object) -> str:
         own = [
             f"{field.name}={_spoken(getattr(value, field.name))}"
             for field in dataclasses.fields(value)
-            if not _same(getattr(value, field.name), _default(field))
+            if field.repr and not _same(getattr(value, field.name), _default(field))
         ]
         return kebab(type(value).__name__) + (f"({', '.join(own)})" if own else "")
     if isinstance(value, np.ndarray):
