@@ -160,6 +160,21 @@ class Study:
         short = [recipe.label for recipe in self.recipes]
         return {one.name: one.label if short.count(one.label) == 1 else one.name for one in self.recipes}
 
+    def window_at(self, frame: int) -> tuple[Recording, int]:
+        """Return the first recording with a window whose last observed frame is this one, and which window it is.
+
+        Raises:
+            InputError: there is none.
+        """
+        for recording in self.recordings:
+            found = np.flatnonzero(recording.windows[0].frame[:, -1] == frame)
+            if len(found):
+                return recording, int(found[0])
+        first = self.recordings[0]
+        ends = first.windows[0].frame[:, -1]
+        near = ends[np.argmin(np.abs(ends - frame))]
+        raise InputError(f"no window of {first.path} ends at frame {frame}; the nearest one ends at {near}")
+
     def pieces(self) -> list[Piece]:
         """Return the jobs, recording by recording and predictor by predictor."""
         found = []
