@@ -16,7 +16,7 @@ COMMANDS = {
     "replay": "run a recorded episode again and check its digest",
     "predict": "score a predictor on recordings of people",
     "list": "name what is built in: models, predictors, trials, ...",
-    "check": "read a trial and say everything that is wrong with it",
+    "check": "read a trial or a robot and say everything that is wrong with it",
     "cite": "print the papers behind a name",
     "bench": "measure speed on this machine",
     "validate": "hold the crowd models against experiments with people",

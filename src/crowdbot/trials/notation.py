@@ -11,6 +11,7 @@ from crowdbot.core.markup import number
 
 __all__ = ["Points", "number", "plain"]
 
+
 def plain(value: float) -> str:
     """Return the shortest text that reads back as the same number.
 

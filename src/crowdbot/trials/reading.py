@@ -155,7 +155,9 @@ class _Reader:
         known = {part.word: part for part in parts if part.role in ("child", "children", "plugged")}
         values: dict[str, Any] = {part.name: [] for part in known.values() if part.role == "children"}
         if element.stray:
-            self.say(element.line, element.tag, f"holds the text {element.stray[:40]!r}; values are written as attributes")
+            self.say(
+                element.line, element.tag, f"holds the text {element.stray[:40]!r}; values are written as attributes"
+            )
         count: Counter[str] = Counter()
         for inner in element.children:
             part = known.get(inner.tag)
