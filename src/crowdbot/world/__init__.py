@@ -1,17 +1,22 @@
 """Worlds: what turns commands into the next scene. Contracts :class:`World`, :class:`Drive` and :class:`Stop`."""
 
+from .ackermann import AckermannDrive, SteeredTwists
 from .contact import BodyContact
 from .drive import DifferentialDrive, Drive, Omnidirectional, Twists, moved
 from .flow import Source
 from .journey import Journey, Journeys
 from .limits import CrowdLimits
 from .planar import PlanarWorld
+from .robot import Robot, SensorMount, Wheel, builtin_robots
 from .routing import Router
+from .servo import CommandDelay, VelocityServo
 from .stop import Direction, Point, Stop, Zone
 from .world import Contact, World
 
 __all__ = [
+    "AckermannDrive",
     "BodyContact",
+    "CommandDelay",
     "Contact",
     "CrowdLimits",
     "DifferentialDrive",
@@ -22,11 +27,17 @@ __all__ = [
     "Omnidirectional",
     "PlanarWorld",
     "Point",
+    "Robot",
     "Router",
+    "SensorMount",
     "Source",
+    "SteeredTwists",
     "Stop",
     "Twists",
+    "VelocityServo",
+    "Wheel",
     "World",
     "Zone",
+    "builtin_robots",
     "moved",
 ]
