@@ -1,0 +1,131 @@
+"""Annealing: chains that accept worse parameters ever less often, everyone for himself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Paper
+
+from .cooling import Cooling, Geometric
+from .ledger import Floats, Ledger, own_best
+from .search import Search
+
+__all__ = ["Annealing"]
+
+COOLING = Geometric(0.1, 1e-4)
+REACH = Geometric(0.5, 0.003)
+ANYWHERE = 0.2
+"""The share of new values that are drawn from the whole side of the box."""
+
+
+@dataclass(frozen=True)
+class Annealing(Search):
+    """Simulated annealing: several chains at once, and in each of them everyone accepts for himself.
+
+    In every step each chain gives most people a new value of one parameter: around the present one, ever nearer, or now
+    and then anywhere. Someone keeps it when he costs less than before, or, with the probability ``exp(-increase / T)``,
+    when he costs more. He decides on his own cost, not on that of the whole crowd: a crowd would hardly ever accept 30
+    changes at once. T is the temperature of ``cooling`` times the spread (of the middle half) of what he costs with the
+    first random parameters, so it needs no unit. Beside the chains, each step evaluates everyone's best parameters
+    together. Every few steps the worse half of everyone's chains goes on from where the better half is.
+    The result is the best crowd that was evaluated as a whole.
+
+    Fields:
+        cooling: temperature, in spreads of the costs.
+        reach: standard deviation of a change of a parameter, in sides of the box.
+        chains: how many chains.
+        exchange: after how many steps the worse half is replaced; 0: never.
+        moved: the share of people with a new value in a step at the end; at the beginning it is 1.
+
+    Source: Kirkpatrick, Gelatt & Vecchi (1983), doi 10.1126/science.220.4598.671; acceptance by person and the exchange
+    are ours.
+
+    >>> low, high = np.array([-1.0, -1.0]), np.array([2.0, 2.0])
+    >>> everyone = lambda candidates, which: (candidates**2).sum(axis=-1)
+    >>> found = Annealing().minimize(everyone, low, high, [np.random.default_rng(0)], 1000, np.ones((1, 1, 20, 2)))
+    >>> found.best.shape, found.evaluations.tolist(), bool(found.cost[0] < 0.01)
+    ((1, 20, 2), [1000], True)
+    """
+
+    cooling: Cooling = COOLING
+    reach: Cooling = REACH
+    chains: int = 12
+    exchange: int = 4
+    moved: float = 0.4
+
+    paper: ClassVar[Paper] = Paper(
+        "Kirkpatrick, Gelatt, Vecchi", 1983, "Optimization by simulated annealing", "Science",
+        "10.1126/science.220.4598.671",
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.chains < 1 or self.exchange < 0:
+            raise InputError(
+                f"annealing: chains = {self.chains} must be at least 1 and exchange = {self.exchange} steps at least 0"
+            )
+        if not 0.0 < self.moved <= 1.0:
+            raise InputError(f"annealing: moved = {self.moved} of the people must be above 0 and at most 1")
+
+    def explore(self, ledger: Ledger, pool: Floats, cost: Floats) -> None:
+        """Walk all chains, see :meth:`Search.explore`."""
+        first = ledger.anywhere(min(self.chains, ledger.left))
+        pool, cost = np.concatenate([pool, first]), np.concatenate([cost, ledger.evaluate(first)])
+        pool = np.clip(pool, ledger.low, ledger.high)
+        here, energy = _cheapest(pool, cost, len(cost), self.chains)
+        here, energy, best, spread = ledger.settle(here, energy, here[:1], _spread(cost))
+        step = 0
+        while ledger.left > 1:
+            there, moved = self._moved(ledger, here)
+            crowds = np.concatenate([best, there])[: ledger.left - 1]
+            measured = ledger.evaluate(crowds)
+            best, _ = own_best(crowds, measured)
+            if len(crowds) > self.chains:
+                step += 1
+                limit = self.cooling.at(ledger.progress) * spread * _tolerated(ledger, self.chains)
+                accepted = (measured[1:] <= energy + limit) | ~moved
+                here = np.where(accepted[..., None], there, here)
+                energy = np.where(accepted, measured[1:], energy)
+                if self.exchange and step % self.exchange == 0:
+                    here, energy = _cheapest(here, energy, (self.chains + 1) // 2, self.chains)
+            here, energy, best, spread = ledger.settle(here, energy, best, spread)
+        if ledger.left:
+            ledger.evaluate(best)
+            ledger.settle()
+
+    def _moved(self, ledger: Ledger, here: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+        """Return where the chains might go, and whose parameters ``[chains, L, N]`` change."""
+        C, _, N, D = here.shape
+        chance = ledger.draw(lambda rng: rng.random((C, N, 4)))
+        away = ledger.draw(lambda rng: rng.standard_normal((C, N, 1)))
+        moved = chance[..., 0] < 1.0 + (self.moved - 1.0) * ledger.progress
+        which = (chance[..., 1] * D).astype(np.int64)[..., None] == np.arange(D)
+        near = ledger.folded(here + self.reach.at(ledger.progress) * ledger.span * away)
+        anywhere = ledger.inside(chance[..., 2, None])
+        there = np.where(chance[..., 3, None] < ANYWHERE, anywhere, near)
+        return np.where(which & moved[..., None], there, here), moved
+
+
+def _cheapest(pool: Floats, cost: Floats, count: int, chains: int) -> tuple[Floats, Floats]:
+    """Return everyone's ``count`` cheapest parameters and their costs, again and again for so many chains."""
+    row = np.argsort(cost, axis=0, kind="stable")[np.arange(chains) % count]
+    return np.take_along_axis(pool, row[..., None], axis=0), np.take_along_axis(cost, row, axis=0)
+
+
+def _spread(cost: Floats) -> Floats:
+    """Return how far the middle half of everyone's costs spreads, ``[1, L, N]``; it adds no numbers up, so that its
+    last bit does not depend on L."""
+    ordered = np.sort(cost, axis=0)
+    low, high = ordered[len(cost) // 4], ordered[(3 * len(cost)) // 4]
+    finite = np.isfinite(high)
+    return np.where(finite, high, 0.0)[None] - np.where(finite, low, 0.0)[None]
+
+
+def _tolerated(ledger: Ledger, chains: int) -> Floats:
+    """Return by how many temperatures everyone lets his cost grow; exponential: more than x has chance ``exp(-x)``."""
+    people = ledger.best.shape[1]
+    return ledger.draw(lambda rng: rng.standard_exponential((chains, people)))

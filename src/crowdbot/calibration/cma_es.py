@@ -1,0 +1,89 @@
+"""CMAES: everyone's parameters follow a normal distribution that learns its shape, with the library ``cmaes``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from crowdbot.core import InputError, Paper
+
+from .ledger import Floats, Ledger, own_best
+from .search import Search
+
+__all__ = ["CMAES"]
+
+
+@dataclass(frozen=True)
+class CMAES(Search):
+    """Covariance matrix adaptation (CMA-ES): one optimiser for every person, told what that person alone costs.
+
+    The p-th solutions of all optimisers are one candidate crowd, and beside these each generation evaluates the crowd
+    of everyone's means: the result is the best crowd that was evaluated as a whole. The optimisers begin at everyone's
+    cheapest start and begin anew anywhere in the box when they have converged. The library draws and learns person by
+    person, so that it is the slowest of the searches.
+
+    Fields:
+        population: solutions of an optimiser in a generation.
+        width: standard deviation at the beginning, in sides of the box.
+
+    Source: Hansen (2016), doi 10.48550/arXiv.1604.00772, as in the library cmaes (Nomura & Shibata 2024, doi
+    10.48550/arXiv.2402.01373).
+
+    >>> low, high = np.array([-1.0, -1.0]), np.array([2.0, 2.0])
+    >>> everyone = lambda candidates, which: (candidates**2).sum(axis=-1)
+    >>> found = CMAES().minimize(everyone, low, high, [np.random.default_rng(0)], 500, np.ones((1, 1, 3, 2)))
+    >>> found.best.shape, found.evaluations.tolist(), bool(found.cost[0] < 0.01)
+    ((1, 3, 2), [500], True)
+    """
+
+    population: int = 16
+    width: float = 0.3
+
+    paper: ClassVar[Paper] = Paper(
+        "Hansen", 2016, "The CMA evolution strategy: a tutorial", "arXiv", "10.48550/arXiv.1604.00772"
+    )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.population < 2:
+            raise InputError(f"cmaes: population = {self.population} solutions must be at least 2")
+        if not 0.0 < self.width <= 1.0:
+            raise InputError(f"cmaes: width = {self.width} sides of the box must be above 0 and at most 1")
+
+    def explore(self, ledger: Ledger, pool: Floats, cost: Floats) -> None:
+        """Ask all optimisers, evaluate, tell them, see :meth:`Search.explore`."""
+        side = np.where(ledger.span > 0.0, ledger.span, 1.0)
+        best, _ = own_best(pool, cost)
+        begin = np.clip((best[0] - ledger.low) / side, 0.0, 1.0)
+        optimisers = {
+            (problem, person): self._optimiser(begin[row, person], ledger.rngs[problem])
+            for row, problem in enumerate(ledger.live.tolist())
+            for person in np.flatnonzero(ledger.counts[row]).tolist()
+        }
+        while ledger.left:
+            rows = {problem: row for row, problem in enumerate(ledger.live.tolist())}
+            place = np.zeros((self.population + 1, len(rows), *ledger.best.shape[1:]))
+            ours = [(key, (slice(1, None), rows[key[0]], key[1])) for key in optimisers if key[0] in rows]
+            for key, where in ours:
+                optimiser = optimisers[key]
+                place[0][where[1:]] = np.clip(optimiser.mean, 0.0, 1.0)
+                place[where] = [optimiser.ask() for _ in range(self.population)]
+            measured = ledger.evaluate(ledger.inside(place))
+            if not ledger.left:
+                break
+            for key, where in ours:
+                optimisers[key].tell(list(zip(place[where], measured[where].tolist(), strict=True)))
+                if optimisers[key].should_stop():
+                    rng = ledger.rngs[key[0]]
+                    optimisers[key] = self._optimiser(rng.random(len(side)), rng)
+            ledger.settle()
+
+    def _optimiser(self, mean: Floats, rng: np.random.Generator) -> Any:
+        """Return an optimiser in the unit box that begins at ``mean``."""
+        from cmaes import CMA
+
+        bounds = np.repeat([[0.0, 1.0]], len(mean), axis=0)
+        seed = int(rng.integers(2**32))
+        return CMA(mean=mean, sigma=self.width, bounds=bounds, seed=seed, population_size=self.population)

@@ -1,0 +1,47 @@
+"""Cooling: how a temperature falls while a search goes on."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+from crowdbot.core import InputError
+
+__all__ = ["Cooling", "Geometric"]
+
+
+@dataclass(frozen=True)
+class Cooling(ABC):
+    """A schedule: from the share of the budget that is spent to a temperature."""
+
+    @abstractmethod
+    def at(self, progress: float) -> float:
+        """Return the temperature when the share ``progress``, 0 to 1, of the budget is spent."""
+
+
+@dataclass(frozen=True)
+class Geometric(Cooling):
+    """Falls by the same factor with every evaluation, from ``start`` to ``end``.
+
+    Source: Kirkpatrick, Gelatt & Vecchi (1983), doi 10.1126/science.220.4598.671.
+
+    Raises:
+        InputError: a temperature is not finite and above 0, or the end is above the start.
+
+    >>> [round(Geometric(1.0, 0.01).at(progress), 3) for progress in (0.0, 0.5, 1.0)]
+    [1.0, 0.1, 0.01]
+    """
+
+    start: float = 0.1
+    end: float = 1e-4
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.end <= self.start < math.inf:
+            raise InputError(
+                f"geometric cooling: from {self.start} to {self.end} must fall and stay above 0, and both be finite"
+            )
+
+    def at(self, progress: float) -> float:
+        """Return the temperature, see :meth:`Cooling.at`."""
+        return float(self.start * (self.end / self.start) ** progress)

@@ -1,0 +1,50 @@
+"""RandomSearch: candidates uniformly at random, the yardstick of the other searches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from crowdbot.core import InputError
+
+from .ledger import Floats, Ledger, own_best
+from .search import Search
+
+__all__ = ["RandomSearch"]
+
+
+@dataclass(frozen=True)
+class RandomSearch(Search):
+    """Parameters uniformly at random in the box, the same number of times for everyone.
+
+    The last evaluation of the budget is everyone's own best parameters, together.
+
+    Fields:
+        batch: how many candidates are evaluated at once.
+
+    >>> low, high = np.array([-1.0, -1.0]), np.array([2.0, 2.0])
+    >>> everyone = lambda candidates, which: (candidates**2).sum(axis=-1)
+    >>> found = RandomSearch().minimize(everyone, low, high, [np.random.default_rng(0)], 500, np.ones((1, 1, 3, 2)))
+    >>> found.best.shape, found.evaluations.tolist(), bool(found.cost[0] < 0.05)
+    ((1, 3, 2), [500], True)
+    """
+
+    batch: int = 100
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.batch < 1:
+            raise InputError(f"random-search: batch = {self.batch} candidates must be at least 1")
+
+    def explore(self, ledger: Ledger, pool: Floats, cost: Floats) -> None:
+        """Draw and evaluate until one evaluation is left, see :meth:`Search.explore`."""
+        best, least = own_best(pool, cost)
+        while ledger.left > 1:
+            drawn = ledger.anywhere(min(self.batch, ledger.left - 1))
+            cost = ledger.evaluate(drawn)
+            best, least = own_best(np.concatenate([best, drawn]), np.concatenate([least, cost]))
+            best, least = ledger.settle(best, least)
+        if ledger.left:
+            ledger.evaluate(best)
+            ledger.settle()
