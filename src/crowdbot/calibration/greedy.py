@@ -87,4 +87,5 @@ class Greedy(Search):
         away = ledger.draw(lambda rng: rng.standard_normal(self.trials))
         near = present + np.exp(np.log(NARROWEST) * chance) * side * away
         anywhere = (np.arange(self.trials) % 2 == 0)[:, None]
-        return np.clip(np.where(anywhere, low + side * chance, near), low, high)
+        values: Floats = np.clip(np.where(anywhere, low + side * chance, near), low, high)
+        return values
