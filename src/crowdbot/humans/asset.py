@@ -1,0 +1,98 @@
+"""The file of bodies that ships: rest shapes, skeleton, skin weights and regions, read once."""
+
+from __future__ import annotations
+
+import functools
+import importlib.resources
+import json
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["LEVELS", "Level", "Shapes", "shapes"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+LEVELS = 3
+"""Levels of detail: 0 is the finest."""
+UNIT = 1e-4
+"""Length of one unit of the stored vertices [m]."""
+
+
+@dataclass(frozen=True)
+class Level:
+    """One level of detail, shared by all bodies but for the rest shape.
+
+    Fields: ``rest [P, V, 3]`` [m], ``faces [F, 3]``, ``bones [V, 4]`` and ``weights [V, 4]`` (sum 1), the part and the
+    region of every vertex and face as indices into the names of :class:`Shapes`.
+    """
+
+    rest: Floats
+    faces: Ints
+    bones: Ints
+    weights: Floats
+    vertex_part: Ints
+    vertex_region: Ints
+    face_part: Ints
+    face_region: Ints
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """All bodies of the file: ``people`` says who they are; ``head`` and ``tail`` are the bones at rest [m]."""
+
+    people: tuple[dict[str, Any], ...]
+    bones: tuple[str, ...]
+    parents: Ints
+    parts: tuple[str, ...]
+    regions: tuple[str, ...]
+    head: Floats
+    tail: Floats
+    levels: tuple[Level, ...]
+
+    def bone(self, name: str) -> int:
+        """Return the index of a bone."""
+        return self.bones.index(name)
+
+
+@functools.cache
+def shapes() -> Shapes:
+    """Return the bodies of the file, and as the last one the mannequin: the mean of the adults."""
+    folder = importlib.resources.files("crowdbot").joinpath("assets", "humans")
+    with importlib.resources.as_file(folder.joinpath("humans_cc0.npz")) as path, np.load(path, allow_pickle=False) as f:
+        stored = {name: f[name] for name in f.files}
+    people = tuple(json.loads(str(stored["people"])))
+    adult = np.array([person["years"] >= 18 for person in people])
+    return Shapes(
+        people=people,
+        bones=tuple(str(b) for b in stored["bones"]),
+        parents=stored["parents"].astype(np.int64),
+        parts=tuple(str(p) for p in stored["part_names"]),
+        regions=tuple(str(r) for r in stored["regions"]),
+        head=_with_mean(stored["joint_head"].astype(np.float64), adult),
+        tail=_with_mean(stored["joint_tail"].astype(np.float64), adult),
+        levels=tuple(_level(stored, k, adult) for k in range(LEVELS)),
+    )
+
+
+def _level(stored: dict[str, NDArray[Any]], k: int, adult: NDArray[np.bool_]) -> Level:
+    rest = _with_mean(stored[f"lod{k}_verts"] * UNIT, adult)
+    rest[..., 2] = np.maximum(rest[..., 2], 0.0)  # the soles of the file lie up to 6 mm under the floor
+    counts = stored[f"lod{k}_parts"].astype(np.int64)
+    weights = stored[f"lod{k}_weights"].astype(np.float64)
+    return Level(
+        rest=rest,
+        faces=stored[f"lod{k}_faces"].astype(np.int64),
+        bones=stored[f"lod{k}_bones"].astype(np.int64),
+        weights=weights / weights.sum(axis=1, keepdims=True),
+        vertex_part=np.repeat(np.arange(len(counts)), counts[:, 0]),
+        vertex_region=stored[f"lod{k}_region"].astype(np.int64),
+        face_part=np.repeat(np.arange(len(counts)), counts[:, 1]),
+        face_region=stored[f"lod{k}_face_region"].astype(np.int64),
+    )
+
+
+def _with_mean(values: Floats, adult: NDArray[np.bool_]) -> Floats:
+    return np.concatenate([values, values[adult].mean(axis=0, keepdims=True)])
