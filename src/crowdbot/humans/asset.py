@@ -17,6 +17,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 LEVELS = 3
 """Levels of detail: 0 is the finest."""
+HEM, CUT = 0.29, -1
+"""Skirts of the file are long and follow the thighs only, so that the shanks of walkers would come through: triangles
+below this share of stature (about the knee) are cut off, and their part is the second number."""
 UNIT = 1e-4
 """Length of one unit of the stored vertices [m]."""
 
@@ -82,14 +85,21 @@ def _level(stored: dict[str, NDArray[Any]], k: int, adult: NDArray[np.bool_]) ->
     rest[..., 2] = np.maximum(rest[..., 2], 0.0)  # the soles of the file lie up to 6 mm under the floor
     counts = stored[f"lod{k}_parts"].astype(np.int64)
     weights = stored[f"lod{k}_weights"].astype(np.float64)
+    faces = stored[f"lod{k}_faces"].astype(np.int64)
+    part = np.repeat(np.arange(len(counts)), counts[:, 1])
+    skirt = list(stored["part_names"]).index("skirt")
+    hem = HEM * rest[..., 2].max(axis=1)
+    part[(part == skirt) & (rest[-1, faces, 2].max(axis=1) < hem[-1])] = CUT
+    below = np.repeat(np.arange(len(counts)), counts[:, 0]) == skirt
+    rest[:, below, 2] = np.maximum(rest[:, below, 2], hem[:, None])
     return Level(
         rest=rest,
-        faces=stored[f"lod{k}_faces"].astype(np.int64),
+        faces=faces,
         bones=stored[f"lod{k}_bones"].astype(np.int64),
         weights=weights / weights.sum(axis=1, keepdims=True),
         vertex_part=np.repeat(np.arange(len(counts)), counts[:, 0]),
         vertex_region=stored[f"lod{k}_region"].astype(np.int64),
-        face_part=np.repeat(np.arange(len(counts)), counts[:, 1]),
+        face_part=part,
         face_region=stored[f"lod{k}_face_region"].astype(np.int64),
     )
 

@@ -44,7 +44,7 @@ class People:
 
     >>> people = People.of(["woman-36", "man-20", "mannequin"], variation=[0, 7, 0], height=[1.6, 1.7, 1.8])
     >>> people.mass.round(1).tolist(), people.faces(2).shape
-    ([53.4, 60.2, 71.0], (593, 3))
+    ([54.4, 60.2, 77.0], (593, 3))
     """
 
     persons: tuple[Person, ...]
