@@ -35,6 +35,10 @@ class Gait:
             and on ``ids`` only, not on who else walks.
         ids: ``[N]``, a number for each person; None counts from 0.
 
+    People walk; nobody runs: above about 2 m/s the legs only go faster. A foot that stands stays where it is unless the
+    body leaves it behind (velocities that jump by several m/s) or turns more than 80 degrees against it; who sits is
+    carried along.
+
     Source: relations of stride and speed by Boulic, Magnenat-Thalmann & Thalmann 1990, doi:10.1007/BF01901021.
 
     >>> gait = Gait(People.of(["man-20"]))
