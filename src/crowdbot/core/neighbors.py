@@ -318,7 +318,7 @@ def _sort_by_distance(near: Rows, near2: Array, held: int, sorted_: Rows) -> Non
     near2[held] = math.inf
     sorted_[: held + 1] = -1
     for i in range(0, held, 2):
-        rank, next_rank = np.int64(0), np.int64(0)
+        rank, next_rank = int(np.int64(0)), int(np.int64(0))
         for j in range(held):
             rank += 1 if near2[j] < near2[i] else 0
             next_rank += 1 if near2[j] < near2[i + 1] else 0
