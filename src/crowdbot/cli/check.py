@@ -10,7 +10,7 @@ from .output import add_json, print_json
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("trials", metavar="TRIAL", nargs="+", help="trial files or built-in names")
+    parser.add_argument("trials", metavar="TRIAL", nargs="+", help="trial or experiment files, or built-in names")
     parser.add_argument("--trust", action="store_true", help="let trials load code from outside their own folder")
     add_json(parser)
 
@@ -19,11 +19,13 @@ def main(options: argparse.Namespace) -> int:
     """Check each trial; status 2 when one is wrong."""
     from crowdbot.core import InputError, TrialError
     from crowdbot.trials import load_trial
+    from crowdbot.trials.experiment import is_experiment, load_experiment
 
     found: dict[str, list[str]] = {}
     for name in options.trials:
         try:
-            load_trial(name, trust=options.trust)
+            load = load_experiment if is_experiment(name) else load_trial
+            load(name, trust=options.trust)
             found[name] = []
         except TrialError as error:
             found[name] = list(error.problems)

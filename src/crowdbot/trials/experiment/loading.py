@@ -91,7 +91,9 @@ def trial_of(source: str, folder: Path | None, trust: bool = False) -> Trial:
     path = (root / source).resolve()
     if path.is_file():
         if not trust and not path.is_relative_to(root):
-            raise InputError(f"the trial {source!r} lies outside the folder of the experiment; pass --trust to allow it")
+            raise InputError(
+                f"the trial {source!r} lies outside the folder of the experiment; pass --trust to allow it"
+            )
         return Trial.parse(read_bytes(path), place=source, folder=path.parent, trust=trust)
     if source in builtin_trials():
         return load_trial(source)

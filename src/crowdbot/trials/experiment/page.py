@@ -19,14 +19,19 @@ MOST_BYTES = 1_000_000
 KINDS = (".txt", ".html", ".htm")
 PICTURES = (".png", ".jpg", ".jpeg", ".gif", ".webp")
 KEPT = frozenset(
-    "h1 h2 h3 h4 h5 h6 p br hr ul ol li b strong i em u sub sup small blockquote pre code div span"
-    " table caption thead tbody tr td th dl dt dd".split()
+    re.findall(
+        r"\w+",
+        "h1 h2 h3 h4 h5 h6 p br hr ul ol li b strong i em u sub sup small blockquote pre code div span"
+        " table caption thead tbody tr td th dl dt dd",
+    )
 )
 """Elements that say how a text looks and can do nothing else."""
 VOID = frozenset(("br", "hr"))
-DROPPED = frozenset("script style head title iframe object embed template noscript svg math select textarea".split())
+DROPPED = frozenset(
+    re.findall(r"\w+", "script style head title iframe object embed template noscript svg math select textarea")
+)
 """Elements whose content is not shown either."""
-LINES = KEPT - frozenset("b strong i em u sub sup small code span td th".split())
+LINES = KEPT - frozenset(re.findall(r"\w+", "b strong i em u sub sup small code span td th"))
 CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 """What a terminal takes for a command, or what turns the direction of a line."""
 

@@ -129,7 +129,9 @@ class Choice(Question):
         for one in given:
             if not isinstance(one, str) or one not in known:
                 meant = did_you_mean(str(one), known)
-                raise InputError(f"{shown(one)} is no answer to {self.name!r}{meant or ','}{';' if meant else ''} it must be {self.hint}")
+                raise InputError(
+                    f"{shown(one)} is no answer to {self.name!r}{f'{meant};' if meant else ','} it must be {self.hint}"
+                )
         if not self.several:
             return known[known.index(given[0])]
         return tuple(name for name in known if name in given)
