@@ -124,13 +124,16 @@ def _ended(sitting: Sitting, as_json: bool) -> int:
 
 
 def _order(options: argparse.Namespace) -> int:
+    from crowdbot.core import InputError
     from crowdbot.trials.experiment import load_experiment, plan
 
     experiment = load_experiment(options.experiment, trust=options.trust)
     count = options.participants if options.participants is not None else experiment.participants or 12
+    if count < 1:
+        raise InputError(f"--participants {count} must be at least 1")
     rows = {
         participant: [f"{step.block}.{step.name}" for step in plan(experiment, participant) if step.role == "trial"]
-        for participant in range(1, max(count, 1) + 1)
+        for participant in range(1, count + 1)
     }
     sentences = _balance(experiment, count)
     if options.json:
@@ -170,7 +173,8 @@ def _summary(options: argparse.Namespace) -> int:
     first = ["participant", "session", "number", "trial", "outcome", "time_to_goal", "min_clearance"]
     columns = [name for name in first if name in rows[0]] + [name for name in rows[0] if "." in name]
     cells = [[number(row[name], 2) for name in columns] for row in rows]
-    print_table(f"{len({row['participant'] for row in rows})} participants", columns, cells, words=2)
+    head = [name.replace("_", "\n").replace(".", "\n") for name in columns]
+    print_table(f"participants: {len({row['participant'] for row in rows})}", head, cells, words=2)
     if options.out is not None:
         print(f"table     {options.out}: {len(rows)} rows, {len(rows[0])} columns")
     return 0

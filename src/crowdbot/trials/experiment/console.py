@@ -13,11 +13,11 @@ from types import FrameType
 
 from crowdbot.core import CrowdbotError, InputError
 
-from .event import Abort, Answered, Fail, Next, Pause, Repeat, Resume, Start
+from .event import Abort, Answered, Event, Fail, Next, Pause, Repeat, Resume, Start
 from .page import CONTROL
 from .person import Person
 from .question import Choice, Question
-from .running import GivenUp, Running
+from .running import Running
 from .sitting import Sitting
 
 __all__ = ["Console", "Left"]
@@ -88,7 +88,8 @@ class Console:
         assert page is not None
         text = "\n".join(_wrapped(line) for line in page.text.splitlines())
         self.write(f"\n{'-' * WIDTH}\n{text}\n" if text else f"\n{'-' * WIDTH}\n")
-        self.sitting.shown(text)
+        if text:
+            self.sitting.shown(text)
         for question in self.sitting.session.open:
             self._ask(step.name, question)
         self.write("\n[Enter] ")
@@ -127,7 +128,7 @@ class Console:
                 self._held(running)
                 continue
             except BaseException:
-                running.give_up()
+                self._given_up(running)
                 raise
             self._end(running, folder)
         self.tell(what, 1.0)
@@ -143,19 +144,29 @@ class Console:
             if self.sitting.session.phase == "running":
                 running.go()
             else:
-                running.give_up()
+                self._given_up(running)
+
+    def _given_up(self, running: Running) -> None:
+        """Wait until a trial has given up, so that no other one begins beside it."""
+        running.give_up()
+        try:
+            with self._interrupt.allowed():
+                while not running.wait(0.2):
+                    pass
+        except KeyboardInterrupt:
+            raise Left("the trial does not end") from None
 
     def _end(self, running: Running, folder: Path) -> None:
         try:
-            self.sitting.finish(running.result())
+            episode = running.result()
         except CrowdbotError as error:
             self.sitting.do(Fail(str(error)))
-        except GivenUp:
-            self.sitting.do(Fail("given up"))
-        except Exception as error:
+        except Exception as error:  # code that a trial names may raise anything; the session must outlive it
             report = folder / "error.txt"
             report.write_text("".join(traceback.format_exception(error)), encoding="utf-8")
             self.sitting.do(Fail(f"{type(error).__name__}: {error}; more in {report.name}"))
+        else:
+            self.sitting.finish(episode)
 
     def _menu(self) -> None:
         session = self.sitting.session
@@ -170,7 +181,8 @@ class Console:
             word = "leave"
         if word == "leave":
             raise Left(session.reason)
-        self.sitting.do({"resume": Resume(), "next": Next(), "repeat": Repeat(), "abort": Abort("menu")}[word])
+        chosen: dict[str, Event] = {"resume": Resume(), "next": Next(), "repeat": Repeat(), "abort": Abort("menu")}
+        self.sitting.do(chosen[word])
 
 
 class Interrupt:

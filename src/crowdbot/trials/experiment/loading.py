@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.resources
-import re
 from pathlib import Path
+from xml.parsers import expat
 
 from crowdbot.core import InputError, TrialError
 from crowdbot.core.errors import did_you_mean
@@ -67,9 +68,23 @@ def is_experiment(source: str | Path) -> bool:
     path = _file(source)
     if path is None:
         return False
-    data = re.sub(rb"<!--.*?-->", b"", read_bytes(path), flags=re.S)
-    first = re.search(rb"<([A-Za-z][\w-]*)", data)
-    return first is not None and first[1] == b"experiment"
+    return _root(read_bytes(path)) == "experiment"
+
+
+def _root(data: bytes) -> str:
+    """Return the name of the root element; empty when none begins before anything that no trial may have."""
+    found: list[str] = []
+    parser = expat.ParserCreate()
+
+    def stop(tag: str, *_: object) -> None:
+        found.append(tag)
+        raise StopIteration
+
+    parser.StartElementHandler = stop
+    parser.StartDoctypeDeclHandler = lambda *_: stop("")
+    with contextlib.suppress(StopIteration, expat.ExpatError, LookupError, ValueError):
+        parser.Parse(data, True)
+    return found[0] if found else ""
 
 
 def _file(source: str | Path) -> Path | None:

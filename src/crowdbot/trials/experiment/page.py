@@ -15,7 +15,8 @@ from .experiment import Screen
 
 __all__ = ["Page", "page_of", "sanitised"]
 
-MOST_BYTES = 1_000_000
+MOST_BYTES = 200_000
+MOST_DEPTH = 100
 KINDS = (".txt", ".html", ".htm")
 PICTURES = (".png", ".jpg", ".jpeg", ".gif", ".webp")
 KEPT = frozenset(
@@ -128,12 +129,12 @@ class _Sieve(HTMLParser):
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         if self.dropped or tag in DROPPED:
-            if tag in DROPPED and tag != "embed":
+            if tag in DROPPED and tag != "embed" and len(self.dropped) < MOST_DEPTH:
                 self.dropped.append(tag)
             return
         if tag == "img":
             self._picture(dict(attrs))
-        elif tag in KEPT:
+        elif tag in KEPT and len(self.open) < MOST_DEPTH:
             self.out.append(f"<{tag}>")
             self._shape(tag)
             if tag not in VOID:
@@ -161,7 +162,8 @@ class _Sieve(HTMLParser):
     def result(self) -> tuple[str, str]:
         """Return the text and the HTML."""
         self._close(0)
-        lines = [re.sub("[ \t]+$|^ (?=\\S)", "", line) for line in "".join(self.words).split("\n")]
+        lines = [line.rstrip(" \t") for line in "".join(self.words).split("\n")]
+        lines = [line[1:] if line[:1] == " " and line[1:2] not in ("", " ") else line for line in lines]
         return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).strip(), "".join(self.out).strip()
 
     def _close(self, depth: int) -> None:
@@ -169,7 +171,7 @@ class _Sieve(HTMLParser):
             tag = self.open.pop()
             self.out.append(f"</{tag}>")
             if tag in LINES:
-                self.words.append("\n" if tag in ("li", "tr", "dt", "dd", "div") else "\n\n")
+                self.words.append("" if tag == "li" else "\n" if tag in ("tr", "dt", "dd", "div") else "\n\n")
             elif tag in ("td", "th"):
                 self.words.append("  ")
 

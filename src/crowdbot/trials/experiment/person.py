@@ -43,7 +43,7 @@ class Typed(Person):
     Args:
         stream: lines.
         write: shows a text.
-        patient: whether a wrong answer can be given anew; not from a pipe, whose next lines would answer something else.
+        patient: whether a wrong answer can be given anew; not from a pipe, whose next line answers something else.
     """
 
     def __init__(self, stream: TextIO, write: Callable[[str], None], patient: bool) -> None:

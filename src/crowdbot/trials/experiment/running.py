@@ -48,10 +48,9 @@ class Running:
         self._go.set()
 
     def give_up(self) -> None:
-        """End it without an episode, and wait until it has ended."""
+        """Let it end without an episode, where it is held or next tells its progress; :meth:`wait` for that."""
         self._given_up = True
         self._go.set()
-        self._thread.join()
 
     def wait(self, seconds: float) -> bool:
         """Wait as long at most; return whether it has ended."""

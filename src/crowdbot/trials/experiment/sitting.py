@@ -80,7 +80,11 @@ class Sitting:
             "at": clock(),
             **versions(),
         }
-        self.log = self._resumed(head) if resume else self._begun(head)
+        self.log: Log
+        if resume:
+            self._resumed(head)
+        else:
+            self._begun(head)
 
     def do(self, event: Event) -> Session:
         """Let something happen, write it down and return where that leads.
@@ -137,22 +141,25 @@ class Sitting:
         """Close the log."""
         self.log.close()
 
-    def _begun(self, head: dict[str, Any]) -> Log:
+    def _begun(self, head: dict[str, Any]) -> None:
         path = self.folder / LOG
         if path.exists():
             raise EpisodeError(
                 f"participant {self.participant} has a session in {self.folder} already; go on with it (--resume), or"
                 " choose another participant or folder"
             )
-        log = Log.create(path, head)
-        _write(self.folder / COPY, self.experiment.xml())
-        return log
+        self.log = Log.create(path, head)
+        try:
+            self._copy()
+        except BaseException:
+            self.close()
+            raise
 
-    def _resumed(self, head: dict[str, Any]) -> Log:
+    def _resumed(self, head: dict[str, Any]) -> None:
         path = self.folder / LOG
         if not path.exists():
             raise EpisodeError(f"participant {self.participant} has no session in {self.folder.parent} to resume")
-        log, records = Log.open(path)
+        self.log, records = Log.open(path)
         try:
             if (records[0].get("experiment"), records[0].get("digest")) != (head["experiment"], head["digest"]):
                 raise EpisodeError(
@@ -161,16 +168,18 @@ class Sitting:
                 )
             for number, record in enumerate(records[1:], 2):
                 self._again(path, number, record)
-            log.append({"resumed": True, "at": head["at"], **versions()})
+            self.log.append({"resumed": True, "at": head["at"], **versions()})
+            self._copy()
+            for number in {step.number for step in self.session.steps}:
+                self._write_answers(number)
+            self._lost()
         except BaseException:
-            log.close()
+            self.close()
             raise
+
+    def _copy(self) -> None:
         if not (self.folder / COPY).exists():
             _write(self.folder / COPY, self.experiment.xml())
-        for number in {step.number for step in self.session.steps}:
-            self._write_answers(number)
-        self._lost()
-        return log
 
     def _again(self, path: Path, number: int, record: dict[str, Any]) -> None:
         if "event" not in record:
