@@ -36,8 +36,8 @@ class Running:
         self._given_up = False
         self._episode: Episode | None = None
         self._error: Exception | None = None
-        self._thread = threading.Thread(target=self._run, args=(trial, seed, out), daemon=True)
-        self._thread.start()
+        self._ended = threading.Event()  # joining a thread is not safe against Ctrl-C in every Python
+        threading.Thread(target=self._run, args=(trial, seed, out), daemon=True).start()
 
     def hold(self) -> None:
         """Let it wait."""
@@ -54,8 +54,7 @@ class Running:
 
     def wait(self, seconds: float) -> bool:
         """Wait as long at most; return whether it has ended."""
-        self._thread.join(seconds)
-        return not self._thread.is_alive()
+        return self._ended.wait(seconds)
 
     def result(self) -> Episode:
         """Return the episode.
@@ -64,7 +63,7 @@ class Running:
             GivenUp: there is none.
             Exception: whatever the trial has raised.
         """
-        self._thread.join()
+        self._ended.wait()
         if self._error is not None:
             raise self._error
         assert self._episode is not None
@@ -75,6 +74,8 @@ class Running:
             self._episode = trial.run(seed=seed, out=out, progress=self._told)
         except Exception as error:  # raised again by result(), where somebody can be told
             self._error = error
+        finally:
+            self._ended.set()
 
     def _told(self, share: float) -> None:
         self.share = share
