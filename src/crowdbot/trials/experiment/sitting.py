@@ -14,7 +14,7 @@ from crowdbot.trials.episode import Episode
 from crowdbot.trials.episode_file import as_json, versions
 from crowdbot.trials.trial import Trial
 
-from .event import Answered, Begin, Event, Fail, Finish, Repeat, Resume, event_of, record_of
+from .event import Answered, Begin, Event, Finish, Repeat, Resume, event_of, record_of
 from .experiment import Experiment, Screen
 from .log import Log
 from .order import seed_of
@@ -193,11 +193,13 @@ class Sitting:
             self._times[index, event.question] = float(record.get("at") or 0.0)
 
     def _lost(self) -> None:
-        """Go on where somebody paused, and begin a trial anew that was running when the program ended."""
+        """Go on where somebody paused, and begin a trial anew that was running when the program ended.
+
+        Each event by itself leads to a state from which this can be done again, should the program end in between.
+        """
         if self.session.phase == "pause" and self.session.waiting != "failed":
             self.do(Resume())
         if self.session.phase == "running":
-            self.do(Fail("the program ended while it was running"))
             self.do(Repeat())
 
     def _digest(self) -> str:
