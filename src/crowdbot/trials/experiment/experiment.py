@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from crowdbot.core import TrialError
-from crowdbot.trials.attribute import attribute, check, child, children  # noqa: F401
+from crowdbot.trials.attribute import attribute, check, children
 from crowdbot.trials.trial import Trial
 
 from .question import QUESTIONS, SHORT, Question
