@@ -14,6 +14,7 @@ COMMANDS = {
     "demo": "the main job on built-in input, then a report",
     "run": "run one trial and record it",
     "replay": "run a recorded episode again and check its digest",
+    "experiment": "run trials with participants, with screens and questions around them",
     "predict": "score predictors on recordings of people",
     "calibrate": "fit the parameters of a crowd model to recordings of people",
     "degrade": "score predictors on noisy, hidden, swapped and false tracks, or write such a recording",

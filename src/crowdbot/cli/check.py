@@ -14,7 +14,10 @@ MOST_LINES = 20
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument(
-        "names", metavar="TRIAL|ROBOT", nargs="+", help="trial files, URDF files, folders of robots, or built-in names"
+        "names",
+        metavar="FILE|NAME",
+        nargs="+",
+        help="trials, experiments, URDF files, folders of robots, or built-in names",
     )
     parser.add_argument("--trust", action="store_true", help="let files load code from outside their own folder")
     parser.add_argument(
@@ -55,7 +58,9 @@ def _is_robot(name: str) -> bool:
     from crowdbot.world import builtin_robots
 
     path = Path(name)
-    if path.suffix in (".urdf", ".xacro") or path.name == "robot.xml" or path.is_dir():
+    if path.suffix in (".urdf", ".xacro") or path.name == "robot.xml":
+        return True
+    if path.is_dir() and ((path / "robot.xml").exists() or any(path.glob("*.urdf"))):
         return True
     return name in builtin_robots() and not path.is_file()
 
@@ -63,9 +68,10 @@ def _is_robot(name: str) -> bool:
 def _trial(name: str, trust: bool) -> dict[str, Any]:
     from crowdbot.core import InputError, TrialError
     from crowdbot.trials import load_trial
+    from crowdbot.trials.experiment import is_experiment, load_experiment
 
     try:
-        load_trial(name, trust=trust)
+        (load_experiment if is_experiment(name) else load_trial)(name, trust=trust)
     except TrialError as error:
         return {"problems": list(error.problems)}
     except InputError as error:

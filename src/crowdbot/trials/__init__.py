@@ -4,6 +4,7 @@ from .builtin import builtin_trials, load_trial
 from .crowd import Contact, Crowd, Crowds, Limits, Routing
 from .distribution import Distribution
 from .episode import Episode, ScanRow
+from .experiment import Experiment, Session, load_experiment
 from .journey import Direction, Exit, Journey, Point, Zone
 from .notation import Points
 from .people import Source, Spawner
@@ -23,6 +24,7 @@ __all__ = [
     "End",
     "Episode",
     "Exit",
+    "Experiment",
     "Goal",
     "Journey",
     "Limits",
@@ -36,6 +38,7 @@ __all__ = [
     "Robot",
     "Routing",
     "ScanRow",
+    "Session",
     "Simulation",
     "Source",
     "Spawner",
@@ -44,6 +47,7 @@ __all__ = [
     "Wall",
     "Zone",
     "builtin_trials",
+    "load_experiment",
     "load_trial",
     "read_episode",
     "replay",
