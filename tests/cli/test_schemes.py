@@ -168,6 +168,9 @@ WRONG = {
     "a layout without exits": (["--goal", "environment-layout"], "keep the first part of the recording"),
     "a prior that is no file": (["--prior", "nowhere.json"], "nowhere.json: cannot be read"),
     "a share above one": (["--learn", "1.5"], "must be from 0 to below 1"),
+    "a track of one point": (["--observe", "1"], "a track of one point shows no motion"),
+    "the future while live": (["--goal", "ground-truth", "--live"], "nobody knows while predicting live"),
+    "a negative patience": (["--patience", "-1"], "patience = -1 evaluations must be at least 0"),
     "no worker": (["--workers", "0"], "workers = 0 must be at least 1"),
 }
 
@@ -181,6 +184,15 @@ def test_wrong_use_is_one_sentence(capsys, street, what):
     assert told.out == ""
     assert sentence in told.err
     assert len([line for line in told.err.splitlines() if line.startswith("crowdbot:")]) == 1
+
+
+def test_a_search_stops_by_tolerance_and_patience(capsys, street):
+    words = ["calibrate", "--data", street, "--budget", "400", "--search", "genetic"]
+    whole = _json(capsys, *words)[street]
+    for early in (["--tolerance", "1.0"], ["--patience", "50"]):
+        found = _json(capsys, *words, *early)[street]
+        assert found["evaluations"] < whole["evaluations"]
+        assert found["cost"] >= whole["cost"]
 
 
 def test_schemes_without_a_simulated_crowd_are_refused(capsys, street):

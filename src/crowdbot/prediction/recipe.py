@@ -78,6 +78,23 @@ class Recipe:
         words += ["prior"] * (self.prior or crowd.prior is not None) + ["shared"] * self.shared
         return ", ".join(words)
 
+    def check(self, recording: Recording, live: bool) -> None:
+        """Raise :class:`InputError` when the predictor cannot work on a recording, before any work is done."""
+        crowd = self.predictor
+        if not isinstance(crowd, Simulated):
+            return
+        if crowd.calibrator is not None and recording.observe < 2:
+            raise InputError(
+                f"calibration needs at least 2 observed rows, and 3 with the progressive cost; {recording.observe} is"
+                " observed: a track of one point shows no motion"
+            )
+        kind = kind_of_goal(self.goal) if self.goal is not None else type(crowd.goal)
+        if live and kind.knows_future:  # type: ignore[union-attr]
+            raise InputError(
+                f"{kebab(kind.__name__)} looks at what people will do, which nobody knows while predicting live;"
+                " take current-direction, or leave out --live"
+            )
+
     def prepared(self, recording: Recording) -> Predictor:
         """Return the predictor for a recording.
 
