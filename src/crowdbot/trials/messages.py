@@ -28,6 +28,8 @@ string[] tagnames
 string[] tags
 """
 PEOPLE = "std_msgs/Header header\npeople_msgs/Person[] people\n"
+CONTACT = "string robot\nstring other\nfloat64 clearance\n"
+CONTACTS = "std_msgs/Header header\ncrowdbot_msgs/Contact[] contacts\n"
 TAGS = ["radius", "heading"]
 
 
@@ -36,6 +38,8 @@ def _store() -> Any:
     store = get_typestore(Stores.ROS2_HUMBLE)
     store.register(get_types_from_msg(PERSON, "people_msgs/msg/Person"))
     store.register(get_types_from_msg(PEOPLE, "people_msgs/msg/People"))
+    store.register(get_types_from_msg(CONTACT, "crowdbot_msgs/msg/Contact"))
+    store.register(get_types_from_msg(CONTACTS, "crowdbot_msgs/msg/Contacts"))
     return store
 
 
@@ -73,6 +77,18 @@ class Messages:
     def clock(self, nanoseconds: int) -> Any:
         """Return ``rosgraph_msgs/Clock``."""
         return self.make("rosgraph_msgs/msg/Clock", clock=self.stamp(nanoseconds))
+
+    def text(self, words: str) -> Any:
+        """Return ``std_msgs/String``."""
+        return self.make("std_msgs/msg/String", data=words)
+
+    def contacts(self, nanoseconds: int, rows: Iterable[tuple[str, str, float]]) -> Any:
+        """Return ``crowdbot_msgs/Contacts`` of rows: the robot, whom it touched, the smallest clearance [m]."""
+        found = [
+            self.make("crowdbot_msgs/msg/Contact", robot=robot, other=other, clearance=float(gap))
+            for robot, other, gap in rows
+        ]
+        return self.make("crowdbot_msgs/msg/Contacts", header=self.header(nanoseconds), contacts=found)
 
     def people(self, nanoseconds: int, scene: Scene, ids: NDArray[np.int64]) -> Any:
         """Return ``people_msgs/People``: who is there; the name is the id, radius [m] and heading [rad] are tags."""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import FreeClock, InputError, Pose, Scene, Twist, stream
+from crowdbot.core import Clock, FreeClock, InputError, Pose, Scene, Twist, stream
 from crowdbot.metrics import swept_distance
 from crowdbot.models import CrowdModel
 
@@ -95,7 +95,7 @@ class PlanarWorld(World):
     symmetry: float = 0.0
     substeps: int = 1
     ids: Any = None
-    clock: FreeClock = field(init=False)
+    clock: Clock = field(init=False)
     twists: dict[int, Twists] = field(init=False)
     contacts: tuple[Contact, ...] = field(init=False, default=())
 
@@ -116,10 +116,10 @@ class PlanarWorld(World):
         """Go one time step on and return the new scene; see :class:`World`."""
         asked = self._checked(commands)
         before = self.scene
+        self.clock.advance()
         earlier, crowd = self._walked(before)
         after = self._driven(before, crowd, asked)
         after = self._settled(earlier, after)
-        self.clock.advance()
         after = after.replace(time=self._begin + self.clock.time)
         after.check()
         self.contacts = self._touching(before, after)
