@@ -19,7 +19,7 @@ from crowdbot.data.tape import MAGIC, Tape
 from .episode import ScanRow, tracks_of
 from .episode_file import END_KEYS, ENDING, KEYS, METADATA, as_json, from_json
 from .moments import Moment, Touched, read_moments
-from .tally import robot_metrics
+from .tally import Summary, robot_metrics
 from .travel import Instant, Travel
 
 __all__ = ["Recorded", "moments", "read_episode", "read_metadata"]
@@ -111,6 +111,14 @@ class Recorded:
     def tracks(self, dt: float = 0.4) -> Trajectories:
         """Return people and robots every ``dt`` [s] as trajectories, as :meth:`Episode.tracks` does."""
         return tracks_of(self, self.name, dt)
+
+    def branch(
+        self, at: float, seed: int | None = None, out: Path | str | None = None, trust: bool = False, **changes: Any
+    ) -> Summary:
+        """Go on from an instant, with other values; see :func:`crowdbot.trials.branch`."""
+        from .branch import branch
+
+        return branch(self.path, at, seed=seed, out=out, trust=trust, changes=changes)
 
 
 def read_episode(path: Path | str) -> Recorded:

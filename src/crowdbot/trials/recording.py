@@ -40,14 +40,15 @@ class Recorder:
         path: of the file.
         tally: of the run; it is told each instant before the recorder.
         origin: what the run branched from, as the metadata keeps it.
+        begin: tick of the first instant.
 
     Raises:
         InputError: the trial cannot be written as XML.
         EpisodeError: the file cannot be written.
     """
 
-    def __init__(self, path: Path, tally: Tally, origin: Sequence[Mapping[str, Any]] = ()) -> None:
-        self.path, self.tally, self.origin = path, tally, origin
+    def __init__(self, path: Path, tally: Tally, origin: Sequence[Mapping[str, Any]] = (), begin: int = 0) -> None:
+        self.path, self.tally, self.origin, self.begin = path, tally, origin, begin
         self.trial, self.seed = tally.trial, tally.seed
         self.xml = self.trial.xml()
         self.messages = Messages()
@@ -57,8 +58,9 @@ class Recorder:
         self.last = (0, "")
         """Steps until the last recorded instant, and the digest of an episode that ends there."""
         self._markers_every = round(self.trial.recording.markers * 1e9)
-        self._markers_due = 0
-        self._write_due = 0
+        start = begin * round(self.trial.step * 1e9)
+        self._markers_due = -(-start // self._markers_every) * self._markers_every
+        self._write_due = start
         self._static = [
             (f"{robot.name}/base_link", f"{robot.name}/{mount.name}", mount.x, mount.y, mount.heading)
             for robot in self.trial.robots
@@ -197,7 +199,7 @@ class Recorder:
             "step_ns": str(round(self.trial.step * 1e9)),
             "walls": as_json([ring.tolist() for ring in self.trial.stage.rings]),
             "robots": as_json(robots),
-            **({"origin": as_json(list(self.origin))} if self.origin else {}),
+            **({"origin": as_json(list(self.origin)), "begin": str(self.begin)} if self.origin else {}),
         }
 
     def _make_folder(self, folder: Path) -> None:

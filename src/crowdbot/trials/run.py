@@ -51,7 +51,7 @@ class Running:
     """A run that is stepped from outside.
 
     Args:
-        simulation: at tick 0, nothing sensed yet.
+        simulation: at tick 0 with nothing sensed yet, or later, where another run has left it.
         sinks: who is told what is recorded.
         bridges: who is told every step.
         ticks: it is interrupted after so many steps; None: it is not.
@@ -78,8 +78,11 @@ class Running:
 
     def __post_init__(self) -> None:
         self._every = self.simulation.world.clock.every(self.simulation.trial.recording.period)
-        if self.simulation.tick == 0:
+        if not self.simulation.begun:
+            self.simulation.begun = True
             self._observe()
+        elif self.simulation.tick % self._every == 0:
+            self.outcome = _outcome(self.simulation)
 
     def step(self) -> str | None:
         """Go one step on, parts 1 to 8 of the order, and return the outcome when this was the last.

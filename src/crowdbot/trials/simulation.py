@@ -107,6 +107,7 @@ class Simulation:
         carriers: the robots.
         event: ``success`` or ``collision`` once that has happened, whichever came first.
         touches: contacts of the latest step.
+        begun: whether the parts 6 to 8 of tick 0 are done.
 
     Raises:
         TrialError: people do not fit with this seed.
@@ -130,6 +131,7 @@ class Simulation:
         self.carriers = [self._carrier(robot, len(people) + k) for k, robot in enumerate(trial.robots)]
         self.event: str | None = None
         self.touches: tuple[Touch, ...] = ()
+        self.begun = False
         if clock is not None:
             self._keep_time(clock)
         self._segments = self.world.scene.walls.segments()
@@ -198,6 +200,11 @@ class Simulation:
             due,
             self.touches,
         )
+
+    def turn_to(self, trial: Trial, seed: int) -> None:
+        """Go on by another trial; see :func:`crowdbot.trials.changing.turn_to`, which changes the world first."""
+        self.trial, self.seed = trial, seed
+        self._segments = self.world.scene.walls.segments()
 
     def ask(self, robot: str, command: Twist) -> None:
         """Give a robot another command, which it holds until its navigator decides again: for bridges, part 7.

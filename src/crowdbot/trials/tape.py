@@ -163,9 +163,7 @@ class _Layout:
         elif kind == Kind.CHUNK:
             start, end, size, _, word = struct.unpack_from("<QQQII", body)
             how = body[32 : 32 + word].decode()
-            self.chunks.append(
-                ChunkIndex(9 + len(body), place, how, len(body) - 40 - word, end, 0, {}, start, size)
-            )
+            self.chunks.append(ChunkIndex(9 + len(body), place, how, len(body) - 40 - word, end, 0, {}, start, size))
         elif kind == Kind.MESSAGE_INDEX and self.chunks:
             channel, length = struct.unpack_from("<HI", body)
             self.counts[channel] = self.counts.get(channel, 0) + length // 16
