@@ -5,6 +5,8 @@ from .builtin import builtin_trials, load_trial
 from .crowd import Contact, Crowd, Crowds, Limits, Routing
 from .distribution import Distribution
 from .episode import Episode, ScanRow
+from .ending import repair
+from .export import export
 from .journey import Direction, Exit, Journey, Point, Zone
 from .moments import Moment
 from .notation import Points
@@ -60,4 +62,6 @@ __all__ = [
     "record",
     "replay",
     "run",
+    "export",
+    "repair",
 ]

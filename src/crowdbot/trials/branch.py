@@ -59,7 +59,8 @@ def branch(
         raise InputError(f"{source} is the episode to branch from; record the branch to another place")
     course = Course.of(source, folder, trust)
     tally, outcome, steps = _run(course, at, digests(source), seed, changes, trial, out, progress, Tally, str(source))
-    return tally.summary(outcome, steps, None if out is None else target(out))
+    summary: Summary = tally.summary(outcome, steps, None if out is None else target(out))
+    return summary
 
 
 def branched(
@@ -71,7 +72,8 @@ def branched(
         raise InputError("this episode is a branch; record the first one and branch from the files")
     course = Course((Part(0, episode.trial, episode.seed),))
     log, outcome, steps = _run(course, at, {}, seed, changes, trial, out, None, Log, f"episode {episode.trial.name!r}")
-    return log.episode(outcome, steps)
+    after: Episode = log.episode(outcome, steps)
+    return after
 
 
 def _run(

@@ -89,9 +89,8 @@ def _inner(element: Element, step: str, path: str) -> Element:
         return element.children[-1]
     known = [f"{inner.tag}[{inner.attributes['name']}]" if "name" in inner.attributes else inner.tag
              for inner in element.children]  # fmt: skip
-    raise InputError(
-        f"{path!r}: <{element.tag}> has no {step}{did_you_mean(step, known)}; it has {', '.join(known) or 'no elements'}"
-    )
+    has = ", ".join(known) or "no elements"
+    raise InputError(f"{path!r}: <{element.tag}> has no {step}{did_you_mean(step, known)}; it has {has}")
 
 
 def _text(value: Any) -> str:

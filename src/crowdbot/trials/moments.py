@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -69,6 +69,32 @@ class Moment:
     def time(self) -> float:
         """Simulated time [s]."""
         return self.nanoseconds / 1e9
+
+    def named(self) -> set[int]:
+        """Return the largest id of people that this instant names, if any."""
+        seen = [] if self.people is None else [int(self.people.ids.max(initial=-1))]
+        return {*seen, *(int(scan.hit.max(initial=-1)) for scan in self.scans.values())}
+
+    def everyone(self, robots: Mapping[str, tuple[int, float]]) -> Instant:
+        """Return people and robots together.
+
+        Args:
+            robots: id and radius [m] by name.
+        """
+        people = self.people
+        assert people is not None
+        states = [(robots[name], state) for name, state in self.robots.items()]
+        rows = np.array([(s.x, s.y, s.vx, s.vy, s.heading, own[1]) for own, s in states]).reshape(-1, 6)
+        ids = np.concatenate([people.ids, np.array([own[0] for own, _ in states], dtype=np.int64)])
+        order = np.argsort(ids)
+        return Instant(
+            self.time,
+            ids[order],
+            np.concatenate([people.position, rows[:, 0:2]])[order],
+            np.concatenate([people.velocity, rows[:, 2:4]])[order],
+            np.concatenate([people.heading, rows[:, 4]])[order],
+            np.concatenate([people.radius, rows[:, 5]])[order],
+        )
 
 
 def read_moments(tape: Tape) -> Iterator[Moment]:

@@ -12,15 +12,16 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import EpisodeError, Walls
+from crowdbot.core import EpisodeError
 from crowdbot.data import Trajectories
 from crowdbot.data.tape import MAGIC, Tape
 
 from .episode import ScanRow, tracks_of
-from .episode_file import END_KEYS, ENDING, KEYS, METADATA, as_json, from_json
+from .ending import Ending
+from .episode_file import END_KEYS, ENDING, KEYS, METADATA, from_json
 from .moments import Moment, Touched, read_moments
-from .tally import Summary, robot_metrics
-from .travel import Instant, Travel
+from .tally import Summary
+from .travel import Instant
 
 __all__ = ["Recorded", "moments", "read_episode", "read_metadata"]
 
@@ -211,9 +212,10 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[Moment]) -> Re
     robots = json.loads(known["robots"])
     places = [int(robot["id"]) for robot in robots]
     complete = all(key in known for key in END_KEYS)
-    hit = [int(scan.hit.max(initial=-1)) for moment in found for scan in moment.scans.values()]
-    most = 1 + max([-1, *places, *hit, *(int(people.ids.max(initial=-1)) for _, people in due)])
-    count = int(known["people"]) + len(robots) if complete else most
+    if complete:
+        count = int(known["people"]) + len(robots)
+    else:
+        count = 1 + max([-1, *places, *(who for moment in found for who in moment.named())])
     arrays = _Arrays.of(len(due), count)
     commands = np.zeros((len(due), len(robots), 3))
     for k, (moment, people) in enumerate(due):
@@ -227,7 +229,10 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[Moment]) -> Re
             scans.setdefault(topic, []).append(scan)
     times = np.array([moment.time for moment, _ in due])
     if not complete:
-        known = known | _ended(known, arrays, times, due[-1][0], count)
+        ending = Ending(known)
+        for moment in found:
+            ending.take(moment)
+        known = known | ending.metadata()
     return Recorded(
         path,
         known,
@@ -247,26 +252,6 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[Moment]) -> Re
         tuple(contact for moment in found for contact in moment.contacts),
         tuple(moment.digest for moment, _ in due),
     )
-
-
-def _ended(known: Mapping[str, str], arrays: _Arrays, times: Floats, last: Moment, count: int) -> dict[str, str]:
-    """Return what the record at the end would say of a run that was interrupted at its last recorded instant."""
-    robots = json.loads(known["robots"])
-    walls = _segments(json.loads(known["walls"]))
-    travels = [
-        Travel(int(one["id"]), float(one["radius"]), tuple(one["goal"]), float(one["tolerance"]), walls)
-        for one in robots
-    ]
-    for k, time in enumerate(times):
-        for travel in travels:
-            travel.take(arrays.instant(k, float(time)))
-    return {
-        "digest": last.digest,
-        "outcome": "interrupted",
-        "steps": str(last.nanoseconds // int(known["step_ns"])),
-        "people": str(count - len(robots)),
-        "metrics": as_json(robot_metrics(travels, [one["name"] for one in robots], "interrupted")),
-    }
 
 
 @dataclass
@@ -297,14 +282,3 @@ class _Arrays:
         """Put a robot in at an instant."""
         self.position[k, place], self.velocity[k, place] = (state.x, state.y), (state.vx, state.vy)
         self.heading[k, place], self.radius[place], self.active[k, place] = state.heading, radius, True
-
-    def instant(self, k: int, time: float) -> Instant:
-        """Return who is where at an instant."""
-        ids = np.flatnonzero(self.active[k])
-        rows = (self.position[k], self.velocity[k], self.heading[k], self.radius)
-        return Instant(time, ids, *(row[ids] for row in rows))
-
-
-def _segments(rings: Sequence[Sequence[Sequence[float]]]) -> Floats:
-    """Return the segments ``[N, 4]`` of rings."""
-    return Walls.of([np.array(ring, dtype=np.float64) for ring in rings]).segments()

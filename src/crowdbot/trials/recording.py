@@ -22,7 +22,7 @@ from .tape import TapeWriter
 __all__ = ["Recorder"]
 
 APART = 500_000_000
-"""The file is written to every so many nanoseconds of simulated time, so that its bytes do not depend on the wall clock."""
+"""The file grows every so many nanoseconds of simulated time: its bytes do not depend on the wall clock."""
 
 
 class Recorder:

@@ -43,7 +43,7 @@ def _bytes(*records: McapRecord) -> bytes:
     builder = RecordBuilder()
     for record in records:
         record.write(builder)
-    return builder.end()
+    return bytes(builder.end())  # type: ignore[no-untyped-call]
 
 
 SHORT_END = _bytes(DataEnd(0), Footer(0, 0, 0)) + MAGIC
