@@ -25,7 +25,7 @@ __all__ = ["READER"]
 
 PEOPLE, PEOPLE_TYPE = "/people", "people_msgs/msg/People"
 ODOMETRY_ENDING, ODOMETRY_TYPE = "/odom", "nav_msgs/msg/Odometry"
-METADATA = "crowdbot"
+METADATA, ENDING = "crowdbot", "crowdbot.end"
 SECOND = 1_000_000_000
 
 
@@ -38,6 +38,7 @@ class _Heard:
     poses: dict[str, list[tuple[int, float, float]]] = field(default_factory=dict)
     walls: str = "[]"
     robots: str = "[]"
+    cut: bool = False
 
 
 def read(source: Source, given: Given) -> Trajectories:
@@ -60,6 +61,7 @@ def read(source: Source, given: Given) -> Trajectories:
         y=y,
         row_fps=SECOND / period,
         frame_step=1,
+        note="the run was killed before its end" if heard.cut else "",
         walls=_walls(source.name, heard.walls),
         robots=frozenset(int(robot[0][0]) for robot in robots),
     )
@@ -80,12 +82,15 @@ def _listen(source: Source) -> _Heard:
                     store.register({name: definition for name, definition in types.items() if name not in store.types})
             if wanted[topic]:
                 _take(heard, topic.topic, store.deserialize_cdr(data, topic.kind))
-        if not tape.ended and is_whole(file):
+        known, whole = tape.metadata.get(METADATA, {}), is_whole(file)
+        if whole != tape.ended and not (tape.ended and "format" in known):
             raise TapeError(f"the data end at byte {tape.end}")
+        if not whole and "format" not in known:
+            raise TapeError("it has no summary section")
     if not any(topic.topic == PEOPLE for topic, chosen in wanted.items() if chosen):
         held = ", ".join(sorted(topic.topic for topic in tape.topics.values())) or "no topics"
         raise DataError(f"{source.name} has no topic {PEOPLE} of {PEOPLE_TYPE}; it has {held}")
-    known = tape.metadata.get(METADATA, {})
+    heard.cut = "format" in known and ENDING not in tape.metadata and "digest" not in known
     heard.walls, heard.robots = known.get("walls", "[]"), known.get("robots", "[]")
     return heard
 

@@ -207,11 +207,11 @@ def _known(path: Path, records: Mapping[str, dict[str, str]]) -> dict[str, str]:
 
 def _assembled(path: Path, known: dict[str, str], found: Sequence[Moment]) -> Recorded:
     due = [(moment, moment.people) for moment in found if moment.people is not None]
-    if not due:
+    complete = all(key in known for key in END_KEYS)
+    if not due and not complete:
         raise EpisodeError(f"{path} holds no recorded instant: the run was killed before it began")
     robots = json.loads(known["robots"])
     places = [int(robot["id"]) for robot in robots]
-    complete = all(key in known for key in END_KEYS)
     if complete:
         count = int(known["people"]) + len(robots)
     else:
