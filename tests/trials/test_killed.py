@@ -134,13 +134,13 @@ def test_a_file_that_is_cut_anywhere_opens_or_says_that_nothing_was_recorded(tmp
     path, cut = tmp_path / "episode.mcap", tmp_path / "cut.mcap"
     whole = path.read_bytes()
     chance = np.random.default_rng(0)
-    opened = 0
+    opened, refused = 0, list[str]()
     for size in sorted(chance.integers(8, len(whole) - 1, 25).tolist()):
         cut.write_bytes(whole[:size])
         try:
             read = read_episode(cut)
         except EpisodeError as error:
-            assert "no recorded instant" in str(error) or "not an episode" in str(error), size
+            refused.append(str(error))
             continue
         opened += 1
         count = len(read.times)
@@ -153,6 +153,7 @@ def test_a_file_that_is_cut_anywhere_opens_or_says_that_nothing_was_recorded(tmp
         with AnyReader([cut]) as reader:
             assert reader.message_count > 0
     assert opened > 15
+    assert all("no recorded instant" in sentence or "not an episode" in sentence for sentence in refused)
 
 
 def test_a_new_run_takes_the_place_of_an_old_file_only_when_it_has_something(tmp_path: Path) -> None:

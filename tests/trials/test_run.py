@@ -19,7 +19,19 @@ from crowdbot.metrics import NAVIGATION_METRICS
 from crowdbot.models import ORCA
 from crowdbot.navigation import Navigator, Observation, Straight
 from crowdbot.sensors import Gaussian, Lidar2D
-from crowdbot.trials import Episode, Goal, Mount, Robot, Simulation, Spawner, Stage, Trial, Wall, load_trial, read_episode
+from crowdbot.trials import (
+    Episode,
+    Goal,
+    Mount,
+    Robot,
+    Simulation,
+    Spawner,
+    Stage,
+    Trial,
+    Wall,
+    load_trial,
+    read_episode,
+)
 from crowdbot.trials.episode import Log
 from crowdbot.trials.run import Stop, drive
 from crowdbot.trials.simulation import start_scene

@@ -107,7 +107,7 @@ def test_the_order_of_a_step(monkeypatch: pytest.MonkeyPatch) -> None:
     EVENTS.clear()
     running.step()
     old, new = 0.0, 0.05
-    assert EVENTS == [
+    assert [
         ("time", old),
         ("crowd", old),
         ("robots", 0.0),
@@ -117,7 +117,7 @@ def test_the_order_of_a_step(monkeypatch: pytest.MonkeyPatch) -> None:
         ("navigators", new),
         ("bridges", new),
         ("recorder", new),
-    ]
+    ] == EVENTS
 
 
 def driven(trial: Trial, clock: Clock | None, times: list[int] | None, out: Path | None = None) -> str:

@@ -4,8 +4,8 @@ from .branch import branch
 from .builtin import builtin_trials, load_trial
 from .crowd import Contact, Crowd, Crowds, Limits, Routing
 from .distribution import Distribution
-from .episode import Episode, ScanRow
 from .ending import repair
+from .episode import Episode, ScanRow
 from .export import export
 from .journey import Direction, Exit, Journey, Point, Zone
 from .moments import Moment
@@ -55,13 +55,13 @@ __all__ = [
     "Zone",
     "branch",
     "builtin_trials",
+    "export",
     "load_trial",
     "moments",
     "opened",
     "read_episode",
     "record",
+    "repair",
     "replay",
     "run",
-    "export",
-    "repair",
 ]

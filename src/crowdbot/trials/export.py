@@ -27,7 +27,8 @@ def export(path: Path | str, to: Path | str, table: str = "people") -> int:
 
     Tables, each with the time [s] and one row for each instant and
 
-    * ``people``: everybody, robots too: id, robot (its name or empty), x, y [m], vx, vy [m/s], heading [rad], radius [m];
+    * ``people``: everybody, robots too: id, robot (its name or empty), x, y [m], vx, vy [m/s], heading [rad] and
+      radius [m];
     * ``robots``: each robot: its name, x, y, heading, the twist forward [m/s], turn [rad/s] and left [m/s], and what
       it is asked for (command_forward, ...);
     * ``scans``: each beam: the sensor, x, y, heading of it in the world, angle [rad], range [m], and hit: the id of who

@@ -16,6 +16,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from crowdbot.core import Scene
 
+from .cdr import people_bytes
 from .episode_file import MAP
 
 __all__ = ["Messages"]
@@ -30,7 +31,6 @@ string[] tags
 PEOPLE = "std_msgs/Header header\npeople_msgs/Person[] people\n"
 CONTACT = "string robot\nstring other\nfloat64 clearance\n"
 CONTACTS = "std_msgs/Header header\ncrowdbot_msgs/Contact[] contacts\n"
-TAGS = ["radius", "heading"]
 
 
 @functools.cache
@@ -90,23 +90,12 @@ class Messages:
         ]
         return self.make("crowdbot_msgs/msg/Contacts", header=self.header(nanoseconds), contacts=found)
 
-    def people(self, nanoseconds: int, scene: Scene, ids: NDArray[np.int64]) -> Any:
-        """Return ``people_msgs/People``: who is there; the name is the id, radius [m] and heading [rad] are tags."""
+    def people(self, nanoseconds: int, scene: Scene, ids: NDArray[np.int64]) -> bytes:
+        """Return the bytes of ``people_msgs/People``: who is there; radius [m] and heading [rad] are tags."""
         there = np.flatnonzero(scene.active[0] & ~scene.external[0])
-        agents = there[np.argsort(ids[there])].tolist()
-        everyone = [
-            self.make(
-                "people_msgs/msg/Person",
-                name=str(ids[a]),
-                position=self.point(*scene.position[0, a].tolist()),
-                velocity=self.point(*scene.velocity[0, a].tolist()),
-                reliability=1.0,
-                tagnames=TAGS,
-                tags=[repr(float(scene.radius[0, a])), repr(float(scene.heading[0, a]))],
-            )
-            for a in agents
-        ]
-        return self.make("people_msgs/msg/People", header=self.header(nanoseconds), people=everyone)
+        there = there[np.argsort(ids[there])]
+        rows = (scene.position, scene.velocity, scene.radius, scene.heading)
+        return people_bytes(nanoseconds, ids[there], *(row[0, there] for row in rows))
 
     def odometry(self, nanoseconds: int, name: str, x: float, y: float, heading: float, twist: Sequence[float]) -> Any:
         """Return ``nav_msgs/Odometry``: the true pose in the map, and the twist forward, turn, left in the robot."""

@@ -16,8 +16,8 @@ from crowdbot.core import EpisodeError
 from crowdbot.data import Trajectories
 from crowdbot.data.tape import MAGIC, Tape
 
-from .episode import ScanRow, tracks_of
 from .ending import Ending
+from .episode import ScanRow, tracks_of
 from .episode_file import END_KEYS, ENDING, KEYS, METADATA, from_json
 from .moments import Moment, Touched, read_moments
 from .tally import Summary

@@ -13,6 +13,7 @@ from crowdbot.core import EpisodeError
 from crowdbot.sensors import Scan
 
 from .episode_file import CONTACTS, DIGEST, ENDING, FORMAT, MAP, METADATA, as_json, versions
+from .markers import KIND as MARKERS
 from .markers import markers
 from .messages import Messages
 from .simulation import WALL, Frame
@@ -135,14 +136,14 @@ class Recorder:
 
     def _scene(self, frame: Frame, first: int) -> None:
         now, make, scene = frame.nanoseconds, self.messages, frame.scene
-        self._write("/people", make.people(now, scene, frame.ids), now)
+        self._put("/people", "people_msgs/msg/People", make.people(now, scene, frame.ids), now)
         for k, (_, _, x, y, heading) in enumerate(self._poses(frame, first)):
             name = self.trial.robots[k].name
             self._write(f"/{name}/odom", make.odometry(now, name, x, y, heading, frame.twists[k]), now)
             self._write(f"/{name}/cmd_vel", make.twist(*frame.commands[k]), now)
         if now >= self._markers_due:
             self._markers_due = now - now % self._markers_every + self._markers_every
-            self._write("/crowd/markers", markers(make, now, scene, frame.ids, self.trial.robots), now)
+            self._put("/crowd/markers", MARKERS, markers(now, scene, frame.ids, self.trial.robots), now)
 
     def _poses(self, frame: Frame, first: int) -> list[tuple[str, str, float, float, float]]:
         scene = frame.scene
@@ -162,12 +163,14 @@ class Recorder:
         return [(names[one.robot], names.get(one.other, str(one.other)), one.clearance) for one in frame.touches]
 
     def _write(self, topic: str, message: Any, nanoseconds: int) -> None:
+        self._put(topic, message.__msgtype__, self.messages.encoded(message), nanoseconds)
+
+    def _put(self, topic: str, kind: str, data: bytes, nanoseconds: int) -> None:
         assert self.tape is not None
         if topic not in self.channels:
-            kind = message.__msgtype__
             self.channels[topic] = self.tape.channel(topic, self.tape.schema(kind, self.messages.definition(kind)))
         try:
-            self.tape.message(self.channels[topic], nanoseconds, self.messages.encoded(message))
+            self.tape.message(self.channels[topic], nanoseconds, data)
         except OSError as error:
             raise EpisodeError(f"{self.path} cannot be written: {error.strerror}") from None
 
