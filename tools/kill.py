@@ -51,7 +51,8 @@ def killed(folder: Path, chance: random.Random) -> tuple[float, float]:
 def main() -> None:
     """Kill as often as asked and print one line for each."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 50
-    chance, worst, direct, empty = random.Random(1), 0.0, 0, 0
+    chance = random.Random(1)  # noqa: S311
+    worst, direct, empty = 0.0, 0, 0
     step = load_trial(TRIAL).step
     with tempfile.TemporaryDirectory() as place:
         top = Path(place)

@@ -82,10 +82,8 @@ def _listen(source: Source) -> _Heard:
                     store.register({name: definition for name, definition in types.items() if name not in store.types})
             if wanted[topic]:
                 _take(heard, topic.topic, store.deserialize_cdr(data, topic.kind))
-        known, whole = tape.metadata.get(METADATA, {}), is_whole(file)
-        if whole != tape.ended and not (tape.ended and "format" in known):
-            raise TapeError(f"the data end at byte {tape.end}")
-        if not whole and "format" not in known:
+        known = tape.metadata.get(METADATA, {})
+        if "format" not in known and not is_whole(file):
             raise TapeError("it has no summary section")
     if not any(topic.topic == PEOPLE for topic, chosen in wanted.items() if chosen):
         held = ", ".join(sorted(topic.topic for topic in tape.topics.values())) or "no topics"

@@ -88,7 +88,7 @@ class Tape:
             lead = self.stream.read(9)
             kind, length = struct.unpack("<BQ", lead)
             if length > size - self.end - 9:
-                return
+                break
             body = self.stream.read(length)
             if kind == Kind.DATA_END:
                 self._finish(body)
@@ -99,6 +99,8 @@ class Tape:
             self._learn(kind, body)
             yield kind, self.end, body
             self.end += 9 + length
+        if is_whole(self.stream):
+            raise TapeError(f"the data end at byte {self.end}, before the end of the file")
 
     def _finish(self, body: bytes) -> None:
         (crc,) = struct.unpack("<I", body)

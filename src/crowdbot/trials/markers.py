@@ -44,7 +44,7 @@ def _shapes(scene: Scene, ids: NDArray[np.int64], robots: Sequence[Robot]) -> It
         else:
             yield _disc("people", number, x, y, radius, BODY_HEIGHT, ORANGE)
     for number, one in enumerate(robots):
-        yield _disc("goals", number, *map(float, one.goal.position), one.goal.tolerance, GOAL_HEIGHT, GREEN)
+        yield _disc("goals", number, one.goal.x, one.goal.y, one.goal.tolerance, GOAL_HEIGHT, GREEN)
     ends = scene.walls.segments().reshape(-1, 2).tolist()
     yield Shape("walls", 0, LINE_LIST, size=(0.05, 0.0, 0.0), points=tuple((x, y) for x, y in ends))
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Pose
-from crowdbot.data.tape import Tape, TapeError, is_whole
+from crowdbot.data.tape import Tape
 
 from .episode import ScanRow
 from .episode_file import CONTACTS, DIGEST, MAP, heading_of
@@ -113,8 +113,6 @@ def read_moments(tape: Tape) -> Iterator[Moment]:
             if heard.topic.topic != "/crowd/markers" and heard.topic.kind in messages.store.types
         ]
         yield _moment(stamp, decoded)
-    if not tape.ended and is_whole(tape.stream):
-        raise TapeError(f"the data end at byte {tape.end}, before the end of the file")
 
 
 def _moment(stamp: int, messages: list[tuple[str, Any]]) -> Moment:

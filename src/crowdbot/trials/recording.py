@@ -111,9 +111,10 @@ class Recorder:
             self._scene(frame, first)
             self.last = frame.tick, self.tally.digest.ended("interrupted")
             self._write(DIGEST, make.text(self.last[1]), now)
-            if now >= self._write_due:
-                self._write_due = now - now % APART + APART
-                self._flush()
+        assert self.tape is not None
+        if (frame.due and now >= self._write_due) or self.tape.large:
+            self._write_due = now - now % APART + APART
+            self._flush()
 
     def complete(self, outcome: str, steps: int) -> None:
         """Write how it ended, and finish the file; who is interrupted ends at the last recorded instant."""

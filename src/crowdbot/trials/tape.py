@@ -36,7 +36,7 @@ from crowdbot.data.tape import MAGIC, Kind, Tape
 __all__ = ["TapeWriter", "finish"]
 
 LARGE = 4 << 20
-"""A chunk is written when it holds so many bytes, even in the middle of an instant."""
+"""A chunk should not hold more bytes."""
 
 
 def _bytes(*records: McapRecord) -> bytes:
@@ -90,8 +90,11 @@ class TapeWriter:
         self._index.setdefault(channel, []).append((nanoseconds, len(self._chunk)))
         self._chunk += struct.pack("<BQHIQQ", Kind.MESSAGE, 22 + len(data), channel, 0, nanoseconds, nanoseconds)
         self._chunk += data
-        if len(self._chunk) > LARGE:
-            self.flush()
+
+    @property
+    def large(self) -> bool:
+        """Whether so much is gathered that it should be written before it is due."""
+        return len(self._chunk) > LARGE
 
     def flush(self) -> None:
         """Write everything that was added."""
