@@ -128,7 +128,7 @@ class Episode:
         >>> from crowdbot.models import ORCA
         >>> episode = Trial(name="empty", duration=2.0, crowd=ORCA()).run()
         >>> later = episode.branch(at=1.5, duration=3)
-        >>> later.times[0], later.times[-1], episode.branch(at=1.0).digest == episode.digest
+        >>> float(later.times[0]), float(later.times[-1]), episode.branch(at=1.0).digest == episode.digest
         (1.5, 3.0, True)
         """
         from .branch import branched
