@@ -10,16 +10,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import FreeClock, InputError, Pose, Scene, Twist, stream
+from crowdbot.core import Clock, FreeClock, InputError, Pose, Scene, Twist, stream
 from crowdbot.metrics import swept_distance
 from crowdbot.models import CrowdModel
+from crowdbot.models.mixture import MODEL, Mixture
 
 from .contact import BodyContact, Surfaces
 from .drive import Drive, Twists
 from .flow import Source
-from .journey import Journeys
+from .journey import JOURNEY, Journeys
 from .limits import CrowdLimits
-from .routing import Router
+from .routing import WAY, Router
 from .stop import Zone
 from .traffic import Traffic
 from .world import Contact, World
@@ -95,7 +96,7 @@ class PlanarWorld(World):
     symmetry: float = 0.0
     substeps: int = 1
     ids: Any = None
-    clock: FreeClock = field(init=False)
+    clock: Clock = field(init=False)
     twists: dict[int, Twists] = field(init=False)
     contacts: tuple[Contact, ...] = field(init=False, default=())
 
@@ -116,10 +117,10 @@ class PlanarWorld(World):
         """Go one time step on and return the new scene; see :class:`World`."""
         asked = self._checked(commands)
         before = self.scene
+        self.clock.advance()
         earlier, crowd = self._walked(before)
         after = self._driven(before, crowd, asked)
         after = self._settled(earlier, after)
-        self.clock.advance()
         after = after.replace(time=self._begin + self.clock.time)
         after.check()
         self.contacts = self._touching(before, after)
@@ -129,6 +130,40 @@ class PlanarWorld(World):
             after = _out(after, zone)
         self.scene = self._traffic.gone_on(after, self.clock.time)
         return self.scene
+
+    def turn_to(self, scene: Scene, sources: Sequence[Source], seed: int | None = None, **how: Any) -> None:
+        """Go on from here in another way: everybody stays where they are, chance goes on unless a seed is given.
+
+        Args:
+            scene: in the place of the one now, with the same agents; its time is taken as that of now.
+            sources: as many as before, with the same journeys.
+            seed: for new chance from now on.
+            how: other values of model, drives, berth, router, contact, limits, exits, symmetry or substeps.
+
+        Raises:
+            InputError: that cannot change while the world runs, or a value is not allowed.
+        """
+        known = ("model", "drives", "berth", "router", "contact", "limits", "exits", "symmetry", "substeps")
+        for name in how:
+            if name not in known:
+                raise InputError(f"{name} of a world cannot change while it runs; these can: {', '.join(known)}")
+        if scene.shape != self.scene.shape or sorted(how.get("drives", self.drives)) != sorted(self.drives):
+            raise InputError("the number of agents and who is a robot cannot change while a world runs")
+        forgotten = set() if how.get("router", self.router) is self.router else {WAY}
+        model = how.get("model", self.model)
+        if type(model) is not type(self.model):
+            forgotten |= {*self.model.memory_at_start} - {MODEL, JOURNEY, WAY}
+        for name, value in how.items():
+            setattr(self, name, value)
+        self._check()
+        self._traffic.turn_to(self.router, sources, seed)
+        if self._traffic.mixture is not None and isinstance(model, Mixture):
+            self._traffic.mixture = model
+        self.sources = sources
+        memory = {name: value for name, value in scene.memory.items() if name not in forgotten}
+        self.scene = scene.replace(time=self.scene.time, memory=memory)
+        if seed is not None:
+            self.seed, self._rng = seed, stream(seed, "crowd")
 
     @property
     def waiting(self) -> NDArray[np.int64]:
