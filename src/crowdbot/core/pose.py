@@ -107,14 +107,13 @@ class SpatialPose:
     @property
     def matrix(self) -> Floats:
         """Rotation matrices ``[E, 3, 3]``; the columns are the thing's own axes in the world."""
-        turn = self.rotation / np.linalg.norm(self.rotation, axis=-1, keepdims=True)
+        turn = self.rotation / np.sqrt((self.rotation**2).sum(axis=-1, keepdims=True))
         w, x, y, z = turn.T
-        rows = [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-        return np.ascontiguousarray(np.moveaxis(np.array(rows), -1, 0))
+        found = np.empty((len(turn), 3, 3))
+        found[:, 0] = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], axis=-1)
+        found[:, 1] = np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], axis=-1)
+        found[:, 2] = np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=-1)
+        return found
 
     @property
     def heading(self) -> Floats:

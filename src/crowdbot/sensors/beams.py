@@ -13,7 +13,7 @@ __all__ = ["Beams", "beams", "cone", "fan"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-PER_CELL = 4.0
+PER_CELL = 2.0
 """Beams of a cell on average."""
 TURN = 2.0 * math.pi
 

@@ -27,52 +27,60 @@ Ints = NDArray[np.int64]
 TURN = 2.0 * math.pi
 MARGIN = 1e-9
 """Windows are this much larger [rad] at every side, against rounding."""
-MANY = 4
-"""From this many environments on, threads share them."""
+
+
 
 
 @kernel
-def _wrapped(angle: float) -> float:
-    return angle - TURN * math.floor((angle + math.pi) / TURN)
-
-
-@kernel
-def _gap(ax: float, ay: float, bx: float, by: float) -> float:
-    """Return the distance of the origin to segment a-b in the plane."""
-    ex, ey = bx - ax, by - ay
-    length2 = ex * ex + ey * ey
-    s = 0.0
+def _gap(corner: Floats, i: int, j: int, axes: int) -> float:
+    """Return the distance of the origin to the segment between two corners, in the plane (2 axes) or in space (3)."""
+    length2, along, s, gap2 = 0.0, 0.0, 0.0, 0.0
+    for c in range(axes):
+        step = corner[j, c] - corner[i, c]
+        length2 += step * step
+        along -= corner[i, c] * step
     if length2 > 0.0:
-        s = min(1.0, max(0.0, -(ax * ex + ay * ey) / length2))
-    return math.hypot(ax + s * ex, ay + s * ey)
+        s = min(1.0, max(0.0, along / length2))
+    for c in range(axes):
+        place = corner[i, c] + s * (corner[j, c] - corner[i, c])
+        gap2 += place * place
+    return math.sqrt(gap2)
 
 
 @kernel
-def _bounds(corner: Floats, count: int, radius: float) -> tuple[float, float, float, float, float]:
-    """Return lowest, highest, nearest and farthest point (z, z, in the plane) and their mean azimuth, of a hull."""
-    low, high, far, cx, cy = math.inf, -math.inf, 0.0, 0.0, 0.0
+def _heights(corner: Floats, count: int, radius: float) -> tuple[float, float, float]:
+    """Return the lowest and highest z of a hull and how far it reaches in the plane."""
+    low, high, far2 = math.inf, -math.inf, 0.0
     for i in range(count):
-        low, high = min(low, corner[i, 2] - radius), max(high, corner[i, 2] + radius)
-        far = max(far, math.hypot(corner[i, 0], corner[i, 1]) + radius)
-        cx += corner[i, 0]
-        cy += corner[i, 1]
+        low, high = min(low, corner[i, 2]), max(high, corner[i, 2])
+        far2 = max(far2, corner[i, 0] * corner[i, 0] + corner[i, 1] * corner[i, 1])
+    return low - radius, high + radius, math.sqrt(far2) + radius
+
+
+@kernel
+def _nearest(corner: Floats, count: int, radius: float, axes: int) -> float:
     near = math.inf
     for i in range(count):
         for j in range(i):
-            near = min(near, _gap(corner[i, 0], corner[i, 1], corner[j, 0], corner[j, 1]) - radius)
-    return low, high, max(near, 0.0), far, math.atan2(cy, cx)
+            near = min(near, _gap(corner, i, j, axes))
+    return max(0.0, near - radius)
 
 
 @kernel
-def _width(corner: Floats, count: int, radius: float, middle: float) -> tuple[float, float]:
+def _width(corner: Floats, count: int, radius: float) -> tuple[float, float]:
     """Return azimuth at which a hull begins and how wide it is, a full turn when it holds the origin from above."""
-    least, most = math.inf, -math.inf
+    least, most, cx, cy = math.inf, -math.inf, 0.0, 0.0
     for i in range(count):
-        away = math.hypot(corner[i, 0], corner[i, 1])
+        cx += corner[i, 0]
+        cy += corner[i, 1]
+    middle = math.atan2(cy, cx)
+    for i in range(count):
+        away = math.sqrt(corner[i, 0] * corner[i, 0] + corner[i, 1] * corner[i, 1])
         if away <= radius or away == 0.0:
             return -math.pi, TURN
         half = math.asin(radius / away)
-        off = _wrapped(math.atan2(corner[i, 1], corner[i, 0]) - middle)
+        off = math.atan2(corner[i, 1], corner[i, 0]) - middle
+        off -= TURN * math.floor((off + math.pi) / TURN)
         least, most = min(least, off - half), max(most, off + half)
     if most - least >= math.pi - 1e-6:
         return -math.pi, TURN
@@ -80,54 +88,55 @@ def _width(corner: Floats, count: int, radius: float, middle: float) -> tuple[fl
 
 
 @kernel
-def _try(kind: int, s: Floats, number: int, begin: int, end: int, beams: Beams, distance: Floats, which: Ints) -> None:
+def _can_be_seen(corner: Floats, count: int, radius: float, limit: float, beams: Beams) -> bool:
+    """Return whether a hull is within reach and between the lowest and the highest beam."""
+    low, high, far = _heights(corner, count, radius)
+    if low > far * beams.steep[1] or high < far * beams.steep[0]:
+        return False
+    return _nearest(corner, count, radius, 2) <= limit
+
+
+@kernel
+def _try(
+    kind: int, s: Floats, number: int, begin: int, end: int, near: float, beams: Beams, distance: Floats, which: Ints
+) -> None:
     for k in range(begin, end):
-        reach = meet(kind, beams.x[k], beams.y[k], beams.z[k], s)
-        if reach < distance[k]:
-            distance[k] = reach
-            which[k] = number
+        if near < distance[k]:
+            reach = meet(kind, beams.x[k], beams.y[k], beams.z[k], s)
+            if reach < distance[k]:
+                distance[k] = reach
+                which[k] = number
 
 
 @kernel
 def _draw(
-    kind: int, s: Floats, number: int, corner: Floats, count: int, radius: float, limit: float, beams: Beams,
+    kind: int, s: Floats, number: int, corner: Floats, count: int, radius: float, nearest: float, beams: Beams,
     distance: Floats, which: Ints,
-) -> bool:  # fmt: skip
-    """Try a shape on the beams in its window; return whether it can be seen at all."""
-    low, high, near, far, middle = _bounds(corner, count, radius)
-    if not near <= limit or not far < math.inf:
-        return False
-    if low > far * beams.steep[1] or high < far * beams.steep[0] or low > limit or high < -limit:
-        return False
-    if within(kind, s):
+) -> None:  # fmt: skip
+    """Try a shape on the beams in its window."""
+    if nearest == 0.0 and within(kind, s):
         for k in range(len(distance)):
-            distance[k] = 0.0
-            which[k] = number
-        return True
+            if distance[k] > 0.0:
+                distance[k] = 0.0
+                which[k] = number
+        return
+    low, high, far = _heights(corner, count, radius)
+    near = _nearest(corner, count, radius, 2)
+    left, width = _width(corner, count, radius)
+    if width >= TURN:
+        near = 0.0
     bottom = math.atan2(low, far if low > 0.0 else near) - MARGIN
     top = math.atan2(high, near if high > 0.0 else far) + MARGIN
     first = max(0, math.floor((bottom - beams.low) / beams.tall))
     last = min(beams.rows - 1, math.floor((top - beams.low) / beams.tall))
-    if first > last:
-        return False
-    left, width = _width(corner, count, radius, middle)
     columns = beams.columns
-    if width >= TURN:
-        for row in range(first, last + 1):
-            begin, end = beams.begin[row * columns], beams.begin[(row + 1) * columns]
-            _try(kind, s, number, begin, end, beams, distance, which)
-        return True
     start = (left - MARGIN - beams.left) % TURN
-    for part in range(2):
-        low_column = math.floor((start - part * TURN) / beams.wide)
-        high_column = math.floor((start - part * TURN + width + 2.0 * MARGIN) / beams.wide)
-        a, b = max(0, low_column), min(columns - 1, high_column)
-        if a > b:
-            continue
-        for row in range(first, last + 1):
+    for turn in range(2):
+        a = max(0, math.floor((start - turn * TURN) / beams.wide))
+        b = min(columns - 1, math.floor((start - turn * TURN + width + 2.0 * MARGIN) / beams.wide))
+        for row in range(first, last + 1 if a <= b else first):
             begin, end = beams.begin[row * columns + a], beams.begin[row * columns + b + 1]
-            _try(kind, s, number, begin, end, beams, distance, which)
-    return True
+            _try(kind, s, number, begin, end, nearest, beams, distance, which)
 
 
 @kernel
@@ -174,30 +183,59 @@ def _moved(e: int, kind: int, n: int, shapes: Shapes, place: Floats, turn: Float
 
 
 @kernel
+def _worth(rows: Floats, e: int, n: int, px: float, py: float, pz: float, turn: Floats, limit: float, beams: Beams) -> bool:
+    """Return whether the ball around a capsule or cylinder may be within reach and between the outer beams."""
+    half = 0.5 * rows[e, n, 6]
+    x = rows[e, n, 0] + half * rows[e, n, 3] - px
+    y = rows[e, n, 1] + half * rows[e, n, 4] - py
+    z = rows[e, n, 2] + half * rows[e, n, 5] - pz
+    slope = turn[0, 2] * rows[e, n, 3] + turn[1, 2] * rows[e, n, 4] + turn[2, 2] * rows[e, n, 5]
+    radius = rows[e, n, 7]
+    away = math.sqrt(x * x + y * y + z * z)
+    far = away + half + radius
+    height = turn[0, 2] * x + turn[1, 2] * y + turn[2, 2] * z
+    tall = half * abs(slope) + radius + 1e-9
+    if away - half - radius > limit:
+        return False
+    return height - tall <= far * beams.steep[1] and height + tall >= far * beams.steep[0]
+
+
+@kernel
 def _one(
     e: int, place: Floats, turn: Floats, shapes: Shapes, beams: Beams, limit: float,
     distance: Floats, facing: Floats, normal: Floats, hit: Ints, part: Ints,
 ) -> None:  # fmt: skip
-    count = len(beams.x)
-    total = len(shapes.kind)
+    count, total = len(beams.x), len(shapes.kind)
     reach = np.full(count, np.inf)
     which = np.full(count, -1)
     rows = np.empty((total, WIDTH))
     corner = np.empty((8, 3))
+    seen, nearest, kept = np.empty(total, dtype=np.int64), np.empty(total), 0
+    px, py, pz = place[0], place[1], place[2]
     for n in range(total):
-        if not shapes.present[e, n]:
-            continue
-        kind, s = shapes.kind[n], rows[n]
-        points = _moved(e, kind, n, shapes, place, turn, s, corner)
-        radius = s[7] if kind == CAPSULE or kind == CYLINDER else 0.0
-        _draw(kind, s, n, corner, points, radius, limit, beams, reach, which)
+        kind = shapes.kind[n]
+        rod = kind == CAPSULE or kind == CYLINDER
+        if shapes.present[e, n] and (not rod or _worth(shapes.rows, e, n, px, py, pz, turn, limit, beams)):
+            points = _moved(e, kind, n, shapes, place, turn, rows[n], corner)
+            radius = rows[n, 7] if rod else 0.0
+            if _can_be_seen(corner, points, radius, limit, beams):
+                seen[kept] = n
+                # of boxes and walls only the distance from above is sure, their inner points may be the nearest
+                nearest[kept] = _nearest(corner, points, radius, 3 if points == 2 else 2) * (1.0 - 1e-12)
+                kept += 1
+    for i in np.argsort(nearest[:kept], kind="mergesort"):  # so that what is behind is rarely tried
+        n = seen[i]
+        kind = shapes.kind[n]
+        points = _moved(e, kind, n, shapes, place, turn, rows[n], corner)
+        radius = rows[n, 7] if kind == CAPSULE or kind == CYLINDER else 0.0
+        _draw(kind, rows[n], n, corner, points, radius, nearest[i], beams, reach, which)
     up = turn[2]
     for k in range(count):
         x, y, z = beams.x[k], beams.y[k], beams.z[k]
         down = x * up[0] + y * up[1] + z * up[2]
         nx, ny, nz = up[0], up[1], up[2]
         owner, label = shapes.nothing, -1
-        if shapes.floor and down < 0.0 and place[2] > 0.0 and -place[2] / down < reach[k]:
+        if down < 0.0 and place[2] > 0.0 and -place[2] / down < reach[k]:
             reach[k] = -place[2] / down
             owner = shapes.ground
         elif which[k] >= 0:

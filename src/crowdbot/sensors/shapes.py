@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import STAGE, Bodies, InputError, Scene, SpatialPose
+from crowdbot.core import STAGE, Bodies, InputError, Scene, Skins, SpatialPose
+from crowdbot.core.kernels import kernel
 from crowdbot.core.rays import BOX, CAPSULE, CYLINDER, TRIANGLE, WALL, WIDTH
 from crowdbot.core.scene import PERSON_HEIGHT
 
@@ -29,6 +31,10 @@ OVERLAP = 1e-9
 """Walls are this much longer [m] at both ends, so that rounding lets no beam slip through a corner."""
 TALLEST = 1e4
 """Walls without end are this high [m]."""
+KINDS = (TRIANGLE, CAPSULE, BOX, CYLINDER, CYLINDER, WALL)
+"""Order of the shapes: skins, limbs, boxes, posts, agents without limbs, walls."""
+NOBODY = Bodies.of()
+BARE = Skins.of(np.zeros((1, 0, 3)), np.zeros((0, 3)), owner=())
 
 
 class Shapes(NamedTuple):
@@ -40,8 +46,7 @@ class Shapes(NamedTuple):
         present: ``[E, P]``.
         owner, part: ``[P]`` what a hit is called.
         vertices, faces: of the triangles, ``[E, V, 3]`` and ``[F, 3]``.
-        floor: whether there is one at z = 0.
-        nothing, ground: what no hit and the floor are called.
+        nothing, ground: what no hit and the floor (z = 0) are called.
     """
 
     kind: Ints
@@ -51,125 +56,127 @@ class Shapes(NamedTuple):
     part: Ints
     vertices: Floats
     faces: Ints
-    floor: bool
     nothing: int
     ground: int
 
 
 def gathered(scene: Scene, skins: bool) -> Shapes:
-    """Return everything in ``scene`` that a ray can meet."""
-    bodies = scene.bodies or Bodies.of()
+    """Return everything in ``scene`` that a ray can meet.
+
+    Raises:
+        InputError: ``skins`` is asked for and the scene has none.
+    """
+    bodies = scene.bodies or NOBODY
     if skins and bodies.skins is None:
         raise InputError("skins: the scene has no triangle skins; give Scene.bodies skins, or leave skins=False")
-    environments, agents = scene.shape
-    skinned = bodies.skins.owner if skins and bodies.skins is not None else np.zeros(0, dtype=np.int64)
-    limbs = ~np.isin(bodies.owner, skinned[skinned >= 0])
-    embodied = np.isin(np.arange(agents), np.concatenate([bodies.owner, bodies.box_owner, bodies.post_owner, skinned]))
-    groups = [
-        _capsules(bodies, limbs),
-        _boxes(bodies),
-        _posts(bodies),
-        _discs(scene, np.flatnonzero(~embodied)),
-        _walls(scene),
-    ]
-    faces = np.zeros((0, 3), dtype=np.int64)
-    vertices = np.zeros((environments, 0, 3))
-    kinds, owners, parts, here = [], [], [], []
-    if skins and bodies.skins is not None:
-        faces, vertices = bodies.skins.faces, np.ascontiguousarray(bodies.skins.vertices)
-        kinds.append(np.full(len(faces), TRIANGLE))
-        owners.append(bodies.skins.owner)
-        parts.append(bodies.skins.part)
-        here.append(np.isfinite(vertices).all(axis=-1)[:, faces].all(axis=-1))
-    rows = [np.zeros((environments, len(faces), WIDTH))]
-    for kind, row, owner, part in groups:
-        kinds.append(np.full(len(owner), kind))
-        rows.append(np.broadcast_to(row, (environments, *row.shape[1:])))
-        owners.append(owner)
-        parts.append(part)
-        here.append(np.broadcast_to(_sound(kind, row), (environments, len(owner))))
-    owner = np.concatenate(owners)
-    return Shapes(
-        np.concatenate(kinds),
-        np.concatenate(rows, axis=1),
-        np.concatenate(here, axis=1) & _active(owner, scene.active),
-        np.where(owner == STAGE, PROP, owner),
-        np.concatenate(parts),
-        vertices,
-        np.ascontiguousarray(faces),
-        True,
-        NOTHING,
-        FLOOR,
+    skin = bodies.skins if skins and bodies.skins is not None else BARE
+    limbs, discs = _seen_as(scene, bodies, skin.owner)
+    walls = lengthened(scene.walls.segments()) if len(scene.walls) else np.zeros((0, 4))
+    counts = (len(skin.owner), len(limbs), len(bodies.box_owner), len(bodies.post_owner), len(discs), len(walls))
+    rows = np.zeros((scene.shape[0], sum(counts), WIDTH))
+    skinned, capsules, boxes, posts, people, fences = _sections(counts)
+    if len(limbs):
+        _write_capsules(bodies.start, bodies.end, bodies.radius, limbs, rows[:, capsules])
+    if len(bodies.box_owner):
+        _write_boxes(bodies, rows[:, boxes])
+    if len(bodies.post_owner):
+        _write_upright(rows[:, posts], bodies.post_foot, bodies.post_height, bodies.post_radius)
+    if len(discs):
+        height = PERSON_HEIGHT if scene.height is None else scene.height[:, discs]
+        _write_upright(rows[:, people], scene.position[:, discs], height, scene.radius[:, discs])
+    _write_walls(walls, scene.wall_height, rows[:, fences])
+    kind = np.repeat(np.array(KINDS), counts)
+    owner = np.concatenate(
+        [skin.owner, bodies.owner[limbs], bodies.box_owner, bodies.post_owner, discs, np.full(len(walls), WALLS)]
     )
+    part = np.full(len(kind), -1)
+    for section, labels in (skinned, skin.part), (capsules, bodies.part[limbs]), (boxes, bodies.box_part):
+        part[section] = labels
+    part[posts] = bodies.post_part
+    present = np.empty(rows.shape[:2], dtype=np.bool_)
+    _mark_present(kind, rows, owner, scene.active, present)
+    if skins:
+        present[:, skinned] &= np.isfinite(skin.vertices).all(axis=-1)[:, skin.faces].all(axis=-1)
+    named = np.where(owner == STAGE, PROP, owner)
+    return Shapes(kind, rows, present, named, part, skin.vertices, skin.faces, NOTHING, FLOOR)
 
 
-def _active(owner: Ints, active: Bools) -> Bools:
-    agents = active.shape[1]
-    known = np.concatenate([active, np.ones((len(active), 1), dtype=np.bool_)], axis=1)
-    return known[:, np.where((owner >= 0) & (owner < agents), owner, agents)] & (owner < agents)
+def _seen_as(scene: Scene, bodies: Bodies, skinned: Ints) -> tuple[Ints, Ints]:
+    """Return the capsules that no skin stands for, and the agents that are seen as cylinders."""
+    agents = scene.shape[1]
+    bare = np.ones(agents + 1, dtype=np.bool_)  # the last is for those that are no agents
+    for owner in (skinned, bodies.owner, bodies.box_owner, bodies.post_owner):
+        if len(owner):
+            bare[_known(owner, agents)] = False
+    limbs = np.arange(len(bodies.owner))
+    if len(skinned):
+        hidden = np.zeros(agents + 1, dtype=np.bool_)
+        hidden[_known(skinned, agents)] = True
+        hidden[agents] = False
+        limbs = limbs[~hidden[_known(bodies.owner, agents)]]
+    return limbs, np.flatnonzero(bare[:agents])
 
 
-def _sound(kind: int, row: Floats) -> Bools:
-    """``[E, P]``, whether a shape is there: finite, and with an extent above 0."""
-    fine = np.isfinite(row).all(axis=-1)
-    if kind in (CAPSULE, CYLINDER):
-        fine &= row[..., 7] > 0.0
-    if kind == BOX:
-        fine &= (row[..., 12:15] > 0.0).all(axis=-1)
-    return fine
+def _known(owner: Ints, agents: int) -> Ints:
+    return np.where((owner >= 0) & (owner < agents), owner, agents)
 
 
-Group = tuple[int, Floats, Ints, Ints]
+def _sections(counts: tuple[int, ...]) -> list[slice]:
+    ends = np.cumsum(counts).tolist()
+    return [slice(end - count, end) for end, count in zip(ends, counts, strict=True)]
 
 
-def _capsules(bodies: Bodies, chosen: Bools) -> Group:
-    start, end = bodies.start[:, chosen], bodies.end[:, chosen]
-    row = np.zeros((*start.shape[:2], WIDTH))
-    axis = end - start
-    length = np.sqrt((axis**2).sum(axis=-1))
-    row[..., :3] = start
-    row[..., 3:6] = np.where(length[..., None] > 0.0, axis / np.maximum(length, 1e-300)[..., None], [0.0, 0.0, 1.0])
-    row[..., 6] = length
-    row[..., 7] = bodies.radius[:, chosen]
-    return CAPSULE, row, bodies.owner[chosen], bodies.part[chosen]
+@kernel
+def _mark_present(kind: Ints, rows: Floats, owner: Ints, active: Bools, present: Bools) -> None:
+    """Mark the shapes whose owner is active, whose numbers are finite and whose extent is above 0."""
+    for e in range(len(rows)):
+        for n in range(len(kind)):
+            here = owner[n] < 0 or (owner[n] < active.shape[1] and active[e, owner[n]])
+            total = 0.0
+            for k in range(WIDTH):
+                total += abs(rows[e, n, k])
+            here = here and total < np.inf
+            if kind[n] == CAPSULE or kind[n] == CYLINDER:
+                here = here and rows[e, n, 7] > 0.0
+            if kind[n] == BOX:
+                here = here and min(rows[e, n, 12], rows[e, n, 13], rows[e, n, 14]) > 0.0
+            present[e, n] = here
 
 
-def _boxes(bodies: Bodies) -> Group:
-    environments, count = bodies.box_half.shape[:2]
-    row = np.zeros((environments, count, WIDTH))
+@kernel
+def _write_capsules(start: Floats, end: Floats, radius: Floats, chosen: Ints, row: Floats) -> None:
+    for e in range(len(row)):
+        for n in range(len(chosen)):
+            b = chosen[n]
+            dx, dy, dz = end[e, b, 0] - start[e, b, 0], end[e, b, 1] - start[e, b, 1], end[e, b, 2] - start[e, b, 2]
+            length = math.sqrt(dx * dx + dy * dy + dz * dz)
+            row[e, n, 0], row[e, n, 1], row[e, n, 2] = start[e, b, 0], start[e, b, 1], start[e, b, 2]
+            if length == 0.0:
+                row[e, n, 5] = 1.0
+            else:
+                row[e, n, 3], row[e, n, 4], row[e, n, 5] = dx / length, dy / length, dz / length
+            row[e, n, 6], row[e, n, 7] = length, radius[e, b]
+
+
+def _write_boxes(bodies: Bodies, row: Floats) -> None:
     turn = SpatialPose(bodies.box_centre.reshape(-1, 3), bodies.box_turn.reshape(-1, 4)).matrix
     row[..., :3] = bodies.box_centre
-    row[..., 3:12] = turn.transpose(0, 2, 1).reshape(environments, count, 9)
+    row[..., 3:12] = turn.transpose(0, 2, 1).reshape(*bodies.box_half.shape[:2], 9)
     row[..., 12:15] = bodies.box_half
-    return BOX, row, bodies.box_owner, bodies.box_part
 
 
-def _posts(bodies: Bodies) -> Group:
-    row = np.zeros((*bodies.post_radius.shape, WIDTH))
-    row[..., :3] = bodies.post_foot
+def _write_upright(row: Floats, foot: Floats, height: Floats | float, radius: Floats) -> None:
+    row[..., : foot.shape[-1]] = foot
     row[..., 5] = 1.0
-    row[..., 6] = bodies.post_height
-    row[..., 7] = np.where(bodies.post_height > 0.0, bodies.post_radius, 0.0)
-    return CYLINDER, row, bodies.post_owner, bodies.post_part
+    row[..., 6] = height
+    row[..., 7] = np.where(np.asarray(height) > 0.0, radius, 0.0)
 
 
-def _discs(scene: Scene, agents: Ints) -> Group:
-    row = np.zeros((scene.shape[0], len(agents), WIDTH))
-    row[..., :2] = scene.position[:, agents]
-    row[..., 5] = 1.0
-    row[..., 6] = PERSON_HEIGHT if scene.height is None else scene.height[:, agents]
-    row[..., 7] = scene.radius[:, agents]
-    return CYLINDER, row, agents, np.full(len(agents), -1)
-
-
-def _walls(scene: Scene) -> Group:
-    walls = lengthened(scene.walls.segments())
-    row = np.zeros((1, len(walls), WIDTH))
-    row[0, :, :2] = walls[:, :2]
-    row[0, :, 3:5] = walls[:, 2:] - walls[:, :2]
-    row[0, :, 8] = 1.0
-    row[0, :, 9] = min(scene.wall_height, TALLEST)
-    return WALL, row, np.full(len(walls), WALLS), np.full(len(walls), -1)
+def _write_walls(walls: Floats, height: float, row: Floats) -> None:
+    row[..., :2] = walls[:, :2]
+    row[..., 3:5] = walls[:, 2:] - walls[:, :2]
+    row[..., 8] = 1.0
+    row[..., 9] = min(height, TALLEST)
 
 
 def lengthened(walls: Floats) -> Floats:
