@@ -58,57 +58,64 @@ def ray_to_sphere(dx: float, dy: float, dz: float, cx: float, cy: float, cz: flo
 
 
 @kernel
-def _side(dx: float, dy: float, dz: float, s: Floats) -> tuple[float, float, float, float]:
-    """Return where d enters the endless cylinder of a row: distance, height there, slope of d on the axis, 1 if it does."""
-    ux, uy, uz, length, radius = s[3], s[4], s[5], s[6], s[7]
-    mx, my, mz = s[0] + 0.5 * length * ux, s[1] + 0.5 * length * uy, s[2] + 0.5 * length * uz
-    near = dx * mx + dy * my + dz * mz
-    wx, wy, wz = near * dx - s[0], near * dy - s[1], near * dz - s[2]
+def _side(
+    dx: float, dy: float, dz: float, ax: float, ay: float, az: float, ux: float, uy: float, uz: float, length: float,
+    radius: float,
+) -> tuple[float, float, float, bool]:  # fmt: skip
+    """Return where d enters the endless cylinder of an axis: distance, height there, slope of d on it, whether it does."""
+    half = 0.5 * length
+    near = dx * (ax + half * ux) + dy * (ay + half * uy) + dz * (az + half * uz)
+    wx, wy, wz = near * dx - ax, near * dy - ay, near * dz - az
     slope = dx * ux + dy * uy + dz * uz
     nx, ny, nz = dx - slope * ux, dy - slope * uy, dz - slope * uz
     across = ux * (ny * wz - nz * wy) + uy * (nz * wx - nx * wz) + uz * (nx * wy - ny * wx)
     flat = nx * nx + ny * ny + nz * nz
+    root = flat * radius * radius - across * across
+    if root < 0.0:
+        return math.inf, 0.0, slope, False
     height = wx * ux + wy * uy + wz * uz
     if flat < 1e-24:
         px, py, pz = wx - height * ux, wy - height * uy, wz - height * uz
-        hit = px * px + py * py + pz * pz <= radius * radius
-        return 0.0, -math.inf if slope > 0.0 else math.inf, slope, 1.0 if hit else 0.0
-    root = flat * radius * radius - across * across
-    if root < 0.0:
-        return math.inf, 0.0, slope, 0.0
-    go = -(nx * wx + ny * wy + nz * wz) - math.sqrt(root)
-    return near + go / flat, height + go / flat * slope, slope, 1.0
+        inside = px * px + py * py + pz * pz <= radius * radius
+        return 0.0, -math.inf if slope > 0.0 else math.inf, slope, inside
+    go = -(nx * wx + ny * wy + nz * wz + math.sqrt(root)) / flat
+    return near + go, height + go * slope, slope, True
 
 
 @kernel
-def ray_to_capsule(dx: float, dy: float, dz: float, s: Floats) -> float:
-    """Return the distance along d to a capsule."""
-    distance, height, _, enters = _side(dx, dy, dz, s)
-    if enters == 0.0:
+def ray_to_capsule(
+    dx: float, dy: float, dz: float, ax: float, ay: float, az: float, ux: float, uy: float, uz: float, length: float,
+    radius: float,
+) -> float:  # fmt: skip
+    """Return the distance along d to a capsule from a along the unit axis u."""
+    distance, height, _, enters = _side(dx, dy, dz, ax, ay, az, ux, uy, uz, length, radius)
+    if not enters:
         return math.inf
-    if 0.0 <= height <= s[6]:
+    if 0.0 <= height <= length:
         return distance if distance >= 0.0 else math.inf
     if height < 0.0:
-        return ray_to_sphere(dx, dy, dz, s[0], s[1], s[2], s[7])
-    length = s[6]
-    return ray_to_sphere(dx, dy, dz, s[0] + length * s[3], s[1] + length * s[4], s[2] + length * s[5], s[7])
+        return ray_to_sphere(dx, dy, dz, ax, ay, az, radius)
+    return ray_to_sphere(dx, dy, dz, ax + length * ux, ay + length * uy, az + length * uz, radius)
 
 
 @kernel
-def ray_to_cylinder(dx: float, dy: float, dz: float, s: Floats) -> float:
-    """Return the distance along d to a closed cylinder."""
-    distance, height, slope, enters = _side(dx, dy, dz, s)
-    if enters == 0.0:
+def ray_to_cylinder(
+    dx: float, dy: float, dz: float, ax: float, ay: float, az: float, ux: float, uy: float, uz: float, length: float,
+    radius: float,
+) -> float:  # fmt: skip
+    """Return the distance along d to a closed cylinder from a along the unit axis u."""
+    distance, height, slope, enters = _side(dx, dy, dz, ax, ay, az, ux, uy, uz, length, radius)
+    if not enters:
         return math.inf
-    if 0.0 <= height <= s[6]:
+    if 0.0 <= height <= length:
         return distance if distance >= 0.0 else math.inf
     if (height < 0.0) != (slope > 0.0) or slope == 0.0:
         return math.inf
-    lid = 0.0 if height < 0.0 else s[6]
-    px, py, pz = s[0] + lid * s[3], s[1] + lid * s[4], s[2] + lid * s[5]
-    distance = (px * s[3] + py * s[4] + pz * s[5]) / slope
+    lid = 0.0 if height < 0.0 else length
+    px, py, pz = ax + lid * ux, ay + lid * uy, az + lid * uz
+    distance = (px * ux + py * uy + pz * uz) / slope
     qx, qy, qz = distance * dx - px, distance * dy - py, distance * dz - pz
-    if distance < 0.0 or qx * qx + qy * qy + qz * qz > s[7] * s[7]:
+    if distance < 0.0 or qx * qx + qy * qy + qz * qz > radius * radius:
         return math.inf
     return distance
 
@@ -175,11 +182,11 @@ def ray_to_triangle(dx: float, dy: float, dz: float, s: Floats) -> float:
 def meet(kind: int, dx: float, dy: float, dz: float, s: Floats) -> float:
     """Return the distance along d to the shape of a row."""
     if kind == CAPSULE:
-        return ray_to_capsule(dx, dy, dz, s)
+        return ray_to_capsule(dx, dy, dz, s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7])
     if kind == TRIANGLE:
         return ray_to_triangle(dx, dy, dz, s)
     if kind == CYLINDER:
-        return ray_to_cylinder(dx, dy, dz, s)
+        return ray_to_cylinder(dx, dy, dz, s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7])
     if kind == WALL:
         return ray_to_wall(dx, dy, dz, s)
     return ray_to_box(dx, dy, dz, s)

@@ -10,12 +10,34 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Scene, SpatialPose
 from crowdbot.core.kernels import kernel
-from crowdbot.core.rays import BOX, CAPSULE, CYLINDER, TRIANGLE, WALL, WIDTH, meet, normal_at, within
+from crowdbot.core.rays import (
+    BOX,
+    CAPSULE,
+    CYLINDER,
+    TRIANGLE,
+    WALL,
+    WIDTH,
+    meet,
+    normal_at,
+    ray_to_capsule,
+    within,
+)
+from crowdbot.core.windows import (
+    ball_in_view,
+    can_be_seen,
+    levels,
+    nearest_from_above,
+    rod_gap,
+    rod_levels,
+    rod_width,
+    width,
+)
 
 from .beams import Beams
 from .shapes import Shapes, gathered
@@ -27,116 +49,65 @@ Ints = NDArray[np.int64]
 TURN = 2.0 * math.pi
 MARGIN = 1e-9
 """Windows are this much larger [rad] at every side, against rounding."""
-
-
-
-
-@kernel
-def _gap(corner: Floats, i: int, j: int, axes: int) -> float:
-    """Return the distance of the origin to the segment between two corners, in the plane (2 axes) or in space (3)."""
-    length2, along, s, gap2 = 0.0, 0.0, 0.0, 0.0
-    for c in range(axes):
-        step = corner[j, c] - corner[i, c]
-        length2 += step * step
-        along -= corner[i, c] * step
-    if length2 > 0.0:
-        s = min(1.0, max(0.0, along / length2))
-    for c in range(axes):
-        place = corner[i, c] + s * (corner[j, c] - corner[i, c])
-        gap2 += place * place
-    return math.sqrt(gap2)
-
-
-@kernel
-def _heights(corner: Floats, count: int, radius: float) -> tuple[float, float, float]:
-    """Return the lowest and highest z of a hull and how far it reaches in the plane."""
-    low, high, far2 = math.inf, -math.inf, 0.0
-    for i in range(count):
-        low, high = min(low, corner[i, 2]), max(high, corner[i, 2])
-        far2 = max(far2, corner[i, 0] * corner[i, 0] + corner[i, 1] * corner[i, 1])
-    return low - radius, high + radius, math.sqrt(far2) + radius
-
-
-@kernel
-def _nearest(corner: Floats, count: int, radius: float, axes: int) -> float:
-    near = math.inf
-    for i in range(count):
-        for j in range(i):
-            near = min(near, _gap(corner, i, j, axes))
-    return max(0.0, near - radius)
-
-
-@kernel
-def _width(corner: Floats, count: int, radius: float) -> tuple[float, float]:
-    """Return azimuth at which a hull begins and how wide it is, a full turn when it holds the origin from above."""
-    least, most, cx, cy = math.inf, -math.inf, 0.0, 0.0
-    for i in range(count):
-        cx += corner[i, 0]
-        cy += corner[i, 1]
-    middle = math.atan2(cy, cx)
-    for i in range(count):
-        away = math.sqrt(corner[i, 0] * corner[i, 0] + corner[i, 1] * corner[i, 1])
-        if away <= radius or away == 0.0:
-            return -math.pi, TURN
-        half = math.asin(radius / away)
-        off = math.atan2(corner[i, 1], corner[i, 0]) - middle
-        off -= TURN * math.floor((off + math.pi) / TURN)
-        least, most = min(least, off - half), max(most, off + half)
-    if most - least >= math.pi - 1e-6:
-        return -math.pi, TURN
-    return middle + least, most - least
-
-
-@kernel
-def _can_be_seen(corner: Floats, count: int, radius: float, limit: float, beams: Beams) -> bool:
-    """Return whether a hull is within reach and between the lowest and the highest beam."""
-    low, high, far = _heights(corner, count, radius)
-    if low > far * beams.steep[1] or high < far * beams.steep[0]:
-        return False
-    return _nearest(corner, count, radius, 2) <= limit
+MANY = 4
+"""From this many environments on, threads share them."""
 
 
 @kernel
 def _try(
-    kind: int, s: Floats, number: int, begin: int, end: int, near: float, beams: Beams, distance: Floats, which: Ints
+    kind: int, s: Floats, n: int, begin: int, end: int, near: float, beams: Beams, distance: Floats, which: Ints
 ) -> None:
+    if kind == CAPSULE:
+        ax, ay, az, ux, uy, uz, length, radius = s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7]
+        for k in range(begin, end):
+            if near < distance[k]:
+                reach = ray_to_capsule(beams.x[k], beams.y[k], beams.z[k], ax, ay, az, ux, uy, uz, length, radius)
+                if reach < distance[k]:
+                    distance[k] = reach
+                    which[k] = n
+        return
     for k in range(begin, end):
         if near < distance[k]:
             reach = meet(kind, beams.x[k], beams.y[k], beams.z[k], s)
             if reach < distance[k]:
                 distance[k] = reach
-                which[k] = number
+                which[k] = n
 
 
 @kernel
 def _draw(
-    kind: int, s: Floats, number: int, corner: Floats, count: int, radius: float, nearest: float, beams: Beams,
-    distance: Floats, which: Ints,
-) -> None:  # fmt: skip
+    kind: int, s: Floats, n: int, corner: Floats, near: float, beams: Beams, distance: Floats, which: Ints
+) -> None:
     """Try a shape on the beams in its window."""
-    if nearest == 0.0 and within(kind, s):
+    if near == 0.0 and within(kind, s):
         for k in range(len(distance)):
             if distance[k] > 0.0:
                 distance[k] = 0.0
-                which[k] = number
+                which[k] = n
         return
-    low, high, far = _heights(corner, count, radius)
-    near = _nearest(corner, count, radius, 2)
-    left, width = _width(corner, count, radius)
-    if width >= TURN:
-        near = 0.0
-    bottom = math.atan2(low, far if low > 0.0 else near) - MARGIN
-    top = math.atan2(high, near if high > 0.0 else far) + MARGIN
-    first = max(0, math.floor((bottom - beams.low) / beams.tall))
-    last = min(beams.rows - 1, math.floor((top - beams.low) / beams.tall))
-    columns = beams.columns
+    bottom, top = 0.0, 0.0
+    if kind == CAPSULE or kind == CYLINDER:
+        ax, ay, az, length, radius = s[0], s[1], s[2], s[6], s[7]
+        bx, by, bz = ax + length * s[3], ay + length * s[4], az + length * s[5]
+        left, width = rod_width(ax, ay, bx, by, radius)
+        if beams.rows > 1:
+            bottom, top = rod_levels(ax, ay, az, bx, by, bz, radius, width >= TURN)
+    else:
+        count = 3 if kind == TRIANGLE else (4 if kind == WALL else 8)
+        left, width = width(corner, count)
+        if beams.rows > 1:
+            bottom, top = levels(corner, count, width >= TURN)
+    first, last, columns = 0, 0, beams.columns
+    if beams.rows > 1:
+        first = max(0, math.floor((bottom - MARGIN - beams.low) / beams.tall))
+        last = min(beams.rows - 1, math.floor((top + MARGIN - beams.low) / beams.tall))
     start = (left - MARGIN - beams.left) % TURN
     for turn in range(2):
         a = max(0, math.floor((start - turn * TURN) / beams.wide))
         b = min(columns - 1, math.floor((start - turn * TURN + width + 2.0 * MARGIN) / beams.wide))
         for row in range(first, last + 1 if a <= b else first):
             begin, end = beams.begin[row * columns + a], beams.begin[row * columns + b + 1]
-            _try(kind, s, number, begin, end, nearest, beams, distance, which)
+            _try(kind, s, n, begin, end, near, beams, distance, which)
 
 
 @kernel
@@ -183,21 +154,49 @@ def _moved(e: int, kind: int, n: int, shapes: Shapes, place: Floats, turn: Float
 
 
 @kernel
-def _worth(rows: Floats, e: int, n: int, px: float, py: float, pz: float, turn: Floats, limit: float, beams: Beams) -> bool:
-    """Return whether the ball around a capsule or cylinder may be within reach and between the outer beams."""
-    half = 0.5 * rows[e, n, 6]
-    x = rows[e, n, 0] + half * rows[e, n, 3] - px
-    y = rows[e, n, 1] + half * rows[e, n, 4] - py
-    z = rows[e, n, 2] + half * rows[e, n, 5] - pz
-    slope = turn[0, 2] * rows[e, n, 3] + turn[1, 2] * rows[e, n, 4] + turn[2, 2] * rows[e, n, 5]
-    radius = rows[e, n, 7]
-    away = math.sqrt(x * x + y * y + z * z)
-    far = away + half + radius
-    height = turn[0, 2] * x + turn[1, 2] * y + turn[2, 2] * z
-    tall = half * abs(slope) + radius + 1e-9
-    if away - half - radius > limit:
-        return False
-    return height - tall <= far * beams.steep[1] and height + tall >= far * beams.steep[0]
+def _bring(
+    table: Floats, kinds: Ints, present: NDArray[np.bool_], place: Floats, turn: Floats, limit: float, down: float,
+    up: float, rows: Floats, seen: Ints, nearest: Floats,
+) -> int:  # fmt: skip
+    """Write the rods that can be seen in the sensor's frame, and how near they come; return how many."""
+    kept = 0
+    px, py, pz = place[0], place[1], place[2]
+    a, b, c = turn[0, 2], turn[1, 2], turn[2, 2]
+    for n in range(len(kinds)):
+        if not present[n] or (kinds[n] != CAPSULE and kinds[n] != CYLINDER):
+            continue
+        ux, uy, uz, length, radius = table[n, 3], table[n, 4], table[n, 5], table[n, 6], table[n, 7]
+        x, y, z, half = table[n, 0] - px, table[n, 1] - py, table[n, 2] - pz, 0.5 * length
+        mx, my, mz = x + half * ux, y + half * uy, z + half * uz
+        slope, height = a * ux + b * uy + c * uz, a * mx + b * my + c * mz
+        if ball_in_view(mx, my, mz, slope, height, half, radius, limit, down, up):
+            for k in range(3):
+                rows[n, k] = turn[0, k] * x + turn[1, k] * y + turn[2, k] * z
+                rows[n, 3 + k] = turn[0, k] * ux + turn[1, k] * uy + turn[2, k] * uz
+            rows[n, 6], rows[n, 7] = length, radius
+            nearest[kept] = rod_gap(x, y, z, ux, uy, uz, length, radius) * (1.0 - 1e-12)
+            seen[kept] = n
+            kept += 1
+    return kept
+
+
+@kernel
+def _bring_flat(
+    e: int, shapes: Shapes, place: Floats, turn: Floats, limit: float, steep: tuple[float, float], rows: Floats,
+    corner: Floats, seen: Ints, nearest: Floats, kept: int,
+) -> int:  # fmt: skip
+    """Do the same for all other shapes."""
+    for n in range(len(shapes.kind)):
+        kind = shapes.kind[n]
+        if not shapes.present[e, n] or kind == CAPSULE or kind == CYLINDER:
+            continue
+        count = _moved(e, kind, n, shapes, place, turn, rows[n], corner)
+        if can_be_seen(corner, count, limit, steep[0], steep[1]):
+            around = kind == TRIANGLE or width(corner, count)[1] >= TURN
+            nearest[kept] = 0.0 if around else nearest_from_above(corner, count) * (1.0 - 1e-12)
+            seen[kept] = n
+            kept += 1
+    return kept
 
 
 @kernel
@@ -206,37 +205,26 @@ def _one(
     distance: Floats, facing: Floats, normal: Floats, hit: Ints, part: Ints,
 ) -> None:  # fmt: skip
     count, total = len(beams.x), len(shapes.kind)
-    reach = np.full(count, np.inf)
-    which = np.full(count, -1)
-    rows = np.empty((total, WIDTH))
-    corner = np.empty((8, 3))
-    seen, nearest, kept = np.empty(total, dtype=np.int64), np.empty(total), 0
-    px, py, pz = place[0], place[1], place[2]
-    for n in range(total):
-        kind = shapes.kind[n]
-        rod = kind == CAPSULE or kind == CYLINDER
-        if shapes.present[e, n] and (not rod or _worth(shapes.rows, e, n, px, py, pz, turn, limit, beams)):
-            points = _moved(e, kind, n, shapes, place, turn, rows[n], corner)
-            radius = rows[n, 7] if rod else 0.0
-            if _can_be_seen(corner, points, radius, limit, beams):
-                seen[kept] = n
-                # of boxes and walls only the distance from above is sure, their inner points may be the nearest
-                nearest[kept] = _nearest(corner, points, radius, 3 if points == 2 else 2) * (1.0 - 1e-12)
-                kept += 1
+    reach, which = np.full(count, np.inf), np.full(count, -1)
+    rows, corner = np.empty((total, WIDTH)), np.empty((8, 3))
+    seen, nearest = np.empty(total, dtype=np.int64), np.empty(total)
+    down, up = beams.steep
+    kept = _bring(shapes.rows[e], shapes.kind, shapes.present[e], place, turn, limit, down, up, rows, seen, nearest)
+    kept = _bring_flat(e, shapes, place, turn, limit, beams.steep, rows, corner, seen, nearest, kept)
     for i in np.argsort(nearest[:kept], kind="mergesort"):  # so that what is behind is rarely tried
         n = seen[i]
         kind = shapes.kind[n]
-        points = _moved(e, kind, n, shapes, place, turn, rows[n], corner)
-        radius = rows[n, 7] if kind == CAPSULE or kind == CYLINDER else 0.0
-        _draw(kind, rows[n], n, corner, points, radius, nearest[i], beams, reach, which)
-    up = turn[2]
+        if kind != CAPSULE and kind != CYLINDER:
+            _moved(e, kind, n, shapes, place, turn, rows[n], corner)
+        _draw(kind, rows[n], n, corner, nearest[i], beams, reach, which)
+    over = turn[2]
     for k in range(count):
         x, y, z = beams.x[k], beams.y[k], beams.z[k]
-        down = x * up[0] + y * up[1] + z * up[2]
-        nx, ny, nz = up[0], up[1], up[2]
+        fall = x * over[0] + y * over[1] + z * over[2]
+        nx, ny, nz = over[0], over[1], over[2]
         owner, label = shapes.nothing, -1
-        if down < 0.0 and place[2] > 0.0 and -place[2] / down < reach[k]:
-            reach[k] = -place[2] / down
+        if fall < 0.0 and place[2] > 0.0 and -place[2] / fall < reach[k]:
+            reach[k] = -place[2] / fall
             owner = shapes.ground
         elif which[k] >= 0:
             n = which[k]
@@ -256,12 +244,37 @@ def _one(
 
 
 @kernel
+def _matrix(rotation: Floats) -> Floats:
+    """Return the rotation matrix of a quaternion, as :attr:`SpatialPose.matrix` does."""
+    size = math.sqrt(rotation[0] ** 2 + rotation[1] ** 2 + rotation[2] ** 2 + rotation[3] ** 2)
+    w, x, y, z = rotation[0] / size, rotation[1] / size, rotation[2] / size, rotation[3] / size
+    turn = np.empty((3, 3))
+    turn[0, 0], turn[0, 1], turn[0, 2] = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
+    turn[1, 0], turn[1, 1], turn[1, 2] = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)
+    turn[2, 0], turn[2, 1], turn[2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
+    return turn
+
+
+@kernel
 def _serial(
-    place: Floats, turn: Floats, shapes: Shapes, beams: Beams, limit: float,
+    place: Floats, rotation: Floats, shapes: Shapes, beams: Beams, limit: float,
     distance: Floats, facing: Floats, normal: Floats, hit: Ints, part: Ints,
 ) -> None:  # fmt: skip
     for e in range(len(place)):
-        _one(e, place[e], turn[e], shapes, beams, limit, distance[e], facing[e], normal[e], hit[e], part[e])
+        _one(
+            e, place[e], _matrix(rotation[e]), shapes, beams, limit, distance[e], facing[e], normal[e], hit[e], part[e]
+        )
+
+
+@kernel(parallel=True)
+def _shared(
+    place: Floats, rotation: Floats, shapes: Shapes, beams: Beams, limit: float,
+    distance: Floats, facing: Floats, normal: Floats, hit: Ints, part: Ints,
+) -> None:  # fmt: skip
+    for e in numba.prange(len(place)):
+        _one(
+            e, place[e], _matrix(rotation[e]), shapes, beams, limit, distance[e], facing[e], normal[e], hit[e], part[e]
+        )
 
 
 @dataclass(frozen=True)
@@ -302,8 +315,7 @@ def cast(scene: Scene, pose: SpatialPose, beams: Beams, limit: float, *, skins: 
     hits = Hits(
         np.empty(size), np.ones(size), np.zeros((*size, 3)), np.empty(size, dtype=np.int64), np.empty(size, np.int64)
     )
-    place = np.ascontiguousarray(pose.position)
-    _serial(
-        place, pose.matrix, shapes, beams, float(limit), hits.distance, hits.facing, hits.normal, hits.hit, hits.part
-    )
+    place, rotation = np.ascontiguousarray(pose.position), np.ascontiguousarray(pose.rotation)
+    work = _serial if size[0] < MANY else _shared
+    work(place, rotation, shapes, beams, float(limit), hits.distance, hits.facing, hits.normal, hits.hit, hits.part)
     return hits
