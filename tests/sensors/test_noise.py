@@ -72,7 +72,7 @@ def test_text_is_read_as_trial_files_write_it():
         ("gaussian", "list of name"),
         ("gaussian(0.1", "list of name"),
         ("gaussian(a)", "must be numbers: gaussian\\(sd\\)"),
-        ("peak(0.1)", "has 1 values, it takes peak\\(probability, height\\)"),
+        ("peak(0.1)", "has 1 values, it takes peak\\(probability, height, sd\\)"),
         ("gaussian(-1)", "sd = -1.0 must be finite and at least 0"),
         ("gaussian(nan)", "sd = nan"),
         ("peak(1.5, 2)", "probability = 1.5 must be between 0 and 1"),

@@ -20,14 +20,6 @@ STAGE = -1
 """Owner of what belongs to the stage and to no agent."""
 
 
-def _none(*shape: int) -> Any:
-    return field(default_factory=lambda: np.zeros(shape))
-
-
-def _nobody() -> Any:
-    return field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-
-
 @dataclass(frozen=True)
 class Skins:
     """Triangle skins of posed people and robots, for rays that want them true to the mesh.
@@ -89,22 +81,22 @@ class Bodies:
     ((1, 1, 3), (1, 0, 3))
     """
 
-    start: Floats = _none(1, 0, 3)
-    end: Floats = _none(1, 0, 3)
-    radius: Floats = _none(1, 0)
-    owner: Ints = _nobody()
-    part: Ints = _nobody()
+    start: Floats = field(default_factory=lambda: np.zeros((1, 0, 3)))
+    end: Floats = field(default_factory=lambda: np.zeros((1, 0, 3)))
+    radius: Floats = field(default_factory=lambda: np.zeros((1, 0)))
+    owner: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    part: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     parts: tuple[str, ...] = ()
-    box_centre: Floats = _none(1, 0, 3)
-    box_half: Floats = _none(1, 0, 3)
-    box_turn: Floats = _none(1, 0, 4)
-    box_owner: Ints = _nobody()
-    box_part: Ints = _nobody()
-    post_foot: Floats = _none(1, 0, 3)
-    post_radius: Floats = _none(1, 0)
-    post_height: Floats = _none(1, 0)
-    post_owner: Ints = _nobody()
-    post_part: Ints = _nobody()
+    box_centre: Floats = field(default_factory=lambda: np.zeros((1, 0, 3)))
+    box_half: Floats = field(default_factory=lambda: np.zeros((1, 0, 3)))
+    box_turn: Floats = field(default_factory=lambda: np.zeros((1, 0, 4)))
+    box_owner: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    box_part: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    post_foot: Floats = field(default_factory=lambda: np.zeros((1, 0, 3)))
+    post_radius: Floats = field(default_factory=lambda: np.zeros((1, 0)))
+    post_height: Floats = field(default_factory=lambda: np.zeros((1, 0)))
+    post_owner: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    post_part: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     skins: Skins | None = None
 
     @classmethod

@@ -62,7 +62,7 @@ def _side(
     dx: float, dy: float, dz: float, ax: float, ay: float, az: float, ux: float, uy: float, uz: float, length: float,
     radius: float,
 ) -> tuple[float, float, float, bool]:  # fmt: skip
-    """Return where d enters the endless cylinder of an axis: distance, height there, slope of d on it, whether it does."""
+    """Return where d enters the endless cylinder of an axis: distance, height there, slope of d, whether it does."""
     half = 0.5 * length
     near = dx * (ax + half * ux) + dy * (ay + half * uy) + dz * (az + half * uz)
     wx, wy, wz = near * dx - ax, near * dy - ay, near * dz - az
@@ -156,7 +156,7 @@ def ray_to_box(dx: float, dy: float, dz: float, s: Floats) -> float:
         leave = min(leave, max(one, two))
     if enter > leave or enter < 0.0:
         return math.inf
-    return enter
+    return float(enter)
 
 
 @kernel
@@ -194,8 +194,8 @@ def meet(kind: int, dx: float, dy: float, dz: float, s: Floats) -> float:
 
 @kernel
 def within(kind: int, s: Floats) -> bool:
-    """Return whether the origin lies in the shape of a row, its surface included; walls and triangles have no inside."""
-    if kind == CAPSULE or kind == CYLINDER:
+    """Return whether the origin lies in the shape of a row or on it; walls and triangles have no inside."""
+    if kind in (CAPSULE, CYLINDER):
         height = -(s[0] * s[3] + s[1] * s[4] + s[2] * s[5])
         if kind == CYLINDER and (height < 0.0 or height > s[6]):
             return False
@@ -203,17 +203,17 @@ def within(kind: int, s: Floats) -> bool:
         x, y, z = s[0] + near * s[3], s[1] + near * s[4], s[2] + near * s[5]
         return x * x + y * y + z * z <= s[7] * s[7]
     if kind == BOX:
+        inside = True
         for k in range(3):
-            if abs(s[0] * s[3 + 3 * k] + s[1] * s[4 + 3 * k] + s[2] * s[5 + 3 * k]) > s[12 + k]:
-                return False
-        return True
+            inside &= abs(s[0] * s[3 + 3 * k] + s[1] * s[4 + 3 * k] + s[2] * s[5 + 3 * k]) <= s[12 + k]
+        return bool(inside)
     return False
 
 
 @kernel
 def normal_at(kind: int, x: float, y: float, z: float, s: Floats) -> tuple[float, float, float]:
     """Return the unit normal of the shape of a row at its surface point x, y, z; outward, of flat ones either side."""
-    if kind == CAPSULE or kind == CYLINDER:
+    if kind in (CAPSULE, CYLINDER):
         height = (x - s[0]) * s[3] + (y - s[1]) * s[4] + (z - s[2]) * s[5]
         near = min(s[6], max(0.0, height))
         nx, ny, nz = x - s[0] - near * s[3], y - s[1] - near * s[4], z - s[2] - near * s[5]

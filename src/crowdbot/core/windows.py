@@ -14,14 +14,13 @@ from .kernels import kernel
 
 __all__ = [
     "ball_in_view",
-    "can_be_seen",
-    "heights",
-    "levels",
-    "nearest_from_above",
+    "hull_gap",
+    "hull_in_view",
+    "hull_levels",
+    "hull_width",
     "rod_gap",
     "rod_levels",
     "rod_width",
-    "width",
 ]
 
 Floats = NDArray[np.float64]
@@ -29,7 +28,7 @@ TURN = 2.0 * math.pi
 
 
 @kernel
-def heights(corner: Floats, count: int) -> tuple[float, float, float]:
+def _heights(corner: Floats, count: int) -> tuple[float, float, float]:
     """Return the lowest and highest z of a hull and how far it reaches in the plane."""
     low, high, far2 = math.inf, -math.inf, 0.0
     for i in range(count):
@@ -39,7 +38,7 @@ def heights(corner: Floats, count: int) -> tuple[float, float, float]:
 
 
 @kernel
-def nearest_from_above(corner: Floats, count: int) -> float:
+def hull_gap(corner: Floats, count: int) -> float:
     """Return how near a hull that does not hold the origin from above comes to it in the plane."""
     near2 = math.inf
     for i in range(count):
@@ -62,7 +61,7 @@ def _half(radius: float, away: float) -> float:
 
 @kernel
 def rod_width(ax: float, ay: float, bx: float, by: float, radius: float) -> tuple[float, float]:
-    """Return what :func:`width` does, for two discs, or a little more."""
+    """Return what :func:`hull_width` does, for two discs, or a little more."""
     a, b = math.sqrt(ax * ax + ay * ay), math.sqrt(bx * bx + by * by)
     if a <= radius or b <= radius or a == 0.0 or b == 0.0:
         return -math.pi, TURN
@@ -91,7 +90,7 @@ def rod_levels(
 
 
 @kernel
-def width(corner: Floats, count: int) -> tuple[float, float]:
+def hull_width(corner: Floats, count: int) -> tuple[float, float]:
     """Return azimuth at which a hull begins and how wide it is, a full turn when it holds the origin from above."""
     least, most, cx, cy = math.inf, -math.inf, 0.0, 0.0
     for i in range(count):
@@ -110,17 +109,17 @@ def width(corner: Floats, count: int) -> tuple[float, float]:
 
 
 @kernel
-def can_be_seen(corner: Floats, count: int, limit: float, down: float, up: float) -> bool:
+def hull_in_view(corner: Floats, count: int, limit: float, down: float, up: float) -> bool:
     """Return whether a hull is within reach and between the lowest and the highest beam."""
-    low, high, far = heights(corner, count)
-    return low <= far * up and high >= far * down and nearest_from_above(corner, count) <= limit
+    low, high, far = _heights(corner, count)
+    return low <= far * up and high >= far * down and hull_gap(corner, count) <= limit
 
 
 @kernel
-def levels(corner: Floats, count: int, around: bool) -> tuple[float, float]:
+def hull_levels(corner: Floats, count: int, around: bool) -> tuple[float, float]:
     """Return the lowest and the highest elevation of a hull, or a little more."""
-    low, high, far = heights(corner, count)
-    near = 0.0 if around else nearest_from_above(corner, count)
+    low, high, far = _heights(corner, count)
+    near = 0.0 if around else hull_gap(corner, count)
     return math.atan2(low, far if low > 0.0 else near), math.atan2(high, near if high > 0.0 else far)
 
 

@@ -49,7 +49,7 @@ def beams(directions: Floats) -> Beams:
 
     >>> found = beams(fan(np.linspace(-1.0, 1.0, 81)))
     >>> found.rows, found.columns, found.order[:3].tolist()
-    (1, 20, [0, 1, 2])
+    (1, 40, [0, 1, 2])
     """
     x, y, z = directions.T
     elevation = np.arcsin(np.clip(z, -1.0, 1.0))
@@ -69,7 +69,9 @@ def beams(directions: Floats) -> Beams:
     begin = np.searchsorted(cell[order], np.arange(rows * columns + 1))
     steepest = 0.5 * math.pi - 1e-6
     return Beams(
-        *(np.ascontiguousarray(part[order]) for part in (x, y, z)),
+        np.ascontiguousarray(x[order]),
+        np.ascontiguousarray(y[order]),
+        np.ascontiguousarray(z[order]),
         order,
         begin.astype(np.int64),
         rows,

@@ -30,13 +30,13 @@ from crowdbot.core.rays import (
 )
 from crowdbot.core.windows import (
     ball_in_view,
-    can_be_seen,
-    levels,
-    nearest_from_above,
+    hull_gap,
+    hull_in_view,
+    hull_levels,
+    hull_width,
     rod_gap,
     rod_levels,
     rod_width,
-    width,
 )
 
 from .beams import Beams
@@ -86,7 +86,7 @@ def _draw(
                 which[k] = n
         return
     bottom, top = 0.0, 0.0
-    if kind == CAPSULE or kind == CYLINDER:
+    if kind in (CAPSULE, CYLINDER):
         ax, ay, az, length, radius = s[0], s[1], s[2], s[6], s[7]
         bx, by, bz = ax + length * s[3], ay + length * s[4], az + length * s[5]
         left, width = rod_width(ax, ay, bx, by, radius)
@@ -94,9 +94,9 @@ def _draw(
             bottom, top = rod_levels(ax, ay, az, bx, by, bz, radius, width >= TURN)
     else:
         count = 3 if kind == TRIANGLE else (4 if kind == WALL else 8)
-        left, width = width(corner, count)
+        left, width = hull_width(corner, count)
         if beams.rows > 1:
-            bottom, top = levels(corner, count, width >= TURN)
+            bottom, top = hull_levels(corner, count, width >= TURN)
     first, last, columns = 0, 0, beams.columns
     if beams.rows > 1:
         first = max(0, math.floor((bottom - MARGIN - beams.low) / beams.tall))
@@ -163,7 +163,7 @@ def _bring(
     px, py, pz = place[0], place[1], place[2]
     a, b, c = turn[0, 2], turn[1, 2], turn[2, 2]
     for n in range(len(kinds)):
-        if not present[n] or (kinds[n] != CAPSULE and kinds[n] != CYLINDER):
+        if not present[n] or (kinds[n] not in (CAPSULE, CYLINDER)):
             continue
         ux, uy, uz, length, radius = table[n, 3], table[n, 4], table[n, 5], table[n, 6], table[n, 7]
         x, y, z, half = table[n, 0] - px, table[n, 1] - py, table[n, 2] - pz, 0.5 * length
@@ -188,12 +188,12 @@ def _bring_flat(
     """Do the same for all other shapes."""
     for n in range(len(shapes.kind)):
         kind = shapes.kind[n]
-        if not shapes.present[e, n] or kind == CAPSULE or kind == CYLINDER:
+        if not shapes.present[e, n] or kind in (CAPSULE, CYLINDER):
             continue
         count = _moved(e, kind, n, shapes, place, turn, rows[n], corner)
-        if can_be_seen(corner, count, limit, steep[0], steep[1]):
-            around = kind == TRIANGLE or width(corner, count)[1] >= TURN
-            nearest[kept] = 0.0 if around else nearest_from_above(corner, count) * (1.0 - 1e-12)
+        if hull_in_view(corner, count, limit, steep[0], steep[1]):
+            around = kind == TRIANGLE or hull_width(corner, count)[1] >= TURN
+            nearest[kept] = 0.0 if around else hull_gap(corner, count) * (1.0 - 1e-12)
             seen[kept] = n
             kept += 1
     return kept
@@ -214,7 +214,7 @@ def _one(
     for i in np.argsort(nearest[:kept], kind="mergesort"):  # so that what is behind is rarely tried
         n = seen[i]
         kind = shapes.kind[n]
-        if kind != CAPSULE and kind != CYLINDER:
+        if kind not in (CAPSULE, CYLINDER):
             _moved(e, kind, n, shapes, place, turn, rows[n], corner)
         _draw(kind, rows[n], n, corner, nearest[i], beams, reach, which)
     over = turn[2]

@@ -96,7 +96,8 @@ def gathered(scene: Scene, skins: bool) -> Shapes:
     present = np.empty(rows.shape[:2], dtype=np.bool_)
     _mark_present(kind, rows, owner, scene.active, present)
     if skins:
-        present[:, skinned] &= np.isfinite(skin.vertices).all(axis=-1)[:, skin.faces].all(axis=-1)
+        sound = np.logical_and.reduce(np.isfinite(skin.vertices), axis=-1)
+        present[:, skinned] &= sound[:, skin.faces].all(axis=-1)
     named = np.where(owner == STAGE, PROP, owner)
     return Shapes(kind, rows, present, named, part, skin.vertices, skin.faces, NOTHING, FLOOR)
 
