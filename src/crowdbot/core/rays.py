@@ -136,7 +136,7 @@ def ray_to_wall(dx: float, dy: float, dz: float, s: Floats) -> float:
     height = px * ux + py * uy + pz * uz
     if along < 0.0 or along > ex * ex + ey * ey + ez * ez or height < 0.0 or height > s[9]:
         return math.inf
-    return distance
+    return float(distance)
 
 
 @kernel
@@ -201,7 +201,7 @@ def within(kind: int, s: Floats) -> bool:
             return False
         near = min(s[6], max(0.0, height))
         x, y, z = s[0] + near * s[3], s[1] + near * s[4], s[2] + near * s[5]
-        return x * x + y * y + z * z <= s[7] * s[7]
+        return bool(x * x + y * y + z * z <= s[7] * s[7])
     if kind == BOX:
         inside = True
         for k in range(3):

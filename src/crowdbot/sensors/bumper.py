@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose
 
-from .noise import Randomness
-from .sensor import Reading, Sensor, in_plane, in_space
+from .noise import Randomness, disturbed
+from .sensor import Reading, Sensor, finite_or_nan, in_plane, in_space
 from .shapes import NOTHING, PROP, WALLS
 
 __all__ = ["Bumper", "Touch"]
@@ -100,9 +100,6 @@ class Bumper(Sensor):
         return Touch(scene.time, pose, pressed, shown, np.where(pressed, hit, NOTHING))
 
     def _shown(self, depth: Floats, rng: Randomness | None) -> Floats:
-        from .noise import disturbed
-        from .sensor import finite_or_nan
-
         return finite_or_nan(disturbed(depth, self.noises, rng))
 
     def _press(self, centre: Floats, size: Floats, owner: Ints, heading: float, depth: Floats, hit: Ints) -> None:

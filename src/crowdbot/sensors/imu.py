@@ -157,7 +157,8 @@ def elapsed(sensor: Sensor, scene: Scene, last: Reading) -> float:
         )
     if len(last.pose.position) != scene.shape[0]:
         raise InputError(
-            f"{type(sensor).__name__}: the last reading has {len(last.pose.position)} environments, not {scene.shape[0]}"
+            f"{type(sensor).__name__}: the last reading has {len(last.pose.position)} environments,"
+            f" not {scene.shape[0]}"
         )
     return dt
 

@@ -41,13 +41,13 @@ class Odometry(Reading):
 class WheelOdometry(Sensor):
     """Encoders on the wheels of a differential drive, integrated along arcs (errors are off by default).
 
-    Systematic errors are wheels that are larger than believed and a wrong track; random ones grow with the square
-    root of the way of each wheel (Borenstein & Feng 1996, doi:10.1109/70.544770). What ``noise`` holds acts on the
+    Systematic errors are wheels that are larger or smaller than believed and a wrong track (Borenstein & Feng 1996,
+    doi:10.1109/70.544770); random ones grow with the square root of the way of each wheel. What ``noise`` holds acts on the
     twist that is shown, not on the pose.
 
     Fields:
         track: distance between the wheels as believed [m]; wheel_radius: as believed [m].
-        left_scale, right_scale: true over believed radius of the wheels, as the inverse of what they count.
+        left_scale, right_scale: true over believed radius of the wheels.
         track_scale: true over believed track.
         slip: standard deviation of a wheel's way after one metre [m].
         ticks_per_turn: of the encoders, 0 for no rounding.
