@@ -167,7 +167,9 @@ def ray_to_triangle(dx: float, dy: float, dz: float, s: Floats) -> float:
     one = dx * (by * cz - bz * cy) + dy * (bz * cx - bx * cz) + dz * (bx * cy - by * cx)
     two = dx * (cy * az - cz * ay) + dy * (cz * ax - cx * az) + dz * (cx * ay - cy * ax)
     three = dx * (ay * bz - az * by) + dy * (az * bx - ax * bz) + dz * (ax * by - ay * bx)
-    if (one < 0.0 or two < 0.0 or three < 0.0) and (one > 0.0 or two > 0.0 or three > 0.0):
+    size = max(abs(ax), abs(ay), abs(az), abs(bx), abs(by), abs(bz), abs(cx), abs(cy), abs(cz))
+    hair = 1e-15 * size * size  # at a corner the signs of many edges meet, each rounded on its own
+    if (one < -hair or two < -hair or three < -hair) and (one > hair or two > hair or three > hair):
         return math.inf
     ex, ey, ez, fx, fy, fz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
     nx, ny, nz = ey * fz - ez * fy, ez * fx - ex * fz, ex * fy - ey * fx

@@ -27,7 +27,7 @@ class Beams(NamedTuple):
         begin: ``[rows * columns + 1]`` index of the first beam of each cell.
         low, tall: elevation at which row 0 begins and height of a row [rad].
         left, wide: azimuth at which column 0 begins and width of a column [rad].
-        steep: tangents of the lowest and the highest elevation, at most 0 and at least 0.
+        down, up: tangents of the lowest and the highest elevation, at most 0 and at least 0.
     """
 
     x: Floats
@@ -41,7 +41,8 @@ class Beams(NamedTuple):
     tall: float
     left: float
     wide: float
-    steep: tuple[float, float]
+    down: float
+    up: float
 
 
 def beams(directions: Floats) -> Beams:
@@ -80,7 +81,8 @@ def beams(directions: Floats) -> Beams:
         tall / rows,
         left,
         wide / columns,
-        (math.tan(max(min(low, 0.0), -steepest)) - 1e-12, math.tan(min(max(high, 0.0), steepest)) + 1e-12),
+        math.tan(max(min(low, 0.0), -steepest)) - 1e-12,
+        math.tan(min(max(high, 0.0), steepest)) + 1e-12,
     )
 
 

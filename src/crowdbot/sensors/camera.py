@@ -67,7 +67,7 @@ class Lens:
 
     @classmethod
     def of(cls, width: int, height: int, field_of_view: float, distortion: tuple[float, ...] = (0.0,) * 5) -> Lens:
-        """Return a lens of a horizontal field of view [rad] with square pixels and the principal point in the middle."""
+        """Return a lens of a horizontal field of view [rad], with square pixels and a principal point in the middle."""
         if not 0.0 < field_of_view < math.pi:
             raise InputError(f"camera: field_of_view = {field_of_view} rad must be above 0 and below pi")
         focal = 0.5 * width / math.tan(0.5 * field_of_view)
@@ -93,8 +93,8 @@ class Lens:
 
     def rays(self) -> tuple[Floats, Floats]:
         """Return where the pixels look: right and down ``[H, W]`` at distance 1 ahead."""
-        column, row = np.meshgrid(np.arange(self.width), np.arange(self.height))
-        return self.straightened((column - self.cx) / self.fx, (row - self.cy) / self.fy)
+        column, row = np.meshgrid(np.arange(self.width, dtype=np.float64), np.arange(self.height, dtype=np.float64))
+        return self.straightened(np.asarray((column - self.cx) / self.fx), np.asarray((row - self.cy) / self.fy))
 
 
 @dataclass(frozen=True)
@@ -160,7 +160,7 @@ def stereo_depth(
     (disparity of at most 0) is inf.
 
     >>> stereo_depth(np.array([[2.0]]), 424.0, 0.05, 0.0, 1.0 / 32.0, None).round(4).tolist()
-    [[2.0009]]
+    [[2.0012]]
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         disparity = focal * baseline / depth

@@ -182,7 +182,7 @@ def _bring(
 
 @kernel
 def _bring_flat(
-    e: int, shapes: Shapes, place: Floats, turn: Floats, limit: float, steep: tuple[float, float], rows: Floats,
+    e: int, shapes: Shapes, place: Floats, turn: Floats, limit: float, down: float, up: float, rows: Floats,
     corner: Floats, seen: Ints, nearest: Floats, kept: int,
 ) -> int:  # fmt: skip
     """Do the same for all other shapes."""
@@ -191,7 +191,7 @@ def _bring_flat(
         if not shapes.present[e, n] or kind in (CAPSULE, CYLINDER):
             continue
         count = _moved(e, kind, n, shapes, place, turn, rows[n], corner)
-        if hull_in_view(corner, count, limit, steep[0], steep[1]):
+        if hull_in_view(corner, count, limit, down, up):
             around = kind == TRIANGLE or hull_width(corner, count)[1] >= TURN
             nearest[kept] = 0.0 if around else hull_gap(corner, count) * (1.0 - 1e-12)
             seen[kept] = n
@@ -208,9 +208,9 @@ def _one(
     reach, which = np.full(count, np.inf), np.full(count, -1)
     rows, corner = np.empty((total, WIDTH)), np.empty((8, 3))
     seen, nearest = np.empty(total, dtype=np.int64), np.empty(total)
-    down, up = beams.steep
+    down, up = beams.down, beams.up
     kept = _bring(shapes.rows[e], shapes.kind, shapes.present[e], place, turn, limit, down, up, rows, seen, nearest)
-    kept = _bring_flat(e, shapes, place, turn, limit, beams.steep, rows, corner, seen, nearest, kept)
+    kept = _bring_flat(e, shapes, place, turn, limit, down, up, rows, corner, seen, nearest, kept)
     for i in np.argsort(nearest[:kept], kind="mergesort"):  # so that what is behind is rarely tried
         n = seen[i]
         kind = shapes.kind[n]

@@ -42,8 +42,8 @@ class WheelOdometry(Sensor):
     """Encoders on the wheels of a differential drive, integrated along arcs (errors are off by default).
 
     Systematic errors are wheels that are larger or smaller than believed and a wrong track (Borenstein & Feng 1996,
-    doi:10.1109/70.544770); random ones grow with the square root of the way of each wheel. What ``noise`` holds acts on the
-    twist that is shown, not on the pose.
+    doi:10.1109/70.544770); random ones grow with the square root of the way of each wheel. What ``noise`` holds acts
+    on the twist that is shown, not on the pose.
 
     Fields:
         track: distance between the wheels as believed [m]; wheel_radius: as believed [m].

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
+from typing import Any
 
 from crowdbot.core import UnknownName
 
@@ -57,9 +58,9 @@ def preset(name: str, *, noisy: bool = False) -> Sensor:
     return PRESETS[name].noisy if noisy else PRESETS[name].sensor
 
 
-def _made(sensor: Sensor, sources: dict[str, str], noise: float = 0.0, **stereo: float) -> Preset:
-    noisy = replace(sensor, **stereo) if stereo else replace(sensor, noise=Gaussian(noise) if noise else ())
-    return Preset(sensor, noisy, MappingProxyType(sources))
+def _made(sensor: Sensor, sources: dict[str, str], noise: float = 0.0, **stereo: Any) -> Preset:
+    changes: dict[str, Any] = stereo or {"noise": Gaussian(noise) if noise else ()}
+    return Preset(sensor, replace(sensor, **changes), MappingProxyType(sources))
 
 
 SCIP = "Hokuyo, Communication protocol specification for SCIP 2.0, C-42-03320B"
@@ -90,7 +91,7 @@ _PRESETS = {
             "range_max": UTM_SHEET,
             "resolution": f"{SCIP} (distances in whole millimetres)",
             "rate": f"{UTM_SHEET} (25 ms a scan)",
-            "noise": f"{UTM_SHEET} (standard deviation under 10 mm up to 10 m, under 30 mm beyond); 10 mm taken for all",
+            "noise": f"{UTM_SHEET} (sd under 10 mm up to 10 m, under 30 mm beyond); 10 mm taken for all",
         },
         noise=0.01,
     ),
