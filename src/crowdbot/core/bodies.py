@@ -115,7 +115,7 @@ class Bodies:
         count = {_batches(name, value) for name, value in arrays.items() if name in AXES}
         count |= {len(skins.vertices)} if skins is not None else set()
         if len(count - {1}) > 1:
-            raise InputError(f"bodies: the fields are for {sorted(count)} environments, all must be for as many")
+            raise InputError(f"bodies: the fields are for {sorted(count - {1})} environments, all must be for as many")
         environments = max(count, default=1)
         values: dict[str, Any] = {}
         for size, labels, shapes in GROUPS:
