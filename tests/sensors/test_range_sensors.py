@@ -193,7 +193,7 @@ def test_the_teardrop_has_its_shape():
     np.testing.assert_allclose(written, radius * 16 / (3 * math.sqrt(3)) * u * np.sqrt(u * (1 - u)), atol=1e-12)
 
 
-@pytest.mark.parametrize("place", [(0.0, 0.0, 1.0), (40.0, -25.0, 1.3)])
+@pytest.mark.parametrize("place", [(0.0, 0.0, 5.0), (40.0, -25.0, 6.3)])
 @pytest.mark.parametrize("turn", [(0.0, 0.0, 0.0), (0.4, -0.2, 2.5), (0.0, 0.1, -1.3)])
 def test_the_zone_of_ultrasound_is_right_at_any_pose(place, turn):
     """A pin at a point is heard when the point is in the teardrop, wherever the sensor is and looks."""

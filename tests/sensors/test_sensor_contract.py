@@ -213,4 +213,4 @@ def test_the_room_shows_its_contracts():
     assert expected | {"wheel-odometry", "ground-truth-people"} == set(SENSORS)
     assert set(NOISES) == set(EXAMPLES)
     assert all(hasattr(sensors, name) for name in sensors.__all__)
-    assert sorted(set(sensors.__all__), key=str.lower) == sorted(sensors.__all__, key=str.lower)
+    assert len(set(sensors.__all__)) == len(sensors.__all__)

@@ -69,6 +69,8 @@ class Bumper(Sensor):
             raise InputError(f"Bumper: radius = {self.radius} m must be finite and above 0")
         if self.sectors != int(self.sectors) or self.sectors < 1:
             raise InputError(f"Bumper: sectors = {self.sectors} must be a whole number of at least 1")
+        if not -TURN <= self.first <= TURN:
+            raise InputError(f"Bumper: first = {self.first} rad must be within -2 pi to 2 pi")
         if not -math.inf < self.low <= self.high < math.inf:
             raise InputError(f"Bumper: low = {self.low} m and high = {self.high} m must be finite and in this order")
 
