@@ -37,7 +37,7 @@ def test_depth_is_metric_and_along_the_axis():
     assert image.depth.shape == (1, 61, 81)
     on_wall = image.hit[0] == -2
     np.testing.assert_allclose(image.depth[0][on_wall], 4.0, rtol=0, atol=1e-9)
-    assert set(np.unique(image.hit)) == {-3, -2, 0}
+    assert set(np.unique(image.hit).tolist()) == {-3, -2, -1, 0}  # the sky above the wall too
     floor = image.hit[0] == -3
     assert np.all(np.nonzero(floor)[0] > 30)  # below the middle
     np.testing.assert_allclose(image.points(in_world=True)[0][floor][:, 2], 0.0, atol=1e-9)
@@ -72,7 +72,7 @@ def test_images_are_bent_as_rays_are():
     np.testing.assert_array_equal(colours[0, 5, :, 0], np.arange(50))
     shrunk = RGBCamera(Lens.of(50, 20, 1.0, (0.3, 0.0, 0.0, 0.0, 0.0))).image(Painter(), pose)
     assert shrunk.dtype == np.uint8
-    assert shrunk[0, 10, 40, 0] < 40
+    assert shrunk[0, 10, 45, 0] < 45
 
 
 def test_depth_of_an_image_goes_through_the_same_law():
@@ -150,7 +150,7 @@ def test_presets_measure_and_say_where_their_numbers_are_from(name):
     assert changed <= set(product.sources)
     assert set(product.sources) <= set(type(product.sensor).__dataclass_fields__)
     assert set(product.assumed) < set(product.sources)
-    scene = Scene.of([[2.0, 0.0]], walls=[[(4.0, -9.0), (4.0, 9.0)]])
+    scene = Scene.of([[1.4, 0.0]], walls=[[(4.0, -9.0), (4.0, 9.0)]])
     reading = preset(name, noisy=True).measure(scene, Pose.of((0.0, 0.0), 0.0).lifted(1.0), stream(0))
     values = reading.depth if name == "realsense-d435" else reading.ranges
     assert np.isfinite(values).any()

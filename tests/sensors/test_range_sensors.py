@@ -123,7 +123,8 @@ def test_a_tilted_scan_sees_the_floor_in_a_straight_line():
 
 def test_a_scan_at_knee_height_sees_two_legs_and_above_them_the_trunk():
     legs = Bodies.of(
-        start=[[2.0, -0.15, 0.1], [2.0, 0.15, 0.1], [2.0, 0.0, 0.9]], end=[[2.0, -0.15, 0.8], [2.0, 0.15, 0.8], [2.0, 0.0, 1.4]],
+        start=[[2.0, -0.15, 0.1], [2.0, 0.15, 0.1], [2.0, 0.0, 0.9]],
+        end=[[2.0, -0.15, 0.8], [2.0, 0.15, 0.8], [2.0, 0.0, 1.4]],
         radius=[0.06, 0.06, 0.18], owner=[0, 0, 0], part=[1, 1, 0], parts=("torso", "leg"),
     )  # fmt: skip
     scene = Scene.of([[2.0, 0.0]], radius=0.3, bodies=legs)
@@ -200,7 +201,8 @@ def test_the_zone_of_ultrasound_is_right_at_any_pose(place, turn):
     sensor = Ultrasound(radius=0.8, range_max=3.0, range_min=0.0, rays=6000)
     pose = SpatialPose.of(place, *turn)
     for ahead, aside, heard in (
-        (2.9, 0.0, True), (3.05, 0.0, False), (2.25, 0.74, True), (2.25, 0.9, False), (1.5, 0.55, True), (1.5, 0.75, False),
+        (2.9, 0.0, True), (3.05, 0.0, False), (2.25, 0.74, True), (2.25, 0.9, False),
+        (1.5, 0.55, True), (1.5, 0.75, False),
         (2.8, 0.4, True), (2.8, 0.65, False),
     ):  # fmt: skip
         for roll in (0.0, 1.0, 2.5):

@@ -239,7 +239,7 @@ def _one(
         distance[i], hit[i], part[i] = reach[k], owner, label
         if reach[k] < math.inf:
             facing[i] = -(nx * x + ny * y + nz * z)
-            for c in range(3):
+            for c in range(3 if len(normal) else 0):
                 normal[i, c] = turn[c, 0] * nx + turn[c, 1] * ny + turn[c, 2] * nz
 
 
@@ -296,11 +296,13 @@ class Hits:
     part: Ints
 
 
-def cast(scene: Scene, pose: SpatialPose, beams: Beams, limit: float, *, skins: bool = False) -> Hits:
+def cast(
+    scene: Scene, pose: SpatialPose, beams: Beams, limit: float, *, skins: bool = False, normals: bool = True
+) -> Hits:
     """Return what beams from ``pose`` meet within ``limit`` [m].
 
     Agents are seen by their limbs, with ``skins`` by their triangle skins; those that have none are upright
-    cylinders. Absent agents are not seen.
+    cylinders. Absent agents are not seen. Without ``normals`` that array is empty, which saves time.
 
     Raises:
         InputError: ``skins`` is asked for and the scene has none.
@@ -312,9 +314,8 @@ def cast(scene: Scene, pose: SpatialPose, beams: Beams, limit: float, *, skins: 
     """
     shapes = gathered(scene, skins)
     size = (len(pose.position), len(beams.x))
-    hits = Hits(
-        np.empty(size), np.ones(size), np.zeros((*size, 3)), np.empty(size, dtype=np.int64), np.empty(size, np.int64)
-    )
+    normal = np.zeros((size[0], size[1] if normals else 0, 3))
+    hits = Hits(np.empty(size), np.ones(size), normal, np.empty(size, np.int64), np.empty(size, np.int64))
     place, rotation = np.ascontiguousarray(pose.position), np.ascontiguousarray(pose.rotation)
     work = _serial if size[0] < MANY else _shared
     work(place, rotation, shapes, beams, float(limit), hits.distance, hits.facing, hits.normal, hits.hit, hits.part)

@@ -126,7 +126,7 @@ class DepthCamera(Sensor):
         """
         self.check(scene, pose)
         bundle, ahead = _pixels(self.lens)
-        hits = cast(scene, in_space(pose), bundle, self.range_max / float(ahead.min()), skins=self.skins)
+        hits = cast(scene, in_space(pose), bundle, self.range_max / float(ahead.min()), skins=self.skins, normals=False)
         back = hits.facing >= math.cos(self.max_incidence) - 1e-12
         shape = (scene.shape[0], self.height, self.width)
         depth = np.where(back, hits.distance * ahead, np.inf).reshape(shape)

@@ -48,12 +48,12 @@ def nearest(
 ) -> Echo:
     """Return the smallest return of a bundle: sorted beams, their directions ``[R, 3]`` and lengths ``[R]`` [m]."""
     bundle, directions, length = fan
-    hits = cast(scene, in_space(pose), bundle, float(length.max()), skins=sensor.skins)
-    back = sensor.returns(hits.distance, hits.facing, length)
+    hits = cast(scene, in_space(pose), bundle, float(length.max()), skins=sensor.skins, normals=False)
+    back = (hits.distance <= length) & (hits.facing >= sensor.least_facing)
     best = np.argmin(np.where(back, hits.distance, np.inf), axis=1)
     rows = np.arange(len(best))
-    distance, found = hits.distance[rows, best], back[rows, best]
-    ranges, hit = settled(sensor, distance, found, hits.hit[rows, best], rng)
-    here = hit != NOTHING
-    part = np.where(here, hits.part[rows, best], -1)
-    return Echo(scene.time, pose, ranges, hit, part, np.where(here[:, None], directions[best], np.nan))
+    distance = np.where(back, hits.distance, np.inf)[rows, best][:, None]
+    hit, part = hits.hit[rows, best][:, None], hits.part[rows, best][:, None]
+    ranges = settled(sensor, distance, np.ones_like(distance), hit, part, rng)[:, 0]
+    direction = np.where(hit != NOTHING, directions[best], np.nan)
+    return Echo(scene.time, pose, ranges, hit[:, 0], part[:, 0], direction)

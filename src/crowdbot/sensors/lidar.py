@@ -14,9 +14,9 @@ from crowdbot.core.geometry import nearest_on_segment, ray_to_disc, ray_to_segme
 from crowdbot.core.kernels import kernel
 
 from .beams import Beams, beams, fan
-from .cast import Hits, cast
+from .cast import cast
 from .noise import Randomness
-from .ranging import Ranging, ended, settled
+from .ranging import Ranging, ended, incidence_of, settled
 from .sensor import Reading, in_space
 from .shapes import FLOOR, NOTHING, OVERLAP, PROP, lengthened
 from .shapes import WALLS as WALL
@@ -123,15 +123,20 @@ class Scan(Reading):
         angles: ``[R]`` [rad] in the sensor frame, counter-clockwise, 0 straight ahead.
         hit: ``[E, R]`` what the beam met: index of an agent, :data:`NOTHING` (-1), :data:`WALL` (-2), :data:`FLOOR`
             (-3) or :data:`PROP` (-4). Ground truth for labels; no real scanner knows it.
-        incidence: ``[E, R]`` angle between beam and surface normal [rad], NaN where nothing returned.
-        part: ``[E, R]`` index into ``scene.bodies.parts``, -1 where there is none; None when seen from above only.
+        facing: ``[E, R]`` cosine of the angle between beam and surface normal, 1 where nothing was met.
+        part: ``[E, R]`` index into ``scene.bodies.parts``, -1 where there is none.
     """
 
     ranges: Floats
     angles: Floats
     hit: Indices
-    incidence: Floats | None = None
-    part: Indices | None = None
+    facing: Floats
+    part: Indices
+
+    @property
+    def incidence(self) -> Floats:
+        """``[E, R]`` angle between beam and surface normal [rad], NaN where nothing returned."""
+        return incidence_of(self.facing, self.hit)
 
     def points(self) -> Floats:
         """Return where the beams ended in the world, NaN where there is no finite range.
@@ -226,18 +231,14 @@ class Lidar2D(Ranging):
             InputError: scene and pose have different numbers of environments, or noise lacks a generator.
         """
         self.check(scene, pose)
-        part = None
         if isinstance(pose, Pose) and scene.bodies is None and not self.skins:
             distance, facing, hit = self._from_above(scene, pose)
+            part = np.full(hit.shape, -1)
         else:
-            hits: Hits = cast(scene, in_space(pose), _beams(self), self.range_max, skins=self.skins)
+            hits = cast(scene, in_space(pose), _beams(self), self.range_max, skins=self.skins, normals=False)
             distance, facing, hit, part = hits.distance, hits.facing, hits.hit, hits.part
-        back = self.returns(distance, facing, self.range_max)
-        ranges, named = settled(self, distance, back, hit, rng)
-        here = named != NOTHING
-        incidence = np.where(here, np.arccos(np.clip(facing, -1.0, 1.0)), np.nan)
-        part = None if part is None else np.where(here, part, -1)
-        return Scan(scene.time, pose, ranges, self.angles, named, incidence, part)
+        ranges = settled(self, distance, facing, hit, part, rng)
+        return Scan(scene.time, pose, ranges, self.angles, hit, facing, part)
 
     def _from_above(self, scene: Scene, pose: Pose) -> tuple[Floats, Floats, Indices]:
         return _scan(

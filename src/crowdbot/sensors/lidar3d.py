@@ -15,9 +15,8 @@ from .beams import Beams, beams, fan
 from .cast import cast
 from .lidar import seen_agents
 from .noise import Randomness
-from .ranging import Ranging, ended, settled
+from .ranging import Ranging, ended, incidence_of, settled
 from .sensor import Reading, in_space
-from .shapes import NOTHING
 
 __all__ = ["Cloud", "Lidar3D"]
 
@@ -36,7 +35,7 @@ class Cloud(Reading):
         elevation: ``[K]`` [rad], positive upward; azimuth: ``[R]`` [rad], counter-clockwise, 0 straight ahead.
         hit: ``[E, K, R]`` what the beam met, as in :class:`Scan`.
         part: ``[E, K, R]`` index into ``scene.bodies.parts``, -1 where there is none.
-        incidence: ``[E, K, R]`` angle between beam and surface normal [rad], NaN where nothing returned.
+        facing: ``[E, K, R]`` cosine of the angle between beam and surface normal, 1 where nothing was met.
     """
 
     ranges: Floats
@@ -44,7 +43,12 @@ class Cloud(Reading):
     azimuth: Floats
     hit: Ints
     part: Ints
-    incidence: Floats
+    facing: Floats
+
+    @property
+    def incidence(self) -> Floats:
+        """``[E, K, R]`` angle between beam and surface normal [rad], NaN where nothing returned."""
+        return incidence_of(self.facing, self.hit)
 
     def points(self, *, in_world: bool = False) -> Floats:
         """Return where the beams ended, ``[E, K, R, 3]`` [m] in the sensor's frame, NaN without a finite range."""
@@ -133,15 +137,12 @@ class Lidar3D(Ranging):
                 no skins where they are asked for.
         """
         self.check(scene, pose)
-        hits = cast(scene, in_space(pose), _made(self), self.range_max, skins=self.skins)
-        back = self.returns(hits.distance, hits.facing, self.range_max)
-        ranges, hit = settled(self, hits.distance, back, hits.hit, rng)
-        here = hit != NOTHING
-        incidence = np.where(here, np.arccos(np.clip(hits.facing, -1.0, 1.0)), np.nan)
+        hits = cast(scene, in_space(pose), _made(self), self.range_max, skins=self.skins, normals=False)
+        ranges = settled(self, hits.distance, hits.facing, hits.hit, hits.part, rng)
         shape = (len(ranges), len(self.elevations), self.columns)
-        part = np.where(here, hits.part, -1)
-        grids = [np.asarray(a).reshape(shape) for a in (ranges, hit, part, incidence)]
-        return Cloud(scene.time, pose, grids[0], np.array(self.elevations), self.azimuth, grids[1], grids[2], grids[3])
+        ranges, facing = ranges.reshape(shape), hits.facing.reshape(shape)
+        hit, part = hits.hit.reshape(shape), hits.part.reshape(shape)
+        return Cloud(scene.time, pose, ranges, np.array(self.elevations), self.azimuth, hit, part, facing)
 
 
 @functools.lru_cache(maxsize=64)

@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, SpatialPose
+from crowdbot.core.kernels import kernel
 
 from .noise import Randomness, disturbed
 from .sensor import Sensor
 from .shapes import NOTHING
 
-__all__ = ["Ranging", "ended", "rounded", "settled"]
+__all__ = ["Ranging", "ended", "incidence_of", "settled"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -53,34 +54,50 @@ class Ranging(Sensor):
         if value != int(value) or value < 1:
             raise InputError(f"{type(self).__name__}: {name} = {value} must be a whole number of at least 1")
 
-    def returns(self, distance: Floats, facing: Floats, reach: Floats | float) -> NDArray[np.bool_]:
-        """Return which beams come back: within ``reach`` [m] and not too slanted."""
-        back = distance <= reach
-        if self.max_incidence < math.pi / 2:
-            back = back & (facing >= math.cos(self.max_incidence) - 1e-12)  # the limit itself, whatever the rounding
-        return np.asarray(back)
+    @property
+    def least_facing(self) -> float:
+        """Smallest cosine of the incidence that returns; the limit itself does, whatever the rounding."""
+        return math.cos(self.max_incidence) - 1e-12 if self.max_incidence < math.pi / 2 else -2.0
 
 
-def settled(
-    sensor: Ranging, distance: Floats, back: NDArray[np.bool_], hit: Ints, rng: Randomness | None
-) -> tuple[Floats, Ints]:
-    """Return the readings ``[E, ...]`` [m] and what was hit, from true distances and which of them return."""
-    measured = disturbed(np.where(back, distance, np.inf), sensor.noises, rng)
-    kept = back & (measured < np.inf)  # a dropped return is nothing, even from too near
-    near = kept & ((distance < sensor.range_min) | (measured < sensor.range_min))
-    far = ~back | (measured > sensor.range_max)
-    values = np.where(near, -np.inf, np.where(far, np.inf, rounded(measured, sensor)))
-    return np.asarray(values), np.asarray(np.where(far & ~near, NOTHING, hit))
+@kernel
+def _settle(
+    distance: Floats, measured: Floats, facing: Floats, hit: Ints, part: Ints, least: float, low: float, high: float,
+    step: float, ranges: Floats,
+) -> None:  # fmt: skip
+    """Write the readings, and in ``hit`` and ``part`` what they are of."""
+    first, last = 0.0, 0.0
+    if step > 0.0:
+        first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    for e in range(distance.shape[0]):
+        for k in range(distance.shape[1]):
+            true, value = distance[e, k], measured[e, k]
+            back = true <= high and facing[e, k] >= least and value < np.inf
+            if back and (true < low or value < low):
+                ranges[e, k] = -np.inf
+            elif back and value <= high:
+                ranges[e, k] = value if step == 0.0 else min(max(np.rint(value / step), first), last) * step
+            else:
+                ranges[e, k] = np.inf
+                hit[e, k] = NOTHING
+                part[e, k] = -1
 
 
-def rounded(measured: Floats, sensor: Ranging) -> Floats:
-    """Return distances as whole multiples of the resolution that lie between the limits."""
-    if sensor.resolution == 0.0:
-        return measured
-    lowest = math.ceil(sensor.range_min / sensor.resolution - 1e-9)
-    highest = math.floor(sensor.range_max / sensor.resolution + 1e-9)
-    steps = np.clip(np.round(measured / sensor.resolution), lowest, highest)
-    return np.asarray(steps * sensor.resolution)
+def settled(sensor: Ranging, distance: Floats, facing: Floats, hit: Ints, part: Ints, rng: Randomness | None) -> Floats:
+    """Return the readings ``[E, R]`` [m] from true distances; ``hit`` and ``part`` lose what does not return."""
+    measured = distance
+    if sensor.noises:
+        back = (distance <= sensor.range_max) & (facing >= sensor.least_facing)
+        measured = disturbed(np.where(back, distance, np.inf), sensor.noises, rng)
+    ranges = np.empty(distance.shape)
+    limits = (sensor.least_facing, float(sensor.range_min), float(sensor.range_max), float(sensor.resolution))
+    _settle(distance, measured, facing, hit, part, *limits, ranges)
+    return ranges
+
+
+def incidence_of(facing: Floats, hit: Ints) -> Floats:
+    """Return angles [rad] between beams and surface normals from their cosines, NaN where nothing returned."""
+    return np.asarray(np.where(hit != NOTHING, np.arccos(np.clip(facing, -1.0, 1.0)), np.nan))
 
 
 def ended(pose: SpatialPose, directions: Floats, ranges: Floats, *, in_world: bool) -> Floats:
