@@ -121,22 +121,27 @@ def ray_to_cylinder(
 
 
 @kernel
-def ray_to_wall(dx: float, dy: float, dz: float, s: Floats) -> float:
-    """Return the distance along d to an upright rectangle; inf when parallel."""
-    ex, ey, ez, ux, uy, uz = s[3], s[4], s[5], s[6], s[7], s[8]
+def ray_to_wall(
+    dx: float, dy: float, dz: float, ax: float, ay: float, az: float, ex: float, ey: float, ez: float,
+    ux: float, uy: float, uz: float, tall: float,
+) -> float:  # fmt: skip
+    """Return the distance along d to the rectangle from corner a along its edge e and ``tall`` along the unit u.
+
+    It is inf when they are parallel.
+    """
     nx, ny, nz = ey * uz - ez * uy, ez * ux - ex * uz, ex * uy - ey * ux
     against = dx * nx + dy * ny + dz * nz
     if against == 0.0:
         return math.inf
-    distance = (s[0] * nx + s[1] * ny + s[2] * nz) / against
+    distance = (ax * nx + ay * ny + az * nz) / against
     if distance < 0.0:
         return math.inf
-    px, py, pz = distance * dx - s[0], distance * dy - s[1], distance * dz - s[2]
+    px, py, pz = distance * dx - ax, distance * dy - ay, distance * dz - az
     along = px * ex + py * ey + pz * ez
     height = px * ux + py * uy + pz * uz
-    if along < 0.0 or along > ex * ex + ey * ey + ez * ez or height < 0.0 or height > s[9]:
+    if along < 0.0 or along > ex * ex + ey * ey + ez * ez or height < 0.0 or height > tall:
         return math.inf
-    return float(distance)
+    return distance
 
 
 @kernel
@@ -160,9 +165,11 @@ def ray_to_box(dx: float, dy: float, dz: float, s: Floats) -> float:
 
 
 @kernel
-def ray_to_triangle(dx: float, dy: float, dz: float, s: Floats) -> float:
+def ray_to_triangle(
+    dx: float, dy: float, dz: float, ax: float, ay: float, az: float, bx: float, by: float, bz: float,
+    cx: float, cy: float, cz: float,
+) -> float:  # fmt: skip
     """Return the distance along d to a triangle, from either side; no ray slips between two that share an edge."""
-    ax, ay, az, bx, by, bz, cx, cy, cz = s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8]
     # d . (b x c) changes only its sign, to the last bit, when b and c change places
     one = dx * (by * cz - bz * cy) + dy * (bz * cx - bx * cz) + dz * (bx * cy - by * cx)
     two = dx * (cy * az - cz * ay) + dy * (cz * ax - cx * az) + dz * (cx * ay - cy * ax)
@@ -186,11 +193,11 @@ def meet(kind: int, dx: float, dy: float, dz: float, s: Floats) -> float:
     if kind == CAPSULE:
         return ray_to_capsule(dx, dy, dz, s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7])
     if kind == TRIANGLE:
-        return ray_to_triangle(dx, dy, dz, s)
+        return ray_to_triangle(dx, dy, dz, s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8])
     if kind == CYLINDER:
         return ray_to_cylinder(dx, dy, dz, s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7])
     if kind == WALL:
-        return ray_to_wall(dx, dy, dz, s)
+        return ray_to_wall(dx, dy, dz, s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8], s[9])
     return ray_to_box(dx, dy, dz, s)
 
 

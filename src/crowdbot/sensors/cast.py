@@ -23,9 +23,12 @@ from crowdbot.core.rays import (
     TRIANGLE,
     WALL,
     WIDTH,
-    meet,
     normal_at,
+    ray_to_box,
     ray_to_capsule,
+    ray_to_cylinder,
+    ray_to_triangle,
+    ray_to_wall,
     within,
 )
 from crowdbot.core.windows import (
@@ -40,7 +43,7 @@ from crowdbot.core.windows import (
 )
 
 from .beams import Beams
-from .shapes import Shapes, gathered
+from .shapes import FLOOR, NOTHING, Shapes, gathered
 
 __all__ = ["Hits", "cast"]
 
@@ -57,18 +60,21 @@ MANY = 4
 def _try(
     kind: int, s: Floats, n: int, begin: int, end: int, near: float, beams: Beams, distance: Floats, which: Ints
 ) -> None:
-    if kind == CAPSULE:
-        ax, ay, az, ux, uy, uz, length, radius = s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7]
-        for k in range(begin, end):
-            if near < distance[k]:
-                reach = ray_to_capsule(beams.x[k], beams.y[k], beams.z[k], ax, ay, az, ux, uy, uz, length, radius)
-                if reach < distance[k]:
-                    distance[k] = reach
-                    which[k] = n
-        return
+    """Try a shape on some beams, unless they have met something nearer than it can be."""
+    a, b, c, d, e, f, g, h, i, j = s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8], s[9]
     for k in range(begin, end):
         if near < distance[k]:
-            reach = meet(kind, beams.x[k], beams.y[k], beams.z[k], s)
+            x, y, z = beams.x[k], beams.y[k], beams.z[k]
+            if kind == CAPSULE:
+                reach = ray_to_capsule(x, y, z, a, b, c, d, e, f, g, h)
+            elif kind == TRIANGLE:
+                reach = ray_to_triangle(x, y, z, a, b, c, d, e, f, g, h, i)
+            elif kind == WALL:
+                reach = ray_to_wall(x, y, z, a, b, c, d, e, f, g, h, i, j)
+            elif kind == CYLINDER:
+                reach = ray_to_cylinder(x, y, z, a, b, c, d, e, f, g, h)
+            else:
+                reach = ray_to_box(x, y, z, s)
             if reach < distance[k]:
                 distance[k] = reach
                 which[k] = n
@@ -200,6 +206,49 @@ def _bring_flat(
 
 
 @kernel
+def _tell(
+    kind: Ints, owner: Ints, label: Ints, rows: Floats, place: Floats, turn: Floats, beams: Beams, reach: Floats,
+    which: Ints, distance: Floats, facing: Floats, normal: Floats, hit: Ints, part: Ints,
+) -> None:  # fmt: skip
+    """Write what every beam has met, in the order in which the beams were given."""
+    ox, oy, oz, height = turn[2, 0], turn[2, 1], turn[2, 2], place[2]
+    told = len(normal) > 0
+    before, fx, fy, fz = -1, 0.0, 0.0, 0.0
+    for k in range(len(reach)):
+        x, y, z, d, n, i = beams.x[k], beams.y[k], beams.z[k], reach[k], which[k], beams.order[k]
+        fall = x * ox + y * oy + z * oz
+        nx, ny, nz = ox, oy, oz
+        hit[i], part[i] = NOTHING, -1
+        if fall < 0.0 and height > 0.0 and height < -fall * d:
+            d = -height / fall
+            hit[i] = FLOOR
+        elif n >= 0:
+            hit[i], part[i] = owner[n], label[n]
+            if d == 0.0:
+                nx, ny, nz = -x, -y, -z
+            elif kind[n] == CAPSULE:
+                s = (d * x - rows[n, 0]) * rows[n, 3] + (d * y - rows[n, 1]) * rows[n, 4]
+                s = min(rows[n, 6], max(0.0, s + (d * z - rows[n, 2]) * rows[n, 5]))
+                over = 1.0 / rows[n, 7]
+                nx = (d * x - rows[n, 0] - s * rows[n, 3]) * over
+                ny = (d * y - rows[n, 1] - s * rows[n, 4]) * over
+                nz = (d * z - rows[n, 2] - s * rows[n, 5]) * over
+            else:
+                if n != before or kind[n] in (CYLINDER, BOX):  # what is flat has the same normal at the next beam
+                    before = n
+                    fx, fy, fz = normal_at(kind[n], d * x, d * y, d * z, rows[n])
+                nx, ny, nz = fx, fy, fz
+                if nx * x + ny * y + nz * z > 0.0:
+                    nx, ny, nz = -nx, -ny, -nz
+        distance[i] = d
+        if d < math.inf:
+            facing[i] = -(nx * x + ny * y + nz * z)
+            if told:
+                for c in range(3):
+                    normal[i, c] = turn[c, 0] * nx + turn[c, 1] * ny + turn[c, 2] * nz
+
+
+@kernel
 def _one(
     e: int, place: Floats, turn: Floats, shapes: Shapes, beams: Beams, limit: float,
     distance: Floats, facing: Floats, normal: Floats, hit: Ints, part: Ints,
@@ -217,30 +266,22 @@ def _one(
         if kind not in (CAPSULE, CYLINDER):
             _moved(e, kind, n, shapes, place, turn, rows[n], corner)
         _draw(kind, rows[n], n, corner, nearest[i], beams, reach, which)
-    over = turn[2]
-    for k in range(count):
-        x, y, z = beams.x[k], beams.y[k], beams.z[k]
-        fall = x * over[0] + y * over[1] + z * over[2]
-        nx, ny, nz = over[0], over[1], over[2]
-        owner, label = shapes.nothing, -1
-        if fall < 0.0 and place[2] > 0.0 and -place[2] / fall < reach[k]:
-            reach[k] = -place[2] / fall
-            owner = shapes.ground
-        elif which[k] >= 0:
-            n = which[k]
-            owner, label = shapes.owner[n], shapes.part[n]
-            if reach[k] > 0.0:
-                nx, ny, nz = normal_at(shapes.kind[n], reach[k] * x, reach[k] * y, reach[k] * z, rows[n])
-                if nx * x + ny * y + nz * z > 0.0:
-                    nx, ny, nz = -nx, -ny, -nz
-            else:
-                nx, ny, nz = -x, -y, -z
-        i = beams.order[k]
-        distance[i], hit[i], part[i] = reach[k], owner, label
-        if reach[k] < math.inf:
-            facing[i] = -(nx * x + ny * y + nz * z)
-            for c in range(3 if len(normal) else 0):
-                normal[i, c] = turn[c, 0] * nx + turn[c, 1] * ny + turn[c, 2] * nz
+    _tell(
+        shapes.kind,
+        shapes.owner,
+        shapes.part,
+        rows,
+        place,
+        turn,
+        beams,
+        reach,
+        which,
+        distance,
+        facing,
+        normal,
+        hit,
+        part,
+    )
 
 
 @kernel

@@ -46,7 +46,6 @@ class Shapes(NamedTuple):
         present: ``[E, P]``.
         owner, part: ``[P]`` what a hit is called.
         vertices, faces: of the triangles, ``[E, V, 3]`` and ``[F, 3]``.
-        nothing, ground: what no hit and the floor (z = 0) are called.
     """
 
     kind: Ints
@@ -56,8 +55,6 @@ class Shapes(NamedTuple):
     part: Ints
     vertices: Floats
     faces: Ints
-    nothing: int
-    ground: int
 
 
 def gathered(scene: Scene, skins: bool) -> Shapes:
@@ -71,7 +68,7 @@ def gathered(scene: Scene, skins: bool) -> Shapes:
         raise InputError("skins: the scene has no triangle skins; give Scene.bodies skins, or leave skins=False")
     skin = bodies.skins if skins and bodies.skins is not None else BARE
     limbs, discs = _seen_as(scene, bodies, skin.owner)
-    walls = lengthened(scene.walls.segments()) if len(scene.walls) else np.zeros((0, 4))
+    walls = scene.walls
     counts = (len(skin.owner), len(limbs), len(bodies.box_owner), len(bodies.post_owner), len(discs), len(walls))
     rows = np.zeros((scene.shape[0], sum(counts), WIDTH))
     skinned, capsules, boxes, posts, people, fences = _sections(counts)
@@ -82,9 +79,10 @@ def gathered(scene: Scene, skins: bool) -> Shapes:
     if len(bodies.post_owner):
         _write_upright(rows[:, posts], bodies.post_foot, bodies.post_height, bodies.post_radius)
     if len(discs):
-        height = PERSON_HEIGHT if scene.height is None else scene.height[:, discs]
-        _write_upright(rows[:, people], scene.position[:, discs], height, scene.radius[:, discs])
-    _write_walls(walls, scene.wall_height, rows[:, fences])
+        tall = PERSON_HEIGHT if scene.height is None else scene.height[:, discs]
+        _write_upright(rows[:, people], scene.position[:, discs], tall, scene.radius[:, discs])
+    height = min(scene.wall_height, TALLEST)
+    _write_walls(walls.start, walls.end, walls.previous, walls.next, height, rows[:, fences])
     kind = np.repeat(np.array(KINDS), counts)
     owner = np.concatenate(
         [skin.owner, bodies.owner[limbs], bodies.box_owner, bodies.post_owner, discs, np.full(len(walls), WALLS)]
@@ -98,8 +96,7 @@ def gathered(scene: Scene, skins: bool) -> Shapes:
     if skins:
         sound = np.logical_and.reduce(np.isfinite(skin.vertices), axis=-1)
         present[:, skinned] &= sound[:, skin.faces].all(axis=-1)
-    named = np.where(owner == STAGE, PROP, owner)
-    return Shapes(kind, rows, present, named, part, skin.vertices, skin.faces, NOTHING, FLOOR)
+    return Shapes(kind, rows, present, owner, part, skin.vertices, skin.faces)
 
 
 def _seen_as(scene: Scene, bodies: Bodies, skinned: Ints) -> tuple[Ints, Ints]:
@@ -108,7 +105,7 @@ def _seen_as(scene: Scene, bodies: Bodies, skinned: Ints) -> tuple[Ints, Ints]:
     bare = np.ones(agents + 1, dtype=np.bool_)  # the last is for those that are no agents
     for owner in (skinned, bodies.owner, bodies.box_owner, bodies.post_owner):
         if len(owner):
-            bare[_known(owner, agents)] = False
+            _strike(owner, bare)
     limbs = np.arange(len(bodies.owner))
     if len(skinned):
         hidden = np.zeros(agents + 1, dtype=np.bool_)
@@ -128,8 +125,15 @@ def _sections(counts: tuple[int, ...]) -> list[slice]:
 
 
 @kernel
+def _strike(owner: Ints, bare: Bools) -> None:
+    for n in range(len(owner)):
+        if 0 <= owner[n] < len(bare) - 1:
+            bare[owner[n]] = False
+
+
+@kernel
 def _mark_present(kind: Ints, rows: Floats, owner: Ints, active: Bools, present: Bools) -> None:
-    """Mark the shapes whose owner is active, whose numbers are finite and whose extent is above 0."""
+    """Mark the shapes whose owner is active, whose numbers are finite and whose extent is above 0; name props."""
     for e in range(len(rows)):
         for n in range(len(kind)):
             here = owner[n] < 0 or (owner[n] < active.shape[1] and active[e, owner[n]])
@@ -142,6 +146,9 @@ def _mark_present(kind: Ints, rows: Floats, owner: Ints, active: Bools, present:
             if kind[n] == BOX:
                 here = here and min(rows[e, n, 12], rows[e, n, 13], rows[e, n, 14]) > 0.0
             present[e, n] = here
+    for n in range(len(kind)):
+        if owner[n] == STAGE:
+            owner[n] = PROP
 
 
 @kernel
@@ -173,11 +180,19 @@ def _write_upright(row: Floats, foot: Floats, height: Floats | float, radius: Fl
     row[..., 7] = np.where(np.asarray(height) > 0.0, radius, 0.0)
 
 
-def _write_walls(walls: Floats, height: float, row: Floats) -> None:
-    row[..., :2] = walls[:, :2]
-    row[..., 3:5] = walls[:, 2:] - walls[:, :2]
-    row[..., 8] = 1.0
-    row[..., 9] = min(height, TALLEST)
+@kernel
+def _write_walls(start: Floats, end: Floats, before: Ints, after: Ints, height: float, row: Floats) -> None:
+    """Write walls a little longer at both ends; the second side of a thin one is not there."""
+    for m in range(len(start)):
+        dx, dy = end[m, 0] - start[m, 0], end[m, 1] - start[m, 1]
+        longer = OVERLAP / max(math.sqrt(dx * dx + dy * dy), 1e-300)
+        for e in range(len(row)):
+            row[e, m, 0], row[e, m, 1] = start[m, 0] - longer * dx, start[m, 1] - longer * dy
+            row[e, m, 3], row[e, m, 4] = dx + 2.0 * longer * dx, dy + 2.0 * longer * dy
+            row[e, m, 8] = 1.0
+            row[e, m, 9] = height
+            if before[m] == after[m] and m > after[m]:
+                row[e, m, 9] = np.nan
 
 
 def lengthened(walls: Floats) -> Floats:
