@@ -120,7 +120,7 @@ def lidar2d(world: cb.Scene, folder: Path) -> None:
 def space(axes: plt.Axes, points: np.ndarray, hit: np.ndarray, size: float) -> None:
     """Draw points in space."""
     axes.scatter(*points.T, c=colours(hit), s=size, depthshade=False)
-    axes.set_box_aspect((12, 10, 3))
+    axes.set_box_aspect((12, 10, 3), zoom=1.5)
     axes.set_xlim(-6, 6)
     axes.set_ylim(-5, 5)
     axes.set_zlim(0, 3)
@@ -154,7 +154,7 @@ def echoes(world: cb.Scene, folder: Path) -> None:
         plan(axes, world, SpatialPose.of((0.0, 0.0, 1.0)))
         for yaw in np.radians([0.0, 60.0, 120.0, 180.0, 235.0, 300.0]):
             pose = SpatialPose.of((0.8 + 0.2 * math.cos(yaw), 0.2 + 0.2 * math.sin(yaw), 0.6), yaw=yaw)
-            angle = np.linspace(-1.0, 1.0, 301) * getattr(sensor, "half_angle", math.radians(3.0)) * 0.99999
+            angle = np.linspace(-1.0, 1.0, 301) * getattr(sensor, "half_angle", math.radians(8.0)) * 0.99999
             reach = (
                 teardrop(angle, sensor.radius, sensor.range_max) if sensor is sonar else np.full(301, sensor.range_max)
             )
@@ -203,7 +203,9 @@ def depth(world: cb.Scene, folder: Path) -> None:
     figure.colorbar(shown, ax=three[0], label="depth [m]")
     label = np.where(image.hit[0] >= 0, 4 + image.part[0], -image.hit[0])
     three[1].imshow(label, cmap="tab10", interpolation="nearest")
-    wrong = np.where(np.isfinite(error.depth[0]), error.depth[0] - image.depth[0], np.nan)
+    both = np.isfinite(error.depth[0]) & np.isfinite(image.depth[0])
+    wrong = np.full(both.shape, np.nan)
+    wrong[both] = error.depth[0][both] - image.depth[0][both]
     shown = three[2].imshow(wrong, cmap="coolwarm", vmin=-0.3, vmax=0.3)
     figure.colorbar(shown, ax=three[2], label="error of stereo [m]")
     for axes, title in zip(
