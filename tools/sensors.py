@@ -146,13 +146,11 @@ def lidar3d(world: cb.Scene, folder: Path) -> None:
 def echoes(world: cb.Scene, folder: Path) -> None:
     """Zones of ultrasound and infrared, and what they found."""
     figure, both = plt.subplots(1, 2, figsize=(13, 5.6))
-    sonar, infrared = (
-        Ultrasound(radius=0.94, range_max=2.5, rays=1500),
-        Infrared(dispersion=math.radians(3.0), range_max=1.5),
-    )
+    sonar = Ultrasound(radius=0.94, range_max=2.5, rays=1500, max_incidence=math.radians(50.0))
+    infrared = Infrared(dispersion=math.radians(8.0), range_max=1.5, rays=400)
     for axes, sensor in zip(both, (sonar, infrared), strict=True):
         plan(axes, world, SpatialPose.of((0.0, 0.0, 1.0)))
-        for yaw in np.radians([0.0, 60.0, 120.0, 180.0, 235.0, 300.0]):
+        for yaw in np.radians([8.0, 60.0, 120.0, 180.0, 235.0, 300.0]):
             pose = SpatialPose.of((0.8 + 0.2 * math.cos(yaw), 0.2 + 0.2 * math.sin(yaw), 0.6), yaw=yaw)
             angle = np.linspace(-1.0, 1.0, 301) * getattr(sensor, "half_angle", math.radians(8.0)) * 0.99999
             reach = (
