@@ -54,7 +54,7 @@ def measured(sensor, scene, pose, rng=None):
     return last
 
 
-def same_bytes(one, two, rows=slice(None)):
+def assert_same_bytes(one, two, rows=slice(None)):
     for name, value in arrays(one).items():
         assert value.tobytes() == np.ascontiguousarray(arrays(two)[name][rows]).tobytes(), name
 
@@ -89,7 +89,7 @@ def test_a_planar_pose_is_enough(kind):
 @every_sensor
 def test_sensors_are_exact_without_noise_and_need_no_generator(kind):
     scene, pose = crowd(2), somewhere(2)
-    same_bytes(measured(small(kind), scene, pose), measured(small(kind), scene, pose))
+    assert_same_bytes(measured(small(kind), scene, pose), measured(small(kind), scene, pose))
 
 
 @every_sensor
@@ -123,11 +123,11 @@ def test_alone_in_a_batch_and_with_any_threads_the_bytes_are_the_same(kind):
     single = measured(sensor, scene, pose, [stream(3, "scan", e) for e in range(5)])
     numba.set_num_threads(most)
     together = measured(sensor, scene, pose, [stream(3, "scan", e) for e in range(5)])
-    same_bytes(single, together)
+    assert_same_bytes(single, together)
     for e in range(5):
         place = type(pose)(pose.position[e : e + 1], pose.rotation[e : e + 1])
         alone = measured(sensor, scene.environments([e]), place, stream(3, "scan", e))
-        same_bytes(alone, together, slice(e, e + 1))
+        assert_same_bytes(alone, together, slice(e, e + 1))
 
 
 @every_sensor
@@ -154,7 +154,7 @@ def test_hostile_scenes_give_readings_without_surprise(kind):
         radius=np.where(here, scene.radius, np.nan),
         heading=np.where(here, scene.heading, np.nan),
     )
-    same_bytes(measured(small(kind), holes, pose), measured(small(kind), scene.replace(active=here), pose))
+    assert_same_bytes(measured(small(kind), holes, pose), measured(small(kind), scene.replace(active=here), pose))
     nobody = Scene.of(np.zeros((1, 0, 2)))
     assert arrays(measured(small(kind), nobody, pose))
     inside = scene.replace(bodies=None, position=np.broadcast_to(pose.position[:, None, :2], scene.position.shape))
