@@ -169,7 +169,7 @@ WRONG = {
     "a prior that is no file": (["--prior", "nowhere.json"], "nowhere.json: cannot be read"),
     "a share above one": (["--learn", "1.5"], "must be from 0 to below 1"),
     "a track of one point": (["--observe", "1"], "a track of one point shows no motion"),
-    "the future while live": (["--goal", "ground-truth", "--live"], "nobody knows while predicting live"),
+    "the future while live": (["--goal", "ground-truth", "--live"], "which nobody knows while"),
     "a negative patience": (["--patience", "-1"], "patience = -1 evaluations must be at least 0"),
     "no worker": (["--workers", "0"], "workers = 0 must be at least 1"),
 }
