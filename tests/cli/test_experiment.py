@@ -208,7 +208,9 @@ def test_ctrl_c_holds_a_trial_and_lets_it_go_on_unchanged(tmp_path):
     assert program.over() == 0, program.said.read_text()
     names = sorted(path.name for path in (out / "participant-001").iterdir() if path.is_dir())
     assert names == ["001-t", "002-t", "002-t-attempt-2"]
-    assert not list((out / "participant-001" / "002-t").iterdir())
+    left = out / "participant-001" / "002-t" / "episode.mcap"  # what was done of the trial that was left is kept
+    assert list(left.parent.iterdir()) == [left]
+    assert not read_episode(left).complete
     trial = load_trial(folder / "slow.xml")
     assert _digests(out) == [trial.run(seed=seed).digest for seed in (1, read_seed(out, "002-t-attempt-2"))]
 
