@@ -1,36 +1,47 @@
 """Trials: simulations as files, how they run, and their recordings. Contract :class:`Trial`, verb ``run``."""
 
+from .agent import Agent, Parameter
 from .builtin import builtin_trials, load_trial
 from .crowd import Contact, Crowd, Crowds, Limits, Routing
 from .distribution import Distribution
+from .drawn import Drawn
 from .episode import Episode, ScanRow
-from .journey import Direction, Exit, Journey, Point, Zone
+from .explicit import explicit
+from .journey import Direction, Exit, Journey, Point, Portal, Zone
 from .notation import Points
-from .people import Source, Spawner
+from .people import Group, Source, Spawner
 from .recorded import Recorded, read_episode
+from .recorded_people import RecordedPeople
 from .replay import Replay, replay
 from .run import run
 from .simulation import Simulation
 from .stage import Obstacle, Stage, Wall
-from .trial import End, Goal, Mount, Recording, Robot, Trial
+from .sweep import Sweep
+from .trial import End, Goal, Mount, Recording, Robot, Trial, When
 
 __all__ = [
+    "Agent",
     "Contact",
     "Crowd",
     "Crowds",
     "Direction",
     "Distribution",
+    "Drawn",
     "End",
     "Episode",
     "Exit",
     "Goal",
+    "Group",
     "Journey",
     "Limits",
     "Mount",
     "Obstacle",
+    "Parameter",
     "Point",
     "Points",
+    "Portal",
     "Recorded",
+    "RecordedPeople",
     "Recording",
     "Replay",
     "Robot",
@@ -40,10 +51,13 @@ __all__ = [
     "Source",
     "Spawner",
     "Stage",
+    "Sweep",
     "Trial",
     "Wall",
+    "When",
     "Zone",
     "builtin_trials",
+    "explicit",
     "load_trial",
     "read_episode",
     "replay",

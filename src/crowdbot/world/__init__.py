@@ -6,7 +6,9 @@ from .flow import Source
 from .journey import Journey, Journeys
 from .limits import CrowdLimits
 from .planar import PlanarWorld
+from .portal import Portal
 from .routing import Router
+from .script import Script, Track
 from .stop import Direction, Point, Stop, Zone
 from .world import Contact, World
 
@@ -22,9 +24,12 @@ __all__ = [
     "Omnidirectional",
     "PlanarWorld",
     "Point",
+    "Portal",
     "Router",
+    "Script",
     "Source",
     "Stop",
+    "Track",
     "Twists",
     "World",
     "Zone",
