@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 
 from .output import add_json, number, print_json, print_metrics, print_table, progress
+from .settings import add_settings, chosen, settings
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -15,6 +16,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, help="seed of everything random (default: the trial's own)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
     parser.add_argument("--trust", action="store_true", help="let the trial load code from outside its own folder")
+    add_settings(parser)
+    parser.add_argument("--variant", type=int, metavar="N", help="of a trial with sweeps: which one, from 1")
     add_json(parser)
 
 
@@ -22,7 +25,7 @@ def main(options: argparse.Namespace) -> int:
     """Run the trial."""
     from crowdbot.trials import load_trial
 
-    trial = load_trial(options.trial, trust=options.trust)
+    trial = chosen(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
     file = None if options.out is None else options.out / "episode.mcap"
     begin = time.perf_counter()
     with progress(options.json) as report:

@@ -7,13 +7,16 @@ from .distribution import Distribution
 from .drawn import Drawn
 from .episode import Episode, ScanRow
 from .explicit import explicit
+from .from_recording import recorded_trial
 from .journey import Direction, Exit, Journey, Point, Portal, Zone
 from .notation import Points
+from .original import Imported, import_original
 from .people import Group, Source, Spawner
 from .recorded import Recorded, read_episode
 from .recorded_people import RecordedPeople
 from .replay import Replay, replay
 from .run import run
+from .schema import schema
 from .simulation import Simulation
 from .stage import Obstacle, Stage, Wall
 from .sweep import Sweep
@@ -32,6 +35,7 @@ __all__ = [
     "Exit",
     "Goal",
     "Group",
+    "Imported",
     "Journey",
     "Limits",
     "Mount",
@@ -58,8 +62,11 @@ __all__ = [
     "Zone",
     "builtin_trials",
     "explicit",
+    "import_original",
     "load_trial",
     "read_episode",
+    "recorded_trial",
     "replay",
     "run",
+    "schema",
 ]

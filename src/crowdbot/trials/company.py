@@ -227,9 +227,9 @@ class Company(NamedTuple):
                 (x - a) ** 2 + (y - b) ** 2 >= (radius + r + GAP) ** 2
                 for (a, b), r in zip(members, bodies, strict=False)
             )
-            if alone and self.taken.free(x, y, radius) and shapely.contains_xy(zone, x, y):
-                if float(self.stage.clearance([(x, y)])[0]) >= radius:
-                    return x, y
+            clear = alone and self.taken.free(x, y, radius) and shapely.contains_xy(zone, x, y)
+            if clear and float(self.stage.clearance([(x, y)])[0]) >= radius:
+                return x, y
         return None
 
 

@@ -198,12 +198,9 @@ def _legs(checked: Checked, router: Router) -> Problems:
             if one.goal
             else f"the first stop of journey {one.journey!r}"
         )
-        start = one.zone if not isinstance(one, Agent) else Points.of([one.position])
+        start, word = (one.zone, "zone") if not isinstance(one, Agent) else (Points.of([one.position]), "place")
         if first and not _leads(router, _Place(start), first):
-            yield (
-                one,
-                f"no way leads from its {'place' if isinstance(one, Agent) else 'zone'} to {what} for a body of radius {router.radius:g} m",
-            )
+            yield one, f"no way leads from its {word} to {what} for a body of radius {router.radius:g} m"
     for journey in checked.journeys:
         for k, (here, there) in enumerate(itertools.pairwise(journey.stops), 2):
             begin, end = _Place.of(here), _Place.of(there)

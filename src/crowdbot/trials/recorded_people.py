@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import itertools
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -106,7 +107,7 @@ class RecordedPeople:
         borders = np.concatenate([[0], np.flatnonzero(new) + 1, [len(ids)]]).tolist()
         walks = [
             Walk(int(ids[a]), time[a:b], position[a:b])
-            for a, b in zip(borders[:-1], borders[1:], strict=True)
+            for a, b in itertools.pairwise(borders)
             if int(ids[a]) not in away
         ]
         return tuple(walk for walk in walks if walk.time[-1] >= 0.0 and walk.time[0] <= duration)
