@@ -23,12 +23,13 @@ def beside(name: str, folder: Path | None, trust: bool) -> Path:
     root = folder or Path.cwd()
     try:
         path = (root / name).resolve()
-        if not trust and not path.is_relative_to(root.resolve()):
-            raise InputError(f"the file {name[:80]!r} lies outside {root}; move it there, or pass --trust to allow it")
-        if not path.is_file():
-            raise InputError(f"there is no file {name[:80]!r} in {root}")
+        there = path.is_file()
     except (OSError, ValueError, RuntimeError):
         raise InputError(f"{name[:80]!r} is no name of a file") from None
+    if not trust and not path.is_relative_to(root.resolve()):
+        raise InputError(f"the file {name[:80]!r} lies outside {root}; move it there, or pass --trust to allow it")
+    if not there:
+        raise InputError(f"there is no file {name[:80]!r} in {root}")
     return path
 
 

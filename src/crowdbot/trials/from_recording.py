@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from crowdbot import navigation
 from crowdbot.core import InputError
 from crowdbot.models import ORCA
-from crowdbot.navigation import ORCA as OrcaNavigator
 from crowdbot.sensors import Gaussian, Lidar2D
 from crowdbot.world import DifferentialDrive
 
@@ -99,14 +99,14 @@ def _robot(walk: Walk, step: float) -> Robot:
     later = walk.position[min(int(np.searchsorted(walk.time, walk.time[0] + AHEAD)), len(walk.time) - 1)]
     ahead = later - walk.position[0]
     control = step * max(1, round(0.1 / step))
-    x, y = walk.position[0].tolist()
+    (x, y), (goal_x, goal_y) = walk.position[[0, -1]].tolist()
     return Robot(
         x=x,
         y=y,
         heading=float(np.arctan2(ahead[1], ahead[0])),
         control_period=control,
-        goal=Goal(*walk.position[-1].tolist(), 0.3),
+        goal=Goal(goal_x, goal_y, 0.3),
         drive=DifferentialDrive(max_speed=max(1.0, speed), max_turn_rate=1.5),
-        navigator=OrcaNavigator(speed=speed),
+        navigator=navigation.ORCA(speed=speed),
         sensors=(Mount(sensor=Lidar2D(rays=360, range_max=10.0, rate=1.0 / control, noise=Gaussian(0.01))),),
     )

@@ -57,6 +57,9 @@ class RecordedPeople:
     fps: float | None = attribute(None, about="rows a second, when the file does not say", unit="1/s", above=0.0)
     format: str = attribute("", about="format of the file, by default found by its content")
     units: str = attribute("", about="of its numbers, when it does not say", choices=("", "m", "cm", "mm", "px"))
+    time_base: str = attribute(
+        "true", about="of the one ETH text that is published with a wrong one", choices=("true", "published")
+    )
     mode: str = attribute("scripted", about="whether people react to robots", choices=("scripted", "reactive"))
     near: float = attribute(5.0, about="who reacts does so from here on", unit="m", above=0.0, at_most=1000.0)
     begin: float = attribute(0.0, about="time of the recording at which the trial begins", unit="s", at_least=0.0)
@@ -87,7 +90,8 @@ class RecordedPeople:
         """
         path = beside(self.data, self.folder, self.trust)
         stamp = path.stat()
-        return _loaded(path, stamp.st_mtime_ns, stamp.st_size, self.fps, self.format or None, self.units or None)
+        options = (self.fps, self.format or None, self.units or None, self.time_base)
+        return _loaded(path, stamp.st_mtime_ns, stamp.st_size, *options)
 
     def walks(self, duration: float) -> tuple[Walk, ...]:
         """Return everybody who is there during a trial of this duration [s], by id.
@@ -115,10 +119,10 @@ class RecordedPeople:
 
 @functools.lru_cache(maxsize=4)
 def _loaded(
-    path: Path, changed: int, size: int, fps: float | None, format: str | None, units: str | None
+    path: Path, changed: int, size: int, fps: float | None, format: str | None, units: str | None, time_base: str
 ) -> Trajectories:
     """Read a recording once for as long as its file stays the same."""
     from crowdbot.data import load
 
-    tracks = load(path, fps=fps, format=format, units=units)
+    tracks = load(path, fps=fps, format=format, units=units, time_base=time_base)
     return tracks if tracks.units == "m" and tracks.homography is None else tracks.metres()

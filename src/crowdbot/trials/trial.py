@@ -246,8 +246,9 @@ class Trial:
 
     @property
     def people(self) -> int:
-        """Number of agents and people of all spawners, who are there at the beginning."""
-        return len(self.agents) + sum(spawner.count for spawner in self.spawners)
+        """Number of agents, people of spawners and recorded people: those who have places before the robots."""
+        recorded = sum(len(one.walks(self.duration)) for one in self.recorded)
+        return len(self.agents) + sum(spawner.count for spawner in self.spawners) + recorded
 
     @property
     def ticks(self) -> int:
