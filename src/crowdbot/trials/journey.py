@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from crowdbot import world
+from crowdbot.core import InputError
 
 from .attribute import attribute, check, children
 from .notation import NAME, Points
@@ -119,6 +120,8 @@ class Portal:
 
     def __post_init__(self) -> None:
         check(self)
+        if self.dx == 0.0 and self.dy == 0.0:
+            raise InputError("needs dx or dy: how far from there people come out")
 
     def gate(self) -> world.Portal:
         """Return the portal of a world."""

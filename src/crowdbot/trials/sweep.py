@@ -102,13 +102,15 @@ def sweep_problems(trial: Trial, seed: int | None = None, trust: bool = True) ->
                 one.check(seed)
         except TrialError as error:
             where = ", ".join(f"{sweep.path}={value}" for sweep, value in zip(trial.sweeps, row, strict=True))
-            found |= dict.fromkeys(f"with {where}: {_bare(sentence)}" for sentence in error.problems[:3])
+            found |= dict.fromkeys(_bare(sentence, trial.name, where) for sentence in error.problems[:3])
     return list(found)
 
 
-def _bare(sentence: str) -> str:
-    """Return a sentence without the file and the line, which are those of no file."""
-    return re.sub(r"^variant:\d+: ", "", sentence)
+def _bare(sentence: str, name: str, where: str) -> str:
+    """Return a sentence without the file and the line, which are those of no file; a path that leads nowhere once."""
+    if sentence.startswith(f"{name}: '"):
+        return sentence.removeprefix(f"{name}: ")
+    return f"with {where}: " + re.sub(r"^variant:\d+: ", "", sentence)
 
 
 def _combined(trial: Trial) -> list[tuple[str, ...]]:
@@ -158,7 +160,7 @@ def _put(root: Element, cls: type, path: str, value: str) -> None:
     for step in steps:
         here, kind = _inside(here, kind, step)
     if kind is not None:
-        words = {part.word for part in outline(kind) if part.role == "attribute"}
+        words = [part.word for part in outline(kind) if part.role == "attribute"]
         free = any(part.role == "mounted" for part in outline(kind))
         if last not in words and not free:
             near = did_you_mean(last, words)
