@@ -87,7 +87,7 @@ def flow(name: str, count: int, zone: Points, journey: str, **more: Any) -> Spaw
 
 def finished(trial: Trial, preset: Preset, values: Mapping[str, Any]) -> Trial:
     """Return a trial with what all presets have in common: model, navigator, robot, seed."""
-    changes: dict[str, Any] = {"about": preset.about, "seed": values["seed"]}
+    changes: dict[str, Any] = {"name": preset.name, "about": preset.about, "seed": values["seed"]}
     if values["model"] != "orca":
         changes["crowd"] = plug.find(values["model"], models, models.CrowdModel, trust=False)()
     robots: Iterable[Robot] = trial.robots if values["robot"] else ()
