@@ -138,7 +138,7 @@ class PlanarWorld(World):
             after = _left(after, self.leave_radius)
         for zone in self.exits:
             after = _out(after, zone)
-        after = ported(after, self.portals, self._traffic.ids, self._traffic.following)
+        after = ported(before, after, self.portals, self._traffic.ids, self._traffic.following)
         self.scene = self._traffic.gone_on(after, self.clock.time)
         return self.scene
 

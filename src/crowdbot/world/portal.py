@@ -26,6 +26,8 @@ GAP = 0.01
 class Portal:
     """Whoever is in the zone comes out elsewhere, as soon as there is room; robots do not.
 
+    Who finds no room waits in the zone. Others who wait in a portal take no room where somebody comes out.
+
     Those who come out are new people, with an identity of their own, so that no track jumps. They keep their velocity
     and go on to where they wanted to go.
 
@@ -49,31 +51,40 @@ class Portal:
             raise InputError(f"Portal: dx = {self.dx} m, dy = {self.dy} m must be finite, and not both 0")
 
 
-def ported(scene: Scene, portals: Sequence[Portal], ids: Any, following: Any) -> Scene:
+def ported(before: Scene, scene: Scene, portals: Sequence[Portal], ids: Any, following: Any) -> Scene:
     """Return the scene in which whoever is in a portal has come out where there is room.
 
     Args:
+        before: a step ago.
         scene: now.
         portals: the first in which somebody is takes that person.
         ids: ``[E, A]`` who is who; is written to.
         following: ``[E]`` the next identities; is written to.
     """
+    if not portals:
+        return scene
     moving = scene.active & ~scene.external
     position: Floats = scene.position.copy()
+    inside = [_within(scene, portal) for portal in portals]
+    waiting = moving & np.any(inside, axis=0)
     done = np.zeros(scene.shape, dtype=np.bool_)
-    for portal in portals:
-        there = moving & ~done & portal.zone.contains(scene.position.reshape(-1, 2)).reshape(scene.shape)
+    for portal, zone in zip(portals, inside, strict=True):
+        there = moving & ~done & zone
         shift = np.array([portal.dx, portal.dy])
         for e, a in np.argwhere(there):
             place = position[e, a] + shift
             away = np.hypot(*(position[e] - place).T)
-            near = scene.active[e] & (away < scene.radius[e] + scene.radius[e, a] + GAP)
+            near = scene.active[e] & ~waiting[e] & (away < scene.radius[e] + scene.radius[e, a] + GAP)
             near[a] = False
             if not np.any(near):
                 position[e, a] = place
                 ids[e, a] = following[e]
                 following[e] += 1
-                done[e, a] = True
-    if not np.any(done):
-        return scene
-    return scene.replace(position=position)
+                done[e, a], waiting[e, a] = True, False
+    held = waiting & before.active & np.any([_within(before, portal) for portal in portals], axis=0)
+    velocity = np.where(held[..., None], 0.0, scene.velocity)
+    return scene.replace(position=np.where(held[..., None], before.position, position), velocity=velocity)
+
+
+def _within(scene: Scene, portal: Portal) -> NDArray[np.bool_]:
+    return portal.zone.contains(scene.position.reshape(-1, 2)).reshape(scene.shape)

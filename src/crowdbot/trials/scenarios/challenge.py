@@ -16,7 +16,7 @@ from crowdbot.trials.people import Spawner
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
 
-from .crowds import ends
+from .crowds import DEEP, ends
 from .parts import box, corridor, number, robot, scenario, uniform
 from .preset import Option, Preset
 
@@ -51,8 +51,8 @@ def challenge(kind: str, people: int, acceleration: float) -> Trial:
     sizes = [people // 2, people - people // 2] if len(ways) == 2 else [people]
     top = LENGTH / 2.0
     sides = (
-        Portal(name="low", zone=box(-top, -9.0, top, -5.0), dy=WIDTH),
-        Portal(name="high", zone=box(-top, 5.0, top, 9.0), dy=-WIDTH),
+        Portal(name="low", zone=box(-top, -5.0 - DEEP, top, -5.0), dy=WIDTH),
+        Portal(name="high", zone=box(-top, 5.0, top, 5.0 + DEEP), dy=-WIDTH),
     )
     return scenario(
         f"challenge-{kind}-{people}" if kind else "challenge-alone",

@@ -28,6 +28,8 @@ DENSITIES = (0.05, 0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0)
 """The ladder of densities [people/m2]; the last one is for stress."""
 
 LENGTH, HALF = 40.0, 20.0
+DEEP = 4.0
+"""Of portals [m]."""
 EAST = Journey(name="east", stops=(Direction(0.0),))
 WEST = Journey(name="west", stops=(Direction(math.pi),))
 SOUTH = Journey(name="south", stops=(Direction(-math.pi / 2.0),))
@@ -41,8 +43,8 @@ def ends(length: float, width: float) -> tuple[Portal, Portal]:
     """Return portals at both ends of a corridor: who leaves at one end comes in at the other."""
     x, y = length / 2.0, width / 2.0
     return (
-        Portal(name="right", zone=box(x, -y, x + 4.0, y), dx=-length),
-        Portal(name="left", zone=box(-x - 4.0, -y, -x, y), dx=length),
+        Portal(name="right", zone=box(x, -y, x + DEEP, y), dx=-length),
+        Portal(name="left", zone=box(-x - DEEP, -y, -x, y), dx=length),
     )
 
 
@@ -114,8 +116,8 @@ def crossing(density: float, both: bool) -> Trial:
     side = 12.0
     ways = ("south", "north") if both else ("south",)
     count = _count(density, side, side) // len(ways)
-    low = Portal(name="low", zone=box(-6, -10, 6, -6), dy=side)
-    high = Portal(name="high", zone=box(-6, 6, 6, 10), dy=-side)
+    low = Portal(name="low", zone=box(-6, -6 - DEEP, 6, -6), dy=side)
+    high = Portal(name="high", zone=box(-6, 6, 6, 6 + DEEP), dy=-side)
     return scenario(
         "perpendicular-flow",
         60.0,
@@ -132,9 +134,11 @@ def crossing(density: float, both: bool) -> Trial:
 def circle_crossing(people: int, radius: float, noise: float, limit: float, horizon: float) -> Trial:
     """Everybody on a circle goes to the other side, the robot too."""
     spawners, r = [], radius
+    right = (people + 1) // 2
     for k in range(people):
-        # the robot comes from below, so nobody begins there or at its goal
-        angle = -math.pi / 2.0 + 2.0 * math.pi * (k + 0.5) / people
+        # the robot goes from the lowest point to the highest, so nobody begins at either
+        side, place, of = (0.0, k, right) if k < right else (math.pi, k - right, people - right)
+        angle = side - math.pi / 2.0 + math.pi * (place + 1) / (of + 1)
         x, y = r * math.cos(angle), r * math.sin(angle)
         spawners.append(
             Spawner(
