@@ -5,8 +5,6 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from crowdbot.core import InputError
-
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
@@ -31,6 +29,8 @@ def settings(options: argparse.Namespace) -> dict[str, str]:
     Raises:
         InputError: one is not of the form NAME=VALUE, or is given twice.
     """
+    from crowdbot.core import InputError
+
     found: dict[str, str] = {}
     for text in options.settings:
         name, equals, value = text.partition("=")
@@ -50,6 +50,8 @@ def chosen(trial: Trial, variant: int | None) -> Trial:
     Raises:
         InputError: it has none of this number, or none was asked for.
     """
+    from crowdbot.core import InputError
+
     if variant is None and not trial.sweeps:
         return trial
     variants = trial.variants()

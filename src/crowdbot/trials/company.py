@@ -270,9 +270,11 @@ class Taken:
     discs: dict[tuple[int, int], list[tuple[float, float, float]]] = field(default_factory=dict)
 
     def add(self, x: float, y: float, radius: float) -> None:
+        """Put a disc somewhere."""
         self.discs.setdefault(self._at(x, y), []).append((x, y, radius))
 
     def free(self, x: float, y: float, radius: float, gap: float = GAP) -> bool:
+        """Return whether a disc has room, with a gap around it [m]."""
         i, j = self._at(x, y)
         near = (self.discs.get((i + di, j + dj), ()) for di in (-1, 0, 1) for dj in (-1, 0, 1))
         return all((x - a) ** 2 + (y - b) ** 2 >= (radius + r + gap) ** 2 for cell in near for a, b, r in cell)
