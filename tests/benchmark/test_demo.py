@@ -50,7 +50,7 @@ def test_the_commands_of_the_page_reproduce_its_table(done, capsys):
     assert len(lines) == 4
     for line, score in zip(lines, made.scores, strict=True):
         assert main([*line.split()[1:], "--json"]) == 0
-        total = json.loads(capsys.readouterr().out)["total"]
+        total = json.loads(capsys.readouterr().out)["results"][0]["total"]
         assert (total["ade"], total["fde"], total["persons"]) == pytest.approx((score.ade, score.fde, score.persons))
 
 

@@ -10,8 +10,6 @@ import pytest
 
 from crowdbot.cli import main
 
-FIVE = {"windows", "persons", "ade", "fde", "seconds_per_window"}
-
 
 def _json(capsys, *arguments):
     assert main([*arguments, "--json"]) == 0
@@ -25,11 +23,12 @@ def _program(*arguments, **options):
 def test_predict_scores_files_one_by_one_and_together(capsys, recordings):
     files = [str(recordings / "eth_ucy_splits" / "all_data" / f"students00{k}.txt") for k in (1, 3)]
     found = _json(capsys, "predict", "--data", *files, "--predictor", "constant-velocity", "--protocol", "all")
-    assert set(found) == {"protocol", "predictor", "total", "data"}
-    assert found["predictor"] == "constant-velocity"
+    assert set(found) == {"protocol", "observe", "predict", "seed", "results"}
     assert found["protocol"] == "all"
+    (found,) = found["results"]
+    assert found["predictor"] == "constant-velocity"
     assert list(found["data"]) == files
-    assert set(found["total"]) == set(found["data"][files[0]]) == FIVE
+    assert set(found["total"]) == set(found["data"][files[0]])
     assert found["total"]["persons"] == 24334 == sum(found["data"][f]["persons"] for f in files)
     assert found["total"]["ade"] == pytest.approx(0.524, abs=1e-3)
     assert found["total"]["fde"] == pytest.approx(1.165, abs=1e-3)
@@ -42,7 +41,7 @@ def test_predict_scores_files_one_by_one_and_together(capsys, recordings):
 )
 def test_predict_by_protocol(capsys, recordings, protocol, persons, ade, fde):
     hotel = str(recordings / "eth_ucy_splits" / "all_data" / "biwi_hotel.txt")
-    total = _json(capsys, "predict", "--data", hotel, "--protocol", protocol)["total"]
+    total = _json(capsys, "predict", "--data", hotel, "--protocol", protocol)["results"][0]["total"]
     assert total["persons"] == persons
     assert (total["ade"], total["fde"]) == (pytest.approx(ade, abs=1e-3), pytest.approx(fde, abs=1e-3))
 
@@ -58,11 +57,11 @@ def test_predict_prints_a_table_with_its_protocol(capsys, recordings):
 
 def test_parameters_reach_the_predictor_and_the_crowd_model(capsys, recordings):
     hotel = str(recordings / "eth_ucy_splits" / "all_data" / "biwi_hotel.txt")
-    two = _json(capsys, "predict", "--data", hotel, "--set", "displacements=2")["total"]
+    two = _json(capsys, "predict", "--data", hotel, "--set", "displacements=2")["results"][0]["total"]
     assert (two["ade"], two["fde"]) == (pytest.approx(0.270, abs=1e-3), pytest.approx(0.521, abs=1e-3))
     words = ["predict", "--data", hotel, "--predictor", "simulated", "--model", "social-force"]
-    near = _json(capsys, *words, "--set", "neighbor-distance=1")["total"]["ade"]
-    far = _json(capsys, *words, "--set", "neighbor-distance=6")["total"]["ade"]
+    near = _json(capsys, *words, "--set", "neighbor-distance=1")["results"][0]["total"]["ade"]
+    far = _json(capsys, *words, "--set", "neighbor-distance=6")["results"][0]["total"]["ade"]
     assert near != far
 
 
@@ -148,7 +147,7 @@ def test_a_user_adds_a_predictor_in_one_file(capsys, tmp_path, monkeypatch, reco
     )
     monkeypatch.chdir(tmp_path)
     zara = str(recordings / "eth_ucy_splits" / "all_data" / "crowds_zara01.txt")
-    total = _json(capsys, "predict", "--data", zara, "--predictor", "still.py:Still")["total"]
+    total = _json(capsys, "predict", "--data", zara, "--predictor", "still.py:Still")["results"][0]["total"]
     assert (total["ade"], total["fde"]) == (pytest.approx(2.50, abs=0.01), pytest.approx(4.59, abs=0.01))
 
 

@@ -57,12 +57,16 @@ def test_standing_agents_keep_their_heading():
     assert scene.advanced(np.full((1, 2, 2), 1e-3), 0.1).heading.tolist() == [[2.0, -1.0]]
 
 
-def test_repeated_copies_every_array_along_e():
-    many = _pair(preferred_velocity=[[1.0, 0.0], [0.0, 1.0]]).repeated(3)
+def test_environments_are_taken_in_any_order_and_number():
+    one = _pair(preferred_velocity=[[1.0, 0.0], [0.0, 1.0]])
+    many = one.environments([0, 0, 0])
     assert many.shape == (3, 2)
     assert many.preferred_velocity.shape == (3, 2, 2)
-    with pytest.raises(InputError, match="E = 3"):
-        many.repeated(2)
+    moved = many.advanced(many.velocity + np.arange(3.0)[:, None, None], 1.0).replace(memory={"x": np.arange(3.0)})
+    chosen = moved.environments([2, 0])
+    assert np.array_equal(chosen.position, moved.position[[2, 0]])
+    assert chosen.memory["x"].tolist() == [2.0, 0.0]
+    assert chosen.walls is moved.walls
 
 
 def test_without_leaves_the_original_alone():

@@ -163,7 +163,7 @@ def test_two_who_meet_pass_on_the_right_without_a_stream_and_on_any_side_with_on
 def test_only_a_stream_makes_people_shuffle():
     ahead = Scene.of([[0.0, 0.0], [0.4, 0.0]], radius=0.2, goal=[[9.0, 0.0], [0.4, 0.0]])
     assert np.all(AnticipationVelocity().velocity(ahead, 0.1) == 0.0)
-    many = ahead.repeated(60)
+    many = ahead.environments([0] * 60)
     speeds = AnticipationVelocity().velocity(many, 0.1, stream(0, "walk"))[:, 0]
     assert np.all(np.isin(np.round(np.linalg.norm(speeds, axis=-1) / CREEP, 9), [0.0, 1.0]))
     assert len(np.unique(np.sign(speeds[:, 0]))) == 3

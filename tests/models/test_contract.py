@@ -100,7 +100,7 @@ def test_alone_in_a_batch_or_twice_the_bytes_are_the_same(kind):
         scene = crowd(3, A=A)
         alone = velocity(kind(), scene)
         assert np.array_equal(velocity(kind(), scene), alone)
-        for copy in velocity(kind(), scene.repeated(SMALL // A + 1)):  # by several threads
+        for copy in velocity(kind(), scene.environments([0] * (SMALL // A + 1))):  # by several threads
             assert np.array_equal(copy, alone[0])
 
 

@@ -257,7 +257,7 @@ def test_alone_in_a_batch_or_in_parts_the_bytes_are_the_same(cost, monkeypatch):
     scene = crowd(9, A=12)
     model = CostModel(cost, optimiser="sampling", refinements=1, speeds=4, angles=9, contact_stiffness=50.0)
     alone = model.velocity(scene, 0.1)
-    for copy in model.velocity(scene.repeated(3), 0.1):
+    for copy in model.velocity(scene.environments([0] * 3), 0.1):
         assert np.array_equal(copy, alone[0])
     monkeypatch.setattr(room, "BUDGET", 1000)
     assert np.array_equal(model.velocity(scene, 0.1), alone)

@@ -121,7 +121,7 @@ def test_batches_threads_and_renumbering(A):
     scene = crowd(8, A=A)
     which = halves(scene)
     alone = Mixture(BOTH, which).step(scene, 0.1)
-    for copy in Mixture(BOTH, which).step(scene.repeated(3), 0.1).velocity:
+    for copy in Mixture(BOTH, which).step(scene.environments([0] * 3), 0.1).velocity:
         assert np.array_equal(copy, alone.velocity[0])
     order = np.random.default_rng(0).permutation(A)
     assert np.array_equal(

@@ -27,7 +27,7 @@ def grouped(seed, A=MANY):
 def test_alone_or_in_a_batch_the_bytes_are_the_same(model):
     scene = grouped(0)
     alone = model.velocity(scene, 0.1)
-    for copy in model.velocity(scene.repeated(3), 0.1):
+    for copy in model.velocity(scene.environments([0] * 3), 0.1):
         assert np.array_equal(copy, alone[0])
 
 

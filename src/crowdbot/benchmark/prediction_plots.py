@@ -48,16 +48,16 @@ def plot_errors(results: Sequence[Result], file: Path) -> None:
 
 
 def plot_frames(results: Sequence[Result], file: Path) -> None:
-    """Draw error, minimum cost and time over the frames, a row of panels a recording; at most eight predictors."""
+    """Draw error, minimum cost and time over the frames, a row of panels a recording; the first eight predictors."""
     panels = _by_recording(results)
     figure, axes = _figure(len(panels), 3, (13, 0.8 + 2.5 * len(panels)))
     for row, (recording, own) in zip(axes, panels.items(), strict=True):
-        shown = sorted(own, key=lambda one: one.score.ade)[:MOST_LINES]
+        shown = own[:MOST_LINES]
         for color, one in zip(COLORS, shown, strict=False):
             frames = one.frames
             for axis, values in zip(row, (frames.ade, frames.cost, 1e3 * frames.seconds), strict=True):
                 if not np.all(np.isnan(values)):
-                    axis.plot(frames.frame, values, color=color, linewidth=0.9, label=one.label)
+                    axis.plot(*_broken(frames.frame, values), color=color, linewidth=0.9, label=one.label)
         unit = own[0].score.units
         for axis, name in zip(row, (f"error (ADE) [{unit}]", "minimum cost [m]", "time [ms]"), strict=True):
             axis.set_title(f"{recording.name}: {name}", fontsize=9)
@@ -65,9 +65,9 @@ def plot_frames(results: Sequence[Result], file: Path) -> None:
             axis.tick_params(labelsize=8)
             axis.grid(alpha=0.25, linewidth=0.6)
         row[2].set_yscale("log")
-        row[0].legend(fontsize=6, loc="upper right")
         if not any(one.frames.calibrated for one in shown):
             row[1].text(0.5, 0.5, "nothing was calibrated", ha="center", transform=row[1].transAxes, fontsize=8)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), fontsize=7, loc="outside lower center", ncols=2)
     _written(figure, file)
 
 
@@ -81,7 +81,7 @@ def animate(study: Study, frame: int, file: Path) -> Path:
 
     if len(study.recipes) > MOST_LINES:
         raise InputError(f"an animation shows at most {MOST_LINES} predictors, not {len(study.recipes)}")
-    recording, window = _window_at(study.recordings, frame)
+    recording, window = study.window_at(frame)
     past, future = (one[window : window + 1] for one in recording.windows)
     labels = study.labels()
     paths = {labels[recipe.name]: _paths(recipe, recording, past, study) for recipe in study.recipes}
@@ -93,7 +93,7 @@ def animate(study: Study, frame: int, file: Path) -> Path:
         axis.plot([], [], color=color, linewidth=1.6, label=name)[0] for color, name in zip(COLORS, paths, strict=False)
     ]
     discs = axis.scatter([], [], s=60, color=PEOPLE, edgecolor="black", linewidth=0.5, zorder=3)
-    axis.legend(fontsize=7, loc="upper right")
+    figure.legend(*axis.get_legend_handles_labels(), fontsize=7, loc="outside lower center", ncols=2)
     steps = recording.predict
 
     def draw(number: int) -> None:
@@ -105,17 +105,6 @@ def animate(study: Study, frame: int, file: Path) -> Path:
     animation = FuncAnimation(figure, draw, frames=steps * FRAMES_A_ROW + 1)
     animation.save(file, PillowWriter(fps=max(1, round(FRAMES_A_ROW / past.dt))))
     return file
-
-
-def _window_at(recordings: Sequence[Recording], frame: int) -> tuple[Recording, int]:
-    for recording in recordings:
-        ends = recording.windows[0].frame[:, -1]
-        found = np.flatnonzero(ends == frame)
-        if len(found):
-            return recording, int(found[0])
-    ends = recordings[0].windows[0].frame[:, -1]
-    near = ends[np.argmin(np.abs(ends - frame))]
-    raise InputError(f"no window of {recordings[0].path} ends at frame {frame}; the nearest one ends at {near}")
 
 
 def _paths(recipe: Recipe, recording: Recording, past: Windows, study: Study) -> list[NDArray[np.float64]]:
@@ -172,6 +161,12 @@ def _until(tracks: list[NDArray[np.float64]], reach: float) -> tuple[NDArray[np.
         pieces.append(np.vstack([track[: row + 1], tip, [np.nan, np.nan]]))
     joined = np.concatenate(pieces)
     return joined[:, 0], joined[:, 1]
+
+
+def _broken(frame: NDArray[np.int64], values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return a line over the frames that has a gap where frames are missing."""
+    jumps = np.flatnonzero(np.diff(frame) > 2 * np.median(np.diff(frame))) + 1 if len(frame) > 1 else np.zeros(0, int)
+    return np.insert(frame.astype(float), jumps, np.nan), np.insert(values, jumps, np.nan)
 
 
 def _by_recording(results: Sequence[Result]) -> dict[Recording, list[Result]]:

@@ -252,7 +252,7 @@ class _Task:
         everyone = np.broadcast_to(values, (len(values), len(which), A, D))
 
         def candidate(rollout: Rollout, scene: Scene, copies: int) -> tuple[Rollout, Scene]:
-            each = np.repeat(everyone, copies, axis=1).reshape(-1, A, D)
+            each = np.repeat(everyone, copies, axis=1).reshape(len(values) * len(which) * copies, A, D)
             return self.space.dressed(rollout, scene, each)
 
         return cast(Cost, self.calibrator.cost).measure(self.rehearsal.walked(candidate, len(values), which))

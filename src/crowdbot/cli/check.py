@@ -1,50 +1,142 @@
-"""``crowdbot check TRIAL``: read a trial and say everything that is wrong with it."""
+"""``crowdbot check TRIAL|ROBOT``: read a trial or a robot and say everything that is wrong with it."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from .output import add_json, print_json
 from .settings import add_settings, settings
 
+MOST_LINES = 20
+
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("trials", metavar="TRIAL", nargs="+", help="trial files or built-in names")
-    parser.add_argument("--trust", action="store_true", help="let trials load code from outside their own folder")
+    parser.add_argument(
+        "names",
+        metavar="FILE|NAME",
+        nargs="+",
+        help="trials, experiments, URDF files, folders of robots, or built-in names",
+    )
+    parser.add_argument("--trust", action="store_true", help="let files load code from outside their own folder")
+    parser.add_argument(
+        "--package", metavar="NAME=FOLDER", action="append", default=[], help="where package://NAME/ of a URDF lies"
+    )
     add_settings(parser)
     add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:
-    """Check each trial; status 2 when one is wrong."""
+    """Check each; status 2 when one is wrong."""
+    packages = _packages(options.package)
+    found: dict[str, dict[str, Any]] = {}
+    for name in options.names:
+        row = _robot(name, options.trust, packages) if _is_robot(name) else _trial(name, options)
+        found[name] = {"right": not row["problems"], **row}
+    if options.json:
+        print_json(found)
+    else:
+        for name, row in found.items():
+            _print(name, row)
+    return 2 if any(row["problems"] for row in found.values()) else 0
+
+
+def _packages(words: list[str]) -> dict[str, Path]:
+    from crowdbot.core import InputError
+
+    found = {}
+    for word in words:
+        name, sign, folder = word.partition("=")
+        if not (name and sign and Path(folder).is_dir()):
+            raise InputError(f"--package {word!r} must be NAME=FOLDER with a folder that exists")
+        found[name] = Path(folder)
+    return found
+
+
+def _is_robot(name: str) -> bool:
+    """Return whether a name means a robot: by its ending, its file, or among the built-in ones."""
+    from crowdbot.world import builtin_robots
+
+    path = Path(name)
+    if path.suffix in (".urdf", ".xacro") or path.name == "robot.xml":
+        return True
+    if path.is_dir() and ((path / "robot.xml").exists() or any(path.glob("*.urdf"))):
+        return True
+    return name in builtin_robots() and not path.is_file()
+
+
+def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
     from crowdbot.core import InputError, TrialError
     from crowdbot.trials import load_trial
+    from crowdbot.trials.experiment import is_experiment, load_experiment
 
-    found: dict[str, list[str]] = {}
-    variants: dict[str, list[str]] = {}
-    for name in options.trials:
-        try:
-            trial = load_trial(name, trust=options.trust, **settings(options))
-            found[name] = []
-            variants[name] = [one.name for one in trial.variants()] if trial.sweeps else []
-        except TrialError as error:
-            found[name] = list(error.problems)
-        except InputError as error:
-            found[name] = [str(error)]
-    if options.json:
-        print_json(
-            {
-                name: {"right": not problems, "problems": problems, "variants": variants.get(name, [])}
-                for name, problems in found.items()
-            }
-        )
+    try:
+        if is_experiment(name):
+            load_experiment(name, trust=options.trust)
+            return {"problems": []}
+        trial = load_trial(name, trust=options.trust, **settings(options))
+    except TrialError as error:
+        return {"problems": list(error.problems)}
+    except InputError as error:
+        return {"problems": [str(error)]}
+    return {"problems": [], "variants": [one.name for one in trial.variants()] if trial.sweeps else []}
+
+
+def _robot(name: str, trust: bool, packages: dict[str, Path]) -> dict[str, Any]:
+    from crowdbot.core import InputError, RobotError
+    from crowdbot.world import Robot
+    from crowdbot.world.urdf import described, read_urdf
+
+    try:
+        if Path(name).suffix in (".urdf", ".xacro"):
+            return {"problems": [], "robot": described(read_urdf(name, packages=packages))}
+        robot = Robot.load(name, trust=trust)
+    except RobotError as error:
+        return {"problems": list(error.problems)}
+    except InputError as error:
+        return {"problems": [str(error)]}
+    row = described(robot.model, robot.posture) | {
+        "footprint": robot.footprint.tolist(),
+        "drive": repr(robot.drive),
+        "latency": robot.latency,
+        "sensors": {mount.name: repr(mount.sensor) for mount in robot.mounts},
+    }
+    return {"problems": [], "robot": row}
+
+
+def _print(name: str, row: dict[str, Any]) -> None:
+    for problem in row["problems"]:
+        print(problem)
+    if "robot" in row:
+        _print_robot(row["robot"])
+    verdict = "right" if row["right"] else f"{len(row['problems'])} to mend"
+    print(f"{Path(name).name}: {verdict}")
+    for k, variant in enumerate(row.get("variants", ()), 1):
+        print(f"  {k:4d}  {variant}")
+
+
+def _print_robot(row: dict[str, Any]) -> None:
+    kinds = ", ".join(f"{count} {kind}" for kind, count in row["joint_kinds"].items()) or "none"
+    x, y, z = row["center_of_mass"]
+    moments = " ".join(f"{row['inertia'][k][k]:.4g}" for k in range(3))
+    print(f"{row['name']}: root {row['root']}")
+    print(f"  links   {row['links']}: {row['links_with_mass']} have a mass, {row['links_that_touch']} can be touched")
+    print(f"  joints  {row['joints']}: {kinds}; {row['joints_that_mimic']} follow another")
+    print(f"  mass    {row['mass']:.4g} kg, centre at {x:.3f} {y:.3f} {z:.3f} m, inertia {moments} kg m2")
+    if row["footprint"]:
+        size = " x ".join(f"{side:.3f}" for side in row["size"])
+        print(f"  size    {size} m, footprint of {len(row['footprint'])} corners")
     else:
-        for name, problems in found.items():
-            for problem in problems:
-                print(problem)
-            print(f"{Path(name).name}: {'right' if not problems else f'{len(problems)} to mend'}")
-            for k, variant in enumerate(variants.get(name, ()), 1):
-                print(f"  {k:4d}  {variant}")
-    return 2 if any(found.values()) else 0
+        print("  size    unknown: nothing of it can be touched")
+    print(f"  meshes  {len(row['meshes'])} read, {row['convex_pieces']} convex pieces")
+    if "drive" in row:
+        print(f"  drive   {row['drive']}, latency {row['latency']:g} s")
+        for name, sensor in row["sensors"].items():
+            print(f"  sensor  {name}: {sensor}")
+    for kind in ("replaced", "repaired", "ignored", "noted"):
+        for line in row[kind][:MOST_LINES]:
+            print(f"  {kind:<8} {line}")
+        if len(row[kind]) > MOST_LINES:
+            print(f"  {kind:<8} ... and {len(row[kind]) - MOST_LINES} more (--json lists all)")

@@ -45,6 +45,8 @@ def main(options: argparse.Namespace) -> int:
         raise InputError("--animate writes a file: say where with --out DIR")
     found = recordings(options)
     study = Study(found, recipes(options), options.samples, options.best_of, options.seed, options.live)
+    if options.animate is not None:
+        study.window_at(options.animate)  # says now, not after the work, that there is none
     keep = None if options.out is None else options.out / "parts"
     with progress(options.json) as report:
         done = _done(study, options, keep, report)

@@ -6,7 +6,6 @@ import argparse
 import itertools
 import math
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -16,7 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["add_scheme", "assignments", "chosen", "crowd_model", "frame_line", "prior", "recipes"]
 
-SCHEME = ("model", "cost", "search", "goal", "free", "prior")
+SCHEME = ("model", "cost", "search", "goal", "free", "prior", "shared")
 """Options that only predictors which simulate a crowd understand."""
 
 
@@ -30,7 +29,10 @@ def add_scheme(parser: argparse.ArgumentParser, many: bool) -> None:
     add("--goal", **several, metavar="NAME", help="where people want to go: crowdbot list goals")
     add("--budget", type=int, default=500, metavar="N", help="crowds tried for each window (default 500)")
     add("--free", nargs="+", default=[], metavar="NAME", help="parameters that are calibrated (default: all)")
-    add("--prior", type=Path, metavar="FILE", help="what is known of parameters: made by crowdbot calibrate")
+    learned = ", or `learn`: from the --learn share of each recording" if many else ""
+    add("--prior", metavar="FILE", help=f"what is known of parameters: made by crowdbot calibrate{learned}")
+    if many:
+        add("--shared", action="store_true", help="one set of parameters, fitted to the --learn share")
 
 
 def recipes(options: argparse.Namespace) -> tuple[Recipe, ...]:
@@ -72,7 +74,9 @@ def _schemes(options: argparse.Namespace, values: Mapping[str, str]) -> list[Rec
     from crowdbot.calibration import kind_of_goal
     from crowdbot.prediction import Recipe
 
-    own: dict[str, Any] = {"budget": options.budget, "free": tuple(options.free), "prior": prior(options.prior)}
+    learns = options.prior == "learn"
+    own: dict[str, Any] = {"budget": options.budget, "free": tuple(options.free)}
+    own["prior"] = None if learns else prior(options.prior)
     made = []
     parts = (options.model or ["orca"], options.cost or [None], options.search or [None], options.goal or [None])
     for model, cost, search, goal in itertools.product(*parts):
@@ -83,11 +87,11 @@ def _schemes(options: argparse.Namespace, values: Mapping[str, str]) -> list[Rec
         late = kind.knows_future or kind.learns
         if goal is not None and not late:
             predictor = chosen("simulated", model, values, {**fields, "goal": goal})
-        made.append(Recipe(predictor, goal if late else None))
+        made.append(Recipe(predictor, goal if late else None, learns, options.shared))
     return made
 
 
-def prior(file: Path | None) -> PopulationPrior | None:
+def prior(file: str | None) -> PopulationPrior | None:
     """Return the population prior of a file, or None."""
     from crowdbot.calibration import PopulationPrior
 

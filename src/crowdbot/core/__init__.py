@@ -7,6 +7,7 @@ from .errors import (
     EpisodeError,
     InputError,
     MissingExtra,
+    RobotError,
     TrialError,
     UnknownName,
 )
@@ -31,6 +32,7 @@ __all__ = [
     "Parameter",
     "PerAgent",
     "Pose",
+    "RobotError",
     "Scene",
     "TrialError",
     "Twist",

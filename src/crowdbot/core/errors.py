@@ -5,6 +5,7 @@
     │   ├── DataError                  a recording of tracks cannot be read, or holds nothing usable
     │   ├── TrialError                 a trial file is wrong; carries every problem found
     │   ├── EpisodeError               a recorded episode cannot be read or does not replay
+    │   ├── RobotError                 a robot (URDF or robot file) is wrong; carries every problem found
     │   └── UnknownName (LookupError)  a name that no room knows, with what may have been meant
     └── MissingExtra (ImportError)     an optional part is not installed, with the pip command
 
@@ -23,6 +24,7 @@ __all__ = [
     "EpisodeError",
     "InputError",
     "MissingExtra",
+    "RobotError",
     "TrialError",
     "UnknownName",
     "did_you_mean",
@@ -43,6 +45,14 @@ class DataError(InputError):
 
 class TrialError(InputError):
     """A trial file is wrong. ``problems`` holds every sentence found, in file order."""
+
+    def __init__(self, *problems: str) -> None:
+        self.problems = problems
+        super().__init__("\n".join(problems))
+
+
+class RobotError(InputError):
+    """A robot is wrong: its URDF or its robot file. ``problems`` holds every sentence found, in file order."""
 
     def __init__(self, *problems: str) -> None:
         self.problems = problems

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot import __version__
 from crowdbot.calibration import Fit
 from crowdbot.core import InputError, stream
+from crowdbot.core.version import code_digest
 from crowdbot.core.workers import each_kept
 from crowdbot.data import Recording
 from crowdbot.metrics import PersonErrors, Score, person_errors
@@ -55,7 +55,7 @@ class Piece:
     @property
     def key(self) -> str:
         """Hash of everything that decides about the result but the content of the recording."""
-        return hashlib.blake2b(pickle.dumps((__version__, self)), digest_size=12).hexdigest()
+        return hashlib.blake2b(pickle.dumps((code_digest(), self)), digest_size=12).hexdigest()
 
 
 @dataclass(frozen=True)
@@ -159,6 +159,21 @@ class Study:
         """Return name -> short label of every predictor; the name itself where two would be called the same."""
         short = [recipe.label for recipe in self.recipes]
         return {one.name: one.label if short.count(one.label) == 1 else one.name for one in self.recipes}
+
+    def window_at(self, frame: int) -> tuple[Recording, int]:
+        """Return the first recording with a window whose last observed frame is this one, and which window it is.
+
+        Raises:
+            InputError: there is none.
+        """
+        for recording in self.recordings:
+            found = np.flatnonzero(recording.windows[0].frame[:, -1] == frame)
+            if len(found):
+                return recording, int(found[0])
+        first = self.recordings[0]
+        ends = first.windows[0].frame[:, -1]
+        near = ends[np.argmin(np.abs(ends - frame))]
+        raise InputError(f"no window of {first.path} ends at frame {frame}; the nearest one ends at {near}")
 
     def pieces(self) -> list[Piece]:
         """Return the jobs, recording by recording and predictor by predictor."""

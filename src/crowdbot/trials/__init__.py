@@ -6,6 +6,7 @@ from .crowd import Contact, Crowd, Crowds, Limits, Routing
 from .distribution import Distribution
 from .drawn import Drawn
 from .episode import Episode, ScanRow
+from .experiment import Experiment, Session, load_experiment
 from .explicit import explicit
 from .from_recording import recorded_trial
 from .journey import Direction, Exit, Journey, Point, Portal, Zone
@@ -33,6 +34,7 @@ __all__ = [
     "End",
     "Episode",
     "Exit",
+    "Experiment",
     "Goal",
     "Group",
     "Imported",
@@ -51,6 +53,7 @@ __all__ = [
     "Robot",
     "Routing",
     "ScanRow",
+    "Session",
     "Simulation",
     "Source",
     "Spawner",
@@ -63,6 +66,7 @@ __all__ = [
     "builtin_trials",
     "explicit",
     "import_original",
+    "load_experiment",
     "load_trial",
     "read_episode",
     "recorded_trial",

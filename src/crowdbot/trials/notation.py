@@ -2,39 +2,17 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable
 from typing import Any
 
 from crowdbot.core import InputError
+from crowdbot.core.markup import number
 
 __all__ = ["NAME", "Points", "number", "plain"]
 
 NAME = "[A-Za-z][A-Za-z0-9_]*"
 """Names that other parts refer to; those of robots and sensors become names of ROS topics and frames."""
-
-NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
-
-
-def number(text: str, otherwise: str = "is not a number") -> float:
-    """Return the finite number that a text is, in the plain notation ``-1.5e-3``.
-
-    Raises:
-        InputError: it is none.
-
-    >>> number(" -1.5e-3 ")
-    -0.0015
-    """
-    text = text.strip()
-    if NUMBER.fullmatch(text):
-        value = float(text)
-        if math.isfinite(value):
-            return value
-        raise InputError("is not finite")
-    if text.lstrip("+-").lower() in ("nan", "inf", "infinity"):
-        raise InputError("is not finite")
-    raise InputError(otherwise)
 
 
 def plain(value: float) -> str:

@@ -168,7 +168,9 @@ class _Reader:
         known = {word: part for part in parts for word in part.words}
         found: dict[str, list[Any]] = {part.name: [] for part in known.values()}
         if element.stray:
-            self.say(element.line, element.tag, f"holds the text {element.stray!r}; values are written as attributes")
+            self.say(
+                element.line, element.tag, f"holds the text {element.stray[:40]!r}; values are written as attributes"
+            )
         count: Counter[str] = Counter()
         for inner in element.children:
             part = known.get(inner.tag)
@@ -207,7 +209,7 @@ class _Reader:
         for deeper in inner.children:
             self.say(deeper.line, deeper.tag, f"is no element of <{inner.tag}>; it takes none")
         if inner.stray:
-            self.say(inner.line, inner.tag, f"holds the text {inner.stray!r}; values are written as attributes")
+            self.say(inner.line, inner.tag, f"holds the text {inner.stray[:40]!r}; values are written as attributes")
         return self._plug(part.plug, inner, dict(inner.attributes), [])
 
     def _plug(self, what: Plug, element: Element, attributes: dict[str, str], also: list[str]) -> Any:

@@ -1,5 +1,6 @@
 """Worlds: what turns commands into the next scene. Contracts :class:`World`, :class:`Drive` and :class:`Stop`."""
 
+from .ackermann import AckermannDrive, SteeredTwists
 from .contact import BodyContact
 from .drive import DifferentialDrive, Drive, Omnidirectional, Twists, moved
 from .flow import Source
@@ -7,13 +8,17 @@ from .journey import Journey, Journeys
 from .limits import CrowdLimits
 from .planar import PlanarWorld
 from .portal import Portal
+from .robot import Robot, SensorMount, Wheel, builtin_robots
 from .routing import Router
 from .script import Script, Track
+from .servo import CommandDelay, VelocityServo
 from .stop import Direction, Point, Stop, Zone
 from .world import Contact, World
 
 __all__ = [
+    "AckermannDrive",
     "BodyContact",
+    "CommandDelay",
     "Contact",
     "CrowdLimits",
     "DifferentialDrive",
@@ -25,13 +30,19 @@ __all__ = [
     "PlanarWorld",
     "Point",
     "Portal",
+    "Robot",
     "Router",
     "Script",
+    "SensorMount",
     "Source",
+    "SteeredTwists",
     "Stop",
     "Track",
     "Twists",
+    "VelocityServo",
+    "Wheel",
     "World",
     "Zone",
+    "builtin_robots",
     "moved",
 ]

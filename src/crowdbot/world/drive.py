@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import InputError, Pose, Twist
 from crowdbot.core.kernels import kernel
 
-__all__ = ["DifferentialDrive", "Drive", "Omnidirectional", "Twists", "moved"]
+__all__ = ["DifferentialDrive", "Drive", "Omnidirectional", "Twists", "check_limits", "check_step", "moved"]
 
 Floats = NDArray[np.float64]
 
@@ -120,12 +120,12 @@ class DifferentialDrive(Drive):
     max_turn_acceleration: float = 3.0
 
     def __post_init__(self) -> None:
-        _check_limits(self)
+        check_limits(self)
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
         """Return pose and twist ``dt`` [s] later; see :class:`DifferentialDrive`."""
         wanted = Twists.of(command, len(pose.heading))
-        _check_step(dt)
+        check_step(dt)
         forward = _towards(twist.forward, wanted.forward, self.max_speed, self.max_acceleration * dt)
         turn = _towards(twist.turn, wanted.turn, self.max_turn_rate, self.max_turn_acceleration * dt)
         after = Twists(forward, turn, np.zeros_like(forward))
@@ -150,12 +150,12 @@ class Omnidirectional(Drive):
     max_turn_acceleration: float = 3.0
 
     def __post_init__(self) -> None:
-        _check_limits(self)
+        check_limits(self)
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
         """Return pose and twist ``dt`` [s] later; see :class:`Omnidirectional`."""
         wanted = Twists.of(command, len(pose.heading))
-        _check_step(dt)
+        check_step(dt)
         forward, left = _shortened(wanted.forward, wanted.left, self.max_speed)
         push, slide = _shortened(forward - twist.forward, left - twist.left, self.max_acceleration * dt)
         turn = _towards(twist.turn, wanted.turn, self.max_turn_rate, self.max_turn_acceleration * dt)
@@ -194,13 +194,15 @@ def _shortened(x: Floats, y: Floats, limit: float) -> tuple[Floats, Floats]:
     return x * share, y * share
 
 
-def _check_limits(drive: DifferentialDrive | Omnidirectional) -> None:
+def check_limits(drive: Drive) -> None:
+    """Raise :class:`InputError` unless a drive's speeds and accelerations are finite and above 0."""
     for name in ("max_speed", "max_turn_rate", "max_acceleration", "max_turn_acceleration"):
         value = getattr(drive, name)
         if not 0.0 < value < math.inf:
             raise InputError(f"{type(drive).__name__}: {name} = {value} must be finite and above 0")
 
 
-def _check_step(dt: float) -> None:
+def check_step(dt: float) -> None:
+    """Raise :class:`InputError` unless a time step [s] is finite and above 0."""
     if not 0.0 < dt < math.inf:
         raise InputError(f"time step {dt} s of a drive must be finite and above 0")

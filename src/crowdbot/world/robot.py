@@ -1,0 +1,232 @@
+"""Robot: a folder with a URDF and one small file: how it drives, what it senses with and what room it takes."""
+
+from __future__ import annotations
+
+import importlib.resources
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, RobotError, Twist
+from crowdbot.core.errors import did_you_mean
+from crowdbot.sensors import Sensor
+
+from .drive import Drive
+from .servo import CommandDelay
+from .urdf.model import RobotModel
+from .urdf.transforms import frame, roll_pitch_yaw
+
+__all__ = ["Robot", "SensorMount", "Wheel", "builtin_robots"]
+
+Floats = NDArray[np.float64]
+FILE = "robot.xml"
+
+
+@dataclass(frozen=True)
+class SensorMount:
+    """A sensor and where it sits in the frame of a link: x, y, z [m]; roll, pitch, yaw [rad] as in URDF."""
+
+    name: str
+    sensor: Sensor
+    link: str
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+    roll: float = 0.0
+    pitch: float = 0.0
+    yaw: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("x", "y", "z", "roll", "pitch", "yaw"):
+            if not math.isfinite(getattr(self, name)):
+                raise InputError(f"SensorMount: {name} = {getattr(self, name)} must be finite")
+
+    @property
+    def origin(self) -> Floats:
+        """Its frame ``[4, 4]`` in the link's frame."""
+        return frame((self.x, self.y, self.z), roll_pitch_yaw(self.roll, self.pitch, self.yaw))
+
+
+@dataclass(frozen=True)
+class Wheel:
+    """A wheel that a motor turns: its joint, whose axis is the axle, and its radius [m]."""
+
+    joint: str
+    radius: float
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.radius < math.inf:
+            raise InputError(f"Wheel: radius = {self.radius} m must be finite and above 0")
+
+
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """A robot that can be put into a world.
+
+    Fields:
+        name: of the robot.
+        model: its links and joints; the root is on the ground below its centre, x forward.
+        drive: how its base follows commands, with its limits of speed and acceleration.
+        latency: between a command and the wheels [s], see :class:`CommandDelay`.
+        base: what physics moves: ``wheels`` (motors turn them) or ``planar`` (the base itself is pulled, for wheels
+            that roll in all directions).
+        footprint: corners ``[N, 2]`` [m] of the room it takes on the ground, counter-clockwise.
+        mounts: its sensors.
+        wheels: that motors turn.
+        posture: positions of joints [rad, m] while it drives; those left out are at 0.
+        about: one line for people.
+
+    >>> robot = Robot.load("turtlebot2")
+    >>> robot.drive.max_speed, round(robot.radius, 3), [mount.name for mount in robot.mounts]
+    (0.65, 0.232, ['laser'])
+    """
+
+    name: str
+    model: RobotModel
+    drive: Drive
+    latency: float = 0.0
+    base: str = "wheels"
+    footprint: Floats = field(default_factory=lambda: np.zeros((0, 2)))
+    mounts: tuple[SensorMount, ...] = ()
+    wheels: tuple[Wheel, ...] = ()
+    posture: Mapping[str, float] = field(default_factory=dict)
+    about: str = ""
+
+    def __post_init__(self) -> None:
+        CommandDelay(self.latency)
+        if self.base not in ("wheels", "planar"):
+            raise InputError(f"Robot: base = {self.base!r} must be wheels or planar")
+        shape = np.asarray(self.footprint, dtype=np.float64)
+        if shape.size == 0:
+            shape = self.model.footprint(self.posture)
+        if shape.ndim != 2 or shape.shape[1] != 2 or len(shape) < 3 or not np.all(np.isfinite(shape)):
+            raise InputError(
+                f"Robot: the footprint of {self.name} must be at least 3 points x, y [m]; its model has"
+                f" {'no colliders to take it from' if not len(shape) else f'{len(shape)} corners'}"
+            )
+        object.__setattr__(self, "footprint", shape)
+        self.model.positions(self.posture)
+        names = [mount.name for mount in self.mounts]
+        for mount in self.mounts:
+            if names.count(mount.name) > 1:
+                raise InputError(f"Robot: two sensors of {self.name} have the name {mount.name!r}; names must differ")
+            if mount.link not in self.model.links:
+                meant = did_you_mean(mount.link, self.model.links)
+                raise InputError(f"Robot: the sensor {mount.name!r} sits on {mount.link!r}, which is no link{meant}")
+        for wheel in self.wheels:
+            if wheel.joint not in {joint.name for joint in self.model.movable if joint.size == 1}:
+                meant = did_you_mean(wheel.joint, self.model.joints)
+                raise InputError(f"Robot: the wheel joint {wheel.joint!r} is no joint that turns{meant}")
+
+    @classmethod
+    def load(cls, source: str | Path, *, trust: bool = False) -> Robot:
+        """Read a robot.
+
+        Args:
+            source: a built-in name, the folder of a robot, or its ``robot.xml``; a folder of that name in the working
+                folder comes first.
+            trust: whether code from outside the folder may be loaded, when the file names sensors or drives by address.
+
+        Raises:
+            RobotError: there is no such robot, or with everything that is wrong with it, a sentence each.
+        """
+        from .robot_file import read_robot
+
+        return read_robot(_folder(source), trust=trust)
+
+    @property
+    def radius(self) -> float:
+        """Radius [m] of the disc about its origin that holds the footprint."""
+        return float(np.hypot(self.footprint[:, 0], self.footprint[:, 1]).max())
+
+    @property
+    def height(self) -> float:
+        """Height [m] of its highest collider above its root, in its posture."""
+        points = self.model.points(self.posture)
+        return float(points[:, 2].max()) if len(points) else 0.0
+
+    def mount(self, name: str) -> SensorMount:
+        """Return the sensor of this name.
+
+        Raises:
+            InputError: there is none.
+        """
+        for mount in self.mounts:
+            if mount.name == name:
+                return mount
+        names = [mount.name for mount in self.mounts]
+        raise InputError(
+            f"{self.name} has no sensor {name!r}{did_you_mean(name, names)}; it has {', '.join(names) or 'none'}"
+        )
+
+    def mounted(self, name: str, positions: Mapping[str, float] | None = None) -> Floats:
+        """Return the frame ``[4, 4]`` of a sensor in the robot's frame: in its posture, or with joints elsewhere."""
+        mount = self.mount(name)
+        return np.asarray(self.model.poses({**self.posture, **(positions or {})})[mount.link] @ mount.origin)
+
+    def planar_mount(self, name: str) -> tuple[float, float, float]:
+        """Return where a sensor sits, seen from above: x, y [m], heading [rad], as :meth:`Pose.mounted` takes it.
+
+        >>> Robot.load("qolo").planar_mount("lidar_rear")
+        (-0.516, 0.0, 3.141592654)
+        """
+        matrix = self.mounted(name)
+        heading = math.atan2(matrix[1, 0], matrix[0, 0])
+        return round(float(matrix[0, 3]), 12), round(float(matrix[1, 3]), 12), round(heading, 9)
+
+    def wheel_speeds(self, twist: Twist) -> dict[str, float]:
+        """Return how fast the wheels must turn [rad/s], by joint, so that none slips along its rolling direction.
+
+        It holds for plain wheels and for those whose rollers let them slide along the axle.
+
+        >>> Robot.load("turtlebot2").wheel_speeds(Twist(0.35, 0.0))
+        {'wheel_left_joint': 10.0, 'wheel_right_joint': 10.0}
+        """
+        poses = self.model.poses(self.posture)
+        speeds = {}
+        for wheel in self.wheels:
+            joint = self.model.joints[wheel.joint]
+            matrix = poses[joint.parent] @ joint.origin
+            place, axle = matrix[:3, 3], matrix[:3, :3] @ joint.axis
+            rolling = np.array([axle[1], -axle[0]])  # axle x up
+            center = np.array([twist.forward - twist.turn * place[1], twist.left + twist.turn * place[0]])
+            speeds[wheel.joint] = round(float(center @ rolling) / wheel.radius, 12)
+        return speeds
+
+
+def builtin_robots() -> tuple[str, ...]:
+    """Return the names of the built-in robots.
+
+    >>> builtin_robots()
+    ('cuybot', 'differential', 'pepper', 'qolo', 'turtlebot2', 'wheelchair')
+    """
+    return tuple(sorted(entry.name for entry in _assets().iterdir() if (entry / FILE).is_file()))
+
+
+def _assets() -> Path:
+    return Path(str(importlib.resources.files("crowdbot").joinpath("assets", "robots")))
+
+
+def _folder(source: str | Path) -> Path:
+    """Return the folder that holds the robot's file."""
+    path = Path(source)
+    known = builtin_robots()
+    if path.is_dir():
+        if (path / FILE).is_file():
+            return path
+        if str(source) not in known:
+            raise RobotError(f"the folder {path} holds no {FILE}; a robot is a folder with a URDF and a {FILE}")
+    if str(source) in known:
+        return _assets() / str(source)
+    if path.name == FILE and path.is_file():
+        return path.parent
+    if path.suffix == ".urdf":
+        raise RobotError(f"{path} says nothing of drive and sensors; give the folder with its {FILE}")
+    raise RobotError(
+        f"there is no robot {str(source)!r}{did_you_mean(str(source), known)}: no folder has this name,"
+        f" and built in are {', '.join(known)}"
+    )

@@ -1,0 +1,227 @@
+"""The small file of a robot, ``robot.xml``: every problem at once, each with its line."""
+
+from __future__ import annotations
+
+import math
+import types
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import crowdbot.sensors
+from crowdbot.core import InputError, RobotError, plug
+from crowdbot.core.errors import did_you_mean
+from crowdbot.core.markup import Element, number, parse, read_bytes
+from crowdbot.sensors import Sensor
+
+from .drive import Drive
+from .robot import FILE, Robot, SensorMount, Wheel
+from .urdf.reading import read_urdf
+
+__all__ = ["read_robot"]
+
+KNOWN: dict[str, tuple[str, ...]] = {
+    "robot": ("name", "urdf", "about", "base"),
+    "footprint": ("points", "radius"),
+    "wheel": ("joint", "radius"),
+    "posture": ("joint", "position"),
+}
+PLACES = ("x", "y", "z", "roll", "pitch", "yaw")
+CIRCLE = np.linspace(0.0, 2.0 * math.pi, 32, endpoint=False)
+
+
+def read_robot(folder: Path, *, trust: bool = False) -> Robot:
+    """Read the robot in a folder: its ``robot.xml`` and the URDF that this names.
+
+    Raises:
+        RobotError: with everything that is wrong, one sentence each.
+    """
+    path = folder / FILE
+    root = parse(read_bytes(path, "robot", RobotError), str(path), what="robot", root="robot", refusal=RobotError)
+    reader = _Reader(str(path), folder, trust)
+    if root.tag != "robot":
+        raise RobotError(f"{path}:{root.line}: the root element is <{root.tag[:40]}>, it must be <robot>")
+    values = reader.robot(root)
+    reader.finish()
+    try:
+        return Robot(**values)
+    except InputError as error:
+        raise RobotError(f"{path}: {error}") from None
+
+
+class _Reader:
+    """Collects problems while it reads."""
+
+    def __init__(self, place: str, folder: Path, trust: bool) -> None:
+        self.place, self.folder, self.trust = place, folder, trust
+        self.found: list[str] = []
+
+    def say(self, element: Element, sentence: str) -> None:
+        self.found.append(f"{self.place}:{element.line}: <{element.tag[:40]}> {sentence}")
+
+    def finish(self) -> None:
+        if self.found:
+            raise RobotError(*self.found[:100])
+
+    def robot(self, root: Element) -> dict[str, Any]:
+        """Return the fields of the robot."""
+        row = self.words(root)
+        values: dict[str, Any] = {"name": row.get("name") or self.folder.resolve().name, "about": row.get("about", "")}
+        values["base"] = row.get("base", "wheels")
+        parts: dict[str, list[Any]] = {"sensor": [], "wheel": [], "posture": []}
+        once: set[str] = set()
+        for inner in root.children:
+            if inner.tag in ("drive", "footprint"):
+                if inner.tag in once:
+                    self.say(inner, "stands in <robot> twice; one is allowed")
+                once.add(inner.tag)
+                values |= self.drive(inner) if inner.tag == "drive" else self.footprint(inner)
+            elif inner.tag in parts:
+                made = getattr(self, inner.tag)(inner)
+                parts[inner.tag] += [made] if made is not None else []
+            else:
+                known = ("drive", "footprint", *parts)
+                self.say(
+                    inner, f"is no element of <robot>{did_you_mean(inner.tag, known)}; it takes {', '.join(known)}"
+                )
+        if "drive" not in once:
+            self.say(root, "needs the element <drive type=...>: how it moves")
+        model = self.model(root, row.get("urdf", ""))
+        posture = dict(parts["posture"])
+        if len(posture) < len(parts["posture"]):
+            self.say(root, "gives the posture of a joint twice")
+        mounts = [mount(model.root) if callable(mount) else mount for mount in parts["sensor"]] if model else []
+        return values | {
+            "model": model,
+            "mounts": tuple(mounts),
+            "wheels": tuple(parts["wheel"]),
+            "posture": posture,
+        }
+
+    def model(self, root: Element, name: str) -> Any:
+        if not name:
+            self.say(root, "needs the attribute 'urdf': the file with its links and joints, beside this one")
+            return None
+        path = self.folder / name
+        try:
+            inside = path.resolve().is_relative_to(self.folder.resolve())
+        except (OSError, RuntimeError, ValueError):
+            inside = False
+        if not inside:
+            self.say(root, f"urdf={name[:80]!r} leaves the robot's folder {self.folder}")
+            return None
+        try:
+            return read_urdf(path, folder=self.folder)
+        except RobotError as error:
+            self.found += error.problems
+            return None
+
+    def words(self, element: Element) -> dict[str, str]:
+        """Return the attributes, after saying which are unknown."""
+        known = KNOWN[element.tag]
+        for key in element.attributes:
+            if key not in known:
+                meant = did_you_mean(key, known)
+                self.say(element, f"has no attribute {key[:40]!r}{meant}; it takes {', '.join(known)}")
+        return element.attributes
+
+    def number(self, element: Element, key: str) -> float:
+        """Return a number that must be there; 1 when it is wrong."""
+        text = element.attributes.get(key)
+        if text is None:
+            self.say(element, f"needs the attribute {key!r}, a number")
+            return 1.0
+        try:
+            return number(text)
+        except InputError as error:
+            self.say(element, f'{key}="{text[:40]}" {error}')
+            return 1.0
+
+    def wheel(self, element: Element) -> Wheel | None:
+        """Return a wheel."""
+        joint = self.words(element).get("joint", "")
+        radius = self.number(element, "radius")
+        if radius <= 0.0:
+            self.say(element, f'radius="{element.attributes["radius"][:40]}" must be above 0')
+            return None
+        return Wheel(joint, radius)
+
+    def posture(self, element: Element) -> tuple[str, float]:
+        """Return the name of a joint and its position."""
+        return self.words(element).get("joint", ""), self.number(element, "position")
+
+    def footprint(self, element: Element) -> dict[str, Any]:
+        """Return the corners of the footprint."""
+        row = self.words(element)
+        if ("points" in row) == ("radius" in row):
+            self.say(element, "needs either points or radius")
+            return {}
+        if "radius" in row:
+            radius = self.number(element, "radius")
+            if radius <= 0.0:
+                self.say(element, f'radius="{row["radius"][:40]}" must be above 0')
+            return {"footprint": radius * np.stack([np.cos(CIRCLE), np.sin(CIRCLE)], axis=1)}
+        try:
+            points = [[number(part) for part in word.split(",")] for word in row["points"].split()]
+        except InputError as error:
+            self.say(element, f'points="{row["points"][:40]}" {error}')
+            return {}
+        if len(points) < 3 or any(len(point) != 2 for point in points):
+            self.say(
+                element, f'points="{row["points"][:40]}" must be at least 3 points x,y such as 0.3,0.2 -0.3,0.2 0,-0.4'
+            )
+            return {}
+        return {"footprint": np.array(points)}
+
+    def drive(self, element: Element) -> dict[str, Any]:
+        """Return the drive and its latency."""
+        import crowdbot.world as room
+
+        row = dict(element.attributes)
+        values: dict[str, Any] = {}
+        if "latency" in row:
+            values["latency"] = self.number(element, "latency")
+            del row["latency"]
+            if values["latency"] < 0.0:
+                self.say(element, f'latency="{element.attributes["latency"][:40]}" must be at least 0 s')
+        made = self.plugged(element, row, room, Drive, ("latency",))
+        return values | ({"drive": made} if made is not None else {})
+
+    def sensor(self, element: Element) -> Any:
+        """Return a mount, or a function that makes it once the root is known."""
+        row = dict(element.attributes)
+        name, link = row.pop("name", ""), row.pop("link", "")
+        if not name:
+            self.say(element, "needs the attribute 'name'")
+        place = {key: self.number(element, key) for key in PLACES if key in row}
+        rest = {key: text for key, text in row.items() if key not in PLACES}
+        made = self.plugged(element, rest, crowdbot.sensors, Sensor, ("name", "link", *PLACES))
+        if made is None:
+            return None
+        return lambda root: SensorMount(name, made, link or root, **place)
+
+    def plugged(
+        self, element: Element, row: Mapping[str, str], room: types.ModuleType, contract: type, also: tuple[str, ...]
+    ) -> Any:
+        """Return the part that ``type`` names, made of the attributes; None when that is impossible."""
+        rest = dict(row)
+        name = rest.pop("type", None)
+        if name is None:
+            self.say(element, f"needs the attribute 'type': {', '.join(plug.built_in(room, contract))} or an address")
+            return None
+        try:
+            cls = plug.find(name, room, contract, folder=self.folder, trust=self.trust)
+        except InputError as error:
+            self.say(element, str(error))
+            return None
+        problems = plug.problems(cls, rest, also)
+        if not problems:
+            try:
+                return plug.read(cls, rest)
+            except InputError as error:
+                problems = [str(error)]
+        for problem in problems:
+            self.say(element, problem)
+        return None

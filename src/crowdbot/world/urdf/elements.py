@@ -1,0 +1,216 @@
+"""What every part of the URDF reader shares: problems with their lines, numbers, frames, meshes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, RobotError
+from crowdbot.core.errors import did_you_mean
+from crowdbot.core.markup import Element, number
+
+from .folders import Folders
+from .meshes import read_mesh, with_pieces
+from .model import Remark
+from .shapes import Mesh
+from .transforms import frame, roll_pitch_yaw
+
+__all__ = ["Reader"]
+
+Floats = NDArray[np.float64]
+MOST_PROBLEMS = 100
+LARGEST = 1e6
+Color = tuple[float, float, float, float]
+
+
+class Reader:
+    """Collects problems and remarks while a URDF is read.
+
+    Args:
+        place: name of the file for messages.
+        folders: where files may lie.
+        colliders: how meshes become convex.
+    """
+
+    def __init__(self, place: str, folders: Folders, colliders: str) -> None:
+        self.place, self.folders, self.colliders = place, folders, colliders
+        self.found: list[tuple[int, str]] = []
+        self.remarks: list[Remark] = []
+        self.files: dict[str, Path] = {}
+        self.materials: dict[str, Color] = {}
+        self.friction: dict[str, float] = {}
+        self.springs: dict[str, dict[str, float]] = {}
+        self.motors: dict[str, str] = {}
+        self._read: dict[tuple[str, tuple[float, float, float]], Mesh | str] = {}
+
+    def say(self, element: Element, sentence: str) -> None:
+        """Note a problem that makes the robot wrong."""
+        self.found.append((element.line, f"{self._where(element)} {sentence}"))
+
+    def remark(self, kind: str, element: Element, sentence: str) -> None:
+        """Note something that was ``replaced``, ``repaired`` or ``ignored``."""
+        self.remarks.append(Remark(kind, f"{self._where(element)} {sentence}"))
+
+    def _where(self, element: Element) -> str:
+        name = element.attributes.get("name", "")
+        named = f" {name[:60]!r}" if name and element.tag in ("link", "joint") else ""
+        return f"{self.place}:{element.line}: <{element.tag[:40]}>{named}"
+
+    def finish(self) -> None:
+        """Raise :class:`RobotError` when there was a problem."""
+        sentences = [sentence for _, sentence in sorted(self.found, key=lambda row: row[0])]
+        if len(sentences) > MOST_PROBLEMS:
+            more = len(sentences) - MOST_PROBLEMS
+            sentences = [*sentences[:MOST_PROBLEMS], f"{self.place}: and {more} more problems"]
+        if sentences:
+            raise RobotError(*sentences)
+
+    @staticmethod
+    def meant(word: str, known: Iterable[str]) -> str:
+        """Return ``, did you mean 'x'?`` when a name is near."""
+        return did_you_mean(word, known)
+
+    def new(self, element: Element, name: str, known: Iterable[str]) -> bool:
+        """Return whether a name is new; say so when it is not."""
+        if name in known:
+            self.say(element, "has a name that another one has already; names must differ")
+            return False
+        return True
+
+    def one(self, element: Element, tag: str) -> Element | None:
+        """Return the child of this name, None when there is none; say so when there are more."""
+        found = element.each(tag)
+        if len(found) > 1:
+            self.say(found[1], f"stands in <{element.tag}> twice; one is allowed")
+        return found[0] if found else None
+
+    def value(self, element: Element, key: str, default: float | None = None, least: float = -np.inf) -> float | None:
+        """Return a finite number that is an attribute, the default without it; say so when it is wrong."""
+        text = element.attributes.get(key)
+        if text is None:
+            return default
+        try:
+            found = number(text)
+        except InputError as error:
+            self.say(element, f'{key}="{text[:40]}" {error}')
+            return default
+        if found < least:
+            self.say(element, f'{key}="{text[:40]}" must be at least {least:g}')
+            return default
+        return found
+
+    def needed(self, element: Element, key: str, least: float = -np.inf) -> float | None:
+        """Return a number that must be there, None when it is wrong or missing."""
+        if key not in element.attributes:
+            self.say(element, f"needs the attribute {key!r}, a number")
+        return self.value(element, key, None, least)
+
+    def row(self, element: Element, key: str, count: int, default: tuple[float, ...] | None) -> Floats | None:
+        """Return ``count`` finite numbers of an attribute, the default without it; None when they are wrong."""
+        text = element.attributes.get(key)
+        if text is None:
+            return None if default is None else np.array(default)
+        words = text.split()
+        if len(words) != count:
+            self.say(element, f'{key}="{text[:40]}" must be {count} numbers')
+            return None
+        try:
+            values = np.array([number(word) for word in words])
+        except InputError as error:
+            self.say(element, f'{key}="{text[:60]}" {error}')
+            return None
+        if np.abs(values).max() > LARGEST:
+            self.say(element, f'{key}="{text[:60]}" holds a number above {LARGEST:g}')
+            return None
+        return values
+
+    def origin(self, element: Element) -> Floats:
+        """Return the frame ``[4, 4]`` of <origin xyz rpy>; the same frame without one."""
+        origin = self.one(element, "origin")
+        if origin is None:
+            return np.eye(4)
+        place, angles = self.row(origin, "xyz", 3, (0.0,) * 3), self.row(origin, "rpy", 3, (0.0,) * 3)
+        if place is None or angles is None:
+            return np.eye(4)
+        return frame(place, roll_pitch_yaw(*angles))
+
+    def mesh(self, element: Element, touching: bool) -> Mesh | str | None:
+        """Return the mesh of <mesh filename scale>, why it cannot be had, or None when that is a problem.
+
+        Raises:
+            MissingExtra: trimesh is not installed.
+        """
+        source = element.attributes.get("filename", "").strip()
+        if not source:
+            self.say(element, "needs the attribute 'filename'")
+            return None
+        scale = self.row(element, "scale", 3, (1.0, 1.0, 1.0))
+        if scale is None:
+            return None
+        if np.any(scale == 0.0):
+            self.say(element, f'scale="{element.attributes["scale"][:40]}" must not be 0')
+            return None
+        try:
+            path = self.folders.find(source)
+        except InputError as error:
+            self.say(element, str(error))
+            return None
+        factors = (float(scale[0]), float(scale[1]), float(scale[2]))
+        return self._loaded(element, source, path, factors, touching)
+
+    def _loaded(
+        self, element: Element, source: str, path: Path | None, scale: tuple[float, float, float], touching: bool
+    ) -> Mesh | str:
+        if path is None:
+            return f"the mesh {source[:200]} is missing"
+        key = (str(path), scale)
+        if key not in self._read:
+            try:
+                self._read[key] = read_mesh(path, source, scale)
+                self.files[source] = path
+            except (InputError, OSError) as error:
+                self._read[key] = f"the mesh {source[:200]} cannot be used: {error}"
+        mesh = self._read[key]
+        if isinstance(mesh, str) or not touching or mesh.pieces:
+            return mesh
+        whole, coarse = with_pieces(mesh, self.colliders)
+        self._read[key] = whole
+        if coarse:
+            self.remark("replaced", element, f"the mesh {source[:200]} {coarse}")
+        return whole
+
+    def notes(self, root: Element) -> None:
+        """Read what stands beside links and joints: friction and springs of Gazebo, motors of transmissions."""
+        for gazebo in root.each("gazebo"):
+            name = gazebo.attributes.get("reference", "")
+            for tag in ("mu1", "mu"):
+                for inner in gazebo.each(tag):
+                    self.friction[name] = self._text(inner, self.friction.get(name, 1.0))
+            for tag in ("springStiffness", "springReference"):
+                for inner in gazebo.each(tag):
+                    self.springs.setdefault(name, {})[tag] = self._text(inner, 0.0)
+        for transmission in root.each("transmission"):
+            for joint in transmission.each("joint"):
+                for interface in joint.each("hardwareInterface"):
+                    self._motor(joint, interface.stray)
+        for control in root.each("ros2_control"):
+            for joint in control.each("joint"):
+                for interface in joint.each("command_interface"):
+                    self._motor(joint, interface.attributes.get("name", ""))
+
+    def _motor(self, joint: Element, words: str) -> None:
+        kind = next((kind for kind in ("velocity", "position", "effort") if kind in words.lower()), "")
+        if kind:
+            self.motors.setdefault(joint.attributes.get("name", ""), kind)
+
+    def _text(self, element: Element, default: float) -> float:
+        """Return the number between the tags; these are extensions, so that a wrong one is only remarked."""
+        text = element.stray or element.attributes.get("value", "")
+        try:
+            return max(0.0, number(text)) if element.tag != "springReference" else number(text)
+        except InputError:
+            self.remark("ignored", element, f"holds {text[:40]!r}, which is no number; it is ignored")
+            return default

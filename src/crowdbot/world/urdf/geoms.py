@@ -1,0 +1,150 @@
+"""Shapes of a robot as MJCF geoms, and its meshes as files in memory."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.markup import Element
+
+from .model import Link, Part, RobotModel
+from .shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
+from .transforms import quaternion
+
+__all__ = ["Geoms", "row"]
+
+Floats = NDArray[np.float64]
+GREY = (0.7, 0.7, 0.72, 1.0)
+SMOOTH = 1e-3
+"""Coefficients of friction below this are none."""
+MOST_FACES = 150_000
+"""MuJoCo reads at most 200 000 triangles from one STL file."""
+MOST_CORNERS = 64
+"""Corners of a convex body in contacts; finer ones are slower and no more exact on a floor."""
+
+
+def row(values: Iterable[float]) -> str:
+    """Return numbers as they stand in MJCF.
+
+    >>> row((1.0, -0.5, 1e-9))
+    '1 -0.5 1e-09'
+    """
+    return " ".join(repr(float(value)).removesuffix(".0") for value in values)
+
+
+class Geoms:
+    """Makes geoms of links, and remembers the meshes that they need.
+
+    Args:
+        model: the robot.
+        prefix: before every name.
+        contact: contype and conaffinity of what touches.
+    """
+
+    def __init__(self, model: RobotModel, prefix: str, contact: tuple[int, int]) -> None:
+        self.model, self.prefix, self.contact = model, prefix, contact
+        self.meshes: list[Element] = []
+        self.files: dict[str, bytes] = {}
+        self._known: dict[tuple[int, bool], list[str]] = {}
+
+    def of(self, link: Link, matrix: Floats, axle: Floats | None = None) -> list[Element]:
+        """Return the geoms of a link.
+
+        A cylinder that turns about its own axis, or glides without friction, is a wheel: it becomes an ellipsoid, which
+        touches the floor in one point below its middle. The two points of a cylinder flicker: it slips on the spot.
+
+        Args:
+            link: whose shapes are wanted.
+            matrix: its frame ``[4, 4]`` in the body.
+            axle: axis ``[3]`` through the body's origin about which the body turns, None when it does not.
+        """
+        gliding = link.friction is not None and link.friction < SMOOTH
+        geoms = []
+        for number, part in enumerate(link.collisions):
+            values = {"group": "3", "contype": str(self.contact[0]), "conaffinity": str(self.contact[1])}
+            values |= {"rgba": "0.3 0.6 0.9 0.4", **_rubbing(link.friction)}
+            geoms += self._shape(
+                part, matrix, f"{self.prefix}{link.name}/{number}", values, gliding or _rolls(part, matrix, axle)
+            )
+        for number, part in enumerate(link.visuals):
+            values = {"group": "2", "contype": "0", "conaffinity": "0", "rgba": row(part.color or GREY)}
+            geoms += self._shape(part, matrix, f"{self.prefix}{link.name}/seen/{number}", values)
+        return geoms
+
+    def _shape(
+        self, part: Part, matrix: Floats, name: str, values: dict[str, str], wheel: bool = False
+    ) -> list[Element]:
+        place = matrix @ part.origin
+        placed = {"pos": row(place[:3, 3]), "quat": row(quaternion(place[:3, :3]))}
+        if not isinstance(part.shape, Mesh):
+            return [Element("geom", {"name": name, **_sized(part.shape, wheel), **placed, **values})]
+        files = self._mesh(part.shape, touching=values["group"] == "3")
+        names = [name if k == 0 else f"{name}.{k}" for k in range(len(files))]
+        return [
+            Element("geom", {"name": one, "type": "mesh", "mesh": file, **placed, **values})
+            for one, file in zip(names, files, strict=True)
+        ]
+
+    def _mesh(self, mesh: Mesh, touching: bool) -> list[str]:
+        key = (id(mesh), touching)
+        if key in self._known:
+            return self._known[key]
+        if touching:
+            bodies = [(piece.vertices, piece.faces) for piece in mesh.pieces]
+        else:
+            bodies = [(mesh.vertices, mesh.faces[k : k + MOST_FACES]) for k in range(0, len(mesh.faces), MOST_FACES)]
+        names = []
+        for vertices, faces in bodies:
+            name = f"{self.prefix}mesh{len(self.files)}"
+            file = f"{name}.stl"
+            self.files[file] = _stl(vertices, faces)
+            values = {"name": name, "file": file, "inertia": "convex" if touching else "shell"}
+            if touching:
+                values["maxhullvert"] = str(MOST_CORNERS)
+            self.meshes.append(Element("mesh", values))
+            names.append(name)
+        self._known[key] = names
+        return names
+
+
+def _rolls(part: Part, matrix: Floats, axle: Floats | None) -> bool:
+    """Return whether a shape is a cylinder about the axle."""
+    if axle is None or not isinstance(part.shape, Cylinder):
+        return False
+    place = matrix @ part.origin
+    aside = place[:3, 3] - (place[:3, 3] @ axle) * axle
+    return bool(abs(place[:3, 2] @ axle) > 0.999 and np.linalg.norm(aside) < 0.01 * part.shape.radius)
+
+
+def _sized(shape: Shape, wheel: bool) -> dict[str, str]:
+    if isinstance(shape, Box):
+        return {"type": "box", "size": row(side / 2.0 for side in shape.size)}
+    if isinstance(shape, Sphere):
+        return {"type": "sphere", "size": row((shape.radius,))}
+    assert isinstance(shape, Cylinder | Capsule)
+    if wheel and isinstance(shape, Cylinder):
+        return {"type": "ellipsoid", "size": row((shape.radius, shape.radius, shape.length / 2.0))}
+    kind = "cylinder" if isinstance(shape, Cylinder) else "capsule"
+    return {"type": kind, "size": row((shape.radius, shape.length / 2.0))}
+
+
+def _rubbing(friction: float | None) -> dict[str, str]:
+    """Return the friction of a geom.
+
+    MuJoCo takes the larger friction of two surfaces; only with a higher priority a castor glides on a rough floor.
+    """
+    if friction is None:
+        return {}
+    if friction < SMOOTH:
+        return {"condim": "1", "priority": "1"}
+    return {"friction": row((friction, 0.005, 0.0001)), "priority": "1"}
+
+
+def _stl(vertices: Floats, faces: NDArray[np.int64]) -> bytes:
+    """Return a binary STL file."""
+    corners = vertices[faces].astype("<f4")
+    rows = np.zeros(len(faces), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("extra", "<u2")])
+    rows["corners"] = corners
+    return b"".join([b"crowdbot".ljust(80), len(faces).to_bytes(4, "little"), rows.tobytes()])

@@ -1,0 +1,159 @@
+"""Links of a URDF: shapes, colours, mass."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crowdbot.core.markup import Element
+
+from .elements import Floats, Reader
+from .inertia import doubtful, mended, stand_in
+from .materials import color_of
+from .model import Inertial, Link, Part
+from .shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
+
+__all__ = ["read_link"]
+
+SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
+
+
+def read_link(reader: Reader, element: Element) -> Link | None:
+    """Return the link that the element describes, None when it has a problem."""
+    before = len(reader.found)
+    name = element.attributes.get("name", "")
+    if not name:
+        reader.say(element, "needs the attribute 'name'")
+    visuals, unseen = _parts(reader, element, "visual")
+    collisions, untouched = _parts(reader, element, "collision")
+    mass, center, tensor = _inertial(reader, element)
+    if len(reader.found) > before:
+        return None
+    inertial, done = mended(mass, center, tensor, collisions or visuals)
+    if done:
+        reader.remark("repaired", element, done)
+    elif inertial is not None:
+        doubt = doubtful(inertial, collisions or visuals)
+        if doubt:
+            reader.remark("noted", element, doubt)
+    if untouched:
+        collisions = _colliders(reader, element, untouched, collisions, visuals, inertial)
+    if unseen:
+        visuals = _seen(reader, element, unseen, visuals, collisions)
+    return Link(name, inertial, tuple(visuals), tuple(collisions), reader.friction.get(name))
+
+
+def _parts(reader: Reader, element: Element, tag: str) -> tuple[list[Part], list[str]]:
+    """Return the shapes, and why others cannot be had."""
+    parts: list[Part] = []
+    lost: list[str] = []
+    for inner in element.each(tag):
+        geometry = reader.one(inner, "geometry")
+        if geometry is None:
+            reader.say(inner, "needs <geometry>")
+            continue
+        shape = _shape(reader, geometry, touching=tag == "collision")
+        origin = reader.origin(inner)
+        color = color_of(reader, inner) if tag == "visual" else None
+        if isinstance(shape, str):
+            lost.append(shape)
+        elif shape is not None:
+            parts.append(Part(shape, origin, inner.attributes.get("name", ""), color))
+    return parts, lost
+
+
+def _shape(reader: Reader, geometry: Element, touching: bool) -> Shape | str | None:
+    """Return the shape, why its mesh cannot be had, or None after saying a problem."""
+    inner = [child for child in geometry.children if child.tag in SHAPES]
+    if len(inner) != 1:
+        reader.say(geometry, f"must hold one of {', '.join(f'<{word}>' for word in SHAPES)}, it holds {len(inner)}")
+        return None
+    element = inner[0]
+    if element.tag == "mesh":
+        return reader.mesh(element, touching)
+    if element.tag == "box":
+        sides = reader.row(element, "size", 3, None)
+        if sides is None:
+            if "size" not in element.attributes:
+                reader.say(element, "needs the attribute 'size', three numbers")
+            return None
+        if not np.all(sides > 0.0):
+            reader.say(element, f'size="{element.attributes["size"][:40]}" must be above 0')
+            return None
+        return Box((float(sides[0]), float(sides[1]), float(sides[2])))
+    radius = _length(reader, element, "radius")
+    if element.tag == "sphere":
+        return Sphere(radius) if radius else None
+    length = _length(reader, element, "length")
+    if not radius or not length:
+        return None
+    return Cylinder(radius, length) if element.tag == "cylinder" else Capsule(radius, length)
+
+
+def _length(reader: Reader, element: Element, key: str) -> float | None:
+    found = reader.needed(element, key)
+    if found is not None and found <= 0.0:
+        reader.say(element, f'{key}="{element.attributes[key][:40]}" must be above 0')
+        return None
+    return found
+
+
+def _inertial(reader: Reader, element: Element) -> tuple[float | None, Floats | None, Floats | None]:
+    """Return mass, centre and inertia in the axes of the link, None for what is missing."""
+    inner = reader.one(element, "inertial")
+    if inner is None:
+        return None, None, None
+    origin = reader.origin(inner)
+    weight = reader.one(inner, "mass")
+    mass = reader.needed(weight, "value", 0.0) if weight is not None else 0.0
+    moments = reader.one(inner, "inertia")
+    if moments is None:
+        return mass, origin[:3, 3], None
+    xx, xy, xz, yy, yz, zz = (
+        reader.value(moments, key, 0.0) or 0.0 for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    )
+    tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    return mass, origin[:3, 3], origin[:3, :3] @ tensor @ origin[:3, :3].T
+
+
+def _colliders(
+    reader: Reader,
+    element: Element,
+    lost: list[str],
+    collisions: list[Part],
+    visuals: list[Part],
+    inertial: Inertial | None,
+) -> list[Part]:
+    """Return the colliders of a link that has lost a mesh, and say what takes its place."""
+    if collisions:
+        place = "its other colliders stand alone"
+    elif visuals:
+        collisions, place = [_touching(reader, part) for part in visuals], "what is seen of it takes its place"
+    elif inertial is not None:
+        part, what = stand_in(inertial)
+        collisions, place = [part], f"{what} takes its place"
+    else:
+        place = "nothing takes its place, the link cannot be touched"
+    reader.remark("replaced", element, f"{_listed(lost)}; in contacts {place}")
+    return collisions
+
+
+def _seen(reader: Reader, element: Element, lost: list[str], visuals: list[Part], collisions: list[Part]) -> list[Part]:
+    """Return what is seen of a link that has lost a mesh, and say what takes its place."""
+    if collisions:
+        place = "its colliders are shown instead"
+    else:
+        place = "it has no colliders to show instead" + ("" if visuals else ", the link cannot be seen")
+    reader.remark("replaced", element, f"{_listed(lost)}; {place}")
+    return [*visuals, *collisions]
+
+
+def _touching(reader: Reader, part: Part) -> Part:
+    if not isinstance(part.shape, Mesh) or part.shape.pieces:
+        return part
+    from .meshes import with_pieces
+
+    return Part(with_pieces(part.shape, reader.colliders)[0], part.origin, part.name, part.color)
+
+
+def _listed(lost: list[str]) -> str:
+    return "; ".join(dict.fromkeys(lost))

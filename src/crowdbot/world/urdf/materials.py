@@ -1,0 +1,51 @@
+"""Colours of links."""
+
+from __future__ import annotations
+
+from crowdbot.core.markup import Element
+
+from .elements import Color, Reader
+
+__all__ = ["color_of", "read_materials"]
+
+
+def read_materials(reader: Reader, root: Element) -> dict[str, Color]:
+    """Return the colours of the materials of the robot, and of those that visuals define with a name, by name."""
+    inside = [m for link in root.each("link") for visual in link.each("visual") for m in visual.each("material")]
+    found: dict[str, Color] = {}
+    for element in [*root.each("material"), *inside]:
+        name = element.attributes.get("name", "")
+        if name and name not in found:
+            color = _color(reader, element)
+            if color is not None:
+                found[name] = color
+    return found
+
+
+def color_of(reader: Reader, visual: Element) -> Color | None:
+    """Return the colour of a visual; None when it has none, or a texture, which is not read."""
+    material = reader.one(visual, "material")
+    if material is None:
+        return None
+    color = _color(reader, material)
+    if color is not None:
+        return color
+    name = material.attributes.get("name", "")
+    if name in reader.materials:
+        return reader.materials[name]
+    if material.each("texture"):
+        reader.remark("ignored", material, "has a texture, which is not read")
+    elif name:
+        reader.remark("ignored", material, f"names the colour {name[:40]!r}, which is not defined; it stays grey")
+    return None
+
+
+def _color(reader: Reader, material: Element) -> Color | None:
+    element = next(iter(material.each("color")), None)
+    values = None if element is None else reader.row(element, "rgba", 4, None)
+    if element is None or values is None:
+        return None
+    if values.min() < 0.0 or values.max() > 1.0:
+        reader.remark("repaired", element, f'rgba="{element.attributes["rgba"][:40]}" was cut to numbers from 0 to 1')
+    red, green, blue, alpha = (min(1.0, max(0.0, float(value))) for value in values)
+    return red, green, blue, alpha

@@ -1,0 +1,298 @@
+"""A robot as URDF describes it: links, joints, where everything is, and how heavy it is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from crowdbot.core import InputError
+from crowdbot.core.errors import did_you_mean
+
+from .shapes import Shape
+from .transforms import across, frame, from_quaternion, turned, turning
+
+__all__ = ["JOINT_KINDS", "Inertial", "Joint", "Link", "Mimic", "Motor", "Part", "Remark", "RobotModel"]
+
+Floats = NDArray[np.float64]
+JOINT_KINDS = {"fixed": 0, "revolute": 1, "continuous": 1, "prismatic": 1, "planar": 3, "floating": 7}
+"""Kinds of joints and how many numbers say their position."""
+
+
+@dataclass(frozen=True, eq=False)
+class Inertial:
+    """Mass [kg], its centre ``[3]`` [m], and inertia ``[3, 3]`` [kg m2] about that centre, in the axes of a frame."""
+
+    mass: float
+    center: Floats
+    tensor: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A shape of a link: where it is in the link's frame ``[4, 4]``, and its colour (red, green, blue, alpha)."""
+
+    shape: Shape
+    origin: Floats
+    name: str = ""
+    color: tuple[float, float, float, float] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """A rigid part of a robot; what is seen (``visuals``) and what touches (``collisions``) are kept apart.
+
+    ``inertial`` is None for a mere frame. ``friction`` is the coefficient of sliding, None when nothing was said.
+    """
+
+    name: str
+    inertial: Inertial | None = None
+    visuals: tuple[Part, ...] = ()
+    collisions: tuple[Part, ...] = ()
+    friction: float | None = None
+
+
+@dataclass(frozen=True)
+class Mimic:
+    """A joint that follows another: ``multiplier * position + offset``."""
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True)
+class Motor:
+    """What drives a joint: largest force [N or N m] and speed [m/s or rad/s], and how it is commanded.
+
+    ``kind`` is ``position``, ``velocity`` or ``effort``; empty when the URDF does not say.
+    """
+
+    effort: float = math.inf
+    velocity: float = math.inf
+    kind: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """How a child link moves on its parent.
+
+    Fields:
+        name, kind: see :data:`JOINT_KINDS`.
+        parent, child: names of links.
+        origin: frame ``[4, 4]`` of the joint in the parent; the child's frame at position 0.
+        axis: ``[3]`` unit vector in the joint's frame; the normal of a planar joint.
+        lower, upper: of the position [rad or m]; infinite for joints without limits.
+        motor: its largest force and speed.
+        damping: [N s/m or N m s/rad].
+        friction: dry friction [N or N m].
+        stiffness, rest: of a spring [N/m or N m/rad], and the position where it is relaxed.
+        mimic: the joint it follows.
+    """
+
+    name: str
+    kind: str
+    parent: str
+    child: str
+    origin: Floats
+    axis: Floats
+    lower: float = -math.inf
+    upper: float = math.inf
+    motor: Motor = field(default_factory=Motor)
+    damping: float = 0.0
+    friction: float = 0.0
+    stiffness: float = 0.0
+    rest: float = 0.0
+    mimic: Mimic | None = None
+
+    @property
+    def size(self) -> int:
+        """How many numbers say its position."""
+        return JOINT_KINDS[self.kind]
+
+    def motion(self, position: ArrayLike) -> Floats:
+        """Return the child's frame ``[4, 4]`` in the joint's frame.
+
+        Args:
+            position: a number [rad or m]; planar: x, y [m] in the plane and the angle [rad]; floating: x, y, z [m] and
+                the quaternion w, x, y, z.
+
+        Raises:
+            InputError: these are not as many finite numbers.
+        """
+        values = np.atleast_1d(np.asarray(position, dtype=np.float64))
+        if values.shape != (max(self.size, 1),) or not np.all(np.isfinite(values)):
+            raise InputError(
+                f"joint {self.name!r}: position {values.tolist()} must be {max(self.size, 1)} finite numbers"
+                f" ({self.kind})"
+            )
+        if self.kind == "prismatic":
+            return frame(values[0] * self.axis)
+        if self.kind == "planar":
+            return frame(across(self.axis)[:, :2] @ values[:2], turning(self.axis, float(values[2])))
+        if self.kind == "floating":
+            return frame(values[:3], from_quaternion(values[3:]))
+        return np.eye(4) if self.kind == "fixed" else frame(rotation=turning(self.axis, float(values[0])))
+
+    def rest_position(self) -> Floats:
+        """Return the position ``[size]`` in which the child's frame lies on the joint's frame."""
+        return np.array([0.0] * 3 + [1.0] + [0.0] * 3) if self.kind == "floating" else np.zeros(max(self.size, 1))
+
+
+class Remark(NamedTuple):
+    """Something not as it should be: ``replaced``, ``repaired``, ``ignored`` or only ``noted``; and a sentence."""
+
+    kind: str
+    text: str
+
+
+@dataclass(frozen=True, eq=False)
+class RobotModel:
+    """A robot's links and joints, from the root outwards.
+
+    Fields:
+        name: of the robot.
+        links, joints: by name; a parent comes before its children.
+        root: name of the link that is no child.
+        remarks: what was replaced, repaired or ignored.
+        meshes: the files that were read, as the URDF names them, and where they lie.
+
+    >>> from crowdbot.world.urdf import read_urdf
+    >>> arm = read_urdf(\"\"\"<robot name="arm"><link name="foot"/><link name="arm"><inertial><mass value="2"/>
+    ... <origin xyz="1 0 0"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    ... <joint name="hinge" type="continuous"><parent link="foot"/><child link="arm"/><axis xyz="0 0 1"/></joint>
+    ... </robot>\"\"\")
+    >>> arm.mass, arm.inertial({"hinge": math.pi / 2}).center.round(6).tolist()
+    (2.0, [0.0, 1.0, 0.0])
+    """
+
+    name: str
+    links: Mapping[str, Link]
+    joints: Mapping[str, Joint]
+    root: str
+    remarks: tuple[Remark, ...] = ()
+    meshes: Mapping[str, Path] = field(default_factory=dict)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Every sentence of :attr:`remarks`."""
+        return tuple(remark.text for remark in self.remarks)
+
+    @property
+    def mass(self) -> float:
+        """Mass of all links [kg]."""
+        return sum(link.inertial.mass for link in self.links.values() if link.inertial)
+
+    @property
+    def movable(self) -> tuple[Joint, ...]:
+        """The joints that are free to move: neither fixed nor following another."""
+        return tuple(joint for joint in self.joints.values() if joint.kind != "fixed" and joint.mimic is None)
+
+    def positions(self, given: Mapping[str, ArrayLike] | None = None) -> dict[str, Floats]:
+        """Return the position of every joint: as given, following, or at rest.
+
+        Raises:
+            InputError: a name is no joint, or is one that follows another or is fixed.
+        """
+        given = given or {}
+        for name in given:
+            if name not in self.joints:
+                raise InputError(f"{self.name} has no joint {name!r}{did_you_mean(name, self.joints)}")
+            leader = self.joints[name].mimic
+            if leader or self.joints[name].kind == "fixed":
+                why = f"follows {leader.joint!r}" if leader else "is fixed"
+                raise InputError(f"the joint {name!r} of {self.name} {why}; its position cannot be given")
+        found: dict[str, Floats] = {}
+
+        def resolve(name: str) -> Floats:
+            if name not in found:
+                joint = self.joints[name]
+                if joint.mimic:
+                    found[name] = joint.mimic.multiplier * resolve(joint.mimic.joint) + joint.mimic.offset
+                else:
+                    found[name] = np.atleast_1d(np.asarray(given.get(name, joint.rest_position()), dtype=np.float64))
+            return found[name]
+
+        for name in self.joints:
+            resolve(name)
+        return found
+
+    def poses(self, positions: Mapping[str, ArrayLike] | None = None) -> dict[str, Floats]:
+        """Return the frame ``[4, 4]`` of every link in the root's frame.
+
+        Args:
+            positions: of joints by name, see :meth:`Joint.motion`; those left out are at rest.
+
+        Raises:
+            InputError: a name is no joint that moves, or a position is not finite. Limits are not checked.
+        """
+        places = self.positions(positions)
+        found = {self.root: np.eye(4)}
+        for joint in self.joints.values():
+            found[joint.child] = found[joint.parent] @ joint.origin @ joint.motion(places[joint.name])
+        return found
+
+    def inertial(self, positions: Mapping[str, ArrayLike] | None = None) -> Inertial:
+        """Return mass, centre of mass and inertia of the whole in the root's frame."""
+        poses = self.poses(positions)
+        bodies = [(link.inertial, poses[name]) for name, link in self.links.items() if link.inertial]
+        return _joined(bodies)
+
+    def points(self, positions: Mapping[str, ArrayLike] | None = None) -> Floats:
+        """Return points ``[N, 3]`` [m] in the root's frame whose hull holds all colliders; ``[0, 3]`` without any."""
+        poses = self.poses(positions)
+        rows = [
+            turned(poses[name] @ part.origin, part.shape.points())
+            for name, link in self.links.items()
+            for part in link.collisions
+        ]
+        return np.concatenate(rows) if rows else np.zeros((0, 3))
+
+    def footprint(self, positions: Mapping[str, ArrayLike] | None = None) -> Floats:
+        """Return the corners ``[N, 2]`` [m] of the convex outline of all colliders from above, in the root's frame.
+
+        >>> from crowdbot.world.urdf import read_urdf
+        >>> box = '<collision><geometry><box size="2 1 1"/></geometry></collision>'
+        >>> read_urdf(f'<robot name="r"><link name="b">{box}</link></robot>').footprint().tolist()
+        [[-1.0, -0.5], [1.0, -0.5], [1.0, 0.5], [-1.0, 0.5]]
+        """
+        return outline(self.points(positions)[:, :2])
+
+
+def _joined(bodies: list[tuple[Inertial, Floats]]) -> Inertial:
+    mass = sum(inertial.mass for inertial, _ in bodies)
+    if mass <= 0.0:
+        return Inertial(0.0, np.zeros(3), np.zeros((3, 3)))
+    places = [turned(matrix, inertial.center[None])[0] for inertial, matrix in bodies]
+    center = sum((b.mass * place for (b, _), place in zip(bodies, places, strict=True)), np.zeros(3)) / mass
+    tensor = np.zeros((3, 3))
+    for (inertial, matrix), place in zip(bodies, places, strict=True):
+        rotation, shift = matrix[:3, :3], place - center
+        tensor += rotation @ inertial.tensor @ rotation.T
+        tensor += inertial.mass * (np.eye(3) * (shift @ shift) - np.outer(shift, shift))
+    return Inertial(mass, center, tensor)
+
+
+def outline(points: Floats) -> Floats:
+    """Return the corners ``[M, 2]`` of the convex hull of points ``[N, 2]``, counter-clockwise from the lowest left."""
+    rows = sorted({(round(float(x), 9), round(float(y), 9)) for x, y in points})
+    if len(rows) < 3:
+        return np.array(rows).reshape(-1, 2)
+    halves = []
+    for order in (rows, rows[::-1]):
+        chain: list[tuple[float, float]] = []
+        for p in order:
+            while len(chain) > 1 and _left(chain[-2], chain[-1], p) <= 1e-12:
+                chain.pop()
+            chain.append(p)
+        halves.append(chain[:-1])
+    return np.array(halves[0] + halves[1])
+
+
+def _left(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

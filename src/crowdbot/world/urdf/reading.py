@@ -1,0 +1,195 @@
+"""From URDF to a robot: every problem at once, each with its file and line; no robot unless all is right."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from crowdbot.core import InputError, RobotError
+from crowdbot.core.markup import Element, parse, read_bytes
+
+from .elements import Reader
+from .folders import Folders, robot_folder
+from .joints import read_joint
+from .links import read_link
+from .materials import read_materials
+from .model import Inertial, Joint, Link, Remark, RobotModel
+
+__all__ = ["read_urdf"]
+
+MOST_LINKS = 2000
+TOKEN = Inertial(0.001, np.zeros(3), np.eye(3) * 1e-7)
+"""Of a link that moves but has neither mass nor shape: a gram, as a ball of 16 mm."""
+
+
+def read_urdf(
+    source: str | Path,
+    *,
+    folder: Path | None = None,
+    packages: Mapping[str, Path] | None = None,
+    colliders: str = "auto",
+) -> RobotModel:
+    """Read a robot from URDF.
+
+    What can be cured is cured and said in ``remarks``: a mesh that is missing or broken is replaced by the link's other
+    colliders, otherwise by what is seen of the link, otherwise by the box of equal inertia; a missing or unphysical
+    inertia is made of mass and shape.
+
+    Args:
+        source: the path of a URDF file, or the XML text itself (it begins with ``<``).
+        folder: of the robot; no file outside it is read. Default: see :func:`crowdbot.world.urdf.robot_folder`.
+        packages: folders of ROS packages by name, for ``package://name/...``; files in them may be read too.
+        colliders: how meshes become convex: ``auto``, ``hull`` or ``pieces``, see
+            :func:`crowdbot.world.urdf.with_pieces`.
+
+    Raises:
+        RobotError: with every problem found, one sentence each, in the order of the lines.
+        MissingExtra: the URDF names meshes and trimesh is not installed.
+
+    >>> read_urdf("<robot name='r'><link name='a'/><link name='b'/></robot>")
+    Traceback (most recent call last):
+    crowdbot.core.errors.RobotError: urdf:1: <robot> the links 'a' and 'b' are both the root: no joint has them as its \
+child; exactly one link must be
+    """
+    if colliders not in ("auto", "hull", "pieces"):
+        raise InputError(f"colliders = {colliders!r} must be auto, hull or pieces")
+    if isinstance(source, str) and source.lstrip().startswith("<"):
+        data, place, home, beside = source.encode("utf-8", "replace"), "urdf", folder or Path.cwd(), None
+    else:
+        path = Path(source)
+        data, place = read_bytes(path, "URDF", RobotError), str(path)
+        home, beside = folder or robot_folder(path), path.resolve().parent
+    root = parse(data, place, what="URDF", root="robot", refusal=RobotError)
+    reader = Reader(place, Folders(home, packages, beside), colliders)
+    _check_kind(reader, root)
+    return _robot(reader, root)
+
+
+def _check_kind(reader: Reader, root: Element) -> None:
+    if any(inner.tag.startswith("xacro:") for inner in root.children):
+        line = next(inner.line for inner in root.children if inner.tag.startswith("xacro:"))
+        raise RobotError(
+            f"{reader.place}:{line}: this is a xacro file; expand it first:"
+            f" xacro {Path(reader.place).name} > robot.urdf"
+        )
+    if root.tag != "robot":
+        raise RobotError(f"{reader.place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <robot>")
+
+
+def _robot(reader: Reader, root: Element) -> RobotModel:
+    name = root.attributes.get("name", "").strip() or "robot"
+    reader.materials = read_materials(reader, root)
+    reader.notes(root)
+    links: dict[str, Link] = {}
+    joints: dict[str, Joint] = {}
+    lines: dict[str, int] = {}
+    if len(root.each("link")) > MOST_LINKS:
+        raise RobotError(f"{reader.place}:{root.line}: more than {MOST_LINKS} links, which no robot needs")
+    for element in root.each("link"):
+        link = read_link(reader, element)
+        if link is not None and reader.new(element, link.name, links):
+            links[link.name] = link
+    for element in root.each("joint"):
+        joint = read_joint(reader, element)
+        if joint is not None and reader.new(element, joint.name, joints):
+            joints[joint.name], lines[joint.name] = joint, element.line
+    if not root.each("link"):
+        reader.say(root, "holds no <link>")
+    if not reader.found:
+        _check_tree(reader, root, links, joints, lines)
+        _check_mimics(reader, joints, lines)
+    reader.finish()
+    first = next(iter(links.keys() - {joint.child for joint in joints.values()}))
+    ordered = _outwards(first, joints)
+    chain = [first, *(joint.child for joint in ordered.values())]
+    kept = _weighed(reader, {key: links[key] for key in chain}, ordered)
+    return RobotModel(name, kept, ordered, first, tuple(reader.remarks), dict(reader.files))
+
+
+def _check_tree(
+    reader: Reader, root: Element, links: dict[str, Link], joints: dict[str, Joint], lines: dict[str, int]
+) -> None:
+    """Say what keeps links and joints from being one tree."""
+    above: dict[str, Joint] = {}
+    for joint in joints.values():
+        at = Element("joint", {"name": joint.name}, line=lines[joint.name])
+        for role, name in (("parent", joint.parent), ("child", joint.child)):
+            if name not in links:
+                reader.say(at, f"has the {role} {name!r}, which is no link{reader.meant(name, links)}")
+        if joint.child in above:
+            other = above[joint.child].name
+            reader.say(at, f"moves the link {joint.child!r}, which {other!r} moves already: the links form a loop")
+        above[joint.child] = joint
+    if reader.found:
+        return
+    roots = [name for name in links if name not in above]
+    if len(roots) > 1:
+        both = " and ".join(repr(name) for name in roots[:2])
+        which = f"the links {both} are both" if len(roots) == 2 else f"{len(roots)} links, {both} among them, are each"
+        reader.say(root, f"{which} the root: no joint has them as its child; exactly one link must be")
+    reached: set[str] = set(roots)
+    for name in links:
+        chain: dict[str, None] = {}
+        while name not in reached and name not in chain:
+            chain[name] = None
+            name = above[name].parent  # noqa: PLW2901
+        if name in chain:
+            joint = above[name]
+            at = Element("joint", {"name": joint.name}, line=lines[joint.name])
+            circle = [*chain][[*chain].index(name) :]
+            reader.say(at, f"closes a loop of links: {' <- '.join([*circle, name][:8])}")
+        reached |= chain.keys()
+
+
+def _check_mimics(reader: Reader, joints: dict[str, Joint], lines: dict[str, int]) -> None:
+    for joint in joints.values():
+        at = Element("joint", {"name": joint.name}, line=lines[joint.name])
+        leader, seen = joint, {joint.name}
+        while leader.mimic:
+            name = leader.mimic.joint
+            if name not in joints:
+                reader.say(at, f"mimics {name!r}, which is no joint{reader.meant(name, joints)}")
+                break
+            if name in seen:
+                reader.say(at, f"mimics itself by way of {name!r}")
+                break
+            leader = joints[name]
+            seen.add(name)
+        if joint.mimic and not leader.mimic and (leader.size != 1 or joint.size != 1):
+            reader.say(at, f"mimics {leader.name!r}, but only revolute, continuous and prismatic joints can")
+
+
+def _weighed(reader: Reader, links: dict[str, Link], joints: dict[str, Joint]) -> dict[str, Link]:
+    """Return the links, where what moves on a joint and has no mass at all, nor anything fixed to it, got a little."""
+    carrier: dict[str, str] = {}
+    heavy: set[str] = set()
+    for name, link in links.items():
+        above = next((joint for joint in joints.values() if joint.child == name), None)
+        carrier[name] = carrier[above.parent] if above is not None and above.kind == "fixed" else name
+        if link.inertial is not None:
+            heavy.add(carrier[name])
+    found = dict(links)
+    for joint in joints.values():
+        name = joint.child
+        if joint.kind != "fixed" and name not in heavy:
+            found[name] = dataclasses.replace(links[name], inertial=TOKEN)
+            text = f"{reader.place}: <link> {name!r} moves but has neither mass nor shape; it got {TOKEN.mass:g} kg"
+            reader.remarks.append(Remark("repaired", text))
+    return found
+
+
+def _outwards(first: str, joints: dict[str, Joint]) -> dict[str, Joint]:
+    """Return the joints so that a parent comes before its children."""
+    below: dict[str, list[Joint]] = {}
+    for joint in joints.values():
+        below.setdefault(joint.parent, []).append(joint)
+    ordered: dict[str, Joint] = {}
+    waiting = [first]
+    while waiting:
+        for joint in below.get(waiting.pop(0), ()):
+            ordered[joint.name] = joint
+            waiting.append(joint.child)
+    return ordered

@@ -1,0 +1,143 @@
+"""The robots that ship: on their wheels, as large and heavy as they say, and as fast as commanded."""
+
+import functools
+
+import mujoco
+import numpy as np
+import pytest
+
+from crowdbot.core import Pose, Scene, Twist, stream
+from crowdbot.models import ORCA
+from crowdbot.world import DifferentialDrive, Omnidirectional, PlanarWorld, Robot, builtin_robots
+from crowdbot.world.urdf import BaseServo, mjcf
+
+NAMES = builtin_robots()
+PUBLISHED = {  # mass [kg], height [m], and widest extent [m] with the tolerance; see the README files
+    "cuybot": (100.0, 1.28, 0.573),
+    "differential": (18.3, 0.355, 0.5),
+    "pepper": (28.68, 1.21, 0.48),
+    "qolo": (94.7, 1.79, 0.85),
+    "turtlebot2": (6.3, 0.42, 0.36),
+    "wheelchair": (172.0, 1.22, 1.11),
+}
+load = functools.cache(Robot.load)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_they_are_as_published(name):
+    robot = load(name)
+    mass, height, extent = PUBLISHED[name]
+    assert robot.model.warnings == ()
+    assert robot.about
+    assert robot.model.mass == pytest.approx(mass, rel=1e-3)
+    assert robot.height == pytest.approx(height, abs=0.015)
+    assert np.ptp(robot.footprint, axis=0).max() == pytest.approx(extent, abs=0.015)
+    assert robot.model.root == "base_link"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_footprint_is_what_the_colliders_take(name):
+    robot = load(name)
+    outline = robot.model.footprint(robot.posture)
+    np.testing.assert_allclose(robot.footprint.min(axis=0), outline.min(axis=0), atol=1e-3)
+    np.testing.assert_allclose(robot.footprint.max(axis=0), outline.max(axis=0), atol=1e-3)
+    assert robot.radius == pytest.approx(np.hypot(*outline.T).max(), abs=1e-3)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_they_stand_on_the_ground_and_see_from_inside_their_height(name):
+    robot = load(name)
+    points = robot.model.points(robot.posture)
+    assert abs(points[:, 2].min()) < 1e-3
+    assert robot.mounts
+    for mount in robot.mounts:
+        matrix = robot.mounted(mount.name)
+        assert 0.1 < matrix[2, 3] <= robot.height + 0.05
+        x, y, heading = robot.planar_mount(mount.name)
+        pose = Pose.of((1.0, 2.0), 0.5).mounted(x, y, heading)
+        assert mount.sensor.measure(Scene.of([[9.0, 9.0]]), pose, stream(0, "scan")).ranges.shape[0] == 1
+
+
+def resting(robot):
+    """Return physics and data after two seconds on the floor, with the motors holding the posture."""
+    planar = robot.base == "planar"
+    servo = BaseServo(4.0 * robot.model.mass, 1.5 * robot.model.mass) if planar else None
+    physics = mjcf(robot.model, base="planar" if planar else "free", floor=True, servo=servo).load()
+    physics.opt.timestep = 0.005
+    data = mujoco.MjData(physics)
+    for joint, position in robot.posture.items():
+        data.joint(joint).qpos = data.actuator(joint).ctrl = position
+    mujoco.mj_step(physics, data, 400)
+    return physics, data
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_they_stand_still(name):
+    robot = load(name)
+    physics, data = resting(robot)
+    place = data.body("base_link").xpos.copy()
+    assert abs(place[2]) < 2e-3
+    mujoco.mj_step(physics, data, 400)
+    assert np.linalg.norm(data.body("base_link").xpos - place) < 1e-4
+    assert data.body("base_link").xmat[8] > np.cos(np.radians(0.1))
+    for joint, position in robot.posture.items():
+        assert data.joint(joint).qpos[0] == pytest.approx(position, abs=0.05)
+
+
+def command(robot, data, twist):
+    if robot.base == "planar":
+        for name, value in (("forward", twist.forward), ("left", twist.left), ("turn", twist.turn)):
+            data.actuator(f"base_{name}").ctrl = value
+        return
+    for joint, speed in robot.wheel_speeds(twist).items():
+        data.actuator(joint).ctrl = speed
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(("forward", "turn"), [(1.0, 0.0), (-0.5, 0.0), (0.0, 1.0), (0.5, 0.3)])
+def test_they_reach_the_speed_that_is_commanded(name, forward, turn):
+    """Within 2 % in steady state; the command grows for two seconds so that wheels do not slip."""
+    robot = load(name)
+    physics, data = resting(robot)
+    goal = Twist(forward * robot.drive.max_speed, turn * robot.drive.max_turn_rate)
+    for k in range(800):
+        share = min(1.0, k / 400)
+        command(robot, data, Twist(goal.forward * share, goal.turn * share))
+        mujoco.mj_step(physics, data)
+    speed = np.zeros(6)
+    mujoco.mj_objectVelocity(physics, data, mujoco.mjtObj.mjOBJ_XBODY, 1, speed, 1)
+    assert speed[3] == pytest.approx(goal.forward, rel=0.02, abs=0.02 * robot.drive.max_speed)
+    assert speed[2] == pytest.approx(goal.turn, rel=0.02, abs=1e-3)
+
+
+def test_pepper_goes_sideways():
+    robot = load("pepper")
+    physics, data = resting(robot)
+    for _ in range(400):
+        command(robot, data, Twist(0.0, 0.0, left=0.4))
+        mujoco.mj_step(physics, data)
+    speed = np.zeros(6)
+    mujoco.mj_objectVelocity(physics, data, mujoco.mjtObj.mjOBJ_XBODY, 1, speed, 1)
+    assert speed[4] == pytest.approx(0.4, rel=0.02)
+
+
+def test_wheels_turn_as_their_geometry_says():
+    speeds = load("qolo").wheel_speeds(Twist(0.38, 1.0))
+    assert speeds == {
+        "left_wheel_joint": pytest.approx((0.38 - 0.27) / 0.19),
+        "right_wheel_joint": pytest.approx((0.38 + 0.27) / 0.19),
+    }
+    ahead = load("pepper").wheel_speeds(Twist(0.1, 0.0))
+    assert ahead["WheelB"] == pytest.approx(0.0, abs=1e-9)  # its axle points ahead: its rollers do the work
+    assert ahead["WheelFL"] == pytest.approx(-ahead["WheelFR"])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_their_drives_move_them_in_the_plane(name):
+    robot = load(name)
+    assert isinstance(robot.drive, Omnidirectional if name == "pepper" else DifferentialDrive)
+    scene = Scene.of([[0.0, 0.0], [8.0, 1.0]], radius=[robot.radius, 0.25], external=[True, False])
+    world = PlanarWorld(scene, ORCA(), {0: robot.drive}, dt=0.1)
+    for _ in range(50):
+        world.step({0: Twist(0.3, 0.0)})
+    assert world.scene.position[0, 0, 0] == pytest.approx(1.5, abs=0.1)
