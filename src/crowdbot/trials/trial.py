@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from crowdbot.core import InputError
 from crowdbot.models import CrowdModel
@@ -194,11 +194,11 @@ class Trial:
         check(self)
 
     @classmethod
-    def load(cls, source: str | Path, *, trust: bool = False) -> Trial:
+    def load(cls, source: str | Path, *, trust: bool = False, **values: Any) -> Trial:
         """Read a trial file or a built-in trial; see :func:`crowdbot.trials.load_trial`."""
         from .builtin import load_trial
 
-        return load_trial(source, trust=trust)
+        return load_trial(source, trust=trust, **values)
 
     @classmethod
     def parse(
