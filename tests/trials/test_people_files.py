@@ -259,6 +259,8 @@ def test_portals_bring_people_back_as_others() -> None:
         way = episode.position[episode.active[:, agent], agent]
         assert np.abs(np.diff(way[:, 0])).max(initial=0.0) < 0.3
     assert ring.run().digest == episode.digest
+    crowded = text.replace('duration="20"', 'duration="86400"').replace('dx="-10"', 'dx="-0.1"')
+    assert "places together; take a longer period" in refused(crowded)
     assert "t.xml:4: <portal> needs dx or dy" in refused(text.replace(' dx="-10"', ""))
     assert "t.xml:4: <portal> zone is no simple polygon" in refused(text.replace("5,-3 8,-3 8,3 5,3", "5,0 6,0 7,0"))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -25,6 +26,8 @@ __all__ = ["check_trial", "problems_of"]
 MOST_VALUES = 100_000_000
 """An episode is held in memory: recorded scenes times agents must not exceed this."""
 MOST_ARRIVALS = 100_000
+WALKING = 1.6
+"""About how fast [m/s] people go from portal to portal."""
 
 
 def check_trial(trial: Trial, seed: int | None = None) -> None:
@@ -128,7 +131,7 @@ def _size(checked: Checked) -> Problems:
             " an earlier end or fewer at most",
         )
     first = len(checked.agents) + sum(spawner.count for spawner in checked.spawners)
-    agents = first + coming + len(checked.robots)
+    agents = first + coming + len(checked.robots) + _through(checked, first + coming)
     scenes = checked.duration / checked.recording.period
     if scenes * agents > MOST_VALUES:
         yield (
@@ -136,6 +139,14 @@ def _size(checked: Checked) -> Problems:
             f"recording period {checked.recording.period:g} s makes {scenes:.0f} scenes of {agents} agents, more than"
             f" {MOST_VALUES} places together; take a longer period, a shorter duration or fewer people",
         )
+
+
+def _through(checked: Checked, people: int) -> int:
+    """Return about how many people at most come out of portals as new ones."""
+    if not checked.portals or checked.duration is None:
+        return 0
+    shortest = min(math.hypot(portal.dx, portal.dy) for portal in checked.portals)
+    return round(people * checked.duration * WALKING / max(shortest, 0.1))
 
 
 def _stage_shapes(stage: Stage) -> Problems:

@@ -3,7 +3,7 @@
 A corridor of 50 m by 10 m; nobody, or one of five flows of 50, 100, 200 or 350 people (0.1 to 0.7 people/m2), each of
 whom comes in at one end, or side, after leaving at the other. The robot goes 40 m along the middle. Parameters are
 those of the public scenario files: preferred speeds of 1.33 +- 0.30 m/s, bodies of 0.33 m, a robot of 0.5 m, 180 s.
-Accelerations are limited to 5 m/s2 by default, as in Helbing's models; the files have 0.8 m/s2 (``acceleration=0.8``).
+Accelerations are limited to 5 m/s2 by default, as in the examples of UMANS; the files have 0.8 m/s2.
 """
 
 from __future__ import annotations
