@@ -34,7 +34,8 @@ def farthest(trial: Trial) -> tuple[float, int]:
     for agent, walk in enumerate(walks):
         for t, (x, y) in zip(walk.time, walk.position, strict=True):
             tick = round(t / trial.step)
-            if t >= 0.0 and abs(tick * trial.step - t) < 1e-6:
+            if 0.0 <= t <= trial.duration:
+                assert abs(tick * trial.step - t) < 1e-4, "a step ends at every frame"
                 rows.setdefault(tick, []).append((agent, x, y))
     worst, seen = 0.0, 0
     while True:
@@ -43,7 +44,8 @@ def farthest(trial: Trial) -> tuple[float, int]:
             assert scene.active[0, agent], (agent, simulation.tick)
             worst = max(worst, float(np.hypot(*(scene.position[0, agent] - [x, y]))))
             seen += 1
-        inside = sum(walk.time[0] - 1e-9 <= simulation.tick * trial.step <= walk.time[-1] + 1e-9 for walk in walks)
+        now = simulation.world.clock.time
+        inside = sum(walk.time[0] - 1e-4 <= now <= walk.time[-1] + 1e-4 for walk in walks)
         assert np.count_nonzero(scene.active[0, : len(walks)]) == inside
         if simulation.tick >= trial.ticks:
             return worst, seen
@@ -55,7 +57,7 @@ def test_everybody_is_where_the_recording_has_them_at_every_frame(name: str, rec
     file, fps, seconds = RECORDINGS[name]
     whole = recorded_trial(recordings / file, fps=fps)
     worst, seen = farthest(dataclasses.replace(whole, duration=seconds))
-    assert worst < 1e-6
+    assert worst < 1e-3
     assert seen > 200
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,10 +17,15 @@ from crowdbot.world import DifferentialDrive
 from .recorded_people import RecordedPeople, Walk
 from .trial import Goal, Mount, Recording, Robot, Trial
 
+if TYPE_CHECKING:
+    from crowdbot.data import Trajectories
+
 __all__ = ["recorded_trial"]
 
 TICK = 0.05
 """Steps of a world are no longer than this [s], and a whole number of them lies between two rows of a recording."""
+SHORTEST = 0.01
+"""No step is made shorter than this [s] to hit frames of a counter that is finer."""
 LATER = 30.0
 """A robot has twice as long as the person it replaces, and this much more [s]."""
 AHEAD = 1.0
@@ -55,7 +61,7 @@ def recorded_trial(
         data=path.name, fps=fps, format=format, units=units, mode=mode, near=near, folder=path.parent
     )
     tracks = crowd.tracks()
-    step = round(tracks.dt / math.ceil(tracks.dt / TICK - 1e-9), 9)
+    step = _step(tracks)
     period = step * round(tracks.dt / step) if tracks.dt <= 0.5 else step * max(1, round(0.1 / step))
     recording = Recording(period=period, markers=period * math.ceil(0.5 / period - 1e-9))
     whole = max(step, float(tracks.time[-1]))
@@ -79,6 +85,14 @@ def recorded_trial(
         recording=recording,
         folder=path.parent,
     )
+
+
+def _step(tracks: Trajectories) -> float:
+    """Return a time step [s] of which a whole number passes between any two frames, also across gaps of any length."""
+    shared = int(np.gcd.reduce(np.diff(np.unique(tracks.frame)), initial=tracks.frame_step))
+    base = tracks.dt * shared / tracks.frame_step
+    base = base if base >= SHORTEST else tracks.dt
+    return round(base / math.ceil(base / TICK - 1e-9), 9)
 
 
 def _walk_of(crowd: RecordedPeople, person: int, duration: float) -> Walk:

@@ -31,7 +31,8 @@ ARRIVED = 0.3
 """Who is free leaves this near [m] to the end of the own recording."""
 MOVING = 0.05
 """Headings follow velocities above this [m/s]."""
-EARLY = 1e-9
+EARLY = 1e-4
+"""Clocks whose step is rounded to nanoseconds are early or late by less than this [s]."""
 
 
 class Track(NamedTuple):
