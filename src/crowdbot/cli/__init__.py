@@ -22,6 +22,7 @@ COMMANDS = {
     "calibrate": "fit the parameters of a crowd model to recordings of people",
     "degrade": "score predictors on noisy, hidden, swapped and false tracks, or write such a recording",
     "list": "name what is built in: models, predictors, trials, ...",
+    "new": "write a trial to begin with, or one from a recording, or import one",
     "check": "read a trial or a robot and say everything that is wrong with it",
     "cite": "print the papers behind a name",
     "bench": "measure speed on this machine",

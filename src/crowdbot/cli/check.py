@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from .output import add_json, print_json
+from .settings import add_settings, settings
 
 MOST_LINES = 20
 
@@ -23,6 +24,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--package", metavar="NAME=FOLDER", action="append", default=[], help="where package://NAME/ of a URDF lies"
     )
+    add_settings(parser)
     add_json(parser)
 
 
@@ -31,7 +33,7 @@ def main(options: argparse.Namespace) -> int:
     packages = _packages(options.package)
     found: dict[str, dict[str, Any]] = {}
     for name in options.names:
-        row = _robot(name, options.trust, packages) if _is_robot(name) else _trial(name, options.trust)
+        row = _robot(name, options.trust, packages) if _is_robot(name) else _trial(name, options)
         found[name] = {"right": not row["problems"], **row}
     if options.json:
         print_json(found)
@@ -65,18 +67,21 @@ def _is_robot(name: str) -> bool:
     return name in builtin_robots() and not path.is_file()
 
 
-def _trial(name: str, trust: bool) -> dict[str, Any]:
+def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
     from crowdbot.core import InputError, TrialError
     from crowdbot.trials import load_trial
     from crowdbot.trials.experiment import is_experiment, load_experiment
 
     try:
-        (load_experiment if is_experiment(name) else load_trial)(name, trust=trust)
+        if is_experiment(name):
+            load_experiment(name, trust=options.trust)
+            return {"problems": []}
+        trial = load_trial(name, trust=options.trust, **settings(options))
     except TrialError as error:
         return {"problems": list(error.problems)}
     except InputError as error:
         return {"problems": [str(error)]}
-    return {"problems": []}
+    return {"problems": [], "variants": [one.name for one in trial.variants()] if trial.sweeps else []}
 
 
 def _robot(name: str, trust: bool, packages: dict[str, Path]) -> dict[str, Any]:
@@ -108,6 +113,8 @@ def _print(name: str, row: dict[str, Any]) -> None:
         _print_robot(row["robot"])
     verdict = "right" if row["right"] else f"{len(row['problems'])} to mend"
     print(f"{Path(name).name}: {verdict}")
+    for k, variant in enumerate(row.get("variants", ()), 1):
+        print(f"  {k:4d}  {variant}")
 
 
 def _print_robot(row: dict[str, Any]) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .output import add_json, number, print_json, print_metrics, print_table, progress
+from .settings import add_settings, chosen, settings
 
 if TYPE_CHECKING:
     from crowdbot.trials import Summary
@@ -20,6 +21,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
     parser.add_argument("--pace", type=float, metavar="X", help="X times real time (default: as fast as it can)")
     parser.add_argument("--trust", action="store_true", help="let the trial load code from outside its own folder")
+    add_settings(parser)
+    parser.add_argument("--variant", type=int, metavar="N", help="of a trial with sweeps: which one, from 1")
     add_json(parser)
 
 
@@ -28,7 +31,7 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.core import PacedClock
     from crowdbot.trials import load_trial, record
 
-    trial = load_trial(options.trial, trust=options.trust)
+    trial = chosen(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
     file = None if options.out is None else options.out / "episode.mcap"
     clock = None if options.pace is None else PacedClock(trial.step, rate=options.pace)
     begin = time.perf_counter()

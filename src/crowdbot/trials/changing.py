@@ -21,7 +21,7 @@ from .trial import Robot, Trial
 
 __all__ = ["changed", "turn_to"]
 
-FIXED = ("step", "capacity", "spawners", "journeys")
+FIXED = ("step", "capacity", "spawners", "agents", "recorded", "journeys")
 """What cannot change once people are under way."""
 START = ("name", "x", "y", "heading")
 """What cannot change of a robot that is under way."""

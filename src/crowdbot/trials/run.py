@@ -271,6 +271,8 @@ def _outcome(simulation: Simulation) -> str | None:
     end, event = simulation.trial.end, simulation.event
     if (event == "collision" and end.collision) or (event == "success" and end.goal):
         return event
+    if simulation.ended is not None:
+        return simulation.ended
     if simulation.tick < simulation.trial.ticks:
         return None
     return event or ("timeout" if simulation.carriers else "finished")

@@ -29,9 +29,9 @@ from crowdbot.metrics import wall_clearance
 from crowdbot.navigation import Limits, Observation
 from crowdbot.sensors import Reading, Scan
 
+from .leaving import ended, ways_out
 from .opening import limits_of, start_scene, world_of
 from .spawn import place
-from .stage import area
 from .trial import Mount, Robot, Trial
 
 __all__ = ["Carrier", "Frame", "Simulation", "Touch", "start_scene"]
@@ -108,6 +108,7 @@ class Simulation:
         event: ``success`` or ``collision`` once that has happened, whichever came first.
         touches: contacts of the latest step.
         begun: whether the parts 6 to 8 of tick 0 are done.
+        ended: the outcome once another condition of the trial for its end holds.
 
     Raises:
         TrialError: people do not fit with this seed.
@@ -123,9 +124,11 @@ class Simulation:
     def __init__(self, trial: Trial, seed: int, clock: Clock | None = None) -> None:
         self.trial = trial
         self.seed = seed
-        people, problems = place(trial.stage, trial.spawners, trial.robots, seed)
+        recorded = [(one, one.walks(trial.duration)) for one in trial.recorded]
+        people, problems = place(trial.stage, trial.spawners, trial.robots, seed, trial.agents, recorded)
         if problems:
-            raise TrialError(*(f"trial {trial.name!r}: spawner {s.name!r}: {sentence}" for s, sentence in problems))
+            what = ((type(one).__name__.lower(), one.name, sentence) for one, sentence in problems)
+            raise TrialError(*(f"trial {trial.name!r}: {word} {name!r}: {sentence}" for word, name, sentence in what))
         self.people = people
         self.world = world_of(trial, people, seed)
         self.carriers = [self._carrier(robot, len(people) + k) for k, robot in enumerate(trial.robots)]
@@ -134,8 +137,9 @@ class Simulation:
         self.begun = False
         if clock is not None:
             self._keep_time(clock)
+        self.ended: str | None = None
         self._segments = self.world.scene.walls.segments()
-        self._exits = [self._exit(k) for k in range(len(trial.spawners))]
+        self._ways_out = ways_out(people)
 
     def step(self) -> None:
         """Go one step on: parts 1 to 5 of the order."""
@@ -249,22 +253,12 @@ class Simulation:
             )
         self.world.clock = clock
 
-    def _exit(self, spawner: int) -> tuple[NDArray[np.int64], Any]:
-        """Return the people of a spawner who leave in a goal zone of theirs, and that zone."""
-        import shapely
-
-        spec = self.trial.spawners[spawner]
-        zone = area(spec.goal) if spec.goal else shapely.Polygon()
-        shapely.prepare(zone)
-        leaving = spec.goal and spec.arrival == "leave"
-        return np.flatnonzero((self.people.spawner == spawner) & bool(leaving)), zone
-
     def _let_leave(self) -> None:
         import shapely
 
         scene = self.world.scene
         gone = np.zeros(scene.shape[1], dtype=np.bool_)
-        for members, zone in self._exits:
+        for members, zone in self._ways_out:
             there = members[scene.active[0, members] & (self.ids[members] == members)]
             if len(there):
                 x, y = scene.position[0, there].T
@@ -290,6 +284,8 @@ class Simulation:
             self.event = "collision"
         elif self.event is None and self.carriers and all(carrier.arrived for carrier in self.carriers):
             self.event = "success"
+        if self.ended is None:
+            self.ended = ended(self)
 
 
 def _asked(robot: Robot, observation: Observation) -> Twist:
