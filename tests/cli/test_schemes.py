@@ -94,19 +94,19 @@ def test_a_ray_cluster_gives_the_same_numbers(capsys, street):
 
 
 def test_a_stopped_run_goes_on_where_it_was(street, tmp_path, recordings):
-    data = str(recordings / "eth_ucy_splits" / "all_data" / "biwi_hotel.txt")
-    words = ["predict", "--data", data, "--predictor", "simulated", "--cost", "progressive", "--budget", "400"]
+    data = str(recordings / "eth_ucy_splits" / "all_data" / "crowds_zara02.txt")
+    words = ["predict", "--data", data, "--predictor", "simulated", "--cost", "progressive", "--budget", "800"]
     program = [sys.executable, "-m", "crowdbot", *words, "--set", "substep=0.4", "--out", str(tmp_path)]
     running = subprocess.Popen(program, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     deadline = time.monotonic() + 120.0
-    while len(list(tmp_path.glob("parts/*.npz"))) < 2 and time.monotonic() < deadline:
+    while not list(tmp_path.glob("parts/*.npz")) and time.monotonic() < deadline:
         time.sleep(0.05)
     running.send_signal(signal.SIGINT)
     _, told = running.communicate(timeout=60)
     assert running.returncode == 130, told
     assert "interrupted" in told
     kept = {part: part.stat().st_mtime_ns for part in tmp_path.glob("parts/*.npz")}
-    assert len(kept) >= 2
+    assert kept
     assert not list(tmp_path.glob("parts/*.part"))
     assert not (tmp_path / "scores.json").exists()
     done = subprocess.run(program, capture_output=True, text=True, timeout=240)
