@@ -95,7 +95,7 @@ def test_a_ray_cluster_gives_the_same_numbers(capsys, street):
 
 def test_a_stopped_run_goes_on_where_it_was(street, tmp_path, recordings):
     data = str(recordings / "eth_ucy_splits" / "all_data" / "crowds_zara02.txt")
-    words = ["predict", "--data", data, "--predictor", "simulated", "--cost", "progressive", "--budget", "800"]
+    words = ["predict", "--data", data, "--predictor", "simulated", "--cost", "progressive", "--budget", "500"]
     program = [sys.executable, "-m", "crowdbot", *words, "--set", "substep=0.4", "--out", str(tmp_path)]
     running = subprocess.Popen(program, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     deadline = time.monotonic() + 120.0
