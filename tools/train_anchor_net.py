@@ -2,6 +2,7 @@
 
     python tools/train_anchor_net.py train DATA OUT --fold eth hotel univ zara1 zara2 all --seed 0
     python tools/train_anchor_net.py score DATA OUT --seed 0
+    python tools/train_anchor_net.py reliability DATA OUT --seed 0
 
 DATA holds train/, val/ and all_data/ as SGAN published them. A training that was stopped goes on where it was; one
 that is done is not repeated. Only train/ of the other places is learned from; val/ of the other places gives the
@@ -18,13 +19,16 @@ from pathlib import Path
 
 import numpy as np
 
-from crowdbot.data import Trajectories, load
+from crowdbot.data import Trajectories, Windows, load
 from crowdbot.metrics import Score
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, evaluate
 from crowdbot.prediction.learned.anchor_data import Variation, gathered
 from crowdbot.prediction.learned.anchor_training import AnchorTraining, calibrated, train
 from crowdbot.prediction.places import ALL, FOLDS, kept_out
 
+SHOWN = ("ade", "fde", "nll", "energy", "collisions")
+EDGES = np.concatenate([[0.0], np.geomspace(0.005, 1.0, 13)])
+"""Borders of the probabilities that are counted together."""
 SMALL = ("basis", "centres", "spread", "width", "temperature", "widening")
 
 
@@ -75,7 +79,7 @@ def _changes(words: list[str]) -> dict[str, object]:
 
 def score_fold(options: argparse.Namespace, fold: str, seed: int) -> dict[str, dict[str, float]]:
     """Return the scores of everything on the place that a fold leaves out."""
-    file = str(options.out / f"anchor-net-{fold}{f'-seed{seed}' if seed else ''}.npz")
+    file = weights_file(options, fold, seed)
     with np.load(options.out / f"anchors-{fold}.npz") as kept:
         anchors = Anchors(shapes=kept["shapes"].astype(float), share=kept["share"].astype(float))
     asked = {
@@ -87,22 +91,87 @@ def score_fold(options: argparse.Namespace, fold: str, seed: int) -> dict[str, d
         "set of 20, not joint": (AnchorNet(file=file, contact=0.0), 20),
         "single, not joint": (AnchorNet(file=file, contact=0.0), 1),
     }
-    cut = [tracks.windows() for tracks in recordings(options.data / "all_data", fold, left_out=True)]
-    if options.every > 1:
-        cut = [(past[:: options.every], future[:: options.every]) for past, future in cut]
+    cut = windows_left_out(options, fold)
     rows = {}
     for name, (predictor, samples) in asked.items():
         found = Score.total([evaluate(predictor, past, future, samples) for past, future in cut])
-        rows[name] = {k: getattr(found, k) for k in ("ade", "fde", "nll", "energy", "collisions", "persons", "miss_rate")}
+        rows[name] = {k: getattr(found, k) for k in (*SHOWN, "persons", "miss_rate")}
         print(f"{fold} seed {seed} {name:22}"
               + " ".join(f"{k} {v:.3f}" for k, v in rows[name].items()), flush=True)  # fmt: skip
     return rows
 
 
+def reliability(options: argparse.Namespace) -> None:
+    """Draw how often a future was the nearest that was said to be so with some probability, and where truth falls."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9, 4.2), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    for fold in options.fold:
+        net = AnchorNet(file=weights_file(options, fold, options.seed[0]))
+        said, was, level = [], [], []
+        for past, future in windows_left_out(options, fold):
+            hit, ranks = believed(net, past, future)
+            said.append(hit[0].ravel())
+            was.append(hit[1].ravel())
+            level.append(ranks)
+        chance, true, inside = np.concatenate(said), np.concatenate(was), np.concatenate(level)
+        place = np.minimum(np.searchsorted(EDGES, chance, side="right") - 1, len(EDGES) - 2)
+        count = np.bincount(place, minlength=len(EDGES) - 1)
+        kept = np.flatnonzero(count > 100)
+        x = np.bincount(place, chance, len(count))[kept] / count[kept]
+        y = np.bincount(place, true, len(count))[kept] / count[kept]
+        gap = float(np.sum(count[kept] * np.abs(x - y)) / count[kept].sum())
+        left.plot(x, y, "o-", ms=3, lw=1, label=f"{fold}: {100 * gap:.2f} %")
+        shares = np.linspace(0.05, 0.95, 19)
+        held = np.array([np.mean(inside <= share) for share in shares])
+        right.plot(shares, held, "-", lw=1, label=fold)
+        likely = true.reshape(-1, 20)[:, 0].mean()
+        print(f"{fold}: mean gap between said and true probability {gap:.4f}, the likeliest is the nearest in"
+              f" {likely:.3f} (said {chance.reshape(-1, 20)[:, 0].mean():.3f}); inside 50, 80, 95 %"
+              f" of draws: {' '.join(f'{np.mean(inside <= s):.3f}' for s in (0.5, 0.8, 0.95))}", flush=True)  # fmt: skip
+    for axes, low in ((left, 0.005), (right, 0.0)):
+        axes.plot([low, 1], [low, 1], color="0.6", lw=1)
+        axes.legend(fontsize=7)
+    left.set(xscale="log", yscale="log", xlabel="probability said", ylabel="share that was the nearest of 20")
+    right.set(xlabel="innermost share of 100 draws, end point", ylabel="share of true end points inside")
+    figure.savefig(options.out / "reliability.png", dpi=130)
+
+
+def believed(net: AnchorNet, past: Windows, future: Windows) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
+    """Return probabilities ``[N, 20]`` and which was the nearest, and the share of draws nearer the middle."""
+    modes = net.modes(past)
+    kept = future.scored[modes.window, modes.slot]
+    window, slot = modes.window[kept], modes.slot[kept]
+    truth = future.position[window, :, slot] - past.position[window, -1, slot][:, None]
+    error = np.linalg.norm(modes.path[kept] - truth[:, None], axis=3).mean(axis=2)
+    nearest = np.arange(error.shape[1]) == error.argmin(axis=1)[:, None]
+    draws = dataclasses.replace(net, sample="draws").predict(past, future.present.shape[1], 100)
+    end = draws.position[:, :, -1][window, :, slot]
+    middle = end.mean(axis=1)
+    away = end - middle[:, None]
+    inverse = np.linalg.inv(np.einsum("nki,nkj->nij", away, away) / 99.0 + 1e-9 * np.eye(2))
+    own = truth[:, -1] + past.position[window, -1, slot] - middle
+    far = np.einsum("nki,nij,nkj->nk", away, inverse, away)
+    rank = np.mean(far < np.einsum("ni,nij,nj->n", own, inverse, own)[:, None], axis=1)
+    return (modes.probability[kept], nearest), rank
+
+
+def weights_file(options: argparse.Namespace, fold: str, seed: int) -> str:
+    """Return the file of the weights of a fold."""
+    return str(options.out / f"anchor-net-{fold}{f'-seed{seed}' if seed else ''}.npz")
+
+
+def windows_left_out(options: argparse.Namespace, fold: str) -> list[tuple[Windows, Windows]]:
+    """Return past and future of every window, or of every so many-th, of the recordings that a fold leaves out."""
+    cut = [tracks.windows() for tracks in recordings(options.data / "all_data", fold, left_out=True)]
+    return [(past[:: options.every], future[:: options.every]) for past, future in cut]
+
+
 def main() -> None:
     """Do what the command line asks for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("train", "score"))
+    parser.add_argument("what", choices=("train", "score", "reliability"))
     parser.add_argument("data", type=Path)
     parser.add_argument("out", type=Path)
     parser.add_argument("--fold", nargs="+", default=[*FOLDS], choices=[*FOLDS, ALL])
@@ -120,11 +189,14 @@ def main() -> None:
             for fold in options.fold:
                 train_fold(options, fold, seed)
         return
+    if options.what == "reliability":
+        reliability(options)
+        return
     for seed in options.seed:
         rows = {fold: score_fold(options, fold, seed) for fold in options.fold if fold != ALL}
         (options.out / f"scores-seed{seed}.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
         for name in next(iter(rows.values())):
-            mean = {k: np.mean([row[name][k] for row in rows.values()]) for k in ("ade", "fde", "nll", "energy", "collisions")}
+            mean = {k: np.mean([row[name][k] for row in rows.values()]) for k in SHOWN}
             print(f"mean of {len(rows)}, seed {seed}, {name:22}" + " ".join(f"{k} {v:.3f}" for k, v in mean.items()))
 
 

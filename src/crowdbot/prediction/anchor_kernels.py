@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.kernels import kernel
 
-__all__ = ["arrange", "attend", "dense", "part_ways"]
+__all__ = ["arrange", "attend", "crossing", "dense", "part_ways"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -112,11 +112,13 @@ def _boxes(path: Floats, room: float) -> Floats:  # pragma: no cover - compiled
 
 @kernel
 def _apart(one: Floats, other: Floats) -> bool:  # pragma: no cover - compiled
-    return one[2] < other[0] or other[2] < one[0] or one[3] < other[1] or other[3] < one[1]
+    return bool(one[2] < other[0] or other[2] < one[0] or one[3] < other[1] or other[3] < one[1])
 
 
 @kernel
-def _meeting(path: Floats, a: int, b: int, box: Floats, limit: float, hit: Bools) -> bool:  # pragma: no cover - compiled
+def _meeting(
+    path: Floats, a: int, b: int, box: Floats, limit: float, hit: Bools
+) -> bool:  # pragma: no cover - compiled
     """Write ``[K, K]`` whether two people collide in each pair of their futures; return whether they do in any."""
     K, T = path.shape[1], path.shape[2]
     found = False
@@ -171,10 +173,8 @@ def arrange(path: Floats, limit: float, order: float, sweeps: int) -> Integers: 
                 if meet[p] and (one[p] == a or other[p] == a):
                     for k in range(K):
                         for m in range(K):
-                            if one[p] == a and hit[p, m, choice[other[p], k]]:
-                                cost[m, k] += 1.0
-                                clash = True
-                            elif other[p] == a and hit[p, choice[one[p], k], m]:
+                            first = one[p] == a
+                            if hit[p, m, choice[other[p], k]] if first else hit[p, choice[one[p], k], m]:
                                 cost[m, k] += 1.0
                                 clash = True
             if clash and _exchanged(choice[a], cost):
@@ -254,3 +254,33 @@ def part_ways(path: Floats, fixed: Bools, limit: float, rounds: int) -> Floats: 
                 for c in range(2):
                     out[a, t, c] += push[a, t, c]
     return out
+
+
+@kernel
+def crossing(start: Floats, path: Floats, one: Floats, other: Floats) -> Integers:  # pragma: no cover - compiled
+    """Return ``[N, K]`` the first step in which paths ``start [N, 2] + path [N, K, T, 2]`` cross a segment, T if none.
+
+    The segments go from ``one`` to ``other`` ``[M, 2]`` [m].
+    """
+    N, K, T, _ = path.shape
+    found = np.full((N, K), T, dtype=np.int64)
+    for n in range(N):
+        for k in range(K):
+            x, y = start[n, 0], start[n, 1]
+            for t in range(T):
+                u, v = start[n, 0] + path[n, k, t, 0], start[n, 1] + path[n, k, t, 1]
+                for m in range(len(one)):
+                    ax, ay, bx, by = one[m, 0], one[m, 1], other[m, 0], other[m, 1]
+                    if max(ax, bx) < min(x, u) or max(x, u) < min(ax, bx):
+                        continue
+                    side_1 = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
+                    side_2 = (bx - ax) * (v - ay) - (by - ay) * (u - ax)
+                    side_3 = (u - x) * (ay - y) - (v - y) * (ax - x)
+                    side_4 = (u - x) * (by - y) - (v - y) * (bx - x)
+                    if side_1 * side_2 < 0.0 and side_3 * side_4 < 0.0:
+                        found[n, k] = t
+                        break
+                if found[n, k] < T:
+                    break
+                x, y = u, v
+    return found

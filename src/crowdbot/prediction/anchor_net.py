@@ -20,8 +20,8 @@ from crowdbot.data.windows import Windows
 from .anchor_kernels import attend, dense
 from .anchors import CHAI, misfit, scattered, spread_over_time
 from .constant import ConstantVelocity, SampledConstantVelocity
-from .joint import drawn_together, kept_apart, set_together
-from .own_frame import AHEAD, COMPANY, INPUTS, features, forward, people_of, turned
+from .joint import before_walls, drawn_together, kept_apart, set_together
+from .own_frame import AHEAD, COMPANY, INPUTS, STEP, features, forward, people_of, turned
 from .places import ALL, AUTO, Numbers, check_fold, fold_of, learned, read_numbers
 from .predictor import Predictor, window_streams
 
@@ -38,6 +38,8 @@ NEEDED = ("basis", "centres", "spread", "width", "temperature", "widening", "nob
 ))  # fmt: skip
 MOST_AT_ONCE = 2048
 """People whose numbers are held at once."""
+WALL = 0.02
+"""What is left of the probability of a future that leads through a wall."""
 DRAWS = 20
 """Draws are shared out among joint futures in blocks of so many, so that more draws do not change the first."""
 
@@ -76,9 +78,10 @@ class AnchorNet(Predictor):
     """Learned: 20 futures of every person, their probabilities, one answer for who wants one, and real draws.
 
     A multilayer perceptron reads the last 8 places of a person in the own frame and, through attention, the 12 nearest
-    others; for a robot with a plan, where it will be. It bends 20 anchors (see :class:`~crowdbot.prediction.Anchors`)
-    in a space of 6 numbers, says how probable each is to be the nearest, and has an answer of its own for K = 1.
-    Missing rows, noise, late tracks and switched identities were part of the training.
+    others; of a robot with a plan it is told where it will be. It bends 20 anchors (see
+    :class:`~crowdbot.prediction.Anchors`) in a space of 6 numbers, says how probable each is to be the nearest, and has
+    an answer of its own for K = 1. Missing rows, noise, late tracks and switched identities were part of the training.
+    Futures that lead through a wall of the map are made improbable afterwards, and end before it.
 
     People of a window belong together: who takes which of the own futures in which joint future is chosen so that
     they do not walk through each other, and what remains is moved aside by some centimetres. Every person still has
@@ -125,14 +128,14 @@ class AnchorNet(Predictor):
             warnings.warn(f"anchor-net: {why}; {one.name} answers instead", stacklevel=2)
             return one.predict(past, steps, samples, rng)
         numbers = self._numbers(past)
-        bends = _bends(numbers, past)
+        bends = _around_walls(_bends(numbers, past), numbers, past)
         if self.sample == "draws":
             return self._draws(past, steps, samples, rng, numbers, bends)
         if samples == 1:
-            path = _path(numbers, bends, bends.single[:, None], steps, past.dt)
+            path = _path(numbers, bends, bends.single[:, None], past, steps)[0]
             place = scattered(past, path, bends.window, bends.slot)
             return self.forecast(past, kept_apart(past, place, self.contact))
-        path = _path(numbers, bends, bends.mode, steps, past.dt)
+        path = _path(numbers, bends, bends.mode, past, steps)[0]
         place = scattered(past, path, bends.window, bends.slot)
         share = np.full((len(past), past.present.shape[2], path.shape[1]), 0.0)
         share[bends.window, bends.slot] = bends.probability
@@ -152,13 +155,16 @@ class AnchorNet(Predictor):
         if why:
             raise InputError(f"anchor-net: {why}; there are no modes of it")
         numbers = self._numbers(past)
-        bends = _bends(numbers, past)
-        path = _path(numbers, bends, bends.mode, steps, past.dt)
-        single = _path(numbers, bends, bends.single[:, None], steps, past.dt)[:, 0]
+        bends = _around_walls(_bends(numbers, past), numbers, past)
+        path = _path(numbers, bends, bends.mode, past, steps)[0]
+        single = _path(numbers, bends, bends.single[:, None], past, steps)[0][:, 0]
         return Modes(path, bends.probability, single, bends.window, bends.slot)
 
     def note(self, past: Windows) -> str:
-        """Return what should be known of a forecast of these windows, or nothing."""
+        """Return what a user should know of forecasts of such windows in one sentence, or nothing."""
+        why = misfit(past)
+        if why:
+            return f"anchor-net: {why}; a baseline answers instead"
         if not self.file and self.fold == AUTO and fold_of(past.source) == ALL:
             return (
                 f"anchor-net: {past.source} is not named after one of the five places it knows, so the weights learned"
@@ -190,8 +196,12 @@ class AnchorNet(Predictor):
                 which[who, part] = np.minimum((level[:, :, None] >= ladder[who, None]).sum(axis=2), K - 1)
                 noise[who, part] = own.standard_normal((len(who), DRAWS, D))
         rows = np.arange(N)[:, None]
-        bend = bends.mode[rows, which] + bends.spread[rows, which] * noise
-        path = _path(numbers, bends, bend, steps, past.dt)
+        middle = bends.mode[rows, which]
+        bend = middle + bends.spread[rows, which] * noise
+        if past.walls:  # what scatters through a wall stays in the middle
+            _, through = _path(numbers, bends, bend, past)
+            bend = np.where(through[..., None], middle, bend)
+        path, _ = _path(numbers, bends, bend, past, steps)
         place = drawn_together(past, scattered(past, path, bends.window, bends.slot), self.contact, DRAWS)
         return self.forecast(past, kept_apart(past, place[:, :samples], self.contact))
 
@@ -257,11 +267,36 @@ def _bends(numbers: Numbers, past: Windows) -> _Bends:
     )
 
 
-def _path(numbers: Numbers, bends: _Bends, bend: Floats, steps: int, dt: float) -> Floats:
-    """Return displacements ``[N, K, T, 2]`` [m] of bends ``[N, K, 6]``."""
+def _around_walls(bends: _Bends, numbers: Numbers, past: Windows) -> _Bends:
+    """Return what is believed where there are walls: futures through them are hardly probable, no answer is one."""
+    if not past.walls:
+        return bends
+    _, hit = _path(numbers, bends, bends.mode, past)
+    probability = np.where(hit, WALL, 1.0) * bends.probability
+    probability = probability / np.cumsum(probability, axis=1)[:, -1:]
+    order = np.argsort(-probability, axis=1, kind="stable")
+    row = np.arange(len(order))[:, None]
+    mode = bends.mode[row, order]
+    _, lone = _path(numbers, bends, bends.single[:, None], past)
+    single = np.where(lone & ~hit.all(axis=1, keepdims=True), mode[:, 0], bends.single)
+    return bends._replace(
+        mode=mode, probability=probability[row, order], spread=bends.spread[row, order], single=single
+    )
+
+
+def _path(
+    numbers: Numbers, bends: _Bends, bend: Floats, past: Windows, steps: int = 0
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return displacements ``[N, K, T, 2]`` [m] of bends ``[N, K, 6]`` that end before walls, and which did not.
+
+    Without ``steps`` they are the 12 of 0.4 s that were learned, so that what is believed does not depend on how far
+    is asked.
+    """
     basis = numbers["basis"]
     away = np.zeros((*bend.shape[:2], basis.shape[1]))
     for d in range(len(basis)):  # in one order, whatever the number of people
         away += bend[..., d, None] * basis[d]
     local = away.reshape(*bend.shape[:2], AHEAD, 2)
-    return spread_over_time(turned(local, bends.heading, back=True), bends.step, steps, dt)
+    time = (steps, past.dt) if steps else (AHEAD, STEP)
+    path = spread_over_time(turned(local, bends.heading, back=True), bends.step, *time)
+    return before_walls(past, path, bends.window, bends.slot)

@@ -95,7 +95,10 @@ class Anchors(Predictor):
         return found["shapes"], found["share"]
 
     def note(self, past: Windows) -> str:
-        """Return what should be known of a forecast of these windows, or nothing."""
+        """Return what a user should know of forecasts of such windows in one sentence, or nothing."""
+        why = misfit(past)
+        if why:
+            return f"anchors: {why}; a baseline answers instead"
         if self.shapes is None and self.fold == AUTO and fold_of(past.source) == ALL:
             return f"anchors: {past.source} is none of the five places, so the shapes of all of them are used"
         return ""
@@ -120,14 +123,18 @@ def misfit(past: Windows) -> str:
     if past.units != "m":
         return f"{past.source} is in {past.units}, not in metres"
     if past.dt > LONGEST_STEP:
-        return f"{past.source} has steps of {past.dt:.4g} s, it was learned at {STEP} s and takes up to {LONGEST_STEP} s"
+        return (
+            f"{past.source} has steps of {past.dt:.4g} s, it was learned at {STEP} s and takes up to {LONGEST_STEP} s"
+        )
     return ""
 
 
 def residuals(past: Windows, future: Windows) -> Floats:
     """Return what constant velocity misses ``[N, 12, 2]`` [m] in the own frames of everyone scored over all 12 rows."""
     if future.present.shape[1] != AHEAD or abs(past.dt - STEP) > 1e-6:
-        raise InputError(f"learning needs 12 rows ahead at steps of {STEP} s, not {future.present.shape[1]} of {past.dt:.4g} s")
+        raise InputError(
+            f"learning needs 12 rows ahead at steps of {STEP} s, not {future.present.shape[1]} of {past.dt:.4g} s"
+        )
     people, window, slot = people_of(past)
     kept = future.scored[window, slot] & future.present[window, :, slot].all(axis=1)
     people, window, slot = people.at(np.flatnonzero(kept)), window[kept], slot[kept]
@@ -177,12 +184,11 @@ def spread_over_time(bend: Floats, step: Floats, steps: int, dt: float) -> Float
     low = np.minimum(time.astype(np.int64), AHEAD)
     high = np.minimum(low + 1, AHEAD)
     share = np.where(low < AHEAD, time - low, 0.0)[:, None]
-    return step[:, None, None] * time[:, None] + known[:, :, low] + share * (known[:, :, high] - known[:, :, low])
+    bent = known[:, :, low] + share * (known[:, :, high] - known[:, :, low])
+    return np.asarray(step[:, None, None] * time[:, None] + bent)
 
 
-def scattered(
-    past: Windows, away: Floats, window: NDArray[np.int64], slot: NDArray[np.int64]
-) -> Floats:
+def scattered(past: Windows, away: Floats, window: NDArray[np.int64], slot: NDArray[np.int64]) -> Floats:
     """Return positions ``[W, K, T, A, 2]`` [m] of displacements ``[N, K, T, 2]`` from the last places."""
     W, A = past.present.shape[0], past.present.shape[2]
     path = np.zeros((W, *away.shape[1:3], A, 2))
@@ -192,15 +198,16 @@ def scattered(
 
 def _start(points: Floats, count: int, rng: np.random.Generator) -> Floats:
     """Return ``count`` of the points, far from each other (k-means++)."""
-    place = points[rng.integers(len(points))][None]
+    place: Floats = points[int(rng.integers(len(points)))][None]
     nearest = _squared(points, place)[:, 0]
     for _ in range(count - 1):
         share = np.cumsum(nearest)
-        new = points[min(int(np.searchsorted(share, rng.random() * share[-1])), len(points) - 1)][None]
+        row = min(int(np.searchsorted(share, rng.random() * share[-1])), len(points) - 1)
+        new = points[row][None]
         nearest = np.minimum(nearest, _squared(points, new)[:, 0])
         place = np.concatenate([place, new])
-    return place
+    return np.asarray(place)
 
 
 def _squared(points: Floats, place: Floats) -> Floats:
-    return np.stack([((points - one) ** 2).sum(axis=1) for one in place], axis=1)
+    return np.asarray(np.stack([((points - one) ** 2).sum(axis=1) for one in place], axis=1))

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from crowdbot.data.windows import Windows
 
-from .anchor_kernels import arrange, part_ways
+from .anchor_kernels import arrange, crossing, part_ways
 
-__all__ = ["drawn_together", "kept_apart", "set_together"]
+__all__ = ["before_walls", "drawn_together", "kept_apart", "set_together"]
 
 Floats = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ def set_together(past: Windows, place: Floats, share: Floats, contact: float) ->
     """
     W, K = place.shape[:2]
     found, weight = place.copy(), np.full((W, K), 1.0 / K)
-    for window, who in _members(past, robots=True):
+    for window, who in _members(past):
         choice = _choice(past, place, window, who, contact, ORDER)
         found[window][:, :, who] = _taken(place[window][:, :, who], choice)
         people = [a for a, person in enumerate(who) if not past.robot[window, person]]
@@ -49,7 +49,7 @@ def set_together(past: Windows, place: Floats, share: Floats, contact: float) ->
 def drawn_together(past: Windows, place: Floats, contact: float, block: int) -> Floats:
     """Return draws ``[W, K, T, A, 2]`` [m] shared out anew within blocks of ``block``, so that people keep apart."""
     found = place.copy()
-    for window, who in _members(past, robots=True):
+    for window, who in _members(past):
         for first in range(0, place.shape[1], block):
             part = slice(first, first + block)
             choice = _choice(past, place[:, part], window, who, contact, 0.0)
@@ -62,7 +62,7 @@ def kept_apart(past: Windows, place: Floats, contact: float) -> Floats:
     if contact <= 0.0:
         return place
     found = place.copy()
-    for window, who in _members(past, robots=True):
+    for window, who in _members(past):
         if len(who) < 2:
             continue
         fixed = past.robot[window, who]
@@ -73,7 +73,24 @@ def kept_apart(past: Windows, place: Floats, contact: float) -> Floats:
     return found
 
 
-def _members(past: Windows, robots: bool) -> list[tuple[int, NDArray[np.int64]]]:
+def before_walls(
+    past: Windows, path: Floats, window: NDArray[np.int64], slot: NDArray[np.int64]
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return displacements ``[N, K, T, 2]`` [m] that end before the walls of the windows, and which did not [N, K]."""
+    rings = [np.asarray(ring, dtype=np.float64) for ring in past.walls if len(ring) > 1]
+    if not rings:
+        return path, np.zeros(path.shape[:2], dtype=np.bool_)
+    one = np.concatenate(rings)
+    other = np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
+    start = np.ascontiguousarray(past.position[window, -1, slot])
+    free = np.asarray(crossing(start, np.ascontiguousarray(path), one, other))
+    T = path.shape[2]
+    last = np.take_along_axis(path, np.maximum(free - 1, 0)[:, :, None, None], axis=2)
+    last = np.where((free > 0)[:, :, None, None], last, 0.0)
+    return np.where((np.arange(T) < free[..., None])[..., None], path, last), free < T
+
+
+def _members(past: Windows) -> list[tuple[int, NDArray[np.int64]]]:
     """Return every window with who is there, by id, so that the order of slots does not matter."""
     found = []
     for window in range(len(past)):

@@ -61,7 +61,10 @@ class People(NamedTuple):
 
     def at(self, rows: NDArray[np.int64] | slice) -> People:
         """Return some of the people."""
-        return People(*(values[rows] for values in self))
+        return People(
+            self.past[rows], self.seen[rows], self.near[rows], self.pace[rows], self.later[rows], self.known[rows],
+            self.there[rows],
+        )  # fmt: skip
 
 
 def completed(position: Floats, seen: Bools) -> Floats:
@@ -115,7 +118,7 @@ def turned(vector: Floats, heading: Floats, back: bool = False) -> Floats:
 
 
 def features(people: People, heading: Floats) -> tuple[Floats, Floats]:
-    """Return the numbers of each person ``[N, INPUTS]`` and neighbour ``[N, 12, COMPANY]`` who look along ``heading``."""
+    """Return the numbers of each person ``[N, INPUTS]`` and neighbour ``[N, 12, COMPANY]``, looking along headings."""
     past, near, pace, later = (turned(values, heading) for values in (people.past, people.near, people.pace,
                                                                      people.later))  # fmt: skip
     step = past[:, 1:] - past[:, :-1]
@@ -162,10 +165,10 @@ def people_of(past: Windows) -> tuple[People, NDArray[np.int64], NDArray[np.int6
     pace = step[where, who]
     moment = np.asarray(MOMENTS, dtype=np.float64)[:, None]
     later = place[:, :, None] + pace[:, :, None] * moment
-    known = np.zeros(who.shape, dtype=np.bool_)
+    known: Bools = np.zeros(who.shape, dtype=np.bool_)
     if past.plan is not None:
         planned = np.stack([_plan_at(past, k)[where, who] for k in MOMENTS], axis=2)
-        known = ~np.isnan(planned).any(axis=(2, 3))
+        known = np.asarray(~np.isnan(planned).any(axis=(2, 3)))
         later = np.where(known[..., None, None], planned - now[:, None, None], later)
     zero = there[..., None]
     people = People(
@@ -207,9 +210,7 @@ def _at_steps(past: Windows) -> tuple[Floats, Bools]:
     return position, seen
 
 
-def _nearest(
-    place: Floats, here: Bools, walked: Bools, id: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], Bools]:
+def _nearest(place: Floats, here: Bools, walked: Bools, id: NDArray[np.int64]) -> tuple[NDArray[np.int64], Bools]:
     """Return slots ``[W, A, 12]`` of the nearest others, equally near ones by id, and whether they are there."""
     W, A, _ = place.shape
     who, there = np.zeros((W, A, NEAR), dtype=np.int64), np.zeros((W, A, NEAR), dtype=np.bool_)

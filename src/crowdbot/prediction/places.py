@@ -72,12 +72,12 @@ def read_numbers(path: Path) -> Numbers:
         DataError: it is missing, damaged, or holds something else than finite numbers.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as handle, np.load(handle, allow_pickle=False) as file:
             found = {name: file[name].astype(np.float64) for name in file.files}
     except FileNotFoundError:
         raise DataError(f"there is no file {path}; train it first") from None
     except Exception as error:  # numpy raises anything at damaged files: zipfile, zlib, ValueError, KeyError, EOFError
-        raise DataError(f"{path} cannot be read as learned numbers: it is damaged or something else ({error})") from None
+        raise DataError(f"{path} cannot be read as learned numbers, it is damaged or something else: {error}") from None
     bad = [name for name, values in found.items() if not np.all(np.isfinite(values))]
     if bad:
         raise DataError(f"{path}: {bad[0]} holds numbers that are not finite; the file is damaged")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,10 +95,11 @@ def gathered(recordings: Sequence[Trajectories], reverse: bool = True) -> Materi
             parts.append(_people(*one.windows()))
     if not parts:
         raise InputError("there is no recording to learn from")
-    return Material(*(
-        _joined([part[k] for part in parts]) if k < 2 else np.concatenate([part[k] for part in parts])
-        for k in range(3)
-    ))  # type: ignore[arg-type]
+    return Material(
+        _joined([part.people for part in parts]),
+        _joined([part.planned for part in parts]),
+        np.concatenate([part.ahead for part in parts]),
+    )
 
 
 def backwards(tracks: Trajectories) -> Trajectories:
@@ -163,18 +164,16 @@ def _switched(past: Floats, near: Floats, pace: Floats, how: Variation, rng: np.
     row = np.arange(1.0 - T, 1.0)[:, None]
     other = near[:, :1] + pace[:, :1] * row
     close = np.hypot(near[:, 0, 0], near[:, 0, 1])
-    from_row = rng.integers(1, T, N)[:, None]
-    chosen = (rng.random(N) < how.switched) & (close > 0.0) & (close < 1.5)
-    return np.where((chosen[:, None] & (np.arange(T) < from_row))[..., None], other, past)
+    from_row = rng.integers(1, T, size=(N, 1))
+    chosen = (rng.random((N, 1)) < how.switched) & ((close > 0.0) & (close < 1.5))[:, None]
+    return np.where((chosen & (np.arange(T) < from_row))[..., None], other, past)
 
 
-def _rows_seen(
-    past: Floats, seen: NDArray[np.bool_], how: Variation, rng: np.random.Generator
-) -> NDArray[np.bool_]:
+def _rows_seen(past: Floats, seen: NDArray[np.bool_], how: Variation, rng: np.random.Generator) -> NDArray[np.bool_]:
     N, T = seen.shape
-    hole = (rng.random(N) < how.holes)[:, None] & (rng.random((N, T)) < how.hole)
-    begin = np.where(rng.random(N) < how.late, T - rng.integers(2, T, N), 0)
-    kept = seen & ~hole & (np.arange(T) >= begin[:, None])
+    hole = (rng.random((N, 1)) < how.holes) & (rng.random((N, T)) < how.hole)
+    begin = np.where(rng.random((N, 1)) < how.late, T - rng.integers(2, T, size=(N, 1)), 0)
+    kept = np.asarray(seen & ~hole & (np.arange(T) >= begin), dtype=np.bool_)
     kept[:, -1] = True
     few = kept.sum(axis=1) < 2
     kept[few, -2] = True
@@ -182,7 +181,8 @@ def _rows_seen(
 
 
 def _people(past: Windows, future: Windows) -> Material:
-    known = np.where((future.present.all(axis=1))[:, None, :, None], future.position, np.nan)
+    whole = np.asarray(future.present.all(axis=1))
+    known = np.where(whole[:, None, :, None], future.position, np.nan)
     people, window, slot = people_of(past)
     planned, _, _ = people_of(dataclasses.replace(past, plan=known))
     kept = np.flatnonzero(future.scored[window, slot])
@@ -191,5 +191,6 @@ def _people(past: Windows, future: Windows) -> Material:
     return Material(people.at(kept), planned.at(kept), ahead)
 
 
-def _joined(parts: Sequence[object]) -> People:
-    return People(*(np.concatenate(values) for values in zip(*parts, strict=True)))  # type: ignore[call-overload]
+def _joined(parts: Sequence[People]) -> People:
+    columns: list[Any] = [np.concatenate(values) for values in zip(*parts, strict=True)]
+    return People(*columns)

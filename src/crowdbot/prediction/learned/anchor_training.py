@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, stream
+from crowdbot.core.errors import MissingExtra
 from crowdbot.prediction.anchors import centres
 from crowdbot.prediction.own_frame import AHEAD, COMPANY, INPUTS, forward, turned
 
@@ -25,6 +26,8 @@ __all__ = ["AnchorTraining", "calibrated", "shapes_of", "train"]
 Floats = NDArray[np.float64]
 Numbers = dict[str, NDArray[Any]]
 
+KEPT_EVERY = 500
+"""Updates after which the state is written."""
 RANK = 6
 """Numbers that a bend is made of; they reconstruct what constant velocity misses to about 2 cm."""
 
@@ -48,7 +51,7 @@ class AnchorTraining:
         variation: of the people.
     """
 
-    updates: int = 5000
+    updates: int = 4000
     people: int = 256
     width: int = 256
     social: int = 64
@@ -87,7 +90,7 @@ def network(how: AnchorTraining) -> Any:
 
     W, S, K = how.width, how.social, how.count
     torch.manual_seed(how.seed)
-    layers = torch.nn.ModuleDict(
+    layers: Any = torch.nn.ModuleDict(
         {
             "own_1": torch.nn.Linear(INPUTS, W), "own_2": torch.nn.Linear(W, W),
             "query": torch.nn.Linear(W, S), "near_1": torch.nn.Linear(COMPANY, S), "near_2": torch.nn.Linear(S, S),
@@ -132,15 +135,16 @@ def train(
         material: people to learn from.
         how: None means the defaults.
         progress: told the update and the loss, every hundred updates.
-        keep: file of the state, written every 500 updates; training goes on from it when it exists.
+        keep: file of the state, written every :data:`KEPT_EVERY` updates; training goes on from it when it exists.
 
     Raises:
-        InputError: PyTorch is not installed, or the state in ``keep`` belongs to another training.
+        MissingExtra: PyTorch is not installed.
+        InputError: the state in ``keep`` belongs to another training.
     """
     try:
         import torch
     except ImportError:
-        raise InputError("training needs PyTorch, which is not installed: pip install crowdbot[learn]") from None
+        raise MissingExtra("learned prediction", "learn") from None
     how = how or AnchorTraining()
     shapes = shapes_of(material, how.count, how.seed)
     fixed = {name: torch.tensor(values, dtype=torch.float32) for name, values in shapes.items()}
@@ -165,7 +169,7 @@ def train(
                 mean[name].lerp_(value, 1.0 - share)
         if progress is not None and (update + 1) % 100 == 0:
             progress(update + 1, float(loss.detach()))
-        if keep is not None and (update + 1) % 500 == 0:
+        if keep is not None and (update + 1) % KEPT_EVERY == 0:
             _kept(state, mean, keep, update + 1, _mark(material, how))
     return shapes | _plain(mean)
 
