@@ -1,6 +1,7 @@
 """Trains the shipped weights of AnchorNet and Anchors on the leave-one-out files of ETH/UCY, and scores them.
 
     python tools/train_anchor_net.py train DATA OUT --fold eth hotel univ zara1 zara2 all --seed 0
+    python tools/train_anchor_net.py calibrate DATA OUT --fold eth --seed 0
     python tools/train_anchor_net.py score DATA OUT --seed 0
     python tools/train_anchor_net.py reliability DATA OUT --seed 0
 
@@ -22,8 +23,9 @@ import numpy as np
 from crowdbot.data import Trajectories, Windows, load
 from crowdbot.metrics import Score
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, evaluate
+from crowdbot.prediction.learned.anchor_calibration import calibrated
 from crowdbot.prediction.learned.anchor_data import Variation, gathered
-from crowdbot.prediction.learned.anchor_training import AnchorTraining, calibrated, train
+from crowdbot.prediction.learned.anchor_training import AnchorTraining, train
 from crowdbot.prediction.places import ALL, FOLDS, kept_out
 
 SHOWN = ("ade", "fde", "nll", "energy", "collisions")
@@ -59,14 +61,19 @@ def train_fold(options: argparse.Namespace, fold: str, seed: int) -> None:
                   f" {time.perf_counter() - begin:.0f} s", flush=True)  # fmt: skip
 
     state = options.out / f"{name}.state"
-    numbers = train(material, how, tell, state)
-    numbers = calibrated(numbers, gathered(recordings(options.data / "val", fold), reverse=False))
-    kept = {k: v.astype(np.float32 if k in SMALL else np.float16) for k, v in numbers.items()}
-    np.savez(done, **kept)
+    write(options, fold, done, train(material, how, tell, state))
     state.unlink(missing_ok=True)
-    print(f"{name}: {sum(v.size for v in kept.values())} numbers, {done.stat().st_size / 1e6:.2f} MB,"
-          f" temperature {float(numbers['temperature']):.2f}, widening {float(numbers['widening']):.2f},"
-          f" {time.process_time() - work:.0f} CPU s", flush=True)  # fmt: skip
+    print(f"{name}: {time.process_time() - work:.0f} CPU s", flush=True)
+
+
+def write(options: argparse.Namespace, fold: str, file: Path, numbers: dict[str, np.ndarray]) -> None:
+    """Calibrate on val/ of the places that were learned from, and write the numbers in as few bytes as they need."""
+    kept = {k: v.astype(np.float32 if k in SMALL else np.float16) for k, v in numbers.items()}
+    kept = calibrated(kept, gathered(recordings(options.data / "val", fold), reverse=False))
+    np.savez(file, **{k: v.astype(np.float32) if k in SMALL else v for k, v in kept.items()})
+    size = sum(values.size for values in kept.values())
+    said = {name: kept[name].round(2).tolist() for name in ("temperature", "widening")}
+    print(f"{file.name}: {size} numbers, {file.stat().st_size / 1e6:.2f} MB, {said}", flush=True)
 
 
 def _changes(words: list[str]) -> dict[str, object]:
@@ -126,10 +133,12 @@ def reliability(options: argparse.Namespace) -> None:
         shares = np.linspace(0.05, 0.95, 19)
         held = np.array([np.mean(inside <= share) for share in shares])
         right.plot(shares, held, "-", lw=1, label=fold)
-        likely = true.reshape(-1, 20)[:, 0].mean()
-        print(f"{fold}: mean gap between said and true probability {gap:.4f}, the likeliest is the nearest in"
-              f" {likely:.3f} (said {chance.reshape(-1, 20)[:, 0].mean():.3f}); inside 50, 80, 95 %"
-              f" of draws: {' '.join(f'{np.mean(inside <= s):.3f}' for s in (0.5, 0.8, 0.95))}", flush=True)  # fmt: skip
+        likely, sure = true.reshape(-1, 20)[:, 0].mean(), chance.reshape(-1, 20)[:, 0].mean()
+        shown = " ".join(f"{np.mean(inside <= share):.3f}" for share in (0.5, 0.8, 0.95))
+        print(
+            f"{fold}: mean gap between said and true probability {gap:.4f}, the likeliest is the nearest in"
+            f" {likely:.3f} (said {sure:.3f}); inside 50, 80, 95 % of draws: {shown}", flush=True,
+        )  # fmt: skip
     for axes, low in ((left, 0.005), (right, 0.0)):
         axes.plot([low, 1], [low, 1], color="0.6", lw=1)
         axes.legend(fontsize=7)
@@ -171,7 +180,7 @@ def windows_left_out(options: argparse.Namespace, fold: str) -> list[tuple[Windo
 def main() -> None:
     """Do what the command line asks for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("train", "score", "reliability"))
+    parser.add_argument("what", choices=("train", "calibrate", "score", "reliability"))
     parser.add_argument("data", type=Path)
     parser.add_argument("out", type=Path)
     parser.add_argument("--fold", nargs="+", default=[*FOLDS], choices=[*FOLDS, ALL])
@@ -188,6 +197,13 @@ def main() -> None:
         for seed in options.seed:
             for fold in options.fold:
                 train_fold(options, fold, seed)
+        return
+    if options.what == "calibrate":
+        for seed in options.seed:
+            for fold in options.fold:
+                file = Path(weights_file(options, fold, seed))
+                with np.load(file) as kept:
+                    write(options, fold, file, {name: kept[name] for name in kept.files})
         return
     if options.what == "reliability":
         reliability(options)

@@ -12,10 +12,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import DataError, InputError, stream
-from crowdbot.data import Windows
-from crowdbot.prediction import AnchorNet, ConstantVelocity, SampledConstantVelocity
+from crowdbot.data import Trajectories, Windows
+from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, SampledConstantVelocity, evaluate
 from crowdbot.prediction.anchor_kernels import arrange, attend, crossing, dense, part_ways
-from crowdbot.prediction.places import learned
+from crowdbot.prediction.anchor_net import NEEDED
+from crowdbot.prediction.own_frame import GAITS
+from crowdbot.prediction.places import FOLDS, learned
 
 Maker = Callable[..., Windows]
 KINDS = (AnchorNet(), AnchorNet(sample="draws"))
@@ -227,6 +229,28 @@ def test_wrong_wishes_are_one_sentence() -> None:
         AnchorNet(contact=-1)
     with pytest.raises(InputError, match="fold 'paris'"):
         AnchorNet("paris")
+
+
+def test_shipped_weights_are_ahead_where_they_did_not_learn(recorded: Callable[[str], Trajectories]) -> None:
+    past, future = recorded("biwi_hotel").windows()
+    floor, straight = evaluate(Anchors(), past, future, 20), evaluate(ConstantVelocity(), past, future)
+    twenty, one = evaluate(AnchorNet(), past, future, 20), evaluate(AnchorNet(), past, future)
+    assert twenty.ade < 0.85 * floor.ade
+    assert twenty.fde < 0.75 * floor.fde
+    assert one.ade < 0.85 * straight.ade
+    assert one.fde < 0.85 * straight.fde
+    assert max(one.collisions, twenty.collisions) < 0.5 * straight.collisions
+    assert len(past) > 0
+    assert twenty.nll < floor.nll
+    assert twenty.energy < floor.energy
+
+
+@pytest.mark.parametrize("fold", ["all", *FOLDS])
+def test_every_fold_is_shipped_whole(fold: str) -> None:
+    numbers = learned("anchor-net", fold)
+    assert set(NEEDED) <= set(numbers)
+    assert numbers["temperature"].shape == numbers["widening"].shape == (len(GAITS) + 1,)
+    assert learned("anchors", fold)["shapes"].shape == (20, 12, 2)
 
 
 @both

@@ -21,7 +21,7 @@ from .anchor_kernels import attend, dense
 from .anchors import CHAI, misfit, scattered, spread_over_time
 from .constant import ConstantVelocity, SampledConstantVelocity
 from .joint import before_walls, drawn_together, kept_apart, set_together
-from .own_frame import AHEAD, COMPANY, INPUTS, STEP, features, forward, people_of, turned
+from .own_frame import AHEAD, COMPANY, INPUTS, STEP, features, forward, gait, people_of, turned
 from .places import ALL, AUTO, Numbers, check_fold, fold_of, learned, read_numbers
 from .predictor import Predictor, window_streams
 
@@ -100,7 +100,7 @@ class AnchorNet(Predictor):
     steps up to 0.7 s are interpolated; with longer ones, or in pixels, a baseline answers and a warning says so.
     After 4.8 s the bend stays as it is. Somebody seen once stands.
 
-    Paper: anchors, Chai et al. (2019), arXiv 1910.05449; everything else is in docs/prediction.
+    Paper: anchors, Chai et al. (2019), arXiv 1910.05449.
     """
 
     fold: str = AUTO
@@ -168,7 +168,7 @@ class AnchorNet(Predictor):
         if not self.file and self.fold == AUTO and fold_of(past.source) == ALL:
             return (
                 f"anchor-net: {past.source} is not named after one of the five places it knows, so the weights learned"
-                " at all of them are used; name the place with fold when it is one"
+                " at all of them, perhaps from this recording too, are used; name the place with fold when it is one"
             )
         return ""
 
@@ -246,12 +246,13 @@ def _bends(numbers: Numbers, past: Windows) -> _Bends:
         some = people.at(part)
         out[part] = network_output(numbers, *features(some, heading[part]), some.there)
     mode = numbers["centres"] + out[:, : K * D].reshape(-1, K, D) * numbers["spread"]
-    score = out[:, K * D : K * D + K] / numbers["temperature"]
+    kind = gait(people.past)
+    score = out[:, K * D : K * D + K] / numbers["temperature"][kind, None]
     probability = np.exp(score - score.max(axis=1, keepdims=True, initial=-np.inf))
     total = np.cumsum(probability, axis=1)[:, -1:]  # summed in one order, whatever the number of people
     probability = probability / total
     spread = np.exp(np.clip(numbers["width"] + out[:, None, K * D + K + D :], -6.0, 2.0))
-    spread = spread * numbers["spread"] * numbers["widening"]
+    spread = spread * numbers["spread"] * numbers["widening"][kind, None, None]
     order = np.argsort(-probability, axis=1, kind="stable")
     row = np.arange(len(order))[:, None]
     walked = (people.seen.sum(axis=1) > 1)[:, None]

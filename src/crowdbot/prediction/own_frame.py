@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from crowdbot.data.motion import bridged
 from crowdbot.data.windows import Windows
 
-__all__ = ["AHEAD", "COMPANY", "INPUTS", "MOMENTS", "NEAR", "ROWS", "STEP", "People", "completed", "features",
-           "forward", "people_of", "turned"]  # fmt: skip
+__all__ = ["AHEAD", "COMPANY", "GAITS", "INPUTS", "MOMENTS", "NEAR", "ROWS", "STEP", "People", "completed", "features",
+           "forward", "gait", "people_of", "turned"]  # fmt: skip
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -35,6 +35,8 @@ INPUTS = 7 * 2 + 7 * 2 + 1 + 2 + 7
 """Numbers about a person alone: places, displacements, speed, mean velocity, which rows were seen."""
 COMPANY = 2 + 2 + 2 + 1 + 1 + 1 + 1 + 2 * len(MOMENTS)
 """Numbers about each neighbour."""
+GAITS = (0.03, 0.2, 0.8, 2.0, 3.5)
+"""Distances [m] walked in 2.8 s that part still, standing, shuffling, slow, usual and fast people."""
 MOVED = 0.1
 """Less motion than this [m] gives no heading; it is then looked for further back."""
 FEW = 64
@@ -106,6 +108,15 @@ def forward(past: Floats) -> Floats:
         heading = np.where(far[:, None], away, heading)
     length = _length(heading)[:, None]
     return np.where(length > 1e-9, heading / np.where(length > 1e-9, length, 1.0), np.array([1.0, 0.0]))
+
+
+def gait(past: Floats) -> NDArray[np.int64]:
+    """Return how fast people with the places ``[N, 8, 2]`` [m] walk ``[N]``: 0 is still, ``len(GAITS)`` is fast.
+
+    >>> gait(np.linspace(0.0, [[0.0, 0.0], [3.0, 0.0]], 8, axis=1)).tolist()
+    [0, 4]
+    """
+    return np.asarray(np.searchsorted(np.asarray(GAITS), _length(past[:, -1] - past[:, 0])))
 
 
 def turned(vector: Floats, heading: Floats, back: bool = False) -> Floats:

@@ -19,9 +19,9 @@ from crowdbot.core.errors import MissingExtra
 from crowdbot.prediction.anchors import centres
 from crowdbot.prediction.own_frame import AHEAD, COMPANY, INPUTS, forward, turned
 
-from .anchor_data import NONE, Batch, Material, Variation, batch
+from .anchor_data import Batch, Material, Variation, batch
 
-__all__ = ["AnchorTraining", "calibrated", "shapes_of", "train"]
+__all__ = ["AnchorTraining", "network", "outputs", "shapes_of", "train"]
 
 Floats = NDArray[np.float64]
 Numbers = dict[str, NDArray[Any]]
@@ -214,49 +214,6 @@ def _loss(layers: Any, fixed: dict[str, Any], shown: Batch, how: AnchorTraining,
         + how.single * (lone.mean(1) + 0.5 * lone[:, -1]).mean()
         - how.likely * density.clamp(min=-50.0).mean()
     )
-
-
-def calibrated(numbers: Numbers, material: Material) -> Numbers:
-    """Return the numbers with the ``temperature`` of the probabilities and the ``widening`` of the spreads.
-
-    Both are those under which people who were not learned from are most likely: the nearest future among all, and the
-    place of the truth around its futures.
-    """
-    own, company, there, missed = batch(material, np.arange(len(material)), NONE, stream(0, "calibrated"))
-    out = _outputs_of(numbers, own, company, there)
-    K, N = len(numbers["centres"]), len(out)
-    bend = numbers["centres"] + out[:, : RANK * K].reshape(N, K, RANK) * numbers["spread"]
-    score = out[:, RANK * K : RANK * K + K]
-    wide = np.clip(numbers["width"] + out[:, None, -RANK:], -6.0, 2.0)
-    nearest = np.empty(N, dtype=np.int64)
-    truth = missed.reshape(N, -1) @ numbers["basis"].T
-    for n in range(N):
-        away = (bend[n] @ numbers["basis"]).reshape(K, AHEAD, 2) - missed[n]
-        nearest[n] = np.argmin(np.sqrt((away**2).sum(2)).mean(1))
-    temperatures = np.exp(np.linspace(-1.5, 1.5, 61))
-    cost = [-_log_share(score / t)[np.arange(N), nearest].mean() for t in temperatures]
-    temperature = temperatures[int(np.argmin(cost))]
-    log_share = _log_share(score / temperature)
-    z2 = ((truth[:, None] - bend) / numbers["spread"] * np.exp(-wide)) ** 2
-    widenings = np.exp(np.linspace(-1.0, 1.5, 51))
-    surprise = []
-    for w in widenings:
-        each = log_share - (0.5 * z2 / w**2 + wide + np.log(w)).sum(2)
-        top = each.max(1)
-        surprise.append(-np.maximum(top + np.log(np.exp(each - top[:, None]).sum(1)), -50.0).mean())
-    widening = widenings[int(np.argmin(surprise))]
-    return numbers | {"temperature": np.asarray(temperature), "widening": np.asarray(widening)}
-
-
-def _outputs_of(numbers: Numbers, own: Floats, company: Floats, there: NDArray[np.bool_]) -> Floats:
-    from crowdbot.prediction.anchor_net import network_output
-
-    return network_output({name: np.asarray(v, dtype=np.float64) for name, v in numbers.items()}, own, company, there)
-
-
-def _log_share(score: Floats) -> Floats:
-    top = score.max(axis=1, keepdims=True)
-    return np.asarray(score - top - np.log(np.exp(score - top).sum(axis=1, keepdims=True)))
 
 
 def _plain(mean: dict[str, Any]) -> Numbers:
