@@ -1,5 +1,7 @@
 """Floor 4: where people will be in the next seconds; predictors, and their scores on recordings."""
 
+from .anchor_net import AnchorNet, Modes
+from .anchors import Anchors
 from .constant import ConstantAcceleration, ConstantVelocity, LeastSquares, SampledConstantVelocity
 from .degraded import DegradedScore, Seen, Task, seen_windows, sweep
 from .evaluate import evaluate
@@ -11,6 +13,8 @@ from .simulated import Simulated
 from .study import Frames, Part, Piece, Result, Study
 
 __all__ = [
+    "AnchorNet",
+    "Anchors",
     "ConstantAcceleration",
     "ConstantVelocity",
     "DegradedScore",
@@ -19,6 +23,7 @@ __all__ = [
     "KalmanAcceleration",
     "LeastSquares",
     "Live",
+    "Modes",
     "Part",
     "Piece",
     "Predictor",

@@ -1,0 +1,1 @@
+"""Training of learned predictors with PyTorch (extra ``[learn]``); predicting needs none of it."""
