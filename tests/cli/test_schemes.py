@@ -93,11 +93,22 @@ def test_a_ray_cluster_gives_the_same_numbers(capsys, street):
     assert cluster["results"][0]["total"]["ade"] == one["results"][0]["total"]["ade"]
 
 
+def _hears_ctrl_c() -> None:
+    """Undo what a shell does to programs in its background, whose children are deaf to Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def test_a_stopped_run_goes_on_where_it_was(street, tmp_path, recordings):
     data = str(recordings / "eth_ucy_splits" / "all_data" / "crowds_zara02.txt")
     words = ["predict", "--data", data, "--predictor", "simulated", "--cost", "progressive", "--budget", "500"]
     program = [sys.executable, "-m", "crowdbot", *words, "--set", "substep=0.4", "--out", str(tmp_path)]
-    running = subprocess.Popen(program, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    running = subprocess.Popen(
+        program,
+        stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        preexec_fn=_hears_ctrl_c,  # noqa: PLW1509
+    )
     deadline = time.monotonic() + 120.0
     while not list(tmp_path.glob("parts/*.npz")) and time.monotonic() < deadline:
         time.sleep(0.05)
