@@ -215,7 +215,7 @@ def test_own_weights_are_read_and_wrong_ones_are_one_sentence(crowd: Maker, tmp_
     assert np.array_equal(own.predict(crowd(), 12).position, AnchorNet("all").predict(crowd(), 12).position)
     np.savez(tmp_path / "half.npz", **{k: v for k, v in numbers.items() if k != "query_bias"})
     np.savez(tmp_path / "old.npz", **numbers | {"own_1_weight": np.zeros((30, 256))})
-    for file, word in (("half", "it has no query_bias"), ("old", "its first layers read other numbers")):
+    for file, word in (("half", "it has no query_bias"), ("old", "its own_1_weight is of another shape")):
         with pytest.raises(DataError, match=f"{file}.npz holds no weights of this network: {word}"):
             AnchorNet(file=str(tmp_path / f"{file}.npz")).predict(crowd(), 12)
     with pytest.raises(DataError, match="there is no file"):

@@ -21,7 +21,7 @@ from .anchor_kernels import attend, dense
 from .anchors import CHAI, misfit, scattered, spread_over_time
 from .constant import ConstantVelocity, SampledConstantVelocity
 from .joint import before_walls, drawn_together, kept_apart, set_together
-from .own_frame import AHEAD, COMPANY, INPUTS, STEP, features, forward, gait, people_of, turned
+from .own_frame import AHEAD, COMPANY, GAITS, INPUTS, STEP, features, forward, gait, people_of, turned
 from .places import ALL, AUTO, Numbers, check_fold, fold_of, learned, read_numbers
 from .predictor import Predictor, window_streams
 
@@ -226,8 +226,10 @@ def _own(file: str, changed: int) -> Numbers:
     if known is None or known[0] != changed:
         numbers = read_numbers(Path(file))
         missing = [name for name in NEEDED if name not in numbers]
-        if missing or len(numbers["own_1_weight"]) != INPUTS or len(numbers["near_1_weight"]) != COMPANY:
-            what = f"it has no {missing[0]}" if missing else "its first layers read other numbers"
+        shapes = {"own_1_weight": INPUTS, "near_1_weight": COMPANY, "temperature": len(GAITS) + 1}
+        wrong = [name for name, rows in shapes.items() if not missing and numbers[name].shape[:1] != (rows,)]
+        if missing or wrong:
+            what = f"it has no {missing[0]}" if missing else f"its {wrong[0]} is of another shape"
             raise DataError(f"{file} holds no weights of this network: {what}; train it with this version")
         _OWN[file] = known = changed, numbers
     return known[1]

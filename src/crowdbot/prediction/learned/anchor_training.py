@@ -145,7 +145,19 @@ def train(
         import torch
     except ImportError:
         raise MissingExtra("learned prediction", "learn") from None
-    how = how or AnchorTraining()
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)  # sums are then made in one order
+    try:
+        return _trained(material, how or AnchorTraining(), progress, keep)
+    finally:
+        torch.set_num_threads(before)
+
+
+def _trained(
+    material: Material, how: AnchorTraining, progress: Callable[[int, float], None] | None, keep: Path | None
+) -> Numbers:
+    import torch
+
     shapes = shapes_of(material, how.count, how.seed)
     fixed = {name: torch.tensor(values, dtype=torch.float32) for name, values in shapes.items()}
     layers = network(how)
