@@ -16,6 +16,7 @@ COMMANDS = {
     "replay": "run a recorded episode again and check its digest",
     "predict": "score predictors on recordings of people",
     "calibrate": "fit the parameters of a crowd model to recordings of people",
+    "train": "learn a predictor from recordings of people",
     "degrade": "score predictors on noisy, hidden, swapped and false tracks, or write such a recording",
     "list": "name what is built in: models, predictors, trials, ...",
     "check": "read a trial or a robot and say everything that is wrong with it",

@@ -199,7 +199,7 @@ class Samples:
         found: list[Integers] = []
         bucket = np.cumsum(counted[order]) // max(1, BUCKET * people)
         for part in np.split(order, np.flatnonzero(np.diff(bucket)) + 1):
-            ranked = part[np.argsort(counted[part], kind="stable")]
+            ranked = part[np.argsort(np.diff(self.first)[part], kind="stable")]
             cut = (np.cumsum(counted[ranked]) - 1) // max(1, people)
             found += np.split(ranked, np.flatnonzero(np.diff(cut)) + 1)
         return [found[number] for number in rng.permutation(len(found))]
