@@ -49,7 +49,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Learn, and say where the weights are."""
     from crowdbot.core.errors import UnknownName
-    from crowdbot.prediction.learned.extra import torch_module
+    from crowdbot.prediction.learned.extra import threads
     from crowdbot.prediction.learned.samples import short_recordings
     from crowdbot.prediction.learned.training import BEST, Schedule, train
 
@@ -60,7 +60,6 @@ def main(options: argparse.Namespace) -> int:
         options.updates, epochs, options.check_every, options.check_every, ("ade", "fde"), options.patience,
         options.seed,
     )  # fmt: skip
-    torch_module().set_num_threads(options.threads)
     learned, watched, left = _samples(options)
     if not options.json:
         tell_notes(learned)
@@ -71,7 +70,7 @@ def main(options: argparse.Namespace) -> int:
     model = make(options.settings, assignments(options.set), samples, check, options.seed, options.device)
     if not options.json:
         note(f"{options.what} learns {samples.people} futures in {len(samples)} windows of {len(learned)} recordings")
-    with _events(options) as written:
+    with threads(options.threads), _events(options) as written:
         done = train(model, schedule, options.out, options.resume, _told(options.json, written))
     _said(options, done, options.out / BEST, left)
     return 0
@@ -121,7 +120,9 @@ def _events(options: argparse.Namespace) -> _Events:
     try:
         from torch.utils.tensorboard import SummaryWriter
     except ImportError:
-        raise InputError("--tensorboard needs TensorBoard: pip install tensorboard; log.csv is written anyway") from None
+        raise InputError(
+            "--tensorboard needs TensorBoard: pip install tensorboard; log.csv is written anyway"
+        ) from None
     return _Events(SummaryWriter(str(options.out)))
 
 
@@ -143,7 +144,9 @@ def _said(options: argparse.Namespace, done: Trained, file: Path, left: list[str
              "seconds": done.seconds, "best": dict(best), "log": [dict(row) for row in done.rows], "left_out": left}
         )  # fmt: skip
         return
-    rows = [("best", *(number(best.get(name)) for name in ("update", "ade", "fde"))), ]
+    rows = [
+        ("best", *(number(best.get(name)) for name in ("update", "ade", "fde"))),
+    ]
     rows.append(("last", *(number(done.rows[-1].get(name)) for name in ("update", "ade", "fde"))))
     caption = f"{done.updates} updates in {done.seconds:.0f} s{', stopped early' if done.stopped else ''}; on {file}"
     print_table(f"{options.what}, best of 20 on what is watched", ("", "update", "ADE [m]", "FDE [m]"), rows, caption)

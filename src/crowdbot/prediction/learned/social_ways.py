@@ -8,7 +8,7 @@ map of the hidden vectors to the 64 numbers that the text gives the pooled vecto
 gradient goes through them (the angle of somebody who stands has none); the sizes that the text gives the layers between
 LSTMs and heads of the discriminator do not fit together, here they are 128 x 64 each, then 128 x 64.
 
-Paper: Amirian, Hayet, Pettré (2019), Social Ways, CVPR Workshops, doi 10.1109/CVPRW.2019.00359.
+Paper: Amirian, Hayet, Pettré (2019), Social Ways, CVPR Workshops, doi 10.48550/arXiv.1904.09507.
 """
 
 from __future__ import annotations
@@ -95,7 +95,8 @@ class Generator(nn.Module):
                 velocity = (moved - place) / self.dt
             place = moved
             state = torch.cat([place / self.scales[0], velocity / self.scales[1]], dim=-1)  # [K * B, A, 4]
-            hidden = self.encoder(self.embed(state).flatten(0, 1), hidden)
+            if step + 1 < steps:
+                hidden = self.encoder(self.embed(state).flatten(0, 1), hidden)  # h goes on with what was said
             places.append(place)
             states.append(state)
         shape = (draws, scenes, people)

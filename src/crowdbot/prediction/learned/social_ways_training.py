@@ -104,17 +104,18 @@ class SocialWaysTraining(Trainable):
         """Do a step of the discriminator, those it looks ahead, and a step of the generator."""
         self._rates(number, total)
         lesson = self._lesson(augmented(self.samples.batch(batch), self.samples.observe, self.config, rng))
-        noise = self._noise(lesson, rng, 1)
-        with torch.no_grad():
-            _, made = self._made(lesson, noise)
-        codes = noise[0][lesson.scored][:, : self.config.latent_codes]
-        losses = self._discriminator_step(lesson, made[0], codes)
+        c = self.config
+        noise = self._noise(lesson, rng, c.variety_draws if c.use_variety_loss else 1)
+        codes = noise[0][lesson.scored][:, : c.latent_codes]
+        _, made = self._made(lesson, noise)  # one drawing serves both networks
+        told = made[0].detach()
+        losses = self._discriminator_step(lesson, told, codes)
         kept = None
-        if self.config.unrolling_steps:
+        if c.unrolling_steps:
             kept = copy.deepcopy((self.discriminator.state_dict(), self.of_discriminator.state_dict()))
-            for _ in range(self.config.unrolling_steps):
-                self._discriminator_step(lesson, made[0], codes)
-        losses |= self._generator_step(lesson, rng)
+            for _ in range(c.unrolling_steps):
+                self._discriminator_step(lesson, told, codes)
+        losses |= self._generator_step(lesson, made, codes)
         if kept is not None:  # every layer and everything that Adam knows
             self.discriminator.load_state_dict(kept[0])
             self.of_discriminator.load_state_dict(kept[1])
@@ -196,14 +197,12 @@ class SocialWaysTraining(Trainable):
         self._stepped(loss, self.of_discriminator, self.discriminator)
         return {"discriminator": float(told.detach())}
 
-    def _generator_step(self, lesson: _Lesson, rng: np.random.Generator) -> dict[str, float]:
+    def _generator_step(self, lesson: _Lesson, made: Tensor, codes: Tensor) -> dict[str, float]:
         c = self.config
-        noise = self._noise(lesson, rng, c.variety_draws if c.use_variety_loss else 1)
-        _, made = self._made(lesson, noise)
         fake, read = self.discriminator(lesson.observed, made[0])
         parts = {"adversarial": c.adversarial_weight * adversarial_loss(fake, True, c)}
         if c.use_info_loss:
-            parts["info"] = self._info(read, noise[0][lesson.scored][:, : c.latent_codes])
+            parts["info"] = self._info(read, codes)
         true = lesson.future[..., :2]
         if c.use_l2_loss:
             parts["l2"] = c.l2_weight * (made[0, ..., :2] - true).square().sum(-1).mean()
