@@ -28,7 +28,7 @@ def plot_samples(study: ToyStudy, runs: Sequence[Run], file: Path) -> Path:
     from matplotlib.figure import Figure
 
     toy = study.toy
-    first = {run.method: run for run in reversed(sorted(runs, key=lambda run: run.seed))}
+    first = {run.method: run for run in sorted(runs, key=lambda run: -run.seed)}
     named = {"real": None, **{m: first[m] for m in study.methods if m in first}}
     columns = min(4, len(named))
     rows = -(-len(named) // columns)

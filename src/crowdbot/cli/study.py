@@ -79,6 +79,11 @@ def _said(options: argparse.Namespace, study: ToyStudy, runs: list[Run]) -> int:
         f"{study.updates} updates, {len(study.seeds)} seeds; 200 real against 200 drawn paths of each group, and 20"
         " against 20 as in the report; means over the last 5 measurements"
     )
-    print_table("GANs on the toy set", ("method", "1-NN", "EMD [m]", "modes", "groups with all", "1-NN of 20", "EMD of 20"), rows, caption)
+    print_table(
+        "GANs on the toy set",
+        ("method", "1-NN", "EMD [m]", "modes", "groups with all", "1-NN of 20", "EMD of 20"),
+        rows,
+        caption,
+    )
     note(f"wrote study.json, samples.png and measures.png in {options.out}")
     return 0

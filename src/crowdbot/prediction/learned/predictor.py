@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 from crowdbot.data import Windows
 from crowdbot.data.motion import bridged
-
 from crowdbot.prediction.predictor import Predictor
 
 __all__ = ["LearnedPredictor", "whole_tracks"]

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, Paper
 from crowdbot.data import Forecast, Windows
-
 from crowdbot.prediction.predictor import window_streams
+
 from .checkpoint import load_checkpoint
 from .extra import device_of, tensors, threads, torch_module
 from .predictor import LearnedPredictor, whole_tracks

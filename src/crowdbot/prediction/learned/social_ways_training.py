@@ -215,7 +215,8 @@ class SocialWaysTraining(Trainable):
         """Return the loss of information: a normal density around what is read, so a squared distance."""
         if not self.config.use_info_loss:
             return read.new_zeros(())
-        return self.config.info_weight * nn.functional.mse_loss(read[:, : codes.shape[1]], codes)
+        away: Tensor = nn.functional.mse_loss(read[:, : codes.shape[1]], codes)
+        return self.config.info_weight * away
 
     def _stepped(self, loss: Tensor, optimiser: torch.optim.Optimizer, network: nn.Module) -> None:
         optimiser.zero_grad(set_to_none=True)
@@ -260,7 +261,7 @@ def augmented(scenes: Scenes, observe: int, config: SocialWaysConfig, rng: np.ra
     place, there, scored, here = scenes
     if config.reverse and rng.random() < 0.5 and place.shape[1] >= 2 * observe:
         place, there = place[:, ::-1], there[:, ::-1]
-        here = there[:, :observe].all(axis=1)
+        here = np.asarray(there[:, :observe].all(axis=1))
         scored = scored & here
     factor: NDArray[np.float64] = np.ones((count, 1, 1, 2))
     if config.scale_sd > 0.0:

@@ -92,4 +92,4 @@ class Toy:
         begin = 2.0 * np.pi * np.arange(self.groups) / self.groups
         turn = np.concatenate([np.zeros((*later.shape[:3], self.observe)), later], axis=-1)
         angle = begin[:, None, None, None] + turn
-        return np.array(self.radii)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        return np.asarray(np.array(self.radii)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1))

@@ -74,7 +74,7 @@ class ToyStudy:
     seeds: tuple[int, ...] = (0, 1, 2)
     updates: int = 20_000
     check_every: int = 500
-    toy: Toy = Toy()
+    toy: Toy = field(default_factory=Toy)
     values: Mapping[str, Any] = field(default_factory=dict)
     device: str = "cpu"
 
