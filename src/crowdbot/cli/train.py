@@ -80,7 +80,7 @@ def _samples(options: argparse.Namespace) -> tuple[tuple[Recording, ...], tuple[
     """Return what is learned from, the samples to learn from and to watch, and the files that are left out."""
     from crowdbot.prediction.learned.samples import Samples, leave_out, split_in_time
 
-    found, left = list(recordings(options)), []
+    found, left = list(recordings(options)), list[Any]()
     if options.leave_out is not None:
         found, left = leave_out(found, options.leave_out)
     if options.check is None:

@@ -215,8 +215,8 @@ class SocialWaysTraining(Trainable):
         """Return the loss of information: a normal density around what is read, so a squared distance."""
         if not self.config.use_info_loss:
             return read.new_zeros(())
-        away: Tensor = nn.functional.mse_loss(read[:, : codes.shape[1]], codes)
-        return self.config.info_weight * away
+        away: Tensor = nn.functional.mse_loss(read[:, : codes.shape[1]], codes) * self.config.info_weight
+        return away
 
     def _stepped(self, loss: Tensor, optimiser: torch.optim.Optimizer, network: nn.Module) -> None:
         optimiser.zero_grad(set_to_none=True)
