@@ -90,6 +90,7 @@ def test_a_split_in_time_shares_no_row(files: dict[str, Recording], tmp_path: Pa
     assert (len(early), len(late)) == (41, 21)
     with pytest.raises(InputError, match=r"is 1.5, it must be above 0 and below 1"):
         split_in_time([one], 1.5)
+    file = tmp_path / "short.txt"
     file.write_text("".join(f"{10 * t} 1 {t} 0\n" for t in range(30)))
     with pytest.raises(DataError, match="11 windows are too few to hold back the last 25%"):
         split_in_time([Recording(str(file), fps=2.5)], 0.25)
