@@ -20,6 +20,8 @@ COMMANDS = {
     "experiment": "run trials with participants, with screens and questions around them",
     "predict": "score predictors on recordings of people",
     "calibrate": "fit the parameters of a crowd model to recordings of people",
+    "train": "learn a predictor from recordings of people",
+    "study": "compare GANs on the toy set of the report: which find all the ways that people may go",
     "degrade": "score predictors on noisy, hidden, swapped and false tracks, or write such a recording",
     "list": "name what is built in: models, predictors, trials, ...",
     "new": "write a trial to begin with, or one from a recording, or import one",

@@ -6,6 +6,7 @@ from .constant import ConstantAcceleration, ConstantVelocity, LeastSquares, Samp
 from .degraded import DegradedScore, Seen, Task, seen_windows, sweep
 from .evaluate import evaluate
 from .kalman import Kalman, KalmanAcceleration
+from .learned.social_ways_predictor import SocialWays
 from .live import Live
 from .predictor import Predictor, window_streams
 from .recipe import Recipe
@@ -32,6 +33,7 @@ __all__ = [
     "SampledConstantVelocity",
     "Seen",
     "Simulated",
+    "SocialWays",
     "Study",
     "Task",
     "evaluate",
