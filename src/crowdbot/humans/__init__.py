@@ -1,0 +1,30 @@
+"""Humans: people that look and walk like people, with capsules for contacts and rays and skins for eyes."""
+
+from .activities import ACTIVITIES
+from .feet import Gaits
+from .gait import Gait, posing_and_skinning
+from .limbs import LIMBS, REGIONS, Limb, mass_shares
+from .people import Capsules, People
+from .person import Person, names, person, persons
+from .posture import Posture
+from .wardrobe import Outfit, outfit
+
+__all__ = [
+    "ACTIVITIES",
+    "LIMBS",
+    "REGIONS",
+    "Capsules",
+    "Gait",
+    "Gaits",
+    "Limb",
+    "Outfit",
+    "People",
+    "Person",
+    "Posture",
+    "mass_shares",
+    "names",
+    "outfit",
+    "person",
+    "persons",
+    "posing_and_skinning",
+]

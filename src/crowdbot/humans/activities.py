@@ -1,0 +1,43 @@
+"""What people do beside walking and standing, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.errors import InputError, UnknownName
+
+__all__ = ["ACTIVITIES", "activity_index"]
+
+ACTIVITIES = ("walk", "talk", "phone", "bottle", "text", "sit")
+"""``walk`` also stands and turns, as the speed asks; all but ``sit`` are done while walking too."""
+TALK, PHONE, BOTTLE, TEXT, SIT = 1, 2, 3, 4, 5
+
+
+def activity_index(activity: str | Sequence[str] | NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """Return ``[N]``, the place in :data:`ACTIVITIES` of one name for all or a name (or place) for each.
+
+    Raises:
+        UnknownName: there is no such activity.
+        InputError: the number of names differs from ``count``, or a place is not one of the list.
+
+    >>> activity_index(["walk", "sit"], 2).tolist(), activity_index("phone", 2).tolist()
+    ([0, 5], [2, 2])
+    """
+    if isinstance(activity, np.ndarray) and activity.dtype.kind in "iu":
+        found = activity.astype(np.int64)
+    else:
+        words = [activity] * count if isinstance(activity, str) else list(activity)
+        for word in words:
+            if word not in ACTIVITIES:
+                raise UnknownName("activity", str(word), ACTIVITIES)
+        found = np.array([ACTIVITIES.index(word) for word in words], dtype=np.int64)
+    if found.shape != (count,):
+        raise InputError(f"{len(found)} activities are given for {count} people; give one, or one for each")
+    if np.any((found < 0) | (found >= len(ACTIVITIES))):
+        raise InputError(
+            f"activity {found[(found < 0) | (found >= len(ACTIVITIES))][0]} is not 0 to {len(ACTIVITIES) - 1}"
+        )
+    return found

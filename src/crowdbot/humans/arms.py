@@ -1,0 +1,133 @@
+"""Arms: they swing against the legs, or talk, hold a phone at the ear, a bottle, a telephone in front, or rest."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.kernels import kernel
+
+from .feet import Gaits
+from .turns import about, cross, framed, unit
+
+__all__ = ["pose_arm"]
+
+Floats = NDArray[np.float64]
+SWING = math.radians(17.0)
+"""Swing of the upper arm to either side at a vigour of 1."""
+FINGER_CURL = 0.25
+"""Bend of each joint of idle fingers [rad]."""
+LEFT, RIGHT = 0, 1
+
+
+@kernel
+def _angles(g: Gaits, i: int, side: int, vigour: float, sit: float, style: Floats, out: Floats) -> None:
+    """Write flexion and abduction of the shoulder, bend of the elbow, inward turn of the upper arm, twist of the hand.
+
+    Weights of the blend make the mean of what the activities ask; the phone at the ear is solved elsewhere.
+    """
+    wave = math.cos(2.0 * math.pi * g.phase[i]) * (-1.0 if side == LEFT else 1.0)
+    swing = SWING * min(vigour, 1.25) * style[2] * wave
+    beat = style[6] * g.clock[i] + 6.283 * style[5] + 1.7 * side
+    weight = g.blend[i]
+    walk = weight[0] + weight[2]
+    if side == LEFT:
+        walk += weight[3]
+    talk_elbow = 1.25 + 0.28 * math.sin(1.9 * beat + 1.0)
+    rows = (
+        (walk, 0.04 + swing, 0.10, 0.16 + style[8] + 0.55 * max(swing, 0.0), 0.05, 0.0),
+        (weight[1], 0.28 + 0.14 * math.sin(beat), 0.14 + 0.05 * math.sin(0.7 * beat), talk_elbow,
+         0.35 + 0.15 * math.sin(1.1 * beat), -0.5),
+        (weight[3] if side == RIGHT else 0.0, 0.35, 0.12, 1.35, 0.35, 0.0),
+        (weight[4], 0.40, 0.10, 1.60, 0.50, -0.6),
+        (weight[5], 0.30, 0.10, 0.90, 0.25, 0.9),
+    )  # fmt: skip
+    for k in range(5):
+        out[k] = 0.0
+    for row in rows:
+        for k in range(5):
+            out[k] += row[0] * row[k + 1]
+
+
+@kernel
+def _hang(angles: Floats, side: float, R: Floats, axis: Floats, hinge: Floats) -> None:
+    """Write direction of the upper arm and hinge of the elbow in the world, ``side`` 1 for left, -1 for right."""
+    sf, cf = math.sin(angles[0]), math.cos(angles[0])
+    sa, ca = math.sin(angles[1]), math.cos(angles[1])
+    ux, uy, uz = sf * ca, side * sa, -cf * ca
+    # the hinge of a hanging arm points to the right; turned inward it lets the forearm come before the belly
+    hx, hy, hz = 0.0, -1.0, 0.0
+    dot = hx * ux + hy * uy + hz * uz
+    hx, hy, hz = hx - dot * ux, hy - dot * uy, hz - dot * uz
+    for r in range(3):
+        axis[r] = R[r, 0] * ux + R[r, 1] * uy + R[r, 2] * uz
+        hinge[r] = R[r, 0] * hx + R[r, 1] * hy + R[r, 2] * hz
+    unit(hinge)
+    about(axis, side * angles[3], hinge, hinge)
+
+
+@kernel
+def _to_ear(
+    shoulder: Floats, head: Floats, turned: Floats, side: float, stature: float, upper: float, lower: float,
+    axis: Floats, hinge: Floats, work: Floats,
+) -> float:  # fmt: skip
+    """Write the arm that brings the wrist below the ear, and return the bend of its elbow [rad]."""
+    aim, pole = work[0], work[1]
+    ax, ay, az = 0.060 * stature, side * 0.060 * stature, -0.070 * stature
+    for r in range(3):
+        aim[r] = head[r] + turned[r, 0] * ax + turned[r, 1] * ay + turned[r, 2] * az - shoulder[r]
+        pole[r] = 0.5 * turned[r, 0] + side * 0.45 * turned[r, 1] - 1.0 * turned[r, 2]
+    reach = min(max(unit(aim), abs(upper - lower) + 0.03), 0.995 * (upper + lower))
+    cross(pole, aim, hinge)
+    unit(hinge)
+    at = math.acos(min(max((upper**2 + reach**2 - lower**2) / (2.0 * upper * reach), -1.0), 1.0))
+    inner = math.acos(min(max((upper**2 + lower**2 - reach**2) / (2.0 * upper * lower), -1.0), 1.0))
+    about(hinge, -at, aim, axis)
+    return math.pi - inner
+
+
+@kernel
+def pose_arm(
+    g: Gaits, i: int, side: int, vigour: float, sit: float, lengths: Floats, frame: Floats, style: Floats, R: Floats,
+    P: Floats, work: Floats,
+) -> None:  # fmt: skip
+    """Turn upper arm, forearm, hand and fingers of one side; trunk and shoulder joints are placed already."""
+    sign = 1.0 - 2.0 * side
+    first = 7 + 7 * side
+    axis, hinge, axis2, hinge2, lower = work[2], work[3], work[4], work[5], work[6]
+    angles = np.empty(5)
+    _angles(g, i, side, vigour, sit, style, angles)
+    _hang(angles, sign, R[3], axis, hinge)
+    elbow, twist = angles[2], angles[4]
+    phone = g.blend[i, 2] if side == RIGHT else 0.0
+    if phone > 1e-3:
+        share = phone * phone * (3.0 - 2.0 * phone)
+        bend = _to_ear(P[first], P[5], R[5], sign, lengths[4], lengths[2], lengths[3], axis2, hinge2, work)
+        for k in range(3):
+            axis[k] += share * (axis2[k] - axis[k])
+            hinge[k] += share * (hinge2[k] - hinge[k])
+        unit(axis)
+        dot = axis[0] * hinge[0] + axis[1] * hinge[1] + axis[2] * hinge[2]
+        for k in range(3):
+            hinge[k] -= dot * axis[k]
+        unit(hinge)
+        elbow += share * (bend - elbow)
+        twist += share * (0.3 - twist)
+    framed(frame[4 + side], axis, hinge, R[first])
+    about(hinge, elbow, axis, lower)
+    framed(frame[6 + side], lower, hinge, R[first + 1])
+    about(lower, sign * 0.5 * twist, hinge, hinge2)
+    framed(frame[6 + side], lower, hinge2, R[first + 1])
+    about(lower, sign * twist, hinge, hinge2)
+    framed(frame[6 + side], lower, hinge2, R[first + 2])
+    cross(lower, hinge2, axis)
+    unit(axis)
+    busy = g.blend[i, 4] + (g.blend[i, 2] + g.blend[i, 3] if side == RIGHT else 0.0)
+    curl = sign * (FINGER_CURL + 0.55 * busy)
+    R[first + 5] = R[first + 2]
+    for joint in range(2):
+        about(axis, curl, lower, lower)
+        about(axis, curl, hinge2, hinge2)
+        framed(frame[6 + side], lower, hinge2, R[first + 3 + joint])

@@ -1,0 +1,202 @@
+"""Gait: how N people walk, stand, turn and are busy, as a pure step from state to state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from crowdbot.core.errors import InputError
+from crowdbot.core.paper import Paper
+from crowdbot.core.random import stream
+
+from .activities import ACTIVITIES, activity_index
+from .feet import Gaits, advance
+from .people import Capsules, People
+from .posture import Posture, posture
+
+__all__ = ["Gait", "posing_and_skinning"]
+
+Floats = NDArray[np.float64]
+FASTEST = 12.0
+"""Speeds [m/s] above this are an error: nobody walks or runs so fast."""
+
+
+@dataclass(frozen=True, eq=False)
+class Gait:
+    """The walk of some people: feet are planted in the world, all else follows.
+
+    Args:
+        people: who walks.
+        seed: of everyone's own style: phase, stride, arms, toes, lean, gestures. A person's style depends on the seed
+            and on ``ids`` only, not on who else walks.
+        ids: ``[N]``, a number for each person; None counts from 0.
+
+    People walk; nobody runs: above about 2 m/s the legs only go faster. A foot that stands stays where it is unless the
+    body leaves it behind (velocities that jump by several m/s) or turns more than 80 degrees against it; who sits is
+    carried along.
+
+    Source: relations of stride and speed by Boulic, Magnenat-Thalmann & Thalmann 1990, doi:10.1007/BF01901021.
+
+    >>> gait = Gait(People.of(["man-20"]))
+    >>> state = gait.start(position=[[0, 0]], heading=[0.0])
+    >>> for k in range(1, 101):
+    ...     state = gait.step(state, position=[[0.014 * k, 0]], velocity=[[1.4, 0]], heading=[0.0], dt=0.01)
+    >>> gait.skin(state, level=2).shape, gait.limbs(state).radius.shape, float(state.moving[0])
+    ((1, 330, 3), (1, 17), 1.0)
+    """
+
+    paper: ClassVar[Paper] = Paper(
+        "Ronan Boulic, Nadia Magnenat-Thalmann, Daniel Thalmann",
+        1990,
+        "A global human walking model with real-time kinematic personification",
+        "The Visual Computer 6",
+        "10.1007/BF01901021",
+    )
+
+    people: People
+    seed: int = 0
+    ids: Sequence[int] | None = None
+    style: Floats = field(init=False, repr=False)
+    size: Floats = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Draw the styles and lay out the sizes of the legs."""
+        numbers = range(len(self.people)) if self.ids is None else list(self.ids)
+        if len(numbers) != len(self.people):
+            raise InputError(f"Gait: {len(numbers)} ids are given for {len(self.people)} people")
+        style = np.array([_style(self.seed, int(k)) for k in numbers]).reshape(len(self.people), 9)
+        m = self.people.measures
+        size = np.stack([m.ankle, m.ball[:, 0], m.ball[:, 1], m.heel, m.toe, m.leg, m.thigh + m.shank], axis=1)
+        object.__setattr__(self, "style", style)
+        object.__setattr__(self, "size", size)
+
+    def start(
+        self,
+        position: ArrayLike,
+        heading: ArrayLike,
+        velocity: ArrayLike | None = None,
+        activity: str | Sequence[str] | NDArray[np.int64] = "walk",
+    ) -> Gaits:
+        """Return the first state: in mid-walk when ``velocity`` is given, otherwise standing.
+
+        Args:
+            position: ``[N, 2]`` [m].
+            heading: ``[N]`` [rad].
+            velocity: ``[N, 2]`` [m/s].
+            activity: one of :data:`ACTIVITIES` for all, or one for each.
+
+        Raises:
+            InputError: a shape does not fit, a value is not finite or a speed is above 12 m/s.
+            UnknownName: there is no such activity.
+        """
+        count = len(self.people)
+        place, speed, ahead = self._checked(position, np.zeros((count, 2)) if velocity is None else velocity, heading)
+        wish = activity_index(activity, count).astype(np.float64)
+        state = Gaits(
+            position=place.copy(), yaw=ahead.copy(), turn=np.zeros(count), drift=speed.copy(), phase=np.zeros(count),
+            moving=np.zeros(count), foot=np.zeros((count, 2, 3)), planted=np.ones((count, 2)),
+            lift=np.zeros((count, 2, 6)), goal=np.zeros((count, 2, 3)), strike=np.zeros((count, 2)),
+            clock=np.zeros(count), blend=np.eye(len(ACTIVITIES))[wish.astype(np.int64)], wish=wish,
+        )  # fmt: skip
+        advance(state, speed, place, ahead, np.ones(count), 0.0, self.style, self.size)
+        return state
+
+    def step(
+        self,
+        state: Gaits,
+        position: ArrayLike,
+        velocity: ArrayLike,
+        heading: ArrayLike,
+        dt: float,
+        activity: str | Sequence[str] | NDArray[np.int64] | None = None,
+    ) -> Gaits:
+        """Return the state ``dt`` [s] later, when everyone has come to ``position`` with ``velocity``.
+
+        Args:
+            state: left as it is.
+            position: ``[N, 2]`` [m]; who is further away than any walk leads is set down there anew.
+            velocity: ``[N, 2]`` [m/s]; it says where the next foot goes.
+            heading: ``[N]`` [rad]; the trunk turns there at once, but not faster than 4 rad/s.
+            dt: [s], above 0; from 1 s on everyone is set down anew.
+            activity: None goes on with what everyone does.
+
+        Raises:
+            InputError: as for :meth:`start`, or ``dt`` is not finite and above 0.
+        """
+        place, speed, ahead = self._checked(position, velocity, heading)
+        if not (np.isfinite(dt) and dt > 0.0):
+            raise InputError(f"Gait: dt = {dt} s is not a finite time above 0")
+        if len(state.yaw) != len(self.people):
+            raise InputError(f"Gait: the state has {len(state.yaw)} people, the gait {len(self.people)}")
+        after = Gaits(*(part.copy() for part in state))
+        if activity is not None:
+            after.wish[:] = activity_index(activity, len(self.people))
+        fresh = np.full(len(self.people), 1.0 if dt >= 1.0 else 0.0)
+        advance(after, speed, place, ahead, fresh, float(dt), self.style, self.size)
+        return after
+
+    def posture(self, state: Gaits) -> Posture:
+        """Return where the bones of everyone are."""
+        return posture(state, self.people.measures, self.style, self.size)
+
+    def limbs(self, state: Gaits) -> Capsules:
+        """Return the capsules of everyone in the world, in the order of :data:`LIMBS`."""
+        return self.people.limbs(self.posture(state))
+
+    def skin(self, state: Gaits, level: int = 2) -> Floats:
+        """Return the vertices ``[N, V, 3]`` [m] of everyone at a level of detail from 0 (finest) to 2."""
+        return self.people.skin(self.posture(state), level)
+
+    def _checked(self, position: ArrayLike, velocity: ArrayLike, heading: ArrayLike) -> tuple[Floats, Floats, Floats]:
+        count = len(self.people)
+        found = []
+        for name, value, shape in (
+            ("position", position, (count, 2)), ("velocity", velocity, (count, 2)), ("heading", heading, (count,)),
+        ):  # fmt: skip
+            array = np.ascontiguousarray(value, dtype=np.float64)
+            if array.shape != shape:
+                raise InputError(f"Gait: {name} has shape {list(array.shape)}, it must be {list(shape)}")
+            if not np.all(np.isfinite(array)):
+                row = int(np.argmin(np.isfinite(array).reshape(count, -1).all(axis=1)))
+                raise InputError(f"Gait: {name} of person {row} is not finite ({array[row]})")
+            found.append(array)
+        speed = np.sqrt((found[1] ** 2).sum(axis=1))
+        if np.any(speed > FASTEST):
+            raise InputError(
+                f"Gait: a speed of {speed.max():.1f} m/s is above {FASTEST:.0f} m/s, which no person reaches"
+            )
+        return found[0], found[1], found[2]
+
+
+def _style(seed: int, number: int) -> list[float]:
+    """One person's way of walking, see the uses of ``style`` in the files of feet, posture and arms."""
+    draw = stream(seed, "gait", number)
+    return [
+        float(draw.uniform(0.0, 1.0)),  # 0 phase at the start
+        float(np.clip(draw.normal(1.0, 0.025), 0.94, 1.06)),  # 1 stride over the usual one
+        float(np.clip(draw.normal(1.0, 0.2), 0.5, 1.5)),  # 2 swing of the arms
+        float(np.radians(draw.uniform(2.0, 10.0))),  # 3 toes outward [rad]
+        float(np.radians(draw.uniform(0.0, 4.0))),  # 4 lean forward [rad]
+        float(draw.uniform(0.0, 1.0)),  # 5 start of gestures
+        float(draw.uniform(2.8, 5.0)),  # 6 pace of gestures [rad/s]
+        float(draw.uniform(0.85, 1.15)),  # 7 width of the stance
+        float(np.radians(draw.uniform(-4.0, 8.0))),  # 8 bend of the elbows [rad]
+    ]
+
+
+def posing_and_skinning(count: int = 100, level: int = 2) -> Callable[[], Floats]:
+    """Return a piece of work to time: pose ``count`` drawn walkers and deform their skins at a level of detail.
+
+    >>> posing_and_skinning(3)().shape
+    (3, 330, 3)
+    """
+    draw = stream(0, "posing and skinning", count)
+    gait = Gait(People.drawn(count, draw))
+    heading = draw.uniform(-np.pi, np.pi, count)
+    velocity = 1.3 * np.stack([np.cos(heading), np.sin(heading)], axis=1)
+    state = gait.start(draw.uniform(0.0, 30.0, (count, 2)), heading, velocity)
+    return lambda: gait.skin(state, level)

@@ -1,0 +1,92 @@
+"""Lengths of bodies that the walk needs: legs, feet, arms, and the rest frames of the limbs that bend."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .asset import shapes
+
+__all__ = ["CHAINS", "Measures", "measures"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+CHAINS = ("thigh_l", "thigh_r", "calf_l", "calf_r", "upperarm_l", "upperarm_r", "lowerarm_l", "lowerarm_r")
+"""Bones that are turned from the direction of their axis and of their hinge, in the order of ``frame``."""
+ENDS = ("calf_l", "calf_r", "foot_l", "foot_r", "lowerarm_l", "lowerarm_r", "hand_l", "hand_r")
+
+
+class Measures(NamedTuple):
+    """Lengths of N bodies [m]; left and right of the legs are taken as equal.
+
+    Fields: ``leg [N]`` hip joint to floor; ``thigh``, ``shank``, ``ankle`` (its height); ``ball [N, 2]`` and
+    ``heel``, ``toe`` ``[N]`` ahead of and above the ankle's foot point; ``arm [N, 2]`` upper and lower arm;
+    ``head [N, B, 3]`` start of each bone at rest; ``frame [N, 8, 3, 3]`` the rows are axis, hinge and their
+    cross product of each of :data:`CHAINS` at rest; ``height [N]`` stature.
+    """
+
+    leg: Floats
+    thigh: Floats
+    shank: Floats
+    ankle: Floats
+    ball: Floats
+    heel: Floats
+    toe: Floats
+    arm: Floats
+    head: Floats
+    frame: Floats
+    height: Floats
+
+
+def measures(body: Ints, scale: Floats, height: Floats) -> Measures:
+    """Return the measures of the bodies ``body [N]`` of the file at ``scale [N]`` and ``height [N]`` [m]."""
+    every = shapes()
+    head = every.head[body] * scale[:, None, None]
+
+    def length(a: str, b: str) -> Floats:
+        return np.asarray(np.linalg.norm(head[:, every.bone(b)] - head[:, every.bone(a)], axis=-1))
+
+    ankle = head[:, every.bone("foot_l")]
+    ball = head[:, every.bone("ball_l")]
+    heel, toe = _sole(body, scale)
+    return Measures(
+        leg=head[:, every.bone("thigh_l"), 2].copy(),
+        thigh=length("thigh_l", "calf_l"),
+        shank=length("calf_l", "foot_l"),
+        ankle=ankle[:, 2].copy(),
+        ball=np.stack([ball[:, 0] - ankle[:, 0], ball[:, 2]], axis=1),
+        heel=heel - ankle[:, 0],
+        toe=toe - ankle[:, 0],
+        arm=np.stack([length("upperarm_l", "lowerarm_l"), length("lowerarm_l", "hand_l")], axis=1),
+        head=head,
+        frame=_frames(head),
+        height=np.asarray(height, dtype=np.float64),
+    )
+
+
+def _sole(body: Ints, scale: Floats) -> tuple[Floats, Floats]:
+    """Where the sole ends behind and in front, ``[N]`` each: the outermost points within 15 mm of the floor."""
+    every = shapes()
+    level = every.levels[0]
+    main = level.bones[np.arange(len(level.bones)), np.argmax(level.weights, axis=1)]
+    foot = level.rest[:, np.isin(main, [every.bone("foot_l"), every.bone("ball_l")])]
+    low = foot[..., 2] < 0.015
+    behind = np.where(low, foot[..., 0], np.inf).min(axis=1)
+    front = np.where(low, foot[..., 0], -np.inf).max(axis=1)
+    return behind[body] * scale, front[body] * scale
+
+
+def _frames(head: Floats) -> Floats:
+    """Rest frames of :data:`CHAINS`: the knee bends about the body's left axis, the elbow about its rest bend."""
+    every = shapes()
+    axis = np.stack([head[:, every.bone(e)] - head[:, every.bone(c)] for c, e in zip(CHAINS, ENDS, strict=True)], 1)
+    axis = axis / np.linalg.norm(axis, axis=-1, keepdims=True)
+    hinge = np.zeros_like(axis)
+    hinge[:, :4, 1] = 1.0
+    elbow = np.cross(axis[:, 4:6], axis[:, 6:8])
+    hinge[:, 4:6], hinge[:, 6:8] = elbow, elbow
+    hinge = hinge - axis * (hinge * axis).sum(-1, keepdims=True)
+    hinge = hinge / np.linalg.norm(hinge, axis=-1, keepdims=True)
+    return np.stack([axis, hinge, np.cross(axis, hinge)], axis=2)

@@ -1,0 +1,217 @@
+"""Postures: where every bone is, from the state of the walk. Legs reach their feet, arms swing or are busy."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.kernels import kernel
+
+from .arms import pose_arm
+from .asset import shapes
+from .feet import Gaits, foot_now
+from .measures import Measures
+from .stride import STRIKE, ankle_over, cycle, smooth
+from .turns import about, cross, framed, turn_zxy, unit
+
+__all__ = ["Posture", "posture"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+PELVIS_TURN, PELVIS_ROLL, CHEST_TURN = math.radians(5.0), math.radians(3.0), math.radians(4.0)
+SWAY = 0.022
+"""The pelvis goes so far over the standing leg [leg lengths]."""
+STRAIGHT = 0.998
+"""Legs are never straighter than this share of their length."""
+BOB = 0.035
+"""Way of the pelvis up and down in a step, over the speed [m per m/s]."""
+HIGHEST = 0.235
+"""Phase at which the pelvis is highest over the left leg; it is lowest a quarter of a cycle later."""
+SOFT = 0.004
+"""Width [m] over which the limits of the legs on the height of the pelvis pass into each other."""
+SEAT = 0.46
+"""Height of seats [m]."""
+SEAT_FLESH = 0.055
+"""Height of the hip joints above the seat, as a share of stature."""
+SITTING = 5
+
+
+class Posture(NamedTuple):
+    """Bones of N people: ``rotation [N, B, 3, 3]`` from the axes at rest and ``position [N, B, 3]`` of heads [m]."""
+
+    rotation: Floats
+    position: Floats
+
+
+@kernel
+def _trunk(g: Gaits, i: int, vigour: float, style: Floats, sit: float, R: Floats) -> None:
+    """Write the rotations of pelvis, spine, neck, head and collar bones (bones 0 to 6 and 13)."""
+    wave = 2.0 * math.pi * g.phase[i]
+    strong = min(vigour, 1.2) * (1.0 - sit)
+    yaw = -PELVIS_TURN * strong * math.cos(wave)
+    roll = PELVIS_ROLL * strong * math.sin(wave - 0.3)
+    chest = CHEST_TURN * strong * math.cos(wave)
+    lean = style[4] * (0.3 + 0.7 * min(strong, 1.0))
+    talk, phone, text = g.blend[i, 1], g.blend[i, 2], g.blend[i, 4]
+    beat = style[6] * g.clock[i] + 6.283 * style[5]
+    for b in range(4):
+        share = b / 3.0
+        pitch = lean * (0.4 + 0.6 * share) - 0.12 * sit * (1.0 - share)
+        turn_zxy(g.yaw[i] + yaw + share * (chest - yaw), roll * (1.0 - share), pitch, R[b])
+    R[6], R[13] = R[3], R[3]
+    look = 0.14 * talk * math.sin(1.3 * beat) + 0.05 * math.sin(0.31 * beat) - 0.12 * phone
+    nod = 0.06 * talk * math.sin(2.9 * beat) + 0.42 * text + 0.3 * lean
+    turn_zxy(g.yaw[i] + 0.5 * (look + chest), -0.06 * phone, 0.5 * lean + 0.4 * nod, R[4])
+    turn_zxy(g.yaw[i] + look, -0.15 * phone, nod, R[5])
+
+
+@kernel
+def _hip(head: Floats, b: int, R: Floats, out: Floats) -> None:
+    """Write the hip joint relative to the pelvis joint."""
+    for r in range(3):
+        out[r] = 0.0
+        for c in range(3):
+            out[r] += R[0, r, c] * (head[b, c] - head[0, c])
+
+
+@kernel
+def _ankles(
+    g: Gaits, i: int, sit: float, hip: float, thigh: float, shank: float, style: Floats, size: Floats, out: Floats
+) -> None:
+    """Write both feet as :func:`foot_now` does, drawn to where they are when sitting."""
+    c, s = math.cos(g.yaw[i]), math.sin(g.yaw[i])
+    for f in range(2):
+        foot_now(g, i, f, style, size, out[f])
+        if sit > 0.0:
+            side = 1.0 - 2.0 * f
+            ahead, aside = thigh + 0.02, side * 0.11 * size[5]
+            floor = max(size[0], hip - shank * 0.995)
+            keep = 1.0 - sit
+            out[f, 0] = keep * out[f, 0] + sit * (g.position[i, 0] + c * ahead - s * aside)
+            out[f, 1] = keep * out[f, 1] + sit * (g.position[i, 1] + s * ahead + c * aside)
+            out[f, 2] = keep * out[f, 2] + sit * floor
+            out[f, 4] *= keep
+            out[f, 5] *= keep
+
+
+@kernel
+def _reach(hip: Floats, foot: Floats, x: float, y: float, longest: float) -> float:
+    """Return the height [m] of the pelvis joint at which this leg is as long as it may be."""
+    dx, dy = foot[0] - x - hip[0], foot[1] - y - hip[1]
+    return float(foot[2] + math.sqrt(max(longest**2 - dx * dx - dy * dy, (0.5 * longest) ** 2)) - hip[2])
+
+
+@kernel
+def _swinging(phase: float, speed: float, way: float, vigour: float, length: float, size: Floats) -> float:
+    """Return the height [m] of the hips that the walk asks for: a wave on top of what the leading leg reaches.
+
+    ``way`` [m]: how far the foot comes down ahead of the hip.
+    """
+    ahead, above = ankle_over(-STRIKE * vigour, -STRIKE * vigour, size)
+    far = way + ahead
+    bottom = above - 0.004 + math.sqrt(max((STRAIGHT * length) ** 2 - far * far, (0.5 * length) ** 2))
+    bob = min(BOB * speed, 0.1 * size[5])
+    top = size[0] + STRAIGHT * length - 2.0 * SOFT
+    return float(min(bottom + bob, top) - bob * (0.5 - 0.5 * math.cos(4.0 * math.pi * (phase - HIGHEST))))
+
+
+@kernel
+def _height(hips: Floats, feet: Floats, x: float, y: float, longest: float, tallest: float) -> float:
+    """Return how high [m] the pelvis joint is: softly below what either leg reaches and below ``tallest`` [m]."""
+    left, right = _reach(hips[0], feet[0], x, y, longest), _reach(hips[1], feet[1], x, y, longest)
+    low = min(left, right, tallest)
+    far = math.exp((low - left) / SOFT) + math.exp((low - right) / SOFT) + math.exp((low - tallest) / SOFT)
+    return low - SOFT * math.log(far)
+
+
+@kernel
+def _leg(
+    hip: Floats, foot: Floats, thigh: float, shank: float, yaw: float, frame: Floats, f: int, R: Floats, bone: int,
+    work: Floats,
+) -> None:  # fmt: skip
+    """Turn thigh, shank, foot and toes so that the ankle is at the foot; the knee bends forward."""
+    axis, hinge, ahead, turned = work[0], work[1], work[2], work[3]
+    for k in range(3):
+        axis[k] = foot[k] - hip[k]
+    reach = min(max(unit(axis), abs(thigh - shank) + 0.05), 0.9999 * (thigh + shank))
+    ahead[0], ahead[1], ahead[2] = math.cos(yaw), math.sin(yaw), 0.2
+    cross(ahead, axis, hinge)
+    unit(hinge)
+    at_hip = math.acos(min(max((thigh**2 + reach**2 - shank**2) / (2.0 * thigh * reach), -1.0), 1.0))
+    at_ankle = math.acos(min(max((shank**2 + reach**2 - thigh**2) / (2.0 * shank * reach), -1.0), 1.0))
+    about(hinge, -at_hip, axis, turned)
+    framed(frame[f], turned, hinge, R[bone])
+    about(hinge, at_ankle, axis, turned)
+    framed(frame[2 + f], turned, hinge, R[bone + 1])
+    turn_zxy(foot[3], 0.0, foot[4], R[bone + 2])
+    turn_zxy(foot[3], 0.0, foot[5], R[bone + 3])
+
+
+@kernel
+def _chain(first: int, last: int, head: Floats, parents: Ints, R: Floats, P: Floats) -> None:
+    """Place bones ``first`` to ``last`` at the ends of their parents."""
+    for b in range(first, last):
+        p = parents[b]
+        for r in range(3):
+            P[b, r] = P[p, r]
+            for c in range(3):
+                P[b, r] += R[p, r, c] * (head[b, c] - head[p, c])
+
+
+@kernel
+def _pose_one(
+    g: Gaits, i: int, lengths: Floats, head: Floats, frame: Floats, style: Floats, size: Floats, parents: Ints,
+    R: Floats, P: Floats,
+) -> None:  # fmt: skip
+    thigh, shank, stature = lengths[0], lengths[1], lengths[4]
+    sit = smooth(g.blend[i, SITTING])
+    time, support, lead, vigour = cycle(g.drift[i, 0], g.drift[i, 1], g.yaw[i], size[5], style[1])
+    speed = math.sqrt(g.drift[i, 0] ** 2 + g.drift[i, 1] ** 2)
+    _trunk(g, i, vigour, style, sit, R)
+    work, hips, feet = np.empty((8, 3)), np.empty((2, 3)), np.empty((2, 6))
+    _hip(head, 20, R, hips[0])
+    _hip(head, 24, R, hips[1])
+    seat = SEAT + SEAT_FLESH * stature
+    _ankles(g, i, sit, seat, thigh, shank, style, size, feet)
+    sway = SWAY * size[5] * min(speed / 0.6, 1.0) * math.sin(2.0 * math.pi * g.phase[i] - 0.3)
+    x = g.position[i, 0] - sway * math.sin(g.yaw[i])
+    y = g.position[i, 1] + sway * math.cos(g.yaw[i])
+    rest = 0.5 * (hips[0, 2] + hips[1, 2])
+    tallest = _swinging(g.phase[i], speed, lead * support * time * speed, vigour, thigh + shank, size) - rest
+    height = _height(hips, feet, x, y, STRAIGHT * (thigh + shank), tallest)
+    height += sit * (seat - rest - height)
+    P[0, 0], P[0, 1], P[0, 2] = x, y, height
+    for f in range(2):
+        for k in range(3):
+            hips[f, k] += P[0, k]
+        ahead = g.yaw[i] + 0.5 * math.atan2(math.sin(feet[f, 3] - g.yaw[i]), math.cos(feet[f, 3] - g.yaw[i]))
+        _leg(hips[f], feet[f], thigh, shank, ahead, frame, f, R, 20 + 4 * f, work)
+    _chain(1, 8, head, parents, R, P)
+    _chain(13, 15, head, parents, R, P)
+    for f in range(2):
+        pose_arm(g, i, f, vigour, sit, lengths, frame, style, R, P, work)
+    _chain(8, 13, head, parents, R, P)
+    _chain(15, 28, head, parents, R, P)
+
+
+@kernel
+def _pose(
+    g: Gaits, lengths: Floats, heads: Floats, frames: Floats, style: Floats, size: Floats, parents: Ints,
+    R: Floats, P: Floats,
+) -> None:  # fmt: skip
+    """Pose everyone."""
+    for i in range(len(lengths)):
+        _pose_one(g, i, lengths[i], heads[i], frames[i], style[i], size[i], parents, R[i], P[i])
+
+
+def posture(state: Gaits, body: Measures, style: Floats, size: Floats) -> Posture:
+    """Return the posture of everyone in ``state``."""
+    lengths = np.stack([body.thigh, body.shank, body.arm[:, 0], body.arm[:, 1], body.height], axis=1)
+    count, bones = body.head.shape[:2]
+    out = Posture(np.empty((count, bones, 3, 3)), np.empty((count, bones, 3)))
+    _pose(state, lengths, body.head, body.frame, style, size, shapes().parents, out.rotation, out.position)
+    return out

@@ -1,0 +1,54 @@
+"""The skin of posed people: every vertex follows up to four bones (linear blend skinning)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.kernels import kernel
+
+from .asset import Level
+
+__all__ = ["skinned"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@kernel
+def _skin(
+    rest: Floats, bones: Ints, weights: Floats, body: Ints, scale: Floats, rotation: Floats, shift: Floats, out: Floats
+) -> None:
+    """Write ``sum_k w_k (R_k x + t_k)`` of every vertex x of every person."""
+    for i in range(len(out)):
+        for v in range(bones.shape[0]):
+            x = rest[body[i], v, 0] * scale[i]
+            y = rest[body[i], v, 1] * scale[i]
+            z = rest[body[i], v, 2] * scale[i]
+            sx, sy, sz = 0.0, 0.0, 0.0
+            for k in range(bones.shape[1]):
+                w = weights[v, k]
+                if w == 0.0:
+                    continue
+                b = bones[v, k]
+                r = rotation[i, b]
+                sx += w * (r[0, 0] * x + r[0, 1] * y + r[0, 2] * z + shift[i, b, 0])
+                sy += w * (r[1, 0] * x + r[1, 1] * y + r[1, 2] * z + shift[i, b, 1])
+                sz += w * (r[2, 0] * x + r[2, 1] * y + r[2, 2] * z + shift[i, b, 2])
+            out[i, v, 0], out[i, v, 1], out[i, v, 2] = sx, sy, sz
+
+
+def skinned(level: Level, body: Ints, scale: Floats, head: Floats, rotation: Floats, position: Floats) -> Floats:
+    """Return the vertices ``[N, V, 3]`` [m] of posed people.
+
+    Args:
+        level: level of detail.
+        body: ``[N]``, row of the rest shape.
+        scale: ``[N]``, stature over that of the rest shape.
+        head: ``[N, B, 3]``, start of each bone at rest [m], scaled.
+        rotation, position: ``[N, B, 3, 3]`` and ``[N, B, 3]`` [m], the bones as they are now.
+    """
+    shift = position - np.einsum("nbij,nbj->nbi", rotation, head)
+    out = np.empty((len(body), len(level.bones), 3))
+    _skin(level.rest, level.bones, level.weights, body, scale, rotation, shift, out)
+    return out

@@ -1,0 +1,151 @@
+"""How people walk at a speed: length and time of a cycle, share of support, and the path of a foot through the air.
+
+Relations of Boulic, Magnenat-Thalmann & Thalmann 1990, doi:10.1007/BF01901021, in leg lengths; below a relative speed
+of 0.25 the length follows a power of the speed (our choice).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.kernels import kernel
+
+__all__ = ["LANDED", "STRIKE", "ankle_over", "cycle", "foot_pose", "lowest", "smooth", "wrapped"]
+
+Floats = NDArray[np.float64]
+RESTING_CYCLE = 1.15
+"""Time [s] of a cycle of steps on the spot."""
+EASY = 0.3
+"""Below this speed [m/s] the cycle time passes over to that of steps on the spot."""
+FASTEST = 0.42
+"""Shortest time of a cycle [s]."""
+LONGEST = 2.2
+"""Relative speed from which strides do not lengthen: people would run, here the legs go faster."""
+LEAD = 0.36
+"""A foot comes down so far ahead of the hip, as a share of the way that the body moves while it stands."""
+BACKWARD = 0.3
+"""Strides backward are shorter by this share."""
+ASIDE = 0.5
+"""Longest way aside in a cycle [leg lengths]; feet do not cross."""
+STRIKE, PUSH = math.radians(20.0), math.radians(68.0)
+"""Toes up when the heel strikes, and heel up when the toes leave, at a relative speed of 0.9."""
+LANDED, ROLLING, TIPPING = 0.19, 0.50, 0.75
+"""Shares of support: until the first the foot comes down about the heel, from the second it rolls over the ball, from
+the third over the tip of the toes."""
+HOP = 0.037
+"""Lift of the ankle in the first half of the swing [leg lengths]; it bends the knee to about 62 degrees."""
+TIPPED = math.radians(35.0)
+"""Pitch of the toes when they leave, at a relative speed of 0.9."""
+
+
+@kernel
+def smooth(x: float) -> float:
+    """Return the step from 0 to 1 with level ends."""
+    x = min(max(x, 0.0), 1.0)
+    return x * x * (3.0 - 2.0 * x)
+
+
+@kernel
+def wrapped(angle: float) -> float:
+    """Return the angle [rad] in -pi to pi."""
+    return angle - 2.0 * math.pi * math.floor((angle + math.pi) / (2.0 * math.pi))
+
+
+@kernel
+def cycle(vx: float, vy: float, yaw: float, leg: float, longer: float) -> tuple[float, float, float, float]:
+    """Return time [s] of a cycle, share of support, lead of the foot and vigour of the walk (1 near 1.1 m/s ahead).
+
+    The lead is how far a foot comes down ahead of the hip, as a share of the way of the body while it stands.
+
+    Args:
+        vx, vy: velocity [m/s].
+        yaw: heading of the trunk [rad]; steps aside and backward are shorter.
+        leg: length of the leg [m].
+        longer: the person's stride over the usual one.
+    """
+    speed = math.sqrt(vx * vx + vy * vy)
+    ahead, aside = vx * math.cos(yaw) + vy * math.sin(yaw), vy * math.cos(yaw) - vx * math.sin(yaw)
+    v = max(speed, EASY)
+    rv = min(v / leg, LONGEST)
+    length = longer * leg * (1.346 * math.sqrt(rv) if rv > 0.25 else 0.673 * (rv / 0.25) ** 0.6)
+    time = length / v
+    if speed < EASY:
+        time = RESTING_CYCLE + (time - RESTING_CYCLE) * speed / EASY
+    away = 0.5 - 0.5 * ahead / max(speed, 1e-6) if speed > 1e-6 else 0.0
+    time *= 1.0 - BACKWARD * away
+    time = max(min(time, ASIDE * leg / max(abs(aside), 1e-6)), FASTEST)
+    support = min(max(0.752 - 0.143 / time, 0.52), 0.80)
+    strong = min(max(ahead / leg / 0.9, 0.0), 1.3)
+    return time, support, LEAD + (0.5 - LEAD) * away, strong * strong / (strong + 0.05)
+
+
+@kernel
+def ankle_over(pitch: float, toes: float, size: Floats) -> tuple[float, float]:
+    """Return how far [m] the ankle is ahead of and above its flat foot point when the foot is pitched.
+
+    Toes up turns about the heel, heel up about the ball, and toes that leave turn about their tip; these points stay.
+    """
+    ankle, ball_x, ball_z, heel, tip = size[0], size[1], size[2], size[3], size[4]
+    s, c = math.sin(pitch), math.cos(pitch)
+    if pitch <= 0.0:
+        return heel - heel * c + ankle * s, heel * s + ankle * c
+    x, z = -ball_x * c + (ankle - ball_z) * s, ball_x * s + (ankle - ball_z) * c
+    s, c = math.sin(toes), math.cos(toes)
+    return x + tip + (ball_x - tip) * c + ball_z * s, z + (tip - ball_x) * s + ball_z * c
+
+
+@kernel
+def lowest(pitch: float, toes: float, size: Floats) -> float:
+    """Return how far the lowest point of the sole lies above the ankle (below 0) for these pitches [rad]."""
+    sn, c = math.sin(pitch), math.cos(pitch)
+    heel = -size[3] * sn - size[0] * c
+    ball = -size[1] * sn - (size[0] - size[2]) * c
+    tip = ball - (size[4] - size[1]) * math.sin(toes) - size[2] * math.cos(toes)
+    return float(min(heel, ball - size[2], tip))
+
+
+@kernel
+def foot_pose(
+    u: float, planted: bool, flat: Floats, lift: Floats, goal: Floats, strike: float, next_strike: float, vigour: float,
+    push_x: float, push_y: float, size: Floats, out: Floats,
+) -> None:  # fmt: skip
+    """Write ankle x, y, z [m], yaw, pitch of the foot and pitch of the toes [rad] of one foot.
+
+    Args:
+        u: progress of the support when planted, otherwise of the swing, 0 to 1.
+        planted: whether the foot stands.
+        flat: x, y, yaw of the planted foot.
+        lift: the same six numbers when the foot left the floor.
+        goal: x, y, yaw where it will stand.
+        strike, next_strike: toes-up angle of the last and of the next landing [rad].
+        vigour: of the walk, 0 when standing.
+        push_x, push_y: velocity [m/s] of the ankle when the foot leaves the floor, over the time of the swing.
+        size: ankle height, ball ahead and above, heel ahead, toe ahead, leg, thigh and shank [m].
+    """
+    if planted:
+        pitch = -strike * max(1.0 - u / LANDED, 0.0)
+        toes = pitch
+        if u > ROLLING:
+            pitch = PUSH * min(vigour, 1.1) * ((min(u, 1.0) - ROLLING) / (1.0 - ROLLING)) ** 1.35
+            toes = TIPPED * min(vigour, 1.1) * (max(min(u, 1.0) - TIPPING, 0.0) / (1.0 - TIPPING)) ** 1.5
+        ahead, above = ankle_over(pitch, toes, size)
+        out[0] = flat[0] + ahead * math.cos(flat[2])
+        out[1] = flat[1] + ahead * math.sin(flat[2])
+        out[2], out[3], out[4], out[5] = above, flat[2], pitch, toes
+        return
+    s = min(max(u, 0.0), 1.0)
+    ahead, above = ankle_over(-next_strike, -next_strike, size)
+    over, start = s * s * (3.0 - 2.0 * s), s * (1.0 - s) * (1.0 - s)
+    pushed = start - 0.7 * s * s * (1.0 - s)
+    out[0] = lift[0] + over * (goal[0] + ahead * math.cos(goal[2]) - lift[0]) + pushed * push_x
+    out[1] = lift[1] + over * (goal[1] + ahead * math.sin(goal[2]) - lift[1]) + pushed * push_y
+    out[3] = lift[3] + over * wrapped(goal[2] - lift[3])
+    pitch = lift[4] * (1.0 - smooth(s / 0.75)) - next_strike * smooth((s - 0.45) / 0.5)
+    out[4] = pitch
+    out[5] = lift[5] + (pitch - lift[5]) * smooth(s / 0.4)
+    hop = HOP * size[5] * start * 6.75
+    z = lift[2] + over * (above - lift[2]) + hop
+    out[2] = max(z, 0.012 * math.sin(math.pi * s) - lowest(pitch, out[5], size))
