@@ -40,10 +40,11 @@ BENT = 0.05
 
 
 class Mjcf(NamedTuple):
-    """The XML of a robot and the mesh files that it names."""
+    """The XML of a robot, the mesh files that it names, and the XML as a tree."""
 
     xml: str
     assets: dict[str, bytes]
+    root: Element
 
     def load(self) -> Any:
         """Return the ``mujoco.MjModel``.
@@ -147,7 +148,7 @@ def mjcf(
         Element("actuator", {}, [*_servo(build, servo), *_motors(build, kinds)]),
     )
     root.children += [section for section in sections if section.children]
-    return Mjcf(written(root), build.geoms.files)
+    return Mjcf(written(root), build.geoms.files, root)
 
 
 def _motor_kinds(model: RobotModel, given: Mapping[str, str]) -> dict[str, str]:

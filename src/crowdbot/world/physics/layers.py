@@ -1,0 +1,22 @@
+"""Who can touch whom in a physics world: bits of MuJoCo's ``contype`` and ``conaffinity``.
+
+Two shapes touch when one's type is in the other's affinity. People do not touch each other (their crowd model keeps
+them apart) nor the floor (their feet are placed on it); of a person only the trunk touches walls and what stands fast.
+"""
+
+from __future__ import annotations
+
+__all__ = ["DYNAMIC", "LIMB", "ROBOT", "STANDING", "TRUNK"]
+
+_ROBOT, _STAGE, _PERSON, _MOVED = 1, 2, 4, 8
+
+
+def _bits(kind: int, touches: int) -> dict[str, str]:
+    return {"contype": str(kind), "conaffinity": str(touches)}
+
+
+ROBOT = (_ROBOT, _ROBOT | _STAGE | _PERSON | _MOVED)
+STANDING = _bits(_STAGE, _ROBOT | _MOVED)
+DYNAMIC = _bits(_MOVED, _ROBOT | _STAGE | _PERSON | _MOVED)
+LIMB = _bits(_PERSON, _ROBOT | _MOVED)
+TRUNK = _bits(_PERSON, _ROBOT | _MOVED | _STAGE)

@@ -1,0 +1,192 @@
+"""People with bodies: who comes near something that moves takes a body in the engine, can be pushed, and yields.
+
+Of a crowd of hundreds only a few can touch anything in the next step, so the engine knows a fixed number of bodies.
+A body follows the way that the crowd model gives, exactly as long as nothing touches it. A push changes its velocity
+by its mass; the person then steps back into the own way with no more force than people brace themselves with.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .composed import LIMB_COUNT, LIMB_NAMES, PARKED
+from .tissue import region_of, softness
+
+__all__ = ["BRACE", "REACTION", "Passers"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+BRACE = 100.0
+"""Force [N] with which people hold against a push at most (assumed: an eighth of the weight of an adult)."""
+REACTION = 0.1
+"""A velocity that a push changed is made up for in about this time [s], as far as the force allows (assumed)."""
+REGIONS = {ahead: tuple(region_of(name, ahead) for name in LIMB_NAMES) for ahead in (True, False)}
+
+
+class Passers:
+    """The bodies of the engine and who has them.
+
+    Args:
+        model, data: of the engine.
+        slots: how many bodies there are.
+        step: of the engine [s].
+
+    Attributes:
+        agent: ``[S]`` who has each body, -1 for nobody.
+        pushed: ``[S]`` whether something has moved it off its way during this step of the world.
+    """
+
+    def __init__(self, model: Any, data: Any, slots: int, step: float) -> None:
+        self._model, self._data, self.step = model, data, step
+        self.agent = np.full(slots, -1, dtype=np.int64)
+        self.pushed = np.zeros(slots, dtype=np.bool_)
+        self._off = np.zeros((slots, 2))
+        self._mass = np.full(slots, 70.0)
+        first = int(model.geom("person0/" + LIMB_NAMES[0]).id) if slots else 0
+        self.geoms = first + np.arange(slots * LIMB_COUNT).reshape(slots, LIMB_COUNT)
+        self.bodies = np.array([model.body(f"person{s}").id for s in range(slots)], dtype=np.int64)
+        self._place = np.array([model.joint(f"person{s}/x").qposadr[0] for s in range(slots)], dtype=np.int64)
+        self._speed = np.array([model.joint(f"person{s}/x").dofadr[0] for s in range(slots)], dtype=np.int64)
+        self._way = np.zeros((slots, 2))
+        self._limbs: tuple[Floats, Floats] = (np.zeros((0, LIMB_COUNT, 6)), np.zeros((0, LIMB_COUNT, 6)))
+        self.swing = np.zeros((slots, LIMB_COUNT, 6))
+        """Velocities [m/s] of both ends of the limbs against the body."""
+        self._park(np.arange(slots))
+
+    def take(self, wanted: Ints, mass: Floats, radius: Floats, other: Floats, ahead: Bools) -> int:
+        """Give bodies to those who want one, and return how many got none.
+
+        Args:
+            wanted: agents, the most urgent first.
+            mass, radius: ``[W]`` [kg] and ``[W, L]`` [m] of their bodies and limbs.
+            other: ``[W]`` [kg], mass of what is near them.
+            ahead: ``[W]``, whether that is in front of them.
+        """
+        rank = {int(agent): k for k, agent in enumerate(wanted[: len(self.agent)])}
+        gone = np.array([s for s, agent in enumerate(self.agent) if agent >= 0 and int(agent) not in rank], dtype=int)
+        self._park(gone)
+        have = {int(agent) for agent in self.agent if agent >= 0}
+        free = [s for s in range(len(self.agent)) if self.agent[s] < 0]
+        for agent in rank:
+            if agent not in have:
+                self.agent[free.pop(0)] = agent
+        for slot in np.flatnonzero(self.agent >= 0):
+            k = rank[int(self.agent[slot])]
+            self._embody(int(slot), float(mass[k]), radius[k], float(other[k]), bool(ahead[k]))
+        return max(0, len(wanted) - len(self.agent))
+
+    def begin(self, place: Floats, way: Floats, before: Floats, after: Floats, duration: float) -> None:
+        """Set everyone who has a body on the way of the next step of the world.
+
+        Args:
+            place: ``[A, 2]`` where everyone is [m].
+            way: ``[A, 2]`` velocity that leads to where the crowd model wants everyone [m/s].
+            before, after: ``[A, L, 6]`` both ends of the limbs at the begin and the end of the step, against the body.
+            duration: of the step [s].
+        """
+        here = self._here
+        agents = self.agent[here]
+        self.pushed[:] = np.any(self._off != 0.0, axis=1)
+        self._way[here] = way[agents]
+        self._limbs = (before[agents], after[agents])
+        self.swing[here] = (after[agents] - before[agents]) / duration
+        for axis in (0, 1):
+            self._data.qpos[self._place[here] + axis] = place[agents, axis]
+            self._data.qvel[self._speed[here] + axis] = way[agents, axis] + self._off[here, axis]
+
+    def go(self, share: float) -> None:
+        """Pose the limbs of this share of the step, and brace those who were pushed."""
+        here = self._here
+        if not len(here):
+            return
+        self._pose(here, (1.0 - share) * self._limbs[0] + share * self._limbs[1])
+        force = np.zeros((len(here), 2))
+        if np.any(self.pushed):
+            force = self._braced(here)
+        for axis in (0, 1):
+            self._data.qfrc_applied[self._speed[here] + axis] = force[:, axis]
+
+    def stepped(self) -> None:
+        """Notice who was pushed during the last step of the engine."""
+        here = self._here
+        if len(here):
+            now = self._velocity(here)
+            self.pushed[here] |= np.any(now != self._way[here] + self._off[here], axis=1)
+
+    def end(self) -> tuple[Ints, Floats, Floats]:
+        """Return who was pushed off the own way, with their places ``[P, 2]`` [m] and velocities ``[P, 2]`` [m/s]."""
+        slots = np.flatnonzero(self.pushed & (self.agent >= 0))
+        velocity = self._velocity(slots)
+        off = velocity - self._way[slots]
+        off[np.sum(off * off, axis=1) < STEADY**2] = 0.0
+        self._off[:] = 0.0
+        self._off[slots] = off
+        place = np.stack([self._data.qpos[self._place[slots] + axis] for axis in (0, 1)], axis=-1)
+        return self.agent[slots], place.reshape(-1, 2), velocity
+
+    @property
+    def _here(self) -> Ints:
+        return np.flatnonzero(self.agent >= 0)
+
+    def _velocity(self, slots: Ints) -> Floats:
+        return np.stack([self._data.qvel[self._speed[slots] + axis] for axis in (0, 1)], axis=-1).reshape(-1, 2)
+
+    def _braced(self, here: Ints) -> Floats:
+        error = self._way[here] - self._velocity(here)
+        force = self._mass[here, None] * error / REACTION
+        size = np.sqrt(np.sum(force * force, axis=1, keepdims=True))
+        force *= np.minimum(1.0, BRACE / np.maximum(size, 1e-12))
+        return np.where(self.pushed[here, None], force, 0.0)
+
+    def _park(self, slots: Ints) -> None:
+        """Lift bodies that nobody has out of the way."""
+        self.agent[slots] = -1
+        self._off[slots] = 0.0
+        self.pushed[slots] = False
+        if not len(slots):
+            return
+        self._model.geom_pos[self.geoms[slots].ravel()] = (0.0, 0.0, PARKED)
+        for axis in (0, 1):
+            self._data.qpos[self._place[slots] + axis] = 2.0 * slots if axis else 0.0
+            self._data.qvel[self._speed[slots] + axis] = 0.0
+            self._data.qfrc_applied[self._speed[slots] + axis] = 0.0
+
+    def _embody(self, slot: int, mass: float, radius: Floats, other: float, ahead: bool) -> None:
+        model = self._model
+        body, geoms = self.bodies[slot], self.geoms[slot]
+        self._mass[slot] = mass
+        model.body_mass[body] = mass
+        model.body_invweight0[body] = (1.0 / mass, 0.0)
+        model.geom_size[geoms, 0] = radius
+        for geom, region in zip(geoms, REGIONS[ahead], strict=True):
+            stiffness, damping = softness(region, mass, other, self.step)
+            model.geom_solref[geom] = (-stiffness, -damping)
+
+    def _pose(self, here: Ints, limbs: Floats) -> None:
+        """Put the capsules where the limbs are, against their bodies."""
+        model = self._model
+        geoms = self.geoms[here].ravel()
+        ends = limbs.reshape(-1, 6)
+        axis = ends[:, 3:] - ends[:, :3]
+        length = np.maximum(np.sqrt(np.sum(axis * axis, axis=1)), 1e-9)
+        model.geom_pos[geoms] = 0.5 * (ends[:, 3:] + ends[:, :3])
+        model.geom_size[geoms, 1] = 0.5 * length
+        model.geom_rbound[geoms] = 0.5 * length + model.geom_size[geoms, 0]
+        model.geom_quat[geoms] = _upright_to(axis / length[:, None])
+
+
+STEADY = 1e-4
+"""Who is off the own velocity by less [m/s] has got over the push."""
+
+
+def _upright_to(direction: Floats) -> Floats:
+    """Return quaternions ``[N, 4]`` that turn the z axis into unit vectors ``[N, 3]``."""
+    x, y, z = direction.T
+    turn = np.stack([1.0 + z, -y, x, np.zeros_like(x)], axis=-1)
+    turn[z < -1.0 + 1e-9] = (0.0, 1.0, 0.0, 0.0)
+    return turn / np.sqrt(np.sum(turn * turn, axis=1, keepdims=True))
