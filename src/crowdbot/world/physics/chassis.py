@@ -47,6 +47,8 @@ class Chassis:
         self._wheels = [] if self._servo else [self._motor(joint) for joint in wheels]
         units = [robot.wheel_speeds(Twist(*row)) for row in np.eye(3).tolist()]
         self._rolling = np.array([[unit[joint] for unit in units] for joint in wheels]).reshape(-1, 3)
+        if self._servo:  # the engine takes the mean over three directions, one of which the base does not have
+            model.body_invweight0[self.body, 0] = 1.0 / robot.model.mass
         self._delay, self._pending = CommandDelay(robot.latency), ()
         self._asked: Twist | Twists = STILL
         self._forced: Twist | Twists | None = None

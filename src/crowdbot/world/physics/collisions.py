@@ -37,6 +37,7 @@ class BodyForce(NamedTuple):
         first_part: the link of a robot.
         limb, part: of the person: one of :data:`crowdbot.humans.LIMBS`, and ``head``, ``torso``, ``arm`` or ``leg``.
         force: size of the mean over the step [N].
+        vector: ``[3]`` that mean [N], from the first on the second.
         depth: largest overlap [m].
         point: ``[3]`` where [m], the last.
     """
@@ -47,6 +48,7 @@ class BodyForce(NamedTuple):
     limb: str
     part: str
     force: float
+    vector: tuple[float, float, float]
     depth: float
     point: tuple[float, float, float]
 
@@ -178,9 +180,11 @@ class CollisionBook:
         """Return the means over the last ``steps`` steps of the engine, and begin anew."""
         found = []
         for (first, second, one, limb), (force, depth, point) in self._sums.items():
-            size = float(np.sqrt(force @ force)) / steps
-            where = (float(point[0]), float(point[1]), float(point[2]))
-            found.append(BodyForce(first, second, one, limb, PARTS.get(limb, ""), size, depth, where))
+            mean = force / steps
+            size = float(np.sqrt(mean @ mean))
+            found.append(
+                BodyForce(first, second, one, limb, PARTS.get(limb, ""), size, _three(mean), depth, _three(point))
+            )
         self._sums = {}
         return tuple(sorted(found))
 
@@ -248,6 +252,11 @@ class CollisionBook:
             mean = sum(pressed.recent) / self._window
             if time - running.begin >= CLAMPED and mean > running.steady[0]:
                 running.steady = (mean, running.region.get(where, ""))
+
+
+def _three(vector: Floats) -> tuple[float, float, float]:
+    x, y, z = vector.tolist()
+    return x, y, z
 
 
 def _closing(touch: Touch) -> float:

@@ -28,6 +28,8 @@ PULL, SPIN = 4.0, 1.5
 """Largest force [N] and torque [N m] of a base that is pulled, per kg of the robot."""
 SKIN = "0.85 0.70 0.60 1"
 ARENA = "64M"
+SPRING = "0.5 0.5 0.001 0.5 2"
+"""Of the touch of a limb: so the engine solves it as a spring and a damper, whose force two limbs cannot drive up."""
 
 
 class Built(NamedTuple):
@@ -87,15 +89,15 @@ def built(
 
 def _settings() -> list[Element]:
     compiler = {"angle": "radian", "autolimits": "false", "inertiafromgeom": "false", "balanceinertia": "false"}
-    # limbs move on their bodies, which the boxes of the mid-phase would not notice
-    flags = Element("flag", {"midphase": "disable"})
+    # limbs move on their bodies, which the boxes of the mid-phase would not notice; islands would copy what is shared
+    flags = Element("flag", {"midphase": "disable", "island": "disable"})
     looks = Element("global", {"offwidth": "1920", "offheight": "1200"})
     near = Element("map", {"znear": "0.005", "zfar": "60", "shadowscale": "0.5"})
     quality = Element("quality", {"shadowsize": "2048", "offsamples": "0", "numslices": "16", "numstacks": "8"})
     light = Element("headlight", {"ambient": "0.38 0.38 0.38", "diffuse": "0.3 0.3 0.3", "specular": "0 0 0"})
     return [
         Element("compiler", compiler),
-        Element("option", {"integrator": "implicitfast"}, [flags]),
+        Element("option", {"integrator": "implicitfast", "cone": "elliptic"}, [flags]),
         Element("size", {"memory": ARENA}),
         Element("statistic", {"extent": "10", "center": "0 0 1"}),
         Element("visual", {}, [looks, quality, light, near]),
@@ -135,7 +137,7 @@ def _person(slot: int) -> Element:
     for limb in LIMBS:
         layer = TRUNK if limb.region == "torso" else LIMB
         values = {"name": f"{name}/{limb.name}", "type": "capsule", "size": "0.05 0.1", "pos": f"0 0 {PARKED}"}
-        touch = {"priority": "2", "friction": row((0.4, 0.005, 0.0001)), "solimp": "0.99 0.99 0.001 0.5 2"}
+        touch = {"priority": "2", "friction": row((0.4, 0.005, 0.0001)), "solimp": SPRING}
         body.children.append(Element("geom", {**values, **touch, **layer, "group": "4", "rgba": SKIN}))
     return body
 

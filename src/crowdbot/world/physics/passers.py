@@ -7,6 +7,7 @@ by its mass; the person then steps back into the own way with no more force than
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,12 @@ Bools = NDArray[np.bool_]
 BRACE = 100.0
 """Force [N] with which people hold against a push at most (assumed: an eighth of the weight of an adult)."""
 REACTION = 0.1
-"""A velocity that a push changed is made up for in about this time [s], as far as the force allows (assumed)."""
+"""So long [s] after the first touch people begin to hold against it, and they make up for a changed velocity in about
+this time, as far as the force allows (assumed)."""
+HOLD = 0.05
+"""So long [s] after a touch the limbs stay as they are, against the body."""
+RETURN = 1.5
+"""Then they go back into the walk at this speed [m/s]."""
 REGIONS = {ahead: tuple(region_of(name, ahead) for name in LIMB_NAMES) for ahead in (True, False)}
 
 
@@ -54,6 +60,12 @@ class Passers:
         self._speed = np.array([model.joint(f"person{s}/x").dofadr[0] for s in range(slots)], dtype=np.int64)
         self._way = np.zeros((slots, 2))
         self._limbs: tuple[Floats, Floats] = (np.zeros((0, LIMB_COUNT, 6)), np.zeros((0, LIMB_COUNT, 6)))
+        self._limbs_now = np.zeros((slots, LIMB_COUNT, 6))
+        self._late = np.zeros(slots, dtype=np.bool_)
+        self._touched = np.zeros(slots, dtype=np.int64)
+        self._since = np.zeros(slots, dtype=np.int64)
+        self._fresh = np.ones(slots, dtype=np.bool_)
+        self._hold = round(HOLD / step)
         self.swing = np.zeros((slots, LIMB_COUNT, 6))
         """Velocities [m/s] of both ends of the limbs against the body."""
         self._park(np.arange(slots))
@@ -104,19 +116,23 @@ class Passers:
         here = self._here
         if not len(here):
             return
-        self._pose(here, (1.0 - share) * self._limbs[0] + share * self._limbs[1])
+        self._move(here, (1.0 - share) * self._limbs[0] + share * self._limbs[1])
         force = np.zeros((len(here), 2))
         if np.any(self.pushed):
             force = self._braced(here)
         for axis in (0, 1):
             self._data.qfrc_applied[self._speed[here] + axis] = force[:, axis]
 
-    def stepped(self) -> None:
-        """Notice who was pushed during the last step of the engine."""
+    def stepped(self, touched: Iterable[int]) -> None:
+        """Notice who was pushed during the last step of the engine; ``touched`` are agents."""
+        self._touched = np.maximum(self._touched - 1, 0)
+        for agent in touched:
+            self._touched[self.agent == agent] = self._hold
         here = self._here
         if len(here):
             now = self._velocity(here)
             self.pushed[here] |= np.any(now != self._way[here] + self._off[here], axis=1)
+        self._since[self.pushed] += 1
 
     def end(self) -> tuple[Ints, Floats, Floats]:
         """Return who was pushed off the own way, with their places ``[P, 2]`` [m] and velocities ``[P, 2]`` [m/s]."""
@@ -126,6 +142,7 @@ class Passers:
         off[np.sum(off * off, axis=1) < STEADY**2] = 0.0
         self._off[:] = 0.0
         self._off[slots] = off
+        self._since[np.all(self._off == 0.0, axis=1) & (self._touched == 0)] = 0
         place = np.stack([self._data.qpos[self._place[slots] + axis] for axis in (0, 1)], axis=-1)
         return self.agent[slots], place.reshape(-1, 2), velocity
 
@@ -141,13 +158,14 @@ class Passers:
         force = self._mass[here, None] * error / REACTION
         size = np.sqrt(np.sum(force * force, axis=1, keepdims=True))
         force *= np.minimum(1.0, BRACE / np.maximum(size, 1e-12))
-        return np.where(self.pushed[here, None], force, 0.0)
+        return np.where((self._since[here] >= REACTION / self.step)[:, None], force, 0.0)
 
     def _park(self, slots: Ints) -> None:
         """Lift bodies that nobody has out of the way."""
         self.agent[slots] = -1
         self._off[slots] = 0.0
-        self.pushed[slots] = False
+        self._touched[slots], self._since[slots] = 0, 0
+        self.pushed[slots], self._late[slots], self._fresh[slots] = False, False, True
         if not len(slots):
             return
         self._model.geom_pos[self.geoms[slots].ravel()] = (0.0, 0.0, PARKED)
@@ -166,6 +184,24 @@ class Passers:
         for geom, region in zip(geoms, REGIONS[ahead], strict=True):
             stiffness, damping = softness(region, mass, other, self.step)
             model.geom_solref[geom] = (-stiffness, -damping)
+
+    def _move(self, here: Ints, walk: Floats) -> None:
+        """Let limbs follow the walk; those of who is touched stay as they are, and then go back without haste.
+
+        A limb that walked on inside of what holds it would press without end.
+        """
+        held = (self._touched[here] > 0) & ~self._fresh[here]
+        late = held | self._late[here]
+        lag = walk - self._limbs_now[here]
+        length = np.sqrt(np.maximum(np.sum(lag[..., :3] ** 2, axis=-1), np.sum(lag[..., 3:] ** 2, axis=-1)))
+        share = np.minimum(1.0, RETURN * self.step / np.maximum(length, 1e-12))
+        share[held] = 0.0
+        share[~late] = 1.0
+        late &= held | np.any(share < 1.0, axis=1)
+        now = np.where(late[:, None, None], self._limbs_now[here] + share[..., None] * lag, walk)
+        self._limbs_now[here], self._late[here], self._fresh[here] = now, late, False
+        self.swing[here[late]] = 0.0
+        self._pose(here, now)
 
     def _pose(self, here: Ints, limbs: Floats) -> None:
         """Put the capsules where the limbs are, against their bodies."""

@@ -110,7 +110,7 @@ class Cube(Prop):
             ]
         touch = DYNAMIC if not self.fixed else STANDING
         values = {"type": "box", "size": row([half] * 3), "rgba": row((*self.color, 1.0)), "group": "0"}
-        rub = {"friction": row((self.friction, 0.005, 0.0001))}
+        rub = {"friction": row((self.friction, 0.005, 0.0001)), "priority": "1"}  # its own friction, not the floor's
         found.children.append(Element("geom", {"name": f"{name}/0", **values, **rub, **touch}))
         return found
 

@@ -111,6 +111,20 @@ class Touches:
             first = self._velocity(one, point) + (swing if self._kind[one] == PERSON else 0.0)
             second = self._velocity(other, point) + (swing if self._kind[other] == PERSON else 0.0)
             self._found.append(_Contact(int(index), one, first, second, swing, other))
+        self._share()
+
+    def _share(self) -> None:
+        """Let the points in which a limb is touched share its stiffness; the engine takes each as a spring of its own."""
+        points: dict[tuple[int, int], list[int]] = {}
+        for found in self._found:
+            if PERSON in (self._kind[found.one], self._kind[found.other]):
+                points.setdefault((found.one, found.other), []).append(found.index)
+        for indices in points.values():
+            for index in indices if len(indices) > 1 else ():
+                contact = self._data.contact[index]
+                rows = slice(contact.efc_address, contact.efc_address + contact.dim)
+                self._data.efc_R[rows] *= len(indices)
+                self._data.efc_D[rows] /= len(indices)
 
     def read(self) -> tuple[Touch, ...]:
         """Return who presses on whom, after the second half of the step; points of the same parts are together."""

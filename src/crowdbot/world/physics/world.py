@@ -257,7 +257,7 @@ class PhysicsWorld(PlanarWorld):
         self._touches.look()
         self._mj.mj_step2(self.engine_model, self.data)
         touches = self._touches.read()
-        self._passers.stepped()
+        self._passers.stepped({p.number for touch in touches for p in touch[:2] if p.kind == "person"})
         self._book.add(time, touches)
         for touch in touches:
             if touch.first.kind == "robot" and touch.second.kind in ("robot", "person"):

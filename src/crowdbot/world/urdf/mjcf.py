@@ -182,7 +182,7 @@ def _body(build: _Build, link: str, origin: Floats, joint: Joint | None = None) 
     if joint is None:
         height = float(build.model.inertial().center[2])
         body.children.append(
-            Element("site", {"name": build.called("base"), "group": "4", "pos": row((0.0, 0.0, height))})
+            Element("site", {"name": build.called("base/pull"), "group": "4", "pos": row((0.0, 0.0, height))})
         )
     axle = joint.axis if joint is not None and joint.kind in ("continuous", "revolute") else None
     for name, matrix in fixed.items():
@@ -317,7 +317,7 @@ def _servo(build: _Build, servo: BaseServo | None) -> list[Element]:
         ("base_left", "0 1 0 0 0 0", servo.max_force, whole.mass),
         ("base_turn", "0 0 0 0 0 1", servo.max_torque, float(whole.tensor[2, 2])),
     ):
-        values = {"name": build.called(name), "site": build.called("base"), "gear": gear}
+        values = {"name": build.called(name), "site": build.called("base/pull"), "gear": gear}
         values |= {"kv": row((load / servo.time_constant,)), **_capped(force)}
         rows.append(Element("velocity", values))
     return rows
