@@ -17,11 +17,15 @@ _ROOMS = {
     "sensors": ("Lidar2D", "Sensor"),
     "metrics": ("score",),
     "calibration": ("Calibrator",),
+    "world": ("Robot",),
     "navigation": ("Navigator", "Observation"),
     "prediction": (
         "ConstantAcceleration",
         "ConstantVelocity",
         "Kalman",
+        "KalmanAcceleration",
+        "LeastSquares",
+        "Live",
         "Predictor",
         "SampledConstantVelocity",
         "Simulated",
@@ -72,6 +76,9 @@ if TYPE_CHECKING:
     from .prediction import ConstantAcceleration as ConstantAcceleration
     from .prediction import ConstantVelocity as ConstantVelocity
     from .prediction import Kalman as Kalman
+    from .prediction import KalmanAcceleration as KalmanAcceleration
+    from .prediction import LeastSquares as LeastSquares
+    from .prediction import Live as Live
     from .prediction import Predictor as Predictor
     from .prediction import SampledConstantVelocity as SampledConstantVelocity
     from .prediction import Simulated as Simulated
@@ -81,3 +88,4 @@ if TYPE_CHECKING:
     from .trials import Trial as Trial
     from .trials import load_trial as load_trial
     from .trials.replay import replay as replay
+    from .world import Robot as Robot

@@ -10,6 +10,7 @@ import pytest
 
 from crowdbot.cli import main
 
+
 def _json(capsys, *arguments):
     assert main([*arguments, "--json"]) == 0
     return json.loads(capsys.readouterr().out)

@@ -106,7 +106,7 @@ def test_a_stopped_run_goes_on_where_it_was(street, tmp_path, recordings):
     assert running.returncode == 130, told
     assert "interrupted" in told
     kept = {part: part.stat().st_mtime_ns for part in tmp_path.glob("parts/*.npz")}
-    assert 2 <= len(kept)
+    assert len(kept) >= 2
     assert not list(tmp_path.glob("parts/*.part"))
     assert not (tmp_path / "scores.json").exists()
     done = subprocess.run(program, capture_output=True, text=True, timeout=240)

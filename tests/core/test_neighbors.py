@@ -83,6 +83,15 @@ def test_equal_distances_are_sorted_by_index():
     check_against_twin(np.concatenate([shuffled] * 2, axis=1), 1.5, 7)  # everybody twice
 
 
+def test_far_more_candidates_than_are_wanted():
+    side = np.arange(15.0)
+    lattice = np.stack(np.meshgrid(side, side), axis=-1).reshape(1, -1, 2)  # many at equal distances
+    crammed = np.concatenate([0.01 * lattice, lattice * 50.0 + 9.0, 1e-3 * lattice, np.zeros((1, 60, 2))], axis=1)
+    shuffled = crammed[:, np.random.default_rng(5).permutation(crammed.shape[1])]
+    for most in (1, 2, 9):
+        check_against_twin(shuffled, 1e4, most)
+
+
 def test_the_reach_is_open():
     row = np.array([[[0.0, 0.0], [3.0, 4.0], [-3.0, -3.9]]])
     found = nearest(row, 5.0, 9)
@@ -115,9 +124,9 @@ def test_whoever_is_not_finite_is_nowhere():
 
 
 def test_alone_or_in_a_batch():
-    position = np.random.default_rng(1).uniform(0.0, 30.0, (9, SMALL // 8, 2))
+    position = np.random.default_rng(1).uniform(0.0, 30.0, (9, CROWD + 8, 2))
     together = nearest(position, 4.0, 8)
-    assert SMALL // 8 > CROWD
+    assert CROWD + 8 <= SMALL < position.shape[0] * position.shape[1]  # alone by one thread, together by all
     for e in range(9):
         alone = nearest(position[e : e + 1], 4.0, 8)
         assert np.array_equal(alone.agent[0], together.agent[e])

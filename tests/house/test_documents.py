@@ -30,8 +30,9 @@ def test_python_blocks_run(page, number, code, tmp_path):
 
 
 def test_the_readme_shows_a_prediction_and_a_trial():
-    predict, trial = _blocks(ROOT / "README.md", "python")
+    predict, live, trial = _blocks(ROOT / "README.md", "python")
     assert len([line for line in predict.splitlines() if line.strip()]) <= 12
+    assert len([line for line in live.splitlines() if line.strip()]) <= 12
     assert len([line for line in trial.splitlines() if line.strip()]) <= 4
 
 

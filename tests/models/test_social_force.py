@@ -55,15 +55,17 @@ def twin(scene, dt, umans=False):
             if i == j or d >= 5.0:
                 continue
             stride = 2.0 * v[j]
+            long = np.linalg.norm(stride)
             if umans:
                 overlap = scene.radius[0, i] + scene.radius[0, j] - d
                 if overlap > 0.0:
                     contact += 62.5 * overlap * n / d
                     continue
                 aim = wish[j] / np.linalg.norm(wish[j]) if wish[j].any() else wish[j]
-                stride = np.linalg.norm(v[j]) * aim
+                long = np.linalg.norm(v[j])  # even of who has arrived: then it has no direction
+                stride = long * aim
             far = np.linalg.norm(n - stride)
-            b = 0.5 * math.sqrt((d + far) ** 2 - stride @ stride)
+            b = 0.5 * math.sqrt((d + far) ** 2 - long**2)
             size = 2.1 / 0.3 * math.exp(-b / 0.3) * (d + far) / (4.0 * b)
             if umans:
                 force += seen(n) * size * n * (1.0 + (d - n @ stride / d) / far)
@@ -108,20 +110,14 @@ def test_one_step_agrees_with_umans(reference, capsys):
         preferred_speed=steps["pref_speed"].astype(np.float64),
     )
     error = np.abs(SocialForce(variant="umans2018").velocity(scene, 0.1) - after[..., 2:4]).max(axis=-1)
-    # next to someone who has just arrived the library does what could not be explained
-    arrived = np.linalg.norm(goal - place, axis=-1) <= 0.25
-    apart = np.linalg.norm(place[:, :, None] - place[:, None], axis=-1)
-    plain = ~np.any((apart > 0.0) & (apart < 5.0) & arrived[:, None], axis=-1)
     with capsys.disabled():
-        for name, some in (("all", error), ("nobody arrived near", error[plain])):
-            share = np.mean(some < 1e-3)
-            print(
-                f"\ncrossing_SocialForces, {name}: {share:.2%} of {some.size} within 1e-3, median {np.median(some):.0e}"
-            )
-    assert np.median(error) <= 1e-5
-    assert np.mean(error < 1e-3) >= 0.985
-    assert np.mean(error[plain] < 1e-3) >= 0.999
-    assert plain.mean() > 0.8
+        print(
+            f"\ncrossing_SocialForces: {np.mean(error < 1e-3):.2%} of {error.size} within 1e-3,"
+            f" {np.mean(error < 1e-4):.2%} within 1e-4, median {np.median(error):.0e}, worst {error.max():.0e}"
+        )
+    assert np.median(error) <= 1e-6
+    assert np.mean(error < 1e-4) >= 0.998
+    assert error.max() < 1e-3
 
 
 @settings(max_examples=15, deadline=None)

@@ -24,7 +24,7 @@ COSTS = [name for name in built_in(calibration, Cost) if name != "weighted-sum"]
 SEARCHES = list(built_in(calibration, Search))
 MODELS = ("orca", "social-force", "power-law", "boids")
 SCHEMES = [*itertools.product(("orca",), COSTS, SEARCHES), *((model, COSTS[0], "genetic") for model in MODELS[1:])]
-every = pytest.mark.parametrize("scheme", SCHEMES, ids=lambda scheme: " ".join(scheme))
+every = pytest.mark.parametrize("scheme", SCHEMES, ids=" ".join)
 
 
 def crowd_of(scheme: tuple[str, str, str], goal: Goal | None = None) -> Simulated:

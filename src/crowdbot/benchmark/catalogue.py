@@ -13,7 +13,7 @@ __all__ = ["catalogue", "cite", "papers"]
 
 KINDS = {
     "models": ("models", "CrowdModel"),
-    "goals": ("models", "Goal"),
+    "goals": ("models.goals", "Goal"),
     "sensors": ("sensors", "Sensor"),
     "drives": ("world", "Drive"),
     "navigators": ("navigation", "Navigator"),
@@ -44,7 +44,7 @@ def catalogue(kind: str | None = None) -> dict[str, dict[str, str]]:
     >>> "orca" in catalogue("models")["models"]
     True
     """
-    words = {"trials": _trials, "protocols": _protocols, "formats": _formats}
+    words = {"trials": _trials, "robots": _robots, "humans": _humans, "protocols": _protocols, "formats": _formats}
     known = [*KINDS, *words]
     if kind is not None and kind not in known:
         raise UnknownName("kind", kind, known)
@@ -107,6 +107,18 @@ def _trials() -> dict[str, str]:
     from crowdbot.trials import builtin_trials, load_trial
 
     return {name: load_trial(name).about for name in builtin_trials()}
+
+
+def _robots() -> dict[str, str]:
+    from crowdbot.world import Robot, builtin_robots
+
+    return {name: Robot.load(name).about for name in builtin_robots()}
+
+
+def _humans() -> dict[str, str]:
+    from crowdbot.humans import persons
+
+    return {one.name: f"{one.sex}, {one.years} years, {one.height:.2f} m, {one.mass:.0f} kg" for one in persons()}
 
 
 def _protocols() -> dict[str, str]:

@@ -6,6 +6,7 @@ real time.
 
 from __future__ import annotations
 
+import functools
 import os
 import platform
 import statistics
@@ -19,6 +20,7 @@ import numpy as np
 
 from crowdbot.core import InputError, MissingExtra, UnknownName
 
+from .frames import scheme_frames
 from .workloads import Gauge, Measurement, measurements
 
 __all__ = ["Row", "environment", "measure"]
@@ -41,9 +43,12 @@ class Row:
 
 
 def measure(
-    names: Sequence[str] = (), repeats: int = 7, progress: Callable[[str, float], None] | None = None
+    names: Sequence[str] = (),
+    repeats: int = 7,
+    progress: Callable[[str, float], None] | None = None,
+    recording: Path | None = None,
 ) -> list[Row]:
-    """Time the named measurements (all when none is named).
+    """Time the named measurements (all when none is named); calibrated frames are taken from ``recording``, if given.
 
     Raises:
         UnknownName: a name is not among :func:`crowdbot.benchmark.measurements`.
@@ -52,7 +57,9 @@ def measure(
     """
     if repeats < 1:
         raise InputError(f"repeats {repeats} is below 1")
-    known = measurements()
+    known = measurements() | {
+        f"scheme-frame{'-warm' * warm}": functools.partial(scheme_frames, warm, recording) for warm in (False, True)
+    }
     unknown = next((name for name in names if name not in known), None)
     if unknown is not None:
         raise UnknownName("measurement", unknown, known)

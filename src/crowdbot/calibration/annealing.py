@@ -16,6 +16,8 @@ from .search import Search
 
 __all__ = ["Annealing"]
 
+COOLING = Geometric(0.1, 1e-4)
+REACH = Geometric(0.5, 0.003)
 ANYWHERE = 0.2
 """The share of new values that are drawn from the whole side of the box."""
 
@@ -27,7 +29,7 @@ class Annealing(Search):
     In every step each chain gives most people a new value of one parameter: around the present one, ever nearer, or now
     and then anywhere. Someone keeps it when he costs less than before, or, with the probability ``exp(-increase / T)``,
     when he costs more. He decides on his own cost, not on that of the whole crowd: a crowd would hardly ever accept 30
-    changes at once. T is the temperature of ``cooling`` times the spread (standard deviation) of what he costs with the
+    changes at once. T is the temperature of ``cooling`` times the spread (of the middle half) of what he costs with the
     first random parameters, so it needs no unit. Beside the chains, each step evaluates everyone's best parameters
     together. Every few steps the worse half of everyone's chains goes on from where the better half is.
     The result is the best crowd that was evaluated as a whole.
@@ -49,9 +51,9 @@ class Annealing(Search):
     ((1, 20, 2), [1000], True)
     """
 
-    cooling: Cooling = Geometric()
-    reach: Cooling = Geometric(0.5, 0.01)
-    chains: int = 20
+    cooling: Cooling = COOLING
+    reach: Cooling = REACH
+    chains: int = 12
     exchange: int = 4
     moved: float = 0.4
 
@@ -84,7 +86,7 @@ class Annealing(Search):
             best, _ = own_best(crowds, measured)
             if len(crowds) > self.chains:
                 step += 1
-                limit = self.cooling.at(ledger.progress) * spread * _patience(ledger, self.chains)
+                limit = self.cooling.at(ledger.progress) * spread * _tolerated(ledger, self.chains)
                 accepted = (measured[1:] <= energy + limit) | ~moved
                 here = np.where(accepted[..., None], there, here)
                 energy = np.where(accepted, measured[1:], energy)
@@ -103,7 +105,7 @@ class Annealing(Search):
         moved = chance[..., 0] < 1.0 + (self.moved - 1.0) * ledger.progress
         which = (chance[..., 1] * D).astype(np.int64)[..., None] == np.arange(D)
         near = ledger.folded(here + self.reach.at(ledger.progress) * ledger.span * away)
-        anywhere = ledger.low + ledger.span * chance[..., 2, None]
+        anywhere = ledger.inside(chance[..., 2, None])
         there = np.where(chance[..., 3, None] < ANYWHERE, anywhere, near)
         return np.where(which & moved[..., None], there, here), moved
 
@@ -123,7 +125,7 @@ def _spread(cost: Floats) -> Floats:
     return np.where(finite, high, 0.0)[None] - np.where(finite, low, 0.0)[None]
 
 
-def _patience(ledger: Ledger, chains: int) -> Floats:
-    """Return by how many temperatures everyone lets his cost grow: exponential, as accepting by ``exp(-increase / T)``."""
+def _tolerated(ledger: Ledger, chains: int) -> Floats:
+    """Return by how many temperatures everyone lets his cost grow; exponential: more than x has chance ``exp(-x)``."""
     people = ledger.best.shape[1]
     return ledger.draw(lambda rng: rng.standard_exponential((chains, people)))

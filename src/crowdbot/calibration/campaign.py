@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot import __version__
 from crowdbot.core import stream
+from crowdbot.core.version import code_digest
 from crowdbot.core.workers import each_kept
 from crowdbot.data import Recording, Windows
 
@@ -72,7 +72,7 @@ class Campaign:
     @property
     def key(self) -> str:
         """Hash of everything that decides about the result."""
-        told = pickle.dumps((__version__, self, self.recording.digest))
+        told = pickle.dumps((code_digest(), self, self.recording.digest))
         return hashlib.blake2b(told, digest_size=12).hexdigest()
 
     @property

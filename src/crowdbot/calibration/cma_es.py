@@ -14,8 +14,6 @@ from .search import Search
 
 __all__ = ["CMAES"]
 
-FINEST_STEP = 1e-12
-
 
 @dataclass(frozen=True)
 class CMAES(Search):
@@ -30,7 +28,8 @@ class CMAES(Search):
         population: solutions of an optimiser in a generation.
         width: standard deviation at the beginning, in sides of the box.
 
-    Source: Hansen (2016), arXiv 1604.00772, as in the library cmaes (Nomura & Shibata 2024, arXiv 2402.01373).
+    Source: Hansen (2016), doi 10.48550/arXiv.1604.00772, as in the library cmaes (Nomura & Shibata 2024, doi
+    10.48550/arXiv.2402.01373).
 
     >>> low, high = np.array([-1.0, -1.0]), np.array([2.0, 2.0])
     >>> everyone = lambda candidates, which: (candidates**2).sum(axis=-1)
@@ -42,7 +41,9 @@ class CMAES(Search):
     population: int = 16
     width: float = 0.3
 
-    paper: ClassVar[Paper] = Paper("Hansen", 2016, "The CMA evolution strategy: a tutorial", "arXiv", "1604.00772")
+    paper: ClassVar[Paper] = Paper(
+        "Hansen", 2016, "The CMA evolution strategy: a tutorial", "arXiv", "10.48550/arXiv.1604.00772"
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -62,14 +63,14 @@ class CMAES(Search):
             for person in np.flatnonzero(ledger.counts[row]).tolist()
         }
         while ledger.left:
-            live = ledger.live.tolist()
-            place = np.zeros((self.population + 1, len(live), *ledger.best.shape[1:]))
-            ours = [(key, (slice(1, None), live.index(key[0]), key[1])) for key in optimisers if key[0] in live]
+            rows = {problem: row for row, problem in enumerate(ledger.live.tolist())}
+            place = np.zeros((self.population + 1, len(rows), *ledger.best.shape[1:]))
+            ours = [(key, (slice(1, None), rows[key[0]], key[1])) for key in optimisers if key[0] in rows]
             for key, where in ours:
                 optimiser = optimisers[key]
                 place[0][where[1:]] = np.clip(optimiser.mean, 0.0, 1.0)
                 place[where] = [optimiser.ask() for _ in range(self.population)]
-            measured = ledger.evaluate(ledger.low + ledger.span * place)
+            measured = ledger.evaluate(ledger.inside(place))
             if not ledger.left:
                 break
             for key, where in ours:

@@ -33,8 +33,8 @@ class Geometric(Cooling):
     [1.0, 0.1, 0.01]
     """
 
-    start: float = 0.2
-    end: float = 3e-4
+    start: float = 0.1
+    end: float = 1e-4
 
     def __post_init__(self) -> None:
         if not 0.0 < self.end <= self.start < math.inf:

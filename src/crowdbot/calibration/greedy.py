@@ -9,7 +9,7 @@ import numpy as np
 
 from crowdbot.core import InputError, Paper
 
-from .ledger import Floats, Ledger
+from .ledger import Floats, Integers, Ledger
 from .search import Search
 
 __all__ = ["Greedy"]
@@ -23,8 +23,8 @@ class Greedy(Search):
     """Replaces one parameter of one person at a time and keeps what lowers the cost of the whole crowd.
 
     It begins with the best start. All parameters of all people who count are visited in an order that is drawn once
-    and then repeated. At a visit ``trials`` new values are evaluated as one batch: every second one lies anywhere in the
-    side of the box, the others lie around the present value, at distances whose scale is drawn, in its logarithm,
+    and then repeated. At a visit ``trials`` new values are evaluated as one batch: every second one lies anywhere in
+    the side of the box, the others lie around the present value, at distances whose scale is drawn, in its logarithm,
     between 1/1000 and the whole of the side. The best of them replaces the value when the mean over the people is
     lower with it than without; else the value stays. So it cannot leave a minimum from which no single parameter
     leads down, and a crowd of 30 people with 7 parameters needs 210 visits to try each once.
@@ -62,7 +62,7 @@ class Greedy(Search):
         visit = 0
         while ledger.left:
             present = ledger.incumbent()
-            _, L, N, D = present.shape
+            _, L, _, D = present.shape
             length = ledger.counts.sum(axis=1) * D
             gene = np.take_along_axis(order[0], (visit % length)[:, None], axis=1)[:, 0].astype(np.int64)
             person, parameter = gene // D, gene % D
@@ -77,13 +77,15 @@ class Greedy(Search):
         """Return in which order parameters are visited, ``[1, L, N * D]`` numbers ``person * D + parameter``."""
         _, N, D = ledger.best.shape
         chance = ledger.draw(lambda rng: rng.random((1, N * D)))
-        counts = np.repeat(ledger.counts, D, axis=1)
-        return np.argsort(np.where(counts, chance, np.inf), axis=2, kind="stable").astype(np.float64)
+        chance = np.where(np.repeat(ledger.counts, D, axis=1), chance, np.inf)
+        return np.argsort(chance, axis=2, kind="stable").astype(np.float64)
 
-    def _values(self, ledger: Ledger, present: Floats, parameter: np.ndarray) -> Floats:
+    def _values(self, ledger: Ledger, present: Floats, parameter: Integers) -> Floats:
         """Return new values ``[trials, L]`` for a parameter of each problem."""
-        low, side = ledger.low[parameter], ledger.span[parameter]
+        low, high, side = ledger.low[parameter], ledger.high[parameter], ledger.span[parameter]
         chance = ledger.draw(lambda rng: rng.random(self.trials))
         away = ledger.draw(lambda rng: rng.standard_normal(self.trials))
-        near = present + NARROWEST**chance * side * away
-        return np.where((np.arange(self.trials) % 2 == 0)[:, None], low + side * chance, near)
+        near = present + np.exp(np.log(NARROWEST) * chance) * side * away
+        anywhere = (np.arange(self.trials) % 2 == 0)[:, None]
+        values: Floats = np.clip(np.where(anywhere, low + side * chance, near), low, high)
+        return values

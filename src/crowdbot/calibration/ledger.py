@@ -131,15 +131,19 @@ class Ledger:
         """Return the best whole-crowd candidates so far, ``[1, L, N, D]``, moved into the box."""
         return np.clip(self.best[self.live], self.low, self.high)[None]
 
+    def inside(self, place: Floats) -> Floats:
+        """Return values from places ``[..., D]`` in the box, 0 at its lower and 1 at its upper end, never beyond."""
+        return np.clip(self.low + self.span * place, self.low, self.high)
+
     def folded(self, values: Floats) -> Floats:
         """Return values mirrored at the sides of the box, and into it."""
-        inside = np.clip(values, self.low, self.high)
-        return np.clip(2.0 * inside - values, self.low, self.high)
+        side = np.clip(values, self.low, self.high)
+        return np.clip(2.0 * side - values, self.low, self.high)
 
     def anywhere(self, count: int) -> Floats:
         """Return ``count`` candidates ``[count, L, N, D]`` that lie uniformly at random in the box."""
         shape = (count, *self.best.shape[1:])
-        return np.asarray(self.low + self.span * self.draw(lambda rng: rng.random(shape)))
+        return self.inside(self.draw(lambda rng: rng.random(shape)))
 
 
 def own_best(pool: Floats, cost: Floats) -> tuple[Floats, Floats]:

@@ -45,7 +45,7 @@ class PopulationPrior:
     >>> prior = PopulationPrior(("radius",), np.zeros(1), np.eye(1))
     >>> values = np.array([[[0.25]], [[0.39]]])
     >>> prior.penalty(Space(ORCA(), ("radius",)), values, values).round(4).tolist()
-    [[0.0], [0.5661]]
+    [[0.0], [0.5669]]
     """
 
     names: tuple[str, ...] = field(repr=False)

@@ -23,7 +23,6 @@ class RandomSearch(Search):
     Fields:
         batch: how many candidates are evaluated at once.
 
-    >>> import numpy as np
     >>> low, high = np.array([-1.0, -1.0]), np.array([2.0, 2.0])
     >>> everyone = lambda candidates, which: (candidates**2).sum(axis=-1)
     >>> found = RandomSearch().minimize(everyone, low, high, [np.random.default_rng(0)], 500, np.ones((1, 1, 3, 2)))

@@ -23,8 +23,8 @@ __all__ = ["Floats", "Found", "Function", "Integers", "Search", "check_box"]
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Function = Callable[[Floats, Integers], Floats]
-"""From candidates ``[P, L, N, D]`` of the problems ``which [L]`` (numbers below W) to every person's cost ``[P, L, N]``,
-all as one batch; NaN: this person does not count."""
+"""From candidates ``[P, L, N, D]`` of the problems ``which [L]`` (numbers below W) to what everyone costs,
+``[P, L, N]``, all as one batch; NaN: this person does not count."""
 
 
 @dataclass(frozen=True)
@@ -91,8 +91,9 @@ class Search(ABC):
         check_box(low, high, budget)
         check_start(start, len(low), len(rngs))
         ledger = Ledger(function, low, high, rngs, budget, start[0], self.tolerance, self.patience)
-        cost = ledger.evaluate(start)
-        pool, cost = ledger.settle(start[: len(cost)], cost)
+        if ledger.left:
+            cost = ledger.evaluate(start)
+            pool, cost = ledger.settle(start[: len(cost)], cost)
         if ledger.left:
             self.explore(ledger, pool, cost)
         return Found(ledger.best, ledger.cost, ledger.evaluations, ledger.history)
@@ -112,8 +113,10 @@ def check_box(low: Floats, high: Floats, budget: int) -> None:
     """Raise :class:`InputError` unless the box has an inside and there is something to spend."""
     if budget < 1:
         raise InputError(f"search: budget = {budget} evaluations must be at least 1")
-    if low.shape != high.shape or low.ndim != 1 or not (np.all(np.isfinite(low)) and np.all(np.isfinite(high))):
+    if low.shape != high.shape or low.ndim != 1 or not np.all(np.isfinite([low, high])):
         raise InputError(f"search: the box from {low} to {high} must be two lists of as many finite numbers")
+    if not len(low):
+        raise InputError("search: the box has no sides; there must be at least one parameter to search")
     if np.any(low > high):
         raise InputError(f"search: the box is empty, its lower end {low} lies above its upper end {high}")
 

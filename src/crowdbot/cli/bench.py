@@ -12,6 +12,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument("names", metavar="NAME", nargs="*", help="which measurements; none means all")
     parser.add_argument("--repeats", type=int, default=7, help="timed repeats of each, after a warm-up (default 7)")
+    parser.add_argument("--data", type=Path, metavar="PATH", help="recording for scheme-frame (default: a made crowd)")
     parser.add_argument("--out", type=Path, metavar="FILE.json", help="also write the rows to a file")
     add_json(parser)
 
@@ -23,7 +24,7 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.benchmark import measure
 
     with progress(options.json) as report:
-        rows = measure(options.names, repeats=options.repeats, progress=report)
+        rows = measure(options.names, repeats=options.repeats, progress=report, recording=options.data)
     table = [row.as_dict() for row in rows]
     if options.out is not None:
         options.out.write_text(json.dumps(table, indent=2) + "\n", encoding="utf-8")

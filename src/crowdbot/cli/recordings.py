@@ -32,6 +32,7 @@ def add_recordings(parser: argparse.ArgumentParser, predict: int = 12) -> None:
         "--learn", type=float, default=0.0, metavar="SHARE",
         help="goals that learn do so from this first share of each recording; only the rest is predicted",
     )  # fmt: skip
+    add("--every", type=int, default=1, metavar="N", help="only every N-th window of each recording (default 1)")
 
 
 def recordings(options: argparse.Namespace) -> tuple[Recording, ...]:
@@ -41,7 +42,7 @@ def recordings(options: argparse.Namespace) -> tuple[Recording, ...]:
     return tuple(
         Recording(
             str(path), options.fps, options.format, options.units, options.time_base, options.step, options.observe,
-            options.predict, options.protocol, options.near, options.late, options.learn,
+            options.predict, options.protocol, options.near, options.late, options.learn, options.every,
         )
         for path in options.data
     )  # fmt: skip

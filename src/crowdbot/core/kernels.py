@@ -33,23 +33,24 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 @overload
 def kernel(function: Function) -> Function: ...
 @overload
-def kernel(*, parallel: bool) -> Callable[[Function], Function]: ...
-def kernel(function: Function | None = None, *, parallel: bool = False) -> Any:
+def kernel(*, parallel: bool = False, inline: bool = False) -> Callable[[Function], Function]: ...
+def kernel(function: Function | None = None, *, parallel: bool = False, inline: bool = False) -> Any:
     """Compile a function of arrays and numbers with numba, cached on disk.
 
-    Works with and without arguments: ``@kernel`` or ``@kernel(parallel=True)``.
+    Works with and without arguments: ``@kernel``, ``@kernel(parallel=True)`` or, for what is called in the innermost
+    loop with many arrays, ``@kernel(inline=True)``: every array is some seven numbers to hand over.
     """
     if function is None:
-        return functools.partial(_compiled, parallel=parallel)
-    return _compiled(function, parallel=parallel)
+        return functools.partial(_compiled, parallel=parallel, inline=inline)
+    return _compiled(function, parallel=parallel, inline=inline)
 
 
-def _compiled(function: Function, parallel: bool) -> Function:
+def _compiled(function: Function, parallel: bool, inline: bool) -> Function:
     settings: Any = config
     before = settings.CACHE_DIR
     settings.CACHE_DIR = str(cache_folder())
     try:
-        jit = numba.njit(cache=True, error_model="numpy", fastmath=False, parallel=parallel)
+        jit = numba.njit(cache=True, error_model="numpy", fastmath=False, parallel=parallel, forceinline=inline)
         return cast(Function, jit(function))
     finally:
         settings.CACHE_DIR = before

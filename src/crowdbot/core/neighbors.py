@@ -28,10 +28,12 @@ CHUNK = 64
 """Agents that one thread takes at a time."""
 SMALL = 512
 """Up to this many agents one thread does it all: waking the others would take longer than the work (measured)."""
-CROWD = 32
-"""From this number of agents on the grid is faster than brute force (measured: 32 in a batch, 150 alone)."""
+CROWD = 120
+"""From this number of agents on the grid is faster than brute force (measured, both in a batch and alone)."""
 PER_CELL = 2.0
 """Agents in one cell, on average."""
+SPARE = 32
+"""Room for candidates, next to twice those wanted."""
 GUESS = 0.25
 """Where the search begins: squared radius per neighbour wanted, in squared widths of a cell."""
 SLACK = 1e-12
@@ -226,58 +228,46 @@ def _search_part(begin: int, end: int, seekers: _Seekers, grid: _Grid, agent: Ro
     shape, sizes, first, order, points = grid
     A = len(number) // len(sizes)
     widest = agent.shape[1]
-    near = np.empty(widest, dtype=np.int32)
-    near2 = np.empty(widest)
+    room = 2 * widest + SPARE
+    near, near2, sorted_ = np.empty(room, dtype=np.int32), np.empty(room), np.empty(room, dtype=np.int32)
     for k in range(begin, end):
         row = order[k]
         e = row // A
+        x, y, reach2, most = place[row, 0], place[row, 1], reach[row] * reach[row], min(capacity[row], widest)
         held = int(np.int64(0))  # a plain 0 would be a type of its own and compile what follows twice
-        most = min(capacity[row], widest)
-        if asking[row] and most > 0 and reach[row] > 0.0:
-            x, y, size, reach2 = place[row, 0], place[row, 1], sizes[e], reach[row] * reach[row]
-            limit2 = min(reach2, (GUESS * most + 0.5) * size * size)
+        if asking[row] and most > 0 and reach[row] > 0.0 and math.isfinite(x) and math.isfinite(y):
+            limit2 = min(reach2, (GUESS * most + 0.5) * sizes[e] * sizes[e])
             while True:
                 held = _look_around(
-                    first, e, size, shape[e, 0], shape[e, 1], order, points, x, y, row, limit2, most, near, near2
-                )
-                if held == most or limit2 == reach2:
+                    first, e, sizes[e], shape[e, 0], shape[e, 1], order, points, x, y, k, limit2, reach2, most,
+                    near, near2, sorted_,
+                )  # fmt: skip
+                if held >= most or limit2 == reach2:
                     break
                 limit2 = min(reach2, 4.0 * limit2)
+            _sort_by_distance(near, near2, held, sorted_)
+            held = min(held, most)
         number[row] = held
         for n in range(held):
-            agent[row, n] = near[n] - e * A
+            agent[row, n] = near[sorted_[n]] - e * A
         for n in range(held, widest):
             agent[row, n] = -1
 
 
-@kernel
+@kernel(inline=True)
 def _look_around(
-    first: Rows,
-    e: int,
-    size: float,
-    columns: int,
-    rows: int,
-    order: Rows,
-    points: Array,
-    x: float,
-    y: float,
-    row: int,
-    limit2: float,
-    most: int,
-    near: Rows,
-    near2: Array,
-) -> int:
-    """Look at the rows of the grid from the own one outwards, until the next is farther than the worst one held."""
+    first: Rows, e: int, size: float, columns: int, rows: int, order: Rows, points: Array, x: float, y: float,
+    own: int, limit2: float, reach2: float, most: int, near: Rows, near2: Array, sorted_: Rows,
+) -> int:  # fmt: skip
+    """Look at the rows of the grid from the own one outwards, until the next is too far; return how many are held."""
     held = int(np.int64(0))
-    if not (math.isfinite(x) and math.isfinite(y)):
-        return held
     inverse = 1.0 / size
-    own = math.floor(y * inverse)
+    line = math.floor(y * inverse)
     slack = SLACK * (abs(x) + abs(y) + size)
     for visit in range(rows):  # the own row, then +1, -1, +2, -2, ...
         ring = (visit + 1) // 2
-        above = max(0.0, (own + ring) * size - y - slack)
-        below = max(0.0, y - (own - ring + 1) * size - slack)
+        above = max(0.0, (line + ring) * size - y - slack)
+        below = max(0.0, y - (line - ring + 1) * size - slack)
         if visit > 0 and min(above, below) ** 2 > limit2:
             break
         gap = above if visit % 2 == 1 else below if visit > 0 else 0.0
@@ -286,50 +276,61 @@ def _look_around(
         if gap * gap > limit2:
             continue
         width = math.sqrt(limit2 - gap * gap) + slack
-        start = _wrapped(own + ring if visit % 2 == 1 else own - ring, rows) * columns
+        start = _wrapped(line + ring if visit % 2 == 1 else line - ring, rows) * columns
         low, high = 0, columns - 1
         if 2.0 * width * inverse + 2.0 < columns:
             low = _wrapped(math.floor((x - width) * inverse), columns)
             high = _wrapped(math.floor((x + width) * inverse), columns)
-        if low > high:  # around the end of the row
-            begin, end = first[e, start + low], first[e, start + columns]
-            held, limit2 = _look(order, points, begin, end, x, y, row, limit2, most, held, near, near2)
+        for _ in range(1 if low <= high else 2):  # twice around the end of the row
+            last = high if low <= high else columns - 1
+            for k in range(first[e, start + low], first[e, start + last + 1]):
+                if held == len(near) - 1:
+                    held, limit2 = _shortened(near, near2, held, most, sorted_)
+                dx, dy = points[k, 0] - x, points[k, 1] - y
+                d2 = dx * dx + dy * dy
+                near[held], near2[held] = order[k], d2
+                held += 1 if (d2 <= limit2) & (d2 < reach2) & (k != own) else 0  # no branch: none could foresee it
             low = 0
-        begin, end = first[e, start + low], first[e, start + high + 1]
-        held, limit2 = _look(order, points, begin, end, x, y, row, limit2, most, held, near, near2)
     return held
 
 
 @kernel
-def _look(
-    order: Rows,
-    points: Array,
-    begin: int,
-    end: int,
-    x: float,
-    y: float,
-    row: int,
-    limit2: float,
-    most: int,
-    held: int,
-    near: Rows,
-    near2: Array,
-) -> tuple[int, float]:
-    """Look at the sorted agents from begin to end; return how many are held then, and the squared reach left."""
-    for k in range(begin, end):
-        dx, dy = points[k, 0] - x, points[k, 1] - y
-        d2 = dx * dx + dy * dy
-        if not d2 <= limit2:
-            continue
-        other = order[k]
-        if other == row or (d2 == limit2 and (held < most or other > near[held - 1])):
-            continue
-        n = min(held, most - 1)
-        held = n + 1
-        while n > 0 and (d2 < near2[n - 1] or (d2 == near2[n - 1] and other < near[n - 1])):
-            near2[n], near[n] = near2[n - 1], near[n - 1]
-            n -= 1
-        near2[n], near[n] = d2, other
-        if held == most:
-            limit2 = near2[held - 1]
-    return held, limit2
+def _shortened(near: Rows, near2: Array, held: int, most: int, sorted_: Rows) -> tuple[int, float]:
+    """Keep only the nearest of those held; return how many, and the squared distance of the last."""
+    _sort_by_distance(near, near2, held, sorted_)
+    limit2 = near2[sorted_[most - 1]]
+    for n in range(most, held):
+        near2[sorted_[n]] = -1.0
+    kept = int(np.int64(0))
+    for i in range(held):
+        if near2[i] >= 0.0:
+            near[kept], near2[kept] = near[i], near2[i]
+            kept += 1
+    return kept, limit2
+
+
+@kernel(inline=True)
+def _sort_by_distance(near: Rows, near2: Array, held: int, sorted_: Rows) -> None:
+    """Write where the nearest, the second and so on are held; the smaller agent first where distances are equal.
+
+    Everybody's rank is the number of those nearer, counted with no branch and many at a time.
+    """
+    near2[held] = math.inf
+    sorted_[: held + 1] = -1
+    for i in range(0, held, 2):
+        rank, next_rank = int(np.int64(0)), int(np.int64(0))
+        for j in range(held):
+            rank += 1 if near2[j] < near2[i] else 0
+            next_rank += 1 if near2[j] < near2[i + 1] else 0
+        _put(near, sorted_, rank, i)
+        _put(near, sorted_, next_rank, i + 1)
+
+
+@kernel(inline=True)
+def _put(near: Rows, sorted_: Rows, rank: int, i: int) -> None:
+    """Put i at a rank, or behind those of the same distance."""
+    while sorted_[rank] >= 0:
+        if near[i] < near[sorted_[rank]]:
+            i, sorted_[rank] = sorted_[rank], i
+        rank += 1
+    sorted_[rank] = i

@@ -28,9 +28,10 @@ class Recording:
         step: rows are so far apart [s] by interpolation; None keeps those of the file, recorded trials have 0.4.
         observe, predict, protocol, near, late: as of :meth:`Trajectories.windows`.
         learn: share of the recording, from its begin on, that goals may learn from and that is not predicted.
+        every: only every so many-th window is predicted.
 
     Raises:
-        InputError: the share is not from 0 to below 1, or nothing was kept to learn from.
+        InputError: the share is not from 0 to below 1, every is below 1, or nothing was kept to learn from.
     """
 
     path: str
@@ -45,8 +46,11 @@ class Recording:
     near: float | None = None
     late: str = "skip"
     learn: float = 0.0
+    every: int = 1
 
     def __post_init__(self) -> None:
+        if self.every < 1:
+            raise InputError(f"every = {self.every} must be at least 1: each, every 2nd, every 3rd window")
         if not 0.0 <= self.learn < 1.0:
             raise InputError(f"the share of a recording to learn from is {self.learn}, it must be from 0 to below 1")
 
@@ -103,6 +107,6 @@ def _tracks(recording: Recording) -> Trajectories:
 
 @functools.lru_cache(maxsize=4)
 def _windows(recording: Recording) -> tuple[Windows, Windows]:
-    return recording.rest.windows(
-        recording.observe, recording.predict, recording.protocol, recording.near, recording.late
-    )
+    how = recording.observe, recording.predict, recording.protocol, recording.near, recording.late
+    past, future = recording.rest.windows(*how)
+    return (past, future) if recording.every == 1 else (past[:: recording.every], future[:: recording.every])

@@ -75,10 +75,15 @@ def _push(x: float, y: float, yx: float, yy: float, strength: float, distance: f
 
 
 @kernel
-def _push_umans(x: float, y: float, yx: float, yy: float, strength: float, distance: float) -> tuple[float, float]:
-    """Return the push of the 2018 library: a derivative along the line between the two, longer with their distance."""
+def _push_umans(
+    x: float, y: float, yx: float, yy: float, stride: float, strength: float, distance: float
+) -> tuple[float, float]:
+    """Return the push of the 2018 library: a derivative along the line between the two, longer with their distance.
+
+    Whoever has arrived but still moves has a ``stride`` there, which makes the ellipse thinner, but no direction.
+    """
     near, far = math.sqrt(x * x + y * y), math.sqrt((x - yx) ** 2 + (y - yy) ** 2)
-    b2 = 0.25 * ((near + far) ** 2 - (yx * yx + yy * yy))
+    b2 = 0.25 * ((near + far) ** 2 - stride * stride)
     if b2 <= 0.0 or near == 0.0 or far == 0.0:
         return 0.0, 0.0
     b = math.sqrt(b2)
@@ -122,8 +127,9 @@ def _by_people(
                 continue
             speed = math.sqrt(velocity[j, 0] ** 2 + velocity[j, 1] ** 2)
             wish = math.sqrt(desired[j, 0] ** 2 + desired[j, 1] ** 2)
-            stride = UMANS_LOOK_AHEAD * law[2] * speed / wish if wish > 0.0 else 0.0
-            fx, fy = _push_umans(x, y, stride * desired[j, 0], stride * desired[j, 1], law[0], law[1])
+            stride = UMANS_LOOK_AHEAD * law[2] * speed
+            yx, yy = (stride * desired[j, 0] / wish, stride * desired[j, 1] / wish) if wish > 0.0 else (0.0, 0.0)
+            fx, fy = _push_umans(x, y, yx, yy, stride, law[0], law[1])
         else:
             fx, fy = _push(x, y, law[2] * velocity[j, 0], law[2] * velocity[j, 1], law[0], law[1])
         weight = _sight(x, y, ex, ey, law[6], law[7])

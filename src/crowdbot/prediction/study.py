@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot import __version__
 from crowdbot.calibration import Fit
 from crowdbot.core import InputError, stream
+from crowdbot.core.version import code_digest
 from crowdbot.core.workers import each_kept
 from crowdbot.data import Recording
 from crowdbot.metrics import PersonErrors, Score, person_errors
@@ -55,7 +55,7 @@ class Piece:
     @property
     def key(self) -> str:
         """Hash of everything that decides about the result but the content of the recording."""
-        return hashlib.blake2b(pickle.dumps((__version__, self)), digest_size=12).hexdigest()
+        return hashlib.blake2b(pickle.dumps((code_digest(), self)), digest_size=12).hexdigest()
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,24 @@
+"""Which crowdbot this is, to the letter: results that are kept belong to the code that made them."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+from pathlib import Path
+
+__all__ = ["code_digest"]
+
+
+@functools.cache
+def code_digest() -> str:
+    """Return a hash of every source file of the package.
+
+    >>> len(code_digest())
+    16
+    """
+    root = Path(__file__).parent.parent
+    found = hashlib.blake2b(digest_size=8)
+    for file in sorted(root.rglob("*.py")):
+        found.update(file.relative_to(root).as_posix().encode())
+        found.update(file.read_bytes())
+    return found.hexdigest()
