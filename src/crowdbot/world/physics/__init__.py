@@ -1,5 +1,6 @@
 """Physics: the world in which robots, people, walls and props have bodies, with forces between them."""
 
+from .camera import Camera, Images
 from .chassis import Chassis
 from .collisions import BodyForce, Collision
 from .stage import Cube, Light, PhysicsStage, Prop, Table, Tree
@@ -11,9 +12,11 @@ from .world import PhysicsWorld
 __all__ = [
     "TISSUES",
     "BodyForce",
+    "Camera",
     "Chassis",
     "Collision",
     "Cube",
+    "Images",
     "Light",
     "Limbs",
     "Party",

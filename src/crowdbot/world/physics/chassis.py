@@ -140,7 +140,15 @@ class Chassis:
         return found
 
     def frame(self, link: str) -> Floats:
-        """Return the frame ``[4, 4]`` of a link in the world."""
+        """Return the frame ``[4, 4]`` of a link in the world.
+
+        Raises:
+            InputError: there is no such link.
+        """
+        if link not in self.robot.model.links:
+            raise InputError(
+                f"{self.robot.name} has no link {link!r}{did_you_mean(link, self.robot.model.links)}"
+            )
         site = self._data.site(self.prefix + link)
         found = np.eye(4)
         found[:3, :3], found[:3, 3] = site.xmat.reshape(3, 3), site.xpos

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from .composed import LIMB_COUNT, LIMB_NAMES, PARKED
 from .tissue import region_of, softness
+from .touches import Touch
 
 __all__ = ["BRACE", "REACTION", "Passers"]
 
@@ -31,6 +32,9 @@ HOLD = 0.05
 """So long [s] after a touch the limbs stay as they are, against the body."""
 RETURN = 1.5
 """Then they go back into the walk at this speed [m/s]."""
+GIVE = 1.0
+"""An arm or leg that is pressed by more than :data:`BRACE` for longer than the reaction gives way, at most so fast."""
+CHAINS = {name: chain for chain in (("thigh", "shank", "foot"), ("upperarm", "forearm", "hand")) for name in chain}
 REGIONS = {ahead: tuple(region_of(name, ahead) for name in LIMB_NAMES) for ahead in (True, False)}
 
 
@@ -103,8 +107,10 @@ class Passers:
         """
         here = self._here
         agents = self.agent[here]
-        self.pushed[:] = np.any(self._off != 0.0, axis=1)
         self._way[here] = way[agents]
+        held = here[self._touched[here] > 0]  # who is touched cannot change the own velocity at once
+        self._off[held] = self._velocity(held) - self._way[held]
+        self.pushed[:] = np.any(self._off != 0.0, axis=1)
         self._limbs = (before[agents], after[agents])
         self.swing[here] = (after[agents] - before[agents]) / duration
         for axis in (0, 1):
@@ -123,16 +129,31 @@ class Passers:
         for axis in (0, 1):
             self._data.qfrc_applied[self._speed[here] + axis] = force[:, axis]
 
-    def stepped(self, touched: Iterable[int]) -> None:
-        """Notice who was pushed during the last step of the engine; ``touched`` are agents."""
+    def stepped(self, touches: Iterable[Touch]) -> None:
+        """Notice who was pushed during the last step of the engine, and let limbs give way that are pressed."""
         self._touched = np.maximum(self._touched - 1, 0)
-        for agent in touched:
-            self._touched[self.agent == agent] = self._hold
+        for touch in touches:
+            for party, limb, sign in ((touch.first, touch.first_part, -1.0), (touch.second, touch.second_part, 1.0)):
+                if party.kind == "person":
+                    slot = int(np.flatnonzero(self.agent == party.number)[0])
+                    self._touched[slot] = self._hold
+                    if self._since[slot] >= REACTION / self.step:
+                        self._give_way(slot, limb, sign * touch.force)
         here = self._here
         if len(here):
             now = self._velocity(here)
             self.pushed[here] |= np.any(now != self._way[here] + self._off[here], axis=1)
         self._since[self.pushed] += 1
+
+    def _give_way(self, slot: int, limb: str, force: Floats) -> None:
+        """Move the arm or leg that a limb belongs to the way it is pressed, when that is more than it can hold."""
+        size = float(np.sqrt(force @ force))
+        chain = CHAINS.get(limb.split("_")[0], ())
+        if size <= BRACE or not chain:
+            return
+        rows = [LIMB_NAMES.index(f"{name}_{limb[-1]}") for name in chain]
+        shift = min(1.0, size / BRACE - 1.0) * GIVE * self.step * force / size
+        self._limbs_now[slot, rows] += np.tile(shift * (1.0, 1.0, 0.0), 2)
 
     def end(self) -> tuple[Ints, Floats, Floats]:
         """Return who was pushed off the own way, with their places ``[P, 2]`` [m] and velocities ``[P, 2]`` [m/s]."""

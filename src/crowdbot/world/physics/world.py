@@ -17,10 +17,12 @@ from ..drive import Twists
 from ..planar import PlanarWorld
 from ..robot import Robot
 from ..world import Contact
+from .camera import Camera, Images
 from .chassis import Chassis
 from .collisions import BodyForce, Collision, CollisionBook
 from .composed import built
 from .engine import engine
+from .looks import Looks
 from .passers import Passers
 from .scenery import joined
 from .stage import PhysicsStage
@@ -107,6 +109,7 @@ class PhysicsWorld(PlanarWorld):
         self.left_out = 0
         self.forces: tuple[BodyForce, ...] = ()
         self._touched: dict[tuple[int, int], float] = {}
+        self._looks: Looks | None = None
         self._compose(robots, min(len(persons), 24) if slots is None else slots, motors)
 
     @property
@@ -124,9 +127,27 @@ class PhysicsWorld(PlanarWorld):
         Raises:
             InputError: the agent is no robot, a joint has no motor or is a wheel, or a value is not finite.
         """
+        self.carrier(robot).command(joints)
+
+    def carrier(self, robot: int) -> Chassis:
+        """Return the body of a robot.
+
+        Raises:
+            InputError: the agent is no robot.
+        """
         if robot not in self.chassis:
             raise InputError(f"agent {robot} is no robot; robots are {sorted(self.chassis) or 'none'}")
-        self.chassis[robot].command(joints)
+        return self.chassis[robot]
+
+    def render(self, camera: Camera, *, rgb: bool = True, depth: bool = False, segmentation: bool = False) -> Images:
+        """Return what a camera sees now, people with their skins; no screen is needed.
+
+        Raises:
+            InputError: there is no way to draw here, or the camera is on no robot or no link.
+        """
+        if self._looks is None or self._looks.detail != camera.detail:
+            self._looks = Looks(self, camera.detail)
+        return self._looks.images(camera, rgb, depth, segmentation)
 
     def limbs(self) -> Limbs:
         """Return the capsules of all people as they stand now."""
@@ -257,7 +278,7 @@ class PhysicsWorld(PlanarWorld):
         self._touches.look()
         self._mj.mj_step2(self.engine_model, self.data)
         touches = self._touches.read()
-        self._passers.stepped({p.number for touch in touches for p in touch[:2] if p.kind == "person"})
+        self._passers.stepped(touches)
         self._book.add(time, touches)
         for touch in touches:
             if touch.first.kind == "robot" and touch.second.kind in ("robot", "person"):

@@ -1,0 +1,200 @@
+"""How a physics world looks: its shapes and the skins of its people, drawn by MuJoCo."""
+
+from __future__ import annotations
+
+import math
+import weakref
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.markup import written
+from crowdbot.humans.asset import shapes
+from crowdbot.humans.wardrobe import region_colors
+
+from .camera import LARGEST, Camera, Images
+from .drawing import canvas, closed
+from .engine import engine
+
+if TYPE_CHECKING:
+    from .world import PhysicsWorld
+
+__all__ = ["Looks"]
+
+Floats = NDArray[np.float64]
+SHAPES_MOST = 20_000
+NOTHING, WALL, FLOOR, PROP = -1, -2, -3, -4
+
+
+class Looks:
+    """Draws a world; made when its first image is asked for.
+
+    Args:
+        world: what is drawn.
+        detail: level of the skins, 0 (finest) to 2.
+    """
+
+    def __init__(self, world: PhysicsWorld, detail: int) -> None:
+        self._mj, self._world, self.detail = engine(), world, detail
+        self._faces, self._part = world.walkers.people.faces(detail), world.walkers.people.worn(detail)
+        self._model = self._painted()
+        self._data = self._mj.MjData(self._model)
+        self._canvas = canvas(*LARGEST)
+        self._context = self._mj.MjrContext(self._model, self._mj.mjtFontScale.mjFONTSCALE_100)
+        weakref.finalize(self, closed, self._canvas, self._context).atexit = False
+        self._mj.mjr_setBuffer(self._mj.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
+        self._context.readDepthMap = self._mj.mjtDepthMap.mjDEPTH_ZEROFAR
+        self._scene = self._mj.MjvScene(self._model, maxgeom=SHAPES_MOST)
+        self._option = self._mj.MjvOption()
+        self._option.geomgroup[:] = (1, 1, 1, 0, 0, 0)
+        self._option.flags[self._mj.mjtVisFlag.mjVIS_STATIC] = 1
+
+    def images(self, camera: Camera, rgb: bool, depth: bool, segmentation: bool) -> Images:
+        """Return what a camera sees now."""
+        mj = self._mj
+        self._canvas.make_current()
+        codes = self._arranged(camera)
+        area = mj.MjrRect(0, 0, camera.width, camera.height)
+        colors = np.empty((camera.height, camera.width, 3), dtype=np.uint8)
+        flags = self._scene.flags
+        flags[mj.mjtRndFlag.mjRND_SHADOW] = camera.shadows
+        flags[mj.mjtRndFlag.mjRND_REFLECTION] = 0
+        found: list[Any] = [None, None, None]
+        if rgb:
+            flags[mj.mjtRndFlag.mjRND_SEGMENT] = flags[mj.mjtRndFlag.mjRND_IDCOLOR] = 0
+            mj.mjr_render(area, self._scene, self._context)
+            mj.mjr_readPixels(colors, None, area, self._context)
+            found[0] = np.flipud(colors).copy()
+        if depth or segmentation:
+            flags[mj.mjtRndFlag.mjRND_SEGMENT] = flags[mj.mjtRndFlag.mjRND_IDCOLOR] = 1
+            raw = np.empty((camera.height, camera.width), dtype=np.float32)
+            mj.mjr_render(area, self._scene, self._context)
+            mj.mjr_readPixels(colors, raw, area, self._context)
+            number = colors.astype(np.int64) @ np.array([1, 256, 65536])
+            if depth:
+                found[1] = np.flipud(_metric(raw, camera)).copy()
+            if segmentation:
+                found[2] = np.flipud(codes[np.minimum(number, len(codes) - 1)]).astype(np.int32)
+        return Images(*found)
+
+    def _painted(self) -> Any:
+        """Return the model of the world with a skin, and its colours, for every person."""
+        mj, world = self._mj, self._world
+        spec = mj.MjSpec.from_string(written(world.built.root), assets=world.built.files)
+        names = shapes().regions
+        region = shapes().levels[self.detail].face_region
+        around = np.stack([(np.arange(len(names)) + 0.5) / len(names), np.full(len(names), 0.5)], axis=1)
+        skin = world.walkers.gait.skin(world.walkers.state, self.detail)
+        for k, outfit in enumerate(world.walkers.people.outfits):
+            worn = self._part[k]
+            spec.add_mesh(
+                name=f"skin{k}",
+                inertia=mj.mjtMeshInertia.mjMESH_INERTIA_SHELL,
+                uservert=skin[k].ravel(),
+                usernormal=_normals(skin[k], self._faces[worn]).ravel(),
+                userface=self._faces[worn].ravel().astype(np.int32),
+                userfacenormal=self._faces[worn].ravel().astype(np.int32),
+                usertexcoord=around.ravel(),
+                userfacetexcoord=np.repeat(region[worn], 3).astype(np.int32),
+            )
+            paint = (255.0 * np.clip(region_colors(outfit), 0.0, 1.0)).astype(np.uint8)
+            cloth = spec.add_texture(name=f"cloth{k}", type=mj.mjtTexture.mjTEXTURE_2D, width=len(names), height=1)
+            cloth.nchannel = 3
+            cloth.data = paint.tobytes()
+            material = spec.add_material(name=f"cloth{k}", specular=0.1, shininess=0.1)
+            material.textures[mj.mjtTextureRole.mjTEXROLE_RGB] = f"cloth{k}"
+        model = spec.compile()
+        self._meshes = np.array([model.mesh(f"skin{k}").id for k in range(len(world.walkers.people))], dtype=np.int64)
+        self._cloths = [model.material(f"cloth{k}").id for k in range(len(world.walkers.people))]
+        shown = {int(b) for b in model.geom_bodyid[model.geom_group == 2]}
+        bare = (model.geom_group == 3) & ~np.isin(model.geom_bodyid, list(shown))
+        model.geom_group[bare] = 2  # robots without anything to be seen show what touches
+        return model
+
+    def _arranged(self, camera: Camera) -> NDArray[np.int64]:
+        """Put everything where it is now, and return what the numbers in an image of numbers stand for."""
+        mj, world, model, data, scene = self._mj, self._world, self._model, self._data, self._scene
+        data.qpos[:] = world.data.qpos
+        mj.mj_kinematics(model, data)
+        mj.mj_comPos(model, data)
+        mj.mj_camlight(model, data)
+        mj.mjv_updateScene(
+            model, data, self._option, None, mj.MjvCamera(), mj.mjtCatBit.mjCAT_ALL.value, scene
+        )
+        codes = np.full(scene.ngeom + len(self._meshes) + 2, NOTHING, dtype=np.int64)
+        for geom in scene.geoms[: scene.ngeom]:
+            if geom.segid >= 0 and geom.objtype == mj.mjtObj.mjOBJ_GEOM:
+                codes[geom.segid + 1] = self._code(model.geom(geom.objid).name)
+        place, forward, up = self._look(camera)
+        self._people(codes, place, forward, camera.far)
+        return codes
+
+    def _look(self, camera: Camera) -> tuple[Floats, Floats, Floats]:
+        world = self._world
+        carrier = np.eye(4)
+        if camera.robot is not None:
+            chassis = world.carrier(camera.robot)
+            carrier = chassis.frame(camera.link or chassis.robot.model.root)
+        place, forward, up = camera.axes(carrier)
+        half = camera.near * math.tan(0.5 * camera.view)
+        for eye in self._scene.camera:
+            eye.pos, eye.forward, eye.up = place, forward, up
+            eye.frustum_center, eye.frustum_width = 0.0, 0.0
+            eye.frustum_bottom, eye.frustum_top = -half, half
+            eye.frustum_near, eye.frustum_far = camera.near, camera.far
+            eye.orthographic = 0
+        return place, forward, up
+
+    def _people(self, codes: NDArray[np.int64], place: Floats, forward: Floats, far: float) -> None:
+        """Add the skins of those who are there and not behind the camera."""
+        mj, world, model, scene = self._mj, self._world, self._model, self._scene
+        walkers = world.walkers
+        here = world.scene.active[0, walkers.agents]
+        if not np.any(here):
+            return
+        skin = walkers.gait.skin(walkers.state, self.detail)
+        for k in np.flatnonzero(here):
+            ahead = (skin[k] - place) @ forward
+            if ahead.max() < 0.0 or ahead.min() > far:
+                continue
+            mesh = int(self._meshes[k])
+            first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
+            model.mesh_vert[first : first + count] = skin[k]
+            bent = int(model.mesh_normaladr[mesh])
+            model.mesh_normal[bent : bent + count] = _normals(skin[k], self._faces[self._part[k]])
+            mj.mjr_uploadMesh(model, self._context, mesh)
+            geom = scene.geoms[scene.ngeom]
+            mj.mjv_initGeom(
+                geom, mj.mjtGeom.mjGEOM_MESH, np.zeros(3), np.zeros(3), np.eye(3).ravel(), np.ones(4, np.float32)
+            )
+            geom.dataid, geom.matid, geom.texcoord, geom.segid = 2 * mesh, self._cloths[k], 1, scene.ngeom
+            geom.category = mj.mjtCatBit.mjCAT_DYNAMIC
+            scene.ngeom += 1
+            codes[geom.segid + 1] = int(walkers.agents[k])
+
+    def _code(self, name: str) -> int:
+        if name.startswith("robot"):
+            return int(name.removeprefix("robot").split("/")[0])
+        return FLOOR if name == "floor" else WALL if name.startswith("wall/") else PROP
+
+
+def _metric(raw: NDArray[np.float32], camera: Camera) -> NDArray[np.float32]:
+    """Return distances along the axis [m] from a depth buffer that is 0 far away."""
+    near, far = camera.near, camera.far
+    value = raw.astype(np.float64)
+    with np.errstate(divide="ignore"):
+        found = near * far / (near + value * (far - near))
+    return np.where(value <= 0.0, np.inf, found).astype(np.float32)
+
+
+def _normals(points: Floats, faces: NDArray[np.int64]) -> Floats:
+    """Return unit normals ``[V, 3]`` of vertices, up where no face has the vertex."""
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    flat = np.cross(b - a, c - a)
+    found = np.zeros_like(points)
+    for k in range(3):
+        for axis in range(3):
+            found[:, axis] += np.bincount(faces[:, k], flat[:, axis], minlength=len(points))
+    size = np.sqrt(np.sum(found * found, axis=1, keepdims=True))
+    return np.where(size > 1e-12, found / np.maximum(size, 1e-12), (0.0, 0.0, 1.0))
