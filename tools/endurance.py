@@ -23,7 +23,6 @@ HALF, DT = 12.0, 0.1
 
 def made(people: int) -> tuple[PhysicsWorld, int]:
     """Return the world and the agent that is the robot."""
-    draw = stream(0, "endurance")
     robot = Robot.load("cuybot")
     side = int(np.ceil(np.sqrt(people)))
     grid = np.stack(np.meshgrid(np.arange(side), np.arange(side)), axis=-1).reshape(-1, 2)[:people]

@@ -97,10 +97,8 @@ def test_from_behind_it_is_the_back_and_the_one_who_walks_is_the_cause():
     assert world.collisions[0].region == "back"
     walking = facing(ram(60.0, 1.3), gap=2.0)
     walking.scene = walking.scene.replace(external=np.array([[True, True]]), velocity=np.array([[[0, 0], [-1.0, 0]]]))
-    for k in range(100):
-        scene = walking.scene
-        place = scene.position.copy()
-        walking.scene = scene.replace(position=place, velocity=np.array([[[0.0, 0.0], [-1.0, 0.0]]]))
+    for _ in range(100):
+        walking.scene = walking.scene.replace(velocity=np.array([[[0.0, 0.0], [-1.0, 0.0]]]))
         walking.step({0: Twist()})
         if walking.collisions:
             break

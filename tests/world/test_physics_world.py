@@ -274,7 +274,13 @@ def test_people_who_come_in_have_bodies():
         rate=2.0,
     )
     world = PhysicsWorld(
-        scene, ORCA(), {0: robot}, 0.1, sources=[source], ids=np.array([0, -1, -2, -3, -4, -5]), journeys=Journeys((), -1)
+        scene,
+        ORCA(),
+        {0: robot},
+        0.1,
+        sources=[source],
+        ids=np.array([0, -1, -2, -3, -4, -5]),
+        journeys=Journeys((), -1),
     )
     for _ in range(30):
         scene = world.step({0: Twist()})

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Twist
 from crowdbot.core.errors import did_you_mean
+from crowdbot.world.drive import Twists
+from crowdbot.world.robot import Robot
+from crowdbot.world.servo import CommandDelay
 
-from ..drive import Twists
-from ..robot import Robot
-from ..servo import CommandDelay, Pending
 from .engine import engine
 
 __all__ = ["Chassis"]
@@ -49,7 +49,9 @@ class Chassis:
         self._rolling = np.array([[unit[joint] for unit in units] for joint in wheels]).reshape(-1, 3)
         if self._servo:  # the engine takes the mean over three directions, one of which the base does not have
             model.body_invweight0[self.body, 0] = 1.0 / robot.model.mass
-        self._delay, self._pending = CommandDelay(robot.latency), ()
+        self._delay = CommandDelay(robot.latency)
+        self._pending: tuple[Pending, ...] = ()
+        self._held: Twist | Twists = STILL
         self._asked: Twist | Twists = STILL
         self._forced: Twist | Twists | None = None
         self._aim = Twists.of(STILL, 1)
@@ -146,9 +148,7 @@ class Chassis:
             InputError: there is no such link.
         """
         if link not in self.robot.model.links:
-            raise InputError(
-                f"{self.robot.name} has no link {link!r}{did_you_mean(link, self.robot.model.links)}"
-            )
+            raise InputError(f"{self.robot.name} has no link {link!r}{did_you_mean(link, self.robot.model.links)}")
         site = self._data.site(self.prefix + link)
         found = np.eye(4)
         found[:3, :3], found[:3, 3] = site.xmat.reshape(3, 3), site.xpos
@@ -164,7 +164,6 @@ class Chassis:
 
     def _posed(self) -> None:
         """Put the joints into the posture and let the motors hold it."""
-        self._held: Twist | Twists = STILL
         model = self.robot.model
         for name, value in model.positions(self.robot.posture).items():
             index = self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_JOINT, self.prefix + name)

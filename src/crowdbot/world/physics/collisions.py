@@ -97,7 +97,7 @@ class Collision:
 
     @property
     def severity(self) -> float:
-        """Force over the limit of the region (ISO/TS 15066), the worse of impact and quasi-static; NaN without a person.
+        """Force over the limit of its region (ISO/TS 15066), the worse of impact and steady; NaN without a person.
 
         Infinite for an impact on skull or face, where none is allowed.
         """

@@ -10,11 +10,11 @@ import numpy as np
 from crowdbot.core import InputError, Scene
 from crowdbot.core.markup import Element, written
 from crowdbot.humans import LIMBS
+from crowdbot.world.ackermann import AckermannDrive
+from crowdbot.world.robot import Robot
+from crowdbot.world.urdf.geoms import row
+from crowdbot.world.urdf.mjcf import BaseServo, mjcf
 
-from ..ackermann import AckermannDrive
-from ..robot import Robot
-from ..urdf.geoms import row
-from ..urdf.mjcf import BaseServo, mjcf
 from .engine import engine
 from .layers import LIMB, ROBOT, TRUNK
 from .scenery import scenery

@@ -119,18 +119,16 @@ class Looks:
         mj.mj_kinematics(model, data)
         mj.mj_comPos(model, data)
         mj.mj_camlight(model, data)
-        mj.mjv_updateScene(
-            model, data, self._option, None, mj.MjvCamera(), mj.mjtCatBit.mjCAT_ALL.value, scene
-        )
+        mj.mjv_updateScene(model, data, self._option, None, mj.MjvCamera(), mj.mjtCatBit.mjCAT_ALL.value, scene)
         codes = np.full(scene.ngeom + len(self._meshes) + 2, NOTHING, dtype=np.int64)
         for geom in scene.geoms[: scene.ngeom]:
             if geom.segid >= 0 and geom.objtype == mj.mjtObj.mjOBJ_GEOM:
                 codes[geom.segid + 1] = self._code(model.geom(geom.objid).name)
-        place, forward, up = self._look(camera)
+        place, forward = self._look(camera)
         self._people(codes, place, forward, camera.far)
         return codes
 
-    def _look(self, camera: Camera) -> tuple[Floats, Floats, Floats]:
+    def _look(self, camera: Camera) -> tuple[Floats, Floats]:
         world = self._world
         carrier = np.eye(4)
         if camera.robot is not None:
@@ -144,7 +142,7 @@ class Looks:
             eye.frustum_bottom, eye.frustum_top = -half, half
             eye.frustum_near, eye.frustum_far = camera.near, camera.far
             eye.orthographic = 0
-        return place, forward, up
+        return place, forward
 
     def _people(self, codes: NDArray[np.int64], place: Floats, forward: Floats, far: float) -> None:
         """Add the skins of those who are there and not behind the camera."""

@@ -148,7 +148,7 @@ class Passers:
     def _give_way(self, slot: int, limb: str, force: Floats) -> None:
         """Move the arm or leg that a limb belongs to the way it is pressed, when that is more than it can hold."""
         size = float(np.sqrt(force @ force))
-        chain = CHAINS.get(limb.split("_")[0], ())
+        chain = CHAINS.get(limb.split("_", maxsplit=1)[0], ())
         if size <= BRACE or not chain:
             return
         rows = [LIMB_NAMES.index(f"{name}_{limb[-1]}") for name in chain]

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Walls
 from crowdbot.core.markup import Element
+from crowdbot.world.urdf.geoms import row
 
-from ..urdf.geoms import row
 from .layers import STANDING
 from .stage import PhysicsStage
 

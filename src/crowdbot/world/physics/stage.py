@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.core.markup import Element
+from crowdbot.world.urdf.geoms import row
 
-from ..urdf.geoms import row
 from .layers import DYNAMIC, STANDING
 
 __all__ = ["Cube", "Light", "PhysicsStage", "Prop", "Table", "Tree"]
@@ -68,7 +68,7 @@ class Prop(ABC):
     def _ring(self, length: float, width: float) -> Floats:
         cos, sin = math.cos(self.heading), math.sin(self.heading)
         corners = 0.5 * np.array([[-length, -width], [length, -width], [length, width], [-length, width]])
-        return corners @ np.array([[cos, sin], [-sin, cos]]) + (self.x, self.y)
+        return np.asarray(corners @ np.array([[cos, sin], [-sin, cos]]) + (self.x, self.y))
 
 
 @dataclass(frozen=True)

@@ -61,7 +61,7 @@ class Touch(NamedTuple):
 class _Contact(NamedTuple):
     """One point where the geom ``one`` meets ``other``, with velocities there."""
 
-    index: int
+    row: int
     one: int
     first: Floats
     second: Floats
@@ -114,11 +114,11 @@ class Touches:
         self._share()
 
     def _share(self) -> None:
-        """Let the points in which a limb is touched share its stiffness; the engine takes each as a spring of its own."""
+        """Let the points in which a limb is touched share its stiffness: to the engine each is a spring of its own."""
         points: dict[tuple[int, int], list[int]] = {}
         for found in self._found:
             if PERSON in (self._kind[found.one], self._kind[found.other]):
-                points.setdefault((found.one, found.other), []).append(found.index)
+                points.setdefault((found.one, found.other), []).append(found.row)
         for indices in points.values():
             for index in indices if len(indices) > 1 else ():
                 contact = self._data.contact[index]
@@ -140,16 +140,18 @@ class Touches:
     def _joined(self, key: tuple[Party, Party, str, str], rows: list[_Contact]) -> Touch:
         force, normals, depth, six = np.zeros(3), np.zeros(3), 0.0, np.zeros(6)
         for row in rows:
-            contact = self._data.contact[row.index]
+            contact = self._data.contact[row.row]
             normal = np.array(contact.frame[:3]) * (1.0 if contact.geom[0] == row.one else -1.0)
-            self._mj.mj_contactForce(self._model, self._data, row.index, six)
+            self._mj.mj_contactForce(self._model, self._data, row.row, six)
             force += six[0] * normal
             normals += normal
             depth = max(depth, -float(contact.dist))
         size = float(np.sqrt(normals @ normals))
         normal = normals / size if size > 1e-9 else np.array([1.0, 0.0, 0.0])
-        first, second, swing = (np.mean([row[k] for row in rows], axis=0) for k in (2, 3, 4))
-        point = np.mean([self._data.contact[row.index].pos for row in rows], axis=0)
+        first = np.mean([row.first for row in rows], axis=0)
+        second = np.mean([row.second for row in rows], axis=0)
+        swing = np.mean([row.swing for row in rows], axis=0)
+        point = np.mean([self._data.contact[row.row].pos for row in rows], axis=0)
         return Touch(*key, force, depth, normal, point, first, second, swing)
 
     def _rank(self, geom: int) -> tuple[int, int]:
@@ -189,5 +191,3 @@ def _sorted_out(name: str, prefixes: dict[int, str]) -> tuple[int, int, str]:
         if name.startswith(prefix):
             return ROBOT, agent, name.removeprefix(prefix).rsplit("/", 1)[0].removesuffix("/seen")
     return NOTHING, -1, ""
-
-

@@ -61,7 +61,8 @@ class Walkers:
         self.people = People.drawn(len(agents), stream(seed, "people")) if people is None else people
         if len(self.people) != len(agents):
             raise InputError(
-                f"people: {len(self.people)} bodies are given for {len(agents)} agents that are no robots; give one each"
+                f"people: {len(self.people)} bodies are given for {len(agents)} agents that are no robots;"
+                " give one each"
             )
         self.row = np.full(scene.shape[1], -1, dtype=np.int64)
         self.row[agents] = np.arange(len(agents))

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Pose, Scene
 from crowdbot.humans import People
 from crowdbot.models import CrowdModel
+from crowdbot.world.drive import Twists
+from crowdbot.world.planar import PlanarWorld
+from crowdbot.world.robot import Robot
+from crowdbot.world.world import Contact
 
-from ..drive import Twists
-from ..planar import PlanarWorld
-from ..robot import Robot
-from ..world import Contact
 from .camera import Camera, Images
 from .chassis import Chassis
 from .collisions import BodyForce, Collision, CollisionBook
@@ -262,7 +262,7 @@ class PhysicsWorld(PlanarWorld):
         """Return x, y, radius [m] and mass [kg] of what people can run into."""
         found = []
         for chassis in self.chassis.values():
-            (x, y), = chassis.pose.position.tolist()
+            ((x, y),) = chassis.pose.position.tolist()
             found.append((x, y, chassis.robot.radius, chassis.mass))
         for number in self._movable:
             x, y, _ = self.data.body(f"prop{number}").xpos.tolist()
