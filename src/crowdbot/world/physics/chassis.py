@@ -13,7 +13,7 @@ from crowdbot.core import InputError, Pose, Twist
 from crowdbot.core.errors import did_you_mean
 from crowdbot.world.drive import Twists
 from crowdbot.world.robot import Robot
-from crowdbot.world.servo import CommandDelay
+from crowdbot.world.servo import CommandDelay, Pending
 
 from .engine import engine
 

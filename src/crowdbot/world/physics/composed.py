@@ -92,8 +92,8 @@ def _settings() -> list[Element]:
     # limbs move on their bodies, which the boxes of the mid-phase would not notice; islands would copy what is shared
     flags = Element("flag", {"midphase": "disable", "island": "disable"})
     looks = Element("global", {"offwidth": "1920", "offheight": "1200"})
-    near = Element("map", {"znear": "0.005", "zfar": "60", "shadowscale": "0.5"})
-    quality = Element("quality", {"shadowsize": "2048", "offsamples": "0", "numslices": "16", "numstacks": "8"})
+    near = Element("map", {"znear": "0.005", "zfar": "60", "shadowclip": "0.7"})
+    quality = Element("quality", {"shadowsize": "4096", "offsamples": "0", "numslices": "16", "numstacks": "8"})
     light = Element("headlight", {"ambient": "0.38 0.38 0.38", "diffuse": "0.3 0.3 0.3", "specular": "0 0 0"})
     return [
         Element("compiler", compiler),

@@ -24,6 +24,8 @@ __all__ = ["Looks"]
 
 Floats = NDArray[np.float64]
 SHAPES_MOST = 20_000
+SHADED = 10.0
+"""The middle of the shadows is at most so far from the camera [m]."""
 NOTHING, WALL, FLOOR, PROP = -1, -2, -3, -4
 
 
@@ -115,6 +117,10 @@ class Looks:
     def _arranged(self, camera: Camera) -> NDArray[np.int64]:
         """Put everything where it is now, and return what the numbers in an image of numbers stand for."""
         mj, world, model, data, scene = self._mj, self._world, self._model, self._data, self._scene
+        place, forward, up = camera.axes(self._carrier(camera))
+        if not world.stage.lights:  # the shadows of the sun are sharp about here
+            aim = place + min(SHADED, float(np.linalg.norm(np.subtract(camera.target, camera.position)))) * forward
+            model.light_pos[0, :2] = aim[:2]
         data.qpos[:] = world.data.qpos
         mj.mj_kinematics(model, data)
         mj.mj_comPos(model, data)
@@ -124,25 +130,21 @@ class Looks:
         for geom in scene.geoms[: scene.ngeom]:
             if geom.segid >= 0 and geom.objtype == mj.mjtObj.mjOBJ_GEOM:
                 codes[geom.segid + 1] = self._code(model.geom(geom.objid).name)
-        place, forward = self._look(camera)
-        self._people(codes, place, forward, camera.far)
-        return codes
-
-    def _look(self, camera: Camera) -> tuple[Floats, Floats]:
-        world = self._world
-        carrier = np.eye(4)
-        if camera.robot is not None:
-            chassis = world.carrier(camera.robot)
-            carrier = chassis.frame(camera.link or chassis.robot.model.root)
-        place, forward, up = camera.axes(carrier)
         half = camera.near * math.tan(0.5 * camera.view)
-        for eye in self._scene.camera:
+        for eye in scene.camera:
             eye.pos, eye.forward, eye.up = place, forward, up
             eye.frustum_center, eye.frustum_width = 0.0, 0.0
             eye.frustum_bottom, eye.frustum_top = -half, half
             eye.frustum_near, eye.frustum_far = camera.near, camera.far
             eye.orthographic = 0
-        return place, forward
+        self._people(codes, place, forward, camera.far)
+        return codes
+
+    def _carrier(self, camera: Camera) -> Floats:
+        if camera.robot is None:
+            return np.eye(4)
+        chassis = self._world.carrier(camera.robot)
+        return chassis.frame(camera.link or chassis.robot.model.root)
 
     def _people(self, codes: NDArray[np.int64], place: Floats, forward: Floats, far: float) -> None:
         """Add the skins of those who are there and not behind the camera."""

@@ -246,4 +246,4 @@ def _upright_to(direction: Floats) -> Floats:
     x, y, z = direction.T
     turn = np.stack([1.0 + z, -y, x, np.zeros_like(x)], axis=-1)
     turn[z < -1.0 + 1e-9] = (0.0, 1.0, 0.0, 0.0)
-    return turn / np.sqrt(np.sum(turn * turn, axis=1, keepdims=True))
+    return np.asarray(turn / np.sqrt(np.sum(turn * turn, axis=1, keepdims=True)))

@@ -78,8 +78,8 @@ def _ground(stage: PhysicsStage) -> tuple[list[Element], list[Element]]:
     if stage.lights:
         world += [light.element(f"light{k}") for k, light in enumerate(stage.lights)]
     else:
-        sun = {"directional": "true", "pos": "0 0 20", "diffuse": "0.55 0.55 0.53", "specular": "0.1 0.1 0.1"}
-        world.append(Element("light", {"name": "sun", "dir": "-0.35 0.45 -1", "castshadow": "true", **sun}))
+        sun = {"directional": "true", "pos": "0 0 2.5", "diffuse": "0.55 0.55 0.53", "specular": "0.1 0.1 0.1"}
+        world.append(Element("light", {"name": "sun", "dir": "-0.2 0.3 -1", "castshadow": "true", **sun}))
     return assets, world
 
 
