@@ -43,8 +43,9 @@ def main(shared: Path) -> None:
     _predictors(splits)
     _engines(shared / "reference" / "rvo2")
     _other_engines()
+    _searches(shared / "data")
     _navigation()
-    _speed()
+    _speed(splits / "all_data" / "students003.txt")
     print((Path(__file__).parent / "weak.md").read_text(encoding="utf-8").rstrip())
 
 
@@ -90,7 +91,8 @@ def _predictors(splits: Path) -> None:
         " (`--samples 20 --best-of person` for the sampled one)"
     )
     cut = {fold: _windows(splits / "all_data", fold) for fold in FOLDS}
-    plain = [cb.ConstantVelocity(), cb.ConstantVelocity(displacements=2), cb.ConstantAcceleration(), cb.Kalman()]
+    plain = [cb.ConstantVelocity(), cb.ConstantVelocity(displacements=2), cb.LeastSquares()]
+    plain += [cb.ConstantAcceleration(), cb.Kalman(), cb.KalmanAcceleration()]
     rows = [_row(_label(p), [_scored(p, cut[f]) for f in FOLDS]) for p in [*plain, cb.Simulated(cb.ORCA())]]
     rows.append(_row("simulated (social-force)", [_scored(cb.Simulated(cb.SocialForce()), cut[f]) for f in FOLDS]))
     fitted = [_scored(_calibrated(splits / "train", fold), cut[fold]) for fold in FOLDS]
@@ -104,7 +106,8 @@ def _calibrated(folder: Path, left_out: str) -> cb.Predictor:
     """Fit one ORCA set to every eighth training window of the densest other scene."""
     scene = "students003" if left_out != "univ" else "crowds_zara02"
     past, _ = cb.load(folder / f"{scene}_train.txt").windows(8, 12)
-    return cb.Simulated.of(cb.Calibrator(cb.ORCA(), budget=64).fit(past[::8], seed=0))
+    scheme = cb.Calibrator(cb.ORCA(), "absolute", "random-search", budget=64, shared=True)
+    return cb.Simulated.of(scheme.fit(past[::8], seed=0))
 
 
 def _label(predictor: cb.Predictor) -> str:
@@ -183,10 +186,25 @@ def _rates(trial: cb.Trial, robot: object) -> list[str]:
     return [*shares, f"{gap:.2f}", f"{np.median(took):.1f}" if took else "-"]
 
 
-def _speed() -> None:
+def _searches(data: Path) -> None:
+    print("\n## Searches\n")
+    print("Smallest values found, medians of 7 problems with 2000 evaluations each; N people with D numbers.\n")
+    print("`python tests/calibration/test_search_comparison.py`\n")
+    folder = Path(__file__).parents[1] / "tests" / "calibration"
+    for program, given in (("test_search_comparison.py", []), ("test_search_on_recordings.py", [str(data)])):
+        command = [sys.executable, str(folder / program), *given]
+        print(subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip())
+        if not given:
+            print("\nORCA on three windows of each recording.\n")
+            print("`python tests/calibration/test_search_on_recordings.py DATA`\n")
+
+
+def _speed(recording: Path) -> None:
     print("\n## Speed\n")
-    print("Medians of 7 repeats after a warm-up, one run on a shared machine.\n\n`crowdbot bench`")
-    rows = measure()
+    print(
+        "Medians of 7 repeats after a warm-up, one run on a shared machine.\n\n`crowdbot bench --data students003.txt`"
+    )
+    rows = measure(recording=recording)
     _table(
         ["name", "median", "unit", "against", "ratio"],
         [[r.name, f"{r.median:.3g}", r.unit, r.against, f"{r.ratio:.3g}"] for r in rows],

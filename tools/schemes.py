@@ -63,7 +63,7 @@ def _report(shared: Path, folder: Path) -> str:
         crowd = Simulated(model, CurrentDirection(), cost, search, BUDGET)
         recipes.append(Recipe(crowd, goal if goal == "ground-truth" else None))
     results = _run(Study(recordings, tuple(recipes)), folder, "report")
-    lines = ["![ADE of the 40 best](schemes/report.png)\n"]
+    lines = ["![ADE of every scheme and baseline](schemes/report.png)\n"]
     for recording in recordings:
         own = [one for one in results if one.recording is recording]
         lines += [f"### {recording.name}\n", *_summary(own)]

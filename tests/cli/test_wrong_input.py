@@ -107,7 +107,11 @@ def test_episodes(capsys, tmp_path):
     assert main(["run", "frontal", "--out", str(tmp_path / "whole")]) == 0
     whole = (tmp_path / "whole" / "episode.mcap").read_bytes()
     capsys.readouterr()
-    for name, content in (("cut.mcap", whole[: len(whole) // 2]), ("head.mcap", whole[:20]), ("none.mcap", b"")):
+    for name, content in (
+        ("cut.mcap", whole[: len(whole) // 2] + whole[-40:]),
+        ("head.mcap", whole[:20]),
+        ("none.mcap", b""),
+    ):
         path = _file(tmp_path, name, content)
         _assert_refused(capsys, tmp_path, ["replay", path], name)
         _assert_refused(capsys, tmp_path, ["predict", "--data", path], name)

@@ -41,7 +41,7 @@ def test_the_navigator_of_the_guide_steers_a_robot(tmp_path):
 
     (code,) = _blocks(ROOT / "CONTRIBUTING.md", "python")
     (tmp_path / "shy.py").write_text(code, encoding="utf-8")
-    trial = (ROOT / "src" / "crowdbot" / "assets" / "trials" / "frontal.xml").read_text(encoding="utf-8")
+    trial = load_trial("frontal").xml()
     file = tmp_path / "frontal.xml"
     file.write_text(
         re.sub(r"<navigator [^>]*/>", '<navigator type="shy.py:Shy" space="0.8"/>', trial), encoding="utf-8"

@@ -16,10 +16,15 @@ from crowdbot.core import InputError, stream
 from crowdbot.core.plug import built_in
 from crowdbot.data import Forecast, Trajectories, Windows
 from crowdbot.prediction import Predictor
+from crowdbot.prediction.learned.predictor import LearnedPredictor
 
 Maker = Callable[..., Windows]
 
-KINDS = built_in(prediction, Predictor)
+KINDS = {
+    name: kind
+    for name, kind in built_in(prediction, Predictor).items()
+    if not issubclass(kind, LearnedPredictor)  # those need weights, and have a contract test of their own
+}
 every = pytest.mark.parametrize("name", KINDS)
 
 
@@ -35,8 +40,8 @@ def assert_mostly_equal(name: str, one: np.ndarray, other: np.ndarray) -> None:
 
 def test_built_in_names_are_those_of_the_field() -> None:
     names = [
-        "constant-acceleration", "constant-velocity", "kalman", "kalman-acceleration", "least-squares",
-        "sampled-constant-velocity", "simulated",
+        "anchor-net", "anchors", "constant-acceleration", "constant-velocity", "kalman", "kalman-acceleration",
+        "least-squares", "sampled-constant-velocity", "simulated",
     ]  # fmt: skip
     assert list(KINDS) == names
     assert [KINDS[name]().name for name in names] == names
@@ -46,7 +51,7 @@ def test_built_in_names_are_those_of_the_field() -> None:
 def test_shapes_weights_and_validity(name: str, crowd: Maker) -> None:
     past = crowd(holes=0.2)
     forecast = predicted(name, past)
-    samples = 3 if name.startswith("sampled") else 1
+    samples = 3 if name.startswith(("sampled", "anchor")) else 1
     assert forecast.position.shape == (4, samples, 12, 7, 2)
     assert np.array_equal(forecast.valid, past.present[:, -1])
     assert np.allclose(forecast.weight.sum(axis=1), 1.0)
@@ -170,7 +175,9 @@ def test_renumbering_people_renumbers_the_forecast(name: str, crowd: Maker, seed
     assert_mostly_equal(name, other.position, one.position[..., order, :])
 
 
-@pytest.mark.parametrize("name", sorted(set(KINDS) - {"simulated", "kalman", "kalman-acceleration"}))
+@pytest.mark.parametrize(
+    "name", sorted(set(KINDS) - {"simulated", "kalman", "kalman-acceleration", "anchors", "anchor-net"})
+)
 def test_a_slower_clock_changes_no_place(name: str, crowd: Maker) -> None:
     past = crowd(3)
     slow = dataclasses.replace(past, dt=4.0 * past.dt)

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from crowdbot.core import InputError, Pose, Scene, stream
 from crowdbot.core.geometry import ray_to_disc, ray_to_segment
 from crowdbot.sensors import Gaussian, Lidar2D, Noise, Offset, Peak, Scan
-from crowdbot.sensors.lidar import NOTHING, WALL, _lengthened
+from crowdbot.sensors.lidar import NOTHING, WALL
+from crowdbot.sensors.shapes import lengthened as _lengthened
 
 ROOM = [(-4.0, -3.0), (-4.0, 3.0), (4.0, 3.0), (4.0, -3.0)]
 """A room 8 m x 6 m, listed clockwise: people are inside."""

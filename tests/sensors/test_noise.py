@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from crowdbot.core import InputError, plug, stream
-from crowdbot.sensors import Gaussian, Lidar2D, Noise, Offset, Peak, disturbed
+from crowdbot.sensors import Dropout, Gaussian, Lidar2D, Noise, Offset, Peak, Quantised, disturbed
 
 
 def test_gaussian_has_its_mean_and_standard_deviation():
@@ -20,6 +20,39 @@ def test_peak_comes_with_its_probability_and_height():
     drawn = Peak(0.03, -1.5).draw((200_000,), stream(2, "noise"))
     assert set(np.unique(drawn).tolist()) == {-1.5, 0.0}
     assert np.mean(drawn != 0.0) == pytest.approx(0.03, abs=0.0015)
+
+
+def test_peaks_may_spread_and_come_at_their_rate():
+    drawn = Peak(0.01, 2.0, 1.0).draw((400_000,), stream(6, "noise"))  # the spikes of the first simulator
+    spikes = drawn[drawn != 0.0]
+    assert len(spikes) / len(drawn) == pytest.approx(0.01, abs=4 * math.sqrt(0.01 * 0.99 / 400_000))
+    assert spikes.mean() == pytest.approx(2.0, abs=4 / math.sqrt(len(spikes)))
+    assert spikes.std() == pytest.approx(1.0, rel=0.05)
+
+
+def test_dropouts_come_at_their_rate_and_end_a_reading():
+    lost = disturbed(np.ones((1, 200_000)), (Dropout(0.02), Gaussian(0.1)), stream(7))
+    assert np.mean(np.isinf(lost)) == pytest.approx(0.02, abs=4 * math.sqrt(0.02 * 0.98 / 200_000))
+
+
+def test_quantised_values_are_whole_steps_and_uniformly_wrong():
+    values = stream(8).uniform(0.0, 10.0, (1, 200_000))
+    steps = disturbed(values, (Quantised(0.125),), stream(8))
+    assert np.all(steps % 0.125 == 0.0)
+    error = steps - values
+    assert np.abs(error).max() <= 0.0625
+    assert abs(error.mean()) < 4 * 0.125 / math.sqrt(12 * 200_000)
+    assert error.std() == pytest.approx(0.125 / math.sqrt(12), rel=0.01)
+    assert disturbed(np.array([[np.inf, -np.inf]]), (Quantised(0.1),), stream(0)).tolist() == [[np.inf, -np.inf]]
+
+
+def test_bits_give_as_many_values():
+    noise = Quantised.bits(4, 0.0, 3.0)
+    assert noise.step == 0.2
+    values = disturbed(np.linspace(0.0, 3.0, 1000)[None], (noise,), stream(0))
+    assert len(np.unique(values.round(9))) == 16
+    with pytest.raises(InputError, match="bits = 0"):
+        Quantised.bits(0, 0.0, 1.0)
 
 
 def test_several_noises_add_up():
@@ -72,12 +105,15 @@ def test_text_is_read_as_trial_files_write_it():
         ("gaussian", "list of name"),
         ("gaussian(0.1", "list of name"),
         ("gaussian(a)", "must be numbers: gaussian\\(sd\\)"),
-        ("peak(0.1)", "has 1 values, it takes peak\\(probability, height\\)"),
+        ("peak(0.1)", "has 1 values, it takes peak\\(probability, height, sd\\)"),
         ("gaussian(-1)", "sd = -1.0 must be finite and at least 0"),
         ("gaussian(nan)", "sd = nan"),
         ("peak(1.5, 2)", "probability = 1.5 must be between 0 and 1"),
         ("peak(0.5, inf)", "height = inf must be finite"),
         ("offset(nan)", "value = nan must be finite"),
+        ("peak(0.5, 1, -1)", "sd = -1.0 must be finite"),
+        ("dropout(2)", "dropout noise: probability = 2.0"),
+        ("quantised(0)", "step = 0.0 must be finite and above 0"),
     ],
 )
 def test_wrong_text_is_explained(text, message):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import random
 import time
 from pathlib import Path
@@ -116,3 +117,18 @@ def test_mutated_files_are_read_or_refused_in_a_sentence(good: str, count: int) 
     assert 0 < read < count
     assert len(problems) >= count - read
     assert all("\n" not in problem and len(problem) < 600 for problem in problems)
+
+
+def test_mutated_trials_of_all_kinds_are_read_or_refused_and_leave_no_file(tmp_path: Path) -> None:
+    """A few hundred files of ``tools/fuzz_trials.py``, which makes thousands when it is run by hand."""
+    path = Path(__file__).parents[2] / "tools" / "fuzz_trials.py"
+    spec = importlib.util.spec_from_file_location("fuzz_trials", path)
+    assert spec is not None
+    assert spec.loader is not None
+    tool = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(tool)
+    said: list[str] = []
+    done = tool.fuzz(300, 42, tmp_path, said.append)
+    assert done["wrong"] == 0, "\n".join(said)
+    assert done["refused"] > 100
+    assert done["run"] > 30

@@ -66,6 +66,7 @@ def test_the_file_is_the_episode(recorded: tuple[Path, Episode]) -> None:
 def expected(episode: Episode) -> dict[str, int]:
     count = len(episode.times)
     topics = dict.fromkeys(("/clock", "/tf", "/people", "/robot/odom", "/robot/cmd_vel", "/robot/scan"), count)
+    topics["/crowdbot/digest"] = count
     return topics | {"/crowd/markers": 9}
 
 
@@ -115,13 +116,13 @@ def test_the_mcap_reader_alone_opens_the_file(recorded: tuple[Path, Episode]) ->
         assert b"MSG: people_msgs/Person\nstring name\ngeometry_msgs/Point position" in kinds["/people"].data
         stamps = [message.log_time for _, _, message in reader.iter_messages(topics=["/clock"])]
         assert stamps == [round(t * 1e9) for t in episode.times]
-        metadata = next(record.metadata for record in reader.iter_metadata() if record.name == "crowdbot")
-    assert set(metadata) == {
-        "format", "trial", "trial_name", "seed", "version", "python", "numpy", "numba", "digest", "outcome", "steps",
-        "people", "metrics", "walls", "robots",
+        metadata = {record.name: record.metadata for record in reader.iter_metadata()}
+    assert set(metadata["crowdbot"]) == {
+        "format", "trial", "trial_name", "seed", "version", "python", "numpy", "numba", "step_ns", "walls", "robots",
     }  # fmt: skip
-    assert json.loads(metadata["robots"])[0]["name"] == "robot"
-    assert json.loads(metadata["metrics"])["path_length"] == episode.metrics["path_length"]
+    assert set(metadata["crowdbot.end"]) == {"digest", "outcome", "steps", "people", "metrics"}
+    assert json.loads(metadata["crowdbot"]["robots"])[0]["name"] == "robot"
+    assert json.loads(metadata["crowdbot.end"]["metrics"])["path_length"] == episode.metrics["path_length"]
 
 
 def test_the_same_run_writes_the_same_file_over_an_old_one(recorded: tuple[Path, Episode], tmp_path: Path) -> None:
@@ -180,20 +181,29 @@ class Thermometer(Sensor):
         return Reading(scene.time, pose)
 
 
-def test_nothing_is_left_behind_when_a_run_fails(tmp_path: Path) -> None:
+def test_a_run_that_fails_keeps_what_is_done(tmp_path: Path) -> None:
     def fail(share: float) -> None:
-        raise RuntimeError("a bug")
+        if share > 0.6:
+            raise RuntimeError("a bug")
 
     with pytest.raises(RuntimeError, match="a bug"):
         TRIAL.run(out=tmp_path / "a" / "b", progress=fail)
+    assert os.listdir(tmp_path / "a" / "b") == ["episode.mcap"]
+    read = read_episode(tmp_path / "a" / "b" / "episode.mcap")
+    assert (read.complete, read.outcome) == (False, "interrupted")
+    assert 0.6 * 4 - 0.6 < read.times[-1] <= 0.61 * 4
+
+
+def test_nothing_is_left_behind_before_the_first_instant(tmp_path: Path) -> None:
     (tmp_path / "kept").mkdir()
-    with pytest.raises(RuntimeError, match="a bug"):
-        TRIAL.run(out=tmp_path / "kept", progress=fail)
+    (tmp_path / "kept" / "episode.mcap").write_text("old")
     warm = dataclasses.replace(TRIAL.robots[0], sensors=[Mount(name="warm", sensor=Thermometer())])
-    with pytest.raises(EpisodeError, match=r"sensor 'robot/warm' gives a Reading, which has no ROS message yet"):
-        dataclasses.replace(TRIAL, robots=[warm]).run(out=tmp_path / "c")
+    for place in ("c", "kept"):
+        with pytest.raises(EpisodeError, match=r"sensor 'robot/warm' gives a Reading, which has no ROS message yet"):
+            dataclasses.replace(TRIAL, robots=[warm]).run(out=tmp_path / place)
     assert os.listdir(tmp_path) == ["kept"]
-    assert os.listdir(tmp_path / "kept") == []
+    assert os.listdir(tmp_path / "kept") == ["episode.mcap"]
+    assert (tmp_path / "kept" / "episode.mcap").read_text() == "old"
 
 
 def test_a_trial_that_has_no_xml_is_not_recorded(tmp_path: Path) -> None:
@@ -231,9 +241,9 @@ def test_files_that_are_no_episodes_are_refused_in_a_sentence(recorded: tuple[Pa
 
     assert refused(b"") == "is empty"
     assert refused(b"id,frame,x,y\n1,2,3,4\n").startswith("is not an MCAP file: it begins with b'id,frame'")
-    assert refused(whole[:8]).startswith("is cut off")
-    for share in (0.1, 0.5, 0.9, 0.999):
-        assert refused(whole[: int(share * len(whole))]).startswith("is cut off: its end is missing")
+    assert refused(whole[:8]).startswith("is an MCAP file but not an episode of crowdbot")
+    assert refused(whole[:3000]).startswith("holds no recorded instant: the run was killed before it began")
+    assert refused(whole[:3000] + whole[-37:]).startswith("is damaged")
     hole = whole[: len(whole) // 2] + bytes(2000) + whole[len(whole) // 2 + 2000 :]
     assert refused(hole).startswith("is damaged")
     with pytest.raises(EpisodeError, match="there is no episode file"):

@@ -11,8 +11,9 @@ from mcap.writer import Writer
 from trial_texts import GOOD, SHY, changed, written
 
 import crowdbot
+from crowdbot import data
 from crowdbot.core import EpisodeError, TrialError
-from crowdbot.trials import Trial, load_trial, replay
+from crowdbot.trials import Trial, load_trial, read_episode, replay
 
 
 def rewritten(source: Path, target: Path, **changes: str) -> Path:
@@ -22,6 +23,7 @@ def rewritten(source: Path, target: Path, **changes: str) -> Path:
         writer.start(profile="ros2")
         schemas: dict[int, int] = {}
         channels: dict[int, int] = {}
+        records = list(reader.iter_metadata())
         for schema, channel, message in reader.iter_messages(log_time_order=False):
             assert schema is not None
             if schema.id not in schemas:
@@ -29,8 +31,9 @@ def rewritten(source: Path, target: Path, **changes: str) -> Path:
             if channel.id not in channels:
                 channels[channel.id] = writer.register_channel(channel.topic, "cdr", schemas[schema.id])
             writer.add_message(channels[channel.id], message.log_time, message.data, message.publish_time)
-        metadata = next(reader.iter_metadata()).metadata
-        writer.add_metadata("crowdbot", metadata | changes)
+        for record in records:
+            own = {key: value for key, value in changes.items() if key in record.metadata}
+            writer.add_metadata(record.name, record.metadata | own)
         writer.finish()
     return target
 
@@ -90,9 +93,54 @@ def test_code_of_a_recorded_trial_is_loaded_from_its_folder_only(tmp_path: Path)
     assert replay(tmp_path / "out" / "episode.mcap", folder=tmp_path).replayed == episode.digest
 
 
-def test_a_truncated_file_is_refused(tmp_path: Path) -> None:
+def test_a_truncated_file_replays_as_far_as_it_goes(tmp_path: Path) -> None:
     Trial.parse(GOOD).run(out=tmp_path)
     path = tmp_path / "episode.mcap"
-    path.write_bytes(path.read_bytes()[:-100])
-    with pytest.raises(EpisodeError, match=r"episode.mcap is cut off: its end is missing"):
+    whole = path.read_bytes()
+    for share in (0.3, 0.5, 0.7):
+        path.write_bytes(whole[: int(share * len(whole))])
+        done = replay(path)
+        assert done.equal
+        assert not done.complete
+        assert "killed before its end, replays to the same bytes" in str(done)
+    path.write_bytes(whole[:3000])
+    with pytest.raises(EpisodeError, match="holds no recorded instant: the run was killed before it began"):
         replay(path)
+
+
+def test_a_replay_says_from_where_on_it_differs(tmp_path: Path) -> None:
+    Trial.parse(GOOD).run(out=tmp_path)
+    assert replay(tmp_path / "episode.mcap").differs is None
+    other = changed('tolerance="0.3"', 'tolerance="0.3" ').replace('navigator type="straight"', 'navigator type="orca"')
+    path = rewritten(tmp_path / "episode.mcap", tmp_path / "other.mcap", trial=other)
+    done = replay(path)
+    assert not done.equal
+    assert done.differs is not None
+    assert f"does NOT replay from {done.differs:g} s on" in str(done)
+
+
+def test_an_episode_of_format_1_is_read_and_replayed(tmp_path: Path) -> None:
+    episode = Trial.parse(GOOD).run(out=tmp_path)
+    source, target = tmp_path / "episode.mcap", tmp_path / "old.mcap"
+    with source.open("rb") as old, target.open("wb") as new:
+        reader, writer = make_reader(old), Writer(new)
+        writer.start(profile="ros2")
+        channels: dict[int, int] = {}
+        known: dict[str, str] = {}
+        for record in reader.iter_metadata():
+            known |= record.metadata
+        for schema, channel, message in reader.iter_messages(log_time_order=False):
+            assert schema is not None
+            if channel.topic == "/crowdbot/digest":
+                continue
+            if channel.id not in channels:
+                number = writer.register_schema(schema.name, schema.encoding, schema.data)
+                channels[channel.id] = writer.register_channel(channel.topic, "cdr", number)
+            writer.add_message(channels[channel.id], message.log_time, message.data, message.publish_time)
+        del known["step_ns"]
+        writer.add_metadata("crowdbot", known | {"format": "1"})
+        writer.finish()
+    read = read_episode(target)
+    assert (read.complete, read.digest, read.outcome) == (True, episode.digest, episode.outcome)
+    assert replay(target).equal
+    assert len(data.load(target)) == int(episode.active.sum())

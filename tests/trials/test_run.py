@@ -19,7 +19,19 @@ from crowdbot.metrics import NAVIGATION_METRICS
 from crowdbot.models import ORCA
 from crowdbot.navigation import Navigator, Observation, Straight
 from crowdbot.sensors import Gaussian, Lidar2D
-from crowdbot.trials import Episode, Goal, Mount, Robot, Simulation, Spawner, Stage, Trial, Wall, load_trial
+from crowdbot.trials import (
+    Episode,
+    Goal,
+    Mount,
+    Robot,
+    Simulation,
+    Spawner,
+    Stage,
+    Trial,
+    Wall,
+    load_trial,
+    read_episode,
+)
 from crowdbot.trials.episode import Log
 from crowdbot.trials.run import Stop, drive
 from crowdbot.trials.simulation import start_scene
@@ -277,7 +289,8 @@ def test_a_second_ctrl_c_stops_at_once(tmp_path: Path) -> None:
 
     with pytest.raises(KeyboardInterrupt):
         TINY.run(out=tmp_path / "deep" / "out", progress=press)
-    assert list(tmp_path.iterdir()) == []
+    assert [path.name for path in (tmp_path / "deep" / "out").iterdir()] == ["episode.mcap"]
+    assert not read_episode(tmp_path / "deep" / "out" / "episode.mcap").complete
 
 
 def test_a_run_outside_the_main_thread_leaves_signals_alone() -> None:

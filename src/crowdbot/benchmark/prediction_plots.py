@@ -17,34 +17,45 @@ __all__ = ["animate", "plot_errors", "plot_frames"]
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c510a", "#525252")
 """Colours that people with colour blindness can tell apart (Okabe & Ito), then brown and grey."""
-PEOPLE, TRUTH = "#9a9a9a", "#000000"
+PEOPLE, TRUTH, ORACLE = "#9a9a9a", "#000000", "#f0c987"
 MOST_LINES = len(COLORS)
 """More predictors than this are not drawn as lines: nobody could tell them apart."""
-SHOWN_ROWS = 40
+SHOWN_ROWS = 80
 FRAMES_A_ROW = 3
 """An animation shows so many pictures a row of the recording."""
 
 
 def plot_errors(results: Sequence[Result], file: Path) -> None:
     """Draw the ADE of every predictor with its 95 % interval, one panel a recording, the smallest on top."""
+    from matplotlib.patches import Patch
+
     panels = _by_recording(results)
     most = max(len(own) for own in panels.values())
-    figure, axes = _figure(1, len(panels), (1.0 + 5.5 * len(panels), 1.2 + 0.26 * min(most, SHOWN_ROWS)))
+    figure, axes = _figure(1, len(panels), (1.0 + 5.5 * len(panels), 1.2 + 0.17 * min(most, SHOWN_ROWS)))
     for axis, (recording, own) in zip(axes[0], panels.items(), strict=True):
         ranked = sorted(own, key=lambda one: one.score.ade)[:SHOWN_ROWS]
         for row, one in enumerate(ranked):
             low, high = one.score.intervals.ade
-            color = COLORS[0] if one.frames.calibrated else PEOPLE
-            axis.barh(row, one.score.ade, color=color, height=0.7)
+            axis.barh(row, one.score.ade, color=_color(one), height=0.7)
             axis.plot((low, high), (row, row), color="black", linewidth=1)
-        axis.set_yticks(range(len(ranked)), [one.label for one in ranked], fontsize=7)
+        axis.set_yticks(range(len(ranked)), [one.label for one in ranked], fontsize=6)
+        axis.margins(y=0.01)
         axis.invert_yaxis()
         axis.set_xlabel(f"ADE [{own[0].score.units}], 95 % by drawing people", fontsize=8)
         axis.tick_params(axis="x", labelsize=8)
         left = "" if len(own) <= SHOWN_ROWS else f" (best {SHOWN_ROWS} of {len(own)})"
-        axis.set_title(f"{recording.name}, {recording.predict} rows ahead{left}", fontsize=9)
+        axis.set_title(f"{recording.name}, {recording.predict} rows{left}", fontsize=9, loc="left")
         axis.grid(axis="x", alpha=0.25, linewidth=0.6)
+    kinds = {"calibrated": COLORS[0], "as given": PEOPLE, "knows the true destinations": ORACLE}
+    handles = [Patch(color=color, label=word) for word, color in kinds.items()]
+    figure.legend(handles=handles, fontsize=7, loc="outside lower center", ncols=3)
     _written(figure, file)
+
+
+def _color(result: Result) -> str:
+    if result.recipe.knows_future:
+        return ORACLE
+    return COLORS[0] if result.frames.calibrated else PEOPLE
 
 
 def plot_frames(results: Sequence[Result], file: Path) -> None:

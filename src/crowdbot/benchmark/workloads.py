@@ -14,6 +14,7 @@ import numpy as np
 
 from crowdbot.core import Scene, parameters, stream
 
+from .bodies import mujoco_rays, people_with_limbs
 from .engines import JUPEDSIM, jupedsim_step, power_law_in_numpy
 
 __all__ = ["Gauge", "Measurement", "crowd", "measurements"]
@@ -90,6 +91,8 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
     found |= {"orca-alone": _alone, "lidar-720": _lidar, "trial": _trial}
     found |= {f"physics-{people}": functools.partial(_physics, people) for people in (50, 200)}
     found["camera-50"] = _camera
+    found["lidar2d-1080-limbs"] = _rays_of_limbs
+    found["lidar3d-16x1800-limbs"] = functools.partial(_rays_of_limbs, rings=16)
     for predictor in ("ConstantVelocity", "Kalman", "Simulated"):
         found[f"predict-{kebab(predictor)}"] = functools.partial(_predictor, predictor)
     return found
@@ -197,6 +200,22 @@ def _lidar() -> Measurement:
     sensor, scene = Lidar2D(rays=720), crowd(50)
     pose = Pose.of((5.0, 5.0), 0.0)
     return Measurement("scans/s", 20, lambda: [sensor.measure(scene, pose) for _ in range(20)], "a 10 Hz sensor", 10.0)
+
+
+def _rays_of_limbs(rings: int = 0) -> Measurement:
+    """Compare scans among 50 people of 15 limbs with MuJoCo's rays on the same capsules, walls and floor."""
+    from crowdbot.core import Pose
+    from crowdbot.sensors import Lidar2D, Lidar3D
+
+    scene, pose = people_with_limbs(50), Pose.of((5.0, 5.0), 0.3).lifted()
+    sensor: Any = Lidar3D(columns=1800) if rings else Lidar2D(rays=1080, field_of_view=1.5 * np.pi, range_max=30.0)
+    theirs = mujoco_rays(scene, sensor, pose)
+    words = "mj_multiRay of MuJoCo, the same 750 capsules as moving bodies, 4 walls and the floor"
+    ours, others = (40, 1) if rings else (300, 10)  # about as long, so that the load of the machine meets both alike
+    return Measurement(
+        "scans/s", ours, lambda: [sensor.measure(scene, pose) for _ in range(ours)], words,
+        other=lambda: [theirs() for _ in range(others)], other_amount=others,
+    )  # fmt: skip
 
 
 def _predictor(name: str) -> Measurement:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, json_text, note, number, print_json, print_table, progress
 from .recordings import add_recordings, recordings, tell_notes
-from .schemes import add_scheme, assignments, crowd_model, frame_line, prior
+from .schemes import add_scheme, assignments, crowd_model, frame_line, named_search, prior
 
 if TYPE_CHECKING:
     from crowdbot.calibration import Calibrator, Fit, FittedPiece
@@ -56,7 +56,8 @@ def _calibrator(options: argparse.Namespace) -> tuple[Calibrator, str | None]:
     kind = kind_of_goal(options.goal or "current-direction")
     late = kind.knows_future or kind.learns
     parts: dict[str, Any] = {} if late or options.goal is None else {"goal": options.goal}
-    parts |= {name: getattr(options, name) for name in ("cost", "search") if getattr(options, name)}
+    parts |= {"cost": options.cost} if options.cost else {}
+    parts["search"] = named_search(options.search or "genetic", options)
     calibrator = Calibrator(
         crowd_model(options.model or "orca", assignments(options.set)),
         budget=options.budget,

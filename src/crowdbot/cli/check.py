@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from .output import add_json, print_json
+from .settings import add_settings, settings
 
 MOST_LINES = 20
 
@@ -14,12 +15,16 @@ MOST_LINES = 20
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument(
-        "names", metavar="TRIAL|ROBOT", nargs="+", help="trial files, URDF files, folders of robots, or built-in names"
+        "names",
+        metavar="FILE|NAME",
+        nargs="+",
+        help="trials, experiments, URDF files, folders of robots, or built-in names",
     )
     parser.add_argument("--trust", action="store_true", help="let files load code from outside their own folder")
     parser.add_argument(
         "--package", metavar="NAME=FOLDER", action="append", default=[], help="where package://NAME/ of a URDF lies"
     )
+    add_settings(parser)
     add_json(parser)
 
 
@@ -28,7 +33,7 @@ def main(options: argparse.Namespace) -> int:
     packages = _packages(options.package)
     found: dict[str, dict[str, Any]] = {}
     for name in options.names:
-        row = _robot(name, options.trust, packages) if _is_robot(name) else _trial(name, options.trust)
+        row = _robot(name, options.trust, packages) if _is_robot(name) else _trial(name, options)
         found[name] = {"right": not row["problems"], **row}
     if options.json:
         print_json(found)
@@ -55,22 +60,28 @@ def _is_robot(name: str) -> bool:
     from crowdbot.world import builtin_robots
 
     path = Path(name)
-    if path.suffix in (".urdf", ".xacro") or path.name == "robot.xml" or path.is_dir():
+    if path.suffix in (".urdf", ".xacro") or path.name == "robot.xml":
+        return True
+    if path.is_dir() and ((path / "robot.xml").exists() or any(path.glob("*.urdf"))):
         return True
     return name in builtin_robots() and not path.is_file()
 
 
-def _trial(name: str, trust: bool) -> dict[str, Any]:
+def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
     from crowdbot.core import InputError, TrialError
     from crowdbot.trials import load_trial
+    from crowdbot.trials.experiment import is_experiment, load_experiment
 
     try:
-        load_trial(name, trust=trust)
+        if is_experiment(name):
+            load_experiment(name, trust=options.trust)
+            return {"problems": []}
+        trial = load_trial(name, trust=options.trust, **settings(options))
     except TrialError as error:
         return {"problems": list(error.problems)}
     except InputError as error:
         return {"problems": [str(error)]}
-    return {"problems": []}
+    return {"problems": [], "variants": [one.name for one in trial.variants()] if trial.sweeps else []}
 
 
 def _robot(name: str, trust: bool, packages: dict[str, Path]) -> dict[str, Any]:
@@ -102,6 +113,8 @@ def _print(name: str, row: dict[str, Any]) -> None:
         _print_robot(row["robot"])
     verdict = "right" if row["right"] else f"{len(row['problems'])} to mend"
     print(f"{Path(name).name}: {verdict}")
+    for k, variant in enumerate(row.get("variants", ()), 1):
+        print(f"  {k:4d}  {variant}")
 
 
 def _print_robot(row: dict[str, Any]) -> None:

@@ -57,6 +57,9 @@ def main(options: argparse.Namespace) -> int:
         print_json(as_json(study, results))
         return 0
     tell_notes(found)
+    for sentence in dict.fromkeys(r.recipe.predictor.note(r.recording.windows[0]) for r in results):
+        if sentence:
+            note(sentence)
     _tables(options, study, results)
     return 0
 

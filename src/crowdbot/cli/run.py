@@ -5,8 +5,13 @@ from __future__ import annotations
 import argparse
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from .output import add_json, number, print_json, print_metrics, print_table, progress
+from .settings import add_settings, chosen, settings
+
+if TYPE_CHECKING:
+    from crowdbot.trials import Summary
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -14,33 +19,42 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("trial", metavar="TRIAL", help="a trial file or a built-in name, such as crossing-flows")
     parser.add_argument("--seed", type=int, help="seed of everything random (default: the trial's own)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
+    parser.add_argument("--pace", type=float, metavar="X", help="X times real time (default: as fast as it can)")
     parser.add_argument("--trust", action="store_true", help="let the trial load code from outside its own folder")
+    add_settings(parser)
+    parser.add_argument("--variant", type=int, metavar="N", help="of a trial with sweeps: which one, from 1")
     add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:
     """Run the trial."""
-    from crowdbot.trials import load_trial
+    from crowdbot.core import PacedClock
+    from crowdbot.trials import load_trial, record
 
-    trial = load_trial(options.trial, trust=options.trust)
+    trial = chosen(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
     file = None if options.out is None else options.out / "episode.mcap"
+    clock = None if options.pace is None else PacedClock(trial.step, rate=options.pace)
     begin = time.perf_counter()
     with progress(options.json) as report:
-        episode = trial.run(seed=options.seed, out=file, progress=lambda share: report(f"run {trial.name}", share))
-    wall = time.perf_counter() - begin
-    summary = {
-        "trial": trial.name,
-        "seed": episode.seed,
-        "outcome": episode.outcome,
-        "steps": episode.steps,
-        "sim_seconds": float(episode.times[-1]),
-        "wall_seconds": wall,
-        "digest": episode.digest,
-        "episode": None if file is None else str(file),
-    }
-    if options.json:
-        print_json({**summary, "metrics": episode.metrics})
-        return 0
-    print_table(f"{trial.name}, seed {episode.seed}", ("", ""), [(key, number(v)) for key, v in summary.items()])
-    print_metrics("navigation", episode.metrics)
+        done = record(trial, options.seed, file, progress=lambda share: report(f"run {trial.name}", share), clock=clock)
+    tell(done, options.json, time.perf_counter() - begin)
     return 0
+
+
+def tell(done: Summary, as_json: bool, wall: float) -> None:
+    """Print how a run went."""
+    summary = {
+        "trial": done.trial.name,
+        "seed": done.seed,
+        "outcome": done.outcome,
+        "steps": done.steps,
+        "sim_seconds": done.end,
+        "wall_seconds": wall,
+        "digest": done.digest,
+        "episode": None if done.path is None else str(done.path),
+    }
+    if as_json:
+        print_json({**summary, "metrics": done.metrics})
+        return
+    print_table(f"{done.trial.name}, seed {done.seed}", ("", ""), [(key, number(v)) for key, v in summary.items()])
+    print_metrics("navigation", done.metrics)

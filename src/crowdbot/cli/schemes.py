@@ -9,11 +9,11 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from crowdbot.calibration import PopulationPrior
+    from crowdbot.calibration import PopulationPrior, Search
     from crowdbot.models import CrowdModel
     from crowdbot.prediction import Predictor, Recipe
 
-__all__ = ["add_scheme", "assignments", "chosen", "crowd_model", "frame_line", "prior", "recipes"]
+__all__ = ["add_scheme", "assignments", "chosen", "crowd_model", "frame_line", "named_search", "prior", "recipes"]
 
 SCHEME = ("model", "cost", "search", "goal", "free", "prior", "shared")
 """Options that only predictors which simulate a crowd understand."""
@@ -28,6 +28,8 @@ def add_scheme(parser: argparse.ArgumentParser, many: bool) -> None:
     add("--search", **several, metavar="NAME", help="search of a calibration: crowdbot list searches")
     add("--goal", **several, metavar="NAME", help="where people want to go: crowdbot list goals")
     add("--budget", type=int, default=500, metavar="N", help="crowds tried for each window (default 500)")
+    add("--tolerance", type=float, metavar="METRES", help="a search stops at this cost (default 0)")
+    add("--patience", type=int, metavar="N", help="a search stops when N evaluations brought nothing (default: never)")
     add("--free", nargs="+", default=[], metavar="NAME", help="parameters that are calibrated (default: all)")
     learned = ", or `learn`: from the --learn share of each recording" if many else ""
     add("--prior", metavar="FILE", help=f"what is known of parameters: made by crowdbot calibrate{learned}")
@@ -81,7 +83,7 @@ def _schemes(options: argparse.Namespace, values: Mapping[str, str]) -> list[Rec
     parts = (options.model or ["orca"], options.cost or [None], options.search or [None], options.goal or [None])
     for model, cost, search, goal in itertools.product(*parts):
         calibrated = cost is not None or search is not None
-        fields = {"cost": cost, "search": search, **(own if calibrated else {})}
+        fields = {"cost": cost, "search": named_search(search, options), **(own if calibrated else {})}
         predictor = chosen("simulated", model, values, fields)
         kind = kind_of_goal(goal or "current-direction")
         late = kind.knows_future or kind.learns
@@ -89,6 +91,19 @@ def _schemes(options: argparse.Namespace, values: Mapping[str, str]) -> list[Rec
             predictor = chosen("simulated", model, values, {**fields, "goal": goal})
         made.append(Recipe(predictor, goal if late else None, learns, options.shared))
     return made
+
+
+def named_search(name: str | None, options: argparse.Namespace) -> Search | None:
+    """Return the search by its name, with the tolerance and patience that were given."""
+    import dataclasses
+
+    from crowdbot.calibration import named_search as by_name
+    from crowdbot.core import InputError
+
+    given = {key: value for key in ("tolerance", "patience") if (value := getattr(options, key)) is not None}
+    if name is None and given:
+        raise InputError(f"--{next(iter(given))} belongs to a search: name one with --search")
+    return None if name is None else dataclasses.replace(by_name(name), **given)
 
 
 def prior(file: str | None) -> PopulationPrior | None:

@@ -1,5 +1,6 @@
 """Floor 0: what every other floor stands on. Needs numpy and the standard library; kernels need numba."""
 
+from .bodies import STAGE, Bodies, Skins
 from .clock import Clock, ExternalClock, FreeClock, PacedClock
 from .errors import (
     CrowdbotError,
@@ -13,12 +14,14 @@ from .errors import (
 )
 from .paper import Paper
 from .parameter import Parameter, PerAgent, check_parameters, parameter, parameters, per_agent
-from .pose import Pose, Twist, wrap
+from .pose import Pose, SpatialPose, Twist, wrap
 from .random import stream
 from .scene import Scene
 from .walls import Walls
 
 __all__ = [
+    "STAGE",
+    "Bodies",
     "Clock",
     "CrowdbotError",
     "DataError",
@@ -34,6 +37,8 @@ __all__ = [
     "Pose",
     "RobotError",
     "Scene",
+    "Skins",
+    "SpatialPose",
     "TrialError",
     "Twist",
     "UnknownName",

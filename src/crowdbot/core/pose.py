@@ -1,4 +1,4 @@
-"""Where something is and how it is asked to move: poses and twists in the plane."""
+"""Where something is and how it is asked to move: poses in the plane and in space, and twists."""
 
 from __future__ import annotations
 
@@ -9,7 +9,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Pose", "Twist", "wrap"]
+__all__ = ["MOUNT_HEIGHT", "Pose", "SpatialPose", "Twist", "wrap"]
+
+Floats = NDArray[np.float64]
+
+MOUNT_HEIGHT = 0.4
+"""Height [m] above the floor of a sensor whose pose is planar, about that of the scanners of indoor robots."""
 
 
 def wrap(angle: float) -> float:
@@ -55,3 +60,89 @@ class Pose:
         cos, sin = np.cos(self.heading), np.sin(self.heading)
         shift = np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
         return Pose(self.position + shift, self.heading + heading)
+
+    def lifted(self, z: ArrayLike = MOUNT_HEIGHT, roll: ArrayLike = 0.0, pitch: ArrayLike = 0.0) -> SpatialPose:
+        """Return the pose in space at height ``z`` [m] with ``roll`` and ``pitch`` [rad].
+
+        >>> Pose.of((1.0, 2.0), 0.5).lifted(0.3).position.tolist()
+        [[1.0, 2.0, 0.3]]
+        """
+        height = np.broadcast_to(np.asarray(z, dtype=np.float64), self.heading.shape)
+        return SpatialPose.of(np.column_stack([self.position, height]), roll, pitch, self.heading)
+
+
+@dataclass(frozen=True)
+class SpatialPose:
+    """Positions ``[E, 3]`` [m] and rotations ``[E, 4]`` (unit quaternions w, x, y, z) of one thing in space.
+
+    The frame is that of REP-103: x forward, y left, z up; rotations turn the thing's own frame into the world's.
+
+    >>> ahead = SpatialPose.of((0.0, 0.0, 1.0), yaw=math.pi / 2).mounted(0.2, 0.0, 0.1)
+    >>> ahead.position.round(12).tolist(), ahead.heading.round(6).tolist()
+    ([[0.0, 0.2, 1.1]], [1.570796])
+    """
+
+    position: Floats
+    rotation: Floats
+
+    @classmethod
+    def of(
+        cls, position: ArrayLike, roll: ArrayLike = 0.0, pitch: ArrayLike = 0.0, yaw: ArrayLike = 0.0
+    ) -> SpatialPose:
+        """Make a pose from ``[3]`` or ``[E, 3]`` and angles [rad] about x, then y, then z of the world.
+
+        Positive ``pitch`` turns the nose down, as in URDF and ROS.
+        """
+        point = np.atleast_2d(np.asarray(position, dtype=np.float64))
+        angles = [np.broadcast_to(np.asarray(a, dtype=np.float64), point.shape[:1]) * 0.5 for a in (roll, pitch, yaw)]
+        (cr, cp, cy), (sr, sp, sy) = (np.cos(a) for a in angles), (np.sin(a) for a in angles)
+        turn = [
+            cr * cp * cy + sr * sp * sy,
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+        ]
+        return cls(point, np.stack(turn, axis=-1))
+
+    @property
+    def matrix(self) -> Floats:
+        """Rotation matrices ``[E, 3, 3]``; the columns are the thing's own axes in the world."""
+        turn = self.rotation / np.sqrt((self.rotation**2).sum(axis=-1, keepdims=True))
+        w, x, y, z = turn.T
+        found = np.empty((len(turn), 3, 3))
+        found[:, 0] = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], axis=-1)
+        found[:, 1] = np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], axis=-1)
+        found[:, 2] = np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=-1)
+        return found
+
+    @property
+    def heading(self) -> Floats:
+        """Where the thing's own x axis points in the plane, ``[E]`` [rad]."""
+        forward = self.matrix[:, :, 0]
+        return np.asarray(np.arctan2(forward[:, 1], forward[:, 0]))
+
+    @property
+    def planar(self) -> Pose:
+        """The pose seen from above."""
+        return Pose(self.position[:, :2].copy(), self.heading)
+
+    def mounted(
+        self, x: float, y: float, z: float = 0.0, roll: float = 0.0, pitch: float = 0.0, yaw: float = 0.0
+    ) -> SpatialPose:
+        """Return the pose of a part that sits at ``x``, ``y``, ``z`` [m] in this frame, turned by the angles [rad]."""
+        place = self.position + self.matrix @ np.array([x, y, z])
+        part = SpatialPose.of((0.0, 0.0, 0.0), roll, pitch, yaw).rotation
+        return SpatialPose(place, product(self.rotation, part))
+
+
+def product(first: Floats, second: Floats) -> Floats:
+    """Return the quaternions ``[..., 4]`` (w, x, y, z) of the rotation ``second`` followed by ``first``."""
+    a, b, c, d = np.moveaxis(first, -1, 0)
+    w, x, y, z = np.moveaxis(second, -1, 0)
+    parts = [
+        a * w - b * x - c * y - d * z,
+        a * x + b * w + c * z - d * y,
+        a * y - b * z + c * w + d * x,
+        a * z + b * y - c * x + d * w,
+    ]
+    return np.stack(parts, axis=-1)

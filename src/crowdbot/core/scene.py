@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .bodies import Bodies
 from .errors import InputError
 from .walls import Walls
 
@@ -19,6 +20,10 @@ __all__ = ["Scene"]
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
+PERSON_HEIGHT = 1.7
+"""Height [m] of an agent whose height is not given."""
+WALL_HEIGHT = 3.0
+"""Height [m] of the walls unless given."""
 TURNING_SPEED = 0.05
 """Below this speed [m/s] an agent keeps its heading."""
 
@@ -43,6 +48,10 @@ class Scene:
         preferred_velocity: ``[E, A, 2]`` [m/s], or None when it follows from goal and preferred speed.
         time: [s].
         memory: what a model keeps from step to step, by name, each ``[E, A, ...]``; most keep nothing.
+        bodies: limbs, props and skins in space as they are at this instant, or None. An agent without limbs is an
+            upright cylinder of its radius.
+        height: ``[E, A]`` [m] of these cylinders, or None for 1.7 m.
+        wall_height: of all walls [m]; rays pass above.
 
     >>> scene = Scene.of([[0.0, 0.0], [4.0, 0.0]], [[1.0, 0.0], [-1.0, 0.0]], goal=[[9.0, 0.0], [-9.0, 0.0]])
     >>> scene.position.shape, float(scene.advanced(scene.velocity, 0.5).position[0, 0, 0])
@@ -64,6 +73,9 @@ class Scene:
     preferred_velocity: Floats | None = None
     time: float = 0.0
     memory: Mapping[str, Floats] = field(default_factory=dict)
+    bodies: Bodies | None = None
+    height: Floats | None = None
+    wall_height: float = WALL_HEIGHT
 
     @classmethod
     def of(
@@ -83,6 +95,9 @@ class Scene:
         group: ArrayLike = -1,
         walls: Any = (),
         time: float = 0.0,
+        bodies: Bodies | None = None,
+        height: ArrayLike | None = None,
+        wall_height: float = WALL_HEIGHT,
     ) -> Scene:
         """Make a scene from ``[A, ...]`` or ``[E, A, ...]`` arrays; what is not given takes a default.
 
@@ -114,6 +129,9 @@ class Scene:
             walls=Walls.of(walls),
             preferred_velocity=wish,
             time=float(time),
+            bodies=bodies,
+            height=None if height is None else _numbers("height", height, shape),
+            wall_height=float(wall_height),
         )
         scene.check()
         return scene
@@ -134,6 +152,12 @@ class Scene:
         for name in ("preferred_speed", "max_speed"):
             if np.any(getattr(self, name)[self.active] < 0.0):
                 raise InputError(f"scene: {name} {getattr(self, name)[self.active].min()} m/s is below 0")
+        if self.height is not None and not np.all(self.height[self.active] > 0.0):
+            raise InputError(f"scene: height {self.height[self.active].min()} m is not above 0")
+        if not self.wall_height > 0.0:
+            raise InputError(f"scene: wall_height {self.wall_height} m is not above 0")
+        if self.bodies is not None and self.bodies.batch != len(self.position):
+            raise InputError(f"scene: bodies of {self.bodies.batch} environments for {len(self.position)} environments")
 
     def desired_velocity(self, dt: float) -> Floats:
         """Return ``[E, A, 2]`` [m/s]: the given preferred velocity, or the preferred speed towards the goal.
@@ -150,14 +174,18 @@ class Scene:
     def advanced(self, velocity: Floats, dt: float) -> Scene:
         """Return the scene ``dt`` [s] later: velocity first, then position (symplectic Euler).
 
-        External and absent agents do not take the new velocity; external ones drift with their own.
+        External and absent agents do not take the new velocity; external ones drift with their own. Of the bodies
+        only what belongs to the stage stays: who poses people poses them anew.
         """
         own = self.active & ~self.external
         moved = np.where(own[..., None], velocity, self.velocity)
         speed = np.sqrt(moved[..., 0] ** 2 + moved[..., 1] ** 2)
         turned = np.where(own & (speed > TURNING_SPEED), np.arctan2(moved[..., 1], moved[..., 0]), self.heading)
         place = np.where(self.active[..., None], self.position + moved * dt, self.position)
-        return dataclasses.replace(self, position=place, velocity=moved, heading=turned, time=self.time + dt)
+        bodies = None if self.bodies is None else self.bodies.staged()
+        return dataclasses.replace(
+            self, position=place, velocity=moved, heading=turned, time=self.time + dt, bodies=bodies
+        )
 
     def replace(self, **changes: Any) -> Scene:
         """Return a copy with some fields changed."""
@@ -183,7 +211,8 @@ class Scene:
             if isinstance(getattr(self, part.name), np.ndarray)
         }
         memory = {name: value[index] for name, value in self.memory.items()}
-        return dataclasses.replace(self, **arrays, memory=memory)
+        bodies = None if self.bodies is None else self.bodies.environments(index)
+        return dataclasses.replace(self, **arrays, memory=memory, bodies=bodies)
 
     def digest(self) -> str:
         """Return a hash of every moving array, equal exactly when the bytes are equal."""
@@ -193,6 +222,8 @@ class Scene:
             sum_.update(np.ascontiguousarray(value).tobytes())
         sum_.update(np.where(self.active, self.heading, 0.0).tobytes())
         sum_.update(self.active.tobytes())
+        if self.bodies is not None:
+            sum_.update(self.bodies.digest_bytes(self.active))
         return sum_.hexdigest()
 
 

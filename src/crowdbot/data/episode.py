@@ -2,7 +2,7 @@
 
 Read are ``/people`` (people_msgs/msg/People; a person's name is the id), every ``.../odom`` (nav_msgs/msg/Odometry, a
 robot, pose in the frame of the world), and of the metadata record ``crowdbot`` the ``walls`` (JSON list of rings) and
-the ids of ``robots``.
+the ids of ``robots``. The file of a run that was killed is read as far as it goes.
 """
 
 from __future__ import annotations
@@ -17,14 +17,15 @@ from numpy.typing import NDArray
 from crowdbot.core.errors import DataError
 
 from .assemble import assemble
-from .source import MAX_BYTES, Given, Reader, Source, parsing
+from .source import Given, Reader, Source, parsing
+from .tape import Tape, TapeError, Topic, is_whole
 from .trajectories import Trajectories
 
 __all__ = ["READER"]
 
 PEOPLE, PEOPLE_TYPE = "/people", "people_msgs/msg/People"
 ODOMETRY_ENDING, ODOMETRY_TYPE = "/odom", "nav_msgs/msg/Odometry"
-METADATA = "crowdbot"
+METADATA, ENDING = "crowdbot", "crowdbot.end"
 SECOND = 1_000_000_000
 
 
@@ -37,6 +38,7 @@ class _Heard:
     poses: dict[str, list[tuple[int, float, float]]] = field(default_factory=dict)
     walls: str = "[]"
     robots: str = "[]"
+    cut: bool = False
 
 
 def read(source: Source, given: Given) -> Trajectories:
@@ -59,38 +61,35 @@ def read(source: Source, given: Given) -> Trajectories:
         y=y,
         row_fps=SECOND / period,
         frame_step=1,
+        note="the run was killed before its end" if heard.cut else "",
         walls=_walls(source.name, heard.walls),
         robots=frozenset(int(robot[0][0]) for robot in robots),
     )
 
 
 def _listen(source: Source) -> _Heard:
-    from mcap.reader import SeekingReader
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     store = get_typestore(Stores.ROS2_HUMBLE)
-    heard = _Heard()
+    heard, wanted = _Heard(), dict[Topic, bool]()
     with source.path.open("rb") as file:
-        reader = SeekingReader(file, validate_crcs=True, record_size_limit=MAX_BYTES)
-        summary = reader.get_summary()
-        if summary is None:
-            raise DataError(f"{source.name} has no summary section, so the recording was cut short")
-        channels = sorted(summary.channels.values(), key=lambda channel: channel.id)
-        topics = {channel.topic: summary.schemas[channel.schema_id] for channel in channels if channel.schema_id}
-        wanted = {topic: schema.name for topic, schema in topics.items() if _wanted(topic, schema.name)}
-        if PEOPLE not in wanted:
-            held = ", ".join(sorted(topics)) or "no topics"
-            raise DataError(f"{source.name} has no topic {PEOPLE} of {PEOPLE_TYPE}; it has {held}")
-        for topic, kind in wanted.items():
-            heard.poses.update({topic: []} if kind == ODOMETRY_TYPE else {})
-            types = get_types_from_msg(topics[topic].data.decode(), kind)
-            store.register({name: definition for name, definition in types.items() if name not in store.types})
-        for record in reader.iter_metadata():
-            if record.name == METADATA:
-                heard.walls = record.metadata.get("walls", "[]")
-                heard.robots = record.metadata.get("robots", "[]")
-        for _, channel, message in reader.iter_messages(topics=list(wanted)):
-            _take(heard, channel.topic, store.deserialize_cdr(message.data, wanted[channel.topic]))
+        tape = Tape(file)
+        for topic, _, data in tape.messages():
+            if topic not in wanted:
+                wanted[topic] = _wanted(topic.topic, topic.kind)
+                if wanted[topic]:
+                    types = get_types_from_msg(topic.text, topic.kind)
+                    store.register({name: definition for name, definition in types.items() if name not in store.types})
+            if wanted[topic]:
+                _take(heard, topic.topic, store.deserialize_cdr(data, topic.kind))
+        known = tape.metadata.get(METADATA, {})
+        if "format" not in known and not is_whole(file):
+            raise TapeError("it has no summary section")
+    if not any(topic.topic == PEOPLE for topic, chosen in wanted.items() if chosen):
+        held = ", ".join(sorted(topic.topic for topic in tape.topics.values())) or "no topics"
+        raise DataError(f"{source.name} has no topic {PEOPLE} of {PEOPLE_TYPE}; it has {held}")
+    heard.cut = "format" in known and ENDING not in tape.metadata and "digest" not in known
+    heard.walls, heard.robots = known.get("walls", "[]"), known.get("robots", "[]")
     return heard
 
 
@@ -106,7 +105,7 @@ def _take(heard: _Heard, topic: str, message: Any) -> None:
         heard.persons += [(number, p.name, p.position.x, p.position.y) for p in message.people]
     else:
         place = message.pose.pose.position
-        heard.poses[topic].append((stamp, place.x, place.y))
+        heard.poses.setdefault(topic, []).append((stamp, place.x, place.y))
 
 
 def _frames(name: str, stamps: NDArray[np.int64]) -> tuple[float, NDArray[np.int64]]:

@@ -3,11 +3,14 @@
 from .collisions import accompanied, collided, collision_share
 from .contacts import ContactEvent, cause_of, contact_events
 from .displacement import ade, best_of, distances, fde, miss_rate
+from .earth_mover import earth_mover_distance
 from .energy import energy_score
 from .interval import Intervals, bootstrap_interval
 from .likelihood import kde_nll
+from .modes import mode_count, mode_coverage, mode_shares
 from .motion import heading_change, jerk, longest_stall, path_efficiency, path_length, stalled_time
 from .navigation import NAVIGATION_METRICS, Outcome, navigation_metrics, outcome
+from .nearest_neighbor import nearest_neighbor_accuracy
 from .persons import PersonErrors, error_over_horizon, person_errors
 from .proximity import (
     clearance,
@@ -38,6 +41,7 @@ __all__ = [
     "collision_share",
     "contact_events",
     "distances",
+    "earth_mover_distance",
     "energy_score",
     "error_over_horizon",
     "fde",
@@ -47,7 +51,11 @@ __all__ = [
     "local_density",
     "longest_stall",
     "miss_rate",
+    "mode_count",
+    "mode_coverage",
+    "mode_shares",
     "navigation_metrics",
+    "nearest_neighbor_accuracy",
     "outcome",
     "path_efficiency",
     "path_length",

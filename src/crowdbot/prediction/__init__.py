@@ -1,9 +1,12 @@
 """Floor 4: where people will be in the next seconds; predictors, and their scores on recordings."""
 
+from .anchor_net import AnchorNet, Modes
+from .anchors import Anchors
 from .constant import ConstantAcceleration, ConstantVelocity, LeastSquares, SampledConstantVelocity
 from .degraded import DegradedScore, Seen, Task, seen_windows, sweep
 from .evaluate import evaluate
 from .kalman import Kalman, KalmanAcceleration
+from .learned.social_ways_predictor import SocialWays
 from .live import Live
 from .predictor import Predictor, window_streams
 from .recipe import Recipe
@@ -11,6 +14,8 @@ from .simulated import Simulated
 from .study import Frames, Part, Piece, Result, Study
 
 __all__ = [
+    "AnchorNet",
+    "Anchors",
     "ConstantAcceleration",
     "ConstantVelocity",
     "DegradedScore",
@@ -19,6 +24,7 @@ __all__ = [
     "KalmanAcceleration",
     "LeastSquares",
     "Live",
+    "Modes",
     "Part",
     "Piece",
     "Predictor",
@@ -27,6 +33,7 @@ __all__ = [
     "SampledConstantVelocity",
     "Seen",
     "Simulated",
+    "SocialWays",
     "Study",
     "Task",
     "evaluate",

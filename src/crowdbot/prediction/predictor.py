@@ -64,6 +64,11 @@ class Predictor(ABC):
         """
         return self.predict(past, steps, samples, rng), memory
 
+    def note(self, past: Windows) -> str:
+        """Return what a user should know of forecasts of such windows in one sentence, or nothing."""
+        del past
+        return ""
+
     def forecast(self, past: Windows, position: NDArray[np.float64]) -> Forecast:
         """Return positions ``[W, K, T, A, 2]`` [m] as this predictor's forecast, valid for who is present now.
 

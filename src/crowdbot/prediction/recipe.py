@@ -13,6 +13,7 @@ from crowdbot.calibration import Calibrator, PopulationPrior, goal_for, kind_of_
 from crowdbot.core import InputError, stream
 from crowdbot.core.plug import kebab
 from crowdbot.data import Recording, Windows
+from crowdbot.models.goals import Goal
 
 from .predictor import Predictor
 from .simulated import Simulated
@@ -67,6 +68,14 @@ class Recipe:
         return f"simulated({', '.join(filter(None, (inside, *made)))})"
 
     @property
+    def knows_future(self) -> bool:
+        """Whether its goal is told where people will be: then it is for evaluation only."""
+        if not isinstance(self.predictor, Simulated):
+            return False
+        goal = self.predictor.goal
+        return kind_of_goal(self.goal).knows_future if self.goal is not None else bool(cast(Goal, goal).knows_future)
+
+    @property
     def label(self) -> str:
         """Short name for tables and plots: model, then cost and search of a calibration, then the goal."""
         crowd = self.predictor
@@ -77,6 +86,22 @@ class Recipe:
         words.append(self.goal or kebab(type(crowd.goal).__name__))
         words += ["prior"] * (self.prior or crowd.prior is not None) + ["shared"] * self.shared
         return ", ".join(words)
+
+    def check(self, recording: Recording, live: bool) -> None:
+        """Raise :class:`InputError` when the predictor cannot work on a recording, before any work is done."""
+        crowd = self.predictor
+        if not isinstance(crowd, Simulated):
+            return
+        if crowd.calibrator is not None and recording.observe < 2:
+            raise InputError(
+                f"calibration needs at least 2 observed rows, and 3 with the progressive cost; {recording.observe} is"
+                " observed: a track of one point shows no motion"
+            )
+        if live and self.knows_future:
+            raise InputError(
+                f"the goal {self.label.rpartition(', ')[2]} looks at what people will do, which nobody knows while"
+                " predicting live; take current-direction, or leave out --live"
+            )
 
     def prepared(self, recording: Recording) -> Predictor:
         """Return the predictor for a recording.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import itertools
 import pickle
 import time
 from collections.abc import Iterator, Sequence
@@ -137,7 +138,7 @@ class Study:
         live: frames come one after the other, and calibrations begin with the fit of the frame before.
 
     Raises:
-        InputError: there is no recording or no predictor.
+        InputError: there is no recording or no predictor, one is named twice, or one cannot work on a recording.
     """
 
     recordings: tuple[Recording, ...]
@@ -151,6 +152,8 @@ class Study:
         if not self.recordings or not self.recipes:
             raise InputError("a study needs at least one recording and one predictor")
         names = [recipe.name for recipe in self.recipes]
+        for recording, recipe in itertools.product(self.recordings, self.recipes):
+            recipe.check(recording, self.live)
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
             raise InputError(f"the predictor {twice} is named twice")

@@ -1,31 +1,31 @@
-"""A planar laser scanner: distances to people (discs) and walls along evenly spaced beams."""
+"""A planar laser scanner: distances to people and walls along evenly spaced beams."""
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene
+from crowdbot.core import InputError, Pose, Scene, SpatialPose
 from crowdbot.core.geometry import nearest_on_segment, ray_to_disc, ray_to_segment
 from crowdbot.core.kernels import kernel
 
-from .noise import Randomness, disturbed
-from .sensor import Reading, Sensor
+from .beams import Beams, beams, fan
+from .cast import cast
+from .noise import Randomness
+from .ranging import Ranging, ended, incidence_of, settled
+from .sensor import Reading, in_space
+from .shapes import FLOOR, NOTHING, OVERLAP, PROP, lengthened
+from .shapes import WALLS as WALL
 
-__all__ = ["NOTHING", "WALL", "Lidar2D", "Scan"]
+__all__ = ["FLOOR", "NOTHING", "PROP", "WALL", "Lidar2D", "Scan"]
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-NOTHING = -1
-"""Value of ``Scan.hit`` where a beam returned nothing."""
-WALL = -2
-"""Value of ``Scan.hit`` where a beam met a wall."""
-OVERLAP = 1e-9
-"""Walls are this much longer [m] at both ends, so that rounding lets no beam slip through a corner."""
 TURN = 2.0 * math.pi
 
 
@@ -121,16 +121,30 @@ class Scan(Reading):
     Fields:
         ranges: ``[E, R]`` [m]; ``+inf`` nothing within reach, ``-inf`` something nearer than the smallest distance.
         angles: ``[R]`` [rad] in the sensor frame, counter-clockwise, 0 straight ahead.
-        hit: ``[E, R]`` what the beam met: index of an agent, :data:`NOTHING` (-1) or :data:`WALL` (-2). Ground truth
-            for labels; no real scanner knows it.
+        hit: ``[E, R]`` what the beam met: index of an agent, :data:`NOTHING` (-1), :data:`WALL` (-2), :data:`FLOOR`
+            (-3) or :data:`PROP` (-4). Ground truth for labels; no real scanner knows it.
+        facing: ``[E, R]`` cosine of the angle between beam and surface normal, 1 where nothing was met.
+        part: ``[E, R]`` index into ``scene.bodies.parts``, -1 where there is none.
     """
 
     ranges: Floats
     angles: Floats
     hit: Indices
+    facing: Floats
+    part: Indices
+
+    @property
+    def incidence(self) -> Floats:
+        """``[E, R]`` angle between beam and surface normal [rad], NaN where nothing returned."""
+        return incidence_of(self.facing, self.hit)
 
     def points(self) -> Floats:
-        """Return where the beams ended, ``[E, R, 2]`` [m] in the world, NaN where there is no finite range."""
+        """Return where the beams ended in the world, NaN where there is no finite range.
+
+        ``[E, R, 2]`` [m] for a planar pose, ``[E, R, 3]`` for one in space.
+        """
+        if isinstance(self.pose, SpatialPose):
+            return ended(self.pose, fan(self.angles), self.ranges, in_world=True)
         angle = self.pose.heading[:, None] + self.angles
         away = np.where(np.isfinite(self.ranges), self.ranges, np.nan)
         ends = self.pose.position[:, None] + away[..., None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
@@ -138,21 +152,30 @@ class Scan(Reading):
 
     def seen(self, count: int) -> NDArray[np.bool_]:
         """Return which of ``count`` agents returned at least one beam, ``[E, A]``."""
-        marks = np.zeros((len(self.hit), count), dtype=np.bool_)
-        rows, beams = np.nonzero(self.hit >= 0)
-        marks[rows, self.hit[rows, beams]] = True
-        return marks
+        return seen_agents(self.hit, count)
+
+
+def seen_agents(hit: Indices, count: int) -> NDArray[np.bool_]:
+    """Return which of ``count`` agents are named in ``hit`` ``[E, ...]``, as ``[E, A]``."""
+    flat = hit.reshape(len(hit), -1)
+    marks = np.zeros((len(hit), count), dtype=np.bool_)
+    rows, beams_ = np.nonzero(flat >= 0)
+    marks[rows, flat[rows, beams_]] = True
+    return marks
 
 
 @dataclass(frozen=True)
-class Lidar2D(Sensor):
+class Lidar2D(Ranging):
     """A planar laser scanner that takes all beams at one instant.
 
-    It sees the discs of active agents (also of those that the crowd does not react to) and the walls. A beam ends at
-    the first surface; when it meets that at more than ``max_incidence`` it returns nothing. Noise is added to true
-    distances within reach, then the limits decide, then the value is rounded to ``resolution``: a finite range is
-    always between ``range_min`` and ``range_max``. From inside a disc or on a wall every beam that meets it has
-    distance 0 and reads ``-inf``.
+    It sees active agents (also those that the crowd does not react to), walls, props and, when tilted, the floor. A
+    beam ends at the first surface; when it meets that at more than ``max_incidence`` it returns nothing. Noise is
+    added to true distances within reach, then the limits decide, then the value is rounded to ``resolution``: a
+    finite range is always between ``range_min`` and ``range_max``. From inside a body or on a wall every beam that
+    meets it has distance 0 and reads ``-inf``.
+
+    In a scene without bodies a planar pose looks at discs and walls as from above. Otherwise the beams go through
+    space from the height and tilt of the pose (a planar one is level, at the height of a usual mount).
 
     Fields:
         rays: number of beams R.
@@ -161,6 +184,7 @@ class Lidar2D(Sensor):
         range_min, range_max: smallest and largest distance that is measured [m].
         max_incidence: largest angle between beam and surface normal that returns [rad].
         resolution: step of the returned distances [m], 0 for none.
+        skins: whether agents that have triangle skins are seen by them and not by their limbs.
 
     Raises:
         InputError: a value is not allowed.
@@ -177,22 +201,14 @@ class Lidar2D(Sensor):
     range_max: float = 10.0
     max_incidence: float = math.pi / 2
     resolution: float = 0.0
+    skins: bool = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.rays != int(self.rays) or self.rays < 1:
-            raise InputError(f"Lidar2D: rays = {self.rays} must be a whole number of at least 1")
+        self.check_count("rays")
         if not 0.0 < self.field_of_view <= TURN + 1e-9:
             raise InputError(f"Lidar2D: field_of_view = {self.field_of_view} rad must be above 0 and at most 2 pi")
-        if not 0.0 <= self.range_min < self.range_max < math.inf:
-            raise InputError(
-                f"Lidar2D: range_min = {self.range_min} m and range_max = {self.range_max} m must be finite,"
-                " not negative, and range_min the smaller one"
-            )
-        if not 0.0 < self.max_incidence <= math.pi / 2 + 1e-9:
-            raise InputError(f"Lidar2D: max_incidence = {self.max_incidence} rad must be above 0 and at most pi / 2")
-        if not 0.0 <= self.resolution <= self.range_max - self.range_min:
-            raise InputError(f"Lidar2D: resolution = {self.resolution} m must be at least 0 and fit between the ranges")
+        self.check_ranges()
 
     @property
     def step(self) -> float:
@@ -208,14 +224,24 @@ class Lidar2D(Sensor):
             return np.zeros(1)
         return np.asarray(-0.5 * min(self.field_of_view, TURN) + self.step * np.arange(self.rays))
 
-    def measure(self, scene: Scene, pose: Pose, rng: Randomness | None = None) -> Scan:
+    def measure(self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None) -> Scan:
         """Return the scan from ``pose``; ``rng`` is needed only when there is noise.
 
         Raises:
             InputError: scene and pose have different numbers of environments, or noise lacks a generator.
         """
         self.check(scene, pose)
-        distance, facing, hit = _scan(
+        if isinstance(pose, Pose) and scene.bodies is None and not self.skins:
+            distance, facing, hit = self._from_above(scene, pose)
+            part = np.full(hit.shape, -1)
+        else:
+            hits = cast(scene, in_space(pose), _beams(self), self.range_max, skins=self.skins, normals=False)
+            distance, facing, hit, part = hits.distance, hits.facing, hits.hit, hits.part
+        ranges = settled(self, distance, facing, hit, part, rng)
+        return Scan(scene.time, pose, ranges, self.angles, hit, facing, part)
+
+    def _from_above(self, scene: Scene, pose: Pose) -> tuple[Floats, Floats, Indices]:
+        return _scan(
             np.ascontiguousarray(pose.position, dtype=np.float64),
             np.ascontiguousarray(pose.heading, dtype=np.float64),
             self.angles,
@@ -223,29 +249,15 @@ class Lidar2D(Sensor):
             np.ascontiguousarray(scene.position),
             np.ascontiguousarray(scene.radius),
             np.ascontiguousarray(scene.active),
-            _lengthened(scene.walls.segments()),
+            lengthened(scene.walls.segments()),
             self.range_max,
         )
-        back = distance <= self.range_max
-        if self.max_incidence < math.pi / 2:
-            back &= facing >= math.cos(self.max_incidence) - 1e-12  # the limit itself returns, whatever the rounding
-        measured = disturbed(np.where(back, distance, np.inf), self.noises, rng)
-        near = back & ((distance < self.range_min) | (measured < self.range_min))
-        far = ~back | (measured > self.range_max)
-        ranges = np.where(near, -np.inf, np.where(far, np.inf, self._rounded(measured)))
-        hit = np.where(far & ~near, NOTHING, hit)
-        return Scan(scene.time, pose, np.asarray(ranges), self.angles, hit)
-
-    def _rounded(self, measured: Floats) -> Floats:
-        if self.resolution == 0.0:
-            return measured
-        lowest = math.ceil(self.range_min / self.resolution - 1e-9)
-        highest = math.floor(self.range_max / self.resolution + 1e-9)
-        steps = np.clip(np.round(measured / self.resolution), lowest, highest)
-        return np.asarray(steps * self.resolution)
 
 
-def _lengthened(walls: Floats) -> Floats:
-    along = walls[:, 2:] - walls[:, :2]
-    along = along * (OVERLAP / np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-300))[:, None]
-    return np.ascontiguousarray(np.concatenate([walls[:, :2] - along, walls[:, 2:] + along], axis=1))
+def _beams(lidar: Lidar2D) -> Beams:
+    return _made(lidar.rays, lidar.field_of_view)
+
+
+@functools.lru_cache(maxsize=64)
+def _made(rays: int, field_of_view: float) -> Beams:
+    return beams(fan(Lidar2D(rays=rays, field_of_view=field_of_view).angles))

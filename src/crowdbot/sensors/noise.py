@@ -1,4 +1,4 @@
-"""Noise is a value attached to a sensor: what it adds to every reading, drawn from a given generator."""
+"""Noise is a value attached to a sensor: what happens to every reading, drawn from a given generator."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from crowdbot.core import InputError
 from crowdbot.core.errors import did_you_mean
 from crowdbot.core.plug import kebab
 
-__all__ = ["Gaussian", "Noise", "Offset", "Peak", "Randomness", "disturbed"]
+__all__ = ["Dropout", "Gaussian", "Noise", "Offset", "Peak", "Quantised", "Randomness", "disturbed", "normals"]
 
 Floats = NDArray[np.float64]
 Randomness = np.random.Generator | Sequence[np.random.Generator]
@@ -27,15 +27,19 @@ TERM = re.compile(r"\s*([A-Za-z][\w-]*)\s*\(([^()]*)\)\s*[,+]?")
 
 @dataclass(frozen=True)
 class Noise(ABC):
-    """Something that is added to what a sensor measures; several add up as a tuple.
+    """Something that is done to what a sensor measures; several act one after the other as a tuple.
 
     >>> Noise.parse("gaussian(0.01) peak(0.001, 1.0)")
-    (Gaussian(sd=0.01), Peak(probability=0.001, height=1.0))
+    (Gaussian(sd=0.01), Peak(probability=0.001, height=1.0, sd=0.0))
     """
 
     @abstractmethod
     def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
         """Return what is added to readings of ``shape``, in the unit of the reading."""
+
+    def applied(self, values: Floats, rng: np.random.Generator) -> Floats:
+        """Return the readings ``values`` with the noise; the number of draws follows from their shape only."""
+        return values + self.draw(values.shape, rng)
 
     @classmethod
     def parse(cls, text: str) -> tuple[Noise, ...]:
@@ -56,7 +60,11 @@ class Noise(ABC):
 
     def __str__(self) -> str:
         """Return the text that :meth:`parse` reads."""
-        numbers = ", ".join(repr(float(getattr(self, f.name))) for f in dataclasses.fields(self))
+        values = [float(getattr(self, f.name)) for f in dataclasses.fields(self)]
+        optional = [f.default for f in dataclasses.fields(self)]
+        while values and values[-1] == optional[len(values) - 1]:
+            values.pop()
+        numbers = ", ".join(map(repr, values))
         return f"{kebab(type(self).__name__)}({numbers})"
 
 
@@ -100,7 +108,7 @@ class Offset(Noise):
 
 @dataclass(frozen=True)
 class Peak(Noise):
-    """A rare outlier: each reading gets ``height`` added with ``probability``, otherwise nothing.
+    """A rare outlier: with ``probability`` a reading gets ``height`` added, or a normal draw around it.
 
     >>> Peak(1.0, 2.5).draw((2,), np.random.default_rng(0)).tolist()
     [2.5, 2.5]
@@ -108,20 +116,77 @@ class Peak(Noise):
 
     probability: float
     height: float
+    sd: float = 0.0
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.probability <= 1.0:
-            raise InputError(f"peak noise: probability = {self.probability} must be between 0 and 1")
+        _check_probability("peak", self.probability)
         if not math.isfinite(self.height):
             raise InputError(f"peak noise: height = {self.height} must be finite")
+        if not 0.0 <= self.sd < math.inf:
+            raise InputError(f"peak noise: sd = {self.sd} must be finite and at least 0")
 
     def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
-        """Return ``height`` where a uniform draw falls below the probability."""
-        return np.where(rng.random(shape) < self.probability, self.height, 0.0)
+        """Return ``height`` where a uniform draw falls below the probability; with ``sd`` normal around it."""
+        chosen = rng.random(shape) < self.probability
+        return np.where(chosen, self.height if self.sd == 0.0 else rng.normal(self.height, self.sd, shape), 0.0)
+
+
+@dataclass(frozen=True)
+class Dropout(Noise):
+    """A lost return: with ``probability`` a reading is infinite, which range sensors show as nothing within reach.
+
+    Sensors of other things show NaN.
+
+    >>> Dropout(1.0).draw((2,), np.random.default_rng(0)).tolist()
+    [inf, inf]
+    """
+
+    probability: float
+
+    def __post_init__(self) -> None:
+        _check_probability("dropout", self.probability)
+
+    def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
+        """Return infinity where a uniform draw falls below the probability."""
+        return np.where(rng.random(shape) < self.probability, np.inf, 0.0)
+
+
+@dataclass(frozen=True)
+class Quantised(Noise):
+    """Rounding to whole multiples of ``step``, in the unit of the reading; half a step goes to the even multiple.
+
+    >>> Quantised(0.25).applied(np.array([0.3, 0.4]), np.random.default_rng(0)).tolist()
+    [0.25, 0.5]
+    """
+
+    step: float
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.step < math.inf:
+            raise InputError(f"quantised: step = {self.step} must be finite and above 0")
+
+    @classmethod
+    def bits(cls, bits: int, low: float, high: float) -> Quantised:
+        """Return the rounding of a number of ``bits`` whose smallest and largest values are ``low`` and ``high``.
+
+        >>> Quantised.bits(8, 0.0, 255.0).step
+        1.0
+        """
+        if bits != int(bits) or not 1 <= bits <= 64:
+            raise InputError(f"quantised: bits = {bits} must be a whole number from 1 to 64")
+        return cls((high - low) / (2**bits - 1))
+
+    def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
+        """Return zeros: rounding depends on the reading."""
+        return np.zeros(shape)
+
+    def applied(self, values: Floats, rng: np.random.Generator) -> Floats:
+        """Return the rounded readings; what is infinite stays infinite."""
+        return np.round(values / self.step) * self.step
 
 
 def disturbed(values: Floats, noise: tuple[Noise, ...], rng: Randomness | None) -> Floats:
-    """Return ``values`` ``[E, ...]`` with every noise added; what is infinite stays infinite.
+    """Return ``values`` ``[E, ...]`` with every noise; what is infinite stays infinite.
 
     The number of draws depends on the shape only, never on what was measured.
 
@@ -141,12 +206,26 @@ def disturbed(values: Floats, noise: tuple[Noise, ...], rng: Randomness | None) 
     result = values.copy()
     for number, generator in enumerate(generators):
         for part in noise:
-            result[number] += part.draw(values.shape[1:], generator)
+            result[number] = part.applied(result[number], generator)
     return result
 
 
+def _check_probability(name: str, probability: float) -> None:
+    if not 0.0 <= probability <= 1.0:
+        raise InputError(f"{name} noise: probability = {probability} must be between 0 and 1")
+
+
+def normals(shape: tuple[int, ...], rng: Randomness | None) -> Floats:
+    """Return standard normal draws ``[E, ...]``, each environment's from its generator.
+
+    Raises:
+        InputError: there is no generator, or not one for each environment.
+    """
+    return disturbed(np.zeros(shape), (Gaussian(1.0),), rng)
+
+
 def _made(word: str, inside: str, text: str) -> Noise:
-    known: dict[str, type[Noise]] = {kebab(c.__name__): c for c in (Gaussian, Offset, Peak)}
+    known: dict[str, type[Noise]] = {kebab(c.__name__): c for c in (Dropout, Gaussian, Offset, Peak, Quantised)}
     kind = known.get(word.lower())
     if kind is None:
         raise InputError(
@@ -157,6 +236,7 @@ def _made(word: str, inside: str, text: str) -> Noise:
         numbers = [float(part) for part in inside.split(",") if part.strip()]
     except ValueError:
         raise InputError(f"noise {word}({inside}): its values must be numbers: {word}({', '.join(names)})") from None
-    if len(numbers) != len(names):
+    least = sum(f.default is dataclasses.MISSING for f in dataclasses.fields(kind))
+    if not least <= len(numbers) <= len(names):
         raise InputError(f"noise {word}({inside}) has {len(numbers)} values, it takes {word}({', '.join(names)})")
     return kind(*numbers)

@@ -98,6 +98,8 @@ class Plug:
 
     room: str
     contract: str
+    drawn: bool = False
+    """Whether its attributes may be distributions."""
 
     def places(self) -> tuple[types.ModuleType, type]:
         """Return the room and the contract class."""
@@ -196,9 +198,9 @@ def plugged(room: str, contract: str, *, about: str) -> Any:
     return dataclasses.field(metadata={"role": "plugged", "plug": Plug(room, contract), "about": about})
 
 
-def mounted(room: str, contract: str, *, about: str) -> Any:
-    """Make a field whose ``type`` and attributes stand in the element itself."""
-    return dataclasses.field(metadata={"role": "mounted", "plug": Plug(room, contract), "about": about})
+def mounted(room: str, contract: str, *, about: str, drawn: bool = False) -> Any:
+    """Make a field whose ``type`` and attributes, ``drawn`` from distributions, stand in the element itself."""
+    return dataclasses.field(metadata={"role": "mounted", "plug": Plug(room, contract, drawn), "about": about})
 
 
 @functools.cache

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import importlib.resources
 from pathlib import Path
+from typing import Any
 
 from crowdbot.core import TrialError
 from crowdbot.core.errors import did_you_mean
 
 from .markup import read_bytes
+from .scenarios import PRESETS
+from .sweep import changed
 from .trial import Trial
 
 __all__ = ["builtin_trials", "load_trial"]
@@ -17,34 +20,61 @@ __all__ = ["builtin_trials", "load_trial"]
 def builtin_trials() -> tuple[str, ...]:
     """Return the names of the built-in trials.
 
-    >>> "crossing-flows" in builtin_trials()
+    >>> {"crossing-flows", "intersection"} <= set(builtin_trials())
     True
     """
     folder = importlib.resources.files("crowdbot").joinpath("assets", "trials")
-    return tuple(sorted(entry.name.removesuffix(".xml") for entry in folder.iterdir() if entry.name.endswith(".xml")))
+    files = (entry.name.removesuffix(".xml") for entry in folder.iterdir() if entry.name.endswith(".xml"))
+    return tuple(sorted({*files, *PRESETS}))
 
 
-def load_trial(source: str | Path, *, trust: bool = False) -> Trial:
-    """Read and check a trial.
+def load_trial(source: str | Path, *, trust: bool = False, **values: Any) -> Trial:
+    """Read or make a trial, and check it.
 
     Args:
         source: a trial file or a built-in name; a file of that name in the working folder comes first.
-        trust: whether the trial may load code from outside its own folder.
+        trust: whether the trial may load code from outside its own folder, or read files there.
+        values: parameters of a built-in trial that has some; of any trial, values by their paths as
+            :class:`crowdbot.trials.Sweep` has them.
 
     Raises:
         TrialError: there is no such trial, or with everything that is wrong with it, a sentence each.
 
     >>> load_trial("crossing-flows").people
     40
+    >>> load_trial("intersection", density=0.5).people
+    10
+    >>> load_trial("crossing-flows", **{"spawner[1]/count": 5}).people
+    25
     """
     path = Path(source)
     known = builtin_trials()
     if str(source) in known and not path.is_file():
-        inside = importlib.resources.files("crowdbot").joinpath("assets", "trials", f"{source}.xml")
-        return Trial.parse(inside.read_bytes(), place=f"{source}.xml", trust=trust)
+        return _builtin(str(source), trust, values)
     if not path.exists() and not path.suffix and len(path.parts) == 1:
         raise TrialError(
             f"there is no trial {str(source)!r}{did_you_mean(str(source), known)}: no file has this name,"
             f" and built in are {', '.join(known)}"
         )
-    return Trial.parse(read_bytes(path), place=str(path), folder=path.parent, trust=trust)
+    trial = Trial.parse(read_bytes(path), place=str(path), folder=path.parent, trust=trust)
+    return _with(trial, values, trust)
+
+
+def _builtin(name: str, trust: bool, values: dict[str, Any]) -> Trial:
+    preset = PRESETS.get(name)
+    if preset is None:
+        inside = importlib.resources.files("crowdbot").joinpath("assets", "trials", f"{name}.xml")
+        return _with(Trial.parse(inside.read_bytes(), place=f"{name}.xml", trust=trust), values, trust)
+    paths = {key: value for key, value in values.items() if "/" in key}
+    own = {key: value for key, value in values.items() if key not in paths}
+    return _with(preset.trial(**own), paths, trust)
+
+
+def _with(trial: Trial, values: dict[str, Any], trust: bool) -> Trial:
+    texts = {key: text_of(value) for key, value in values.items()}
+    return changed(trial, texts, place=trial.name, trust=trust) if texts else trial
+
+
+def text_of(value: Any) -> str:
+    """Return a value as it stands in a trial file."""
+    return str(value).lower() if isinstance(value, bool) else str(value)

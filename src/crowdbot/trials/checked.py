@@ -8,9 +8,11 @@ from typing import Any
 
 from crowdbot.models import CrowdModel
 
+from .agent import Agent
 from .crowd import Routing
-from .journey import Exit, Journey
+from .journey import Exit, Journey, Portal
 from .people import Source, Spawner
+from .recorded_people import RecordedPeople
 from .stage import Stage
 from .trial import Recording, Robot, Trial
 
@@ -31,9 +33,12 @@ class Checked:
     crowd: CrowdModel | None
     routing: Routing | None
     journeys: Sequence[Journey]
+    agents: Sequence[Agent]
     spawners: Sequence[Spawner]
     sources: Sequence[Source]
+    recorded: Sequence[RecordedPeople]
     exits: Sequence[Exit]
+    portals: Sequence[Portal]
     robots: Sequence[Robot]
     capacity: int | None
     step: float | None
@@ -43,14 +48,14 @@ class Checked:
     broken: Collection[str] = ()
 
     @property
-    def people(self) -> tuple[Spawner | Source, ...]:
+    def people(self) -> tuple[Agent | Spawner | Source, ...]:
         """Where people come from."""
-        return (*self.spawners, *self.sources)
+        return (*self.agents, *self.spawners, *self.sources)
 
     @classmethod
     def of(cls, values: dict[str, Any], broken: Collection[str] = ()) -> Checked:
         """Take the parts from the fields of a trial that could be read."""
-        lists = ("journeys", "spawners", "sources", "exits", "robots")
+        lists = ("journeys", "agents", "spawners", "sources", "recorded", "exits", "portals", "robots")
         empty: dict[str, Any] = dict.fromkeys(lists, ()) | {"seed": 0}
         names = [field.name for field in fields(cls) if field.name != "broken"]
         parts: dict[str, Any] = {name: values.get(name, empty.get(name)) for name in names}

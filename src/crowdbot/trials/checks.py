@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -10,10 +11,13 @@ import numpy as np
 
 from crowdbot.core import FreeClock, InputError, TrialError
 
+from .attribute import shown
 from .checked import Checked, Problems
 from .flow_checks import expected, flows, names
+from .recorded_people import RecordedPeople, Walk
 from .spawn import place
 from .stage import Obstacle, Stage
+from .sweep import sweep_problems
 from .trial import Robot, Trial
 from .zones import areas, crooked
 
@@ -22,6 +26,8 @@ __all__ = ["check_trial", "problems_of"]
 MOST_VALUES = 100_000_000
 """An episode is held in memory: recorded scenes times agents must not exceed this."""
 MOST_ARRIVALS = 100_000
+WALKING = 1.6
+"""About how fast [m/s] people go from portal to portal."""
 
 
 def check_trial(trial: Trial, seed: int | None = None) -> None:
@@ -34,6 +40,8 @@ def check_trial(trial: Trial, seed: int | None = None) -> None:
     whole = Checked.all_of(trial)
     checked = whole if seed is None else dataclasses.replace(whole, seed=seed)
     found = [f"trial {trial.name!r}: {_called(thing)} {sentence}" for thing, sentence in problems_of(checked)]
+    if trial.sweeps and not found:
+        found = sweep_problems(trial, seed)
     if found:
         raise TrialError(*found)
 
@@ -55,8 +63,28 @@ def problems_of(checked: Checked) -> list[tuple[Any, str]]:
     bad |= {id(thing) for thing, _ in lost}
     if not bad:
         found += [*flows(checked)]
-    standing = [spawner for spawner in checked.spawners if id(spawner) not in bad and not too_large]
-    return found + place(checked.stage, standing, checked.robots, checked.seed)[1]
+    if too_large:
+        return found
+    walks, unread = _recordings(checked)
+    spawners = [spawner for spawner in checked.spawners if id(spawner) not in bad]
+    agents = [agent for agent in checked.agents if id(agent) not in bad]
+    return found + unread + place(checked.stage, spawners, checked.robots, checked.seed, agents, walks)[1]
+
+
+def _recordings(checked: Checked) -> tuple[list[tuple[RecordedPeople, Sequence[Walk]]], list[tuple[Any, str]]]:
+    """Return the recordings that can be read, and why others cannot."""
+    read: list[tuple[RecordedPeople, Sequence[Walk]]] = []
+    problems: list[tuple[Any, str]] = []
+    for one in checked.recorded:
+        try:
+            walks = one.walks(checked.duration or 0.0)
+        except InputError as error:
+            problems.append((one, f"data={shown(one.data)} {error}"))
+            continue
+        if not walks:
+            problems.append((one, f"data={shown(one.data)} has nobody from {one.begin:g} s on; take an earlier begin"))
+        read.append((one, walks))
+    return read, problems
 
 
 def _periods(checked: Checked) -> Problems:
@@ -102,7 +130,8 @@ def _size(checked: Checked) -> Problems:
             f"lets people in, about {coming} together with other sources, more than {MOST_ARRIVALS}; take a lower rate,"
             " an earlier end or fewer at most",
         )
-    agents = sum(spawner.count for spawner in checked.spawners) + coming + len(checked.robots)
+    first = len(checked.agents) + sum(spawner.count for spawner in checked.spawners)
+    agents = first + coming + len(checked.robots) + _through(checked, first + coming)
     scenes = checked.duration / checked.recording.period
     if scenes * agents > MOST_VALUES:
         yield (
@@ -110,6 +139,14 @@ def _size(checked: Checked) -> Problems:
             f"recording period {checked.recording.period:g} s makes {scenes:.0f} scenes of {agents} agents, more than"
             f" {MOST_VALUES} places together; take a longer period, a shorter duration or fewer people",
         )
+
+
+def _through(checked: Checked, people: int) -> int:
+    """Return about how many people at most come out of portals as new ones."""
+    if not checked.portals or checked.duration is None:
+        return 0
+    shortest = min(math.hypot(portal.dx, portal.dy) for portal in checked.portals)
+    return round(people * checked.duration * WALKING / max(shortest, 0.1))
 
 
 def _stage_shapes(stage: Stage) -> Problems:
@@ -129,11 +166,11 @@ def _robots(stage: Stage, robots: Sequence[Robot]) -> Problems:
             ("has its goal", robot.goal.position, robot.goal.tolerance),
         ):
             room = float(stage.clearance([spot])[0])
-            block = stage.obstacle_around(shapely.Point(spot))
+            block = stage.block_around(shapely.Point(spot))
             if not stage.holds(shapely.Point(spot)):
                 yield robot, f"{name} at {spot[0]:g},{spot[1]:g} outside the walkable area"
-            elif block is not None:
-                yield robot, f"{name} at {spot[0]:g},{spot[1]:g} inside obstacle {block + 1} of the stage"
+            elif block:
+                yield robot, f"{name} at {spot[0]:g},{spot[1]:g} inside {block}"
             elif room + reach < robot.radius:
                 yield robot, f"{name} {room:.2f} m from a wall, and its radius is {robot.radius:g} m"
         for other in robots[:k]:

@@ -25,7 +25,7 @@ class Crowd:
     """A model and, when there are several, the name by which spawners and sources choose it."""
 
     name: str = attribute("", about="name that spawners and sources choose it by", pattern=NAME)
-    model: CrowdModel = mounted("models", "CrowdModel", about="how its people walk")
+    model: CrowdModel = mounted("models", "CrowdModel", drawn=True, about="how its people walk")
 
     def __post_init__(self) -> None:
         check(self)

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import dataclasses
-import hashlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose
+from crowdbot.core import InputError
 from crowdbot.data import Trajectories
-from crowdbot.metrics import navigation_metrics
 from crowdbot.sensors import Reading, Scan
 
 from .simulation import Frame
+from .tally import Digest, Tally, present
 from .trial import Trial
 
 __all__ = ["Digest", "Episode", "Log", "ScanRow", "tracks_of"]
@@ -109,6 +108,33 @@ class Episode:
         """
         return tracks_of(self, self.trial.name, dt)
 
+    def branch(
+        self,
+        at: float,
+        seed: int | None = None,
+        out: Path | str | None = None,
+        trial: Trial | None = None,
+        **changes: Any,
+    ) -> Episode:
+        """Go on from an instant, with other values; see :func:`crowdbot.trials.branch`.
+
+        Args:
+            at: a recorded instant [s].
+            seed: for new chance from then on.
+            out: file to record to, or a folder.
+            trial: the trial to go on by.
+            changes: values by path, such as ``duration=20`` or ``**{"robot[pepper].goal.x": 3.0}``.
+
+        >>> from crowdbot.models import ORCA
+        >>> episode = Trial(name="empty", duration=2.0, crowd=ORCA()).run()
+        >>> later = episode.branch(at=1.5, duration=3)
+        >>> float(later.times[0]), float(later.times[-1]), episode.branch(at=1.0).digest == episode.digest
+        (1.5, 3.0, True)
+        """
+        from .branch import branched
+
+        return branched(self, at, seed=seed, changes=changes, trial=trial, out=out)
+
 
 def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
     """Return the trajectories of an episode, run or read."""
@@ -133,54 +159,30 @@ def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
     )
 
 
-class Digest:
-    """The hash of an episode, made while it runs."""
+class Log(Tally):
+    """Keeps what an episode is made of while it runs.
 
-    def __init__(self) -> None:
-        self._sum = hashlib.blake2b(digest_size=16)
+    Args:
+        trial, seed, digest: as of :class:`Tally`.
+    """
 
-    def take(self, frame: Frame) -> None:
-        """Add an instant: every array of its readings, then, when it is due, of its scene."""
-        for robot, mount, reading in frame.readings:
-            self._sum.update(f"reading {frame.nanoseconds} {robot.name}/{mount.name}\n".encode())
-            for field in dataclasses.fields(reading):
-                self._sum.update(_bytes(getattr(reading, field.name)))
-        if frame.due:
-            self._sum.update(f"frame {frame.nanoseconds}\n".encode())
-            who = [] if np.array_equal(frame.ids, np.arange(len(frame.ids))) else [frame.ids]
-            for array in (*who, *_present(frame), frame.twists, frame.commands):
-                self._sum.update(_bytes(array))
-
-    def ended(self, outcome: str) -> str:
-        """Return the hash of everything so far and the outcome."""
-        whole = self._sum.copy()
-        whole.update(f"outcome {outcome}\n".encode())
-        return whole.hexdigest()
-
-
-class Log:
-    """Keeps what an episode is made of while it runs."""
-
-    def __init__(self, trial: Trial, seed: int) -> None:
-        self.trial, self.seed = trial, seed
+    def __init__(self, trial: Trial, seed: int, digest: Digest | None = None) -> None:
+        super().__init__(trial, seed, digest)
         self.frames: list[tuple[NDArray[Any], ...]] = []
         self.times: list[float] = []
-        self.agents = trial.people + len(trial.robots)
         self.bodies: dict[int, float] = {}
         self.readings: dict[str, list[Reading]] = {}
-        self.digest = Digest()
 
-    def take(self, frame: Frame) -> None:
-        """Keep an instant."""
-        self.digest.take(frame)
-        self.agents = max(self.agents, 1 + int(frame.ids.max(initial=-1)))
+    def keep(self, frame: Frame) -> None:
+        """Keep an instant that the digest has already."""
+        super().keep(frame)
         for robot, mount, reading in frame.readings:
             self.readings.setdefault(f"{robot.name}/{mount.name}", []).append(reading)
         if frame.due:
             self.times.append(frame.nanoseconds / 1e9)
             here = frame.scene.active[0]
             self.bodies |= zip(frame.ids[here].tolist(), frame.scene.radius[0, here].tolist(), strict=True)
-            self.frames.append((frame.ids, *_present(frame), frame.twists, frame.commands))
+            self.frames.append((frame.ids, *present(frame), frame.twists, frame.commands))
 
     def episode(self, outcome: str, steps: int) -> Episode:
         """Return the episode."""
@@ -188,7 +190,7 @@ class Log:
         first = self.trial.people
         robots = tuple(range(first, first + len(self.trial.robots)))
         position, velocity, heading, active = (_by_person(column, ids, self.agents) for column in arrays)
-        episode = Episode(
+        return Episode(
             self.trial,
             self.seed,
             outcome,
@@ -204,29 +206,9 @@ class Log:
             np.stack(twists),
             np.stack(commands),
             {name: tuple(rows) for name, rows in self.readings.items()},
-            {},
+            self.metrics(outcome),
             self.digest.ended(outcome),
         )
-        return dataclasses.replace(episode, metrics=_metrics(episode))
-
-
-def _bytes(value: Any) -> bytes:
-    if isinstance(value, Pose):
-        value = np.column_stack([value.position, value.heading])
-    array = np.ascontiguousarray(value)
-    return repr(value).encode() if array.dtype.hasobject else array.tobytes()
-
-
-def _present(frame: Frame) -> tuple[NDArray[Any], ...]:
-    """Return position, velocity, heading and active of E = 1, 0 for who is not there."""
-    scene = frame.scene
-    here = scene.active[0]
-    return (
-        np.where(here[:, None], scene.position[0], 0.0),
-        np.where(here[:, None], scene.velocity[0], 0.0),
-        np.where(here, scene.heading[0], 0.0),
-        here.copy(),
-    )
 
 
 def _by_person(rows: Sequence[NDArray[Any]], ids: Sequence[NDArray[np.int64]], agents: int) -> NDArray[Any]:
@@ -235,30 +217,6 @@ def _by_person(rows: Sequence[NDArray[Any]], ids: Sequence[NDArray[np.int64]], a
     for k, (row, who) in enumerate(zip(rows, ids, strict=True)):
         out[k, who[who >= 0]] = row[who >= 0]
     return out
-
-
-def _metrics(episode: Episode) -> dict[str, float]:
-    """Return the metrics of every robot; the outcome of a single one is that of the run, judged in every time step."""
-    segments = episode.trial.stage.as_walls().segments()
-    found: dict[str, float] = {}
-    for number, (agent, robot) in enumerate(zip(episode.robots, episode.trial.robots, strict=True)):
-        values = navigation_metrics(
-            episode.times,
-            episode.position,
-            episode.velocity,
-            episode.radius,
-            episode.active,
-            agent,
-            np.array(robot.goal.position),
-            robot.goal.tolerance,
-            heading=episode.heading[:, agent],
-            walls=segments if len(segments) else None,
-        )
-        if len(episode.robots) == 1:
-            values |= {name: float(episode.outcome == name) for name in ("success", "collision", "timeout")}
-            values["time_to_goal"] = values["duration"] if episode.outcome == "success" else math.nan
-        found |= {(name if number == 0 else f"{robot.name}.{name}"): value for name, value in values.items()}
-    return found
 
 
 def _scan_row(scan: Scan) -> ScanRow:

@@ -12,13 +12,34 @@ from typing import Any
 import numba
 import numpy as np
 
-__all__ = ["FORMAT", "KEYS", "MAP", "METADATA", "as_json", "from_json", "heading_of", "versions"]
+__all__ = [
+    "CONTACTS",
+    "DIGEST",
+    "ENDING",
+    "END_KEYS",
+    "FORMAT",
+    "KEYS",
+    "MAP",
+    "METADATA",
+    "as_json",
+    "from_json",
+    "heading_of",
+    "versions",
+]
 
 METADATA = "crowdbot"
-"""Name of the metadata record."""
-KEYS = ("trial", "trial_name", "seed", "version", "digest", "outcome", "steps", "people", "metrics", "walls", "robots")
-"""What the record must hold, each as text."""
-FORMAT = "1"
+"""Name of the metadata record that stands at the beginning."""
+ENDING = "crowdbot.end"
+"""Name of the metadata record at the end; the file of a run that was killed has none."""
+KEYS = ("trial", "trial_name", "seed", "version", "walls", "robots")
+"""What the record at the beginning must hold, each as text."""
+END_KEYS = ("digest", "outcome", "steps", "people", "metrics")
+"""What the record at the end must hold; in format 1 one record held everything, and stood at the end."""
+FORMAT = "2"
+DIGEST = "/crowdbot/digest"
+"""Topic of the digest up to each recorded instant, as it is when the run is interrupted there."""
+CONTACTS = "/crowdbot/contacts"
+"""Topic of the contacts of robots."""
 MAP = "map"
 """The frame of the world."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +13,16 @@ from crowdbot.core import InputError, stream
 from crowdbot.core.errors import did_you_mean
 from crowdbot.world import Router
 
+from .agent import Agent
 from .attribute import shown
 from .checked import Checked, Problems
-from .crowd import crowd_names
+from .company import points_in
+from .crowd import Crowds, crowd_names
+from .distribution import Distribution
+from .drawn import Drawn
 from .journey import Direction, Journey, Point, Zone
 from .notation import Points
 from .people import Source, Spawner
-from .spawn import points_in
 from .stage import Stage, area
 
 __all__ = ["expected", "flows", "names"]
@@ -49,9 +52,10 @@ def names(checked: Checked) -> Problems:
             yield journey, f"name {journey.name!r} is taken by another journey; give each its own"
         yield from _endless(journey)
     crowds = crowd_names(checked.crowd)
-    first = sum(spawner.count for spawner in checked.spawners)
+    first = len(checked.agents) + sum(spawner.count for spawner in checked.spawners)
     if checked.capacity is not None and first > checked.capacity:
-        yield checked.spawners[-1], f"makes {first} people at the beginning, more than the capacity {checked.capacity}"
+        last = (*checked.agents, *checked.spawners)[-1]
+        yield last, f"makes {first} people at the beginning, more than the capacity {checked.capacity}"
     for one in checked.people:
         yield from _goals(one)
         if one.journey and "journey" not in checked.broken:
@@ -60,6 +64,11 @@ def names(checked: Checked) -> Problems:
             yield from _named(one, "crowd", crowds)
         if isinstance(one, Source) and one.begin >= one.end:
             yield one, f"begin {one.begin:g} s must be before end {one.end:g} s"
+        if isinstance(one, Agent) and one.parameters:
+            yield from _own(checked, one, crowds)
+    for recorded in checked.recorded:
+        if recorded.crowd and checked.crowd is not None and "crowd" not in checked.broken:
+            yield from _named(recorded, "crowd", crowds)
 
 
 def flows(checked: Checked) -> Problems:
@@ -82,19 +91,35 @@ def flows(checked: Checked) -> Problems:
         yield from _legs(checked, router)
 
 
-def _named(one: Spawner | Source, word: str, known: Collection[str]) -> Problems:
+def _named(one: Any, word: str, known: Collection[str]) -> Problems:
     name = getattr(one, word)
     if name not in known:
         there = f"there are {', '.join(known)}" if known else f"no {word} has a name here"
         yield one, f"{word}={shown(name)} is not the name of a {word}{did_you_mean(name, known)}; {there}"
 
 
-def _goals(one: Spawner | Source) -> Problems:
-    if bool(one.goal) == bool(one.journey):
-        what = "has both a goal and a journey; give one of them" if one.goal else "needs a goal zone or a journey"
-        yield one, f'{what}: goal="x,y x,y x,y" or journey="name"'
+def _goals(one: Agent | Spawner | Source) -> Problems:
+    stands = isinstance(one, Agent) or getattr(one, "stands", False)
+    if one.goal and one.journey:
+        yield one, 'has both a goal and a journey; give one of them: goal="x,y x,y x,y" or journey="name"'
+    elif stands and isinstance(one, Spawner) and (one.goal or one.journey):
+        yield one, 'has people who stand, and a goal or a journey; leave out stands="true", or where they go'
+    elif not (one.goal or one.journey or stands):
+        yield one, 'needs a goal zone or a journey: goal="x,y x,y x,y" or journey="name"'
     elif one.journey and one.arrival != "leave":
         yield one, f'arrival="{one.arrival}" goes with a goal zone; for a journey say then="{one.arrival}" in it'
+
+
+def _own(checked: Checked, agent: Agent, crowds: Sequence[str]) -> Problems:
+    """Yield parameters that the model of a person does not have, or cannot take."""
+    if checked.crowd is None:
+        return
+    several = isinstance(checked.crowd, Crowds)
+    models = checked.crowd.models if isinstance(checked.crowd, Crowds) else (checked.crowd,)
+    model = models[crowds.index(agent.crowd) if several and agent.crowd in crowds else 0]
+    draws = {one.name.replace("-", "_"): Distribution.of(one.value) for one in agent.parameters}
+    for sentence in Drawn.problems(model.model if isinstance(model, Drawn) else model, draws):
+        yield agent, f"parameter {sentence.replace('drawn', 'given', 1)}"
 
 
 def _endless(journey: Journey) -> Problems:
@@ -105,10 +130,10 @@ def _endless(journey: Journey) -> Problems:
 
 def _entrance(stage: Stage, source: Source) -> Problems:
     for label, points in (("zone", source.zone), ("goal zone", source.goal)):
-        if points and (block := _obstacle_in(stage, points)):
+        if points and (block := stage.block_in(area(points), OVERLAP)):
             yield (
                 source,
-                f"{label} reaches into obstacle {block} of the stage; move it, or cut it there",
+                f"{label} reaches into {block}; move it, or cut it there",
             )
             return
     radius = source.radius.extent[1]
@@ -125,28 +150,22 @@ def _stop(stage: Stage, stop: Point | Direction | Zone, router: Router | None) -
     import shapely
 
     if isinstance(stop, Point):
-        block = stage.obstacle_around(shapely.Point(stop.x, stop.y))
+        block = stage.block_around(shapely.Point(stop.x, stop.y))
         if not stage.holds(shapely.Point(stop.x, stop.y)):
             yield stop, f"at {stop.x:g},{stop.y:g} lies outside the walkable area"
-        elif block is not None:
-            yield stop, f"at {stop.x:g},{stop.y:g} lies inside obstacle {block + 1} of the stage"
+        elif block:
+            yield stop, f"at {stop.x:g},{stop.y:g} lies inside {block}"
     elif isinstance(stop, Zone) and (router is None or stop.aim == "nearest"):
-        if block := _obstacle_in(stage, stop.points):
-            yield stop, f"zone reaches into obstacle {block} of the stage; move it, or cut it there"
+        if block := stage.block_in(area(stop.points), OVERLAP):
+            yield stop, f"zone reaches into {block}; move it, or cut it there"
     elif isinstance(stop, Zone) and router is not None and not len(_spots(router, stop.points)):
         yield stop, f"zone leaves no room for a body of radius {router.radius:g} m, which routing asks for"
 
 
-def _obstacle_in(stage: Stage, points: Points) -> int:
-    """Return the number of the first obstacle that a zone reaches into, from 1; 0 for none."""
-    zone = area(points)
-    shared = (zone.intersection(area(obstacle.points)).area > OVERLAP for obstacle in stage.obstacles)
-    return next((number for number, reaches in enumerate(shared, 1) if reaches), 0)
-
-
 def _straight_out(checked: Checked) -> Problems:
     """Yield those who would leave where they come in."""
-    for one in checked.people:
+    coming: tuple[Spawner | Source, ...] = (*checked.spawners, *checked.sources)
+    for one in coming:
         for number, way in enumerate(checked.exits, 1):
             if area(one.zone).intersection(area(way.zone)).area > OVERLAP:
                 called = repr(way.name) if way.name else str(number)
@@ -170,11 +189,18 @@ class _Place(NamedTuple):
 def _legs(checked: Checked, router: Router) -> Problems:
     """Yield ways around walls that lead nowhere, each once: into a journey or to a goal, and from stop to stop."""
     for one in checked.people:
+        if isinstance(one, Agent) and not (one.goal or one.journey):
+            continue
         journey = next((journey for journey in checked.journeys if journey.name == one.journey), None)
         first = _Place(one.goal) if one.goal else journey and _Place.of(journey.stops[0])
-        what = "the goal zone" if one.goal else f"the first stop of journey {one.journey!r}"
-        if first and not _leads(router, _Place(one.zone), first):
-            yield one, f"no way leads from its zone to {what} for a body of radius {router.radius:g} m"
+        what = (
+            ("the goal" if isinstance(one, Agent) else "the goal zone")
+            if one.goal
+            else f"the first stop of journey {one.journey!r}"
+        )
+        start, word = (one.zone, "zone") if not isinstance(one, Agent) else (Points.of([one.position]), "place")
+        if first and not _leads(router, _Place(start), first):
+            yield one, f"no way leads from its {word} to {what} for a body of radius {router.radius:g} m"
     for journey in checked.journeys:
         for k, (here, there) in enumerate(itertools.pairwise(journey.stops), 2):
             begin, end = _Place.of(here), _Place.of(there)

@@ -6,11 +6,12 @@ import math
 from dataclasses import dataclass
 
 from crowdbot import world
+from crowdbot.core import InputError
 
 from .attribute import attribute, check, children
 from .notation import NAME, Points
 
-__all__ = ["Direction", "Exit", "Journey", "Point", "Zone"]
+__all__ = ["Direction", "Exit", "Journey", "Point", "Portal", "Zone"]
 
 TOLERANCE = 0.3
 
@@ -74,7 +75,9 @@ class Journey:
     """
 
     name: str = attribute(about="name that spawners and sources choose it by", pattern=NAME)
-    then: str = attribute("leave", about="what people do at the last stop", choices=("leave", "stay"))
+    then: str = attribute(
+        "leave", about="at the last stop people leave, stay, or begin again", choices=("leave", "stay", "again")
+    )
     stops: tuple[Point | Direction | Zone, ...] = children(
         {"point": Point, "direction": Direction, "zone": Zone}, about="where they go", at_least=1, at_most=1000
     )
@@ -100,3 +103,26 @@ class Exit:
     def out(self) -> world.Zone:
         """Return the exit of a world."""
         return world.Zone(self.zone)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Portal:
+    """A zone whose people come out elsewhere, as new people with an identity of their own; robots do not.
+
+    >>> Portal(zone="25,-5 30,-5 30,5 25,5", dx=-50).dy
+    0.0
+    """
+
+    name: str = attribute("", about="name for messages")
+    zone: Points = attribute(about="corners of the zone x,y", unit="m", points=3)
+    dx: float = attribute(0.0, about="from there to where they come out", unit="m")
+    dy: float = attribute(0.0, about="from there to where they come out", unit="m")
+
+    def __post_init__(self) -> None:
+        check(self)
+        if self.dx == 0.0 and self.dy == 0.0:
+            raise InputError("needs dx or dy: how far from there people come out")
+
+    def gate(self) -> world.Portal:
+        """Return the portal of a world."""
+        return world.Portal(world.Zone(self.zone), self.dx, self.dy)

@@ -16,6 +16,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from crowdbot.core import Scene
 
+from .cdr import people_bytes
 from .episode_file import MAP
 
 __all__ = ["Messages"]
@@ -28,7 +29,8 @@ string[] tagnames
 string[] tags
 """
 PEOPLE = "std_msgs/Header header\npeople_msgs/Person[] people\n"
-TAGS = ["radius", "heading"]
+CONTACT = "string robot\nstring other\nfloat64 clearance\n"
+CONTACTS = "std_msgs/Header header\ncrowdbot_msgs/Contact[] contacts\n"
 
 
 @functools.cache
@@ -36,6 +38,8 @@ def _store() -> Any:
     store = get_typestore(Stores.ROS2_HUMBLE)
     store.register(get_types_from_msg(PERSON, "people_msgs/msg/Person"))
     store.register(get_types_from_msg(PEOPLE, "people_msgs/msg/People"))
+    store.register(get_types_from_msg(CONTACT, "crowdbot_msgs/msg/Contact"))
+    store.register(get_types_from_msg(CONTACTS, "crowdbot_msgs/msg/Contacts"))
     return store
 
 
@@ -74,23 +78,24 @@ class Messages:
         """Return ``rosgraph_msgs/Clock``."""
         return self.make("rosgraph_msgs/msg/Clock", clock=self.stamp(nanoseconds))
 
-    def people(self, nanoseconds: int, scene: Scene, ids: NDArray[np.int64]) -> Any:
-        """Return ``people_msgs/People``: who is there; the name is the id, radius [m] and heading [rad] are tags."""
-        there = np.flatnonzero(scene.active[0] & ~scene.external[0])
-        agents = there[np.argsort(ids[there])].tolist()
-        everyone = [
-            self.make(
-                "people_msgs/msg/Person",
-                name=str(ids[a]),
-                position=self.point(*scene.position[0, a].tolist()),
-                velocity=self.point(*scene.velocity[0, a].tolist()),
-                reliability=1.0,
-                tagnames=TAGS,
-                tags=[repr(float(scene.radius[0, a])), repr(float(scene.heading[0, a]))],
-            )
-            for a in agents
+    def text(self, words: str) -> Any:
+        """Return ``std_msgs/String``."""
+        return self.make("std_msgs/msg/String", data=words)
+
+    def contacts(self, nanoseconds: int, rows: Iterable[tuple[str, str, float]]) -> Any:
+        """Return ``crowdbot_msgs/Contacts`` of rows: the robot, whom it touched, the smallest clearance [m]."""
+        found = [
+            self.make("crowdbot_msgs/msg/Contact", robot=robot, other=other, clearance=float(gap))
+            for robot, other, gap in rows
         ]
-        return self.make("people_msgs/msg/People", header=self.header(nanoseconds), people=everyone)
+        return self.make("crowdbot_msgs/msg/Contacts", header=self.header(nanoseconds), contacts=found)
+
+    def people(self, nanoseconds: int, scene: Scene, ids: NDArray[np.int64]) -> bytes:
+        """Return the bytes of ``people_msgs/People``: who is there; radius [m] and heading [rad] are tags."""
+        there = np.flatnonzero(scene.active[0] & ~scene.external[0])
+        there = there[np.argsort(ids[there])]
+        rows = (scene.position, scene.velocity, scene.radius, scene.heading)
+        return people_bytes(nanoseconds, ids[there], *(row[0, there] for row in rows))
 
     def odometry(self, nanoseconds: int, name: str, x: float, y: float, heading: float, twist: Sequence[float]) -> Any:
         """Return ``nav_msgs/Odometry``: the true pose in the map, and the twist forward, turn, left in the robot."""

@@ -62,6 +62,10 @@ class Points(tuple[tuple[float, float], ...]):
             raise InputError("must be points x, y")
         return cls((pair[0], pair[1]) for pair in pairs)
 
+    def shifted(self, dx: float, dy: float) -> Points:
+        """Return the points moved by dx, dy."""
+        return Points((x + dx, y + dy) for x, y in self)
+
     def __str__(self) -> str:
         """Return the text that :meth:`parse` reads."""
         return " ".join(f"{plain(x)},{plain(y)}" for x, y in self)

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Scene
+from crowdbot.core import Scene, TrialError
 from crowdbot.models import CrowdModel
 from crowdbot.models.mixture import Mixture
 from crowdbot.navigation import Limits
-from crowdbot.world import Journeys, PlanarWorld, Router, Source
+from crowdbot.world import Journeys, PlanarWorld, Router, Script, Source, Track
 
+from .agent import Agent
+from .company import People
 from .crowd import Crowds, crowd_names
-from .people import Spawner
-from .spawn import People
+from .drawn import own
+from .recorded_people import RecordedPeople
 from .trial import Trial
 
 __all__ = ["limits_of", "start_scene", "world_of"]
@@ -28,6 +30,9 @@ def world_of(trial: Trial, people: People, seed: int) -> PlanarWorld:
     People are numbered first, then robots, then everybody who comes in, so that whoever is there at the beginning has
     the number of the own place. Free places have numbers below 0.
     """
+    if trial.sweeps:
+        raise TrialError(f"trial {trial.name!r} stands for {len(trial.variants())} trials by its sweeps; run one of its"
+                         " variants")  # fmt: skip
     sources = [source.source(trial.journeys, crowd_names(trial.crowd)) for source in trial.sources]
     first = len(people)
     scene = start_scene(trial, people, spare := _spare(trial, first, sources, seed))
@@ -36,7 +41,7 @@ def world_of(trial: Trial, people: People, seed: int) -> PlanarWorld:
     journeys = _journeys(trial, people, scene.shape[1])
     world = PlanarWorld(
         scene,
-        _model(trial, people, scene.shape[1]),
+        _model(trial, people, scene.shape[1], seed),
         {first + k: robot.drive for k, robot in enumerate(trial.robots)},
         trial.step,
         seed,
@@ -47,12 +52,15 @@ def world_of(trial: Trial, people: People, seed: int) -> PlanarWorld:
         journeys=journeys,
         sources=sources,
         exits=[way.out() for way in trial.exits],
+        portals=[portal.gate() for portal in trial.portals],
+        script=_script(people),
         symmetry=trial.symmetry,
         substeps=trial.substeps,
         ids=np.concatenate([np.arange(there), -1 - np.arange(spare)]),
     )
-    if first and (router or journeys):
-        world.scene = _setting_off(world.scene, first, router, journeys)
+    walkers = first - len(people.walks)
+    if walkers and (router or journeys):
+        world.scene = _setting_off(world.scene, walkers, router, journeys, people.heading)
     return world
 
 
@@ -62,6 +70,7 @@ def start_scene(trial: Trial, people: People, spare: int = 0) -> Scene:
     away = people.goal - people.position
     distance = np.hypot(away[:, 0], away[:, 1])
     moving = away * (people.speed / np.maximum(distance, 1e-9))[:, None]
+    ahead = np.arctan2(moving[:, 1], moving[:, 0])
     places = np.array([robot.position for robot in robots], dtype=np.float64).reshape(-1, 2)
     goals = np.array([robot.goal.position for robot in robots], dtype=np.float64).reshape(-1, 2)
     tops = np.array([limits_of(robot.drive).max_speed for robot in robots])
@@ -74,7 +83,9 @@ def start_scene(trial: Trial, people: People, spare: int = 0) -> Scene:
     return Scene.of(
         row(people.position, places, 0.0),
         row(moving, np.zeros((len(robots), 2)), 0.0),
-        heading=row(np.arctan2(moving[:, 1], moving[:, 0]), [robot.heading for robot in robots], 0.0),
+        heading=row(
+            np.where(np.isnan(people.heading), ahead, people.heading), [robot.heading for robot in robots], 0.0
+        ),
         radius=row(people.radius, [robot.radius for robot in robots], 0.25),
         goal=row(people.goal, goals, 0.0),
         preferred_speed=row(people.speed, tops, 0.0),
@@ -82,6 +93,7 @@ def start_scene(trial: Trial, people: People, spare: int = 0) -> Scene:
         active=agent < len(people) + len(robots),
         visible=row(np.ones(len(people)), [robot.visible for robot in robots], 1.0).astype(bool),
         external=is_robot,
+        group=row(people.group, np.full(len(robots), -1), -1.0).astype(np.int64),
         walls=trial.stage.as_walls(),
     )
 
@@ -99,35 +111,61 @@ def _spare(trial: Trial, first: int, sources: Sequence[Source], seed: int) -> in
     return come if trial.capacity is None else min(come, max(0, trial.capacity - first))
 
 
-def _model(trial: Trial, people: People, agents: int) -> CrowdModel:
+def _model(trial: Trial, people: People, agents: int, seed: int) -> CrowdModel:
     """Return by what everybody walks: with several crowds a mixture in which each person has a place."""
     if not isinstance(trial.crowd, Crowds):
-        return trial.crowd
-    return Mixture(trial.crowd.models, _chosen(trial, people, agents, "crowd", trial.crowd.names, 0))
+        return own(trial.crowd, seed, 0, agents, _values(people, range(len(people))))
+    which = _chosen(people, agents, "crowd", trial.crowd.names, 0)
+    models = [
+        own(model, seed, k, agents, _values(people, np.flatnonzero(which == k).tolist()))
+        for k, model in enumerate(trial.crowd.models)
+    ]
+    return Mixture(tuple(models), which)
+
+
+def _values(people: People, members: Iterable[int]) -> dict[int, dict[str, float]]:
+    """Return the own parameters of those of some people who have any."""
+    found = {}
+    for a in members:
+        owner = people.owners[people.owner[a]] if a < len(people) else None
+        if isinstance(owner, Agent) and owner.parameters:
+            found[a] = {one.name.replace("-", "_"): one.value for one in owner.parameters}
+    return found
+
+
+def _script(people: People) -> Script | None:
+    """Return the recordings that people follow."""
+    if not people.walks:
+        return None
+    first = len(people) - len(people.walks)
+    owners = [people.owners[k] for k in people.owner[first:].tolist()]
+    release = [one.near if isinstance(one, RecordedPeople) and one.mode == "reactive" else 0.0 for one in owners]
+    tracks = [Track(first + k, walk.time, walk.position) for k, walk in enumerate(people.walks)]
+    return Script(tracks, release)
 
 
 def _journeys(trial: Trial, people: People, agents: int) -> Journeys | None:
-    which = _chosen(trial, people, agents, "journey", tuple(journey.name for journey in trial.journeys), -1)
+    which = _chosen(people, agents, "journey", tuple(journey.name for journey in trial.journeys), -1)
     if np.all(which < 0):
         return None
     return Journeys(tuple(journey.journey() for journey in trial.journeys), which)
 
 
-def _chosen(
-    trial: Trial, people: People, agents: int, word: str, names: tuple[str, ...], otherwise: int
-) -> NDArray[np.int64]:
-    """Return ``[A]`` the index of the journey or crowd that everybody's spawner names."""
+def _chosen(people: People, agents: int, word: str, names: tuple[str, ...], otherwise: int) -> NDArray[np.int64]:
+    """Return ``[A]`` the index of the journey or crowd that everybody's agent, spawner or recording names."""
 
-    def index(spawner: Spawner) -> int:
-        name = getattr(spawner, word)
+    def index(owner: Any) -> int:
+        name = getattr(owner, word, "")
         return names.index(name) if name else otherwise
 
     whole = np.full(agents, otherwise, dtype=np.int64)
-    whole[: len(people)] = np.array([index(spawner) for spawner in trial.spawners], dtype=np.int64)[people.spawner]
+    whole[: len(people)] = np.array([index(owner) for owner in people.owners], dtype=np.int64)[people.owner]
     return whole
 
 
-def _setting_off(scene: Scene, first: int, router: Router | None, journeys: Journeys | None) -> Scene:
+def _setting_off(
+    scene: Scene, first: int, router: Router | None, journeys: Journeys | None, given: NDArray[np.float64]
+) -> Scene:
     """Return the scene in which the ``first`` people walk on their ways, around walls and to their first stops."""
     position, aim = scene.position[0, :first], scene.goal[0, :first].copy()
     if router is not None:
@@ -137,5 +175,6 @@ def _setting_off(scene: Scene, first: int, router: Router | None, journeys: Jour
     distance = np.hypot(away[:, 0], away[:, 1])
     velocity, heading = scene.velocity.copy(), scene.heading.copy()
     velocity[0, :first] = away * (scene.preferred_speed[0, :first] / np.maximum(distance, 1e-9))[:, None]
-    heading[0, :first] = np.arctan2(away[:, 1], away[:, 0])
+    ahead = np.arctan2(away[:, 1], away[:, 0])
+    heading[0, :first] = np.where(np.isnan(given[:first]), ahead, given[:first])
     return scene.replace(velocity=velocity, heading=heading)

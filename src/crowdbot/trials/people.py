@@ -8,21 +8,38 @@ from dataclasses import dataclass
 
 from crowdbot import world
 
-from .attribute import attribute, check
+from .attribute import attribute, check, children
 from .distribution import Distribution
 from .journey import Journey
 from .notation import Points
 
-__all__ = ["Source", "Spawner"]
+__all__ = ["Group", "Source", "Spawner"]
 
 WALKING_SPEED = Distribution("normal", (1.34, 0.26))
 """Free walking speed [m/s] (Weidmann 1993, Transporttechnik der Fussgaenger, https://doi.org/10.3929/ethz-a-000687810)."""
 BODY_RADIUS = Distribution("uniform", (0.2, 0.3))
 
 
+@dataclass(frozen=True)
+class Group:
+    """A size of groups among the people of a spawner, and how often it comes compared to the others.
+
+    >>> Group(2, 0.5).share
+    0.5
+    """
+
+    size: int = attribute(about="people in the group, 1 for who is alone", at_least=1, at_most=50)
+    share: float = attribute(1.0, about="how often it comes compared to other sizes", above=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Spawner:
     """People who are placed at random in a zone, and walk to a random point of a goal zone, or on a journey.
+
+    People of a group begin near each other and share goal and speed.
 
     Raises:
         InputError: a value is not allowed.
@@ -40,6 +57,11 @@ class Spawner:
     radius: Distribution = attribute(BODY_RADIUS, about="radius of the body", unit="m", above=0.0, at_most=5.0)
     arrival: str = attribute("leave", about="what people do in the goal zone", choices=("leave", "stay"))
     crowd: str = attribute("", about="name of their crowd, by default the first")
+    stands: bool = attribute(False, about="they stay where they are placed, without goal and journey")
+    heading: float | None = attribute(
+        None, about="where they look at first, by default towards the goal, of who stands at random", unit="rad"
+    )
+    groups: tuple[Group, ...] = children("group", about="sizes of groups; without them everybody is alone", at_most=50)
 
     def __post_init__(self) -> None:
         check(self)

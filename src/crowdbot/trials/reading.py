@@ -17,8 +17,11 @@ from crowdbot.core.errors import did_you_mean
 from .attribute import Part, Plug, outline, shown
 from .checked import Checked
 from .checks import problems_of
+from .distribution import Distribution
+from .drawn import Drawn, is_drawn
 from .markup import Element, parse
 from .notation import number
+from .sweep import sweep_problems
 from .trial import Trial
 
 __all__ = ["read_trial"]
@@ -58,7 +61,12 @@ max-neighbors, time-horizon, time-horizon-walls, max-speed, name
         reader.say(reader.lines.get(id(thing), root.line), reader.words.get(id(thing), ROOT), sentence)
     reader.finish()
     assert isinstance(trial, Trial)
-    return dataclasses.replace(trial, folder=folder)
+    trial = dataclasses.replace(trial, folder=folder)
+    for sentence in sweep_problems(trial, None, trust) if trial.sweeps else ():
+        line = next(inner.line for inner in root.children if inner.tag == "sweep")
+        reader.say(line, "sweep", sentence)
+    reader.finish()
+    return trial
 
 
 class _Reader:
@@ -103,6 +111,8 @@ class _Reader:
         return self._make(cls, element, values), values
 
     def _make(self, cls: type, element: Element, values: dict[str, Any]) -> Any:
+        if "trust" in (field.name for field in dataclasses.fields(cls)):
+            values = values | {"folder": self.folder, "trust": self.trust}
         try:
             made = cls(**values)
         except InputError as error:
@@ -215,15 +225,30 @@ class _Reader:
         except InputError as error:
             self.say(element.line, element.tag, str(error))
             return None
-        problems = plug.problems(cls, attributes, also)
+        draws = {key: text for key, text in attributes.items() if what.drawn and is_drawn(text)}
+        fixed = {key: text for key, text in attributes.items() if key not in draws}
+        problems = plug.problems(cls, fixed, also)
         if not problems:
             try:
-                made = plug.read(cls, attributes)
+                made = plug.read(cls, fixed)
+                made, problems = _drawn(made, draws) if draws else (made, [])
             except InputError as error:
                 problems = [str(error)]
         for problem in problems:
             self.say(element.line, element.tag, problem)
         return None if problems else made
+
+
+def _drawn(model: Any, draws: dict[str, str]) -> tuple[Any, list[str]]:
+    """Return a model some of whose parameters are distributions, or why they cannot be."""
+    found, problems = {}, []
+    for key, text in draws.items():
+        try:
+            found[key.replace("-", "_")] = Distribution.parse(text)
+        except InputError as error:
+            problems.append(f"{key[:40]}={shown(text)} {error}")
+    problems += Drawn.problems(model, found)
+    return (None, problems) if problems else (Drawn(model, tuple(found.items())), [])
 
 
 def _converted(text: str, kind: Any) -> Any:

@@ -2,27 +2,30 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
-import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import EpisodeError, Pose
+from crowdbot.core import EpisodeError
 from crowdbot.data import Trajectories
+from crowdbot.data.tape import MAGIC, Tape
 
+from .ending import Ending
 from .episode import ScanRow, tracks_of
-from .episode_file import KEYS, MAP, METADATA, from_json, heading_of
+from .episode_file import END_KEYS, ENDING, KEYS, METADATA, from_json
+from .moments import Moment, Touched, read_moments
+from .tally import Summary
+from .travel import Instant
 
-__all__ = ["Recorded", "read_episode"]
+__all__ = ["Recorded", "moments", "read_episode", "read_metadata"]
 
 Floats = NDArray[np.float64]
-
-MAGIC = b"\x89MCAP0\r\n"
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +34,8 @@ class Recorded:
 
     Fields:
         path: the file.
-        metadata: the record ``crowdbot`` as text: trial (XML), seed, versions, digest, outcome, ...
+        metadata: the records ``crowdbot`` and ``crowdbot.end`` as text: trial (XML), seed, versions, digest, ...
+        complete: whether the run came to its end; otherwise it was killed, and the outcome is ``interrupted``.
         times: ``[T]`` [s].
         position, velocity: ``[T, A, 2]`` [m], [m/s]; 0 for who is not there.
         heading: ``[T, A]`` [rad].
@@ -43,10 +47,13 @@ class Recorded:
         scans_by_topic: by ``robot/sensor``; ranges have the 32 bits of the message.
         walls: rings ``[N, 2]`` [m].
         metrics: by name.
+        contacts: of robots, in every time step.
+        digests: ``[T]`` of the episode up to each instant, as if it had been interrupted there.
     """
 
     path: Path
     metadata: Mapping[str, str]
+    complete: bool
     times: Floats
     position: Floats
     velocity: Floats
@@ -59,6 +66,8 @@ class Recorded:
     scans_by_topic: Mapping[str, tuple[ScanRow, ...]]
     walls: tuple[Floats, ...]
     metrics: Mapping[str, float]
+    contacts: tuple[Touched, ...]
+    digests: tuple[str, ...]
 
     @property
     def xml(self) -> str:
@@ -87,7 +96,7 @@ class Recorded:
 
     @property
     def digest(self) -> str:
-        """Hash of the episode as it was run."""
+        """Hash of the episode as it was run, up to its last recorded instant when the run was killed."""
         return self.metadata["digest"]
 
     @property
@@ -104,134 +113,144 @@ class Recorded:
         """Return people and robots every ``dt`` [s] as trajectories, as :meth:`Episode.tracks` does."""
         return tracks_of(self, self.name, dt)
 
+    def branch(
+        self, at: float, seed: int | None = None, out: Path | str | None = None, trust: bool = False, **changes: Any
+    ) -> Summary:
+        """Go on from an instant, with other values; see :func:`crowdbot.trials.branch`."""
+        from .branch import branch
+
+        return branch(self.path, at, seed=seed, out=out, trust=trust, changes=changes)
+
 
 def read_episode(path: Path | str) -> Recorded:
-    """Read an episode file.
+    """Read an episode file, also of a run that was killed or is still going on.
 
     Raises:
-        EpisodeError: the file is missing, cut off, damaged, or no episode of crowdbot.
+        EpisodeError: the file is missing, damaged, or no episode of crowdbot.
     """
     path = Path(path)
-    _check_file(path)
-    try:
-        metadata, messages = _contents(path)
-    except Exception as error:  # a damaged file makes its readers fail in many ways; all mean the same to the user
-        raise EpisodeError(f"{path} is damaged: {type(error).__name__}: {str(error)[:80] or 'no details'}") from error
-    if metadata is None or any(key not in metadata for key in KEYS):
-        raise EpisodeError(f"{path} is an MCAP file but not an episode of crowdbot: it has no record {METADATA!r}")
-    try:
-        return _assembled(path, metadata, messages)
-    except (KeyError, ValueError, IndexError, TypeError, AttributeError) as error:
-        raise EpisodeError(f"{path} does not hold what its record {METADATA!r} says: {str(error)[:80]}") from error
+    with _opened(path) as stream:
+        tape = Tape(stream)
+        with _sentences(path):
+            found = list(read_moments(tape))
+        known = _known(path, tape.metadata)
+    with _sentences(path, f"does not hold what its record {METADATA!r} says"):
+        return _assembled(path, known, found)
 
 
-def _check_file(path: Path) -> None:
+def read_metadata(path: Path | str) -> dict[str, str]:
+    """Return what an episode file says of itself, without its messages; see :attr:`Recorded.metadata`.
+
+    What only the end of a run can tell (outcome, digest, ...) is missing when the run was killed.
+
+    Raises:
+        EpisodeError: as of :func:`read_episode`.
+    """
+    path = Path(path)
+    with _opened(path) as stream, _sentences(path):
+        tape = Tape(stream)
+        for _ in tape.records():
+            pass
+    return _known(path, tape.metadata)
+
+
+def moments(path: Path | str) -> Iterator[Moment]:
+    """Yield what is recorded instant by instant, so that a file of any length fits into memory.
+
+    Raises:
+        EpisodeError: as of :func:`read_episode`.
+    """
+    path = Path(path)
+    with _opened(path) as stream, _sentences(path):
+        tape = Tape(stream)
+        yield from read_moments(tape)
+    _known(path, tape.metadata)
+
+
+@contextlib.contextmanager
+def _opened(path: Path) -> Iterator[BinaryIO]:
     if not path.exists():
         raise EpisodeError(f"there is no episode file {path}")
     if not path.is_file():
         raise EpisodeError(f"{path} is not a file; give the episode.mcap itself")
     try:
-        with path.open("rb") as stream:
-            head = stream.read(len(MAGIC))
-            size = stream.seek(0, 2)
-            stream.seek(max(0, size - len(MAGIC)))
-            tail = stream.read()
+        stream = path.open("rb")
     except OSError as error:
         raise EpisodeError(f"{path} cannot be read: {error.strerror}") from None
-    if not size:
-        raise EpisodeError(f"{path} is empty")
-    if head != MAGIC:
-        raise EpisodeError(f"{path} is not an MCAP file: it begins with {head!r}")
-    if tail != MAGIC or size < 2 * len(MAGIC):
-        raise EpisodeError(f"{path} is cut off: its end is missing; record or copy it again")
+    with stream:
+        head = stream.read(len(MAGIC))
+        if not head:
+            raise EpisodeError(f"{path} is empty")
+        if head != MAGIC:
+            raise EpisodeError(f"{path} is not an MCAP file: it begins with {head!r}")
+        stream.seek(0)
+        yield stream
 
 
-@dataclass
-class _Contents:
-    """The messages of a file, by what they are about."""
-
-    people: list[tuple[int, Any]] = field(default_factory=list)
-    poses: dict[tuple[int, str], tuple[str, float, float, float]] = field(default_factory=dict)
-    odometry: dict[tuple[str, int], Any] = field(default_factory=dict)
-    commands: dict[tuple[str, int], Any] = field(default_factory=dict)
-    scans: dict[str, list[tuple[int, Any]]] = field(default_factory=dict)
-
-
-def _contents(path: Path) -> tuple[Mapping[str, str] | None, _Contents]:
-    from mcap.reader import make_reader
-
-    found = _Contents()
-    with path.open("rb") as stream:
-        reader = make_reader(stream, validate_crcs=True)
-        records = [record.metadata for record in reader.iter_metadata() if record.name == METADATA]
-        if not records:
-            return None, found
-        for topic, now, message in _decoded(reader):
-            _sort_in(found, topic, now, message)
-    return records[-1], found
+@contextlib.contextmanager
+def _sentences(path: Path, what: str = "is damaged") -> Iterator[None]:
+    """Say in one sentence what is wrong; bytes that are damaged make their readers fail in many ways."""
+    try:
+        yield
+    except (EpisodeError, OSError):
+        raise
+    except Exception as error:
+        raise EpisodeError(f"{path} {what}: {type(error).__name__}: {str(error)[:80] or 'no details'}") from error
 
 
-def _decoded(reader: Any) -> Iterator[tuple[str, int, Any]]:
-    from .messages import Messages
-
-    messages = Messages()
-    for schema, channel, message in reader.iter_messages(log_time_order=False):
-        kind = getattr(schema, "name", "")
-        if channel.topic != "/crowd/markers" and kind in messages.store.types:
-            yield channel.topic, message.log_time, messages.decoded(message.data, kind)
+def _known(path: Path, records: Mapping[str, dict[str, str]]) -> dict[str, str]:
+    known = {**records.get(METADATA, {}), **records.get(ENDING, {})}
+    if any(key not in known for key in KEYS):
+        raise EpisodeError(f"{path} is an MCAP file but not an episode of crowdbot: it has no record {METADATA!r}")
+    return known
 
 
-def _sort_in(found: _Contents, topic: str, now: int, message: Any) -> None:
-    kind = message.__msgtype__
-    robot = topic.strip("/").rpartition("/")[0]
-    if topic == "/people":
-        found.people.append((now, message))
-    elif kind == "tf2_msgs/msg/TFMessage":
-        for row in message.transforms:
-            shift = row.transform.translation
-            place = (row.header.frame_id, shift.x, shift.y, heading_of(row.transform.rotation))
-            found.poses[now, row.child_frame_id] = place
-    elif kind == "nav_msgs/msg/Odometry":
-        found.odometry[robot, now] = message
-    elif kind == "geometry_msgs/msg/Twist":
-        found.commands[robot, now] = message
-    elif kind == "sensor_msgs/msg/LaserScan":
-        found.scans.setdefault(topic.strip("/"), []).append((now, message))
-
-
-def _assembled(path: Path, metadata: Mapping[str, str], found: _Contents) -> Recorded:
-    robots = json.loads(metadata["robots"])
+def _assembled(path: Path, known: dict[str, str], found: Sequence[Moment]) -> Recorded:
+    due = [(moment, moment.people) for moment in found if moment.people is not None]
+    complete = all(key in known for key in END_KEYS)
+    if not due and not complete:
+        raise EpisodeError(f"{path} holds no recorded instant: the run was killed before it began")
+    robots = json.loads(known["robots"])
     places = [int(robot["id"]) for robot in robots]
-    stamps = [now for now, _ in found.people]
-    shape = (len(stamps), int(metadata["people"]) + len(robots))
-    arrays = _Arrays(
-        np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(shape), np.zeros(shape[1]), np.zeros(shape, dtype=bool)
-    )
-    for k, (_, message) in enumerate(found.people):
-        for person in message.people:
-            arrays.person(k, person)
-    commands = np.zeros((len(stamps), len(robots), 3))
-    for r, robot in enumerate(robots):
-        arrays.radius[places[r]] = float(robot["radius"])
-        for k, now in enumerate(stamps):
-            arrays.robot(k, places[r], found.odometry[robot["name"], now])
-            asked = found.commands[robot["name"], now]
-            commands[k, r] = asked.linear.x, asked.angular.z, asked.linear.y
+    if complete:
+        count = int(known["people"]) + len(robots)
+    else:
+        count = 1 + max([-1, *places, *(who for moment in found for who in moment.named())])
+    arrays = _Arrays.of(len(due), count)
+    commands = np.zeros((len(due), len(robots), 3))
+    for k, (moment, people) in enumerate(due):
+        arrays.put(k, people)
+        for r, robot in enumerate(robots):
+            arrays.put_robot(k, places[r], float(robot["radius"]), moment.robots[robot["name"]])
+            commands[k, r] = moment.commands[robot["name"]]
+    scans: dict[str, list[ScanRow]] = {}
+    for moment in found:
+        for topic, scan in moment.scans.items():
+            scans.setdefault(topic, []).append(scan)
+    times = np.array([moment.time for moment, _ in due])
+    if not complete:
+        ending = Ending(known)
+        for moment in found:
+            ending.take(moment)
+        known = known | ending.metadata()
     return Recorded(
         path,
-        dict(metadata),
-        np.array(stamps) / 1e9,
+        known,
+        complete,
+        times,
         arrays.position,
         arrays.velocity,
         arrays.heading,
         arrays.radius,
         arrays.active,
-        np.arange(shape[1], dtype=np.int64),
+        np.arange(count, dtype=np.int64),
         tuple(places),
         commands,
-        {topic: tuple(_scan(found, topic, *row) for row in rows) for topic, rows in found.scans.items()},
-        tuple(np.array(ring, dtype=np.float64) for ring in json.loads(metadata["walls"])),
-        from_json(metadata["metrics"]),
+        {topic: tuple(rows) for topic, rows in scans.items()},
+        tuple(np.array(ring, dtype=np.float64) for ring in json.loads(known["walls"])),
+        from_json(known["metrics"]),
+        tuple(contact for moment in found for contact in moment.contacts),
+        tuple(moment.digest for moment, _ in due),
     )
 
 
@@ -243,36 +262,23 @@ class _Arrays:
     radius: Floats
     active: NDArray[np.bool_]
 
-    def person(self, k: int, person: Any) -> None:
-        agent = int(person.name)
-        tags = dict(zip(person.tagnames, person.tags, strict=True))
-        self.position[k, agent] = person.position.x, person.position.y
-        self.velocity[k, agent] = person.velocity.x, person.velocity.y
-        self.heading[k, agent] = float(tags["heading"])
-        self.radius[agent] = float(tags["radius"])
-        self.active[k, agent] = True
+    @classmethod
+    def of(cls, count: int, agents: int) -> _Arrays:
+        """Return empty arrays."""
+        shape = (count, agents)
+        return cls(
+            np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(shape), np.zeros(agents), np.zeros(shape, dtype=bool)
+        )
 
-    def robot(self, k: int, agent: int, message: Any) -> None:
-        pose, twist = message.pose.pose, message.twist.twist
-        heading = heading_of(pose.orientation)
-        cos, sin = math.cos(heading), math.sin(heading)
-        forward, left = twist.linear.x, twist.linear.y
-        self.position[k, agent] = pose.position.x, pose.position.y
-        self.velocity[k, agent] = cos * forward - sin * left, sin * forward + cos * left
-        self.heading[k, agent] = heading
-        self.active[k, agent] = True
+    def put(self, k: int, people: Instant) -> None:
+        """Put people in at an instant."""
+        if np.any(people.ids < 0):
+            raise ValueError(f"a person has the id {people.ids.min()}")
+        self.position[k, people.ids], self.velocity[k, people.ids] = people.position, people.velocity
+        self.heading[k, people.ids], self.radius[people.ids] = people.heading, people.radius
+        self.active[k, people.ids] = True
 
-
-def _scan(found: _Contents, topic: str, now: int, message: Any) -> ScanRow:
-    carrier, *mount = found.poses[now, topic]
-    parent, *place = found.poses[now, carrier]
-    if parent != MAP:
-        raise ValueError(f"frame {carrier!r} is not in {MAP!r}")
-    pose = Pose.of(place[:2], place[2]).mounted(*mount)
-    return ScanRow(
-        now / 1e9,
-        (float(pose.position[0, 0]), float(pose.position[0, 1]), float(pose.heading[0])),
-        message.angle_min + message.angle_increment * np.arange(len(message.ranges)),
-        message.ranges.astype(np.float64),
-        message.intensities.astype(np.int64),
-    )
+    def put_robot(self, k: int, place: int, radius: float, state: Any) -> None:
+        """Put a robot in at an instant."""
+        self.position[k, place], self.velocity[k, place] = (state.x, state.y), (state.vx, state.vy)
+        self.heading[k, place], self.radius[place], self.active[k, place] = state.heading, radius, True

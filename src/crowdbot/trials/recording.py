@@ -2,80 +2,92 @@
 
 from __future__ import annotations
 
+import errno
 import os
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Any, BinaryIO
-
-from mcap.writer import CompressionType, Writer
+from typing import Any
 
 from crowdbot.core import EpisodeError
 from crowdbot.sensors import Scan
 
-from .episode import Episode
-from .episode_file import FORMAT, MAP, METADATA, as_json, versions
+from .episode_file import CONTACTS, DIGEST, ENDING, FORMAT, MAP, METADATA, as_json, versions
+from .markers import KIND as MARKERS
 from .markers import markers
 from .messages import Messages
-from .simulation import Frame
-from .trial import Trial
+from .simulation import WALL, Frame
+from .tally import Tally
+from .tape import TapeWriter
 
 __all__ = ["Recorder"]
 
+APART = 500_000_000
+"""The file grows every so many nanoseconds of simulated time: its bytes do not depend on the wall clock."""
+
 
 class Recorder:
-    """Writes what a run tells it to a file that appears when it is complete.
+    """Writes what a run tells it to a file that can be read at any moment, also after the run was killed.
 
-    Topics: ``/clock``, ``/tf`` (``map`` to each robot and its sensors), ``/people``, ``/crowd/markers``, and for each
-    robot ``/<robot>/odom``, ``/<robot>/cmd_vel`` and ``/<robot>/<sensor>``. Every stamp is simulated time.
+    Topics: ``/clock``, ``/tf`` (``map`` to each robot and its sensors), ``/people``, ``/crowd/markers``,
+    ``/crowdbot/digest``, for each robot ``/<robot>/odom``, ``/<robot>/cmd_vel`` and ``/<robot>/<sensor>``, and
+    ``/crowdbot/contacts`` whenever a robot touches somebody or a wall. Every stamp is simulated time.
 
-    Use as a context: when it ends without :meth:`complete`, nothing is left behind, not even folders it made.
+    The file appears with the first recorded instant, in place of one that was there, and grows every half second of
+    simulated time. Use as a context: when it ends without :meth:`complete`, the file is left as a killed run leaves
+    it; before the first instant nothing is left behind, not even folders it made.
 
     Args:
         path: of the file.
-        trial, seed: what runs.
+        tally: of the run; it is told each instant before the recorder.
+        origin: what the run branched from, as the metadata keeps it.
+        begin: tick of the first instant.
 
     Raises:
         InputError: the trial cannot be written as XML.
         EpisodeError: the file cannot be written.
     """
 
-    def __init__(self, path: Path, trial: Trial, seed: int) -> None:
-        self.path = path
-        self.trial, self.seed = trial, seed
-        self.draft = path.with_name(f".{path.name}.{os.getpid()}.part")
-        self.xml = trial.xml()
+    def __init__(self, path: Path, tally: Tally, origin: Sequence[Mapping[str, Any]] = (), begin: int = 0) -> None:
+        self.path, self.tally, self.origin, self.begin = path, tally, origin, begin
+        self.trial, self.seed = tally.trial, tally.seed
+        self.xml = self.trial.xml()
         self.messages = Messages()
         self.channels: dict[str, int] = {}
-        self.schemas: dict[str, int] = {}
         self.made: list[Path] = []
-        self.stream: BinaryIO | None = None
-        self.writer: Any = None
-        self._markers_every = round(trial.recording.markers * 1e9)
-        self._markers_due = 0
+        self.tape: TapeWriter | None = None
+        self.last = (0, "")
+        """Steps until the last recorded instant, and the digest of an episode that ends there."""
+        self._markers_every = round(self.trial.recording.markers * 1e9)
+        start = begin * round(self.trial.step * 1e9)
+        self._markers_due = -(-start // self._markers_every) * self._markers_every
+        self._write_due = start
         self._static = [
             (f"{robot.name}/base_link", f"{robot.name}/{mount.name}", mount.x, mount.y, mount.heading)
-            for robot in trial.robots
+            for robot in self.trial.robots
             for mount in robot.sensors
         ]
 
     def __enter__(self) -> Recorder:
-        """Make the folder and the unfinished file."""
+        """Make the folder."""
         try:
             self._make_folder(self.path.parent)
-            self.stream = self.draft.open("wb")
+            if not os.access(self.path.parent, os.W_OK):
+                raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
         except OSError as error:
             self._clear()
             raise EpisodeError(f"{self.path} cannot be written: {error.strerror}; give another place") from None
-        self.writer = Writer(self.stream, compression=CompressionType.ZSTD, enable_data_crcs=True)
-        self.writer.start(profile="ros2", library=f"crowdbot {versions()['version']}")
+        self.tape = TapeWriter(self.path, "ros2", f"crowdbot {versions()['version']}")
+        self.tape.metadata(METADATA, self._metadata())
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Remove what is unfinished."""
-        if self.stream is not None:
-            self._clear()
+        """Leave what has been written; remove what is empty."""
+        if self.tape is not None:
+            self.tape.close(finished=False)
+        self._clear()
 
     def take(self, frame: Frame) -> None:
         """Write an instant."""
@@ -93,33 +105,46 @@ class Recorder:
                 raise EpisodeError(
                     f"sensor {topic!r} gives a {type(reading).__name__}, which has no ROS message yet; run without out"
                 )
+        if frame.touches:
+            self._write(CONTACTS, make.contacts(now, self._touches(frame)), now)
         if frame.due:
             self._scene(frame, first)
+            self.last = frame.tick, self.tally.digest.ended("interrupted")
+            self._write(DIGEST, make.text(self.last[1]), now)
+        assert self.tape is not None
+        if (frame.due and now >= self._write_due) or self.tape.large:
+            self._write_due = now - now % APART + APART
+            self._flush()
 
-    def complete(self, episode: Episode) -> None:
-        """Write the metadata, finish the file and let it appear."""
-        assert self.stream is not None
+    def complete(self, outcome: str, steps: int) -> None:
+        """Write how it ended, and finish the file; who is interrupted ends at the last recorded instant."""
+        assert self.tape is not None
+        interrupted = outcome == "interrupted"
+        ending = {
+            "digest": self.last[1] if interrupted else self.tally.digest.ended(outcome),
+            "outcome": outcome,
+            "steps": str(self.last[0] if interrupted else steps),
+            "people": str(self.tally.agents - len(self.trial.robots)),
+            "metrics": as_json(self.tally.metrics(outcome)),
+        }
+        self.tape.metadata(ENDING, ending)
+        self._flush()
         try:
-            self.writer.add_metadata(METADATA, self._metadata(episode))
-            self.writer.finish()
-            self.stream.flush()
-            os.fsync(self.stream.fileno())
-            self.stream.close()
-            os.replace(self.draft, self.path)
+            self.tape.close(finished=True)
         except OSError as error:
             raise EpisodeError(f"{self.path} cannot be written: {error.strerror}") from None
-        self.stream = None
+        self.tape = None
 
     def _scene(self, frame: Frame, first: int) -> None:
         now, make, scene = frame.nanoseconds, self.messages, frame.scene
-        self._write("/people", make.people(now, scene, frame.ids), now)
+        self._put("/people", "people_msgs/msg/People", make.people(now, scene, frame.ids), now)
         for k, (_, _, x, y, heading) in enumerate(self._poses(frame, first)):
             name = self.trial.robots[k].name
             self._write(f"/{name}/odom", make.odometry(now, name, x, y, heading, frame.twists[k]), now)
             self._write(f"/{name}/cmd_vel", make.twist(*frame.commands[k]), now)
         if now >= self._markers_due:
             self._markers_due = now - now % self._markers_every + self._markers_every
-            self._write("/crowd/markers", markers(make, now, scene, frame.ids, self.trial.robots), now)
+            self._put("/crowd/markers", MARKERS, markers(now, scene, frame.ids, self.trial.robots), now)
 
     def _poses(self, frame: Frame, first: int) -> list[tuple[str, str, float, float, float]]:
         scene = frame.scene
@@ -134,27 +159,34 @@ class Recorder:
             for k, robot in enumerate(self.trial.robots)
         ]
 
+    def _touches(self, frame: Frame) -> list[tuple[str, str, float]]:
+        names = {self.trial.people + k: robot.name for k, robot in enumerate(self.trial.robots)} | {WALL: "wall"}
+        return [(names[one.robot], names.get(one.other, str(one.other)), one.clearance) for one in frame.touches]
+
     def _write(self, topic: str, message: Any, nanoseconds: int) -> None:
-        kind = message.__msgtype__
+        self._put(topic, message.__msgtype__, self.messages.encoded(message), nanoseconds)
+
+    def _put(self, topic: str, kind: str, data: bytes, nanoseconds: int) -> None:
+        assert self.tape is not None
         if topic not in self.channels:
-            if kind not in self.schemas:
-                text = self.messages.definition(kind).encode()
-                self.schemas[kind] = self.writer.register_schema(kind, "ros2msg", text)
-            self.channels[topic] = self.writer.register_channel(
-                topic, "cdr", self.schemas[kind], metadata={"offered_qos_profiles": ""}
-            )
+            self.channels[topic] = self.tape.channel(topic, self.tape.schema(kind, self.messages.definition(kind)))
         try:
-            self.writer.add_message(
-                self.channels[topic], nanoseconds, self.messages.encoded(message), publish_time=nanoseconds
-            )
+            self.tape.message(self.channels[topic], nanoseconds, data)
         except OSError as error:
             raise EpisodeError(f"{self.path} cannot be written: {error.strerror}") from None
 
-    def _metadata(self, episode: Episode) -> dict[str, str]:
+    def _flush(self) -> None:
+        assert self.tape is not None
+        try:
+            self.tape.flush()
+        except OSError as error:
+            raise EpisodeError(f"{self.path} cannot be written: {error.strerror}") from None
+
+    def _metadata(self) -> dict[str, str]:
         robots = [
             {
                 "name": robot.name,
-                "id": int(episode.ids[episode.robots[k]]),
+                "id": self.trial.people + k,
                 "radius": robot.radius,
                 "goal": list(robot.goal.position),
                 "tolerance": robot.goal.tolerance,
@@ -168,13 +200,10 @@ class Recorder:
             "trial_name": self.trial.name,
             "seed": str(self.seed),
             **versions(),
-            "digest": episode.digest,
-            "outcome": episode.outcome,
-            "steps": str(episode.steps),
-            "people": str(len(episode.ids) - len(robots)),
-            "metrics": as_json(episode.metrics),
-            "walls": as_json([ring.tolist() for ring in episode.walls]),
+            "step_ns": str(round(self.trial.step * 1e9)),
+            "walls": as_json([ring.tolist() for ring in self.trial.stage.rings]),
             "robots": as_json(robots),
+            **({"origin": as_json(list(self.origin)), "begin": str(self.begin)} if self.origin else {}),
         }
 
     def _make_folder(self, folder: Path) -> None:
@@ -184,10 +213,6 @@ class Recorder:
             self.made.append(place)
 
     def _clear(self) -> None:
-        if self.stream is not None:
-            self.stream.close()
-            self.stream = None
-            self.draft.unlink(missing_ok=True)
         for folder in reversed(self.made):
             if not any(folder.iterdir()):
                 folder.rmdir()

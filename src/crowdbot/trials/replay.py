@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .episode import Log
-from .episode_file import versions
-from .recorded import read_episode
+from crowdbot.core import EpisodeError
+
+from .course import Comparison, Course, digests
+from .episode_file import END_KEYS, versions
+from .recorded import read_metadata
 from .run import drive, stopping
-from .simulation import Simulation
-from .trial import Trial
+from .tally import Digest
 
 __all__ = ["Replay", "replay"]
 
@@ -27,6 +28,8 @@ class Replay:
         recorded, replayed: digest of the recording and of the new run.
         outcomes: of the recording and of the new run.
         recorded_versions, versions: of crowdbot, Python, numpy and numba, then and now.
+        differs: the first recorded instant [s] at which they differ; None when it is not known or there is none.
+        complete: whether the recording came to its end; one that was killed is compared as far as it goes.
     """
 
     path: Path
@@ -37,6 +40,8 @@ class Replay:
     outcomes: tuple[str, str]
     recorded_versions: dict[str, str]
     versions: dict[str, str]
+    differs: float | None = None
+    complete: bool = True
 
     @property
     def equal(self) -> bool:
@@ -56,17 +61,22 @@ class Replay:
             "replayed_outcome": self.outcomes[1],
             "recorded_versions": self.recorded_versions,
             "versions": self.versions,
+            "differs": self.differs,
+            "complete": self.complete,
         }
 
     def __str__(self) -> str:
         """Return one or two sentences for people."""
         what = f"{self.path}: {self.trial} with seed {self.seed}"
+        if not self.complete:
+            what += ", killed before its end,"
         if self.equal:
             return f"{what} replays to the same bytes, digest {self.recorded}"
         other = [f"{n} {v} then, {self.versions[n]} now" for n, v in self.recorded_versions.items()
                  if v != self.versions[n]]  # fmt: skip
         why = f"it was written with other versions: {'; '.join(other)}" if other else "the versions are the same"
-        return f"{what} does NOT replay: recorded digest {self.recorded}, replayed {self.replayed}; {why}"
+        since = "" if self.differs is None else f" from {self.differs:g} s on"
+        return f"{what} does NOT replay{since}: recorded digest {self.recorded}, replayed {self.replayed}; {why}"
 
 
 def replay(
@@ -91,24 +101,35 @@ def replay(
         TrialError: the trial in it cannot be read by this version.
     """
     path = Path(path)
-    recorded = read_episode(path)
-    place = f"{path} (trial, written by crowdbot {recorded.version})"
-    trial = Trial.parse(recorded.xml, place=place, folder=folder or path.parent, trust=trust)
-    simulation = Simulation(trial, recorded.seed)
-    log = Log(trial, recorded.seed)
+    known, wanted = read_metadata(path), digests(path)
+    complete = all(key in known for key in END_KEYS)
+    if not (complete or wanted):
+        raise EpisodeError(f"{path} holds no recorded instant: the run was killed before it began")
+    recorded = known if complete else known | _ended(known, wanted)
+    course = Course.of(path, folder, trust)
+    comparison = Comparison(Digest(), wanted)
     with stopping() as stop:
-        ticks = recorded.steps if recorded.outcome == "interrupted" else None
-        outcome = drive(simulation, [log], stop, progress, ticks)
+        simulation = course.begun(comparison, stop)
+        ticks = int(recorded["steps"]) if recorded["outcome"] == "interrupted" else None
+        outcome = drive(simulation, [comparison], stop, progress, ticks)
         if stop.asked and simulation.tick != ticks:
             raise KeyboardInterrupt
     now = versions()
     return Replay(
         path,
-        recorded.name,
-        recorded.seed,
-        recorded.digest,
-        log.digest.ended(outcome),
-        (recorded.outcome, outcome),
-        {name: recorded.metadata.get(name, "unknown") for name in now},
+        recorded["trial_name"],
+        int(recorded["seed"]),
+        recorded["digest"],
+        comparison.digest.ended(outcome),
+        (recorded["outcome"], outcome),
+        {name: recorded.get(name, "unknown") for name in now},
         now,
+        comparison.differs,
+        complete,
     )
+
+
+def _ended(known: dict[str, str], wanted: dict[int, str]) -> dict[str, str]:
+    """Return how a run ended that was killed: at its last recorded instant."""
+    last = max(wanted)
+    return {"digest": wanted[last], "outcome": "interrupted", "steps": str(last // int(known["step_ns"]))}

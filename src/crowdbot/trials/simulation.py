@@ -1,16 +1,17 @@
 """Simulation: a trial that is running, one step of time at a time.
 
-The order of a step, from tick k to tick k + 1:
+The order of a step, from tick k to tick k + 1 (docs/steps.md tells why):
 
-1. the crowd and the robots move together from the scene of tick k (the world), the robots by the command they hold;
-2. time is at tick k + 1; people who are in an exit or at the end of their journey leave, and others come in;
-3. people who have reached their goal zone leave;
-4. contacts and arrivals are judged, swept over the step;
-5. sensors that are due measure the new scene;
-6. navigators that are due decide, and their command is held until they decide again;
-7. recorders that are due write scene, readings and commands.
+1. **time**: the clock allows the step: at once (free), when it is due (paced), or when it is told (external);
+2. **crowd**: people walk, from the scene of tick k;
+3. **robots**: drives follow the commands the robots hold, from the same scene of tick k;
+4. **physics**: bodies that overlap are pushed apart; contacts are found, swept over the step; the scene is at k + 1;
+5. **people's bodies**: who has arrived or is in an exit leaves, others come in; contacts and arrivals are judged;
+6. **sensors** that are due measure the new scene, then navigators that are due decide; commands are held meanwhile;
+7. **bridges** pass on what was measured and may give robots other commands;
+8. **recorders** write what is due: scene, readings, contacts and commands.
 
-At tick 0 only 5 to 7 happen. A sensor, a navigator and a recorder are due every n-th tick, n being whole.
+At tick 0 only 6 to 8 happen. A sensor, a navigator and a recorder are due every n-th tick, n being whole.
 """
 
 from __future__ import annotations
@@ -18,25 +19,37 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, TrialError, Twist, stream
+from crowdbot.core import Clock, InputError, Scene, TrialError, Twist, stream
 from crowdbot.metrics import wall_clearance
 from crowdbot.navigation import Limits, Observation
 from crowdbot.sensors import Reading, Scan
 
+from .leaving import ended, ways_out
 from .opening import limits_of, start_scene, world_of
 from .spawn import place
-from .stage import area
 from .trial import Mount, Robot, Trial
 
-__all__ = ["Carrier", "Frame", "Simulation", "start_scene"]
+__all__ = ["Carrier", "Frame", "Simulation", "Touch", "start_scene"]
 
 ARRIVED = 0.3
 """People also leave this near [m] to their own point of the goal zone."""
+
+
+WALL = -2
+"""A wall, where otherwise the id of somebody who was touched stands; as in scans."""
+
+
+class Touch(NamedTuple):
+    """A robot and what it touched during a step: their ids (-2: a wall) and the smallest clearance [m], negative."""
+
+    robot: int
+    other: int
+    clearance: float
 
 
 @dataclass(frozen=True)
@@ -50,7 +63,8 @@ class Frame:
         ids: ``[A]`` who is who in the scene; a place may be taken by one person after the other.
         twists, commands: ``[R, 3]`` forward [m/s], turn [rad/s], left [m/s] of each robot: as it moves, as it is asked.
         readings: what was measured at this instant, with who measured it; scans hit people by their ids.
-        due: whether the scene is to be recorded; otherwise only the readings are.
+        due: whether the scene is to be recorded; otherwise only the readings and contacts are.
+        touches: the contacts of the step that ended now.
     """
 
     tick: int
@@ -61,6 +75,7 @@ class Frame:
     commands: NDArray[np.float64]
     readings: tuple[tuple[Robot, Mount, Reading], ...]
     due: bool
+    touches: tuple[Touch, ...] = ()
 
 
 @dataclass
@@ -83,14 +98,21 @@ class Carrier:
 class Simulation:
     """A trial that is running.
 
-    Attributes:
+    Args:
         trial, seed: what runs.
+        clock: who allows the steps, at tick 0 and with the time step of the trial; None: a free clock.
+
+    Attributes:
         world: who moves people and robots, and counts the time.
         carriers: the robots.
         event: ``success`` or ``collision`` once that has happened, whichever came first.
+        touches: contacts of the latest step.
+        begun: whether the parts 6 to 8 of tick 0 are done.
+        ended: the outcome once another condition of the trial for its end holds.
 
     Raises:
         TrialError: people do not fit with this seed.
+        InputError: the clock has other steps, or has run before.
 
     >>> from crowdbot.models import ORCA
     >>> simulation = Simulation(Trial(name="empty", duration=1.0, crowd=ORCA()), seed=0)
@@ -99,28 +121,35 @@ class Simulation:
     50000000
     """
 
-    def __init__(self, trial: Trial, seed: int) -> None:
+    def __init__(self, trial: Trial, seed: int, clock: Clock | None = None) -> None:
         self.trial = trial
         self.seed = seed
-        people, problems = place(trial.stage, trial.spawners, trial.robots, seed)
+        recorded = [(one, one.walks(trial.duration)) for one in trial.recorded]
+        people, problems = place(trial.stage, trial.spawners, trial.robots, seed, trial.agents, recorded)
         if problems:
-            raise TrialError(*(f"trial {trial.name!r}: spawner {s.name!r}: {sentence}" for s, sentence in problems))
+            what = ((type(one).__name__.lower(), one.name, sentence) for one, sentence in problems)
+            raise TrialError(*(f"trial {trial.name!r}: {word} {name!r}: {sentence}" for word, name, sentence in what))
         self.people = people
         self.world = world_of(trial, people, seed)
         self.carriers = [self._carrier(robot, len(people) + k) for k, robot in enumerate(trial.robots)]
         self.event: str | None = None
+        self.touches: tuple[Touch, ...] = ()
+        self.begun = False
+        if clock is not None:
+            self._keep_time(clock)
+        self.ended: str | None = None
         self._segments = self.world.scene.walls.segments()
-        self._exits = [self._exit(k) for k in range(len(trial.spawners))]
+        self._ways_out = ways_out(people)
 
     def step(self) -> None:
-        """Go one step on: parts 1 to 4 of the order."""
-        before = self.world.scene
+        """Go one step on: parts 1 to 5 of the order."""
+        before, ids = self.world.scene, self.ids.copy()
         self.world.step({carrier.agent: carrier.command for carrier in self.carriers})
         self._let_leave()
-        self._judge(before)
+        self._judge(before, ids)
 
     def sense(self) -> tuple[tuple[Robot, Mount, Reading], ...]:
-        """Return what the sensors that are due measure: part 5."""
+        """Return what the sensors that are due measure: the first half of part 6."""
         new = []
         for carrier in self.carriers:
             pose = self.world.pose(carrier.agent)
@@ -136,7 +165,7 @@ class Simulation:
         return tuple(new)
 
     def decide(self) -> None:
-        """Ask the navigators that are due: part 6."""
+        """Ask the navigators that are due: the second half of part 6."""
         for carrier in self.carriers:
             if self.tick % carrier.control_every == 0:
                 carrier.command = _asked(carrier.robot, self.observation(carrier))
@@ -162,7 +191,7 @@ class Simulation:
         )
 
     def frame(self, readings: tuple[tuple[Robot, Mount, Reading], ...] = (), due: bool = True) -> Frame:
-        """Return what is to be recorded of this instant: part 7."""
+        """Return what is to be recorded of this instant: part 8."""
         twists = [self.world.twists[carrier.agent].at(0) for carrier in self.carriers]
         return Frame(
             self.tick,
@@ -173,7 +202,26 @@ class Simulation:
             _rows([carrier.command for carrier in self.carriers]),
             tuple((robot, mount, _by_id(reading, self.ids)) for robot, mount, reading in readings),
             due,
+            self.touches,
         )
+
+    def turn_to(self, trial: Trial, seed: int) -> None:
+        """Go on by another trial; see :func:`crowdbot.trials.changing.turn_to`, which changes the world first."""
+        self.trial, self.seed = trial, seed
+        self._segments = self.world.scene.walls.segments()
+
+    def ask(self, robot: str, command: Twist) -> None:
+        """Give a robot another command, which it holds until its navigator decides again: for bridges, part 7.
+
+        Raises:
+            InputError: there is no robot of this name.
+        """
+        for carrier in self.carriers:
+            if carrier.robot.name == robot:
+                carrier.command = Twist(*map(float, command))
+                return
+        known = ", ".join(carrier.robot.name for carrier in self.carriers) or "none"
+        raise InputError(f"there is no robot {robot!r}; the trial has {known}")
 
     @property
     def tick(self) -> int:
@@ -196,22 +244,21 @@ class Simulation:
             tuple(stream(self.seed, "sensor", robot.name, mount.name) for mount in robot.sensors),
         )
 
-    def _exit(self, spawner: int) -> tuple[NDArray[np.int64], Any]:
-        """Return the people of a spawner who leave in a goal zone of theirs, and that zone."""
-        import shapely
-
-        spec = self.trial.spawners[spawner]
-        zone = area(spec.goal) if spec.goal else shapely.Polygon()
-        shapely.prepare(zone)
-        leaving = spec.goal and spec.arrival == "leave"
-        return np.flatnonzero((self.people.spawner == spawner) & bool(leaving)), zone
+    def _keep_time(self, clock: Clock) -> None:
+        own = self.world.clock
+        if clock.tick or clock.step_ns != own.step_ns:
+            raise InputError(
+                f"the clock is at tick {clock.tick} with steps of {clock.dt} s, but the trial begins at tick 0 with"
+                f" steps of {own.dt} s"
+            )
+        self.world.clock = clock
 
     def _let_leave(self) -> None:
         import shapely
 
         scene = self.world.scene
         gone = np.zeros(scene.shape[1], dtype=np.bool_)
-        for members, zone in self._exits:
+        for members, zone in self._ways_out:
             there = members[scene.active[0, members] & (self.ids[members] == members)]
             if len(there):
                 x, y = scene.position[0, there].T
@@ -220,18 +267,25 @@ class Simulation:
         if np.any(gone):
             self.world.scene = scene.replace(active=scene.active & ~gone)
 
-    def _judge(self, before: Scene) -> None:
+    def _judge(self, before: Scene, ids: NDArray[np.int64]) -> None:
+        """Find contacts and arrivals; ``ids`` are from before the step, since the place of who left may be taken."""
         now = self.world.scene
-        collided = len(self.world.contacts) > 0
+        touches = [Touch(int(ids[one.robot]), int(ids[one.other]), one.clearance) for one in self.world.contacts]
         for carrier in self.carriers:
             path = np.stack([before.position[0, carrier.agent], now.position[0, carrier.agent]])
-            collided |= bool(np.any(wall_clearance(path, carrier.robot.radius, self._segments)[1:] < 0.0))
+            gap = float(wall_clearance(path, carrier.robot.radius, self._segments)[1])
+            if gap < 0.0:
+                touches.append(Touch(int(ids[carrier.agent]), WALL, gap))
             away = float(np.hypot(*(path[1] - np.array(carrier.robot.goal.position))))
             carrier.arrived |= away < carrier.robot.goal.tolerance
+        self.touches = tuple(touches)
+        collided = bool(touches)
         if self.event is None and collided:
             self.event = "collision"
         elif self.event is None and self.carriers and all(carrier.arrived for carrier in self.carriers):
             self.event = "success"
+        if self.ended is None:
+            self.ended = ended(self)
 
 
 def _asked(robot: Robot, observation: Observation) -> Twist:

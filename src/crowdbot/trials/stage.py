@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
+from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Walls
+from crowdbot.core import InputError, Walls
 
-from .attribute import attribute, check, children
+from .attribute import attribute, check, children, shown
+from .ground import area_of, map_of
 from .notation import Points
 
 __all__ = ["Obstacle", "Stage", "Wall", "area"]
@@ -48,14 +52,36 @@ class Stage:
     >>> stage = Stage(walkable=[(0, 0), (8, 0), (8, 4), (0, 4)], obstacles=[Obstacle([(3, 1), (4, 1), (4, 2)])])
     >>> len(stage.rings), stage.clearance([(1.0, 2.0), (3.9, 1.5), (9.0, 9.0)]).tolist()
     (2, [1.0, 0.0, 0.0])
+    >>> Stage(area="POLYGON ((0 0, 9 0, 9 9, 0 9, 0 0), (4 4, 5 4, 5 5, 4 5, 4 4))").clearance([(4, 3), (4.5, 4.5)])
+    array([1., 0.])
     """
 
     walkable: Points = attribute(Points(), about="corners of the area that can be walked on x,y", unit="m")
+    area: str = attribute(
+        "", about="the area that can be walked on as WKT, or the name of a file of WKT or GeoJSON", unit="m"
+    )
+    map: str = attribute("", about="name of the .yaml of a map of ROS: occupied cells are solid")
+    unknown: str = attribute("occupied", about="what unknown cells of the map are", choices=("occupied", "free"))
     walls: tuple[Wall, ...] = children("wall", about="thin walls")
     obstacles: tuple[Obstacle, ...] = children("obstacle", about="solid polygons")
+    folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
+    trust: bool = dataclasses.field(default=True, compare=False, repr=False)
+    """Where the files lie, and whether they may lie outside; not part of the tree."""
 
     def __post_init__(self) -> None:
         check(self)
+        if self.walkable and self.area:
+            raise InputError("has both walkable and area; give one of them")
+        for word, name in (("area", "_ground"), ("map", "_map")):
+            try:
+                getattr(self, name)
+            except InputError as error:
+                raise InputError(f"{word}={shown(getattr(self, word))} {error}") from None
+
+    @property
+    def bounded(self) -> bool:
+        """Whether there is a walkable area."""
+        return bool(self.walkable or self.area)
 
     @property
     def rings(self) -> tuple[NDArray[np.float64], ...]:
@@ -63,7 +89,7 @@ class Stage:
         lines = [np.array(w.points[k : k + 2]) for w in self.walls for k in range(len(w.points) - 1)]
         solids = [_turned(o.points, counter_clockwise=True) for o in self.obstacles]
         around = [_turned(self.walkable, counter_clockwise=False)] if self.walkable else []
-        return (*lines, *solids, *around)
+        return (*lines, *solids, *around, *_rings(self._ground, solid=False), *_rings(self._map, solid=True))
 
     def as_walls(self) -> Walls:
         """Return the walls of a scene on this stage."""
@@ -78,36 +104,56 @@ class Stage:
         if len(self._solids):
             index, distance = self._solids.query_nearest(places, return_distance=True, all_matches=False)
             away[index[0]] = distance
-        if self.walkable:
+        if self.bounded:
             away = np.where(shapely.covers(self._area, places), away, 0.0)
         return away
 
     def holds(self, shape: Any) -> bool:
         """Return whether a shapely geometry lies in the walkable area; without one everything does."""
-        return not self.walkable or bool(self._area.buffer(1e-9).covers(shape))
+        return not self.bounded or bool(self._area.buffer(1e-9).covers(shape))
 
     def meets(self, shape: Any) -> bool:
         """Return whether a shapely geometry has a part in the walkable area; without one everything has."""
-        return not self.walkable or bool(self._area.intersects(shape))
+        return not self.bounded or bool(self._area.intersects(shape))
 
-    def obstacle_around(self, shape: Any) -> int | None:
-        """Return the index of an obstacle that a shapely geometry lies in, None when there is none."""
+    def block_around(self, shape: Any) -> str:
+        """Return what solid a shapely geometry lies in, empty when there is none."""
         found = self._blocks.query(shape, predicate="covered_by")
-        return int(found.min()) if len(found) else None
+        return self._called(int(found.min())) if len(found) else ""
+
+    def block_in(self, shape: Any, smallest: float) -> str:
+        """Return a solid of which more than ``smallest`` [m2] lie in a shapely geometry, empty when there is none."""
+        near = sorted(self._blocks.query(shape, predicate="intersects").tolist())
+        blocks = self._blocks.geometries
+        return next((self._called(k) for k in near if shape.intersection(blocks[k]).area > smallest), "")
+
+    def _called(self, block: int) -> str:
+        return f"obstacle {block + 1} of the stage" if block < len(self.obstacles) else "a solid of the map"
+
+    @functools.cached_property
+    def _ground(self) -> tuple[Any, ...]:
+        """The polygons of the area."""
+        import shapely
+
+        return tuple(shapely.get_parts(area_of(self.area, self.folder, self.trust))) if self.area else ()
+
+    @functools.cached_property
+    def _map(self) -> tuple[Any, ...]:
+        return map_of(self.map, self.unknown, self.folder, self.trust) if self.map else ()
 
     @functools.cached_property
     def _area(self) -> Any:
         import shapely
 
-        polygon = area(self.walkable)
-        shapely.prepare(polygon)
-        return polygon
+        whole = shapely.union_all(self._ground) if self.area else area(self.walkable)
+        shapely.prepare(whole)
+        return whole
 
     @functools.cached_property
     def _blocks(self) -> Any:
         import shapely
 
-        return shapely.STRtree([area(obstacle.points) for obstacle in self.obstacles])
+        return shapely.STRtree([*(area(obstacle.points) for obstacle in self.obstacles), *self._map])
 
     @functools.cached_property
     def _solids(self) -> Any:
@@ -116,9 +162,19 @@ class Stage:
 
         lines = [np.array(wall.points) for wall in self.walls]
         lines += [np.array([*self.walkable, self.walkable[0]])] if self.walkable else []
+        lines += [np.array(ring.coords) for part in self._ground for ring in (part.exterior, *part.interiors)]
         edges = [np.stack([line[:-1], line[1:]], axis=1) for line in lines]
         pieces = list(shapely.linestrings(np.concatenate(edges))) if edges else []
         return shapely.STRtree([*pieces, *self._blocks.geometries])
+
+
+def _rings(polygons: Sequence[Any], solid: bool) -> list[NDArray[np.float64]]:
+    """Return the rings of polygons that are solid, or of an area that is not."""
+    rings = []
+    for polygon in polygons:
+        rings.append(_turned(polygon.exterior.coords[:-1], counter_clockwise=solid))
+        rings += [_turned(inner.coords[:-1], counter_clockwise=not solid) for inner in polygon.interiors]
+    return rings
 
 
 def area(points: Points) -> Any:
@@ -128,7 +184,7 @@ def area(points: Points) -> Any:
     return shapely.Polygon(points)
 
 
-def _turned(points: Points, counter_clockwise: bool) -> NDArray[np.float64]:
+def _turned(points: Any, counter_clockwise: bool) -> NDArray[np.float64]:
     ring = np.array(points)
     x, y = ring[:, 0], ring[:, 1]
     doubled = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))

@@ -7,24 +7,28 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from crowdbot.core import InputError
 from crowdbot.models import CrowdModel
 from crowdbot.navigation import Navigator
 from crowdbot.sensors import Sensor
 from crowdbot.world import Drive
 
+from .agent import Agent
 from .attribute import attribute, check, child, children, mounted, plugged
 from .crowd import Contact, Crowd, Crowds, Limits, Routing
-from .journey import Exit, Journey
+from .journey import Exit, Journey, Portal
 from .notation import NAME
 from .people import Source, Spawner
+from .recorded_people import RecordedPeople
 from .stage import Stage
+from .sweep import Sweep
 
 if TYPE_CHECKING:
     from .episode import Episode
 
-__all__ = ["End", "Goal", "Mount", "Recording", "Robot", "Trial"]
+__all__ = ["End", "Goal", "Mount", "Recording", "Robot", "Trial", "When"]
 
 
 @dataclass(frozen=True)
@@ -84,11 +88,39 @@ class Robot:
 
 
 @dataclass(frozen=True)
+class When:
+    """A condition under which a trial ends: what a robot has crossed, how many people are there, how late it is.
+
+    >>> When("x", above=20.0).holds(21.0)
+    True
+    """
+
+    what: str = attribute(
+        about="x or y of the robot [m], number of people, or time [s]", choices=("x", "y", "people", "time")
+    )
+    below: float | None = attribute(None, about="it is below this")
+    above: float | None = attribute(None, about="it is above this")
+    robot: str = attribute("", about="name of the robot, by default the first")
+    outcome: str = attribute("finished", about="of the trial", choices=("finished", "success", "timeout"))
+
+    def __post_init__(self) -> None:
+        check(self)
+        if (self.below is None) == (self.above is None):
+            raise InputError("needs one of below and above")
+
+    def holds(self, value: float) -> bool:
+        """Return whether the condition holds for a value."""
+        return value < self.below if self.below is not None else value > (self.above or 0.0)
+
+
+@dataclass(frozen=True)
 class End:
     """What ends a trial before its duration is over."""
 
     goal: bool = attribute(True, about="every robot has reached its goal")
     collision: bool = attribute(True, about="a robot touches a person, a wall or another robot")
+    empty: bool = attribute(False, about="nobody is left and nobody will come")
+    conditions: tuple[When, ...] = children("when", about="other conditions, of which one suffices", at_most=100)
 
     def __post_init__(self) -> None:
         check(self)
@@ -145,12 +177,16 @@ class Trial:
     contact: Contact | None = child(None, about="bodies that overlap are pushed apart")
     limits: Limits | None = child(None, about="what people cannot go beyond")
     journeys: tuple[Journey, ...] = children("journey", about="stops to go to one after the other", at_most=1000)
+    agents: tuple[Agent, ...] = children("agent", about="people, one by one", at_most=20_000)
     spawners: tuple[Spawner, ...] = children("spawner", about="people", at_most=1000)
     sources: tuple[Source, ...] = children("source", about="people who come in", at_most=1000)
+    recorded: tuple[RecordedPeople, ...] = children("recorded", about="people of a recording", at_most=100)
     exits: tuple[Exit, ...] = children("exit", about="where people leave", at_most=1000)
+    portals: tuple[Portal, ...] = children("portal", about="where people come out elsewhere", at_most=1000)
     robots: tuple[Robot, ...] = children("robot", about="robots", at_most=100)
     end: End = child(End, about="what ends the trial")
     recording: Recording = child(Recording, about="how often what is recorded")
+    sweeps: tuple[Sweep, ...] = children("sweep", about="values that differ from variant to variant", at_most=20)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     """Where code that the trial names lies; not part of the tree."""
 
@@ -158,11 +194,11 @@ class Trial:
         check(self)
 
     @classmethod
-    def load(cls, source: str | Path, *, trust: bool = False) -> Trial:
+    def load(cls, source: str | Path, *, trust: bool = False, **values: Any) -> Trial:
         """Read a trial file or a built-in trial; see :func:`crowdbot.trials.load_trial`."""
         from .builtin import load_trial
 
-        return load_trial(source, trust=trust)
+        return load_trial(source, trust=trust, **values)
 
     @classmethod
     def parse(
@@ -196,10 +232,23 @@ class Trial:
 
         return run(self, seed=seed, out=out, progress=progress)
 
+    def explicit(self, seed: int | None = None) -> Trial:
+        """Return the trial with everybody of its spawners as an agent; see :func:`crowdbot.trials.explicit`."""
+        from .explicit import explicit
+
+        return explicit(self, seed)
+
+    def variants(self) -> tuple[Trial, ...]:
+        """Return a trial without sweeps for every combination of their values; see :class:`Sweep`."""
+        from .sweep import variants
+
+        return variants(self)
+
     @property
     def people(self) -> int:
-        """Number of people of all spawners, who are there at the beginning."""
-        return sum(spawner.count for spawner in self.spawners)
+        """Number of agents, people of spawners and recorded people: those who have places before the robots."""
+        recorded = sum(len(one.walks(self.duration)) for one in self.recorded)
+        return len(self.agents) + sum(spawner.count for spawner in self.spawners) + recorded
 
     @property
     def ticks(self) -> int:

@@ -12,10 +12,11 @@ from crowdbot.core import InputError
 from crowdbot.core.plug import built_in, kebab
 
 from .attribute import Part, outline
+from .drawn import Drawn
 from .markup import Element, written
 from .notation import plain
 
-__all__ = ["xml"]
+__all__ = ["element_of", "xml"]
 
 
 def xml(trial: Any) -> str:
@@ -32,7 +33,12 @@ def xml(trial: Any) -> str:
       <crowd type="orca" time-horizon="3"/>
     </trial>
     """
-    return written(_element("trial", trial, trial.folder))
+    return written(element_of(trial))
+
+
+def element_of(trial: Any) -> Element:
+    """Return the tree that :func:`xml` writes."""
+    return _element("trial", trial, trial.folder)
 
 
 def _element(tag: str, thing: Any, folder: Path | None) -> Element:
@@ -63,6 +69,9 @@ def _word(part: Part, value: Any) -> str:
 
 
 def _plug(part: Part, value: Any, folder: Path | None) -> dict[str, str]:
+    if isinstance(value, Drawn):
+        draws = {name.replace("_", "-"): str(drawn) for name, drawn in value.draws}
+        return _plug(part, value.model, folder) | draws
     words = {"type": _type(part, value, folder)}
     for field in dataclasses.fields(value):
         inner = getattr(value, field.name)

@@ -44,15 +44,12 @@ class Area:
     def misplaced(self, stage: Stage) -> Problems:
         """Yield why nobody can be there."""
         zone = area(self.points)
-        block = stage.obstacle_around(zone)
+        block = stage.block_around(zone)
         if not (stage.meets(zone) if self.border else stage.holds(zone)):
             where = "lies" if self.border else "reaches"
             yield self.element, f"{self.label} {where} outside the walkable area; move it, or make the area larger"
-        elif block is not None:
-            yield (
-                self.element,
-                f"{self.label} lies inside obstacle {block + 1} of the stage; nobody can be there, move it",
-            )
+        elif block:
+            yield self.element, f"{self.label} lies inside {block}; nobody can be there, move it"
 
 
 def areas(checked: Checked) -> list[Area]:
@@ -66,6 +63,11 @@ def areas(checked: Checked) -> list[Area]:
     for journey in checked.journeys:
         zones = (stop for stop in journey.stops if isinstance(stop, Zone))
         found += [Area(stop, "points", "zone", stop.points, SMALLEST) for stop in zones]
+    for portal in checked.portals:
+        found.append(Area(portal, "zone", "zone", portal.zone, SMALLEST, border=True))
+    for agent in checked.agents:
+        if agent.goal_zone:
+            found.append(Area(agent, "goal-zone", "goal zone", agent.goal_zone))
     return found + [Area(way, "zone", "zone", way.zone, SMALLEST, border=True) for way in checked.exits]
 
 

@@ -7,8 +7,10 @@ from .flow import Source
 from .journey import Journey, Journeys
 from .limits import CrowdLimits
 from .planar import PlanarWorld
+from .portal import Portal
 from .robot import Robot, SensorMount, Wheel, builtin_robots
 from .routing import Router
+from .script import Script, Track
 from .servo import CommandDelay, VelocityServo
 from .stop import Direction, Point, Stop, Zone
 from .world import Contact, World
@@ -27,12 +29,15 @@ __all__ = [
     "Omnidirectional",
     "PlanarWorld",
     "Point",
+    "Portal",
     "Robot",
     "Router",
+    "Script",
     "SensorMount",
     "Source",
     "SteeredTwists",
     "Stop",
+    "Track",
     "Twists",
     "VelocityServo",
     "Wheel",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -128,6 +129,13 @@ class _Queue:
             queue.due += queue.pause()
         return queue
 
+    def turn_to(self, source: Source) -> None:
+        """Go on as another source; whoever comes evenly goes on from the next who is due."""
+        begin = self.due - self.come / source.rate
+        if source.timing == "regular" and source != self.source and self.come and begin < source.end:
+            source = dataclasses.replace(source, begin=begin)
+        self.source = source
+
     def pause(self) -> float:
         """Return the time until the next one comes [s]."""
         regular = self.source.timing == "regular"
@@ -218,6 +226,26 @@ class Arrivals:
     def waiting(self) -> Numbers:
         """How many wait outside, ``[E]``."""
         return np.array([sum(queue.waiting for queue in queues) for queues in self._queues], dtype=np.int64)
+
+    def turn_to(self, sources: Sequence[Source], seeds: Sequence[int] | None = None) -> None:
+        """Go on with other sources in the places of these; who is due or waits stays so.
+
+        Args:
+            sources: as many as before, with the same journeys.
+            seeds: of each environment, for new chance from now on; None: chance goes on.
+
+        Raises:
+            InputError: the number or a journey of the sources is another.
+        """
+        if [source.journey for source in sources] != [source.journey for source in self._sources]:
+            raise InputError("sources cannot change their number or their journeys while a world runs")
+        self._sources = tuple(sources)
+        for e, queues in enumerate(self._queues):
+            for number, queue in enumerate(queues):
+                queue.turn_to(sources[number])
+                if seeds is not None:
+                    new = _Queue.of(sources[number], int(seeds[e]), number)
+                    queue.times, queue.bodies, queue.places = new.times, new.bodies, new.places
 
     def let_in(self, scene: Scene, time: float, ids: Numbers, following: Numbers) -> tuple[Scene, NDArray[np.bool_]]:
         """Return the scene with those who have come up to a time, and who they are ``[E, A]``.

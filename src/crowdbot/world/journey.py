@@ -20,8 +20,9 @@ Numbers = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 JOURNEY, STOP = "journey", "stop"
-"""Names in the memory of a scene ``[E, A]``: the index of the journey, -1 for none, and of the stop one goes to."""
-THENS = ("leave", "stay")
+"""Names in the memory of a scene ``[E, A]``: the index of the journey, -1 for none, and the number of the stop one
+goes to; on a journey that begins again it counts on."""
+THENS = ("leave", "stay", "again")
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class Journey:
 
     Fields:
         stops: at least one.
-        then: at the last one people ``leave`` or ``stay``.
+        then: at the last one people ``leave`` or ``stay``, or begin ``again``.
 
     Raises:
         InputError: there is no stop, or something is none.
@@ -49,8 +50,14 @@ class Journey:
             raise InputError(f"Journey: stops = {self.stops!r}, it must be one or more of Point, Direction, Zone")
         if self.then not in THENS:
             raise InputError(
-                f"Journey: then = {self.then!r}{did_you_mean(str(self.then), THENS)}; choose leave or stay"
+                f"Journey: then = {self.then!r}{did_you_mean(str(self.then), THENS)}; choose leave, stay or again"
             )
+
+    def stop(self, number: int) -> Stop | None:
+        """Return the stop that is this many stops after the first; None when there is none."""
+        if self.then == "again":
+            return self.stops[number % len(self.stops)]
+        return self.stops[number] if number < len(self.stops) else None
 
 
 @dataclass(frozen=True)
@@ -107,17 +114,16 @@ class Journeys:
         """Return the scene in which whoever has reached a stop is on the way to the next, or has left."""
         stop, active = scene.memory[STOP].copy(), scene.active.copy()
         renewed = np.zeros(scene.shape, dtype=np.bool_)
-        for number, k, rows in self._parties(scene):
+        for number, k, at, rows in self._parties(scene):
             journey = self.journeys[number]
-            at = journey.stops[k]
             there = np.zeros(scene.shape, dtype=np.bool_)
             there[rows] = at.reached(scene.position[rows], scene.goal[rows])
             stop[there] = k + 1
-            if k + 1 < len(journey.stops):
+            if journey.stop(k + 1) is not None:
                 renewed |= there
             if at.moves:
                 renewed |= rows & ~there
-            if k + 1 == len(journey.stops) and journey.then == "leave":
+            if journey.stop(k + 1) is None and journey.then == "leave":
                 active &= ~there
         on = scene.replace(active=active, memory={**scene.memory, STOP: stop})
         return self.aimed(on, renewed & active, seeds, ids, holds)
@@ -135,28 +141,29 @@ class Journeys:
             return scene
         goal = scene.goal.copy()
         seed = np.broadcast_to(seeds[:, None], scene.shape)
-        for number, k, rows in self._parties(scene):
+        for number, k, at, rows in self._parties(scene):
             mine = rows & who
             if np.any(mine):
                 luck = Luck(seed[mine], ids[mine], (STOP, number, k), holds)
-                goal[mine] = self.journeys[number].stops[k].goal(scene.position[mine], luck)
+                goal[mine] = at.goal(scene.position[mine], luck)
         return scene.replace(goal=goal)
 
     def routed(self, scene: Scene) -> Bools:
         """Return ``[E, A]`` whom a router may lead."""
         out = np.ones(scene.shape, dtype=np.bool_)
-        for number, k, rows in self._parties(scene):
-            if not self.journeys[number].stops[k].routed:
+        for _, _, at, rows in self._parties(scene):
+            if not at.routed:
                 out[rows] = False
         return out
 
-    def _parties(self, scene: Scene) -> list[tuple[int, int, Bools]]:
+    def _parties(self, scene: Scene) -> list[tuple[int, int, Stop, Bools]]:
         """Return for every journey and stop who is on the way there, where somebody is."""
         walking = scene.active & ~scene.external
         found = []
         for number, journey in enumerate(self.journeys):
             mine = walking & (scene.memory[JOURNEY] == number)
-            if np.any(mine):
-                stops = enumerate(mine & (scene.memory[STOP] == k) for k in range(len(journey.stops)))
-                found += [(number, k, rows) for k, rows in stops if np.any(rows)]
+            for k in np.unique(scene.memory[STOP][mine]).astype(int).tolist():
+                at = journey.stop(k)
+                if at is not None:
+                    found.append((number, k, at, mine & (scene.memory[STOP] == k)))
         return found

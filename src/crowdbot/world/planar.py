@@ -10,16 +10,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import FreeClock, InputError, Pose, Scene, Twist, stream
+from crowdbot.core import Clock, FreeClock, InputError, Pose, Scene, Twist, stream
 from crowdbot.metrics import swept_distance
 from crowdbot.models import CrowdModel
+from crowdbot.models.mixture import MODEL, Mixture
 
 from .contact import BodyContact, Surfaces
 from .drive import Drive, Twists
 from .flow import Source
-from .journey import Journeys
+from .journey import JOURNEY, Journeys
 from .limits import CrowdLimits
-from .routing import Router
+from .portal import Portal, ported
+from .routing import WAY, Router
+from .script import Script
 from .stop import Zone
 from .traffic import Traffic
 from .world import Contact, World
@@ -54,6 +57,8 @@ class PlanarWorld(World):
         journeys: goals one after the other; they replace those of the scene.
         sources: where people come in; they take the places of absent agents.
         exits: zones in which everybody leaves, robots apart.
+        portals: zones whose people come out elsewhere, as new people.
+        script: agents that are moved as they were recorded; to the crowd model they are external.
         symmetry: everyone's preferred direction is off by up to this angle [rad], each by the own, so that people who
             meet exactly head on do not stop for ever; 1e-3 is enough.
         substeps: the crowd takes so many steps in one step of the world, robots meanwhile go on straight.
@@ -92,10 +97,12 @@ class PlanarWorld(World):
     journeys: Journeys | None = None
     sources: Sequence[Source] = ()
     exits: Sequence[Zone] = ()
+    portals: Sequence[Portal] = ()
+    script: Script | None = None
     symmetry: float = 0.0
     substeps: int = 1
     ids: Any = None
-    clock: FreeClock = field(init=False)
+    clock: Clock = field(init=False)
     twists: dict[int, Twists] = field(init=False)
     contacts: tuple[Contact, ...] = field(init=False, default=())
 
@@ -109,26 +116,66 @@ class PlanarWorld(World):
             self.scene, self.model, self.seed, self.ids, self.router, self.journeys, self.sources
         )
         self.ids = self._traffic.ids
-        self.scene = self._traffic.begun(self.scene)
+        external = self.scene.external
+        if self.script is not None:
+            self.scene = self.script.begun(self.scene)
+        self.scene = self._traffic.begun(self._held(self.scene)).replace(external=external)
         self._surfaces: Surfaces | None = None
 
     def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
         """Go one time step on and return the new scene; see :class:`World`."""
         asked = self._checked(commands)
-        before = self.scene
+        before = self._held(self.scene)
+        self.clock.advance()
         earlier, crowd = self._walked(before)
         after = self._driven(before, crowd, asked)
-        after = self._settled(earlier, after)
-        self.clock.advance()
+        after = self._settled(earlier, after).replace(external=self.scene.external)
         after = after.replace(time=self._begin + self.clock.time)
+        if self.script is not None:
+            after = self.script.placed(after, self.clock.time)
         after.check()
         self.contacts = self._touching(before, after)
         if self.leave_radius is not None:
             after = _left(after, self.leave_radius)
         for zone in self.exits:
             after = _out(after, zone)
+        after = ported(before, after, self.portals, self._traffic.ids, self._traffic.following)
         self.scene = self._traffic.gone_on(after, self.clock.time)
         return self.scene
+
+    def turn_to(self, scene: Scene, sources: Sequence[Source], seed: int | None = None, **how: Any) -> None:
+        """Go on from here in another way: everybody stays where they are, chance goes on unless a seed is given.
+
+        Args:
+            scene: in the place of the one now, with the same agents; its time is taken as that of now.
+            sources: as many as before, with the same journeys.
+            seed: for new chance from now on.
+            how: other values of model, drives, berth, router, contact, limits, exits, symmetry or substeps.
+
+        Raises:
+            InputError: that cannot change while the world runs, or a value is not allowed.
+        """
+        known = ("model", "drives", "berth", "router", "contact", "limits", "exits", "symmetry", "substeps")
+        for name in how:
+            if name not in known:
+                raise InputError(f"{name} of a world cannot change while it runs; these can: {', '.join(known)}")
+        if scene.shape != self.scene.shape or sorted(how.get("drives", self.drives)) != sorted(self.drives):
+            raise InputError("the number of agents and who is a robot cannot change while a world runs")
+        forgotten = set() if how.get("router", self.router) is self.router else {WAY}
+        model = how.get("model", self.model)
+        if type(model) is not type(self.model):
+            forgotten |= {*self.model.memory_at_start} - {MODEL, JOURNEY, WAY}
+        for name, value in how.items():
+            setattr(self, name, value)
+        self._check()
+        self._traffic.turn_to(self.router, sources, seed)
+        if self._traffic.mixture is not None and isinstance(model, Mixture):
+            self._traffic.mixture = model
+        self.sources = sources
+        memory = {name: value for name, value in scene.memory.items() if name not in forgotten}
+        self.scene = scene.replace(time=self.scene.time, memory=memory)
+        if seed is not None:
+            self.seed, self._rng = seed, stream(seed, "crowd")
 
     @property
     def waiting(self) -> NDArray[np.int64]:
@@ -138,6 +185,10 @@ class PlanarWorld(World):
     def pose(self, robot: int) -> Pose:
         """Return where a robot is in every environment."""
         return Pose(self.scene.position[:, robot].copy(), self.scene.heading[:, robot].copy())
+
+    def _held(self, scene: Scene) -> Scene:
+        """Return the scene in which who follows a script is external."""
+        return scene if self.script is None else scene.replace(external=scene.external | self.script.held(scene))
 
     def _walked(self, before: Scene) -> tuple[Scene, Scene]:
         """Return the scene before the last substep of the crowd, and after it."""

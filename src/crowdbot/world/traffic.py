@@ -80,6 +80,16 @@ class Traffic:
             return cls(seeds, who, following, router, journeys, arrivals, mixture)
         return cls(seeds, who, following, router, journeys, None, mixture)
 
+    def turn_to(self, router: Router | None, sources: Sequence[Source], seed: int | None) -> None:
+        """Go on with another router, other sources in the places of these, and new chance when a seed is given."""
+        self.router = router
+        if seed is not None:
+            self.seeds = np.array([(int(seed) + e) % 2**63 for e in range(len(self.seeds))], dtype=np.int64)
+        if self.arrivals is not None:
+            self.arrivals.turn_to(sources, None if seed is None else self.seeds.tolist())
+        elif sources:
+            raise InputError("sources cannot be added while a world runs")
+
     @property
     def waiting(self) -> Numbers:
         """How many wait to come in, ``[E]``."""

@@ -139,7 +139,7 @@ def softness(region: str, person: float, mass: float, dt: float) -> tuple[float,
 
     >>> stiffness, _ = softness("chest", 40.0, 60.0, 0.005)
     >>> round(math.sqrt(stiffness / (25e3 / 24.0)), 3)  # stiffer by what damping takes from the peak
-    1.23
+    1.229
     """
     tissue = TISSUES[region]
     whole = reduced_mass(person, mass)

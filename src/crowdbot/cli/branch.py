@@ -1,0 +1,48 @@
+"""``crowdbot branch EPISODE.mcap --at T``: go on from an instant of a recorded episode, with other values."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from pathlib import Path
+
+from .output import add_json, progress
+from .run import tell
+from .schemes import assignments
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    add = parser.add_argument
+    add("episode", metavar="EPISODE.mcap", type=Path)
+    add("--at", type=float, required=True, metavar="T", help="recorded instant to go on from [s]")
+    add(
+        "--set",
+        nargs="+",
+        default=[],
+        metavar="PATH=VALUE",
+        help="as in the XML of the trial: duration=60, robot.navigator.type=orca, robot[NAME].goal.x=3",
+    )
+    add("--seed", type=int, help="seed of new chance from then on (default: chance goes on)")
+    add("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
+    add("--trust", action="store_true", help="let the trial load code from outside its own folder")
+    add_json(parser)
+
+
+def main(options: argparse.Namespace) -> int:
+    """Run the branch."""
+    from crowdbot.trials import branch
+
+    begin = time.perf_counter()
+    with progress(options.json) as report:
+        done = branch(
+            options.episode,
+            options.at,
+            seed=options.seed,
+            changes=assignments(options.set),
+            out=None if options.out is None else options.out / "episode.mcap",
+            trust=options.trust,
+            progress=lambda share: report("branch", share),
+        )
+    tell(done, options.json, time.perf_counter() - begin)
+    return 0

@@ -1,0 +1,30 @@
+"""``crowdbot export EPISODE.mcap --to FILE``: write an episode as a table, Parquet or CSV."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from .output import add_json, print_json
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("episode", metavar="EPISODE.mcap", type=Path)
+    parser.add_argument("--to", type=Path, required=True, metavar="FILE", help="name that ends in .parquet or .csv")
+    parser.add_argument(
+        "--table", default="people", metavar="NAME", help="people (robots too), robots, scans or contacts"
+    )
+    add_json(parser)
+
+
+def main(options: argparse.Namespace) -> int:
+    """Write the table."""
+    from crowdbot.trials import export
+
+    rows = export(options.episode, options.to, options.table)
+    if options.json:
+        print_json({"episode": str(options.episode), "table": options.table, "file": str(options.to), "rows": rows})
+    else:
+        print(f"{options.to}: {rows} rows")
+    return 0

@@ -1,0 +1,65 @@
+"""``--set NAME=VALUE``: parameters of built-in trials, and values in any trial by their paths."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from crowdbot.trials import Trial
+
+__all__ = ["add_settings", "chosen", "settings"]
+
+
+def add_settings(parser: argparse._ActionsContainer) -> None:
+    """Add the option ``--set``."""
+    parser.add_argument(
+        "--set",
+        dest="settings",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="a parameter of a built-in trial (density=0.5), or a value by its path (spawner[1]/count=20); repeatable",
+    )
+
+
+def settings(options: argparse.Namespace) -> dict[str, str]:
+    """Return the values by name.
+
+    Raises:
+        InputError: one is not of the form NAME=VALUE, or is given twice.
+    """
+    from crowdbot.core import InputError
+
+    found: dict[str, str] = {}
+    for text in options.settings:
+        name, equals, value = text.partition("=")
+        if not (name.strip() and equals):
+            raise InputError(f"--set {text!r} must be NAME=VALUE, such as density=0.5")
+        if name.strip() in found:
+            raise InputError(f"--set {name.strip()} is given twice")
+        if name.strip() in ("source", "trust"):
+            raise InputError(f"--set {name.strip()}: no trial has such a parameter")
+        found[name.strip()] = value.strip()
+    return found
+
+
+def chosen(trial: Trial, variant: int | None) -> Trial:
+    """Return a trial, or of a trial with sweeps the variant that was asked for, from 1.
+
+    Raises:
+        InputError: it has none of this number, or none was asked for.
+    """
+    from crowdbot.core import InputError
+
+    if variant is None and not trial.sweeps:
+        return trial
+    variants = trial.variants()
+    if variant is None:
+        raise InputError(
+            f"{trial.name} stands for {len(variants)} trials by its sweeps; run one of them with --variant 1 to"
+            f" {len(variants)} (crowdbot check lists them)"
+        )
+    if not trial.sweeps or not 1 <= variant <= len(variants):
+        raise InputError(f"--variant {variant}: {trial.name} has {len(variants) if trial.sweeps else 'no'} variants")
+    return variants[variant - 1]

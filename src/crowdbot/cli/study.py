@@ -1,0 +1,89 @@
+"""``crowdbot study gan``: which GAN finds all the ways that people may go, on the toy set of the report."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .output import add_json, json_text, note, number, print_json, print_table, progress
+from .schemes import assignments
+
+if TYPE_CHECKING:
+    from crowdbot.prediction.learned.toy_study import Run, ToyStudy
+
+STUDIES = ("gan",)
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    add = parser.add_argument
+    add("what", metavar="NAME", help=f"which study: {', '.join(STUDIES)}")
+    add("--methods", nargs="+", metavar="NAME", help="of the study (default: all seven of the report)")
+    add("--seeds", type=int, default=3, metavar="N", help="trainings of each method (default 3)")
+    add("--updates", type=int, default=20_000, metavar="N", help="of each training (default 20000)")
+    add("--check-every", type=int, default=500, metavar="N", help="updates between measurements (default 500)")
+    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="settings for all methods, such as hidden=64")
+    add("--workers", type=int, default=1, metavar="N", help="processes (default 1)")
+    add("--device", default="cpu", metavar="NAME", help="cpu or cuda (default cpu)")
+    add("--out", type=Path, required=True, metavar="DIR", help="trainings, tables and pictures; again to go on")
+    add_json(parser)
+
+
+def main(options: argparse.Namespace) -> int:
+    """Train every method with every seed, measure, and draw."""
+    from crowdbot.core.errors import UnknownName
+    from crowdbot.prediction.learned.extra import device_of
+    from crowdbot.prediction.learned.toy_study import METHODS, ToyStudy, with_values
+
+    if options.what not in STUDIES:
+        raise UnknownName("study", options.what, STUDIES)
+    for name in options.methods or ():
+        if name not in METHODS:
+            raise UnknownName("method", name, METHODS)
+    device_of(options.device)
+    methods, seeds = tuple(options.methods or METHODS), tuple(range(options.seeds))
+    study = ToyStudy(methods, seeds, options.updates, options.check_every, device=options.device)
+    study = with_values(study, assignments(options.set))
+    runs: list[Run] = []
+    with progress(options.json) as report:
+        for run in study.run(options.out / "trainings", options.workers):
+            runs.append(run)
+            report(run.method, sum(one.method == run.method for one in runs) / len(seeds))
+    return _said(options, study, runs)
+
+
+def _said(options: argparse.Namespace, study: ToyStudy, runs: list[Run]) -> int:
+    from crowdbot.benchmark.gan_plots import plot_measures, plot_samples
+
+    ideal = study.ideal()
+    found: dict[str, Any] = {
+        "updates": study.updates, "seeds": list(study.seeds), "settings": dict(study.values), "ideal": ideal,
+        "methods": study.rows(runs),
+        "runs": [
+            {"method": run.method, "seed": run.seed, "update": run.update.tolist(),
+             **{name: values.tolist() for name, values in run.measures.items()}}
+            for run in runs
+        ],
+    }  # fmt: skip
+    (options.out / "study.json").write_text(json_text(found) + "\n", encoding="utf-8")
+    plot_samples(study, runs, options.out / "samples.png")
+    plot_measures(study, runs, ideal, options.out / "measures.png")
+    if options.json:
+        print_json(found)
+        return 0
+    names = ("nearest_neighbor", "emd", "modes", "whole", "nearest_neighbor_20", "emd_20")
+    rows = [("real against real", *(number(ideal[name]) for name in names))]
+    rows += [(row["method"], *(number(row[name]) for name in names)) for row in found["methods"]]
+    caption = (
+        f"{study.updates} updates, {len(study.seeds)} seeds; 200 real against 200 drawn paths of each group, and 20"
+        " against 20 as in the report; means over the last 5 measurements"
+    )
+    print_table(
+        "GANs on the toy set",
+        ("method", "1-NN", "EMD [m]", "modes", "groups with all", "1-NN of 20", "EMD of 20"),
+        rows,
+        caption,
+    )
+    note(f"wrote study.json, samples.png and measures.png in {options.out}")
+    return 0

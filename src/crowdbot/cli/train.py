@@ -1,0 +1,154 @@
+"""``crowdbot train``: learn a predictor from recordings of people."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .output import add_json, note, number, print_json, print_table
+from .recordings import add_recordings, recordings, tell_notes
+from .schemes import assignments
+
+if TYPE_CHECKING:
+    from crowdbot.data import Recording
+    from crowdbot.prediction.learned.samples import Samples
+    from crowdbot.prediction.learned.training import Row, Trained
+
+LEARNERS = {"social-ways": "crowdbot.prediction.learned.social_ways_training"}
+"""Modules with a function ``learner(settings, values, samples, watched, seed, device)`` that makes a Trainable."""
+EPOCHS = 100
+"""Epochs when neither these nor updates are given."""
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("what", metavar="NAME", help=f"what learns: {', '.join(LEARNERS)}")
+    add_recordings(parser)
+    add = parser.add_argument
+    add("--check", nargs="+", type=Path, metavar="PATH", help="recordings to watch errors on (default: see --hold)")
+    add("--hold", type=float, default=0.2, metavar="SHARE", help="without --check: the last part in time (default 0.2)")
+    add("--leave-out", metavar="NAME", help="learn from all but eth, hotel, univ, zara1, zara2, or files of this name")
+    add("--out", type=Path, required=True, metavar="DIR", help="weights, log and what is needed to go on")
+    add("--resume", action="store_true", help="go on from what DIR holds")
+    add("--epochs", type=int, metavar="N", help=f"times that everything is seen (default {EPOCHS})")
+    add("--updates", type=int, metavar="N", help="in place of epochs")
+    add("--check-every", type=int, default=200, metavar="N", help="updates between checks (default 200)")
+    add("--patience", type=int, metavar="N", help="stop after so many checks without a better one")
+    add("--settings", default="report", metavar="NAME", help="named settings (social-ways: report, variety)")
+    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="single settings")
+    add("--device", default="cpu", metavar="NAME", help="cpu, cuda or cuda:N (default cpu)")
+    add("--threads", type=int, default=1, metavar="N", help="of torch; the bytes depend on it (default 1)")
+    add("--tensorboard", action="store_true", help="also write events for TensorBoard into DIR")
+    add("--seed", type=int, default=0, help="of first weights, order and noise")
+    add_json(parser)
+
+
+def main(options: argparse.Namespace) -> int:
+    """Learn, and say where the weights are."""
+    from crowdbot.core.errors import UnknownName
+    from crowdbot.prediction.learned.extra import threads
+    from crowdbot.prediction.learned.samples import short_recordings
+    from crowdbot.prediction.learned.training import BEST, Schedule, train
+
+    if options.what not in LEARNERS:
+        raise UnknownName("learned predictor", options.what, LEARNERS)
+    epochs = EPOCHS if options.updates is None and options.epochs is None else options.epochs
+    schedule = Schedule(
+        options.updates, epochs, options.check_every, options.check_every, ("ade", "fde"), options.patience,
+        options.seed,
+    )  # fmt: skip
+    learned, watched, left = _samples(options)
+    if not options.json:
+        tell_notes(learned)
+        for sentence in short_recordings(learned):
+            note(f"warning: {sentence}")
+    samples, check = watched
+    make = importlib.import_module(LEARNERS[options.what]).learner
+    model = make(options.settings, assignments(options.set), samples, check, options.seed, options.device)
+    if not options.json:
+        note(f"{options.what} learns {samples.people} futures in {len(samples)} windows of {len(learned)} recordings")
+    with threads(options.threads), _events(options) as written:
+        done = train(model, schedule, options.out, options.resume, _told(options.json, written))
+    _said(options, done, options.out / BEST, left)
+    return 0
+
+
+def _samples(options: argparse.Namespace) -> tuple[tuple[Recording, ...], tuple[Samples, Samples], list[str]]:
+    """Return what is learned from, the samples to learn from and to watch, and the files that are left out."""
+    from crowdbot.prediction.learned.samples import Samples, leave_out, split_in_time
+
+    found, left = list(recordings(options)), list[Any]()
+    if options.leave_out is not None:
+        found, left = leave_out(found, options.leave_out)
+    if options.check is None:
+        return tuple(found), split_in_time(found, options.hold), [one.path for one in left]
+    watched = list(recordings(argparse.Namespace(**{**vars(options), "data": options.check})))
+    if options.leave_out is not None:
+        watched, _ = leave_out(watched, options.leave_out)
+    return tuple(found), (Samples.of(found), Samples.of(watched)), [one.path for one in left]
+
+
+class _Events:
+    """Events for TensorBoard, or nothing."""
+
+    def __init__(self, writer: Any = None) -> None:
+        self.writer = writer
+
+    def __enter__(self) -> _Events:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self.writer is not None:
+            self.writer.close()
+
+    def add(self, row: Row) -> None:
+        """Write the numbers of one line of the log."""
+        if self.writer is not None:
+            for name, value in row.items():
+                if name not in ("update", "epoch"):
+                    self.writer.add_scalar(name, value, int(row["update"]))
+
+
+def _events(options: argparse.Namespace) -> _Events:
+    from crowdbot.core import InputError
+
+    if not options.tensorboard:
+        return _Events()
+    try:
+        from torch.utils.tensorboard import SummaryWriter
+    except ImportError:
+        raise InputError(
+            "--tensorboard needs TensorBoard: pip install tensorboard; log.csv is written anyway"
+        ) from None
+    return _Events(SummaryWriter(str(options.out)))
+
+
+def _told(quiet: bool, events: _Events) -> Callable[[Row], None]:
+    def told(row: Row) -> None:
+        events.add(row)
+        if not quiet:
+            words = [f"{name} {value:.4f}" for name, value in row.items() if name not in ("update", "epoch", "seconds")]
+            note(f"update {row['update']:.0f}  epoch {row['epoch']:.0f}  {'  '.join(words)}  {row['seconds']:.0f} s")
+
+    return told
+
+
+def _said(options: argparse.Namespace, done: Trained, file: Path, left: list[str]) -> None:
+    best = done.rows[done.best] if done.best is not None else {}
+    if options.json:
+        print_json(
+            {"checkpoint": str(file), "updates": done.updates, "stopped_early": done.stopped,
+             "seconds": done.seconds, "best": dict(best), "log": [dict(row) for row in done.rows], "left_out": left}
+        )  # fmt: skip
+        return
+    rows = [
+        ("best", *(number(best.get(name)) for name in ("update", "ade", "fde"))),
+    ]
+    rows.append(("last", *(number(done.rows[-1].get(name)) for name in ("update", "ade", "fde"))))
+    caption = f"{done.updates} updates in {done.seconds:.0f} s{', stopped early' if done.stopped else ''}; on {file}"
+    print_table(f"{options.what}, best of 20 on what is watched", ("", "update", "ADE [m]", "FDE [m]"), rows, caption)
+    data = " ".join(left) or "PATH"
+    note(f"to score it: crowdbot predict --predictor {options.what} --set checkpoint={file} --samples 20 --data {data}")

@@ -1,0 +1,111 @@
+"""Checkpoints: weights, settings and the digest of the data in one file that is read without running anything in it.
+
+The file is a NumPy ``.npz``: the entry ``content`` is JSON, in which ``{"$array": "a3"}`` stands for the entry ``a3``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import zipfile
+import zlib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.errors import InputError
+
+__all__ = ["load_checkpoint", "save_checkpoint"]
+
+FORMAT = 1
+"""Files of other formats are refused."""
+ARRAY, PAIRS = "$array", "$pairs"
+
+
+def save_checkpoint(file: Path, kind: str, content: Mapping[str, Any]) -> None:
+    """Write a checkpoint whole or not at all: after a kill at any moment the old file or the new one is there.
+
+    Args:
+        file: where it goes; its folder is made.
+        kind: what it is a checkpoint of, such as ``social-ways``.
+        content: dictionaries, lists, text, numbers, None, arrays and tensors, nested as needed.
+    """
+    arrays: dict[str, NDArray[Any]] = {}
+    text = json.dumps({"format": FORMAT, "kind": kind, "content": _packed(dict(content), arrays)}, allow_nan=True)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    draft = file.with_name(f"{file.name}.part")
+    with draft.open("wb") as stream:
+        np.savez(stream, content=np.frombuffer(text.encode(), dtype=np.uint8), **arrays)  # type: ignore[arg-type]
+        stream.flush()
+        os.fsync(stream.fileno())
+    os.replace(draft, file)
+
+
+def load_checkpoint(file: Path | str, kind: str | None = None) -> dict[str, Any]:
+    """Return what :func:`save_checkpoint` wrote, tensors as arrays; nothing in the file is executed.
+
+    Raises:
+        InputError: there is no such file, it is damaged or no checkpoint, or one of another kind or format.
+
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "one.npz"
+    >>> save_checkpoint(file, "toy", {"weight": np.ones(2), "rows": {0: [1.5, None]}})
+    >>> load_checkpoint(file, "toy")
+    {'weight': array([1., 1.]), 'rows': {0: [1.5, None]}}
+    """
+    path = Path(file)
+    if not path.is_file():
+        raise InputError(f"there is no checkpoint {path}; crowdbot train makes one")
+    try:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as entries:
+            arrays = {name: entries[name] for name in entries.files}
+        text = json.loads(arrays.pop("content").tobytes().decode())
+        content = _unpacked(text["content"], arrays)
+        found, version = text["kind"], text["format"]
+    except (OSError, EOFError, ValueError, KeyError, TypeError, AttributeError, zipfile.BadZipFile, zlib.error) as why:
+        raise InputError(
+            f"{path} is no checkpoint of crowdbot or is damaged ({type(why).__name__}: {str(why)[:80]});"
+            " train again or take another file"
+        ) from None
+    if version != FORMAT or not isinstance(content, dict):
+        raise InputError(f"{path} has checkpoint format {version}, this crowdbot reads {FORMAT}; train again")
+    if kind is not None and found != kind:
+        raise InputError(f"{path} is a checkpoint of {found}, not of {kind}")
+    return content
+
+
+def _packed(value: Any, arrays: dict[str, NDArray[Any]]) -> Any:
+    if hasattr(value, "detach"):
+        value = value.detach().cpu().numpy()
+    if isinstance(value, np.ndarray):
+        if value.dtype.kind not in "fiub":
+            raise InputError(f"a checkpoint holds arrays of numbers, not of {value.dtype}")
+        name = f"a{len(arrays)}"
+        arrays[name] = value
+        return {ARRAY: name}
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, dict):
+        if all(isinstance(key, str) for key in value):
+            return {key: _packed(item, arrays) for key, item in value.items()}
+        return {PAIRS: [[key, _packed(item, arrays)] for key, item in value.items()]}
+    if isinstance(value, list | tuple):
+        return [_packed(item, arrays) for item in value]
+    if value is None or isinstance(value, str | int | float):
+        return value
+    raise InputError(f"a checkpoint cannot hold a {type(value).__name__}")
+
+
+def _unpacked(value: Any, arrays: Mapping[str, NDArray[Any]]) -> Any:
+    if isinstance(value, list):
+        return [_unpacked(item, arrays) for item in value]
+    if not isinstance(value, dict):
+        return value
+    if value.keys() == {ARRAY}:
+        return arrays[value[ARRAY]]
+    if value.keys() == {PAIRS}:
+        return {key: _unpacked(item, arrays) for key, item in value[PAIRS]}
+    return {key: _unpacked(item, arrays) for key, item in value.items()}

@@ -1,0 +1,72 @@
+"""The way to torch: says in one sentence when it is missing, or when a device is not there."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from typing import Any
+
+from crowdbot.core.errors import InputError, MissingExtra
+
+__all__ = ["device_of", "tensors", "threads", "torch_module"]
+
+
+def torch_module() -> Any:
+    """Return torch.
+
+    Raises:
+        MissingExtra: it is not installed.
+    """
+    try:
+        import torch
+    except ImportError:
+        raise MissingExtra("learned prediction", "learn") from None
+    return torch
+
+
+def device_of(name: str) -> Any:
+    """Return the torch device ``cpu``, ``cuda`` or ``cuda:N``.
+
+    Raises:
+        MissingExtra: torch is not installed.
+        InputError: there is no such device.
+    """
+    torch = torch_module()
+    kind, _, number = name.partition(":")
+    if kind not in ("cpu", "cuda") or (number and not number.isdigit()):
+        raise InputError(f"unknown device {name!r}; known are cpu, cuda and cuda:N")
+    if kind == "cuda":
+        count = torch.cuda.device_count() if torch.cuda.is_available() else 0
+        if int(number or 0) >= count:
+            raise InputError(f"device {name!r} is asked for, but torch sees {count} CUDA devices here; use cpu")
+    return torch.device(name)
+
+
+@contextlib.contextmanager
+def threads(count: int = 1) -> Iterator[None]:
+    """Let torch use so many threads inside; with one, sums are made in one order, on every machine.
+
+    Small networks are no slower for it, and much faster where other work shares the processor.
+    """
+    torch = torch_module()
+    before = torch.get_num_threads()
+    torch.set_num_threads(count)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
+
+
+def tensors(tree: Any, device: Any = "cpu") -> Any:
+    """Return a tree as :func:`load_checkpoint` gives it with tensors in place of arrays.
+
+    >>> tensors({"step": 3})
+    {'step': 3}
+    """
+    if isinstance(tree, dict):
+        return {key: tensors(value, device) for key, value in tree.items()}
+    if isinstance(tree, list):
+        return [tensors(value, device) for value in tree]
+    if hasattr(tree, "dtype") and hasattr(tree, "shape"):
+        return torch_module().as_tensor(tree, device=device)
+    return tree

@@ -1,0 +1,88 @@
+"""Frames: tracks as everyone sees their own, and what is needed to turn predictions back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Framed", "framed", "headings"]
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+MOVED = 0.1
+"""Somebody who moved less than this [m] over some rows has no heading there; more rows are then looked at."""
+SPANS = (2, 4)
+"""Displacements that the heading is taken from, before all of them."""
+
+
+@dataclass(frozen=True)
+class Framed:
+    """Tracks of S scenes in frames of their own.
+
+    Fields:
+        local: ``[S, T, A, 2]`` [m] positions in the frame of each person.
+        origin: ``[S, A, 2]`` [m] where these frames stand, from ``centre``.
+        turn: ``[S, A, 2]`` cosine and sine of their headings.
+        centre: ``[S, 1, 2]`` [m] a point amid the people, so that numbers stay small.
+    """
+
+    local: Floats
+    origin: Floats
+    turn: Floats
+    centre: Floats
+
+    def world(self, local: Floats) -> Floats:
+        """Return positions ``[..., S, T, A, 2]`` [m] of these frames in the world."""
+        cos, sin = self.turn[:, None, :, 0], self.turn[:, None, :, 1]
+        x, y = local[..., 0], local[..., 1]
+        turned = np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
+        return turned + (self.origin + self.centre)[:, None]
+
+    def own(self, world: Floats) -> Floats:
+        """Return positions ``[S, T, A, 2]`` [m] of the world in these frames."""
+        away = world - self.centre[:, None] - self.origin[:, None]
+        cos, sin = self.turn[:, None, :, 0], self.turn[:, None, :, 1]
+        x, y = away[..., 0], away[..., 1]
+        return np.stack([cos * x + sin * y, cos * y - sin * x], axis=-1)
+
+
+def framed(past: Floats, here: Bools, frame: str, offset: Floats) -> Framed:
+    """Put tracks ``[S, T, A, 2]`` [m] into frames; who is not ``here`` ``[S, A]`` stays at 0.
+
+    Args:
+        past: complete observed tracks.
+        here: who is there.
+        frame: ``person``: from where each person is, along their heading; ``world``: from ``offset`` for all.
+        offset: ``[2]`` [m].
+    """
+    now = past[:, -1]
+    if frame == "world":
+        centre = np.broadcast_to(offset, (len(past), 1, 2))
+        origin, turn = np.zeros_like(now), np.broadcast_to(np.array([1.0, 0.0]), now.shape)
+    else:
+        count = np.maximum(here.sum(axis=1), 1)[:, None, None]
+        centre = np.sum(np.where(here[..., None], now, 0.0), axis=1, keepdims=True) / count
+        origin, turn = np.where(here[..., None], now - centre, 0.0), headings(past)
+    made = Framed(past, origin, turn, centre)
+    return Framed(np.where(here[:, None, :, None], made.own(past), 0.0), origin, turn, centre)
+
+
+def headings(past: Floats) -> Floats:
+    """Return ``[S, A, 2]`` unit vectors along which people walk: of their last rows, or more when they hardly moved.
+
+    Who did not move at all heads along +x.
+    """
+    rows = past.shape[1]
+    found = np.zeros_like(past[:, -1])
+    length = np.zeros(found.shape[:2])
+    for span in (*SPANS, rows - 1):
+        way = past[:, -1] - past[:, max(0, rows - 1 - span)]
+        wanted = length < MOVED
+        found = np.where(wanted[..., None], way, found)
+        length = np.where(wanted, np.hypot(way[..., 0], way[..., 1]), length)
+    still = length < 1e-9
+    unit = found / np.where(still, 1.0, length)[..., None]
+    return np.where(still[..., None], np.array([1.0, 0.0]), unit)

@@ -1,0 +1,268 @@
+"""What is learned from: windows of several recordings, ragged in people, and batches of them with masks."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.errors import DataError, InputError, did_you_mean
+from crowdbot.data import Recording, Windows
+
+__all__ = ["FOLDS", "Samples", "Scenes", "leave_out", "short_recordings", "split_in_time"]
+
+FOLDS = {
+    "eth": ("biwi_eth",),
+    "hotel": ("biwi_hotel",),
+    "univ": ("students001", "students003"),
+    "zara1": ("crowds_zara01",),
+    "zara2": ("crowds_zara02",),
+}
+"""Files that each scene of the leave-one-out protocol leaves out (Gupta et al. 2018); ``uni_examples`` stays."""
+ENOUGH = 180.0
+"""The report asks for recordings of more than 3 minutes [s]."""
+BUCKET = 16
+"""Scenes of about so many batches are sorted by size before they are cut into batches: little is padded."""
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+
+class Scenes(NamedTuple):
+    """A batch of S scenes, padded to A people.
+
+    Fields:
+        position: ``[S, T, A, 2]`` [m], observed rows first, then the future; 0 where nobody is.
+        there: ``[S, T, A]`` bool.
+        scored: ``[S, A]`` bool: complete tracks, which losses and errors count.
+        here: ``[S, A]`` bool: people who are present at the last observed row.
+    """
+
+    position: Floats
+    there: Bools
+    scored: Bools
+    here: Bools
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """S scenes (windows) with P people altogether, scene by scene.
+
+    Fields:
+        position: ``[P, T, 2]`` [m], observed rows first, then the future; 0 where it is not known.
+        there: ``[P, T]`` bool.
+        scored: ``[P]`` bool.
+        first: ``[S + 1]`` the first person of each scene, then P.
+        source: ``[S]`` which recording a scene is of.
+        names: of the recordings.
+        observe: how many of the T rows are observed.
+        dt: time step [s].
+        units: ``m`` or ``px``.
+    """
+
+    position: Floats
+    there: Bools
+    scored: Bools
+    first: Integers
+    source: Integers
+    names: tuple[str, ...]
+    observe: int
+    dt: float
+    units: str = "m"
+
+    @classmethod
+    def of(cls, recordings: Sequence[Recording]) -> Samples:
+        """Cut all windows of some recordings.
+
+        Raises:
+            InputError: there is no recording, or they differ in time step, units or rows.
+            DataError: a recording has no window.
+        """
+        if not recordings:
+            raise InputError("there is no recording to learn from")
+        return cls.joined([cls.cut(*one.windows, one.name) for one in recordings])
+
+    @classmethod
+    def cut(cls, past: Windows, future: Windows, name: str = "") -> Samples:
+        """Return the scenes of windows, everyone who is present at the last observed row."""
+        window, person = np.nonzero(past.present[:, -1])
+        place = np.concatenate([past.position, future.position], axis=1)
+        there = np.concatenate([past.present, future.present], axis=1)
+        return cls(
+            position=place[window, :, person],
+            there=there[window, :, person],
+            scored=future.scored[window, person] & there[window, :, person].all(axis=1),
+            first=np.searchsorted(window, np.arange(len(past) + 1)).astype(np.int64),
+            source=np.zeros(len(past), dtype=np.int64),
+            names=(name or past.source,),
+            observe=past.position.shape[1],
+            dt=past.dt,
+            units=past.units,
+        )
+
+    @classmethod
+    def joined(cls, parts: Sequence[Samples]) -> Samples:
+        """Return the scenes of several samples, in order.
+
+        Raises:
+            InputError: they differ in time step, units or rows.
+        """
+        begin = parts[0]
+        for part in parts[1:]:
+            for what in ("units", "observe", "rows"):
+                one, other = getattr(begin, what), getattr(part, what)
+                if one != other:
+                    raise InputError(f"{begin.names[0]} has {what} {one}, {part.names[0]} has {other}; make them equal")
+            if abs(part.dt - begin.dt) > 0.01 * begin.dt:
+                raise InputError(
+                    f"{begin.names[0]} has a row every {begin.dt:.4g} s, {part.names[0]} every {part.dt:.4g} s;"
+                    " bring them to one step with --step"
+                )
+        people = np.cumsum([0, *(len(part.position) for part in parts)])
+        kinds = np.cumsum([0, *(len(part.names) for part in parts)])
+        return dataclasses.replace(
+            begin,
+            position=np.concatenate([part.position for part in parts]),
+            there=np.concatenate([part.there for part in parts]),
+            scored=np.concatenate([part.scored for part in parts]),
+            first=np.concatenate([*(p.first[:-1] + n for p, n in zip(parts, people, strict=False)), people[-1:]]),
+            source=np.concatenate([part.source + n for part, n in zip(parts, kinds, strict=False)]),
+            names=tuple(name for part in parts for name in part.names),
+        )
+
+    def __len__(self) -> int:
+        """Return the number of scenes."""
+        return len(self.first) - 1
+
+    @property
+    def rows(self) -> int:
+        """Number T of rows, observed and future ones."""
+        return int(self.position.shape[1])
+
+    @property
+    def predict(self) -> int:
+        """Number of future rows."""
+        return self.rows - self.observe
+
+    @property
+    def people(self) -> int:
+        """Number of people whose future counts."""
+        return int(self.scored.sum())
+
+    @property
+    def digest(self) -> str:
+        """Hash of everything that is in the samples."""
+        found = hashlib.blake2b(repr((self.names, self.observe, self.dt, self.units)).encode(), digest_size=12)
+        for array in (self.position, self.there, self.scored, self.first, self.source):
+            found.update(np.ascontiguousarray(array).tobytes())
+        return found.hexdigest()
+
+    def chosen(self, scenes: Integers | Bools) -> Samples:
+        """Return some of the scenes."""
+        number = np.arange(len(self))[scenes]
+        count = np.diff(self.first)[number]
+        first = np.concatenate([[0], np.cumsum(count)])
+        person = np.repeat(self.first[number] - first[:-1], count) + np.arange(first[-1])
+        arrays = {name: getattr(self, name)[person] for name in ("position", "there", "scored")}
+        return dataclasses.replace(self, **arrays, first=first, source=self.source[number])
+
+    def thinned(self, most: int) -> Samples:
+        """Return at most so many scenes, evenly over all of them."""
+        return self if len(self) <= most else self.chosen(np.linspace(0, len(self) - 1, most).round().astype(np.int64))
+
+    def batch(self, scenes: Integers) -> Scenes:
+        """Return some scenes as padded arrays."""
+        start, count = self.first[scenes], np.diff(self.first)[scenes]
+        slot = np.arange(max(1, int(count.max(initial=1))))
+        here = slot < count[:, None]
+        person = np.where(here, start[:, None] + slot, 0)
+        there = self.there[person] & here[..., None]
+        place = np.where(there[..., None], self.position[person], 0.0)
+        return Scenes(place.swapaxes(1, 2), there.swapaxes(1, 2), self.scored[person] & here, here)
+
+    def batches(self, rng: np.random.Generator, people: int) -> list[Integers]:
+        """Return every scene with somebody to learn from once, in random batches of about so many scored people.
+
+        Scenes of about the same size come together, so that little is padded.
+        """
+        counted = np.add.reduceat(np.append(self.scored, False).astype(np.int64), self.first[:-1])
+        counted[np.diff(self.first) == 0] = 0
+        order = rng.permutation(np.flatnonzero(counted > 0))
+        found: list[Integers] = []
+        bucket = np.cumsum(counted[order]) // max(1, BUCKET * people)
+        for part in np.split(order, np.flatnonzero(np.diff(bucket)) + 1):
+            ranked = part[np.argsort(np.diff(self.first)[part], kind="stable")]
+            cut = (np.cumsum(counted[ranked]) - 1) // max(1, people)
+            found += np.split(ranked, np.flatnonzero(np.diff(cut)) + 1)
+        return [found[number] for number in rng.permutation(len(found))]
+
+
+def leave_out(recordings: Sequence[Recording], name: str) -> tuple[list[Recording], list[Recording]]:
+    """Return the recordings to learn from, and those that a name leaves out.
+
+    Args:
+        recordings: of all scenes.
+        name: a scene of the leave-one-out protocol (eth, hotel, univ, zara1, zara2), the begin of a file name, one of
+            its words, or, when no file has it, those of a folder.
+
+    Raises:
+        InputError: no recording has this name, or none is left.
+    """
+    begins = tuple(begin.lower() for begin in (*FOLDS.get(name, ()), name))
+    stems = [Path(one.path).stem.lower() for one in recordings]
+    folders = [Path(one.path).parent.name.lower() for one in recordings]
+    named = [_is_named(stem, begins) for stem in stems]
+    if not any(named):  # obsmat.txt stands in a folder that has the name
+        named = [_is_named(folder, begins) for folder in folders]
+    out = [one for one, is_out in zip(recordings, named, strict=True) if is_out]
+    kept = [one for one, is_out in zip(recordings, named, strict=True) if not is_out]
+    if not out:
+        near = did_you_mean(name, [*FOLDS, *stems])
+        raise InputError(f"no recording is called {name!r}{near}; there are {', '.join(sorted(set(stems)))}")
+    if not kept:
+        raise InputError(f"{name!r} leaves out all {len(out)} recordings; nothing is left to learn from")
+    return kept, out
+
+
+def _is_named(text: str, begins: tuple[str, ...]) -> bool:
+    words = re.split(r"[^a-z0-9]+", text)
+    return any(text.startswith(begin) or begin in words for begin in begins)
+
+
+def split_in_time(recordings: Sequence[Recording], share: float) -> tuple[Samples, Samples]:
+    """Return the scenes to learn from and those of the last share of every recording, with no row in both.
+
+    Raises:
+        InputError: the share is not between 0 and 1.
+        DataError: no scene is left on one side.
+    """
+    if not 0.0 < share < 1.0:
+        raise InputError(f"the share of a recording that is held back is {share}, it must be above 0 and below 1")
+    early, late = [], []
+    for one in recordings:
+        past, future = one.windows
+        border = past.frame[min(len(past) - 1, int(len(past) * (1.0 - share))), 0]
+        before, after = future.frame[:, -1] < border, past.frame[:, 0] >= border
+        if not before.any() or not after.any():
+            raise DataError(f"{one.path}: {len(past)} windows are too few to hold back the last {share:.0%} in time")
+        early.append(Samples.cut(past[before], future[before], one.name))
+        late.append(Samples.cut(past[after], future[after], one.name))
+    return Samples.joined(early), Samples.joined(late)
+
+
+def short_recordings(recordings: Sequence[Recording]) -> list[str]:
+    """Return a sentence for each recording that is shorter than the 3 minutes that the report asks for."""
+    found = []
+    for one in recordings:
+        seconds = float(one.rest.time[-1] - one.rest.time[0])
+        if seconds < ENOUGH:
+            found.append(f"{one.name} lasts {seconds:.0f} s; learning asks for recordings of more than 3 minutes")
+    return found

@@ -1,0 +1,141 @@
+"""The settings of Social Ways: every option of the report, and what this code adds, in one frozen value."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from crowdbot.core.errors import InputError, did_you_mean
+
+__all__ = ["ADVERSARIAL", "FRAMES", "PRESETS", "SocialWaysConfig", "config_of", "preset"]
+
+ADVERSARIAL = ("cross-entropy", "least-squares")
+FRAMES = ("person", "world")
+
+
+@dataclass(frozen=True)
+class SocialWaysConfig:
+    """What is trained, and how. The defaults are those of the report (its table 2 and section 2.2.8).
+
+    Fields of table 2:
+        unrolling_steps: steps of the discriminator ahead of each step of the generator; 0 is the plain GAN.
+        use_info_loss, info_weight: whether the latent codes must be readable from the prediction.
+        latent_codes: how many of the inputs are codes.
+        use_l2_loss, l2_weight: squared distance of one draw to the truth.
+        generator_rate, discriminator_rate: learning rates of Adam.
+    Fields of the text:
+        adversarial: cross-entropy, or least-squares; ``adversarial_weight`` weighs it for the generator.
+        use_variety_loss, variety_weight, variety_draws: squared distance of the best draw of each person.
+        momentum: first moment of Adam.
+        batch: people (with a known future) in an update; whole scenes, so that it is about this number.
+        observe, predict: rows, that is tau + 1 and T.
+        hidden, pooled, noise: sizes of the LSTMs, of the pooled vector, and of the noise beside the codes.
+        slope: of the LeakyReLU.
+        social: attention pooling; without it everyone is alone, as in the toy study.
+    Fields of this code:
+        frame: ``person``: tracks are seen from where each person is and heads, so that predictions turn and shift with
+            the world; ``world``: in the coordinates of the recording, as in the report, for use in that place only.
+        residual: the network corrects the last seen velocity instead of saying the velocity itself.
+        mirror, reverse, scale_sd: training scenes are mirrored, run backwards, and stretched by exp(normal) at random.
+        average: weights for predicting are a moving average with this factor over updates; 0 takes the last ones.
+        decay: learning rates fall to 0 along a cosine.
+        clip: largest norm of a gradient; 0 does not clip.
+
+    Raises:
+        InputError: a value is not allowed.
+    """
+
+    unrolling_steps: int = 0
+    use_info_loss: bool = True
+    info_weight: float = 0.5
+    latent_codes: int = 2
+    use_l2_loss: bool = False
+    l2_weight: float = 0.5
+    generator_rate: float = 1e-3
+    discriminator_rate: float = 1e-4
+    adversarial: str = "cross-entropy"
+    adversarial_weight: float = 1.0
+    use_variety_loss: bool = False
+    variety_weight: float = 0.5
+    variety_draws: int = 20
+    momentum: float = 0.9
+    batch: int = 64
+    observe: int = 8
+    predict: int = 12
+    hidden: int = 128
+    pooled: int = 64
+    noise: int = 62
+    slope: float = 0.1
+    social: bool = True
+    frame: str = "person"
+    residual: bool = True
+    mirror: bool = False
+    reverse: bool = False
+    scale_sd: float = 0.0
+    average: float = 0.0
+    decay: bool = False
+    clip: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, known in (("adversarial", ADVERSARIAL), ("frame", FRAMES)):
+            word = getattr(self, name)
+            if word not in known:
+                raise InputError(f"unknown {name} {word!r}{did_you_mean(word, known)}; known are {', '.join(known)}")
+        least = {"unrolling_steps": 0, "latent_codes": 0, "noise": 0, "variety_draws": 1, "batch": 1, "observe": 2}
+        least |= {"predict": 1, "hidden": 1, "pooled": 1, "info_weight": 0, "l2_weight": 0, "variety_weight": 0}
+        least |= {"adversarial_weight": 0, "scale_sd": 0, "average": 0, "clip": 0, "momentum": 0, "slope": 0}
+        for name, low in least.items():
+            if not getattr(self, name) >= low:
+                raise InputError(f"social ways: {name} = {getattr(self, name)} must be at least {low}")
+        for name in ("generator_rate", "discriminator_rate"):
+            if not getattr(self, name) > 0.0:
+                raise InputError(f"social ways: {name} = {getattr(self, name)} must be above 0")
+        for name in ("momentum", "average"):
+            if not getattr(self, name) < 1.0:
+                raise InputError(f"social ways: {name} = {getattr(self, name)} must be below 1")
+        if self.use_info_loss and self.latent_codes == 0:
+            raise InputError("social ways: the information loss needs latent codes; set latent_codes or no info loss")
+
+    @property
+    def inputs(self) -> int:
+        """Length of the noise vector: the codes first, then the rest."""
+        return self.latent_codes + self.noise
+
+
+PRESETS: dict[str, dict[str, Any]] = {
+    "report": {},
+    "variety": {
+        "use_variety_loss": True, "variety_weight": 10.0, "variety_draws": 10, "adversarial_weight": 0.1,
+        "mirror": True, "reverse": True, "scale_sd": 0.3, "average": 0.995, "decay": True, "clip": 1.0,
+    },
+}  # fmt: skip
+"""``report``: the defaults; ``variety``: what is trained for the tables of best-of-20 errors."""
+
+
+def preset(name: str, values: Mapping[str, Any] | None = None) -> SocialWaysConfig:
+    """Return named settings with some values changed.
+
+    Raises:
+        InputError: the name or a value is not known.
+
+    >>> preset("variety", {"unrolling_steps": 5}).unrolling_steps
+    5
+    """
+    if name not in PRESETS:
+        raise InputError(f"unknown preset {name!r}{did_you_mean(name, PRESETS)}; known are {', '.join(PRESETS)}")
+    return config_of({**PRESETS[name], **(values or {})})
+
+
+def config_of(values: Mapping[str, Any]) -> SocialWaysConfig:
+    """Return the settings of a checkpoint.
+
+    Raises:
+        InputError: a name is unknown or a value not allowed.
+    """
+    known = [field.name for field in dataclasses.fields(SocialWaysConfig)]
+    wrong = next((name for name in values if name not in known), None)
+    if wrong is not None:
+        raise InputError(f"social ways has no setting {wrong!r}{did_you_mean(wrong, known)}; it has {', '.join(known)}")
+    return SocialWaysConfig(**values)

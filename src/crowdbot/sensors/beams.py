@@ -1,0 +1,107 @@
+"""Beams: fixed directions in a sensor's frame, sorted into cells so that a shape is tried on few of them."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Beams", "beams", "cone", "fan"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+PER_CELL = 2.0
+"""Beams of a cell on average."""
+TURN = 2.0 * math.pi
+
+
+class Beams(NamedTuple):
+    """Unit vectors in cells of equal elevation (rows) and azimuth (columns).
+
+    Fields:
+        x, y, z: ``[R]``, sorted by row, then by column.
+        order: ``[R]`` index of each sorted beam among those that were given.
+        begin: ``[rows * columns + 1]`` index of the first beam of each cell.
+        low, tall: elevation at which row 0 begins and height of a row [rad].
+        left, wide: azimuth at which column 0 begins and width of a column [rad].
+        down, up: tangents of the lowest and the highest elevation, at most 0 and at least 0.
+    """
+
+    x: Floats
+    y: Floats
+    z: Floats
+    order: Ints
+    begin: Ints
+    rows: int
+    columns: int
+    low: float
+    tall: float
+    left: float
+    wide: float
+    down: float
+    up: float
+
+
+def beams(directions: Floats) -> Beams:
+    """Sort unit vectors ``[R, 3]`` into cells.
+
+    >>> found = beams(fan(np.linspace(-1.0, 1.0, 81)))
+    >>> found.rows, found.columns, found.order[:3].tolist()
+    (1, 40, [0, 1, 2])
+    """
+    x, y, z = directions.T
+    elevation = np.arcsin(np.clip(z, -1.0, 1.0))
+    azimuth = np.arctan2(y, x)
+    low, high = float(elevation.min()), float(elevation.max())
+    left, right = float(azimuth.min()), float(azimuth.max())
+    tall, wide = max(high - low, 1e-9), max(right - left, 1e-9)
+    cells = max(1.0, len(x) / PER_CELL)
+    levels = len(np.unique(np.round(elevation, 9)))
+    rows = int(np.clip(round(math.sqrt(cells * tall / wide)), 1, 1024)) if high - low > 1e-9 else 1
+    rows = levels if levels <= 2 * rows else rows  # rings have rows of their own
+    columns = int(np.clip(round(cells / rows), 1, 8192))
+    row = np.minimum((elevation - low) / tall * rows, rows - 1).astype(np.int64)
+    column = np.minimum((azimuth - left) / wide * columns, columns - 1).astype(np.int64)
+    cell = row * columns + column
+    order = np.argsort(cell, kind="stable")
+    begin = np.searchsorted(cell[order], np.arange(rows * columns + 1))
+    steepest = 0.5 * math.pi - 1e-6
+    return Beams(
+        np.ascontiguousarray(x[order]),
+        np.ascontiguousarray(y[order]),
+        np.ascontiguousarray(z[order]),
+        order,
+        begin.astype(np.int64),
+        rows,
+        columns,
+        low,
+        tall / rows,
+        left,
+        wide / columns,
+        math.tan(max(min(low, 0.0), -steepest)) - 1e-12,
+        math.tan(min(max(high, 0.0), steepest)) + 1e-12,
+    )
+
+
+def fan(azimuth: Floats, elevation: Floats | float = 0.0) -> Floats:
+    """Return the unit vectors ``[..., 3]`` of azimuths and elevations [rad] that broadcast."""
+    flat = np.cos(elevation)
+    parts = np.broadcast_arrays(flat * np.cos(azimuth), flat * np.sin(azimuth), np.sin(elevation))
+    return np.ascontiguousarray(np.stack(parts, axis=-1))
+
+
+def cone(half_angle: float, count: int) -> Floats:
+    """Return ``count`` unit vectors ``[R, 3]`` spread evenly over the solid angle of a cone about x, the axis first.
+
+    A sunflower: the square of the sine of half the angle grows evenly, each beam is turned by the golden angle.
+
+    >>> cone(0.5, 1).tolist()
+    [[1.0, 0.0, 0.0]]
+    """
+    share = np.arange(count) / max(1, count - 1)
+    off = 2.0 * np.arcsin(np.sqrt(share) * math.sin(0.5 * half_angle))
+    turn = math.pi * (3.0 - math.sqrt(5.0)) * np.arange(count)
+    return np.stack([np.cos(off), np.sin(off) * np.cos(turn), np.sin(off) * np.sin(turn)], axis=-1)

@@ -1,0 +1,172 @@
+"""Cameras as specs: intrinsics, lens distortion and the law of stereo noise, for images that somebody renders."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, SpatialPose
+
+from .noise import Randomness, normals
+
+__all__ = ["ImageSource", "Lens", "RGBCamera", "distorted", "pixel_directions", "stereo_depth"]
+
+Floats = NDArray[np.float64]
+
+
+class ImageSource(Protocol):
+    """Who renders: a physics world, a rasteriser."""
+
+    def render(self, camera: Any, pose: SpatialPose) -> Mapping[str, NDArray[Any]]:
+        """Return images of an ideal pinhole camera with the lens' intrinsics, each with the axis E first.
+
+        ``rgb`` ``[E, H, W, 3]`` uint8; ``depth`` ``[E, H, W]`` [m] along the optical axis, inf for nothing; ``hit``
+        and ``part`` ``[E, H, W]`` as in :class:`Scan`. The camera looks along x of its pose, z is up in the image.
+        """
+
+
+@dataclass(frozen=True)
+class Lens:
+    """Intrinsics of a camera: a pinhole with Brown-Conrady distortion (as in OpenCV and ROS ``plumb_bob``).
+
+    Fields:
+        width, height: of the image [pixels].
+        fx, fy: focal lengths [pixels]; cx, cy: principal point [pixels], the middle of the first pixel is (0, 0).
+        distortion: k1, k2, p1, p2, k3.
+
+    Raises:
+        InputError: a value is not allowed.
+
+    >>> Lens.of(640, 480, math.radians(60.0)).fx.__round__(3)
+    554.256
+    """
+
+    width: int
+    height: int
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    distortion: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        for name in ("width", "height"):
+            value = getattr(self, name)
+            if value != int(value) or value < 1:
+                raise InputError(f"camera: {name} = {value} must be a whole number of at least 1")
+        for name in ("fx", "fy"):
+            if not 0.0 < getattr(self, name) < math.inf:
+                raise InputError(f"camera: {name} = {getattr(self, name)} must be finite and above 0")
+        if len(self.distortion) != 5 or not all(math.isfinite(k) for k in (*self.distortion, self.cx, self.cy)):
+            raise InputError(f"camera: distortion = {self.distortion} must be five finite numbers k1, k2, p1, p2, k3")
+
+    @classmethod
+    def of(cls, width: int, height: int, field_of_view: float, distortion: tuple[float, ...] = (0.0,) * 5) -> Lens:
+        """Return a lens of a horizontal field of view [rad], with square pixels and a principal point in the middle."""
+        if not 0.0 < field_of_view < math.pi:
+            raise InputError(f"camera: field_of_view = {field_of_view} rad must be above 0 and below pi")
+        focal = 0.5 * width / math.tan(0.5 * field_of_view)
+        return cls(width, height, focal, focal, 0.5 * (width - 1), 0.5 * (height - 1), distortion)  # type: ignore[arg-type]
+
+    def bent(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+        """Return where the lens shows the points ``x`` (right), ``y`` (down) of the plane at distance 1."""
+        k1, k2, p1, p2, k3 = self.distortion
+        r2 = x * x + y * y
+        bend = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))
+        return (
+            x * bend + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
+            y * bend + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y,
+        )
+
+    def straightened(self, x: Floats, y: Floats, rounds: int = 40) -> tuple[Floats, Floats]:
+        """Return what :meth:`bent` maps to ``x``, ``y``, by iteration."""
+        u, v = x.copy(), y.copy()
+        for _ in range(rounds if any(self.distortion) else 0):
+            bx, by = self.bent(u, v)
+            u, v = u + (x - bx), v + (y - by)
+        return u, v
+
+    def rays(self) -> tuple[Floats, Floats]:
+        """Return where the pixels look: right and down ``[H, W]`` at distance 1 ahead."""
+        column, row = np.meshgrid(np.arange(self.width, dtype=np.float64), np.arange(self.height, dtype=np.float64))
+        return self.straightened(np.asarray((column - self.cx) / self.fx), np.asarray((row - self.cy) / self.fy))
+
+
+@dataclass(frozen=True)
+class RGBCamera:
+    """A colour camera: its lens, rate and limits of view. It shows what an :class:`ImageSource` renders.
+
+    Fields:
+        lens: intrinsics.
+        rate: images per second [Hz]; near, far: limits of what is rendered [m].
+    """
+
+    lens: Lens
+    rate: float = 30.0
+    near: float = 0.05
+    far: float = 100.0
+
+    def image(self, source: ImageSource, pose: SpatialPose) -> NDArray[np.uint8]:
+        """Return the image ``[E, H, W, 3]`` with the distortion of the lens."""
+        return np.asarray(distorted(source.render(self, pose)["rgb"], self.lens), dtype=np.uint8)
+
+
+def pixel_directions(lens: Lens) -> Floats:
+    """Return the unit vectors ``[H, W, 3]`` of the pixels in the camera's frame: x ahead, y left, z up.
+
+    >>> pixel_directions(Lens.of(3, 1, math.pi / 2))[0, 1].tolist()
+    [1.0, -0.0, -0.0]
+    """
+    right, down = lens.rays()
+    ahead = np.stack([np.ones_like(right), -right, -down], axis=-1)
+    return np.asarray(ahead / np.sqrt((ahead**2).sum(axis=-1, keepdims=True)))
+
+
+def distorted(image: NDArray[Any], lens: Lens, fill: float = 0.0) -> NDArray[Any]:
+    """Return a pinhole image ``[E, H, W, ...]`` as the lens shows it.
+
+    Colours are interpolated (bilinear, rounded for whole numbers); depth and labels must not be mixed across edges,
+    so two-dimensional images take the nearest pixel. ``fill`` stands where the pinhole image does not reach.
+    """
+    right, down = lens.rays()
+    column, row = right * lens.fx + lens.cx, down * lens.fy + lens.cy
+    inside = (column >= -0.5) & (column <= lens.width - 0.5) & (row >= -0.5) & (row <= lens.height - 0.5)
+    column, row = np.clip(column, 0.0, lens.width - 1.0), np.clip(row, 0.0, lens.height - 1.0)
+    if image.ndim == 3:
+        nearest = image[:, np.round(row).astype(int), np.round(column).astype(int)]
+        return np.asarray(np.where(inside, nearest, np.asarray(fill, dtype=image.dtype)))
+    c0, r0 = np.floor(column).astype(int), np.floor(row).astype(int)
+    c1, r1 = np.minimum(c0 + 1, lens.width - 1), np.minimum(r0 + 1, lens.height - 1)
+    a, b = (column - c0)[..., None], (row - r0)[..., None]
+    upper = image[:, r0, c0] * (1.0 - a) + image[:, r0, c1] * a
+    lower = image[:, r1, c0] * (1.0 - a) + image[:, r1, c1] * a
+    mixed = np.where(inside[..., None], upper * (1.0 - b) + lower * b, fill)
+    return np.asarray(np.round(mixed) if image.dtype.kind in "ui" else mixed).astype(image.dtype)
+
+
+def stereo_depth(
+    depth: Floats, focal: float, baseline: float, sd: float, step: float, rng: Randomness | None
+) -> Floats:
+    """Return the depth ``[E, ...]`` [m] that a stereo pair measures: noise and steps are those of the disparity.
+
+    With the disparity ``focal baseline / depth`` [pixels], its noise ``sd`` [pixels] makes an error of the depth of
+    ``depth^2 sd / (focal baseline)``, and its ``step`` (the subpixel) steps that grow in the same way (Grunnet-Jepsen
+    et al., Subpixel linearity improvement for RealSense D400, revision 1.3). What is infinite or not seen by both
+    (disparity of at most 0) is inf.
+
+    >>> stereo_depth(np.array([[2.0]]), 424.0, 0.05, 0.0, 1.0 / 32.0, None).round(4).tolist()
+    [[2.0012]]
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        disparity = focal * baseline / depth
+        if sd > 0.0:
+            disparity = disparity + sd * normals(depth.shape, rng)
+        if step > 0.0:
+            disparity = np.round(disparity / step) * step
+        found = focal * baseline / disparity
+    return np.asarray(np.where(np.isfinite(depth) & (depth > 0.0) & (disparity > 0.0), found, np.inf))

@@ -1,0 +1,363 @@
+"""Rays: where beams from a pose meet limbs, discs, walls, props, skins and the floor.
+
+Everything is brought into the sensor's frame. There each shape covers a window of azimuth and elevation, and only the
+beams of the cells in it are tried, as a picture is drawn with a depth buffer. So the time goes with what is seen and
+hardly with the number of shapes times beams. Environments are independent of each other.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Scene, SpatialPose
+from crowdbot.core.kernels import kernel
+from crowdbot.core.rays import (
+    BOX,
+    CAPSULE,
+    CYLINDER,
+    TRIANGLE,
+    WALL,
+    WIDTH,
+    normal_at,
+    ray_to_box,
+    ray_to_capsule,
+    ray_to_cylinder,
+    ray_to_triangle,
+    ray_to_wall,
+    within,
+)
+from crowdbot.core.windows import (
+    ball_in_view,
+    hull_gap,
+    hull_in_view,
+    hull_levels,
+    hull_width,
+    rod_gap,
+    rod_levels,
+    rod_width,
+)
+
+from .beams import Beams
+from .shapes import FLOOR, NOTHING, Shapes, gathered
+
+__all__ = ["Hits", "cast"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+TURN = 2.0 * math.pi
+MARGIN = 1e-9
+"""Windows are this much larger [rad] at every side, against rounding."""
+MANY = 4
+"""From this many environments on, threads share them."""
+
+
+@kernel
+def _try(
+    kind: int, s: Floats, n: int, begin: int, end: int, near: float, beams: Beams, distance: Floats, which: Ints
+) -> None:
+    """Try a shape on some beams, unless they have met something nearer than it can be."""
+    a, b, c, d, e, f, g, h, i, j = s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8], s[9]
+    for k in range(begin, end):
+        if near < distance[k]:
+            x, y, z = beams.x[k], beams.y[k], beams.z[k]
+            if kind == CAPSULE:
+                reach = ray_to_capsule(x, y, z, a, b, c, d, e, f, g, h)
+            elif kind == TRIANGLE:
+                reach = ray_to_triangle(x, y, z, a, b, c, d, e, f, g, h, i)
+            elif kind == WALL:
+                reach = ray_to_wall(x, y, z, a, b, c, d, e, f, g, h, i, j)
+            elif kind == CYLINDER:
+                reach = ray_to_cylinder(x, y, z, a, b, c, d, e, f, g, h)
+            else:
+                reach = ray_to_box(x, y, z, s)
+            if reach < distance[k]:
+                distance[k] = reach
+                which[k] = n
+
+
+@kernel
+def _draw(
+    kind: int, s: Floats, n: int, corner: Floats, near: float, beams: Beams, distance: Floats, which: Ints
+) -> None:
+    """Try a shape on the beams in its window."""
+    if near == 0.0 and within(kind, s):
+        for k in range(len(distance)):
+            if distance[k] > 0.0:
+                distance[k] = 0.0
+                which[k] = n
+        return
+    bottom, top = 0.0, 0.0
+    if kind in (CAPSULE, CYLINDER):
+        ax, ay, az, length, radius = s[0], s[1], s[2], s[6], s[7]
+        bx, by, bz = ax + length * s[3], ay + length * s[4], az + length * s[5]
+        left, width = rod_width(ax, ay, bx, by, radius)
+        if beams.rows > 1:
+            bottom, top = rod_levels(ax, ay, az, bx, by, bz, radius, width >= TURN)
+    else:
+        count = 3 if kind == TRIANGLE else (4 if kind == WALL else 8)
+        left, width = hull_width(corner, count)
+        if beams.rows > 1:
+            bottom, top = hull_levels(corner, count, width >= TURN)
+    first, last, columns = 0, 0, beams.columns
+    if beams.rows > 1:
+        first = max(0, math.floor((bottom - MARGIN - beams.low) / beams.tall))
+        last = min(beams.rows - 1, math.floor((top + MARGIN - beams.low) / beams.tall))
+    start = (left - MARGIN - beams.left) % TURN
+    for turn in range(2):
+        a = max(0, math.floor((start - turn * TURN) / beams.wide))
+        b = min(columns - 1, math.floor((start - turn * TURN + width + 2.0 * MARGIN) / beams.wide))
+        for row in range(first, last + 1 if a <= b else first):
+            begin, end = beams.begin[row * columns + a], beams.begin[row * columns + b + 1]
+            _try(kind, s, n, begin, end, near, beams, distance, which)
+
+
+@kernel
+def _turned(turn: Floats, x: float, y: float, z: float, out: Floats, at: int) -> None:
+    """Write the vector x, y, z of the world in the sensor's frame."""
+    out[at] = turn[0, 0] * x + turn[1, 0] * y + turn[2, 0] * z
+    out[at + 1] = turn[0, 1] * x + turn[1, 1] * y + turn[2, 1] * z
+    out[at + 2] = turn[0, 2] * x + turn[1, 2] * y + turn[2, 2] * z
+
+
+@kernel
+def _moved(e: int, kind: int, n: int, shapes: Shapes, place: Floats, turn: Floats, s: Floats, corner: Floats) -> int:
+    """Write shape ``n`` of a kind in the sensor's frame: its row and the corners of its hull; return how many."""
+    if kind == TRIANGLE:
+        for k in range(3):
+            p = shapes.vertices[e, shapes.faces[n, k]]
+            _turned(turn, p[0] - place[0], p[1] - place[1], p[2] - place[2], s, 3 * k)
+            corner[k] = s[3 * k : 3 * k + 3]
+        return 3
+    row = shapes.rows[e, n]
+    _turned(turn, row[0] - place[0], row[1] - place[1], row[2] - place[2], s, 0)
+    if kind == BOX:
+        for k in range(3):
+            _turned(turn, row[3 + 3 * k], row[4 + 3 * k], row[5 + 3 * k], s, 3 + 3 * k)
+            s[12 + k] = row[12 + k]
+        for k in range(8):
+            for c in range(3):
+                a, b, d = s[12] * s[3 + c], s[13] * s[6 + c], s[14] * s[9 + c]
+                corner[k, c] = s[c] + (a if k & 1 else -a) + (b if k & 2 else -b) + (d if k & 4 else -d)
+        return 8
+    _turned(turn, row[3], row[4], row[5], s, 3)
+    if kind == WALL:
+        _turned(turn, row[6], row[7], row[8], s, 6)
+        s[9] = row[9]
+        for k in range(4):
+            for c in range(3):
+                corner[k, c] = s[c] + (s[3 + c] if k & 1 else 0.0) + (s[9] * s[6 + c] if k & 2 else 0.0)
+        return 4
+    s[6], s[7] = row[6], row[7]
+    for c in range(3):
+        corner[0, c] = s[c]
+        corner[1, c] = s[c] + s[6] * s[3 + c]
+    return 2
+
+
+@kernel
+def _bring(
+    table: Floats, kinds: Ints, present: NDArray[np.bool_], place: Floats, turn: Floats, limit: float, down: float,
+    up: float, rows: Floats, seen: Ints, nearest: Floats,
+) -> int:  # fmt: skip
+    """Write the rods that can be seen in the sensor's frame, and how near they come; return how many."""
+    kept = 0
+    px, py, pz = place[0], place[1], place[2]
+    a, b, c = turn[0, 2], turn[1, 2], turn[2, 2]
+    for n in range(len(kinds)):
+        if not present[n] or (kinds[n] not in (CAPSULE, CYLINDER)):
+            continue
+        ux, uy, uz, length, radius = table[n, 3], table[n, 4], table[n, 5], table[n, 6], table[n, 7]
+        x, y, z, half = table[n, 0] - px, table[n, 1] - py, table[n, 2] - pz, 0.5 * length
+        mx, my, mz = x + half * ux, y + half * uy, z + half * uz
+        slope, height = a * ux + b * uy + c * uz, a * mx + b * my + c * mz
+        if ball_in_view(mx, my, mz, slope, height, half, radius, limit, down, up):
+            for k in range(3):
+                rows[n, k] = turn[0, k] * x + turn[1, k] * y + turn[2, k] * z
+                rows[n, 3 + k] = turn[0, k] * ux + turn[1, k] * uy + turn[2, k] * uz
+            rows[n, 6], rows[n, 7] = length, radius
+            nearest[kept] = rod_gap(x, y, z, ux, uy, uz, length, radius) * (1.0 - 1e-12)
+            seen[kept] = n
+            kept += 1
+    return kept
+
+
+@kernel
+def _bring_flat(
+    e: int, shapes: Shapes, place: Floats, turn: Floats, limit: float, down: float, up: float, rows: Floats,
+    corner: Floats, seen: Ints, nearest: Floats, kept: int,
+) -> int:  # fmt: skip
+    """Do the same for all other shapes."""
+    for n in range(len(shapes.kind)):
+        kind = shapes.kind[n]
+        if not shapes.present[e, n] or kind in (CAPSULE, CYLINDER):
+            continue
+        count = _moved(e, kind, n, shapes, place, turn, rows[n], corner)
+        if hull_in_view(corner, count, limit, down, up):
+            around = kind == TRIANGLE or hull_width(corner, count)[1] >= TURN
+            nearest[kept] = 0.0 if around else hull_gap(corner, count) * (1.0 - 1e-12)
+            seen[kept] = n
+            kept += 1
+    return kept
+
+
+@kernel
+def _tell(
+    kind: Ints, owner: Ints, label: Ints, rows: Floats, place: Floats, turn: Floats, beams: Beams, reach: Floats,
+    which: Ints, distance: Floats, facing: Floats, normal: Floats, hit: Ints, part: Ints,
+) -> None:  # fmt: skip
+    """Write what every beam has met, in the order in which the beams were given."""
+    ox, oy, oz, height = turn[2, 0], turn[2, 1], turn[2, 2], place[2]
+    told = len(normal) > 0
+    before, fx, fy, fz = -1, 0.0, 0.0, 0.0
+    for k in range(len(reach)):
+        x, y, z, d, n, i = beams.x[k], beams.y[k], beams.z[k], reach[k], which[k], beams.order[k]
+        fall = x * ox + y * oy + z * oz
+        nx, ny, nz = ox, oy, oz
+        hit[i], part[i] = NOTHING, -1
+        if fall < 0.0 and height > 0.0 and height < -fall * d:
+            d = -height / fall
+            hit[i] = FLOOR
+        elif n >= 0:
+            hit[i], part[i] = owner[n], label[n]
+            if d == 0.0:
+                nx, ny, nz = -x, -y, -z
+            elif kind[n] == CAPSULE:
+                s = (d * x - rows[n, 0]) * rows[n, 3] + (d * y - rows[n, 1]) * rows[n, 4]
+                s = min(rows[n, 6], max(0.0, s + (d * z - rows[n, 2]) * rows[n, 5]))
+                over = 1.0 / rows[n, 7]
+                nx = (d * x - rows[n, 0] - s * rows[n, 3]) * over
+                ny = (d * y - rows[n, 1] - s * rows[n, 4]) * over
+                nz = (d * z - rows[n, 2] - s * rows[n, 5]) * over
+            else:
+                if n != before or kind[n] in (CYLINDER, BOX):  # what is flat has the same normal at the next beam
+                    before = n
+                    fx, fy, fz = normal_at(kind[n], d * x, d * y, d * z, rows[n])
+                nx, ny, nz = fx, fy, fz
+                if nx * x + ny * y + nz * z > 0.0:
+                    nx, ny, nz = -nx, -ny, -nz
+        distance[i] = d
+        if d < math.inf:
+            facing[i] = -(nx * x + ny * y + nz * z)
+            if told:
+                for c in range(3):
+                    normal[i, c] = turn[c, 0] * nx + turn[c, 1] * ny + turn[c, 2] * nz
+
+
+@kernel
+def _one(
+    e: int, place: Floats, turn: Floats, shapes: Shapes, beams: Beams, limit: float,
+    distance: Floats, facing: Floats, normal: Floats, hit: Ints, part: Ints,
+) -> None:  # fmt: skip
+    count, total = len(beams.x), len(shapes.kind)
+    reach, which = np.full(count, np.inf), np.full(count, -1)
+    rows, corner = np.empty((total, WIDTH)), np.empty((8, 3))
+    seen, nearest = np.empty(total, dtype=np.int64), np.empty(total)
+    down, up = beams.down, beams.up
+    kept = _bring(shapes.rows[e], shapes.kind, shapes.present[e], place, turn, limit, down, up, rows, seen, nearest)
+    kept = _bring_flat(e, shapes, place, turn, limit, down, up, rows, corner, seen, nearest, kept)
+    for i in np.argsort(nearest[:kept], kind="mergesort"):  # so that what is behind is rarely tried
+        n = seen[i]
+        kind = shapes.kind[n]
+        if kind not in (CAPSULE, CYLINDER):
+            _moved(e, kind, n, shapes, place, turn, rows[n], corner)
+        _draw(kind, rows[n], n, corner, nearest[i], beams, reach, which)
+    _tell(
+        shapes.kind,
+        shapes.owner,
+        shapes.part,
+        rows,
+        place,
+        turn,
+        beams,
+        reach,
+        which,
+        distance,
+        facing,
+        normal,
+        hit,
+        part,
+    )
+
+
+@kernel
+def _matrix(rotation: Floats) -> Floats:
+    """Return the rotation matrix of a quaternion, as :attr:`SpatialPose.matrix` does."""
+    size = math.sqrt(rotation[0] ** 2 + rotation[1] ** 2 + rotation[2] ** 2 + rotation[3] ** 2)
+    w, x, y, z = rotation[0] / size, rotation[1] / size, rotation[2] / size, rotation[3] / size
+    turn = np.empty((3, 3))
+    turn[0, 0], turn[0, 1], turn[0, 2] = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
+    turn[1, 0], turn[1, 1], turn[1, 2] = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)
+    turn[2, 0], turn[2, 1], turn[2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
+    return turn
+
+
+@kernel
+def _serial(
+    place: Floats, rotation: Floats, shapes: Shapes, beams: Beams, limit: float,
+    distance: Floats, facing: Floats, normal: Floats, hit: Ints, part: Ints,
+) -> None:  # fmt: skip
+    for e in range(len(place)):
+        _one(
+            e, place[e], _matrix(rotation[e]), shapes, beams, limit, distance[e], facing[e], normal[e], hit[e], part[e]
+        )
+
+
+@kernel(parallel=True)
+def _shared(
+    place: Floats, rotation: Floats, shapes: Shapes, beams: Beams, limit: float,
+    distance: Floats, facing: Floats, normal: Floats, hit: Ints, part: Ints,
+) -> None:  # fmt: skip
+    for e in numba.prange(len(place)):
+        _one(
+            e, place[e], _matrix(rotation[e]), shapes, beams, limit, distance[e], facing[e], normal[e], hit[e], part[e]
+        )
+
+
+@dataclass(frozen=True)
+class Hits:
+    """What R beams met in E environments.
+
+    Fields:
+        distance: ``[E, R]`` [m], inf for nothing; 0 when the sensor is inside a shape.
+        facing: ``[E, R]`` cosine of the angle between beam and surface normal, 1 for nothing.
+        normal: ``[E, R, 3]`` unit normal of the surface in the world, towards the sensor; 0 for nothing.
+        hit: ``[E, R]`` index of an agent or one of the values of :mod:`crowdbot.sensors.shapes`.
+        part: ``[E, R]`` index into ``scene.bodies.parts``, -1 where there is none.
+    """
+
+    distance: Floats
+    facing: Floats
+    normal: Floats
+    hit: Ints
+    part: Ints
+
+
+def cast(
+    scene: Scene, pose: SpatialPose, beams: Beams, limit: float, *, skins: bool = False, normals: bool = True
+) -> Hits:
+    """Return what beams from ``pose`` meet within ``limit`` [m].
+
+    Agents are seen by their limbs, with ``skins`` by their triangle skins; those that have none are upright
+    cylinders. Absent agents are not seen. Without ``normals`` that array is empty, which saves time.
+
+    Raises:
+        InputError: ``skins`` is asked for and the scene has none.
+
+    >>> from crowdbot.sensors.beams import beams, fan
+    >>> hits = cast(Scene.of([[3.0, 0.0]], radius=0.5), SpatialPose.of((0, 0, 1.0)), beams(fan(np.zeros(1))), 10.0)
+    >>> hits.distance.tolist(), hits.normal.tolist(), hits.hit.tolist()
+    ([[2.5]], [[[-1.0, 0.0, 0.0]]], [[0]])
+    """
+    shapes = gathered(scene, skins)
+    size = (len(pose.position), len(beams.x))
+    normal = np.zeros((size[0], size[1] if normals else 0, 3))
+    hits = Hits(np.empty(size), np.ones(size), normal, np.empty(size, np.int64), np.empty(size, np.int64))
+    place, rotation = np.ascontiguousarray(pose.position), np.ascontiguousarray(pose.rotation)
+    work = _serial if size[0] < MANY else _shared
+    work(place, rotation, shapes, beams, float(limit), hits.distance, hits.facing, hits.normal, hits.hit, hits.part)
+    return hits

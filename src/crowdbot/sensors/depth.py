@@ -1,0 +1,171 @@
+"""A depth camera: metric depth and labels of every pixel, by rays or from images that somebody renders."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Pose, Scene, SpatialPose
+
+from .beams import Beams, beams
+from .camera import ImageSource, Lens, pixel_directions, stereo_depth
+from .cast import cast
+from .lidar import seen_agents
+from .noise import Randomness, disturbed
+from .sensor import Reading, Sensor, in_space
+from .shapes import NOTHING
+
+__all__ = ["DepthCamera", "DepthImage"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class DepthImage(Reading):
+    """Depth and labels of the pixels in E environments, rows from the top, columns from the left.
+
+    Fields:
+        depth: ``[E, H, W]`` [m] along the optical axis; ``+inf`` nothing within reach, ``-inf`` too near.
+        hit: ``[E, H, W]`` what the pixel shows, as in :class:`Scan`: the segmentation into agents.
+        part: ``[E, H, W]`` index into ``scene.bodies.parts``, -1 where there is none.
+        lens: the intrinsics.
+    """
+
+    depth: Floats
+    hit: Ints
+    part: Ints
+    lens: Lens
+
+    def points(self, *, in_world: bool = False) -> Floats:
+        """Return the points of the pixels ``[E, H, W, 3]`` [m] in the camera's frame (x ahead), NaN without depth."""
+        ahead = pixel_directions(self.lens)
+        away = np.where(np.isfinite(self.depth), self.depth, np.nan)[..., None] * (ahead / ahead[..., :1])
+        if not in_world:
+            return np.asarray(away)
+        pose = in_space(self.pose)
+        return np.asarray(pose.position[:, None, None] + np.einsum("eij,ehwj->ehwi", pose.matrix, away))
+
+    def seen(self, count: int) -> NDArray[np.bool_]:
+        """Return which of ``count`` agents are seen in at least one pixel, ``[E, A]``."""
+        return seen_agents(self.hit, count)
+
+
+@dataclass(frozen=True)
+class DepthCamera(Sensor):
+    """A camera that looks along x and measures the depth of every pixel along its optical axis.
+
+    It casts one ray a pixel. :meth:`from_image` does the same to the depth that an :class:`ImageSource` renders. With a
+    ``baseline`` the error is that of stereo (:func:`stereo_depth`); ``noise`` acts on the depth after that.
+
+    Fields:
+        width, height: of the image [pixels]; field_of_view: horizontal [rad], of the undistorted lens.
+        distortion: k1, k2, p1, p2, k3, or nothing.
+        range_min, range_max: smallest and largest depth that is measured [m].
+        max_incidence: largest angle between ray and surface normal that is measured [rad], for rays.
+        baseline: of the stereo pair [m], 0 for no stereo error.
+        disparity_noise: standard deviation of the disparity [pixels]; disparity_step: its subpixel step [pixels].
+        resolution: step of the returned depth [m], 0 for none.
+        skins: whether agents that have triangle skins are seen by them and not by their limbs.
+
+    Raises:
+        InputError: a value is not allowed.
+
+    >>> scene = Scene.of([[50.0, 0.0]], walls=[[(3.0, -9.0), (3.0, 9.0)]])
+    >>> image = DepthCamera(width=5, height=3).measure(scene, Pose.of((0.0, 0.0), 0.0).lifted(1.5))
+    >>> image.depth[0, 0].round(9).tolist()
+    [3.0, 3.0, 3.0, 3.0, 3.0]
+    """
+
+    width: int = 160
+    height: int = 120
+    field_of_view: float = math.radians(87.0)
+    distortion: tuple[float, ...] = ()
+    range_min: float = 0.1
+    range_max: float = 10.0
+    max_incidence: float = math.pi / 2
+    baseline: float = 0.0
+    disparity_noise: float = 0.0
+    disparity_step: float = 0.0
+    resolution: float = 0.0
+    skins: bool = False
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        object.__setattr__(self, "distortion", tuple(float(k) for k in self.distortion))
+        if not 0.0 <= self.range_min < self.range_max < math.inf:
+            raise InputError(
+                f"DepthCamera: range_min = {self.range_min} m and range_max = {self.range_max} m must be finite,"
+                " not negative, and range_min the smaller one"
+            )
+        if not 0.0 < self.max_incidence <= math.pi / 2 + 1e-9:
+            raise InputError(
+                f"DepthCamera: max_incidence = {self.max_incidence} rad must be above 0 and at most pi / 2"
+            )
+        for name in ("baseline", "disparity_noise", "disparity_step", "resolution"):
+            if not 0.0 <= getattr(self, name) < math.inf:
+                raise InputError(f"DepthCamera: {name} = {getattr(self, name)} must be finite and at least 0")
+        if self.baseline == 0.0 and (self.disparity_noise or self.disparity_step):
+            raise InputError("DepthCamera: disparity noise and steps need a baseline above 0")
+        _ = self.lens
+
+    @property
+    def lens(self) -> Lens:
+        """Intrinsics."""
+        return Lens.of(self.width, self.height, self.field_of_view, self.distortion or (0.0,) * 5)
+
+    def measure(self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None) -> DepthImage:
+        """Return depth and labels by rays; ``rng`` is needed only when there is noise.
+
+        Raises:
+            InputError: scene and pose have different numbers of environments, or noise lacks a generator.
+        """
+        self.check(scene, pose)
+        bundle, ahead = _pixels(self.lens)
+        hits = cast(scene, in_space(pose), bundle, self.range_max / float(ahead.min()), skins=self.skins, normals=False)
+        back = hits.facing >= math.cos(self.max_incidence) - 1e-12
+        shape = (scene.shape[0], self.height, self.width)
+        depth = np.where(back, hits.distance * ahead, np.inf).reshape(shape)
+        hit, part = hits.hit.reshape(shape), hits.part.reshape(shape)
+        return self._finished(scene.time, pose, depth, hit, part, rng)
+
+    def from_image(
+        self, source: ImageSource, time: float, pose: SpatialPose, rng: Randomness | None = None
+    ) -> DepthImage:
+        """Return depth and labels from what ``source`` renders (``depth``, ``hit`` and ``part``), undistorted."""
+        images = source.render(self, pose)
+        depth = np.asarray(images["depth"], dtype=np.float64)
+        nothing = np.full(depth.shape, NOTHING)
+        hit, part = images.get("hit", nothing), images.get("part", np.full(depth.shape, -1))
+        return self._finished(time, pose, depth, np.asarray(hit), np.asarray(part), rng)
+
+    def _finished(
+        self, time: float, pose: Pose | SpatialPose, depth: Floats, hit: Ints, part: Ints, rng: Randomness | None
+    ) -> DepthImage:
+        near = depth < self.range_min
+        measured = np.where(depth <= self.range_max, depth, np.inf)
+        if self.baseline > 0.0:
+            focal = self.lens.fx
+            measured = stereo_depth(measured, focal, self.baseline, self.disparity_noise, self.disparity_step, rng)
+            measured = np.where(depth > 0.0, measured, depth)
+        measured = disturbed(measured, self.noises, rng)
+        kept = measured < np.inf
+        near = kept & (near | (measured < self.range_min))
+        far = ~kept | (measured > self.range_max)
+        if self.resolution > 0.0:
+            low = math.ceil(self.range_min / self.resolution - 1e-9)
+            high = math.floor(self.range_max / self.resolution + 1e-9)
+            measured = np.clip(np.round(measured / self.resolution), low, high) * self.resolution
+        shown = np.where(near, -np.inf, np.where(far, np.inf, measured))
+        gone = far & ~near
+        return DepthImage(time, pose, shown, np.where(gone, NOTHING, hit), np.where(gone, -1, part), self.lens)
+
+
+@functools.lru_cache(maxsize=16)
+def _pixels(lens: Lens) -> tuple[Beams, Floats]:
+    directions = pixel_directions(lens).reshape(-1, 3)
+    return beams(directions), np.ascontiguousarray(directions[:, 0])

@@ -1,0 +1,172 @@
+"""An inertial measurement unit: specific force and turn rate from successive poses, with drifting biases."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Pose, Scene, SpatialPose
+from crowdbot.core.pose import product
+
+from .noise import Randomness, disturbed, normals
+from .sensor import Reading, Sensor, finite_or_nan, in_space
+
+__all__ = ["GRAVITY", "IMU", "Inertial"]
+
+Floats = NDArray[np.float64]
+
+GRAVITY = 9.80665
+"""Standard gravity [m/s^2]."""
+
+
+@dataclass(frozen=True)
+class Inertial(Reading):
+    """What an inertial unit measured in E environments, in its own frame, and what it needs for the next reading.
+
+    Fields:
+        acceleration: ``[E, 3]`` specific force [m/s^2]; at rest and level it is (0, 0, 9.80665).
+        turn_rate: ``[E, 3]`` [rad/s].
+        velocity: ``[E, 3]`` [m/s] in the world since the reading before, NaN at the first.
+        acceleration_bias, turn_bias: ``[E, 3]`` biases at this instant, which no real unit knows.
+    """
+
+    acceleration: Floats
+    turn_rate: Floats
+    velocity: Floats
+    acceleration_bias: Floats
+    turn_bias: Floats
+
+
+@dataclass(frozen=True)
+class IMU(Sensor):
+    """An inertial unit with white noise and biases that walk (IEEE Std 952-1997; all of it off by default).
+
+    The motion comes from the poses of this and the two readings before: the first two take the unit as not
+    accelerating. What ``noise`` holds acts on all six values after that.
+
+    Fields:
+        acceleration_noise: density of white noise [m/s^2/sqrt(Hz)].
+        turn_noise: density of white noise [rad/s/sqrt(Hz)].
+        acceleration_walk: random walk of the bias [m/s^2/sqrt(s)]; turn_walk: [rad/s/sqrt(s)].
+        acceleration_offset: standard deviation of the bias at the start [m/s^2]; turn_offset: [rad/s].
+        max_acceleration: largest value shown [m/s^2], 0 for no limit; max_turn_rate: [rad/s].
+
+    Raises:
+        InputError: a value is not allowed.
+
+    >>> still, unit = Scene.of([[9.0, 9.0]]), IMU(rate=100.0)
+    >>> unit.measure(still, Pose.of((0.0, 0.0), 0.0)).acceleration.tolist()
+    [[0.0, 0.0, 9.80665]]
+    """
+
+    remembers: ClassVar[bool] = True
+    acceleration_noise: float = 0.0
+    turn_noise: float = 0.0
+    acceleration_walk: float = 0.0
+    turn_walk: float = 0.0
+    acceleration_offset: float = 0.0
+    turn_offset: float = 0.0
+    max_acceleration: float = 0.0
+    max_turn_rate: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name in FIELDS:
+            if not 0.0 <= getattr(self, name) < math.inf:
+                raise InputError(f"IMU: {name} = {getattr(self, name)} must be finite and at least 0")
+
+    def measure(
+        self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None, last: Inertial | None = None
+    ) -> Inertial:
+        """Return specific force and turn rate; ``last`` is the reading of this unit before, None at the first.
+
+        Raises:
+            InputError: numbers of environments differ, time has not gone on, or noise lacks a generator.
+        """
+        self.check(scene, pose)
+        here = in_space(pose)
+        shape = here.position.shape
+        if last is None:
+            dt, velocity = 1.0 / self.rate, np.full(shape, np.nan)
+            change, turn = np.zeros(shape), np.zeros(shape)
+        else:
+            dt, before = elapsed(self, scene, last), in_space(last.pose)
+            velocity = (here.position - before.position) / dt
+            change = np.where(np.isfinite(last.velocity), (velocity - last.velocity) / dt, 0.0)
+            turn = rotation_vector(before.rotation, here.rotation) / dt
+        change = change + np.array([0.0, 0.0, GRAVITY])
+        force = np.einsum("eji,ej->ei", here.matrix, change)
+        biases = self._biases(shape, dt, rng, last)
+        force = force + biases[0] + self._white(self.acceleration_noise, shape, dt, rng)
+        turn = turn + biases[1] + self._white(self.turn_noise, shape, dt, rng)
+        six = finite_or_nan(disturbed(np.concatenate([force, turn], axis=1), self.noises, rng))
+        force, turn = _limited(six[:, :3], self.max_acceleration), _limited(six[:, 3:], self.max_turn_rate)
+        return Inertial(scene.time, pose, force, turn, velocity, *biases)
+
+    def _biases(
+        self, shape: tuple[int, ...], dt: float, rng: Randomness | None, last: Inertial | None
+    ) -> tuple[Floats, Floats]:
+        if last is None:
+            start = (self.acceleration_offset, self.turn_offset)
+            return _scaled(start[0], shape, rng), _scaled(start[1], shape, rng)
+        root = math.sqrt(dt)
+        return (
+            last.acceleration_bias + _scaled(self.acceleration_walk * root, shape, rng),
+            last.turn_bias + _scaled(self.turn_walk * root, shape, rng),
+        )
+
+    def _white(self, density: float, shape: tuple[int, ...], dt: float, rng: Randomness | None) -> Floats:
+        return _scaled(density / math.sqrt(dt), shape, rng)
+
+
+FIELDS = (
+    "acceleration_noise",
+    "turn_noise",
+    "acceleration_walk",
+    "turn_walk",
+    "acceleration_offset",
+    "turn_offset",
+    "max_acceleration",
+    "max_turn_rate",
+)
+
+
+def _scaled(sd: float, shape: tuple[int, ...], rng: Randomness | None) -> Floats:
+    return np.zeros(shape) if sd == 0.0 else sd * normals(shape, rng)
+
+
+def _limited(values: Floats, limit: float) -> Floats:
+    return values if limit == 0.0 else np.clip(values, -limit, limit)
+
+
+def elapsed(sensor: Sensor, scene: Scene, last: Reading) -> float:
+    """Return the time since the reading before [s], which must be of as many environments.
+
+    Raises:
+        InputError: time has not gone on, or the numbers of environments differ.
+    """
+    dt = scene.time - last.time
+    if not dt > 0.0:
+        raise InputError(
+            f"{type(sensor).__name__}: the last reading is of {last.time} s and this one of {scene.time} s; give the"
+            " reading before this one, or None to begin anew"
+        )
+    if len(last.pose.position) != scene.shape[0]:
+        raise InputError(
+            f"{type(sensor).__name__}: the last reading has {len(last.pose.position)} environments,"
+            f" not {scene.shape[0]}"
+        )
+    return dt
+
+
+def rotation_vector(before: Floats, after: Floats) -> Floats:
+    """Return the rotation from one quaternion ``[E, 4]`` to another as axis times angle [rad], in the first's frame."""
+    turn = product(before * np.array([1.0, -1.0, -1.0, -1.0]), after)
+    turn = turn * np.where(turn[:, :1] < 0.0, -1.0, 1.0)
+    size = np.sqrt((turn[:, 1:] ** 2).sum(axis=1, keepdims=True))
+    angle = 2.0 * np.arctan2(size, turn[:, :1])
+    return np.asarray(turn[:, 1:] * np.where(size > 1e-12, angle / np.maximum(size, 1e-300), 2.0))

@@ -1,0 +1,155 @@
+"""A laser scanner of space: rings of beams over a partial sphere."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Pose, Scene, SpatialPose
+
+from .beams import Beams, beams, fan
+from .cast import cast
+from .lidar import seen_agents
+from .noise import Randomness
+from .ranging import Ranging, ended, incidence_of, settled
+from .sensor import Reading, in_space
+
+__all__ = ["Cloud", "Lidar3D"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+TURN = 2.0 * math.pi
+SIXTEEN_RINGS = tuple(round(math.radians(-15.0 + 2.0 * k), 12) for k in range(16))
+
+
+@dataclass(frozen=True)
+class Cloud(Reading):
+    """One turn of a laser scanner in E environments, K rings of R beams (infinities as in ROS REP-117).
+
+    Fields:
+        ranges: ``[E, K, R]`` [m]; ``+inf`` nothing within reach, ``-inf`` something nearer than the smallest distance.
+        elevation: ``[K]`` [rad], positive upward; azimuth: ``[R]`` [rad], counter-clockwise, 0 straight ahead.
+        hit: ``[E, K, R]`` what the beam met, as in :class:`Scan`.
+        part: ``[E, K, R]`` index into ``scene.bodies.parts``, -1 where there is none.
+        facing: ``[E, K, R]`` cosine of the angle between beam and surface normal, 1 where nothing was met.
+    """
+
+    ranges: Floats
+    elevation: Floats
+    azimuth: Floats
+    hit: Ints
+    part: Ints
+    facing: Floats
+
+    @property
+    def incidence(self) -> Floats:
+        """``[E, K, R]`` angle between beam and surface normal [rad], NaN where nothing returned."""
+        return incidence_of(self.facing, self.hit)
+
+    def points(self, *, in_world: bool = False) -> Floats:
+        """Return where the beams ended, ``[E, K, R, 3]`` [m] in the sensor's frame, NaN without a finite range."""
+        return ended(in_space(self.pose), fan(self.azimuth, self.elevation[:, None]), self.ranges, in_world=in_world)
+
+    def seen(self, count: int) -> NDArray[np.bool_]:
+        """Return which of ``count`` agents returned at least one beam, ``[E, A]``."""
+        return seen_agents(self.hit, count)
+
+
+@dataclass(frozen=True)
+class Lidar3D(Ranging):
+    """A laser scanner with rings of beams that takes all of them at one instant.
+
+    Ranges, incidence and noise are as of :class:`Lidar2D`. A planar pose is level, at the height of a usual mount.
+
+    Fields:
+        elevations: of the rings [rad], K numbers, positive upward.
+        columns: number of beams R of a ring.
+        azimuth_from, azimuth_to: where a ring begins and ends [rad], both included; a full circle does not repeat
+            its first beam.
+        range_min, range_max: smallest and largest distance that is measured [m].
+        max_incidence: largest angle between beam and surface normal that returns [rad].
+        resolution: step of the returned distances [m], 0 for none.
+        skins: whether agents that have triangle skins are seen by them and not by their limbs.
+
+    Raises:
+        InputError: a value is not allowed.
+
+    >>> cloud = Lidar3D(columns=4).measure(Scene.of([[3.0, 0.0]], radius=0.5), Pose.of((0.0, 0.0), 0.0).lifted(1.0))
+    >>> cloud.ranges.shape, cloud.hit[0, 7].tolist()
+    ((1, 16, 4), [-1, -1, 0, -1])
+    """
+
+    elevations: tuple[float, ...] = SIXTEEN_RINGS
+    columns: int = 900
+    azimuth_from: float = -math.pi
+    azimuth_to: float = math.pi
+    range_min: float = 0.1
+    range_max: float = 30.0
+    max_incidence: float = math.pi / 2
+    resolution: float = 0.0
+    skins: bool = False
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        rings = tuple(float(value) for value in self.elevations)
+        object.__setattr__(self, "elevations", rings)
+        if not rings or not all(abs(value) <= math.pi / 2 for value in rings):
+            raise InputError(f"Lidar3D: elevations = {rings} rad must be at least one, each within -pi / 2 to pi / 2")
+        self.check_count("columns")
+        if not 0.0 < self.azimuth_to - self.azimuth_from <= TURN + 1e-9 or not abs(self.azimuth_from) <= TURN:
+            raise InputError(
+                f"Lidar3D: azimuth_from = {self.azimuth_from} and azimuth_to = {self.azimuth_to} rad must be"
+                " in this order and at most 2 pi apart"
+            )
+        self.check_ranges()
+
+    @classmethod
+    def sphere(
+        cls, azimuth: tuple[float, float], elevation: tuple[float, float], resolution: float, **fields: float
+    ) -> Lidar3D:
+        """Return a scanner of a part of the sphere, with one angular ``resolution`` [rad] for both.
+
+        >>> part = Lidar3D.sphere((-1.0, 1.0), (-0.5, 0.5), 0.1)
+        >>> len(part.elevations), part.columns
+        (11, 21)
+        """
+        rows = round((elevation[1] - elevation[0]) / resolution) + 1
+        columns = round((azimuth[1] - azimuth[0]) / resolution) + 1
+        rings = tuple(np.linspace(*elevation, rows).tolist())
+        return cls(rings, columns, *azimuth, **fields)  # type: ignore[arg-type]
+
+    @property
+    def azimuth(self) -> Floats:
+        """Azimuths of the beams of a ring ``[R]`` [rad]."""
+        width = self.azimuth_to - self.azimuth_from
+        full = width >= TURN - 1e-9
+        return np.linspace(self.azimuth_from, self.azimuth_to, self.columns, endpoint=not full)
+
+    def measure(self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None) -> Cloud:
+        """Return the cloud from ``pose``; ``rng`` is needed only when there is noise.
+
+        Raises:
+            InputError: scene and pose have different numbers of environments, noise lacks a generator, or there are
+                no skins where they are asked for.
+        """
+        self.check(scene, pose)
+        hits = cast(scene, in_space(pose), _made(self), self.range_max, skins=self.skins, normals=False)
+        ranges = settled(self, hits.distance, hits.facing, hits.hit, hits.part, rng)
+        shape = (len(ranges), len(self.elevations), self.columns)
+        ranges, facing = ranges.reshape(shape), hits.facing.reshape(shape)
+        hit, part = hits.hit.reshape(shape), hits.part.reshape(shape)
+        return Cloud(scene.time, pose, ranges, np.array(self.elevations), self.azimuth, hit, part, facing)
+
+
+@functools.lru_cache(maxsize=64)
+def _of(elevations: tuple[float, ...], columns: int, first: float, last: float) -> Beams:
+    lidar = Lidar3D(elevations, columns, first, last)
+    return beams(fan(lidar.azimuth, np.array(elevations)[:, None]).reshape(-1, 3))
+
+
+def _made(lidar: Lidar3D) -> Beams:
+    return _of(lidar.elevations, lidar.columns, lidar.azimuth_from, lidar.azimuth_to)

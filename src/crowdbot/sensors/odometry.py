@@ -1,0 +1,140 @@
+"""Wheel odometry: a pose that is added up from what the wheels have turned, and drifts."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Pose, Scene, SpatialPose
+
+from .imu import elapsed
+from .noise import Randomness, disturbed, normals
+from .sensor import Reading, Sensor, finite_or_nan, in_plane
+
+__all__ = ["Odometry", "WheelOdometry"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Odometry(Reading):
+    """Where wheels say that a robot is, in E environments.
+
+    Fields:
+        estimate: the pose that the wheels add up to; it begins as the true one.
+        twist: ``[E, 3]`` forward [m/s], turn [rad/s], left [m/s] since the reading before.
+        travelled: ``[E, 3]`` [m] of the left and the right wheel and sideways, errors included.
+        ticks: ``[E, 3]`` counts of the encoders, 0 when they do not count.
+    """
+
+    estimate: Pose
+    twist: Floats
+    travelled: Floats
+    ticks: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class WheelOdometry(Sensor):
+    """Encoders on the wheels of a differential drive, integrated along arcs (errors are off by default).
+
+    Systematic errors are wheels that are larger or smaller than believed and a wrong track (Borenstein & Feng 1996,
+    doi:10.1109/70.544770); random ones grow with the square root of the way of each wheel. What ``noise`` holds acts
+    on the twist that is shown, not on the pose.
+
+    Fields:
+        track: distance between the wheels as believed [m]; wheel_radius: as believed [m].
+        left_scale, right_scale: true over believed radius of the wheels.
+        track_scale: true over believed track.
+        slip: standard deviation of a wheel's way after one metre [m].
+        ticks_per_turn: of the encoders, 0 for no rounding.
+        holonomic: whether it measures going sideways too, as three wheels that roll in all directions do.
+
+    Raises:
+        InputError: a value is not allowed.
+
+    >>> scene, wheels = Scene.of([[9.0, 9.0]]), WheelOdometry()
+    >>> first = wheels.measure(scene, Pose.of((0.0, 0.0), 0.0))
+    >>> later = wheels.measure(scene.replace(time=1.0), Pose.of((0.5, 0.0), 0.0), last=first)
+    >>> later.estimate.position.round(12).tolist(), later.twist.round(12).tolist()
+    ([[0.5, 0.0]], [[0.5, 0.0, 0.0]])
+    """
+
+    remembers: ClassVar[bool] = True
+    track: float = 0.4
+    wheel_radius: float = 0.1
+    left_scale: float = 1.0
+    right_scale: float = 1.0
+    track_scale: float = 1.0
+    slip: float = 0.0
+    ticks_per_turn: int = 0
+    holonomic: bool = False
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name in ("track", "wheel_radius", "left_scale", "right_scale", "track_scale"):
+            if not 0.0 < getattr(self, name) < math.inf:
+                raise InputError(f"WheelOdometry: {name} = {getattr(self, name)} must be finite and above 0")
+        if not 0.0 <= self.slip < math.inf:
+            raise InputError(f"WheelOdometry: slip = {self.slip} m must be finite and at least 0")
+        if self.ticks_per_turn != int(self.ticks_per_turn) or self.ticks_per_turn < 0:
+            raise InputError(f"WheelOdometry: ticks_per_turn = {self.ticks_per_turn} must be a whole number from 0")
+
+    @property
+    def tick(self) -> float:
+        """Way of one count of the encoders [m], 0 without rounding."""
+        return 2.0 * math.pi * self.wheel_radius / self.ticks_per_turn if self.ticks_per_turn else 0.0
+
+    def measure(
+        self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None, last: Odometry | None = None
+    ) -> Odometry:
+        """Return the pose by the wheels; ``last`` is the reading before, None to begin at the true pose.
+
+        Raises:
+            InputError: numbers of environments differ, time has not gone on, or noise lacks a generator.
+        """
+        self.check(scene, pose)
+        here = in_plane(pose)
+        count = len(here.heading)
+        if last is None:
+            still = np.zeros((count, 3))
+            shown = finite_or_nan(disturbed(still, self.noises, rng))
+            return Odometry(scene.time, pose, here, shown, still, still.astype(np.int64))
+        dt = elapsed(self, scene, last)
+        forward, left, turn = arc_between(in_plane(last.pose), here)
+        half = 0.5 * self.track * self.track_scale * turn
+        way = np.stack([(forward - half) / self.left_scale, (forward + half) / self.right_scale, left], axis=1)
+        if self.slip > 0.0:
+            way = way + self.slip * np.sqrt(np.abs(way)) * normals(way.shape, rng)
+        way[:, 2] *= self.holonomic
+        travelled = last.travelled + way
+        ticks = np.zeros((count, 3), dtype=np.int64)
+        if self.tick:
+            ticks = np.floor(travelled / self.tick + 0.5).astype(np.int64)
+            way = (ticks - last.ticks) * self.tick
+        moved, turned, aside = 0.5 * (way[:, 0] + way[:, 1]), (way[:, 1] - way[:, 0]) / self.track, way[:, 2]
+        twist = np.stack([moved, turned, aside], axis=1) / dt
+        shown = finite_or_nan(disturbed(twist, self.noises, rng))
+        return Odometry(scene.time, pose, along_arc(last.estimate, moved, aside, turned), shown, travelled, ticks)
+
+
+def arc_between(before: Pose, after: Pose) -> tuple[Floats, Floats, Floats]:
+    """Return forward [m], left [m] and turn [rad] of the arcs of steady motion between two poses, each ``[E]``."""
+    turn = math.pi - (math.pi - (after.heading - before.heading)) % (2.0 * math.pi)
+    step = after.position - before.position
+    middle = before.heading + 0.5 * turn
+    cos, sin = np.cos(middle), np.sin(middle)
+    bend = 1.0 / np.sinc(turn / (2.0 * math.pi))  # arc over chord
+    return bend * (cos * step[:, 0] + sin * step[:, 1]), bend * (cos * step[:, 1] - sin * step[:, 0]), turn
+
+
+def along_arc(pose: Pose, forward: Floats, left: Floats, turn: Floats) -> Pose:
+    """Return the pose at the end of such arcs."""
+    middle = pose.heading + 0.5 * turn
+    cos, sin = np.cos(middle), np.sin(middle)
+    chord = np.sinc(turn / (2.0 * math.pi))
+    step = np.stack([cos * forward - sin * left, sin * forward + cos * left], axis=1) * chord[:, None]
+    return Pose(pose.position + step, pose.heading + turn)

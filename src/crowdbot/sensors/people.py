@@ -1,0 +1,123 @@
+"""Ground truth of people: who is around, where and how fast, as a perfect tracker would tell."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Pose, Scene, SpatialPose
+
+from .lidar import Lidar2D
+from .noise import Randomness, disturbed
+from .sensor import Reading, Sensor, in_plane
+
+__all__ = ["GroundTruthPeople", "Tracked"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Tracked(Reading):
+    """Agents around a sensor in E environments; arrays keep the agents' indices, NaN for who is not told of.
+
+    Fields:
+        present: ``[E, A]`` who is told of.
+        position: ``[E, A, 2]`` [m] in the sensor's frame, x ahead and y to the left.
+        velocity: ``[E, A, 2]`` [m/s] over the ground, along the axes of the sensor.
+        radius: ``[E, A]`` [m].
+        heading: ``[E, A]`` [rad] from the sensor's x axis.
+    """
+
+    present: NDArray[np.bool_]
+    position: Floats
+    velocity: Floats
+    radius: Floats
+    heading: Floats
+
+    def ids(self, environment: int = 0) -> list[int]:
+        """Return the indices of the agents that are told of."""
+        return [int(a) for a in np.flatnonzero(self.present[environment])]
+
+
+@dataclass(frozen=True)
+class GroundTruthPeople(Sensor):
+    """A perfect tracker of the agents within reach, of all or only of those in sight.
+
+    In sight is who returns at least one of ``rays`` level beams of a full circle at the height of the sensor; people
+    behind others and behind walls are not. Noise acts on positions; a dropout loses the agent.
+
+    Fields:
+        range_max: largest distance of an agent's centre [m].
+        field_of_view: angle in which centres are told of [rad], half to each side.
+        visible_only: whether those that are hidden are left out.
+        rays: of the circle of beams that decides.
+
+    Raises:
+        InputError: a value is not allowed.
+
+    >>> scene = Scene.of([[1.0, 2.0], [1.0, 4.0]], [[0.0, 1.0], [0.0, 0.0]])
+    >>> told = GroundTruthPeople().measure(scene, Pose.of((1.0, 0.0), math.pi / 2))
+    >>> told.ids(), told.position[0, 0].round(6).tolist(), told.velocity[0, 0].round(6).tolist()
+    ([0], [2.0, 0.0], [1.0, 0.0])
+    """
+
+    range_max: float = 20.0
+    field_of_view: float = 2.0 * math.pi
+    visible_only: bool = True
+    rays: int = 1440
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0.0 < self.range_max < math.inf:
+            raise InputError(f"GroundTruthPeople: range_max = {self.range_max} m must be finite and above 0")
+        if not 0.0 < self.field_of_view <= 2.0 * math.pi + 1e-9:
+            raise InputError(
+                f"GroundTruthPeople: field_of_view = {self.field_of_view} rad must be above 0 and at most 2 pi"
+            )
+        if self.rays != int(self.rays) or self.rays < 1:
+            raise InputError(f"GroundTruthPeople: rays = {self.rays} must be a whole number of at least 1")
+
+    def measure(self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None) -> Tracked:
+        """Return who is around; ``rng`` is needed only when there is noise.
+
+        Raises:
+            InputError: scene and pose have different numbers of environments, or noise lacks a generator.
+        """
+        self.check(scene, pose)
+        place = in_plane(pose)
+        absent = ~scene.active[..., None]
+        away = np.where(absent, np.nan, scene.position) - place.position[:, None]
+        position = _turned(away, place.heading)
+        distance = np.hypot(position[..., 0], position[..., 1])
+        bearing = np.abs(np.arctan2(position[..., 1], position[..., 0]))
+        present = scene.active & (distance <= self.range_max) & (bearing <= 0.5 * self.field_of_view + 1e-12)
+        if self.visible_only:
+            present &= _circle(self.rays, self.range_max).measure(scene, pose).seen(scene.shape[1])
+        told = disturbed(np.where(present[..., None], position, np.nan), self.noises, rng)
+        present &= np.isfinite(told).all(axis=-1)
+        heading = scene.heading - place.heading[:, None]
+        heading = math.pi - (math.pi - np.where(present, heading, 0.0)) % (2.0 * math.pi)
+        return Tracked(
+            scene.time,
+            pose,
+            present,
+            np.where(present[..., None], told, np.nan),
+            np.where(present[..., None], _turned(np.where(absent, 0.0, scene.velocity), place.heading), np.nan),
+            np.where(present, scene.radius, np.nan),
+            np.where(present, heading, np.nan),
+        )
+
+
+@functools.lru_cache(maxsize=16)
+def _circle(rays: int, reach: float) -> Lidar2D:
+    return Lidar2D(rays=rays, range_min=0.0, range_max=reach)
+
+
+def _turned(vectors: Floats, heading: Floats) -> Floats:
+    cos, sin = np.cos(heading)[:, None], np.sin(heading)[:, None]
+    x, y = vectors[..., 0], vectors[..., 1]
+    return np.stack([cos * x + sin * y, cos * y - sin * x], axis=-1)

@@ -1,0 +1,202 @@
+"""Shapes: what rays can meet in a scene, as one list of rows for the kernel."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import STAGE, Bodies, InputError, Scene, Skins, SpatialPose
+from crowdbot.core.kernels import kernel
+from crowdbot.core.rays import BOX, CAPSULE, CYLINDER, TRIANGLE, WALL, WIDTH
+from crowdbot.core.scene import PERSON_HEIGHT
+
+__all__ = ["FLOOR", "NOTHING", "PROP", "WALLS", "Shapes", "gathered", "lengthened"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+NOTHING = -1
+"""Value of ``hit`` where a beam returned nothing."""
+WALLS = -2
+"""Value of ``hit`` where a beam met a wall."""
+FLOOR = -3
+"""Value of ``hit`` where a beam met the floor."""
+PROP = -4
+"""Value of ``hit`` where a beam met something of the stage that is neither wall nor floor."""
+OVERLAP = 1e-9
+"""Walls are this much longer [m] at both ends, so that rounding lets no beam slip through a corner."""
+TALLEST = 1e4
+"""Walls without end are this high [m]."""
+KINDS = (TRIANGLE, CAPSULE, BOX, CYLINDER, CYLINDER, WALL)
+"""Order of the shapes: skins, limbs, boxes, posts, agents without limbs, walls."""
+NOBODY = Bodies.of()
+BARE = Skins.of(np.zeros((1, 0, 3)), np.zeros((0, 3)), owner=())
+
+
+class Shapes(NamedTuple):
+    """P shapes in E environments; those of kind ``TRIANGLE`` come first and have no rows of their own.
+
+    Fields:
+        kind: ``[P]`` as in :mod:`crowdbot.core.rays`.
+        rows: ``[E, P, 16]`` in the world.
+        present: ``[E, P]``.
+        owner, part: ``[P]`` what a hit is called.
+        vertices, faces: of the triangles, ``[E, V, 3]`` and ``[F, 3]``.
+    """
+
+    kind: Ints
+    rows: Floats
+    present: Bools
+    owner: Ints
+    part: Ints
+    vertices: Floats
+    faces: Ints
+
+
+def gathered(scene: Scene, skins: bool) -> Shapes:
+    """Return everything in ``scene`` that a ray can meet.
+
+    Raises:
+        InputError: ``skins`` is asked for and the scene has none.
+    """
+    bodies = scene.bodies or NOBODY
+    if skins and bodies.skins is None:
+        raise InputError("skins: the scene has no triangle skins; give Scene.bodies skins, or leave skins=False")
+    skin = bodies.skins if skins and bodies.skins is not None else BARE
+    limbs, discs = _seen_as(scene, bodies, skin.owner)
+    walls = scene.walls
+    counts = (len(skin.owner), len(limbs), len(bodies.box_owner), len(bodies.post_owner), len(discs), len(walls))
+    rows = np.zeros((scene.shape[0], sum(counts), WIDTH))
+    skinned, capsules, boxes, posts, people, fences = _sections(counts)
+    if len(limbs):
+        _write_capsules(bodies.start, bodies.end, bodies.radius, limbs, rows[:, capsules])
+    if len(bodies.box_owner):
+        _write_boxes(bodies, rows[:, boxes])
+    if len(bodies.post_owner):
+        _write_upright(rows[:, posts], bodies.post_foot, bodies.post_height, bodies.post_radius)
+    if len(discs):
+        tall = PERSON_HEIGHT if scene.height is None else scene.height[:, discs]
+        _write_upright(rows[:, people], scene.position[:, discs], tall, scene.radius[:, discs])
+    height = min(scene.wall_height, TALLEST)
+    _write_walls(walls.start, walls.end, walls.previous, walls.next, height, rows[:, fences])
+    kind = np.repeat(np.array(KINDS), counts)
+    owner = np.concatenate(
+        [skin.owner, bodies.owner[limbs], bodies.box_owner, bodies.post_owner, discs, np.full(len(walls), WALLS)]
+    )
+    part = np.full(len(kind), -1)
+    for section, labels in (skinned, skin.part), (capsules, bodies.part[limbs]), (boxes, bodies.box_part):
+        part[section] = labels
+    part[posts] = bodies.post_part
+    present = np.empty(rows.shape[:2], dtype=np.bool_)
+    _mark_present(kind, rows, owner, scene.active, present)
+    if skins:
+        sound = np.logical_and.reduce(np.isfinite(skin.vertices), axis=-1)
+        present[:, skinned] &= sound[:, skin.faces].all(axis=-1)
+    return Shapes(kind, rows, present, owner, part, skin.vertices, skin.faces)
+
+
+def _seen_as(scene: Scene, bodies: Bodies, skinned: Ints) -> tuple[Ints, Ints]:
+    """Return the capsules that no skin stands for, and the agents that are seen as cylinders."""
+    agents = scene.shape[1]
+    bare = np.ones(agents + 1, dtype=np.bool_)  # the last is for those that are no agents
+    for owner in (skinned, bodies.owner, bodies.box_owner, bodies.post_owner):
+        if len(owner):
+            _strike(owner, bare)
+    limbs = np.arange(len(bodies.owner))
+    if len(skinned):
+        hidden = np.zeros(agents + 1, dtype=np.bool_)
+        hidden[_known(skinned, agents)] = True
+        hidden[agents] = False
+        limbs = limbs[~hidden[_known(bodies.owner, agents)]]
+    return limbs, np.flatnonzero(bare[:agents])
+
+
+def _known(owner: Ints, agents: int) -> Ints:
+    return np.where((owner >= 0) & (owner < agents), owner, agents)
+
+
+def _sections(counts: tuple[int, ...]) -> list[slice]:
+    ends = np.cumsum(counts).tolist()
+    return [slice(end - count, end) for end, count in zip(ends, counts, strict=True)]
+
+
+@kernel
+def _strike(owner: Ints, bare: Bools) -> None:
+    for n in range(len(owner)):
+        if 0 <= owner[n] < len(bare) - 1:
+            bare[owner[n]] = False
+
+
+@kernel
+def _mark_present(kind: Ints, rows: Floats, owner: Ints, active: Bools, present: Bools) -> None:
+    """Mark the shapes whose owner is active, whose numbers are finite and whose extent is above 0; name props."""
+    for e in range(len(rows)):
+        for n in range(len(kind)):
+            here = owner[n] < 0 or (owner[n] < active.shape[1] and active[e, owner[n]])
+            total = 0.0
+            for k in range(WIDTH):
+                total += abs(rows[e, n, k])
+            here = here and total < np.inf
+            if kind[n] == CAPSULE or kind[n] == CYLINDER:
+                here = here and rows[e, n, 7] > 0.0
+            if kind[n] == BOX:
+                here = here and min(rows[e, n, 12], rows[e, n, 13], rows[e, n, 14]) > 0.0
+            present[e, n] = here
+    for n in range(len(kind)):
+        if owner[n] == STAGE:
+            owner[n] = PROP
+
+
+@kernel
+def _write_capsules(start: Floats, end: Floats, radius: Floats, chosen: Ints, row: Floats) -> None:
+    for e in range(len(row)):
+        for n in range(len(chosen)):
+            b = chosen[n]
+            dx, dy, dz = end[e, b, 0] - start[e, b, 0], end[e, b, 1] - start[e, b, 1], end[e, b, 2] - start[e, b, 2]
+            length = math.sqrt(dx * dx + dy * dy + dz * dz)
+            row[e, n, 0], row[e, n, 1], row[e, n, 2] = start[e, b, 0], start[e, b, 1], start[e, b, 2]
+            if length == 0.0:
+                row[e, n, 5] = 1.0
+            else:
+                row[e, n, 3], row[e, n, 4], row[e, n, 5] = dx / length, dy / length, dz / length
+            row[e, n, 6], row[e, n, 7] = length, radius[e, b]
+
+
+def _write_boxes(bodies: Bodies, row: Floats) -> None:
+    turn = SpatialPose(bodies.box_centre.reshape(-1, 3), bodies.box_turn.reshape(-1, 4)).matrix
+    row[..., :3] = bodies.box_centre
+    row[..., 3:12] = turn.transpose(0, 2, 1).reshape(*bodies.box_half.shape[:2], 9)
+    row[..., 12:15] = bodies.box_half
+
+
+def _write_upright(row: Floats, foot: Floats, height: Floats | float, radius: Floats) -> None:
+    row[..., : foot.shape[-1]] = foot
+    row[..., 5] = 1.0
+    row[..., 6] = height
+    row[..., 7] = np.where(np.asarray(height) > 0.0, radius, 0.0)
+
+
+@kernel
+def _write_walls(start: Floats, end: Floats, before: Ints, after: Ints, height: float, row: Floats) -> None:
+    """Write walls a little longer at both ends; the second side of a thin one is not there."""
+    for m in range(len(start)):
+        dx, dy = end[m, 0] - start[m, 0], end[m, 1] - start[m, 1]
+        longer = OVERLAP / max(math.sqrt(dx * dx + dy * dy), 1e-300)
+        for e in range(len(row)):
+            row[e, m, 0], row[e, m, 1] = start[m, 0] - longer * dx, start[m, 1] - longer * dy
+            row[e, m, 3], row[e, m, 4] = dx + 2.0 * longer * dx, dy + 2.0 * longer * dy
+            row[e, m, 8] = 1.0
+            row[e, m, 9] = height
+            if before[m] == after[m] and m > after[m]:
+                row[e, m, 9] = np.nan
+
+
+def lengthened(walls: Floats) -> Floats:
+    """Return segments ``[N, 4]`` a little longer at both ends."""
+    along = walls[:, 2:] - walls[:, :2]
+    along = along * (OVERLAP / np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-300))[:, None]
+    return np.ascontiguousarray(np.concatenate([walls[:, :2] - along, walls[:, 2:] + along], axis=1))

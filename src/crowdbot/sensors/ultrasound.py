@@ -1,0 +1,97 @@
+"""An ultrasonic range finder: the smallest return within a zone like a teardrop."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Pose, Scene, SpatialPose
+
+from .beams import Beams, beams, cone
+from .echo import Echo, nearest
+from .noise import Randomness
+from .ranging import Ranging
+
+__all__ = ["Ultrasound", "teardrop"]
+
+Floats = NDArray[np.float64]
+SLIM = 16.0 / (3.0 * math.sqrt(3.0))
+"""Radius of the zone over its widest radius is ``SLIM u sqrt(u (1 - u))`` at the share u of its length."""
+
+
+def teardrop(angle: Floats, radius: float, length: float) -> Floats:
+    """Return how far the zone reaches [m] in directions at ``angle`` [rad] from its axis, 0 outside of it.
+
+    The surface has the radius ``radius 16 / (3 sqrt 3) u sqrt(u (1 - u))`` at the distance ``u length`` along the
+    axis; it is widest at ``u = 3/4`` (D4.2 of the CROWDBOT project, section 3.5.4). A direction meets it twice; what
+    lies before the nearer point is in the zone too, since the sound has to pass there.
+
+    >>> teardrop(np.array([0.0, math.atan2(1.0, 0.75 * 4.0), 1.0]), 1.0, 4.0).round(6).tolist()
+    [4.0, 3.162278, 0.0]
+    """
+    slope = np.tan(np.clip(np.abs(angle), 0.0, 0.5 * math.pi - 1e-9)) * length / (SLIM * radius)
+    root = 1.0 - 4.0 * slope**2
+    share = 0.5 * (1.0 + np.sqrt(np.maximum(root, 0.0)))
+    return np.asarray(np.where(root >= -1e-12, share * length / np.cos(angle), 0.0))
+
+
+@dataclass(frozen=True)
+class Ultrasound(Ranging):
+    """An ultrasonic range finder that looks along x and returns the smallest distance in its :func:`teardrop`.
+
+    Fields:
+        radius: widest radius of the zone [m], at three quarters of ``range_max``.
+        rays: beams that search the zone, spread evenly over its solid angle.
+        range_min, range_max: smallest and largest distance that is measured [m].
+        max_incidence: largest angle between beam and surface normal that returns [rad].
+        resolution: step of the returned distance [m], 0 for none.
+        skins: whether agents that have triangle skins are seen by them and not by their limbs.
+
+    Raises:
+        InputError: a value is not allowed.
+
+    >>> scene = Scene.of([[2.0, 0.0]], radius=0.3)
+    >>> Ultrasound().measure(scene, Pose.of((0.0, 0.0), 0.0).lifted(0.5)).ranges.tolist()
+    [1.7]
+    """
+
+    radius: float = 0.5
+    rays: int = 400
+    range_min: float = 0.15
+    range_max: float = 2.5
+    max_incidence: float = math.pi / 2
+    resolution: float = 0.0
+    skins: bool = False
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.check_count("rays")
+        if not 0.0 < self.radius < math.inf:
+            raise InputError(f"Ultrasound: radius = {self.radius} m must be finite and above 0")
+        self.check_ranges()
+
+    @property
+    def half_angle(self) -> float:
+        """Largest angle between the axis and a direction in which the zone lies [rad]."""
+        return math.atan(0.5 * SLIM * self.radius / self.range_max)
+
+    def measure(self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None) -> Echo:
+        """Return the smallest distance; ``rng`` is needed only when there is noise.
+
+        Raises:
+            InputError: scene and pose have different numbers of environments, or noise lacks a generator.
+        """
+        self.check(scene, pose)
+        return nearest(self, scene, pose, _bundle(self.radius, self.range_max, self.rays), rng)
+
+
+@functools.lru_cache(maxsize=64)
+def _bundle(radius: float, length: float, rays: int) -> tuple[Beams, Floats, Floats]:
+    half = math.atan(0.5 * SLIM * radius / length)
+    directions = cone(half, rays)
+    angle = np.arctan2(np.hypot(directions[:, 1], directions[:, 2]), directions[:, 0])
+    return beams(directions), directions, teardrop(np.minimum(angle, half), radius, length)

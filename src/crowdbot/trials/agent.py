@@ -1,0 +1,74 @@
+"""Agents: people each of whom stands in the trial with the own place, goal and body, as explicit trials have them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from .attribute import attribute, check, children
+from .notation import Points
+
+__all__ = ["Agent", "Parameter"]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of the crowd model for one person.
+
+    >>> Parameter("time-horizon", 1.5).value
+    1.5
+    """
+
+    name: str = attribute(about="of the model of the person's crowd")
+    value: float = attribute(about="for this person")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Agent:
+    """One person: with a goal or a journey a walker, without both somebody who stays in place.
+
+    Raises:
+        InputError: a value is not allowed.
+
+    >>> Agent(x=1, y=2, goal="8,0", speed=1.3).goal
+    ((8.0, 0.0),)
+    """
+
+    name: str = attribute("", about="name for messages")
+    x: float = attribute(about="start", unit="m")
+    y: float = attribute(about="start", unit="m")
+    heading: float | None = attribute(
+        None, about="start, counter-clockwise from +x, by default towards the goal", unit="rad"
+    )
+    goal: Points = attribute(Points(), about="point x,y to go to, without a journey", unit="m", points=1)
+    goal_zone: Points = attribute(Points(), about="corners x,y of a zone in which one is there already", unit="m")
+    journey: str = attribute("", about="name of the journey, without a goal")
+    speed: float = attribute(1.34, about="preferred speed", unit="m/s", above=0.0, at_most=10.0)
+    radius: float = attribute(0.25, about="radius of the body", unit="m", above=0.0, at_most=5.0)
+    arrival: str = attribute("leave", about="what one does at the goal", choices=("leave", "stay"))
+    crowd: str = attribute("", about="name of the crowd, by default the first")
+    group: int = attribute(-1, about="number of the group that one walks with, -1 alone", at_least=-1, at_most=1e6)
+    parameters: tuple[Parameter, ...] = children("parameter", about="own parameters of the model", at_most=100)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def count(self) -> int:
+        """One person."""
+        return 1
+
+    @property
+    def position(self) -> tuple[float, float]:
+        """Start ``x, y`` [m]."""
+        return self.x, self.y
+
+    @property
+    def facing(self) -> float:
+        """Heading at the start [rad], NaN towards the goal."""
+        if self.heading is None:
+            return math.nan if self.goal or self.journey else 0.0
+        return self.heading

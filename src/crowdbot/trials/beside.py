@@ -1,0 +1,49 @@
+"""Files beside a trial: maps, areas and recordings that it names, and nothing outside its folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from crowdbot.core import InputError
+
+__all__ = ["beside", "read_beside"]
+
+
+def beside(name: str, folder: Path | None, trust: bool) -> Path:
+    """Return the path of a file that a trial names.
+
+    Args:
+        name: as it stands in the trial, relative to its folder.
+        folder: of the trial; None is the working folder.
+        trust: whether the file may lie outside the folder.
+
+    Raises:
+        InputError: it lies outside, or there is none.
+    """
+    root = folder or Path.cwd()
+    try:
+        path = (root / name).resolve()
+        there = path.is_file()
+    except (OSError, ValueError, RuntimeError):
+        raise InputError(f"{name[:80]!r} is no name of a file") from None
+    if not trust and not path.is_relative_to(root.resolve()):
+        raise InputError(f"the file {name[:80]!r} lies outside {root}; move it there, or pass --trust to allow it")
+    if not there:
+        raise InputError(f"there is no file {name[:80]!r} in {root}")
+    return path
+
+
+def read_beside(path: Path, most: int) -> bytes:
+    """Return the bytes of a file of at most so many.
+
+    Raises:
+        InputError: it is larger, or cannot be read.
+    """
+    try:
+        with path.open("rb") as stream:
+            data = stream.read(most + 1)
+    except OSError as error:
+        raise InputError(f"{path.name} cannot be read: {error.strerror}") from None
+    if len(data) > most:
+        raise InputError(f"{path.name} is larger than {most} bytes, which is not read here")
+    return data

@@ -1,0 +1,115 @@
+"""Drawn: a crowd model whose parameters differ from person to person."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Paper, Scene, parameters, stream
+from crowdbot.core.errors import did_you_mean
+from crowdbot.models import CrowdModel
+
+from .distribution import Distribution
+
+__all__ = ["Drawn", "is_drawn", "names_of", "own"]
+
+Floats = NDArray[np.float64]
+Values = Mapping[int, Mapping[str, float]]
+
+
+@dataclass(frozen=True)
+class Drawn(CrowdModel):
+    """A model, and the distributions from which some of its parameters are drawn for each person.
+
+    Whoever comes in while a trial runs takes over the parameters of the place in the arrays, drawn alike.
+
+    Fields:
+        model: with the other parameters.
+        draws: names of parameters, as they are in Python, each with a distribution.
+
+    Raises:
+        InputError: the model has no such parameter, or cannot take every value that may be drawn.
+
+    >>> from crowdbot.models import ORCA
+    >>> crowd = Drawn(ORCA(), {"time_horizon": "uniform(1, 3)"})
+    >>> crowd.resolved(seed=0, crowd=0, agents=3).time_horizon.round(2).shape
+    (3,)
+    """
+
+    paper: ClassVar[Paper] = Paper("crowdbot", 2024, "Parameters that differ from person to person", "crowdbot")
+
+    model: CrowdModel
+    draws: tuple[tuple[str, Distribution], ...]
+
+    def __post_init__(self) -> None:
+        given: Any = self.draws
+        rows = given.items() if isinstance(given, Mapping) else given
+        object.__setattr__(self, "draws", tuple((str(name), Distribution.of(value)) for name, value in rows))
+        for sentence in self.problems(self.model, dict(self.draws)):
+            raise InputError(f"{type(self.model).__name__}: {sentence}")
+
+    @staticmethod
+    def problems(model: CrowdModel, draws: Mapping[str, Distribution]) -> Iterator[str]:
+        """Yield why parameters cannot be drawn for a model, as ends of a sentence."""
+        known = [row.name for row in parameters(model)]
+        for name, drawn in draws.items():
+            word = name.replace("_", "-")
+            if name not in known:
+                words = [one.replace("_", "-") for one in known]
+                yield f"{word} cannot be drawn{did_you_mean(word, words)}; what can be is {', '.join(words) or 'none'}"
+                continue
+            for value in drawn.extent:
+                try:
+                    dataclasses.replace(model, **{name: value})
+                except InputError as error:
+                    low, high = drawn.extent
+                    yield f'{word}="{drawn}" reaches from {low:g} to {high:g}: {error}'
+                    break
+
+    @property
+    def memory_at_start(self) -> Mapping[str, float]:
+        """What the memory of a scene holds for somebody new, as the model says it."""
+        return self.model.memory_at_start
+
+    def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
+        """Return the velocities of the model with the parameters of seed 0."""
+        return self.resolved(0, 0, scene.shape[1]).velocity(scene, dt, rng)
+
+    def resolved(self, seed: int, crowd: int, agents: int) -> CrowdModel:
+        """Return the model with an own value for each of ``agents``, as crowd number ``crowd`` of a trial."""
+        drawn = {
+            name: dist.draw(stream(seed, "crowd", crowd, name), agents)
+            for name, dist in self.draws
+        }  # fmt: skip
+        return dataclasses.replace(self.model, **drawn)
+
+
+def is_drawn(text: str) -> bool:
+    """Whether an attribute is a distribution, ``normal(1, 0.2)``, and not a number."""
+    return re.fullmatch(r"\s*[A-Za-z][A-Za-z-]*\s*\([^()]*\)\s*", text) is not None
+
+
+def own(model: CrowdModel, seed: int, crowd: int, agents: int, values: Values) -> CrowdModel:
+    """Return a model in which parameters are drawn, and given people have the values given for them by name."""
+    whole = model.resolved(seed, crowd, agents) if isinstance(model, Drawn) else model
+    if not values:
+        return whole
+    changed: dict[str, Floats] = {}
+    for agent, row in values.items():
+        for name, value in row.items():
+            if name not in changed:
+                now = np.asarray(getattr(whole, name), dtype=np.float64)
+                changed[name] = np.broadcast_to(now, (agents,)).copy()
+            changed[name][agent] = value
+    return dataclasses.replace(whole, **changed)
+
+
+def names_of(model: CrowdModel) -> Sequence[str]:
+    """Return the parameters of a model that a person can have an own value of."""
+    return [row.name for row in parameters(model.model if isinstance(model, Drawn) else model)]

@@ -1,0 +1,98 @@
+"""Challenge: the 21 scenarios of the challenge "Crowd against the machine" of the CrowdBot project (ICRA 2021).
+
+A corridor of 50 m by 10 m; nobody, or one of five flows of 50, 100, 200 or 350 people (0.1 to 0.7 people/m2), each of
+whom comes in at one end, or side, after leaving at the other. The robot goes 40 m along the middle. Parameters are
+those of the public scenario files: preferred speeds of 1.33 +- 0.30 m/s, bodies of 0.33 m, a robot of 0.5 m, 180 s.
+Accelerations are limited to 5 m/s2 by default, as in the examples of UMANS; the files have 0.8 m/s2.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+
+from crowdbot.trials.crowd import Contact, Limits
+from crowdbot.trials.journey import Journey, Portal, Zone
+from crowdbot.trials.people import Spawner
+from crowdbot.trials.stage import Stage
+from crowdbot.trials.trial import Trial
+
+from .crowds import DEEP, ends
+from .parts import box, corridor, number, robot, scenario, uniform
+from .preset import Option, Preset
+
+__all__ = ["CHALLENGE", "FLOWS", "SIZES"]
+
+LENGTH, WIDTH = 50.0, 10.0
+SIZES = (50, 100, 200, 350)
+FLOWS = {
+    "with": ("1D+", "with the robot", ("east",)),
+    "against": ("1D-", "against the robot", ("west",)),
+    "both": ("1Dx", "with and against the robot", ("east", "west")),
+    "cross": ("2D", "across its way, from one side", ("south",)),
+    "cross-both": ("2Dx", "across its way, from both sides", ("south", "north")),
+}
+"""Flows by name: what the challenge calls them, a few words, the journeys of people."""
+
+FAR = LENGTH / 2.0 + 5.0
+JOURNEYS = {
+    "east": Zone(box(FAR, -4.5, FAR + 1.0, 4.5), aim="random"),
+    "west": Zone(box(-FAR - 1.0, -4.5, -FAR, 4.5), aim="random"),
+    "south": Zone(box(-24.0, -11.0, 24.0, -10.0), aim="nearest"),
+    "north": Zone(box(-24.0, 10.0, 24.0, 11.0), aim="nearest"),
+}
+"""Goals lie beyond the portals, where nobody arrives."""
+
+
+def challenge(kind: str, people: int, acceleration: float) -> Trial:
+    """Return one scenario."""
+    ways = FLOWS[kind][2] if kind else ()
+    crossing = kind.startswith("cross")
+    zone = box(-24.5, -4.25, 24.5, 4.25)
+    sizes = [people // 2, people - people // 2] if len(ways) == 2 else [people]
+    top = LENGTH / 2.0
+    sides = (
+        Portal(name="low", zone=box(-top, -5.0 - DEEP, top, -5.0), dy=WIDTH),
+        Portal(name="high", zone=box(-top, 5.0, top, 5.0 + DEEP), dy=-WIDTH),
+    )
+    return scenario(
+        f"challenge-{kind}-{people}" if kind else "challenge-alone",
+        180.0,
+        Stage() if crossing else corridor(LENGTH + 12.0, WIDTH),
+        contact=Contact(),
+        limits=Limits(max_speed=3.0, max_acceleration=acceleration if math.isfinite(acceleration) else None),
+        journeys=[Journey(name=way, then="stay", stops=(JOURNEYS[way],)) for way in ways],
+        spawners=[
+            Spawner(name=way, count=count, zone=zone, journey=way, speed=uniform(1.03, 1.63), radius=number(0.33))
+            for way, count in zip(ways, sizes, strict=False)
+            if count
+        ],
+        portals=() if not ways else sides if crossing else ends(LENGTH, WIDTH),
+        robots=[robot((-20.0, 0.0), (20.0, 0.0), 0.65, radius=0.5)],
+    )
+
+
+def _presets() -> tuple[Preset, ...]:
+    braking = Option(5.0, "largest change of velocity of people", "m/s2", 0.1, 100.0)
+    found = [
+        Preset(
+            "challenge-alone",
+            "CrowdBot challenge, scenario without a crowd: the robot alone in a corridor of 50 m by 10 m.",
+            functools.partial(challenge, "", 0),
+            {"acceleration": braking},
+        )
+    ]
+    for kind, (code, words, _) in FLOWS.items():
+        found += [
+            Preset(
+                f"challenge-{kind}-{size}",
+                f"CrowdBot challenge, {code}: {size} people walk {words}, in a corridor of 50 m by 10 m.",
+                functools.partial(challenge, kind),
+                {"people": Option(size, "people", "", 0, 600), "acceleration": braking},
+            )
+            for size in SIZES
+        ]
+    return tuple(found)
+
+
+CHALLENGE = _presets()

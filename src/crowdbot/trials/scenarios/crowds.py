@@ -1,0 +1,335 @@
+"""Crowds: a robot among many people.
+
+Sources: Chen et al. 2019, Crowd-robot interaction, doi:10.1109/ICRA.2019.8794134 (circle and square crossing); Liu et
+al. 2023, Intention aware robot crowd navigation, doi:10.1109/ICRA48891.2023.10160660 (dense circle); Fruin 1971,
+Pedestrian planning and design (levels of service behind the densities); other numbers are ours.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from crowdbot.models import ORCA
+from crowdbot.trials.crowd import Contact, Routing
+from crowdbot.trials.journey import Direction, Exit, Journey, Portal, Zone
+from crowdbot.trials.notation import Points
+from crowdbot.trials.people import Source, Spawner
+from crowdbot.trials.stage import Obstacle, Stage, Wall
+from crowdbot.trials.trial import Trial
+from crowdbot.world import Omnidirectional
+
+from .parts import box, corridor, flow, number, pairs, robot, scenario
+from .preset import Option, Preset
+
+__all__ = ["CROWDS", "DENSITIES"]
+
+DENSITIES = (0.05, 0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0)
+"""The ladder of densities [people/m2]; the last one is for stress."""
+
+LENGTH, HALF = 40.0, 20.0
+DEEP = 4.0
+"""Of portals [m]."""
+EAST = Journey(name="east", stops=(Direction(0.0),))
+WEST = Journey(name="west", stops=(Direction(math.pi),))
+SOUTH = Journey(name="south", stops=(Direction(-math.pi / 2.0),))
+NORTH = Journey(name="north", stops=(Direction(math.pi / 2.0),))
+DENSITY = Option(0.3, "people", "1/m2", 0.0, 3.0)
+GROUPS = Option(0.0, "share of people in groups of two and three", "", 0.0, 1.0)
+WIDTH = Option(6.0, "width of the corridor", "m", 2.0, 20.0)
+
+
+def ends(length: float, width: float) -> tuple[Portal, Portal]:
+    """Return portals at both ends of a corridor: who leaves at one end comes in at the other."""
+    x, y = length / 2.0, width / 2.0
+    return (
+        Portal(name="right", zone=box(x, -y, x + DEEP, y), dx=-length),
+        Portal(name="left", zone=box(-x - DEEP, -y, -x, y), dx=length),
+    )
+
+
+def _count(density: float, length: float, width: float) -> int:
+    return round(density * length * width)
+
+
+def _flowing(name: str, width: float, flows: dict[str, float], groups: float, gap: float = 12.0) -> Trial:
+    """Return a corridor in which people walk east and west at densities [1/m2], and a robot goes east."""
+    y = width / 2.0 - 0.35
+    zone = box(-HALF + 0.5, -y, HALF - 0.5, y)
+    people = [flow(way, _count(density, LENGTH, width), zone, way) for way, density in flows.items()]
+    people = [Spawner(**_fields(one), groups=pairs(groups)) for one in people if one.count]
+    return scenario(
+        name,
+        90.0,
+        corridor(LENGTH + 10.0, width),
+        contact=Contact(),
+        journeys=[EAST, WEST],
+        spawners=people,
+        portals=ends(LENGTH, width),
+        robots=[robot((-gap, 0.0), (gap, 0.0))],
+    )
+
+
+def _fields(one: Spawner) -> dict[str, Any]:
+    return {"name": one.name, "count": one.count, "zone": one.zone, "journey": one.journey}
+
+
+def one_way_with(density: float, width: float, groups: float) -> Trial:
+    """People walk where the robot goes."""
+    return _flowing("one-way-with", width, {"east": density}, groups)
+
+
+def one_way_against(density: float, width: float, groups: float) -> Trial:
+    """People walk against the robot."""
+    return _flowing("one-way-against", width, {"west": density}, groups)
+
+
+def two_way(density: float, width: float, groups: float) -> Trial:
+    """People walk both ways."""
+    return _flowing("two-way", width, {"east": density / 2.0, "west": density / 2.0}, groups)
+
+
+def density_ladder(density: float) -> Trial:
+    """A corridor of 20 m by 5 m without ends."""
+    y, count = 2.5 - 0.35, _count(density, 20.0, 5.0)
+    zone = box(-9.7, -y, 9.7, y)
+    body = 0.25 if density < 1.75 else 0.2
+    people = [
+        Spawner(name=way, count=n, zone=zone, journey=way, radius=number(body))
+        for way, n in (("east", count - count // 2), ("west", count // 2))
+        if n
+    ]
+    return scenario(
+        "density-ladder",
+        60.0,
+        corridor(30.0, 5.0),
+        contact=Contact(),
+        journeys=[EAST, WEST],
+        spawners=people,
+        portals=ends(20.0, 5.0),
+        robots=[robot((-8.0, 0.0), (8.0, 0.0))],
+    )
+
+
+def crossing(density: float, both: bool) -> Trial:
+    """People cross the way of the robot."""
+    side = 12.0
+    ways = ("south", "north") if both else ("south",)
+    count = _count(density, side, side) // len(ways)
+    low = Portal(name="low", zone=box(-6, -6 - DEEP, 6, -6), dy=side)
+    high = Portal(name="high", zone=box(-6, 6, 6, 6 + DEEP), dy=-side)
+    return scenario(
+        "perpendicular-flow",
+        60.0,
+        Stage(walls=(Wall(Points.of([(-6.5, -10), (-6.5, -2)])), Wall(Points.of([(-6.5, 2), (-6.5, 10)])),
+                     Wall(Points.of([(6.5, -10), (6.5, -2)])), Wall(Points.of([(6.5, 2), (6.5, 10)])))),
+        contact=Contact(),
+        journeys=[SOUTH, NORTH],
+        spawners=[flow(way, count, box(-5.7, -5.7, 5.7, 5.7), way) for way in ways if count],
+        portals=[low, high],
+        robots=[robot((-8.0, 0.0), (8.0, 0.0))],
+    )  # fmt: skip
+
+
+def circle_crossing(people: int, radius: float, noise: float, limit: float, horizon: float) -> Trial:
+    """Everybody on a circle goes to the other side, the robot too."""
+    spawners, r = [], radius
+    right = (people + 1) // 2
+    for k in range(people):
+        # the robot goes from the lowest point to the highest, so nobody begins at either
+        side, place, of = (0.0, k, right) if k < right else (math.pi, k - right, people - right)
+        angle = side - math.pi / 2.0 + math.pi * (place + 1) / (of + 1)
+        x, y = r * math.cos(angle), r * math.sin(angle)
+        spawners.append(
+            Spawner(
+                name=f"person{k + 1}",
+                count=1,
+                zone=box(x - noise, y - noise, x + noise, y + noise),
+                goal=box(-x - noise, -y - noise, -x + noise, -y + noise),
+                speed=number(1.0),
+                radius=number(0.3),
+                arrival="stay",
+            )
+        )
+    return scenario(
+        "circle-crossing",
+        limit,
+        Stage(),
+        crowd=ORCA(neighbor_distance=10.0, max_neighbors=10.0, time_horizon=horizon, time_horizon_walls=horizon),
+        spawners=spawners,
+        robots=[robot((0.0, -radius), (0.0, radius), drive=Omnidirectional(max_speed=1.0), visible=False)],
+    )
+
+
+def dense_circle(people: int, radius: float) -> Trial:
+    """Twenty people on a circle."""
+    return circle_crossing(people, radius, 0.4, 50.0, 5.0)
+
+
+def square_crossing(people: int, side: float) -> Trial:
+    """People on the left and on the right of a square swap sides."""
+    h, left = side / 2.0, people // 2
+    west, east = box(-h, -h, -h + 1.5, h), box(h - 1.5, -h, h, h)
+    spawners = [
+        Spawner(name="left", count=left, zone=west, goal=east, speed=number(1.0), radius=number(0.3), arrival="stay"),
+        Spawner(
+            name="right",
+            count=people - left,
+            zone=east,
+            goal=west,
+            speed=number(1.0),
+            radius=number(0.3),
+            arrival="stay",
+        ),
+    ]
+    return scenario(
+        "square-crossing",
+        30.0,
+        Stage(),
+        spawners=[one for one in spawners if one.count],
+        robots=[robot((0.0, -h), (0.0, h))],
+    )
+
+
+def static_crowd(density: float, groups: float) -> Trial:
+    """People stand about."""
+    return scenario(
+        "static-crowd",
+        60.0,
+        Stage(walkable=box(-8, -4, 8, 4)),
+        spawners=[
+            Spawner(
+                name="standing",
+                count=max(1, _count(density, 10.0, 7.0)),
+                zone=box(-5, -3.5, 5, 3.5),
+                stands=True,
+                groups=pairs(groups),
+            )
+        ],
+        robots=[robot((-7.0, 0.0), (7.0, 0.0))],
+    )
+
+
+def random_goals(people: int, side: float) -> Trial:
+    """People go about: whoever has arrived goes somewhere else."""
+    h = side / 2.0
+    inside = box(-h + 0.5, -h + 0.5, h - 0.5, h - 0.5)
+    return scenario(
+        "random-goals",
+        90.0,
+        Stage(walkable=box(-h, -h, h, h)),
+        contact=Contact(),
+        journeys=[Journey(name="about", then="again", stops=(Zone(inside, aim="random"),))],
+        spawners=[Spawner(name="people", count=people, zone=inside, journey="about")],
+        robots=[robot((-h + 1.0, -h + 1.0), (h - 1.0, h - 1.0))],
+    )
+
+
+def bottleneck(door: float, rate: float) -> Trial:
+    """People come in on the left and go out through a door; a robot crosses the hall behind it."""
+    half = door / 2.0
+    near = half - 0.1 if half > 0.4 else half
+    return scenario(
+        "bottleneck",
+        60.0,
+        Stage(
+            walkable=box(-10, -5, 10, 5),
+            walls=(Wall(Points.of([(0, -5), (0, -half)])), Wall(Points.of([(0, half), (0, 5)]))),
+            obstacles=(Obstacle(box(-4, 1, -3, 3)),),
+        ),
+        routing=Routing(radius=min(0.3, half - 0.05)),
+        crowd=ORCA(neighbor_distance=5.0, max_neighbors=10.0, time_horizon=2.0, time_horizon_walls=0.5),
+        contact=Contact(),
+        journeys=[
+            Journey(
+                name="through",
+                stops=(
+                    Zone(box(0.5, -near, 1.5, near)),
+                    Zone(box(9, -4.5, 10, 4.5), aim="random"),
+                ),
+            )
+        ],
+        spawners=[flow("hall", 6, box(-7, -4.5, -5, 4.5), "through")],
+        sources=[Source(name="entrance", zone=box(-9.7, -4.5, -8, 4.5), journey="through", rate=rate)],
+        exits=[Exit(name="right", zone=box(8.8, -5, 10, 5))],
+        robots=[robot((3.0, -4.0), (3.0, 4.0), 0.65)],
+    )
+
+
+CROWDS = (
+    Preset(
+        "one-way-with",
+        "People walk down a corridor without ends, the robot with them.",
+        one_way_with,
+        {"density": DENSITY, "width": WIDTH, "groups": GROUPS},
+    ),
+    Preset(
+        "one-way-against",
+        "People walk down a corridor without ends, the robot against them.",
+        one_way_against,
+        {"density": DENSITY, "width": WIDTH, "groups": GROUPS},
+    ),
+    Preset(
+        "two-way",
+        "People walk both ways down a corridor without ends.",
+        two_way,
+        {"density": DENSITY, "width": WIDTH, "groups": GROUPS},
+    ),
+    Preset(
+        "density-ladder",
+        "A two-way corridor of 20 m by 5 m without ends, from 0.05 to 3 people/m2.",
+        density_ladder,
+        {"density": Option(0.5, f"people: {', '.join(f'{d:g}' for d in DENSITIES)}", "1/m2", 0.0, 3.0)},
+    ),
+    Preset(
+        "perpendicular-flow",
+        "People without end cross the way of the robot, from one side or from both.",
+        crossing,
+        {"density": DENSITY, "both": Option(False, "whether people come from both sides")},
+    ),
+    Preset(
+        "circle-crossing",
+        "Everybody on a circle goes to the other side, and so does a robot that people do not see.",
+        circle_crossing,
+        {
+            "people": Option(5, "people", "", 1, 60),
+            "radius": Option(4.0, "of the circle", "m", 2.0, 30.0),
+            "noise": Option(0.35, "half width of the square in which somebody begins", "m", 0.05, 2.0),
+            "limit": Option(25.0, "duration", "s", 5.0, 600.0),
+            "horizon": Option(5.0, "time horizon of people", "s", 0.5, 10.0),
+        },
+    ),
+    Preset(
+        "dense-circle",
+        "Twenty people on a larger circle go to the other side, and so does a robot that they do not see.",
+        dense_circle,
+        {"people": Option(20, "people", "", 1, 60), "radius": Option(8.49, "of the circle", "m", 2.0, 30.0)},
+    ),
+    Preset(
+        "square-crossing",
+        "People on two sides of a square swap sides, the robot crosses their way.",
+        square_crossing,
+        {"people": Option(10, "people", "", 1, 60), "side": Option(10.0, "of the square", "m", 5.0, 40.0)},
+    ),
+    Preset(
+        "static-crowd",
+        "People stand about, alone or in groups; the robot goes through.",
+        static_crowd,
+        {"density": Option(0.25, "people", "1/m2", 0.0, 1.5), "groups": GROUPS},
+    ),
+    Preset(
+        "random-goals",
+        "People go about a square, each to one random place after the other.",
+        random_goals,
+        {"people": Option(30, "people", "", 1, 400), "side": Option(20.0, "of the square", "m", 6.0, 100.0)},
+    ),
+    Preset(
+        "bottleneck",
+        "People come in on the left and go out through a door; a robot crosses the hall behind it.",
+        bottleneck,
+        {
+            "door": Option(1.4, "width of the door", "m", 0.7, 6.0),
+            "rate": Option(0.7, "people who come in", "1/s", 0.01, 10.0),
+        },
+    ),
+)

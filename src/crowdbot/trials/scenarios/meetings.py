@@ -1,0 +1,332 @@
+"""Meetings: one robot and a few people, the base cases of social navigation.
+
+Sources: Francis et al. 2025, Principles and guidelines for evaluating social robot navigation algorithms,
+doi:10.1145/3700599 (the list of scenarios); numbers are ours where none is given there.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from crowdbot.trials.agent import Agent
+from crowdbot.trials.crowd import Routing
+from crowdbot.trials.distribution import Distribution
+from crowdbot.trials.journey import Journey, Point
+from crowdbot.trials.notation import Points
+from crowdbot.trials.people import Spawner
+from crowdbot.trials.stage import Stage, Wall
+from crowdbot.trials.trial import Trial
+from crowdbot.world import DifferentialDrive
+
+from .parts import box, corridor, robot, scenario, uniform
+from .preset import Option, Preset
+
+__all__ = ["MEETINGS"]
+
+WIDTH = Option(3.0, "width of the corridor", "m", 1.2, 20.0)
+PERSON = Option(1.2, "speed of the person", "m/s", 0.1, 2.5)
+ROBOT = Option(1.0, "speed of the robot", "m/s", 0.1, 3.0)
+
+
+def frontal(width: float, gap: float, low: float, high: float) -> Trial:
+    """A robot and a person meet head-on."""
+    half = gap / 2.0
+    return scenario(
+        "frontal",
+        40.0,
+        corridor(gap + 7.0, width),
+        spawners=[
+            Spawner(
+                name="person",
+                count=1,
+                zone=box(half, -0.2, half + 0.4, 0.2),
+                goal=box(-half - 2.5, -0.5, -half - 1.5, 0.5),
+                speed=uniform(min(low, high), max(low, high)),
+            )
+        ],
+        robots=[robot((-half, 0.0), (half, 0.0))],
+    )
+
+
+def intersection(angle: float, delay: float, width: float, density: float, speed: float, robot_speed: float) -> Trial:
+    """Two corridors cross; a person, or a flow, comes from the side."""
+    import shapely
+
+    far, turn = 10.0, math.radians(angle)
+    along, across = math.cos(turn), math.sin(turn)
+    main = shapely.box(-far, -width / 2.0, far, width / 2.0)
+    side = shapely.affinity.rotate(main, angle, origin=(0.0, 0.0))
+    ground = shapely.set_precision(shapely.union_all([main, side]), 1e-6)
+    count = max(1, round(density * width * (far - width)))
+    reach = speed * (6.0 / robot_speed + delay)
+    parts: dict[str, Any] = {
+        "robots": [robot((-6.0, 0.0), (6.0, 0.0), robot_speed)],
+        "stage": Stage(area=shapely.to_wkt(ground, trim=True, rounding_precision=6)),
+    }
+    end = Points.of([(9.0 * along, 9.0 * across)])
+    if density == 0.0:
+        away = min(max(reach, 1.0), 9.5)
+        parts["agents"] = [Agent(name="person", x=-away * along, y=-away * across, goal=end, speed=speed)]
+    else:
+        half, first, last = width / 2.0 - 0.35, -far + 0.5, -width - 0.5
+        corners = [(first, -half), (last, -half), (last, half), (first, half)]
+        turned = [(x * along - y * across, x * across + y * along) for x, y in corners]
+        goal = [(-x * along - y * across, -x * across + y * along) for x, y in corners]
+        parts["spawners"] = [
+            Spawner(
+                name="side",
+                count=count,
+                zone=Points.of(turned),
+                goal=Points.of(goal),
+                speed=Distribution("normal", (speed, min(0.2, speed / 4.0))),
+            )
+        ]
+    return scenario("intersection", 60.0, **parts)
+
+
+def blind_corner(width: float, speed: float, distance: float) -> Trial:
+    """An L of corridors hides a person until the last moment."""
+    w = width
+    ground = Points.of([(-9, 0), (w, 0), (w, -9), (0, -9), (0, -w), (-9, -w)]).shifted(-w / 2.0, w / 2.0)
+    return scenario(
+        "blind-corner",
+        60.0,
+        Stage(walkable=ground),
+        routing=Routing(radius=0.3),
+        agents=[Agent(name="person", x=0.0, y=-distance, goal=Points.of([(-8.0, 0.0)]), speed=speed)],
+        robots=[robot((-6.0, -0.1), (0.1, -6.0), 0.8)],
+    )
+
+
+def doorway(door: float, speed: float) -> Trial:
+    """A robot and a person want through a door from both sides."""
+    half = door / 2.0
+    return scenario(
+        "doorway",
+        60.0,
+        Stage(
+            walkable=box(-6, -3, 6, 3),
+            walls=(Wall(Points.of([(0, -3), (0, -half)])), Wall(Points.of([(0, half), (0, 3)]))),
+        ),
+        routing=Routing(radius=0.27),
+        agents=[Agent(name="person", x=5.0, y=0.6, goal=Points.of([(-5.0, 0.6)]), speed=speed)],
+        robots=[robot((-4.0, -0.2), (4.0, -0.2), 0.7)],
+    )
+
+
+def elevator(door: float, people: int) -> Trial:
+    """People leave a small room that the robot wants to enter."""
+    half = door / 2.0
+    walls = [[(0, -half), (0, -1.1), (2.2, -1.1), (2.2, 1.1), (0, 1.1), (0, half)]]
+    return scenario(
+        "elevator",
+        60.0,
+        Stage(walkable=box(-7, -4, 4, 4), walls=tuple(Wall(Points.of(points)) for points in walls)),
+        routing=Routing(radius=0.27),
+        journeys=[
+            Journey(
+                name="out",
+                stops=(
+                    Point(-1.2, 0.9),
+                    Point(-6.0, 3.0),
+                ),
+            )
+        ],
+        spawners=[
+            Spawner(
+                name="leaving", count=people, zone=box(0.4, -0.7, 1.8, 0.7), journey="out", radius=uniform(0.2, 0.25)
+            )
+        ],
+        robots=[robot((-5.0, -1.0), (1.1, 0.0), 0.7)],
+    )
+
+
+def overtaking(width: float, speed: float, robot_speed: float) -> Trial:
+    """A robot comes up behind a slow person."""
+    return scenario(
+        "overtaking",
+        60.0,
+        corridor(34.0, width),
+        agents=[Agent(name="person", x=-8.0, y=0.0, goal=Points.of([(16.0, 0.0)]), speed=speed)],
+        robots=[robot((-12.0, 0.0), (12.0, 0.0), robot_speed)],
+    )
+
+
+def being_overtaken(width: float, speed: float, robot_speed: float) -> Trial:
+    """A person comes up behind a slow robot."""
+    return scenario(
+        "being-overtaken",
+        60.0,
+        corridor(34.0, width),
+        agents=[Agent(name="person", x=-12.0, y=0.0, goal=Points.of([(16.0, 0.0)]), speed=speed)],
+        robots=[robot((-8.0, 0.0), (8.0, 0.0), robot_speed)],
+    )
+
+
+def following(gap: float, speed: float, robot_speed: float) -> Trial:
+    """A person walks ahead of the robot, where the robot has to go too."""
+    return scenario(
+        "following",
+        60.0,
+        corridor(40.0, 2.5),
+        agents=[Agent(name="leader", x=-10.0 + gap, y=0.0, goal=Points.of([(19.0, 0.0)]), speed=speed)],
+        robots=[robot((-10.0, 0.0), (10.0, 0.0), robot_speed)],
+    )
+
+
+def _formation(people: int, radius: float) -> list[Agent]:
+    """Return people who stand on a circle and look to its middle; one place, on the left, is free."""
+    agents = []
+    for k in range(1, people + 1):
+        angle = math.pi + 2.0 * math.pi * k / (people + 1)
+        agents.append(
+            Agent(
+                name=f"member{k}",
+                x=radius * math.cos(angle),
+                y=radius * math.sin(angle),
+                heading=math.remainder(angle + math.pi, 2.0 * math.pi),
+                group=0,
+            )
+        )
+    return agents
+
+
+def joining_group(people: int, radius: float) -> Trial:
+    """A robot takes the free place in a group of people who talk."""
+    return scenario(
+        "joining-group",
+        40.0,
+        Stage(walkable=box(-7, -4, 5, 4)),
+        agents=_formation(people, radius),
+        robots=[robot((-6.0, 0.0), (-radius - 0.15, 0.0), 0.6, tolerance=0.2)],
+    )
+
+
+def leaving_group(people: int, radius: float) -> Trial:
+    """A robot leaves a group of people who talk."""
+    free = -radius - 0.15
+    return scenario(
+        "leaving-group",
+        40.0,
+        Stage(walkable=box(-7, -4, 5, 4)),
+        agents=_formation(people, radius),
+        robots=[robot((free, 0.0), (-6.0, 0.0), 0.6)],
+    )
+
+
+def passing_group(gap: float) -> Trial:
+    """Two people talk across the way of the robot."""
+    half = gap / 2.0
+    agents = [
+        Agent(name="left", x=0.0, y=half, heading=-math.pi / 2.0, group=0),
+        Agent(name="right", x=0.0, y=-half, heading=math.pi / 2.0, group=0),
+    ]
+    return scenario(
+        "passing-group",
+        40.0,
+        Stage(walkable=box(-7, -4, 7, 4)),
+        agents=agents,
+        robots=[robot((-5.0, 0.0), (5.0, 0.0), drive=DifferentialDrive(max_speed=1.0, max_turn_rate=1.5))],
+    )
+
+
+PEOPLE = Option(4, "people in the group", "", 1, 8)
+CIRCLE = Option(1.2, "radius of their circle", "m", 0.6, 3.0)
+
+MEETINGS = (
+    Preset(
+        "frontal",
+        "A robot and a person meet head-on in a corridor.",
+        frontal,
+        {
+            "width": WIDTH,
+            "gap": Option(9.0, "distance between them at the beginning", "m", 3.0, 40.0),
+            "low": Option(1.0, "smallest speed of the person", "m/s", 0.1, 2.5),
+            "high": Option(1.4, "largest speed of the person", "m/s", 0.1, 2.5),
+        },
+    ),
+    Preset(
+        "intersection",
+        "Two corridors cross; a person, or with a density a flow, crosses the way of the robot.",
+        intersection,
+        {
+            "angle": Option(90.0, "between the ways", "deg", 30.0, 150.0),
+            "delay": Option(0.0, "of the person at the crossing", "s", -2.0, 2.0),
+            "width": Option(3.0, "width of the corridors", "m", 1.2, 6.0),
+            "density": Option(0.0, "people in the side corridor, 0 for one person", "1/m2", 0.0, 2.0),
+            "speed": PERSON,
+            "robot_speed": ROBOT,
+        },
+    ),
+    Preset(
+        "blind-corner",
+        "An L of corridors hides a person until they are near.",
+        blind_corner,
+        {
+            "width": Option(1.8, "width of the corridors", "m", 1.4, 4.0),
+            "speed": PERSON,
+            "distance": Option(7.0, "of the person from the corner", "m", 1.0, 7.5),
+        },
+    ),
+    Preset(
+        "doorway",
+        "A robot and a person want through a narrow door from both sides.",
+        doorway,
+        {"door": Option(0.95, "width of the door", "m", 0.7, 3.0), "speed": PERSON},
+    ),
+    Preset(
+        "elevator",
+        "People leave a small room that the robot wants to enter.",
+        elevator,
+        {"door": Option(0.95, "width of the door", "m", 0.7, 2.0), "people": Option(1, "people who leave", "", 1, 4)},
+    ),
+    Preset(
+        "overtaking",
+        "A robot comes up behind a slow person in a corridor.",
+        overtaking,
+        {
+            "width": WIDTH,
+            "speed": Option(0.7, "speed of the person", "m/s", 0.1, 2.5),
+            "robot_speed": Option(1.2, "speed of the robot", "m/s", 0.1, 3.0),
+        },
+    ),
+    Preset(
+        "being-overtaken",
+        "A person comes up behind a slow robot in a corridor.",
+        being_overtaken,
+        {
+            "width": WIDTH,
+            "speed": Option(1.4, "speed of the person", "m/s", 0.1, 2.5),
+            "robot_speed": Option(0.6, "speed of the robot", "m/s", 0.1, 3.0),
+        },
+    ),
+    Preset(
+        "following",
+        "A person walks ahead of the robot where the robot has to go too.",
+        following,
+        {
+            "gap": Option(1.75, "distance between their centres at the beginning", "m", 0.6, 10.0),
+            "speed": Option(1.0, "speed of the person", "m/s", 0.1, 2.5),
+            "robot_speed": Option(1.0, "speed of the robot", "m/s", 0.1, 3.0),
+        },
+    ),
+    Preset(
+        "joining-group",
+        "A robot takes the free place in a group of people who stand and talk.",
+        joining_group,
+        {"people": PEOPLE, "radius": CIRCLE},
+    ),
+    Preset(
+        "leaving-group",
+        "A robot leaves a group of people who stand and talk.",
+        leaving_group,
+        {"people": PEOPLE, "radius": CIRCLE},
+    ),
+    Preset(
+        "passing-group",
+        "Two people talk across the way of the robot.",
+        passing_group,
+        {"gap": Option(2.0, "distance between their centres", "m", 0.8, 5.0)},
+    ),
+)

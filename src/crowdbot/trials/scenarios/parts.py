@@ -1,0 +1,110 @@
+"""Parts that scenarios are made of: boxes, corridors, robots, people in them."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from crowdbot import models, navigation
+from crowdbot.core import plug
+from crowdbot.models import ORCA
+from crowdbot.sensors import Gaussian, Lidar2D
+from crowdbot.trials.distribution import Distribution
+from crowdbot.trials.notation import Points
+from crowdbot.trials.people import Group, Spawner
+from crowdbot.trials.stage import Stage, Wall
+from crowdbot.trials.trial import Goal, Mount, Robot, Trial
+from crowdbot.world import DifferentialDrive, Drive
+
+if TYPE_CHECKING:
+    from .preset import Preset
+
+__all__ = ["CROWD", "box", "corridor", "finished", "flow", "number", "pairs", "robot", "scenario", "uniform"]
+
+CROWD = ORCA(neighbor_distance=5.0, max_neighbors=10.0, time_horizon=2.0, time_horizon_walls=1.0)
+
+
+def box(left: float, low: float, right: float, high: float) -> Points:
+    """Return the corners of a rectangle.
+
+    >>> str(box(0, 0, 4, 2))
+    '0,0 4,0 4,2 0,2'
+    """
+    return Points.of([(left, low), (right, low), (right, high), (left, high)])
+
+
+def corridor(length: float, width: float) -> Stage:
+    """Return two walls along x, about the origin."""
+    x, y = length / 2.0, width / 2.0
+    return Stage(walls=(Wall(Points.of([(-x, -y), (x, -y)])), Wall(Points.of([(-x, y), (x, y)]))))
+
+
+def robot(
+    start: tuple[float, float],
+    goal: tuple[float, float],
+    speed: float = 1.0,
+    *,
+    radius: float = 0.3,
+    tolerance: float = 0.3,
+    drive: Drive | None = None,
+    visible: bool = True,
+) -> Robot:
+    """Return a robot with a laser scanner that looks to its goal."""
+    return Robot(
+        x=start[0],
+        y=start[1],
+        heading=math.atan2(goal[1] - start[1], goal[0] - start[0]),
+        radius=radius,
+        visible=visible,
+        goal=Goal(goal[0], goal[1], tolerance),
+        drive=drive or DifferentialDrive(max_speed=speed, max_turn_rate=1.5),
+        navigator=navigation.ORCA(speed=speed),
+        sensors=(Mount(sensor=Lidar2D(rays=360, range_max=10.0, noise=Gaussian(0.01))),),
+    )
+
+
+def scenario(name: str, duration: float, stage: Stage, **parts: Any) -> Trial:
+    """Return a trial with the usual crowd, in which nobody stops face to face."""
+    whole: dict[str, Any] = {"crowd": CROWD, "symmetry": 0.001} | parts
+    return Trial(name=name, duration=duration, stage=stage, **whole)
+
+
+def pairs(share: float) -> tuple[Group, ...]:
+    """Return the groups of people of whom about this share is in pairs and threes; none for 0."""
+    if share <= 0.0:
+        return ()
+    # of n draws a pair has 2 people and a three 3: weights by people
+    alone = (Group(1, 1.0 - share),) if share < 1.0 else ()
+    return (Group(3, share * 0.25 / 3.0), Group(2, share * 0.75 / 2.0), *alone)
+
+
+def flow(name: str, count: int, zone: Points, journey: str, **more: Any) -> Spawner:
+    """Return people in a zone who go on a journey."""
+    return Spawner(name=name, count=count, zone=zone, journey=journey, **more)
+
+
+def finished(trial: Trial, preset: Preset, values: Mapping[str, Any]) -> Trial:
+    """Return a trial with what all presets have in common: model, navigator, robot, seed."""
+    changes: dict[str, Any] = {"name": preset.name, "about": preset.about, "seed": values["seed"]}
+    if values["model"] != "orca":
+        changes["crowd"] = plug.find(values["model"], models, models.CrowdModel, trust=False)()
+    robots: Iterable[Robot] = trial.robots if values["robot"] else ()
+    found = plug.find(values["navigator"], navigation, navigation.Navigator, trust=False)
+    robots = [
+        one if isinstance(one.navigator, found) else dataclasses.replace(one, navigator=found()) for one in robots
+    ]
+    if not values["reactive"]:
+        robots = [dataclasses.replace(one, visible=False) for one in robots]
+    return dataclasses.replace(trial, **changes, robots=tuple(robots))
+
+
+def uniform(low: float, high: float) -> Distribution:
+    """Return a distribution, or the number when there is one only."""
+    return Distribution("uniform", (low, high)) if low < high else Distribution("number", (low,))
+
+
+def number(value: float) -> Distribution:
+    """Return the distribution of one number only."""
+    return Distribution("number", (value,))

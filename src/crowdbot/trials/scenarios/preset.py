@@ -1,0 +1,122 @@
+"""Preset: a trial that is made from parameters."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from crowdbot.core import InputError, TrialError
+from crowdbot.core.errors import did_you_mean
+from crowdbot.trials.notation import number
+from crowdbot.trials.trial import Trial
+
+__all__ = ["Option", "Preset"]
+
+
+@dataclass(frozen=True)
+class Option:
+    """A parameter of a preset: what it is when nothing is said, what it means, and what it may be."""
+
+    default: float | int | str | bool
+    about: str
+    unit: str = ""
+    low: float = -math.inf
+    high: float = math.inf
+    choices: tuple[str, ...] = ()
+
+    def value(self, given: Any) -> Any:
+        """Return a value of the type of the default, from Python or from a text.
+
+        Raises:
+            InputError: it is none, or not allowed.
+        """
+        if isinstance(self.default, str):
+            text = str(given)
+            if self.choices and text not in self.choices:
+                raise InputError(f"must be {' or '.join(self.choices)}{did_you_mean(text, self.choices)}")
+            return text
+        if isinstance(self.default, bool):
+            if str(given).lower() not in ("true", "false"):
+                raise InputError("must be true or false")
+            return str(given).lower() == "true"
+        value = number(str(given))
+        if isinstance(self.default, int) and value != int(value):
+            raise InputError("must be a whole number")
+        if not self.low <= value <= self.high:
+            raise InputError(f"must be from {self.low:g} to {self.high:g} {self.unit}".rstrip())
+        return int(value) if isinstance(self.default, int) else value
+
+    def __str__(self) -> str:
+        """Return a line about it."""
+        reach = f" [{self.low:g} to {self.high:g} {self.unit}]" if math.isfinite(self.high) else ""
+        words = f" [{', '.join(self.choices)}]" if self.choices else ""
+        plain = str(self.default).lower() if isinstance(self.default, bool) else self.default
+        return f"{self.about}{reach.replace(' ]', ']')}{words}, {plain}"
+
+
+COMMON = {
+    "model": Option("orca", "crowd model of the people"),
+    "navigator": Option("orca", "who steers the robot"),
+    "robot": Option(True, "whether there is a robot"),
+    "reactive": Option(True, "whether people see the robot"),
+    "seed": Option(1, "seed of everything random", "", -(2**53), 2**53),
+}
+"""Parameters of every preset."""
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A built-in trial with parameters.
+
+    Fields:
+        name: on the command line.
+        about: one line for people.
+        make: a function of the own parameters that returns the trial without what all have in common.
+        own: its parameters, those in common apart.
+    """
+
+    name: str
+    about: str
+    make: Callable[..., Trial]
+    own: Mapping[str, Option] = field(default_factory=dict)
+
+    @property
+    def options(self) -> dict[str, Option]:
+        """All parameters by name."""
+        return {**self.own, **COMMON}
+
+    def trial(self, **given: Any) -> Trial:
+        """Return the trial.
+
+        Args:
+            given: parameters, the others have their defaults.
+
+        Raises:
+            TrialError: one is unknown or not allowed, each in a sentence; or the trial is impossible with them.
+        """
+        from .parts import finished
+
+        options = self.options
+        values, problems = {name: option.default for name, option in options.items()}, []
+        for name, value in given.items():
+            word = name.replace("-", "_")
+            if word not in options:
+                near = did_you_mean(word, options)
+                problems.append(f"{self.name} has no parameter {name!r}{near}; it has {', '.join(options)}")
+                continue
+            try:
+                values[word] = options[word].value(value)
+            except InputError as error:
+                problems.append(f'{self.name}: {name}="{str(value)[:60]}" {error}')
+        if problems:
+            raise TrialError(*problems)
+        trial = self.make(**{name: values[name] for name in self.own})
+        try:
+            trial = finished(trial, self, values)
+        except InputError as error:
+            raise TrialError(f"{self.name}: {error}") from None
+        if given:
+            trial.check()
+        return trial

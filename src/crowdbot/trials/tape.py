@@ -1,0 +1,243 @@
+"""TapeWriter: an MCAP file that is whole after every write, so that a run may be killed at any moment.
+
+Messages are gathered in a chunk. Each write appends the chunk, its index and a short end without a summary over the end
+of the write before. So the file always opens; only the chunk that is being gathered can be lost. A file that is
+finished has the summary and the indexes that make other tools fast.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import BinaryIO
+
+from mcap.data_stream import RecordBuilder
+from mcap.opcode import Opcode
+from mcap.records import (
+    Channel,
+    ChunkIndex,
+    DataEnd,
+    Footer,
+    Header,
+    McapRecord,
+    Metadata,
+    MetadataIndex,
+    Schema,
+    Statistics,
+    SummaryOffset,
+)
+
+from crowdbot.data.tape import MAGIC, Kind, Tape
+
+__all__ = ["TapeWriter", "finish"]
+
+LARGE = 4 << 20
+"""A chunk should not hold more bytes."""
+
+
+def _bytes(*records: McapRecord) -> bytes:
+    builder = RecordBuilder()
+    for record in records:
+        record.write(builder)
+    return bytes(builder.end())  # type: ignore[no-untyped-call]
+
+
+SHORT_END = _bytes(DataEnd(0), Footer(0, 0, 0)) + MAGIC
+
+
+class TapeWriter:
+    """Writes an MCAP file, which appears at the first :meth:`flush`, in place of one that was there.
+
+    Args:
+        path: of the file; the folder must be there.
+        profile, library: of the header.
+    """
+
+    def __init__(self, path: Path, profile: str, library: str) -> None:
+        self.path = path
+        self.draft = path.with_name(f".{path.name}.{os.getpid()}.part")
+        self.stream: BinaryIO | None = None
+        self.end = 0
+        self._before = MAGIC + _bytes(Header(profile, library))
+        self._chunk = bytearray()
+        self._index: dict[int, list[tuple[int, int]]] = {}
+        self._schemas: dict[str, int] = {}
+        self._channels = 0
+
+    def schema(self, name: str, text: str) -> int:
+        """Return the number of a message type."""
+        if name not in self._schemas:
+            self._schemas[name] = len(self._schemas) + 1
+            self._before += _bytes(Schema(self._schemas[name], text.encode(), "ros2msg", name))
+        return self._schemas[name]
+
+    def channel(self, topic: str, schema: int) -> int:
+        """Return the number of a new channel."""
+        self._channels += 1
+        self._before += _bytes(Channel(self._channels, topic, "cdr", {"offered_qos_profiles": ""}, schema))
+        return self._channels
+
+    def metadata(self, name: str, values: Mapping[str, str]) -> None:
+        """Add a metadata record."""
+        self._before += _bytes(Metadata(name, dict(values)))
+
+    def message(self, channel: int, nanoseconds: int, data: bytes) -> None:
+        """Add a message."""
+        self._index.setdefault(channel, []).append((nanoseconds, len(self._chunk)))
+        self._chunk += struct.pack("<BQHIQQ", Kind.MESSAGE, 22 + len(data), channel, 0, nanoseconds, nanoseconds)
+        self._chunk += data
+
+    @property
+    def large(self) -> bool:
+        """Whether so much is gathered that it should be written before it is due."""
+        return len(self._chunk) > LARGE
+
+    def flush(self) -> None:
+        """Write everything that was added."""
+        data = self._before + self._packed()
+        self._before, self._index = b"", {}
+        self._chunk.clear()
+        if data:
+            self._put(data + SHORT_END)
+            self.end += len(data)
+
+    def close(self, finished: bool) -> None:
+        """Close the file, with its summary when it is finished; without, it is left as a killed run leaves it."""
+        stream, self.stream = self.stream, None
+        if stream is not None:
+            with stream:
+                if finished:
+                    finish(stream)
+
+    def _packed(self) -> bytes:
+        """Return the chunk and the index of its messages."""
+        if not self._chunk:
+            return b""
+        import zstandard
+
+        raw = bytes(self._chunk)
+        data = zstandard.compress(raw)
+        stamps = [stamp for rows in self._index.values() for stamp, _ in rows]
+        head = struct.pack("<QQQII", min(stamps), max(stamps), len(raw), zlib.crc32(raw), 4)
+        body = head + b"zstd" + struct.pack("<Q", len(data)) + data
+        parts = [struct.pack("<BQ", Kind.CHUNK, len(body)), body]
+        for channel, rows in self._index.items():
+            index = struct.pack("<HI", channel, 16 * len(rows)) + b"".join(struct.pack("<QQ", *row) for row in rows)
+            parts += [struct.pack("<BQ", Kind.MESSAGE_INDEX, len(index)), index]
+        return b"".join(parts)
+
+    def _put(self, data: bytes) -> None:
+        if self.stream is not None:
+            self.stream.seek(self.end)
+            _write(self.stream, data)
+            return
+        stream = self.draft.open("w+b", buffering=0)
+        try:
+            _write(stream, data)
+            os.replace(self.draft, self.path)
+        except BaseException:
+            stream.close()
+            self.draft.unlink(missing_ok=True)
+            raise
+        self.stream = stream
+
+
+@dataclass
+class _Layout:
+    """What lies where in the data of a file."""
+
+    records: dict[int, dict[int, bytes]] = field(default_factory=lambda: {Kind.SCHEMA: {}, Kind.CHANNEL: {}})
+    chunks: list[ChunkIndex] = field(default_factory=list)
+    metadata: list[MetadataIndex] = field(default_factory=list)
+    counts: dict[int, int] = field(default_factory=dict)
+
+    def take(self, kind: int, place: int, body: bytes) -> None:
+        """Note a record."""
+        if kind in self.records:
+            (number,) = struct.unpack_from("<H", body)
+            self.records[kind][number] = struct.pack("<BQ", kind, len(body)) + body
+        elif kind == Kind.METADATA:
+            length = int.from_bytes(body[:4], "little")
+            self.metadata.append(MetadataIndex(place, 9 + len(body), body[4 : 4 + length].decode()))
+        elif kind == Kind.CHUNK:
+            start, end, size, _, word = struct.unpack_from("<QQQII", body)
+            how = body[32 : 32 + word].decode()
+            self.chunks.append(ChunkIndex(9 + len(body), place, how, len(body) - 40 - word, end, 0, {}, start, size))
+        elif kind == Kind.MESSAGE_INDEX and self.chunks:
+            channel, length = struct.unpack_from("<HI", body)
+            self.counts[channel] = self.counts.get(channel, 0) + length // 16
+            self.chunks[-1].message_index_offsets[channel] = place
+            self.chunks[-1].message_index_length += 9 + len(body)
+
+    @property
+    def statistics(self) -> Statistics:
+        """How much there is."""
+        return Statistics(
+            attachment_count=0,
+            channel_count=len(self.records[Kind.CHANNEL]),
+            channel_message_counts=dict(sorted(self.counts.items())),
+            chunk_count=len(self.chunks),
+            message_count=sum(self.counts.values()),
+            message_end_time=max((chunk.message_end_time for chunk in self.chunks), default=0),
+            message_start_time=min((chunk.message_start_time for chunk in self.chunks), default=0),
+            metadata_count=len(self.metadata),
+            schema_count=len(self.records[Kind.SCHEMA]),
+        )
+
+
+def finish(stream: BinaryIO, more: Mapping[str, Mapping[str, str]] | None = None) -> None:
+    """Give a file that :class:`TapeWriter` wrote a summary in place of its short, torn or missing end.
+
+    Args:
+        stream: open for reading and writing.
+        more: metadata records to add, by name.
+
+    Raises:
+        TapeError: the file is damaged.
+    """
+    tape, layout = Tape(stream), _Layout()
+    stream.seek(0)
+    for kind, place, body in tape.records():
+        layout.take(kind, place, body)
+    end, crc = tape.end, tape.crc
+    added = b""
+    for name, values in (more or {}).items():
+        record = _bytes(Metadata(name, dict(values)))
+        layout.take(Kind.METADATA, end + len(added), record[9:])
+        added += record
+    added += _bytes(DataEnd(zlib.crc32(added, crc)))
+    stream.seek(end)
+    _write(stream, added + _summary(layout, end + len(added)))
+    stream.truncate()
+    stream.flush()
+    os.fsync(stream.fileno())
+
+
+def _summary(layout: _Layout, start: int) -> bytes:
+    """Return everything that follows the data, which ends at ``start``."""
+    groups = {
+        Opcode.SCHEMA: b"".join(layout.records[Kind.SCHEMA].values()),
+        Opcode.CHANNEL: b"".join(layout.records[Kind.CHANNEL].values()),
+        Opcode.STATISTICS: _bytes(layout.statistics),
+        Opcode.CHUNK_INDEX: _bytes(*layout.chunks),
+        Opcode.METADATA_INDEX: _bytes(*layout.metadata),
+    }
+    summary, offsets = b"", b""
+    for kind, records in groups.items():
+        if records:
+            offsets += _bytes(SummaryOffset(kind, start + len(summary), len(records)))
+            summary += records
+    footer = struct.pack("<BQQQ", Kind.FOOTER, 20, start, start + len(summary))
+    crc = zlib.crc32(summary + offsets + footer)
+    return summary + offsets + footer + struct.pack("<I", crc) + MAGIC
+
+
+def _write(stream: BinaryIO, data: bytes) -> None:
+    """Write all; a stream without a buffer may take a part."""
+    rest = memoryview(data)
+    while rest:
+        rest = rest[stream.write(rest) :]

@@ -1,0 +1,200 @@
+"""Scripts: people who go where they were recorded, until a robot comes near if they are to react to it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Scene
+
+__all__ = ["SCRIPT", "Script", "Track"]
+
+Floats = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+SCRIPT = "script"
+"""Name in the memory of a scene ``[E, A]``: one of the states below."""
+NONE, FOLLOWS, FREE, GONE = 0.0, 1.0, 2.0, 3.0
+AHEAD = 1.5
+"""Who is free walks to where the recording will be so much later [s]."""
+HURRY = 1.5
+"""Who is free walks at most so many times as fast as the fastest in the own recording, to make up for time lost."""
+SLOWEST = 0.5
+"""But this fast [m/s] at least."""
+ARRIVED = 0.3
+"""Who is free leaves this near [m] to the end of the own recording."""
+MOVING = 0.05
+"""Headings follow velocities above this [m/s]."""
+EARLY = 1e-4
+"""Clocks whose step is rounded to nanoseconds are early or late by less than this [s]."""
+
+
+class Track(NamedTuple):
+    """Where one agent was recorded: its index, ``[T]`` times [s] that rise, and ``[T, 2]`` places [m]."""
+
+    agent: int
+    time: Floats
+    position: Floats
+
+
+@dataclass(frozen=True)
+class Script:
+    """Tracks of agents that are moved along them, straight from one recorded place to the next.
+
+    An agent is there from the first to the last instant of its track. With ``release`` it becomes free once a robot
+    that people see is nearer than that, bodies between them not counted: it then walks by the crowd model to where its
+    recording will be 1.5 s later, and leaves where the recording ends.
+
+    Fields:
+        tracks: of agents, each at most once.
+        release: distance between centres [m], for all or of each track; 0: that one never becomes free.
+
+    Raises:
+        InputError: times of a track do not rise, or something is not finite.
+
+    >>> script = Script([Track(0, np.array([0.0, 2.0]), np.array([[0.0, 0.0], [2.0, 1.0]]))])
+    >>> start = script.begun(Scene.of([[9.0, 9.0]]), 1.0)
+    >>> start.position[0].tolist(), script.held(start).tolist()
+    ([[1.0, 0.5]], [[True]])
+    """
+
+    tracks: Sequence[Track]
+    release: float | Sequence[float] = 0.0
+    _rows: _Rows = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        tracks = tuple(Track(int(a), np.asarray(t, float), np.asarray(p, float)) for a, t, p in self.tracks)
+        object.__setattr__(self, "tracks", tracks)
+        far = np.asarray(self.release, dtype=np.float64)
+        if far.shape not in ((), (len(tracks),)) or not np.all((far >= 0.0) & (far < math.inf)):
+            raise InputError(f"Script: release = {self.release} m must be finite and at least 0, one or one a track")
+        if len({track.agent for track in tracks}) < len(tracks):
+            raise InputError("Script: an agent has two tracks; give each one")
+        for track in tracks:
+            if len(track.time) == 0 or track.position.shape != (len(track.time), 2):
+                raise InputError(f"Script: the track of agent {track.agent} must have places [T, 2] for times [T]")
+            if not (np.all(np.isfinite(track.position)) and np.all(np.diff(track.time) > 0.0)):
+                raise InputError(f"Script: the track of agent {track.agent} is not finite, or its times do not rise")
+        object.__setattr__(self, "_rows", _Rows.of(tracks))
+
+    def held(self, scene: Scene) -> Bools:
+        """Return ``[E, A]`` who follows a track now."""
+        state = scene.memory.get(SCRIPT)
+        return np.zeros(scene.shape, dtype=np.bool_) if state is None else np.asarray(state == FOLLOWS)
+
+    def begun(self, scene: Scene, time: float = 0.0) -> Scene:
+        """Return the scene at a time [s] of the recording, with everybody on the own track."""
+        state = np.zeros(scene.shape)
+        state[:, self._rows.agent] = FOLLOWS
+        return self.placed(scene.replace(memory={**scene.memory, SCRIPT: state}), time)
+
+    def placed(self, scene: Scene, time: float) -> Scene:
+        """Return the scene in which who follows a track is where it is at a time [s], and who is free has a goal."""
+        rows, agent = self._rows, self._rows.agent
+        if len(agent) == 0:
+            return scene
+        state = scene.memory[SCRIPT].copy()
+        position, velocity, heading = scene.position.copy(), scene.velocity.copy(), scene.heading.copy()
+        active, goal, speed = scene.active.copy(), scene.goal.copy(), scene.preferred_speed.copy()
+        top = scene.max_speed.copy()
+        place, pace = rows.at(time)
+        there = (time >= rows.begin - EARLY) & (time <= rows.end + EARLY)
+        moving = np.hypot(pace[:, 0], pace[:, 1]) > MOVING
+        ahead = rows.at(time + AHEAD)[0]
+        for e in range(scene.shape[0]):
+            follows = state[e, agent] == FOLLOWS
+            who = agent[follows]
+            position[e, who], velocity[e, who] = place[follows], pace[follows]
+            turned = agent[follows & moving]
+            heading[e, turned] = np.arctan2(pace[follows & moving, 1], pace[follows & moving, 0])
+            active[e, who] = there[follows]
+            goal[e, who], speed[e, who] = rows.last[follows], rows.pace[follows]
+            free = state[e, agent] == FREE
+            who = agent[free]
+            left = np.hypot(*(rows.last[free] - position[e, who]).T)
+            gone = (left < ARRIVED) & (time >= rows.end[free] - AHEAD)
+            active[e, who[gone]] = False
+            state[e, who[gone]] = GONE
+            goal[e, who] = ahead[free]
+            away = np.hypot(*(ahead[free] - position[e, who]).T)
+            speed[e, who] = np.minimum(away / AHEAD, HURRY * rows.pace[free])
+            top[e, who] = 1.3 * HURRY * rows.pace[free]
+        moved = scene.replace(
+            position=position, velocity=velocity, heading=heading, active=active, goal=goal,
+            preferred_speed=speed, max_speed=top, memory={**scene.memory, SCRIPT: state},
+        )  # fmt: skip
+        return self._released(moved)
+
+    def _released(self, scene: Scene) -> Scene:
+        robots = scene.external & scene.active & scene.visible
+        if not np.any(robots) or not np.any(self.release):
+            return scene
+        state = scene.memory[SCRIPT].copy()
+        far = np.zeros(scene.shape[1])
+        far[self._rows.agent] = self.release
+        for e in range(scene.shape[0]):
+            away = scene.position[e][:, None] - scene.position[e][robots[e]][None]
+            near = np.any(np.hypot(away[..., 0], away[..., 1]) < far[:, None], axis=1)
+            state[e, near & scene.active[e] & (state[e] == FOLLOWS)] = FREE
+        return scene.replace(memory={**scene.memory, SCRIPT: state})
+
+
+class _Rows(NamedTuple):
+    """All tracks in one table: ``[M]`` rows sorted by track and time; the other arrays are by track ``[N]``."""
+
+    time: Floats
+    position: Floats
+    first: Numbers
+    agent: Numbers
+    begin: Floats
+    end: Floats
+    last: Floats
+    pace: Floats
+
+    @classmethod
+    def of(cls, tracks: Sequence[Track]) -> _Rows:
+        if not tracks:
+            none = np.zeros(0)
+            no = np.zeros(0, dtype=np.int64)
+            return cls(none, np.zeros((0, 2)), no, no, none, none, np.zeros((0, 2)), none)
+        count = np.array([len(track.time) for track in tracks])
+        return cls(
+            np.concatenate([track.time for track in tracks]),
+            np.concatenate([track.position for track in tracks]),
+            np.concatenate([[0], np.cumsum(count)]),
+            np.array([track.agent for track in tracks], dtype=np.int64),
+            np.array([track.time[0] for track in tracks]),
+            np.array([track.time[-1] for track in tracks]),
+            np.array([track.position[-1] for track in tracks]),
+            np.array([max(SLOWEST, _fastest(track)) for track in tracks]),
+        )
+
+    def at(self, time: float) -> tuple[Floats, Floats]:
+        """Return where everybody is ``[N, 2]`` [m] and how fast [m/s]; before and after a track at its ends, still."""
+        # the number of rows up to the time, by track: a running count over the whole table
+        seen = np.concatenate([[0], np.cumsum(self.time <= time + EARLY)])
+        k = self.first[:-1] + seen[self.first[1:]] - seen[self.first[:-1]] - 1
+        here = np.clip(k, self.first[:-1], self.first[1:] - 1)
+        following = np.minimum(here + 1, self.first[1:] - 1)
+        span = self.time[following] - self.time[here]
+        step = self.position[following] - self.position[here]
+        inside = (k >= self.first[:-1]) & (span > 0.0)
+        share = np.where(inside, (time - self.time[here]) / np.where(span > 0.0, span, 1.0), 0.0)
+        pace = step * np.where(inside, 1.0 / np.where(span > 0.0, span, 1.0), 0.0)[:, None]
+        return self.position[here] + step * np.maximum(share, 0.0)[:, None], pace
+
+
+def _fastest(track: Track) -> float:
+    """Return the largest speed [m/s] over at least a second of a track, 0 when it is shorter."""
+    step = np.searchsorted(track.time, track.time + 1.0 - EARLY)
+    whole = step < len(track.time)
+    if not np.any(whole):
+        return 0.0
+    way = track.position[step[whole]] - track.position[whole]
+    return float(np.max(np.hypot(way[:, 0], way[:, 1]) / (track.time[step[whole]] - track.time[whole])))

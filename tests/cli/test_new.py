@@ -1,0 +1,99 @@
+"""``crowdbot new``, ``--set``, ``--variant`` and the parameters of built-in trials."""
+
+import json
+
+import pytest
+
+from crowdbot.cli import main
+from crowdbot.trials import load_trial, schema
+
+
+def refused(capsys, tmp_path, *words):
+    before = sorted(tmp_path.rglob("*"))
+    assert main([str(word) for word in words]) == 2
+    said = capsys.readouterr()
+    assert said.err.startswith("crowdbot: ")
+    assert said.out == ""
+    assert sorted(tmp_path.rglob("*")) == before
+    return said.err
+
+
+def test_a_trial_is_written_from_a_builtin_one(tmp_path, capsys):
+    file = tmp_path / "mine.xml"
+    assert main(["new", "trial", str(file), "--from", "two-way", "--set", "density=0.1", "--seed", "9"]) == 0
+    assert capsys.readouterr().out == f"wrote {file}\n"
+    trial = load_trial(file)
+    assert (trial.people, trial.seed) == (24, 9)
+    assert main(["check", str(file)]) == 0
+    capsys.readouterr()
+    assert "exists already" in refused(capsys, tmp_path, "new", "trial", file)
+    assert main(["new", "trial", str(file), "--force", "--explicit", "--set", "gap=5"]) == 0
+    assert len(load_trial(file).agents) == 1
+
+
+def test_the_schema_is_written(tmp_path):
+    file = tmp_path / "trial.xsd"
+    assert main(["new", "schema", str(file)]) == 0
+    assert file.read_text(encoding="utf-8") == schema()
+
+
+def test_a_trial_is_written_from_a_recording_and_from_an_original_file(tmp_path, capsys):
+    data = tmp_path / "data" / "two.txt"
+    data.parent.mkdir()
+    data.write_text("".join(f"{10 * k}\t{p}\t{0.5 * k}\t{2 * p}\n" for k in range(20) for p in (1, 2)))
+    (tmp_path / "out").mkdir()
+    file = tmp_path / "out" / "two.xml"
+    words = ["new", "trial", str(file), "--recorded", str(data), "--fps", "2.5", "--reactive", "--replace", "2"]
+    assert main(words) == 0
+    assert "copied two.txt beside it" in capsys.readouterr().err
+    assert load_trial(file).recorded[0].mode == "reactive"
+    assert main(["run", str(file)]) == 0
+    original = tmp_path / "original.xml"
+    original.write_text("<Trial><agents/></Trial>")
+    capsys.readouterr()
+    assert main(["new", "trial", str(tmp_path / "imported.xml"), "--import", str(original)]) == 0
+    assert "not carried over:\n  - no end by time was set" in capsys.readouterr().out
+    assert main(["check", str(tmp_path / "imported.xml")]) == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["new", "trial", "{}/gone/t.xml"], "there is no folder"),
+        (["new", "trial", "{}/t.xml", "--from", "frontl"], "there is no trial 'frontl', did you mean 'frontal'?"),
+        (["new", "trial", "{}/t.xml", "--set", "width"], "--set 'width' must be NAME=VALUE"),
+        (["new", "trial", "{}/t.xml", "--set", "width=2", "--set", "width=3"], "--set width is given twice"),
+        (["new", "trial", "{}/t.xml", "--set", "width=99"], "must be from 1.2 to 20 m"),
+        (["new", "trial", "{}/t.xml", "--set", "trust=true"], "no trial has such a parameter"),
+        (["new", "trial", "{}/t.xml", "--import", "{}/none.xml"], "there is no trial file"),
+        (["new", "trial", "{}/t.xml", "--recorded", "{}/none.txt"], "there is no file 'none.txt'"),
+        (["run", "frontal", "--variant", "1"], "--variant 1: frontal has no variants"),
+        (["run", "frontal", "--set", "widht=2"], "frontal has no parameter 'widht', did you mean 'width'?"),
+        (["list", "trials", "frontl"], "'frontl' is no built-in trial with parameters, did you mean 'frontal'?"),
+    ],
+)
+def test_wrong_words_are_told_and_nothing_is_written(tmp_path, capsys, words, sentence):
+    assert sentence in refused(capsys, tmp_path, *(word.format(tmp_path) for word in words))
+
+
+def test_a_trial_with_sweeps_is_run_by_its_variants(tmp_path, capsys):
+    file = tmp_path / "many.xml"
+    text = load_trial("frontal").xml().replace("</trial>", '  <sweep path="seed" values="3 4"/>\n</trial>')
+    file.write_text(text)
+    said = refused(capsys, tmp_path, "run", file)
+    assert "stands for 2 trials by its sweeps; run one of them with --variant 1 to 2" in said
+    assert "has 2 variants" in refused(capsys, tmp_path, "run", file, "--variant", "3")
+    assert main(["run", str(file), "--variant", "2", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["seed"] == 4
+    assert main(["check", str(file), "--json"]) == 0
+    assert len(next(iter(json.loads(capsys.readouterr().out).values()))["variants"]) == 2
+
+
+def test_the_parameters_of_a_builtin_trial_are_listed(capsys):
+    assert main(["list", "trials", "intersection", "--json"]) == 0
+    options = json.loads(capsys.readouterr().out)["intersection"]
+    assert {"density", "angle", "delay", "model", "navigator", "robot", "reactive", "seed"} <= set(options)
+    assert main(["list", "trials", "intersection"]) == 0
+    assert "people in the side corridor" in capsys.readouterr().out
+    assert main(["run", "intersection", "--set", "density=0.5", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["outcome"] in ("success", "collision", "timeout")

@@ -1,0 +1,98 @@
+"""``crowdbot train`` and ``crowdbot study gan``: from recordings to weights to scores, and wrong words."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crowdbot.cli import main
+from crowdbot.core import stream
+
+TINY = ["hidden=4", "pooled=2", "noise=2", "batch=16"]
+
+
+@pytest.fixture(scope="module")
+def walks(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """Two recordings of people who walk straight on."""
+    files = []
+    for number, name in enumerate(("street", "plaza")):
+        rng = stream(number, "walks")
+        begin, velocity = rng.uniform(-5.0, 5.0, (6, 2)), rng.normal(0.0, 1.0, (6, 2))
+        rows = [(10 * t, who, *(begin[who] + 0.4 * t * velocity[who])) for t in range(60) for who in range(6)]
+        file = tmp_path_factory.mktemp("walks") / f"{name}.txt"
+        np.savetxt(file, rows, fmt=["%d", "%d", "%.4f", "%.4f"], delimiter="\t")
+        files.append(str(file))
+    return files
+
+
+def said(words: list[str], capsys: pytest.CaptureFixture[str]) -> tuple[int, str, str]:
+    status = main(words)
+    out, err = capsys.readouterr()
+    return status, out, err
+
+
+def test_weights_are_learned_resumed_and_scored(
+    walks: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["train", "social-ways", "--data", *walks, "--fps", "2.5", "--leave-out", "plaza", "--out", str(tmp_path),
+             "--check-every", "2", "--set", *TINY]  # fmt: skip
+    status, _, err = said([*words, "--updates", "2"], capsys)
+    assert status == 0
+    assert "warning: street.txt lasts 24 s; learning asks for recordings of more than 3 minutes" in err
+    assert "update 2" in err
+    status, _, err = said([*words, "--updates", "4"], capsys)
+    assert (status, "holds a training already: go on with --resume" in err) == (2, True)
+    status, out, _ = said([*words, "--updates", "4", "--resume", "--json"], capsys)
+    done = json.loads(out)
+    assert (status, done["updates"], done["left_out"]) == (0, 4, [walks[1]])
+    assert [row["update"] for row in done["log"]] == [2, 4]
+    status, out, _ = said(
+        ["predict", "--predictor", "social-ways", "--set", f"checkpoint={done['checkpoint']}", "--samples", "3",
+         "--fps", "2.5", "--data", walks[1], "--every", "12", "--json"], capsys,
+    )  # fmt: skip
+    total = json.loads(out)["results"][0]["total"]
+    assert (status, total["samples"]) == (0, 3)
+    assert total["ade"] < 5.0
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (["sociel-ways"], "unknown learned predictor 'sociel-ways', did you mean 'social-ways'"),
+        (["social-ways", "--device", "cuda:99"], "is asked for, but torch sees"),
+        (["social-ways", "--updates", "1", "--epochs", "1"], "either a number of updates or"),
+        (["social-ways", "--leave-out", "nowhere"], "no recording is called 'nowhere'"),
+        (["social-ways", "--set", "hiden=3"], "has no attribute 'hiden', did you mean 'hidden'"),
+        (["social-ways", "--settings", "vareity"], "unknown preset 'vareity', did you mean 'variety'"),
+    ],
+)
+def test_wrong_words_are_one_sentence(
+    walks: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], why: str
+) -> None:
+    status, out, err = said(
+        ["train", *words, "--data", *walks, "--fps", "2.5", "--out", str(tmp_path / "out"), "--json"], capsys
+    )
+    assert (status, out) == (2, "")
+    assert why in err
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_study_trains_measures_and_draws(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["study", "gan", "--methods", "vanilla", "info+unrolled5", "--seeds", "1", "--updates", "2",
+             "--check-every", "1", "--set", "hidden=4", "--out", str(tmp_path), "--json"]  # fmt: skip
+    status, out, _ = said(words, capsys)
+    found = json.loads(out)
+    assert status == 0
+    assert [row["method"] for row in found["methods"]] == ["vanilla", "info+unrolled5"]
+    assert found["runs"][0]["update"] == [1, 2]
+    assert 0.45 < found["ideal"]["nearest_neighbor"] < 0.55
+    assert found["ideal"]["emd"] < 0.015
+    assert found["ideal"]["whole"] == 1.0
+    assert all((tmp_path / name).stat().st_size > 1000 for name in ("samples.png", "measures.png", "study.json"))
+    again = json.loads(said(words, capsys)[1])
+    assert again == found
+    status, _, err = said(["study", "gan", "--methods", "infoo", "--out", str(tmp_path)], capsys)
+    assert (status, "unknown method 'infoo', did you mean 'info'" in err) == (2, True)

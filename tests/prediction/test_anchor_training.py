@@ -1,0 +1,144 @@
+"""Training of the anchor network: it learns, it repeats itself, it goes on after a stop, and it sees what it should."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from crowdbot.core import InputError, stream
+from crowdbot.data import Trajectories
+from crowdbot.prediction.anchor_net import NEEDED, network_output
+from crowdbot.prediction.learned import anchor_training
+from crowdbot.prediction.learned.anchor_calibration import calibrated
+from crowdbot.prediction.learned.anchor_data import NONE, Material, Variation, backwards, batch, gathered
+from crowdbot.prediction.learned.anchor_training import (
+    AnchorTraining,
+    network,
+    outputs,
+    shapes_of,
+    train,
+)
+from crowdbot.prediction.own_frame import AHEAD, COMPANY, INPUTS, NEAR
+
+TINY = AnchorTraining(updates=60, people=32, width=16, social=8, warm=5)
+
+
+@pytest.fixture(scope="module")
+def material(recorded: Callable[[str], Trajectories]) -> Material:
+    return gathered([recorded("biwi_hotel")])
+
+
+def test_everyone_of_the_protocol_is_learned_from_twice(
+    material: Material, recorded: Callable[[str], Trajectories]
+) -> None:
+    assert len(material) == 2 * 1197
+    again = backwards(backwards(recorded("biwi_hotel")))
+    assert np.array_equal(again.x, recorded("biwi_hotel").x)
+
+
+def test_without_variation_a_batch_is_what_happened(material: Material) -> None:
+    rows = np.arange(50)
+    plain = batch(material, rows, NONE, stream(0))
+    assert plain.own.shape == (50, INPUTS)
+    assert plain.company.shape == (50, NEAR, COMPANY)
+    assert np.array_equal(plain.there, material.people.there[:50])
+    past = material.people.past[:50]
+    step = past[:, -1] - past[:, -2]
+    straight = material.ahead[:50] - step[:, None] * np.arange(1, AHEAD + 1)[:, None]
+    np.testing.assert_allclose(np.linalg.norm(plain.missed, axis=2), np.linalg.norm(straight, axis=2), atol=1e-12)
+
+
+def test_every_variation_changes_what_is_seen(material: Material) -> None:
+    rows = np.arange(200)
+    plain = batch(material, rows, NONE, stream(0))
+    for name in ("mirror", "scale", "turn", "jitter", "late", "switched", "unseen"):
+        seen = batch(material, rows, dataclasses.replace(NONE, **{name: 0.9}), stream(0))
+        assert not np.array_equal(seen.own, plain.own) or not np.array_equal(seen.company, plain.company), name
+        assert np.isfinite(seen.own).all()
+        assert np.isfinite(seen.company).all()
+    holes = batch(material, rows, dataclasses.replace(NONE, holes=1.0, hole=0.5), stream(0))
+    assert 0.4 < holes.own[:, -7:].mean() < 0.75
+    planned = batch(material, rows, dataclasses.replace(NONE, planned=1.0), stream(0))
+    assert planned.company[..., 9].sum() > 0.0
+    assert plain.company[..., 9].sum() == 0.0
+
+
+def test_bends_are_made_of_six_numbers(material: Material) -> None:
+    shapes = shapes_of(material)
+    assert shapes["basis"].shape == (6, 24)
+    np.testing.assert_allclose(shapes["basis"] @ shapes["basis"].T, np.eye(6), atol=1e-9)
+    missed = batch(material, np.arange(len(material)), NONE, stream(0)).missed.reshape(-1, 24)
+    rest = missed - missed @ shapes["basis"].T @ shapes["basis"]
+    assert np.linalg.norm(rest.reshape(-1, 12, 2), axis=2).mean() < 0.04
+
+
+def test_predicting_without_torch_gives_what_was_trained(material: Material) -> None:
+    layers = network(TINY)
+    shown = batch(material, np.arange(40), Variation(), stream(1))
+    with torch.no_grad():
+        inside = outputs(
+            layers, torch.tensor(shown.own).float(), torch.tensor(shown.company).float(), torch.tensor(shown.there)
+        ).numpy()
+    numbers = {}
+    for name, value in layers.state_dict().items():
+        array = value.numpy().astype(np.float64)
+        numbers[name.replace(".", "_")] = array.T.copy() if name.endswith(".weight") else array
+    np.testing.assert_allclose(network_output(numbers, shown.own, shown.company, shown.there), inside, atol=1e-5)
+
+
+def best_of_twenty(numbers: dict[str, np.ndarray], material: Material) -> float:
+    """Return the mean error [m] of the best future of everyone."""
+    own, company, there, missed = batch(material, np.arange(len(material)), NONE, stream(0))
+    found = network_output(numbers, own, company, there)[:, :120].reshape(-1, 20, 6)
+    bend = (numbers["centres"] + found * numbers["spread"]) @ numbers["basis"]
+    away = bend.reshape(-1, 20, 12, 2) - missed[:, None]
+    return float(np.linalg.norm(away, axis=3).mean(axis=2).min(axis=1).mean())
+
+
+def test_training_learns_repeats_itself_and_goes_on_after_a_stop(
+    material: Material, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(anchor_training, "KEPT_EVERY", 100)
+    how = dataclasses.replace(TINY, updates=200, average=0.9, variation=NONE)
+    whole = train(material, how)
+    still = whole | {name: 0.0 * whole[name] for name in ("out_weight", "out_bias")}
+    assert best_of_twenty(whole, material) < 0.99 * best_of_twenty(still, material)
+
+    class Stopped(Exception):
+        pass
+
+    def stop(update: int, loss: float) -> None:
+        if update == 200:
+            raise Stopped
+
+    keep = tmp_path / "state"
+    with pytest.raises(Stopped):
+        train(material, how, stop, keep)
+    later: list[int] = []
+    again = train(material, how, lambda update, loss: later.append(update), keep)
+    assert later == [200]
+    assert whole.keys() == again.keys()
+    assert all(np.array_equal(whole[name], again[name]) for name in whole)
+    with pytest.raises(InputError, match="holds a training of other people or settings"):
+        train(material, dataclasses.replace(how, seed=1), keep=keep)
+
+
+def test_calibrated_numbers_are_complete(material: Material) -> None:
+    numbers = calibrated(train(material, TINY), material)
+    assert set(NEEDED) <= set(numbers)
+    for name in ("temperature", "widening"):
+        assert numbers[name].shape == (6,)
+        assert np.all((numbers[name] > 0.04) & (numbers[name] < 5.0))
+
+
+def test_what_cannot_be_learned_from_is_one_sentence(recorded: Callable[[str], Trajectories]) -> None:
+    with pytest.raises(InputError, match="there is no recording to learn from"):
+        gathered([])
+    fast = recorded("biwi_hotel").resample(0.2)
+    with pytest.raises(InputError, match="steps of 0.2 s in m; learning needs 0.4 s in metres"):
+        gathered([fast])

@@ -1,0 +1,159 @@
+"""Stages from files: areas as WKT and GeoJSON, maps of ROS."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from trial_texts import written
+
+from crowdbot.core import InputError, TrialError
+from crowdbot.trials import Stage, Trial, load_trial
+
+HOUSE = "POLYGON ((0 0, 10 0, 10 6, 0 6, 0 0), (4 2, 6 2, 6 4, 4 4, 4 2))"
+TEXT = """<trial name="t" duration="2">
+  <stage {stage}/>
+  <crowd type="orca"/>
+  <spawner count="3" zone="1,1 3,1 3,5 1,5" goal="7,1 9,1 9,5 7,5"/>
+</trial>
+"""
+YAML = (
+    "image: map.pgm\nresolution: 0.1\norigin: [-1.0, -0.5, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+)
+
+
+def pgm(rows: list[str], kind: bytes = b"P5") -> bytes:
+    """Return an image: # occupied, . free, ? unknown."""
+    grey = {"#": 0, ".": 254, "?": 205}
+    cells = [grey[mark] for row in rows for mark in row]
+    body = bytes(cells) if kind == b"P5" else " ".join(map(str, cells)).encode()
+    return kind + b"\n# made by hand\n%d %d\n255\n" % (len(rows[0]), len(rows)) + body
+
+
+ROOM = ["?" * 30, *["?" + "#" * 28 + "?"] * 2, *["?##" + "." * 24 + "##?"] * 16, *["?" + "#" * 28 + "?"] * 2, "?" * 30]
+
+
+def test_an_area_is_ground_with_holes() -> None:
+    stage = Stage(area=HOUSE)
+    assert stage.clearance([(1, 3), (5, 3), (11, 3), (3, 3)]).tolist() == [1.0, 0.0, 0.0, 1.0]
+    assert len(stage.rings) == 2
+    assert len(stage.as_walls()) == 8
+    outer, hole = stage.rings
+    assert np.sum(outer[:, 0] * np.roll(outer[:, 1], -1) - np.roll(outer[:, 0], -1) * outer[:, 1]) < 0.0
+    assert np.sum(hole[:, 0] * np.roll(hole[:, 1], -1) - np.roll(hole[:, 0], -1) * hole[:, 1]) > 0.0
+
+
+@pytest.mark.parametrize("name", ["area.wkt", "area.geojson"])
+def test_an_area_may_lie_in_a_file(tmp_path: Path, name: str) -> None:
+    rings = [[[0, 0], [10, 0], [10, 6], [0, 6], [0, 0]], [[4, 2], [6, 2], [6, 4], [4, 4], [4, 2]]]
+    shape = {"type": "Polygon", "coordinates": rings}
+    feature = {"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry": shape}]}
+    written(tmp_path, HOUSE if name.endswith("wkt") else json.dumps(feature), name)
+    inside = load_trial(written(tmp_path, TEXT.format(stage=f'area="{name}"')))
+    inline = Trial.parse(TEXT.format(stage=f'area="{HOUSE}"'))
+    assert inside.run().digest == inline.run().digest
+    assert Trial.parse(inside.xml(), folder=tmp_path) == inside
+    assert f'area="{name}"' in inside.xml()
+
+
+@pytest.mark.parametrize(
+    ("stage", "sentence"),
+    [
+        ('area="POLYGON ((0 0, 1 0"', 't.xml:2: <stage> area="POLYGON ((0 0, 1 0" is no WKT: '),
+        ('area="POLYGON ((0 0, 4 4, 4 0, 0 4, 0 0))"', "the WKT has a polygon that is not simple: self-intersection"),
+        ('area="POLYGON EMPTY"', "holds nothing, it must hold polygons"),
+        ('area="GEOMETRYCOLLECTION (POINT (1 1))"', "holds Point, it must hold polygons"),
+        ('area="POLYGON ((0 0, 1e9 0, 1e9 1e9, 0 0))"', "more than 1e+06 m from the origin"),
+        ('area="none.wkt"', "there is no file 'none.wkt'"),
+        ('area="../area.wkt"', "lies outside"),
+        ('area="/etc/passwd"', "lies outside"),
+        ('area="bad.bin"', "bad.bin is no text"),
+        ('area="bad.txt"', "bad.txt is neither WKT nor GeoJSON of an area"),
+        ('area="many.wkt"', "has 25001 corners, more than 20000"),
+        ('area="POLYGON ((0 0, 9 0, 9 9, 0 0))" walkable="0,0 9,0 9,9"', "has both walkable and area"),
+        ('area="POLYGON ((0 0, 2 0, 2 6, 0 6, 0 0))"', "spawn zone reaches outside the walkable area"),
+        ('map="none.yaml"', "there is no file 'none.yaml'"),
+        ('map="bad.txt"', "bad.txt is no map of ROS: it does not say image and resolution and origin"),
+        ('map="noimage.yaml"', "there is no file 'gone.pgm'"),
+        ('map="outside.yaml"', "lies outside"),
+        ('map="notpgm.yaml"', "bad.bin is no PGM image"),
+        ('map="short.yaml"', "short.pgm is cut off: 3 bytes for 50 x 50 cells"),
+        ('map="huge.yaml"', "huge.pgm has 99999 x 99999 cells"),
+        ('map="nan.yaml"', "not finite, too large, or not above 0"),
+    ],
+)
+def test_wrong_grounds_are_told(tmp_path: Path, stage: str, sentence: str) -> None:
+    ring = [(np.cos(a), np.sin(a)) for a in np.linspace(0.0, 6.28, 25_000)]
+    for name, data in {
+        "bad.bin": b"\xff\x00\x12",
+        "bad.txt": "hello",
+        "many.wkt": f"POLYGON (({', '.join(f'{x} {y}' for x, y in [*ring, ring[0]])}))",
+        "noimage.yaml": YAML.replace("map.pgm", "gone.pgm"),
+        "outside.yaml": YAML.replace("map.pgm", "../../map.pgm"),
+        "notpgm.yaml": YAML.replace("map.pgm", "bad.bin"),
+        "short.yaml": YAML.replace("map.pgm", "short.pgm"),
+        "short.pgm": b"P5 50 50 255\nabc",
+        "huge.yaml": YAML.replace("map.pgm", "huge.pgm"),
+        "huge.pgm": b"P5 99999 99999 255\nabc",
+        "nan.yaml": YAML.replace("resolution: 0.1", "resolution: nan"),
+    }.items():
+        written(tmp_path, data, name)
+    with pytest.raises(TrialError) as found:
+        Trial.parse(TEXT.format(stage=stage), place="t.xml", folder=tmp_path)
+    assert sentence in str(found.value)
+
+
+@pytest.mark.parametrize("kind", [b"P5", b"P2"])
+def test_a_map_of_ros_is_a_stage(tmp_path: Path, kind: bytes) -> None:
+    written(tmp_path, YAML, "map.yaml")
+    written(tmp_path, pgm(ROOM, kind), "map.pgm")
+    stage = Stage(map="map.yaml", folder=tmp_path)
+    # 24 x 16 free cells of 0.1 m, three cells from the left and below of an origin at -1, -0.5
+    left, low = -1.0 + 0.3, -0.5 + 0.3
+    centre = (left + 1.2, low + 0.8)
+    assert stage.clearance([centre])[0] == pytest.approx(0.8)
+    assert stage.clearance([(left - 0.05, low + 0.8), (left + 0.2, low + 0.8)]) == pytest.approx([0.0, 0.2])
+    assert stage.block_around(__import__("shapely").Point(left - 0.05, low + 0.8)) == "a solid of the map"
+    loose = Stage(map="map.yaml", folder=tmp_path, unknown="free")
+    assert loose.clearance([(-0.95, 1.0)])[0] == pytest.approx(0.05)
+    assert stage.clearance([(-0.95, 1.0)])[0] == 0.0
+
+
+def test_people_walk_on_a_map(tmp_path: Path) -> None:
+    rows = ["#" * 100, *["#" + "." * 98 + "#"] * 28, *["#" + "." * 40 + "#" * 18 + "." * 40 + "#"] * 30, "#" * 100]
+    written(tmp_path, YAML.replace("[-1.0, -0.5, 0.0]", "[0, 0, 0]"), "map.yaml")
+    written(tmp_path, pgm(rows), "map.pgm")
+    text = TEXT.format(stage='map="map.yaml"').replace('duration="2"', 'duration="12"')
+    trial = load_trial(written(tmp_path, text.replace("<crowd", '<routing radius="0.3"/><crowd').replace(
+        'count="3"', 'count="3" radius="0.25"')))  # fmt: skip
+    episode = trial.run()
+    where = episode.position[episode.active]
+    assert trial.stage.clearance(where).min() > 0.2
+    assert where[:, 0].max() > 6.5
+    assert Trial.parse(trial.xml(), folder=tmp_path) == trial
+
+
+def test_slanted_walls_of_a_map_are_straight(tmp_path: Path) -> None:
+    rows = ["".join("#" if abs(x - y) < 3 else "." for x in range(200)) for y in range(200)]
+    written(tmp_path, YAML, "map.yaml")
+    written(tmp_path, pgm(rows), "map.pgm")
+    stage = Stage(map="map.yaml", folder=tmp_path)
+    assert sum(len(ring) for ring in stage.rings) < 40
+
+
+def test_a_turned_map_is_turned(tmp_path: Path) -> None:
+    written(tmp_path, YAML.replace("[-1.0, -0.5, 0.0]", "[2, 1, 1.5707963267948966]"), "map.yaml")
+    written(tmp_path, pgm(["##....", "......"]), "map.pgm")
+    (ring,) = Stage(map="map.yaml", folder=tmp_path).rings
+    assert ring.min(axis=0).tolist() == pytest.approx([1.8, 1.0])
+    assert ring.max(axis=0).tolist() == pytest.approx([1.9, 1.2])
+
+
+def test_a_map_of_noise_is_refused(tmp_path: Path) -> None:
+    written(tmp_path, YAML, "map.yaml")
+    noise = np.random.default_rng(0).integers(0, 2, (300, 300), dtype=np.uint8) * 255
+    written(tmp_path, b"P5 300 300 255\n" + noise.tobytes(), "map.pgm")
+    with pytest.raises(InputError, match=r"has \d+ corners, more than 20000; clean or shrink the map"):
+        Stage(map="map.yaml", folder=tmp_path)

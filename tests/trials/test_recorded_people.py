@@ -1,0 +1,189 @@
+"""Recorded people as a crowd: where they were, when they were; reacting to a robot; one replaced by the robot."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+from trial_texts import written
+
+from crowdbot.core import InputError, TrialError
+from crowdbot.trials import Goal, RecordedPeople, Robot, Simulation, Trial, load_trial, recorded_trial
+
+RECORDINGS = {
+    "eth": ("eth_biwi/seq_eth/obsmat.txt", None, 60.0),
+    "zara": ("eth_ucy_splits/all_data/crowds_zara01.txt", None, 60.0),
+    "juelich": ("juelich/bottleneck/040_c_56_h-.txt", None, 30.0),
+}
+TRACK = "".join(f"{10 * k}\t{p}\t{0.5 * k + p}\t{p}\n" for k in range(30) for p in (0, 3))
+
+
+@pytest.fixture
+def track(tmp_path: Path) -> Path:
+    """Two people who walk east side by side, 1.25 m/s, for 11.6 s."""
+    return written(tmp_path, TRACK, "track.txt")
+
+
+def farthest(trial: Trial) -> tuple[float, int]:
+    """Return how far people ever are from their recording, and how many rows of it were looked at."""
+    simulation = Simulation(trial, 0)
+    walks = simulation.people.walks
+    rows: dict[int, list[tuple[int, float, float]]] = {}
+    for agent, walk in enumerate(walks):
+        for t, (x, y) in zip(walk.time, walk.position, strict=True):
+            tick = round(t / trial.step)
+            if 0.0 <= t <= trial.duration:
+                assert abs(tick * trial.step - t) < 1e-4, "a step ends at every frame"
+                rows.setdefault(tick, []).append((agent, x, y))
+    worst, seen = 0.0, 0
+    while True:
+        scene = simulation.world.scene
+        for agent, x, y in rows.get(simulation.tick, ()):
+            assert scene.active[0, agent], (agent, simulation.tick)
+            worst = max(worst, float(np.hypot(*(scene.position[0, agent] - [x, y]))))
+            seen += 1
+        now = simulation.world.clock.time
+        inside = sum(walk.time[0] - 1e-4 <= now <= walk.time[-1] + 1e-4 for walk in walks)
+        assert np.count_nonzero(scene.active[0, : len(walks)]) == inside
+        if simulation.tick >= trial.ticks:
+            return worst, seen
+        simulation.step()
+
+
+@pytest.mark.parametrize("name", RECORDINGS)
+def test_everybody_is_where_the_recording_has_them_at_every_frame(name: str, recordings: Path) -> None:
+    file, fps, seconds = RECORDINGS[name]
+    whole = recorded_trial(recordings / file, fps=fps)
+    worst, seen = farthest(dataclasses.replace(whole, duration=seconds))
+    assert worst < 1e-3
+    assert seen > 200
+
+
+def test_velocity_and_heading_are_those_of_the_recording(track: Path) -> None:
+    simulation = Simulation(recorded_trial(track, fps=2.5), 0)
+    for _ in range(30):
+        simulation.step()
+    scene = simulation.world.scene
+    assert np.allclose(scene.velocity[0], [[1.25, 0.0], [1.25, 0.0]])
+    assert np.allclose(scene.heading, 0.0)
+    assert not scene.external.any()
+
+
+def robot(x: float, y: float, **more: object) -> Robot:
+    from crowdbot.navigation import Straight
+    from crowdbot.world import DifferentialDrive
+
+    whole = {"goal": Goal(x + 9.0, y), "drive": DifferentialDrive(max_speed=0.02), "navigator": Straight()} | more
+    return Robot(x=x, y=y, **whole)
+
+
+def with_robot(track: Path, mode: str, **more: object) -> Trial:
+    """Return the two people with a robot that hardly moves, in the way of the first."""
+    trial = recorded_trial(track, fps=2.5, mode=mode, near=4.0)
+    return dataclasses.replace(
+        trial, robots=[robot(8.0, 0.05, **more)], duration=25.0, end=dataclasses.replace(trial.end, collision=False)
+    )
+
+
+def test_scripted_people_go_through_a_robot_and_it_is_judged(track: Path) -> None:
+    episode = with_robot(track, "scripted").run()
+    assert episode.metrics["collision"] == 1.0
+    assert np.allclose(episode.position[:100:4, 0, 1], 0.0)
+
+
+def test_reactive_people_go_round_the_robot_and_keep_their_destination(track: Path) -> None:
+    trial = with_robot(track, "reactive")
+    episode = trial.run()
+    assert episode.metrics["collision"] == 0.0
+    first = episode.position[episode.active[:, 0], 0]
+    assert np.abs(first[:, 1]).max() > 0.3
+    assert np.hypot(*(first[-1] - [14.5, 0.0])) < 0.35
+    # the one who stays clear of it goes on as recorded until the robot is near
+    before = episode.times < 2.0
+    assert np.allclose(episode.position[before, 1, 1], 3.0)
+
+
+def test_nobody_reacts_to_a_robot_that_people_do_not_see(track: Path) -> None:
+    episode = with_robot(track, "reactive", visible=False).run()
+    assert np.allclose(episode.position[episode.active[:, 0], 0, 1], 0.0)
+
+
+@pytest.mark.parametrize("name", RECORDINGS)
+def test_reactive_people_of_real_recordings_end_where_they_ended(name: str, recordings: Path) -> None:
+    file, fps, seconds = RECORDINGS[name]
+    trial = recorded_trial(recordings / file, fps=fps, mode="reactive", near=3.0)
+    places = np.concatenate([walk.position for walk in trial.recorded[0].walks(seconds / 2)])
+    x, y = np.median(places, axis=0)
+    one = robot(float(x), float(y), control_period=4 * trial.step)
+    trial = dataclasses.replace(trial, duration=seconds, robots=[one], seed=1)
+    trial = dataclasses.replace(trial, end=dataclasses.replace(trial.end, goal=False, collision=False))
+    simulation = Simulation(trial, 1)
+    walks = simulation.people.walks
+    last = np.full((len(walks), 2), np.nan)
+    for _ in range(trial.ticks):
+        before = simulation.world.scene
+        simulation.step()
+        gone = before.active[0] & ~simulation.world.scene.active[0]
+        for agent in np.flatnonzero(gone[: len(walks)]):
+            last[agent] = before.position[0, agent]
+    state = simulation.world.scene.memory["script"][0, : len(walks)]
+    away = np.hypot(*(last - np.array([walk.position[-1] for walk in walks])).T)
+    assert np.count_nonzero(state == 3.0) >= 3, "somebody met the robot and arrived"
+    assert np.all(away[state == 3.0] < 0.5)
+
+
+def test_a_robot_takes_the_place_of_somebody(track: Path, recordings: Path) -> None:
+    trial = recorded_trial(track, fps=2.5, replace=3)
+    (one,) = trial.robots
+    assert (one.x, one.y, one.goal.position) == (3.0, 3.0, (17.5, 3.0))
+    assert one.heading == pytest.approx(0.0)
+    assert [walk.person for walk in trial.recorded[0].walks(20.0)] == [0]
+    assert trial.run().outcome == "success"
+    zara = recorded_trial(recordings / RECORDINGS["zara"][0], replace=10)
+    begin = zara.recorded[0].begin
+    assert begin > 0.0
+    assert zara.run(seed=1).outcome in ("success", "collision", "timeout")
+    with pytest.raises(InputError, match=r"nobody in track.txt has the id 4; ids go from 0 to 3"):
+        recorded_trial(track, fps=2.5, replace=4)
+
+
+def test_a_trial_of_recorded_people_is_a_file(track: Path) -> None:
+    trial = recorded_trial(track, fps=2.5, replace=3)
+    file = written(track.parent, trial.xml())
+    again = load_trial(file)
+    assert again == trial
+    assert again.run().digest == trial.run().digest
+    assert trial.explicit() == trial
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("track.txt", "none.txt", "t.xml:3: <recorded> data=\"none.txt\" there is no file 'none.txt'"),
+        ("track.txt", "../../etc/passwd", "lies outside"),
+        ("track.txt", "bad.txt", "bad.txt"),
+        ('fps="2.5"', 'fps="2.5" without="8"', "without names person 8, who is not in track.txt"),
+        ('fps="2.5"', 'fps="2.5" without="x"', 'without="x" must be whole numbers'),
+        ('fps="2.5"', 'fps="2.5" begin="99"', "has nobody from 99 s on; take an earlier begin"),
+        ('fps="2.5"', 'fps="2.5" mode="reactiv"', "must be scripted or reactive, did you mean 'reactive'?"),
+        ('fps="2.5"', 'fps="2.5" crowd="calm"', 'crowd="calm" is not the name of a crowd'),
+    ],
+)
+def test_wrong_recordings_are_told_with_their_line(track: Path, old: str, new: str, sentence: str) -> None:
+    written(track.parent, b"\x00\xff" * 100, "bad.txt")
+    text = '<trial name="t" duration="5">\n<crowd type="orca"/>\n<recorded data="track.txt" fps="2.5"/>\n</trial>'
+    assert Trial.parse(text, folder=track.parent).recorded == (RecordedPeople(data="track.txt", fps=2.5),)
+    with pytest.raises(TrialError) as found:
+        Trial.parse(text.replace(old, new), place="t.xml", folder=track.parent)
+    assert sentence in str(found.value)
+
+
+def test_a_gap_in_a_track_is_an_absence(tmp_path: Path) -> None:
+    rows = [k for k in range(40) if not 10 <= k < 20]
+    file = written(tmp_path, "".join(f"{10 * k}\t1\t{0.5 * k}\t0\n" for k in rows), "gap.txt")
+    trial = recorded_trial(file, fps=2.5)
+    first, second = trial.recorded[0].walks(20.0)
+    assert (first.time[-1], second.time[0]) == (pytest.approx(3.6), pytest.approx(8.0))
+    assert farthest(trial)[0] < 1e-9

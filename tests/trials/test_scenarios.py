@@ -1,0 +1,133 @@
+"""The built-in trials: each is possible, written and read, and asked for by its parameters."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from crowdbot.core import TrialError
+from crowdbot.models import SocialForce
+from crowdbot.navigation import Straight
+from crowdbot.trials import Trial, builtin_trials, load_trial
+from crowdbot.trials.scenarios import DENSITIES, FLOWS, PRESETS, SIZES
+
+LISTED = """
+    frontal intersection blind-corner doorway elevator overtaking being-overtaken following joining-group leaving-group
+    passing-group circle-crossing dense-circle square-crossing one-way-with one-way-against two-way perpendicular-flow
+    crossing-flows bottleneck static-crowd random-goals density-ladder
+"""
+QUICK = [
+    name for name in LISTED.split() if name not in ("one-way-with", "one-way-against", "two-way", "density-ladder")
+]
+
+
+def test_the_list_of_scenarios_is_complete() -> None:
+    assert set(LISTED.split()) <= set(builtin_trials())
+    challenge = {name for name in builtin_trials() if name.startswith("challenge-")}
+    flows = {f"challenge-{kind}-{size}" for kind in FLOWS for size in SIZES}
+    assert challenge == flows | {"challenge-alone"}
+    assert len(challenge) == 21
+
+
+@pytest.mark.parametrize("name", builtin_trials())
+def test_a_builtin_trial_is_right_and_survives_the_way_through_xml(name: str) -> None:
+    trial = load_trial(name)
+    trial.check()
+    assert (trial.name, bool(trial.about)) == (name, True)
+    assert Trial.parse(trial.xml()) == trial
+    assert len(trial.robots) == 1
+    assert type(trial.robots[0].navigator).__name__ in ("ORCA", "Straight")
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_a_scenario_runs_and_is_not_impossible(name: str) -> None:
+    episode = load_trial(name).run()
+    assert episode.outcome == ("collision" if name == "dense-circle" else "success")
+
+
+def test_everything_that_is_asked_for_is_done() -> None:
+    trial = load_trial("intersection", density=0.5, angle=45, navigator="straight", model="social-force", seed=7)
+    assert trial.people == round(0.5 * 3.0 * 7.0)
+    assert isinstance(trial.robots[0].navigator, Straight)
+    assert isinstance(trial.crowd, SocialForce)
+    assert trial.seed == 7
+    assert load_trial("frontal", robot=False).robots == ()
+    assert not load_trial("frontal", reactive="false").robots[0].visible
+    assert load_trial("frontal", **{"robot/goal/x": "3"}).robots[0].goal.x == 3.0
+
+
+@pytest.mark.parametrize("angle", [45.0, 90.0, 135.0])
+@pytest.mark.parametrize("delay", [-1.0, 0.0, 1.0])
+def test_people_arrive_at_the_intersection_when_they_are_asked_to(angle: float, delay: float) -> None:
+    trial = load_trial("intersection", angle=angle, delay=delay, robot=False)
+    episode = trial.run()
+    here = episode.active[:, 0]
+    away = np.where(here, np.hypot(*episode.position[:, 0].T), np.inf)
+    assert episode.times[int(np.argmin(away))] == pytest.approx(6.0 + delay, abs=0.3)
+    way = episode.velocity[5, 0]
+    assert math.degrees(math.atan2(way[1], way[0])) == pytest.approx(angle, abs=2.0)
+
+
+@pytest.mark.parametrize("density", DENSITIES)
+def test_every_rung_of_the_ladder_has_its_density(density: float) -> None:
+    trial = load_trial("density-ladder", density=density)
+    assert trial.people == round(density * 100.0)
+    trial.check()
+
+
+def test_people_of_a_corridor_without_ends_stay_as_many() -> None:
+    trial = load_trial("two-way", density=0.2, groups=0.5, robot=False)
+    episode = Trial.parse(trial.xml().replace('duration="90"', 'duration="20"')).run()
+    assert (episode.active.sum(axis=1) == trial.people).all()
+    assert len(episode.ids) > trial.people
+
+
+def test_the_challenge_is_that_of_its_files() -> None:
+    trial = load_trial("challenge-cross-both-350")
+    assert (trial.people, trial.duration) == (350, 180.0)
+    robot = trial.robots[0]
+    assert (robot.position, robot.goal.position, robot.radius, robot.visible) == ((-20.0, 0.0), (20.0, 0.0), 0.5, True)
+    assert {spawner.speed.extent for spawner in trial.spawners} == {(1.03, 1.63)}
+    assert {spawner.radius.extent for spawner in trial.spawners} == {(0.33, 0.33)}
+    assert not load_trial("challenge-with-50", reactive=False).robots[0].visible
+    episode = Trial.parse(load_trial("challenge-cross-50").xml().replace('duration="180"', 'duration="15"')).run()
+    assert (episode.active[:, :50].sum() + episode.active[:, 51:].sum()) == 50 * len(episode.times)
+    assert np.abs(episode.position[..., 1]).max() < 9.0
+    down = episode.velocity[-1, episode.active[-1], 1]
+    assert np.median(down) < -1.0
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "sentence"),
+    [
+        ("frontal", {"widht": 3}, "frontal has no parameter 'widht', did you mean 'width'?; it has width, gap, low"),
+        ("frontal", {"width": 0.1}, 'frontal: width="0.1" must be from 1.2 to 20 m'),
+        ("frontal", {"width": "wide"}, 'width="wide" is not a number'),
+        ("frontal", {"robot": "maybe"}, 'robot="maybe" must be true or false'),
+        ("frontal", {"model": "orka"}, "frontal: unknown crowd model 'orka', did you mean 'orca'?"),
+        ("frontal", {"navigator": "x.py:Y"}, "frontal: "),
+        ("random-goals", {"people": 2.5}, "must be a whole number"),
+        ("random-goals", {"people": 400, "side": 6.0}, "fit into the spawn zone"),
+        ("frontal", {"robot[2]/x": 1}, "leads nowhere: there are 1 <robot>"),
+        ("crossing-flows", {"density": 1}, "names no attribute: <trial> has no 'density'"),
+    ],
+)
+def test_wrong_parameters_are_told(name: str, values: dict[str, object], sentence: str) -> None:
+    with pytest.raises(TrialError) as found:
+        load_trial(name, **values)
+    assert sentence in str(found.value)
+
+
+def test_two_wrong_parameters_are_told_at_once() -> None:
+    with pytest.raises(TrialError) as found:
+        load_trial("frontal", width=-1, gap="no")
+    assert len(found.value.problems) == 2
+
+
+def test_every_parameter_has_a_line_for_people() -> None:
+    for preset in PRESETS.values():
+        assert preset.about.endswith(".")
+        assert all(str(option).strip() and option.value(option.default) == option.default
+                   for option in preset.options.values())  # fmt: skip

@@ -1,0 +1,202 @@
+"""Steps: their order, who allows them, and the same bytes however time comes."""
+
+from __future__ import annotations
+
+import dataclasses
+import random
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+from trial_texts import FLOW, GOOD
+
+from crowdbot.core import Clock, ExternalClock, FreeClock, InputError, PacedClock, Pose, Scene, Twist
+from crowdbot.models import ORCA
+from crowdbot.navigation import Navigator, Observation
+from crowdbot.sensors import Lidar2D, Scan
+from crowdbot.trials import Running, Simulation, Trial, opened, read_episode, record
+from crowdbot.trials.simulation import Frame
+from crowdbot.trials.tally import Tally
+from crowdbot.world import DifferentialDrive
+
+TRIAL = Trial.parse(GOOD)
+EVENTS: list[tuple[str, float]] = []
+
+
+class Watched(FreeClock):
+    def advance(self) -> None:
+        EVENTS.append(("time", self.time))
+        super().advance()
+
+
+@dataclasses.dataclass(frozen=True)
+class Crowd(ORCA):
+    def velocity(self, scene: Scene, dt: float, rng: Any = None) -> NDArray[np.float64]:
+        EVENTS.append(("crowd", scene.time))
+        return super().velocity(scene, dt, rng)
+
+
+@dataclasses.dataclass(frozen=True)
+class Wheels(DifferentialDrive):
+    def step(self, pose: Pose, twist: Any, command: Any, dt: float) -> Any:
+        EVENTS.append(("robots", 0.0))
+        return super().step(pose, twist, command, dt)
+
+
+@dataclasses.dataclass(frozen=True)
+class Eye(Lidar2D):
+    def measure(self, scene: Scene, pose: Pose, rng: Any = None) -> Scan:
+        EVENTS.append(("sensors", scene.time))
+        return super().measure(scene, pose, rng)
+
+
+@dataclasses.dataclass(frozen=True)
+class Pilot(Navigator):
+    def act(self, observation: Observation) -> Twist:
+        EVENTS.append(("navigators", observation.time))
+        return Twist(0.5)
+
+
+class Wire:
+    """A bridge that gives every robot another command."""
+
+    def exchange(self, simulation: Simulation, readings: Any) -> None:
+        EVENTS.append(("bridges", simulation.world.scene.time))
+        simulation.ask("robot", Twist(0.25))
+
+
+class Book:
+    """A recorder."""
+
+    def take(self, frame: Frame) -> None:
+        EVENTS.append(("recorder", frame.scene.time))
+        assert frame.commands.tolist() == [[0.25, 0.0, 0.0]]
+
+
+def test_the_order_of_a_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    EVENTS.clear()
+    robot = dataclasses.replace(
+        TRIAL.robots[0],
+        drive=Wheels(),
+        navigator=Pilot(),
+        control_period=0.05,
+        sensors=[dataclasses.replace(TRIAL.robots[0].sensors[0], sensor=Eye(rays=4, rate=20.0))],
+    )
+    trial = dataclasses.replace(
+        TRIAL, crowd=Crowd(), robots=[robot], recording=dataclasses.replace(TRIAL.recording, period=0.05)
+    )
+    simulation = Simulation(trial, 3, Watched(0.05))
+    physics, bodies = simulation.world._settled, simulation._let_leave
+
+    def settled(earlier: Scene, after: Scene) -> Scene:
+        EVENTS.append(("physics", earlier.time))
+        return physics(earlier, after)
+
+    def leave() -> None:
+        EVENTS.append(("people's bodies", simulation.world.scene.time))
+        bodies()
+
+    monkeypatch.setattr(simulation.world, "_settled", settled)
+    monkeypatch.setattr(simulation, "_let_leave", leave)
+    running = Running(simulation, [Book()], [Wire()])
+    assert EVENTS == [("sensors", 0.0), ("navigators", 0.0), ("bridges", 0.0), ("recorder", 0.0)]
+    EVENTS.clear()
+    running.step()
+    old, new = 0.0, 0.05
+    assert [
+        ("time", old),
+        ("crowd", old),
+        ("robots", 0.0),
+        ("physics", old),
+        ("people's bodies", new),
+        ("sensors", new),
+        ("navigators", new),
+        ("bridges", new),
+        ("recorder", new),
+    ] == EVENTS
+
+
+def driven(trial: Trial, clock: Clock | None, times: list[int] | None, out: Path | None = None) -> str:
+    tally = Tally(trial, trial.seed)
+    running = Running(Simulation(trial, trial.seed, clock), [tally])
+    for nanoseconds in times or []:
+        running.until(nanoseconds)
+    while running.outcome is None:
+        running.step()
+    return tally.digest.ended(running.outcome)
+
+
+@pytest.mark.parametrize("text", [GOOD, FLOW], ids=["small", "flow"])
+def test_an_external_clock_in_odd_ticks_gives_the_same_bytes(text: str, tmp_path: Path) -> None:
+    trial = Trial.parse(text)
+    free = record(trial, out=tmp_path / "free")
+    chance, now = random.Random(0), 0
+    with opened(trial, out=tmp_path / "outside", clock=ExternalClock(trial.step)) as running:
+        while running.outcome is None:
+            now += chance.choice([0, 1, 7_000_001, 49_999_999, 50_000_000, 333_333_333])
+            running.until(now)
+    assert (tmp_path / "free" / "episode.mcap").read_bytes() == (tmp_path / "outside" / "episode.mcap").read_bytes()
+    assert read_episode(tmp_path / "outside" / "episode.mcap").digest == free.digest
+
+
+@given(pauses=st.lists(st.integers(0, 900_000_000), max_size=12))
+@settings(deadline=None, max_examples=5)
+def test_however_time_comes_the_digest_is_the_same(pauses: list[int]) -> None:
+    times = np.cumsum(pauses).tolist()
+    assert driven(TRIAL, ExternalClock(0.05), times) == driven(TRIAL, None, None)
+
+
+def test_a_paced_run_gives_the_same_bytes_and_takes_its_time() -> None:
+    import time
+
+    begin = time.monotonic()
+    assert driven(TRIAL, PacedClock(0.05, rate=8.0), None) == driven(TRIAL, None, None)
+    assert time.monotonic() - begin > 0.45
+
+
+def test_clocks_that_do_not_fit_are_refused() -> None:
+    late = FreeClock(0.05)
+    late.advance()
+    for clock in (late, FreeClock(0.1)):
+        with pytest.raises(InputError, match="but the trial begins at tick 0 with steps of 0.05 s"):
+            Simulation(TRIAL, 0, clock)
+    running = Running(Simulation(TRIAL, 3, ExternalClock(0.05)))
+    running.until(200_000_000)
+    with pytest.raises(InputError, match="external time went back"):
+        running.until(100_000_000)
+    with pytest.raises(InputError, match="there is no robot 'rob'; the trial has robot"):
+        running.simulation.ask("rob", Twist())
+
+
+def test_a_run_that_has_ended_is_not_stepped_on() -> None:
+    running = Running(Simulation(TRIAL, 3, ExternalClock(0.05)))
+    assert running.until(10**12) == 80
+    assert running.outcome == "timeout"
+    assert running.until(10**13) == 0
+    with pytest.raises(InputError, match=r"the run has ended \(timeout\) at 4 s"):
+        running.step()
+
+
+def test_who_closes_a_run_early_interrupts_it(tmp_path: Path) -> None:
+    with opened(TRIAL, out=tmp_path) as running:
+        for _ in range(43):
+            running.step()
+    read = read_episode(tmp_path / "episode.mcap")
+    assert (read.complete, read.outcome, read.steps, read.times[-1]) == (True, "interrupted", 42, 2.1)
+
+
+def test_a_bridge_steers_and_contacts_are_recorded(tmp_path: Path) -> None:
+    class Ram:
+        def exchange(self, simulation: Simulation, readings: Any) -> None:
+            simulation.ask("robot", Twist(1.0, 0.0))
+
+    with opened(TRIAL, out=tmp_path, bridges=[Ram()]) as running:
+        while running.outcome is None:
+            running.step()
+    read = read_episode(tmp_path / "episode.mcap")
+    assert np.all(read.commands[:, 0] == [1.0, 0.0, 0.0])
+    assert {contact.other for contact in read.contacts} <= {"wall", *map(str, range(4))}

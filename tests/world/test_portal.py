@@ -1,0 +1,64 @@
+"""Portals: who goes in comes out elsewhere, as somebody new, where there is room."""
+
+import numpy as np
+import pytest
+
+from crowdbot.core import InputError, Scene, Twist
+from crowdbot.models import ORCA
+from crowdbot.world import DifferentialDrive, PlanarWorld, Portal, Zone
+
+RIGHT = Portal(Zone(((5, -3), (8, -3), (8, 3), (5, 3))), dx=-10.0)
+LEFT = Portal(Zone(((-8, -3), (-5, -3), (-5, 3), (-8, 3))), dx=10.0)
+
+
+def world(start, goal, **more):
+    scene = Scene.of(start, goal=goal, radius=0.25, preferred_speed=1.5, max_speed=2.0)
+    return PlanarWorld(scene, ORCA(), {}, 0.1, portals=(RIGHT, LEFT), **more)
+
+
+def test_who_goes_in_comes_out_with_the_same_speed_and_another_identity():
+    one = world([[4.9, 1.0], [0.0, -2.0]], [[99.0, 1.0], [0.0, -2.0]])
+    scene = one.step({})
+    assert scene.position[0, 0] == pytest.approx([-4.95, 1.0])
+    assert scene.velocity[0, 0] == pytest.approx([1.5, 0.0])
+    assert one.ids.tolist() == [[2, 1]]
+    assert scene.goal[0, 0].tolist() == [99.0, 1.0]
+
+
+def test_who_finds_no_room_waits_at_the_gate():
+    one = world([[4.9, 1.0], [-5.0, 1.1]], [[99.0, 1.0], [-5.0, 1.1]])
+    one.scene = one.scene.replace(external=np.array([[False, True]]))
+    for _ in range(20):
+        scene = one.step({})
+    assert scene.position[0, 0, 0] == pytest.approx(5.05, abs=0.05)
+    assert one.ids.tolist() == [[0, 1]]
+    one.scene = one.scene.replace(active=np.array([[True, False]]))
+    assert one.step({}).position[0, 0, 0] < -4.0
+
+
+def test_two_who_want_to_change_places_do_not_wait_for_each_other():
+    one = world([[4.9, 0.0], [-4.9, 0.0]], [[99.0, 0.0], [-99.0, 0.0]])
+    for _ in range(5):
+        scene = one.step({})
+    assert scene.position[0, 0, 0] < 0.0 < scene.position[0, 1, 0]
+
+
+def test_robots_and_absent_people_are_not_moved():
+    scene = Scene.of([[5.5, 0.0], [5.5, 2.0]], external=[True, False], active=[True, False], radius=0.25)
+    one = PlanarWorld(scene, ORCA(), {0: DifferentialDrive()}, 0.1, portals=(RIGHT,))
+    assert one.step({0: Twist()}).position[0].tolist() == [[5.5, 0.0], [5.5, 2.0]]
+
+
+def test_environments_do_not_disturb_each_other():
+    start = np.array([[[4.9, 1.0]], [[0.0, 0.0]]])
+    scene = Scene.of(start, goal=start + [50.0, 0.0], radius=0.25, preferred_speed=1.5)
+    both = PlanarWorld(scene, ORCA(), {}, 0.1, portals=(RIGHT,))
+    after = both.step({})
+    assert both.ids.tolist() == [[1], [0]]
+    assert after.position[:, 0, 0] == pytest.approx([-4.95, 0.15])
+
+
+@pytest.mark.parametrize("way", [{}, {"dx": np.inf}, {"dy": np.nan}])
+def test_a_portal_leads_elsewhere(way):
+    with pytest.raises(InputError, match="must be finite, and not both 0"):
+        Portal(RIGHT.zone, **way)

@@ -1,0 +1,177 @@
+"""Mutate trial files and see that each is read, or refused in a sentence: no stack trace, no hang, no stray file.
+
+    python tools/fuzz_trials.py --count 5000 --seed 0
+
+A file that can be read is also written, read again, and run for a few steps with a recording.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import re
+import signal
+import sys
+import tempfile
+import time
+import traceback
+from collections import Counter
+from pathlib import Path
+from types import FrameType
+
+from crowdbot.core.errors import CrowdbotError
+from crowdbot.trials import Simulation, Trial, builtin_trials, load_trial
+
+LIMIT = 20
+"""No file may take longer than this [s]."""
+STEPS = 3
+MOST_PEOPLE = 2000
+"""Files with more people are read and checked, but not run."""
+
+NASTY = """
+nan inf -inf 1e999 1e308 -1e308 1e-320 0 -0 -1 1 2 1e6 1e7 99999 100000 100001 2147483648 9007199254740993 0x10 1_000
+true false 1,0 0,0 1e6,1e6 0,0,0 normal(1,1) uniform(2,1) normal(1) x(1) () ( , ; : / .. ../x /etc/passwd ~ - é
+${HOME} %s {0} \\ ' &amp; &lt; &#0; &#x41; <!--x--> ]]> POLYGON
+"""
+FACTORS = (-1.0, 0.1, 0.5, 0.9, 1.1, 2.0, 3.0, 100.0)
+NUMBER = re.compile(r'(?<=[ ",])-?[0-9]+(?:\.[0-9]+)?(?=[ ",])')
+WORDS = re.compile(r'(?<=")[^"<>]*(?=")')
+TAGS = re.compile(r"<[^<>]+/>")
+NAMES = re.compile(r"(?<= )[a-z][a-z-]*(?==)|(?<=<)[a-z][a-z-]*")
+
+EXTRA = """<trial name="extra" duration="5" capacity="40">
+  <stage area="POLYGON ((0 0, 12 0, 12 9, 0 9, 0 0), (5 5, 6 5, 6 6, 5 6, 5 5))"/>
+  <routing radius="0.2" unreachable="nearest"/>
+  <crowd name="a" type="orca" time-horizon="normal(2, 0.1)"/>
+  <crowd name="b" type="social-force"/>
+  <contact/>
+  <journey name="lap" then="again"><zone points="1,1 2,1 2,2" aim="random"/><point x="3" y="3"/></journey>
+  <agent x="1" y="1" heading="-2" goal="3,3" group="0"><parameter name="time-horizon" value="2"/></agent>
+  <agent x="2" y="7" journey="lap" crowd="b"/>
+  <spawner count="4" zone="7,1 10,1 10,4" stands="true"><group size="2" share="0.5"/><group size="1"/></spawner>
+  <source zone="7,6 9,6 9,8" goal="1,1 2,1 2,2" rate="1" end="4"/>
+  <portal zone="10,5 11,5 11,6" dx="-8"/>
+  <end empty="true"><when what="people" below="2" outcome="success"/></end>
+  <recording period="0.2"/>
+  <sweep path="agent[1]/speed" values="1 1.5"/>
+</trial>
+"""
+
+
+def texts() -> list[str]:
+    """Return good files to begin with."""
+    small = [name for name in builtin_trials() if not name.startswith("challenge") and load_trial(name).people < 80]
+    return [EXTRA, *(load_trial(name).xml() for name in small), load_trial("frontal").explicit().xml()]
+
+
+def mutated(text: str, chance: random.Random) -> str:
+    """Return a file with one to four changes: of characters, values, names or whole elements."""
+    for _ in range(chance.choice((1, 1, 2, 4))):
+        kind = chance.random()
+        if kind < 0.4:
+            text = _replaced(text, NUMBER, chance, lambda word: f"{float(word) * chance.choice(FACTORS):g}")
+        elif kind < 0.6:
+            text = _replaced(text, WORDS, chance, lambda _: chance.choice(NASTY.split()))
+        elif kind < 0.7:
+            text = _replaced(text, NAMES, chance, lambda word: _typo(word, chance))
+        elif kind < 0.8:
+            text = _replaced(text, TAGS, chance, lambda tag: tag * chance.choice((0, 2, 30)))
+        elif kind < 0.9:
+            words = WORDS.findall(text)
+            text = _replaced(text, WORDS, chance, lambda _, words=words: chance.choice(words))
+        else:
+            at = chance.randrange(len(text) + 1)
+            end = min(len(text), at + chance.choice((0, 0, 1, 5, 200)))
+            text = (
+                text[:at] + chance.choice(('"', "<", ">", "/", "&", "\x00", "\ud800", "", " ", "\n", "é")) + text[end:]
+            )
+    return text
+
+
+def _replaced(text, pattern, chance, change):
+    found = list(pattern.finditer(text))
+    if not found:
+        return text
+    one = chance.choice(found)
+    return text[: one.start()] + change(one.group()) + text[one.end() :]
+
+
+def _typo(word: str, chance: random.Random) -> str:
+    at = chance.randrange(len(word))
+    return word[:at] + chance.choice(("", "x", word[at] * 2)) + word[at + 1 :]
+
+
+def judged(text: str, folder: Path) -> str:
+    """Return what became of a file: ``refused``, ``read`` or ``run``; anything but a sentence of ours is raised."""
+    try:
+        trial = Trial.parse(text, place="t.xml", folder=folder)
+    except CrowdbotError as error:
+        sentence = str(error)
+        if not sentence.strip() or "Traceback" in sentence or "object at 0x" in sentence:
+            raise AssertionError(f"this is no sentence: {sentence!r}") from None
+        return "refused"
+    if Trial.parse(trial.xml(), folder=folder) != trial:
+        raise AssertionError("written and read again it is another trial")
+    one = trial.variants()[0]
+    if one.people > MOST_PEOPLE or (one.capacity or 0) > MOST_PEOPLE:
+        return "read"
+    try:
+        simulation = Simulation(one, one.seed)
+        for _ in range(STEPS):
+            simulation.sense()
+            simulation.decide()
+            simulation.step()
+    except CrowdbotError:
+        return "read"
+    return "run"
+
+
+class TooSlow(Exception):
+    """A file took longer than the limit."""
+
+
+def _late(number: int, frame: FrameType | None) -> None:
+    raise TooSlow(f"more than {LIMIT} s")
+
+
+def fuzz(count: int, seed: int, folder: Path, say=print) -> Counter[str]:
+    """Judge so many mutated files and return how many were refused, read, run, and wrong."""
+    chance = random.Random(seed)  # noqa: S311
+    good, done = texts(), Counter()
+    before = signal.signal(signal.SIGALRM, _late)
+    slowest = 0.0
+    try:
+        for k in range(count):
+            text = mutated(chance.choice(good), chance)
+            begin = time.perf_counter()
+            signal.alarm(LIMIT)
+            try:
+                done[judged(text, folder)] += 1
+            except Exception:
+                done["wrong"] += 1
+                say(f"--- file {k}\n{text.encode('utf-8', 'replace').decode()}\n{traceback.format_exc()}")
+            finally:
+                signal.alarm(0)
+            slowest = max(slowest, time.perf_counter() - begin)
+            if any(folder.iterdir()):
+                raise AssertionError(f"file {k} wrote {sorted(folder.iterdir())}")
+    finally:
+        signal.signal(signal.SIGALRM, before)
+    done["slowest_ms"] = round(slowest * 1e3)
+    return done
+
+
+def main() -> int:
+    """Run and print the counts; status 1 when anything was wrong."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, default=2000)
+    parser.add_argument("--seed", type=int, default=0)
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        done = fuzz(options.count, options.seed, Path(folder))
+    print(dict(done))
+    return 1 if done["wrong"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,220 @@
+"""Trains the shipped weights of AnchorNet and Anchors on the leave-one-out files of ETH/UCY, and scores them.
+
+    python tools/train_anchor_net.py train DATA OUT --fold eth hotel univ zara1 zara2 all --seed 0
+    python tools/train_anchor_net.py calibrate DATA OUT --fold eth --seed 0
+    python tools/train_anchor_net.py score DATA OUT --seed 0
+    python tools/train_anchor_net.py reliability DATA OUT --seed 0
+
+DATA holds train/, val/ and all_data/ as SGAN published them. A training that was stopped goes on where it was; one
+that is done is not repeated. Only train/ of the other places is learned from; val/ of the other places gives the
+temperature; the last weights are taken, so nothing is chosen by the place that is left out.
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+import time
+from pathlib import Path
+
+import numpy as np
+
+from crowdbot.data import Trajectories, Windows, load
+from crowdbot.metrics import Score
+from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, evaluate
+from crowdbot.prediction.learned.anchor_calibration import calibrated
+from crowdbot.prediction.learned.anchor_data import Variation, gathered
+from crowdbot.prediction.learned.anchor_training import AnchorTraining, train
+from crowdbot.prediction.places import ALL, FOLDS, kept_out
+
+SHOWN = ("ade", "fde", "nll", "energy", "collisions")
+EDGES = np.concatenate([[0.0], np.geomspace(0.005, 1.0, 13)])
+"""Borders of the probabilities that are counted together."""
+SMALL = ("basis", "centres", "spread", "width", "temperature", "widening")
+
+
+def recordings(folder: Path, fold: str, left_out: bool = False) -> list[Trajectories]:
+    """Return the recordings of a folder that belong to the training of a fold, or those that are left out."""
+    found = [load(path, fps=2.5) for path in sorted(folder.glob("*.txt"))]
+    return [tracks for tracks in found if kept_out(fold, tracks.name) == left_out]
+
+
+def train_fold(options: argparse.Namespace, fold: str, seed: int) -> None:
+    """Train, calibrate and write one fold."""
+    name = f"anchor-net-{fold}" + (f"-seed{seed}" if seed else "")
+    done = options.out / f"{name}.npz"
+    if done.exists():
+        print(f"{done} is there already")
+        return
+    used = recordings(options.data / "train", fold)
+    if seed == 0:
+        anchors = Anchors.fit(*(tracks.windows() for tracks in used))
+        np.savez(options.out / f"anchors-{fold}.npz", shapes=anchors.shapes.astype(np.float32), share=anchors.share)
+    material = gathered(used)
+    how = AnchorTraining(seed=seed, updates=options.updates, **_changes(options.set))
+    begin, work = time.perf_counter(), time.process_time()
+
+    def tell(update: int, loss: float) -> None:
+        if update % 500 == 0:
+            print(f"{name}: update {update} of {how.updates}, loss {loss:.3f}, {time.process_time() - work:.0f} CPU s,"
+                  f" {time.perf_counter() - begin:.0f} s", flush=True)  # fmt: skip
+
+    state = options.out / f"{name}.state"
+    write(options, fold, done, train(material, how, tell, state))
+    state.unlink(missing_ok=True)
+    print(f"{name}: {time.process_time() - work:.0f} CPU s", flush=True)
+
+
+def write(options: argparse.Namespace, fold: str, file: Path, numbers: dict[str, np.ndarray]) -> None:
+    """Calibrate on val/ of the places that were learned from, and write the numbers in as few bytes as they need."""
+    kept = {k: v.astype(np.float32 if k in SMALL else np.float16) for k, v in numbers.items()}
+    kept = calibrated(kept, gathered(recordings(options.data / "val", fold), reverse=False))
+    np.savez(file, **{k: v.astype(np.float32) if k in SMALL else v for k, v in kept.items()})
+    size = sum(values.size for values in kept.values())
+    said = {name: kept[name].round(2).tolist() for name in ("temperature", "widening")}
+    print(f"{file.name}: {size} numbers, {file.stat().st_size / 1e6:.2f} MB, {said}", flush=True)
+
+
+def _changes(words: list[str]) -> dict[str, object]:
+    """Return settings of the training; those of the variation may be named too."""
+    pairs = {k: float(v) for k, _, v in (word.partition("=") for word in words)}
+    fields = {f.name for f in dataclasses.fields(Variation)}
+    varied = dataclasses.replace(Variation(), **{k: v for k, v in pairs.items() if k in fields})
+    return {k: v for k, v in pairs.items() if k not in fields} | {"variation": varied}
+
+
+def score_fold(options: argparse.Namespace, fold: str, seed: int) -> dict[str, dict[str, float]]:
+    """Return the scores of everything on the place that a fold leaves out."""
+    file = weights_file(options, fold, seed)
+    with np.load(options.out / f"anchors-{fold}.npz") as kept:
+        anchors = Anchors(shapes=kept["shapes"].astype(float), share=kept["share"].astype(float))
+    asked = {
+        "constant velocity": (ConstantVelocity(), 1),
+        "anchors, set of 20": (anchors, 20),
+        "set of 20": (AnchorNet(file=file), 20),
+        "single": (AnchorNet(file=file), 1),
+        "20 draws": (AnchorNet(file=file, sample="draws"), 20),
+        "set of 20, not joint": (AnchorNet(file=file, contact=0.0), 20),
+        "single, not joint": (AnchorNet(file=file, contact=0.0), 1),
+    }
+    cut = windows_left_out(options, fold)
+    rows = {}
+    for name, (predictor, samples) in asked.items():
+        found = Score.total([evaluate(predictor, past, future, samples) for past, future in cut])
+        rows[name] = {k: getattr(found, k) for k in (*SHOWN, "persons", "miss_rate")}
+        print(f"{fold} seed {seed} {name:22}"
+              + " ".join(f"{k} {v:.3f}" for k, v in rows[name].items()), flush=True)  # fmt: skip
+    return rows
+
+
+def reliability(options: argparse.Namespace) -> None:
+    """Draw how often a future was the nearest that was said to be so with some probability, and where truth falls."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9, 4.2), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    for fold in options.fold:
+        net = AnchorNet(file=weights_file(options, fold, options.seed[0]))
+        said, was, level = [], [], []
+        for past, future in windows_left_out(options, fold):
+            hit, ranks = believed(net, past, future)
+            said.append(hit[0].ravel())
+            was.append(hit[1].ravel())
+            level.append(ranks)
+        chance, true, inside = np.concatenate(said), np.concatenate(was), np.concatenate(level)
+        place = np.minimum(np.searchsorted(EDGES, chance, side="right") - 1, len(EDGES) - 2)
+        count = np.bincount(place, minlength=len(EDGES) - 1)
+        kept = np.flatnonzero(count > 100)
+        x = np.bincount(place, chance, len(count))[kept] / count[kept]
+        y = np.bincount(place, true, len(count))[kept] / count[kept]
+        gap = float(np.sum(count[kept] * np.abs(x - y)) / count[kept].sum())
+        left.plot(x, y, "o-", ms=3, lw=1, label=f"{fold}: {100 * gap:.2f} %")
+        shares = np.linspace(0.05, 0.95, 19)
+        held = np.array([np.mean(inside <= share) for share in shares])
+        right.plot(shares, held, "-", lw=1, label=fold)
+        likely, sure = true.reshape(-1, 20)[:, 0].mean(), chance.reshape(-1, 20)[:, 0].mean()
+        shown = " ".join(f"{np.mean(inside <= share):.3f}" for share in (0.5, 0.8, 0.95))
+        print(
+            f"{fold}: mean gap between said and true probability {gap:.4f}, the likeliest is the nearest in"
+            f" {likely:.3f} (said {sure:.3f}); inside 50, 80, 95 % of draws: {shown}", flush=True,
+        )  # fmt: skip
+    for axes, low in ((left, 0.005), (right, 0.0)):
+        axes.plot([low, 1], [low, 1], color="0.6", lw=1)
+        axes.legend(fontsize=7)
+    left.set(xscale="log", yscale="log", xlabel="probability said", ylabel="share that was the nearest of 20")
+    right.set(xlabel="innermost share of 100 draws, end point", ylabel="share of true end points inside")
+    figure.savefig(options.out / "reliability.png", dpi=130)
+
+
+def believed(net: AnchorNet, past: Windows, future: Windows) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
+    """Return probabilities ``[N, 20]`` and which was the nearest, and the share of draws nearer the middle."""
+    modes = net.modes(past)
+    kept = future.scored[modes.window, modes.slot]
+    window, slot = modes.window[kept], modes.slot[kept]
+    truth = future.position[window, :, slot] - past.position[window, -1, slot][:, None]
+    error = np.linalg.norm(modes.path[kept] - truth[:, None], axis=3).mean(axis=2)
+    nearest = np.arange(error.shape[1]) == error.argmin(axis=1)[:, None]
+    draws = dataclasses.replace(net, sample="draws").predict(past, future.present.shape[1], 100)
+    end = draws.position[:, :, -1][window, :, slot]
+    middle = end.mean(axis=1)
+    away = end - middle[:, None]
+    inverse = np.linalg.inv(np.einsum("nki,nkj->nij", away, away) / 99.0 + 1e-9 * np.eye(2))
+    own = truth[:, -1] + past.position[window, -1, slot] - middle
+    far = np.einsum("nki,nij,nkj->nk", away, inverse, away)
+    rank = np.mean(far < np.einsum("ni,nij,nj->n", own, inverse, own)[:, None], axis=1)
+    return (modes.probability[kept], nearest), rank
+
+
+def weights_file(options: argparse.Namespace, fold: str, seed: int) -> str:
+    """Return the file of the weights of a fold."""
+    return str(options.out / f"anchor-net-{fold}{f'-seed{seed}' if seed else ''}.npz")
+
+
+def windows_left_out(options: argparse.Namespace, fold: str) -> list[tuple[Windows, Windows]]:
+    """Return past and future of every window, or of every so many-th, of the recordings that a fold leaves out."""
+    cut = [tracks.windows() for tracks in recordings(options.data / "all_data", fold, left_out=True)]
+    return [(past[:: options.every], future[:: options.every]) for past, future in cut]
+
+
+def main() -> None:
+    """Do what the command line asks for."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", choices=("train", "calibrate", "score", "reliability"))
+    parser.add_argument("data", type=Path)
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--fold", nargs="+", default=[*FOLDS], choices=[*FOLDS, ALL])
+    parser.add_argument("--seed", type=int, nargs="+", default=[0])
+    parser.add_argument("--updates", type=int, default=AnchorTraining.updates)
+    parser.add_argument("--every", type=int, default=1, help="score every so many-th window only")
+    parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help="other settings of the training")
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    if options.what == "train":
+        import torch
+
+        torch.set_num_threads(1)
+        for seed in options.seed:
+            for fold in options.fold:
+                train_fold(options, fold, seed)
+        return
+    if options.what == "calibrate":
+        for seed in options.seed:
+            for fold in options.fold:
+                file = Path(weights_file(options, fold, seed))
+                with np.load(file) as kept:
+                    write(options, fold, file, {name: kept[name] for name in kept.files})
+        return
+    if options.what == "reliability":
+        reliability(options)
+        return
+    for seed in options.seed:
+        rows = {fold: score_fold(options, fold, seed) for fold in options.fold if fold != ALL}
+        (options.out / f"scores-seed{seed}.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+        for name in next(iter(rows.values())):
+            mean = {k: np.mean([row[name][k] for row in rows.values()]) for k in SHOWN}
+            print(f"mean of {len(rows)}, seed {seed}, {name:22}" + " ".join(f"{k} {v:.3f}" for k, v in mean.items()))
+
+
+if __name__ == "__main__":
+    main()

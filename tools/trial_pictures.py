@@ -1,0 +1,139 @@
+"""Draw every built-in trial: its stage, its people at the beginning, and the ways of a run.
+
+    python tools/trial_pictures.py docs/trials
+
+writes one small picture a trial, and the page that lists them with their parameters.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import re
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crowdbot.trials import Episode, Trial, builtin_trials, load_trial
+from crowdbot.trials.scenarios import PRESETS
+
+SECONDS = 20.0
+PIXELS, DPI = 320, 100
+PERSON, ROBOT, WALL, FLOOR = "#3b6ea5", "#d1495b", "#2b2b2b", "#f6f5f1"
+
+
+def main() -> int:
+    """Draw those that are named, or all, and write the page."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("names", nargs="*")
+    options = parser.parse_args()
+    options.folder.mkdir(parents=True, exist_ok=True)
+    for name in options.names or builtin_trials():
+        draw(load_trial(name), options.folder / f"{name}.png")
+        print(name)
+    page(options.folder / "README.md")
+    return 0
+
+
+def draw(trial: Trial, file: Path) -> None:
+    """Draw one trial."""
+    import matplotlib.pyplot as plt
+    from PIL import Image
+
+    short = trial.xml()
+    if trial.duration > SECONDS:
+        short = re.sub(r'duration="[^"]*"', f'duration="{SECONDS:g}"', short, count=1)
+    episode = Trial.parse(short).run()
+    low, high = extent(trial, episode)
+    size = high - low
+    width = PIXELS / DPI
+    figure = plt.figure(figsize=(width, max(0.7, width * size[1] / size[0])), dpi=DPI)
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", facecolor=FLOOR)
+    axes.set_axis_off()
+    figure.patch.set_facecolor(FLOOR)
+    ground(axes, trial)
+    ways(axes, episode)
+    people(axes, episode)
+    whole = io.BytesIO()
+    figure.savefig(whole, metadata={"Software": None})
+    plt.close(figure)
+    whole.seek(0)
+    Image.open(whole).convert("RGB").quantize(48).save(file, optimize=True)
+
+
+def extent(trial: Trial, episode: Episode) -> tuple[Any, Any]:
+    """Return the corners of what is drawn."""
+    points = [episode.position[0, episode.active[0]]]
+    points += [np.array([robot.goal.position]) for robot in trial.robots]
+    points += [np.asarray(ring) for ring in trial.stage.rings]
+    whole = np.concatenate([np.asarray(one).reshape(-1, 2) for one in points])
+    low, high = whole.min(axis=0) - 0.6, whole.max(axis=0) + 0.6
+    middle, size = (low + high) / 2.0, np.maximum(high - low, (high - low).max() / 3.5)
+    return middle - size / 2.0, middle + size / 2.0
+
+
+def ground(axes: Any, trial: Trial) -> None:
+    """Draw walls and obstacles."""
+    for ring in trial.stage.rings:
+        closed = np.vstack([ring, ring[:1]])
+        axes.plot(*closed.T, color=WALL, linewidth=1.6, solid_capstyle="round")
+    for obstacle in trial.stage.obstacles:
+        axes.fill(*np.array(obstacle.points).T, color=WALL)
+    for portal in trial.portals:
+        axes.fill(*np.array(portal.zone).T, color="#e3dfd2", zorder=0)
+
+
+def ways(axes: Any, episode: Episode) -> None:
+    """Draw where everybody went, where they did not jump."""
+    for agent in range(len(episode.ids)):
+        here = episode.active[:, agent]
+        way = np.where(here[:, None], episode.position[:, agent], np.nan)
+        own = agent in episode.robots
+        axes.plot(*way.T, color=ROBOT if own else PERSON, linewidth=1.4 if own else 0.6, alpha=0.9 if own else 0.3)
+
+
+def people(axes: Any, episode: Episode) -> None:
+    """Draw bodies at the beginning, and the goals of robots."""
+    from matplotlib.patches import Circle
+
+    for agent in np.flatnonzero(episode.active[0]):
+        x, y = episode.position[0, agent]
+        own = int(agent) in episode.robots
+        radius = max(episode.radius[agent], 0.008 * np.ptp(axes.get_xlim()))
+        axes.add_patch(Circle((x, y), radius, facecolor=ROBOT if own else PERSON, edgecolor="none", zorder=3))
+        ahead = 1.6 * radius * np.array([np.cos(episode.heading[0, agent]), np.sin(episode.heading[0, agent])])
+        axes.plot([x, x + ahead[0]], [y, y + ahead[1]], color=ROBOT if own else PERSON, linewidth=1.2, zorder=3)
+    for robot in episode.trial.robots:
+        axes.plot(*robot.goal.position, marker="x", markersize=6, color=ROBOT, markeredgewidth=1.8, zorder=4)
+
+
+def page(file: Path) -> None:
+    """Write the page that lists all."""
+    lines = [
+        "# Built-in trials",
+        "",
+        "Made by `python tools/trial_pictures.py docs/trials`: people (blue) and the robot (red) at the beginning, the",
+        "ways of the first 20 s, the goal of the robot (x). Shaded zones are portals: who goes in comes out at the",
+        "other end. Run one with `crowdbot run NAME`, change its parameters with `--set NAME=VALUE`, see them all with",
+        "`crowdbot list trials NAME`.",
+        "",
+        "| trial | | its own parameters |",
+        "|---|---|---|",
+    ]
+    for name in builtin_trials():
+        preset = PRESETS.get(name)
+        about = load_trial(name).about
+        options = "" if preset is None else "<br>".join(f"`{key}` {option}" for key, option in preset.own.items())
+        lines.append(f"| **{name}**<br>{about} | ![{name}]({name}.png) | {options} |")
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
