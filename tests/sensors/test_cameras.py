@@ -7,7 +7,7 @@ import pytest
 
 from crowdbot.core import FreeClock, InputError, Pose, Scene, SpatialPose, UnknownName, plug, stream
 from crowdbot.sensors import PRESETS, DepthCamera, Lens, Lidar2D, Lidar3D, Quantised, Reading, Schedule, Waiting, preset
-from crowdbot.sensors.camera import RGBCamera, distorted, pixel_directions, stereo_depth
+from crowdbot.sensors.camera import distorted, pixel_directions, stereo_depth
 
 BENT = (-0.28, 0.09, 0.0008, -0.0004, -0.01)
 

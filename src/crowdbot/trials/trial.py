@@ -11,17 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 from crowdbot.core import InputError
 from crowdbot.models import CrowdModel
-from crowdbot.navigation import Navigator
-from crowdbot.sensors import Sensor
-from crowdbot.world import Drive
 
 from .agent import Agent
-from .attribute import attribute, check, child, children, mounted, plugged
+from .attribute import attribute, check, child, children
 from .crowd import Contact, Crowd, Crowds, Limits, Routing
 from .journey import Exit, Journey, Portal
-from .notation import NAME
 from .people import Source, Spawner
 from .recorded_people import RecordedPeople
+from .robot import Goal, Mount, Robot
 from .stage import Stage
 from .sweep import Sweep
 
@@ -29,62 +26,6 @@ if TYPE_CHECKING:
     from .episode import Episode
 
 __all__ = ["End", "Goal", "Mount", "Recording", "Robot", "Trial", "When"]
-
-
-@dataclass(frozen=True)
-class Goal:
-    """Where a robot has to go: it has arrived when its centre is within the tolerance."""
-
-    x: float = attribute(about="place", unit="m")
-    y: float = attribute(about="place", unit="m")
-    tolerance: float = attribute(0.3, about="how near its centre must come", unit="m", above=0.0)
-
-    def __post_init__(self) -> None:
-        check(self)
-
-    @property
-    def position(self) -> tuple[float, float]:
-        """``x, y`` [m]."""
-        return self.x, self.y
-
-
-@dataclass(frozen=True, kw_only=True)
-class Mount:
-    """A sensor and where it sits on its robot (x forward, y left)."""
-
-    name: str = attribute("scan", about="last part of its topic", pattern=NAME)
-    sensor: Sensor = mounted("sensors", "Sensor", about="what measures")
-    x: float = attribute(0.0, about="forward of the robot's centre", unit="m")
-    y: float = attribute(0.0, about="left of the robot's centre", unit="m")
-    heading: float = attribute(0.0, about="counter-clockwise from forward", unit="rad")
-
-    def __post_init__(self) -> None:
-        check(self)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Robot:
-    """A robot: where it begins and has to go, how it moves, what it sees with and who steers it."""
-
-    name: str = attribute("robot", about="first part of its topics", pattern=NAME)
-    x: float = attribute(about="start", unit="m")
-    y: float = attribute(about="start", unit="m")
-    heading: float = attribute(0.0, about="start, counter-clockwise from +x", unit="rad")
-    radius: float = attribute(0.3, about="radius of the disc that holds it", unit="m", above=0.0, at_most=10.0)
-    visible: bool = attribute(True, about="whether the crowd reacts to it")
-    control_period: float = attribute(0.1, about="time between two commands", unit="s", above=0.0)
-    goal: Goal = child(about="where it has to go")
-    drive: Drive = plugged("world", "Drive", about="how it moves")
-    navigator: Navigator = plugged("navigation", "Navigator", about="who steers it")
-    sensors: tuple[Mount, ...] = children("sensor", about="what it sees with", at_most=50)
-
-    def __post_init__(self) -> None:
-        check(self)
-
-    @property
-    def position(self) -> tuple[float, float]:
-        """Start ``x, y`` [m]."""
-        return self.x, self.y
 
 
 @dataclass(frozen=True)

@@ -44,9 +44,12 @@ def element_of(trial: Any) -> Element:
 def _element(tag: str, thing: Any, folder: Path | None) -> Element:
     element = Element(tag)
     cls: type = type(thing)
+    usual = getattr(thing, "usual", {})
     for part in outline(cls):
         value = getattr(thing, part.name)
-        if not part.required and value == part.default:
+        if part.role == "children" and part.name in usual:
+            value = tuple(one for one in value if one not in usual[part.name])
+        if not part.required and value == usual.get(part.name, part.default):
             continue
         _add(element, part, value, folder)
     return element
