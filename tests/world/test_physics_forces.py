@@ -10,6 +10,7 @@ from physics_worlds import alone, coasting, facing, ram
 from crowdbot.core import InputError, Twist
 from crowdbot.world import Robot
 from crowdbot.world.physics import TISSUES, Cube, PhysicsStage, permitted_speed, region_of, two_body_force
+from crowdbot.world.physics.passers import GIVEN, REACTION
 from crowdbot.world.physics.tissue import reduced_mass, softness
 
 
@@ -25,14 +26,21 @@ def weak():
     return dataclasses.replace(robot, model=dataclasses.replace(robot.model, joints=joints))
 
 
-def test_a_steady_push_on_a_wall_is_75_newton():
-    world = alone(weak(), walls=[[(0.6, -2.0), (0.6, 2.0)]])
+def pushing(world, steps, first, second):
+    """Return the sums of the forces on one kind, step by step, along x [N]."""
     measured = []
-    for _ in range(60):
+    for _ in range(steps):
         world.step({0: Twist(0.5, 0.0)})
-        measured.append(sum(row.force for row in world.forces if row.second.kind == "wall"))
+        assert {(row.first.kind, row.second.kind) for row in world.forces} <= {(first, second)}
+        measured.append(sum(row.vector[0] for row in world.forces))
+    return measured
+
+
+def test_a_steady_push_on_a_wall_is_75_newton():
+    world = alone(weak(), walls=[[(0.5, -1.0), (0.5, 1.0)]])
+    measured = pushing(world, 45, "robot", "wall")
     assert measured[0] == 0.0
-    assert np.mean(measured[-20:]) == pytest.approx(75.0, rel=0.02)
+    assert measured[-20:] == pytest.approx([75.0] * 20, rel=0.02)
     (event,) = world.collisions
     assert event.steady_force == pytest.approx(75.0, rel=0.02)
     assert math.isnan(event.peak_force)
@@ -41,15 +49,32 @@ def test_a_steady_push_on_a_wall_is_75_newton():
 
 
 def test_a_steady_push_on_a_person_is_75_newton_and_the_person_yields():
-    world = facing(weak(), gap=0.8, dt=0.05)
-    for _ in range(80):
-        scene = world.step({0: Twist(0.5, 0.0)})
-    assert sum(row.vector[0] for row in world.forces) == pytest.approx(75.0, rel=0.02)
+    """The person steps back slowly; the robot neither knocks its way through nor drives over the feet."""
+    world = facing(weak(), gap=0.7, dt=0.05)
+    measured = pushing(world, 80, "robot", "person")
+    assert np.mean(measured[-20:]) == pytest.approx(75.0, rel=0.02)
+    assert measured[-20:] == pytest.approx([75.0] * 20, rel=0.05)
     assert {row.part for row in world.forces} == {"leg"}
-    assert 0.01 < scene.position[0, 1, 0] - 0.8 < 1.0
+    robot, person = world.scene.position[0, :, 0]
+    assert 0.8 < person < 1.7
+    assert 0.25 < person - robot < 0.45
+    speed = 75.0 * REACTION / world.walkers.people.mass[0]  # the push against what braces the person
+    assert world.scene.velocity[0, 1, 0] == pytest.approx(speed, rel=0.05)
     (event,) = world.collisions
-    assert 30.0 < event.steady_force < 80.0  # one foot may carry all of it, at an angle
+    assert 30.0 < event.steady_force < 80.0  # one foot may carry all of it
     assert event.steady_region == "lower leg"
+    assert event.severity < 2.0
+
+
+def test_more_than_people_can_brace_against_pushes_them_along():
+    world = facing(Robot.load("wheelchair"), gap=1.0, dt=0.05)
+    for _ in range(100):
+        scene = world.step({0: Twist(0.5, 0.0)})
+    robot, person = scene.position[0, :, 0]
+    assert robot > 1.0
+    assert person > robot + 0.3
+    limbs = world.limbs()
+    assert np.abs(limbs.start[0, :, 0] - person).max() < 0.6 + GIVEN
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,6 @@ from crowdbot.core import InputError, Scene, Twist
 from crowdbot.models import ORCA
 from crowdbot.world import Robot
 from crowdbot.world.physics import Camera, Cube, PhysicsStage, PhysicsWorld, drawing
-from crowdbot.world.physics.looks import Looks
 
 
 @pytest.fixture(scope="module")
@@ -80,9 +79,10 @@ def test_contexts_are_given_back():
     world = alone(Robot.load("turtlebot2"))
     gc.collect()
     count = len(drawing.OPEN)
-    looks = Looks(world, 2)
-    assert len(drawing.OPEN) == count + 1
-    del looks
+    for detail in (2, 1):
+        world.render(Camera((-1.0, -1.5, 1.5), (1.0, 0.0, 0.8), width=8, height=8, detail=detail))
+        assert len(drawing.OPEN) == count + 1
+    del world
     gc.collect()
     assert len(drawing.OPEN) == count
 

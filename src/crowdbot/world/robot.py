@@ -11,19 +11,22 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, RobotError, Twist
+from crowdbot.core import InputError, Pose, RobotError, SpatialPose, Twist
 from crowdbot.core.errors import did_you_mean
 from crowdbot.sensors import Sensor
 
 from .drive import Drive
 from .servo import CommandDelay
-from .urdf.model import RobotModel
-from .urdf.transforms import frame, roll_pitch_yaw
+from .urdf.model import Inertial, Link, Part, RobotModel
+from .urdf.shapes import Cylinder
+from .urdf.transforms import frame, quaternion, roll_pitch_yaw, turning
 
-__all__ = ["Robot", "SensorMount", "Wheel", "builtin_robots"]
+__all__ = ["Robot", "SensorMount", "Wheel", "builtin_robots", "spatial"]
 
 Floats = NDArray[np.float64]
 FILE = "robot.xml"
+CLEAR = 0.01
+"""Height [m] above the floor of a robot of which only the size is known: it does not rub."""
 
 
 @dataclass(frozen=True)
@@ -138,6 +141,32 @@ class Robot:
 
         return read_robot(_folder(source), trust=trust)
 
+    @classmethod
+    def disc(cls, name: str, drive: Drive, radius: float, *, height: float = 1.0, mass: float = 50.0) -> Robot:
+        """Return a robot of which only the size is known: an upright cylinder that is pulled along the floor.
+
+        Args:
+            name: of the robot.
+            drive: how it follows commands.
+            radius, height: [m].
+            mass: [kg].
+
+        Raises:
+            InputError: a size or the mass is not finite and above 0.
+
+        >>> from crowdbot.world import DifferentialDrive
+        >>> round(Robot.disc("puck", DifferentialDrive(), 0.3).radius, 3)
+        0.3
+        """
+        for what, value in (("radius", radius), ("height", height), ("mass", mass)):
+            if not 0.0 < value < math.inf:
+                raise InputError(f"Robot.disc: {what} = {value} must be finite and above 0")
+        origin = frame((0.0, 0.0, 0.5 * height + CLEAR))
+        column = Cylinder(radius, height)
+        whole = Inertial(mass, origin[:3, 3], column.solid().inertia(mass))
+        link = Link("base_link", whole, (Part(column, origin),), (Part(column, origin),))
+        return cls(name, RobotModel(name, {"base_link": link}, {}, "base_link"), drive, base="planar")
+
     @property
     def radius(self) -> float:
         """Radius [m] of the disc about its origin that holds the footprint."""
@@ -178,6 +207,19 @@ class Robot:
         heading = math.atan2(matrix[1, 0], matrix[0, 0])
         return round(float(matrix[0, 3]), 12), round(float(matrix[1, 3]), 12), round(heading, 9)
 
+    def sensor_pose(self, name: str, pose: Pose, positions: Mapping[str, float] | None = None) -> SpatialPose:
+        """Return where a sensor is in space when the robot stands on the floor at ``pose`` ``[E]``.
+
+        >>> Robot.load("qolo").sensor_pose("lidar_rear", Pose.of((1.0, 0.0), 0.0)).position.round(3).tolist()
+        [[0.484, 0.0, 0.364]]
+        """
+        seat = self.mounted(name, positions)
+        found = [spatial(frame((x, y, 0.0), turning((0.0, 0.0, 1.0), a)) @ seat) for (x, y), a in zip(
+            pose.position.tolist(), pose.heading.tolist(), strict=True)]  # fmt: skip
+        return SpatialPose(
+            np.concatenate([one.position for one in found]), np.concatenate([one.rotation for one in found])
+        )
+
     def wheel_speeds(self, twist: Twist) -> dict[str, float]:
         """Return how fast the wheels must turn [rad/s], by joint, so that none slips along its rolling direction.
 
@@ -196,6 +238,11 @@ class Robot:
             center = np.array([twist.forward - twist.turn * place[1], twist.left + twist.turn * place[0]])
             speeds[wheel.joint] = round(float(center @ rolling) / wheel.radius, 12)
         return speeds
+
+
+def spatial(matrix: Floats) -> SpatialPose:
+    """Return a frame ``[4, 4]`` of the world as a pose, E = 1."""
+    return SpatialPose(matrix[None, :3, 3].copy(), np.asarray(quaternion(matrix[:3, :3]))[None])
 
 
 def builtin_robots() -> tuple[str, ...]:

@@ -9,9 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, SpatialPose
+from crowdbot.sensors import Lens
 
-__all__ = ["Camera", "Images"]
+__all__ = ["LARGEST", "Camera", "Images", "View"]
 
 Floats = NDArray[np.float64]
 LARGEST = (1920, 1200)
@@ -30,6 +31,50 @@ class Images(NamedTuple):
     rgb: NDArray[np.uint8] | None
     depth: NDArray[np.float32] | None
     segmentation: NDArray[np.int32] | None
+
+
+class View(NamedTuple):
+    """Where an ideal camera is, and what of the world goes through it.
+
+    Fields:
+        place, forward, up: ``[3]`` in the world.
+        left, right, bottom, top: edges of the image at the distance 1 along the axis.
+        near, far: what is nearer or farther is not seen [m].
+        width, height: of the image [pixels].
+    """
+
+    place: Floats
+    forward: Floats
+    up: Floats
+    left: float
+    right: float
+    bottom: float
+    top: float
+    near: float
+    far: float
+    width: int
+    height: int
+
+    @classmethod
+    def through(cls, lens: Lens, pose: SpatialPose, near: float, far: float) -> View:
+        """Return what a lens without its distortion sees along the x axis of a pose, E = 1; z is up in the image.
+
+        Raises:
+            InputError: the image is larger than can be drawn, or there are several poses.
+
+        >>> View.through(Lens.of(4, 2, math.pi / 2.0), SpatialPose.of((0.0, 0.0, 1.0)), 0.1, 9.0)[3:7]
+        (-1.0, 1.0, -0.5, 0.5)
+        """
+        if len(pose.position) != 1:
+            raise InputError(
+                f"camera: there are poses in {len(pose.position)} environments; one can be drawn at a time"
+            )
+        _checked_size("camera", lens.width, lens.height)
+        matrix = pose.matrix[0]
+        left, right = (round(edge / lens.fx, 12) for edge in (-0.5 - lens.cx, lens.width - 0.5 - lens.cx))
+        bottom, top = (round(edge / lens.fy, 12) for edge in (lens.cy + 0.5 - lens.height, lens.cy + 0.5))
+        axes = pose.position[0], matrix[:, 0], matrix[:, 2]
+        return cls(*axes, left, right, bottom, top, near, far, lens.width, lens.height)
 
 
 @dataclass(frozen=True)
@@ -66,9 +111,7 @@ class Camera:
     shadows: bool = False
 
     def __post_init__(self) -> None:
-        for name, most in (("width", LARGEST[0]), ("height", LARGEST[1])):
-            if not 1 <= getattr(self, name) <= most:
-                raise InputError(f"Camera: {name} = {getattr(self, name)} pixels must be from 1 to {most}")
+        _checked_size("Camera", self.width, self.height)
         if not 0.0 < self.view < math.pi:
             raise InputError(f"Camera: view = {self.view} rad must be above 0 and below pi")
         if not 0.0 < self.near < self.far < math.inf:
@@ -92,3 +135,15 @@ class Camera:
         if np.linalg.norm(up) < 1e-6:  # straight up or down: the top of the image is ahead
             up = carrier[:3, 0] - (carrier[:3, 0] @ forward) * forward
         return place, forward, up / np.linalg.norm(up)
+
+    def on(self, carrier: Floats) -> View:
+        """Return what it sees on a carrier with the frame ``[4, 4]``."""
+        high = math.tan(0.5 * self.view)
+        wide = high * self.width / self.height
+        return View(*self.axes(carrier), -wide, wide, -high, high, self.near, self.far, self.width, self.height)
+
+
+def _checked_size(what: str, width: int, height: int) -> None:
+    for name, value, most in (("width", width, LARGEST[0]), ("height", height, LARGEST[1])):
+        if not 1 <= value <= most:
+            raise InputError(f"{what}: {name} = {value} pixels must be from 1 to {most}")

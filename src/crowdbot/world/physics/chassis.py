@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Twist
+from crowdbot.core import InputError, Pose, SpatialPose, Twist
 from crowdbot.core.errors import did_you_mean
 from crowdbot.world.drive import Twists
-from crowdbot.world.robot import Robot
+from crowdbot.world.robot import Robot, spatial
 from crowdbot.world.servo import CommandDelay, Pending
 
 from .engine import engine
@@ -41,6 +41,7 @@ class Chassis:
         self.robot, self.prefix, self.step = robot, prefix, step
         self._model, self._data, self._mj = model, data, engine()
         self.body = int(model.body(prefix + robot.model.root).id)
+        self._sites = [int(model.site(prefix + link).id) for link in robot.model.links]
         self._servo = [model.actuator(f"{prefix}base_{name}").id for name in ("forward", "turn", "left")] if (
             robot.base == "planar") else []  # fmt: skip
         wheels = [wheel.joint for wheel in robot.wheels]
@@ -153,6 +154,22 @@ class Chassis:
         found = np.eye(4)
         found[:3, :3], found[:3, 3] = site.xmat.reshape(3, 3), site.xpos
         return found
+
+    def frames(self) -> dict[str, Floats]:
+        """Return the frames ``[4, 4]`` of all links in the world."""
+        found = np.zeros((len(self._sites), 4, 4))
+        found[:, :3, :3] = self._data.site_xmat[self._sites].reshape(-1, 3, 3)
+        found[:, :3, 3], found[:, 3, 3] = self._data.site_xpos[self._sites], 1.0
+        return dict(zip(self.robot.model.links, found, strict=True))
+
+    def mounted(self, sensor: str) -> SpatialPose:
+        """Return where a sensor of the robot is now, with its joints as they are, E = 1.
+
+        Raises:
+            InputError: it has no sensor of this name.
+        """
+        mount = self.robot.mount(sensor)
+        return spatial(self.frame(mount.link) @ mount.origin)
 
     def _motor(self, joint: str) -> int:
         index = self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_ACTUATOR, self.prefix + joint)

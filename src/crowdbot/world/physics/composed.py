@@ -52,6 +52,7 @@ def built(
     robots: Mapping[int, Robot],
     slots: int,
     motors: Mapping[int, Mapping[str, str]] | None = None,
+    posed: bool = False,
 ) -> Built:
     """Return the model of a world.
 
@@ -61,6 +62,7 @@ def built(
         robots: by agent.
         slots: how many people can have a body at a time.
         motors: how joints of robots are commanded, by agent and joint, see :func:`crowdbot.world.urdf.mjcf`.
+        posed: robots are not moved by the engine but put where they are.
 
     Raises:
         InputError: a robot steers on wheels of its own.
@@ -71,7 +73,10 @@ def built(
     prefixes = {}
     for agent, robot in sorted(robots.items()):
         prefixes[agent] = f"robot{agent}/"
-        made = _robot(scene, agent, robot, prefixes[agent], (motors or {}).get(agent))
+        if posed:
+            made = mjcf(robot.model, base="kinematic", prefix=prefixes[agent], contact=ROBOT)
+        else:
+            made = _robot(scene, agent, robot, prefixes[agent], (motors or {}).get(agent))
         files |= made.assets
         for section in made.root.children:
             if section.tag == "asset":

@@ -32,8 +32,9 @@ HOLD = 0.05
 """So long [s] after a touch the limbs stay as they are, against the body."""
 RETURN = 1.5
 """Then they go back into the walk at this speed [m/s]."""
-GIVE = 1.0
-"""An arm or leg that is pressed by more than :data:`BRACE` for longer than the reaction gives way, at most so fast."""
+GIVE, GIVEN = 1.0, 0.3
+"""An arm or leg that is pressed by more than :data:`BRACE`, in the mean over about the reaction, gives way against the
+body: at most so fast [m/s] and so far [m]. Single knocks do not move it, otherwise a robot would knock its way through."""
 CHAINS = {name: chain for chain in (("thigh", "shank", "foot"), ("upperarm", "forearm", "hand")) for name in chain}
 REGIONS = {ahead: tuple(region_of(name, ahead) for name in LIMB_NAMES) for ahead in (True, False)}
 
@@ -65,6 +66,8 @@ class Passers:
         self._way = np.zeros((slots, 2))
         self._limbs: tuple[Floats, Floats] = (np.zeros((0, LIMB_COUNT, 6)), np.zeros((0, LIMB_COUNT, 6)))
         self._limbs_now = np.zeros((slots, LIMB_COUNT, 6))
+        self._walk_now = np.zeros((slots, LIMB_COUNT, 6))
+        self._load = np.zeros((slots, LIMB_COUNT, 3))
         self._late = np.zeros(slots, dtype=np.bool_)
         self._touched = np.zeros(slots, dtype=np.int64)
         self._since = np.zeros(slots, dtype=np.int64)
@@ -132,13 +135,17 @@ class Passers:
     def stepped(self, touches: Iterable[Touch]) -> None:
         """Notice who was pushed during the last step of the engine, and let limbs give way that are pressed."""
         self._touched = np.maximum(self._touched - 1, 0)
+        fresh = self.step / REACTION
+        self._load *= 1.0 - fresh
         for touch in touches:
             for party, limb, sign in ((touch.first, touch.first_part, -1.0), (touch.second, touch.second_part, 1.0)):
                 if party.kind == "person":
                     slot = int(np.flatnonzero(self.agent == party.number)[0])
                     self._touched[slot] = self._hold
+                    row = LIMB_NAMES.index(limb)
+                    self._load[slot, row] += fresh * sign * touch.force
                     if self._since[slot] >= REACTION / self.step:
-                        self._give_way(slot, limb, sign * touch.force)
+                        self._give_way(slot, limb, self._load[slot, row])
         here = self._here
         if len(here):
             now = self._velocity(here)
@@ -153,7 +160,9 @@ class Passers:
             return
         rows = [LIMB_NAMES.index(f"{name}_{limb[-1]}") for name in chain]
         shift = min(1.0, size / BRACE - 1.0) * GIVE * self.step * force / size
-        self._limbs_now[slot, rows] += np.tile(shift * (1.0, 1.0, 0.0), 2)
+        way = self._limbs_now[slot, rows] - self._walk_now[slot, rows] + np.tile(shift * (1.0, 1.0, 0.0), 2)
+        most = float(np.sqrt(np.sum(way.reshape(-1, 3) ** 2, axis=1)).max())
+        self._limbs_now[slot, rows] = self._walk_now[slot, rows] + way * min(1.0, GIVEN / max(most, 1e-12))
 
     def end(self) -> tuple[Ints, Floats, Floats]:
         """Return who was pushed off the own way, with their places ``[P, 2]`` [m] and velocities ``[P, 2]`` [m/s]."""
@@ -184,7 +193,7 @@ class Passers:
     def _park(self, slots: Ints) -> None:
         """Lift bodies that nobody has out of the way."""
         self.agent[slots] = -1
-        self._off[slots] = 0.0
+        self._off[slots], self._load[slots] = 0.0, 0.0
         self._touched[slots], self._since[slots] = 0, 0
         self.pushed[slots], self._late[slots], self._fresh[slots] = False, False, True
         if not len(slots):
@@ -221,6 +230,7 @@ class Passers:
         late &= held | np.any(share < 1.0, axis=1)
         now = np.where(late[:, None, None], self._limbs_now[here] + share[..., None] * lag, walk)
         self._limbs_now[here], self._late[here], self._fresh[here] = now, late, False
+        self._walk_now[here] = walk
         self.swing[here[late]] = 0.0
         self._pose(here, now)
 

@@ -49,14 +49,17 @@ class Walkers:
     Args:
         scene: E = 1.
         agents: which agents are people.
-        people: their bodies, one for each of ``agents``, or None to draw them.
+        people: their bodies, one for each of ``agents``; None draws adults.
         seed: of bodies and of ways to walk.
+
+    Attributes:
+        people: their bodies; state: how they stand now.
 
     Raises:
         InputError: there are not as many people as agents.
     """
 
-    def __init__(self, scene: Scene, agents: Ints, people: People | None, seed: int) -> None:
+    def __init__(self, scene: Scene, agents: Ints, people: People | None = None, seed: int = 0) -> None:
         self.agents = agents
         self.people = People.drawn(len(agents), stream(seed, "people")) if people is None else people
         if len(self.people) != len(agents):
@@ -70,6 +73,10 @@ class Walkers:
         place, velocity, heading = self._of(scene)
         self.state: Gaits = self.gait.start(place, heading, velocity)
         self.ends, self.radius = self._measured(self.state)
+
+    def walk(self, scene: Scene, dt: float) -> None:
+        """Walk on for ``dt`` [s] to where everyone is in ``scene``: what a world in the plane does after each step."""
+        self.take(self.stepped(scene, dt))
 
     def stepped(self, scene: Scene, dt: float) -> Gaits:
         """Return how everyone stands ``dt`` [s] later, when they have come to where they are in ``scene``."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene
+from crowdbot.core import Bodies, InputError, Pose, Scene
 from crowdbot.humans import People
 from crowdbot.models import CrowdModel
 from crowdbot.world.drive import Twists
@@ -22,10 +22,11 @@ from .chassis import Chassis
 from .collisions import BodyForce, Collision, CollisionBook
 from .composed import built
 from .engine import engine
-from .looks import Looks
 from .passers import Passers
 from .scenery import joined
+from .solids import bodies
 from .stage import PhysicsStage
+from .studio import Studio
 from .touches import Party, Touches
 from .walkers import Limbs, Walkers
 
@@ -109,7 +110,7 @@ class PhysicsWorld(PlanarWorld):
         self.left_out = 0
         self.forces: tuple[BodyForce, ...] = ()
         self._touched: dict[tuple[int, int], float] = {}
-        self._looks: Looks | None = None
+        self._studio: Studio | None = None
         self._compose(robots, min(len(persons), 24) if slots is None else slots, motors)
 
     @property
@@ -145,13 +146,40 @@ class PhysicsWorld(PlanarWorld):
         Raises:
             InputError: there is no way to draw here, or the camera is on no robot or no link.
         """
-        if self._looks is None or self._looks.detail != camera.detail:
-            self._looks = Looks(self, camera.detail)
-        return self._looks.images(camera, rgb, depth, segmentation)
+        return self.studio.images(camera, rgb=rgb, depth=depth, segmentation=segmentation)
+
+    @property
+    def studio(self) -> Studio:
+        """Draws the world as it is now; of use for cameras of :mod:`crowdbot.sensors`, see :meth:`Studio.render`."""
+        if self._studio is None:
+            robots = {agent: chassis.robot for agent, chassis in self.chassis.items()}
+            self._studio = Studio.of_engine(self.built, robots, self.stage, self.walkers, self.scene)
+        self._studio.show_engine(self.scene, self.data.qpos)
+        return self._studio
 
     def limbs(self) -> Limbs:
         """Return the capsules of all people as they stand now."""
         return self.walkers.limbs(self.scene.active[0])
+
+    def bodies(self, skins: int | None = None) -> Bodies:
+        """Return what range sensors see, as it is now; ``skins`` is a level of detail, see :func:`bodies`."""
+        frames = {agent: chassis.frames() for agent, chassis in self.chassis.items()}
+        robots = {agent: chassis.robot for agent, chassis in self.chassis.items()}
+        moved = {number: self.prop(number) for number in self._movable}
+        return bodies(self.scene, self.walkers, robots, self.stage, frames=frames, props=moved, skins=skins)
+
+    def seen(self, skins: int | None = None) -> Scene:
+        """Return the scene with the bodies and the height of the walls, for range sensors.
+
+        >>> start = Scene.of([[0.0, 0.0], [2.0, 0.0]], heading=[0.0, 0.0], external=[True, False])
+        >>> from crowdbot.models import ORCA
+        >>> from crowdbot.sensors import Lidar2D
+        >>> world = PhysicsWorld(start, ORCA(), {0: Robot.load("turtlebot2")}, dt=0.1)
+        >>> scan = Lidar2D(rays=1).measure(world.seen().without(0), world.pose(0).lifted(1.2))
+        >>> scan.hit.tolist(), bool(1.7 < scan.ranges[0, 0] < 2.0)
+        ([[1]], True)
+        """
+        return self.scene.replace(bodies=self.bodies(skins), wall_height=self.stage.wall_height)
 
     def prop(self, number: int) -> Floats:
         """Return the frame ``[4, 4]`` of a prop of the stage in the world."""
