@@ -121,8 +121,8 @@ class Running:
         if due:
             stopped = self.stop.asked or (self.ticks is not None and simulation.tick >= self.ticks)
             self.outcome = _outcome(simulation) or ("interrupted" if stopped else None)
-        if due or readings or simulation.touches:
-            frame = simulation.frame(readings, due)
+        if due or readings or simulation.eventful:
+            frame = simulation.frame(readings, due, last=self.outcome is not None)
             for sink in self.sinks:
                 sink.take(frame)
 

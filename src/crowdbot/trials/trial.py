@@ -14,6 +14,7 @@ from crowdbot.models import CrowdModel
 
 from .agent import Agent
 from .attribute import attribute, check, child, children
+from .camera import Camera
 from .crowd import Contact, Crowd, Crowds, Limits, Routing
 from .journey import Exit, Journey, Portal
 from .people import Source, Spawner
@@ -96,6 +97,18 @@ class Trial:
     name: str = attribute(about="name of the trial", pattern=r"\S.{0,79}")
     about: str = attribute("", about="one line for people")
     duration: float = attribute(about="longest simulated time", unit="s", above=0.0, at_most=86_400.0)
+    world: str = attribute(
+        "planar", about="discs in the plane, or bodies with forces between them", choices=("planar", "physics")
+    )
+    physics_step: float = attribute(
+        0.005, about="time step of bodies in the physics world", unit="s", at_least=0.0001, at_most=0.02
+    )
+    bodies: str | None = attribute(
+        None,
+        about="what laser scanners see of people, by default discs in the plane and limbs in the physics world;"
+        " other sensors see limbs at least",
+        choices=("discs", "limbs", "skins"),
+    )
     step: float = attribute(0.05, about="time step of the world", unit="s", at_least=0.001, at_most=1.0)
     substeps: int = attribute(1, about="steps of the crowd in a step of the world", at_least=1, at_most=10_000)
     seed: int = attribute(0, about="seed of everything random", at_least=-(2**53), at_most=2**53)
@@ -125,6 +138,7 @@ class Trial:
     exits: tuple[Exit, ...] = children("exit", about="where people leave", at_most=1000)
     portals: tuple[Portal, ...] = children("portal", about="where people come out elsewhere", at_most=1000)
     robots: tuple[Robot, ...] = children("robot", about="robots", at_most=100)
+    cameras: tuple[Camera, ...] = children("camera", about="what looks on", at_most=100)
     end: End = child(End, about="what ends the trial")
     recording: Recording = child(Recording, about="how often what is recorded")
     sweeps: tuple[Sweep, ...] = children("sweep", about="values that differ from variant to variant", at_most=20)
@@ -133,6 +147,12 @@ class Trial:
 
     def __post_init__(self) -> None:
         check(self)
+        steps = self.step / self.physics_step
+        if self.world == "physics" and (steps < 1.0 - 1e-6 or abs(steps - round(steps)) > 1e-6):
+            raise InputError(
+                f'step="{self.step:g}" must be a whole number of steps of the physics world, physics-step='
+                f'"{self.physics_step:g}" s'
+            )
 
     @classmethod
     def load(cls, source: str | Path, *, trust: bool = False, **values: Any) -> Trial:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -73,6 +74,11 @@ class Walkers:
         place, velocity, heading = self._of(scene)
         self.state: Gaits = self.gait.start(place, heading, velocity)
         self.ends, self.radius = self._measured(self.state)
+
+    def begin(self, scene: Scene, activity: str | Sequence[str]) -> None:
+        """Begin anew where everyone is in ``scene``, in one activity or each in the own, which they keep."""
+        place, velocity, heading = self._of(scene)
+        self.take(self.gait.start(place, heading, velocity, activity))
 
     def walk(self, scene: Scene, dt: float) -> None:
         """Walk on for ``dt`` [s] to where everyone is in ``scene``: what a world in the plane does after each step."""
