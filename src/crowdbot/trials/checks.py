@@ -96,12 +96,29 @@ def _periods(checked: Checked) -> Problems:
         periods += [(checked.recording, f"recording {n}", getattr(checked.recording, n)) for n in ("period", "markers")]
     for robot in checked.robots:
         periods.append((robot, "control-period", robot.control_period))
-        periods += [(mount, f"rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate) for mount in robot.sensors]
+        carried = robot.usual["sensors"]
+        for mount in robot.sensors:
+            thing = robot if mount in carried else mount
+            whose = f"sensor {mount.name!r} of its type: " if mount in carried else ""
+            periods.append((thing, f"{whose}rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate))
+            if mount.sensor.delay > 0.0:
+                periods.append((thing, f"{whose}delay", mount.sensor.delay))
+    fits = _fitting([period for _, _, period in periods])
     for thing, name, period in periods:
         try:
             clock.every(period)
         except InputError:
-            yield thing, f"{name} {period:g} s is not a whole number of time steps of {checked.step:g} s"
+            yield thing, f"{name} {period:g} s is not a whole number of time steps of {checked.step:g} s{fits}"
+
+
+def _fitting(periods: Sequence[float]) -> str:
+    """Return which step all periods are whole numbers of, as the end of a sentence."""
+    step = math.gcd(*(round(period * 1e9) for period in periods)) / 1e9
+    if step < 0.005:
+        return ""
+    while step > 0.1:
+        step /= 2.0
+    return f'; with step="{step:g}" all are'
 
 
 def _names(checked: Checked) -> Problems:
