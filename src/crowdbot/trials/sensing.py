@@ -149,7 +149,7 @@ def named(reading: Reading, ids: Ints) -> Reading:
     hit = getattr(reading, "hit", None)
     if hit is None:
         return reading
-    return dataclasses.replace(reading, hit=np.where(hit >= 0, ids[hit], hit))  # type: ignore[call-arg]
+    return dataclasses.replace(reading, hit=np.where(hit >= 0, ids[np.maximum(hit, 0)], hit))  # type: ignore[call-arg]
 
 
 def _tracked(reading: Tracked, ids: Ints) -> Tracked:
