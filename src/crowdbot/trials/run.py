@@ -13,6 +13,7 @@ from typing import Protocol, TypeVar
 
 from crowdbot.core import Clock, ExternalClock, InputError
 from crowdbot.sensors import Reading
+from crowdbot.world.walk import Stepping, alone
 
 from .episode import Episode, Log
 from .simulation import Frame, Simulation
@@ -90,9 +91,13 @@ class Running:
         Raises:
             InputError: it has ended before.
         """
+        return alone(self.stepping())
+
+    def stepping(self) -> Stepping[str | None]:
+        """Go one step on as :meth:`step` does, and ask somebody else how the crowd walks."""
         if self.outcome is not None:
             raise InputError(f"the run has ended ({self.outcome}) at {self.simulation.world.clock.time:g} s")
-        self.simulation.step()
+        yield from self.simulation.stepping()
         self._observe()
         return self.outcome
 

@@ -31,6 +31,7 @@ from crowdbot.navigation import Limits, Observation
 from crowdbot.sensors import Reading, Scan
 from crowdbot.world.drive import Twists
 from crowdbot.world.servo import CommandDelay, Pending
+from crowdbot.world.walk import Stepping, alone
 
 from .figures import cast_of
 from .leaving import ended, ways_out
@@ -173,9 +174,13 @@ class Simulation:
 
     def step(self) -> None:
         """Go one step on: parts 1 to 5 of the order."""
+        alone(self.stepping())
+
+    def stepping(self) -> Stepping[None]:
+        """Go one step on, and ask somebody else how the crowd walks: see :func:`crowdbot.trials.run_batch`."""
         before, ids = self.world.scene, self.ids.copy()
         physics = self.trial.world == "physics"
-        self.world.step({c.agent: c.command if physics else c.obeyed(self.world.dt) for c in self.carriers})
+        yield from self.world.stepping({c.agent: c.command if physics else c.obeyed(self.world.dt) for c in self.carriers})
         self._let_leave()
         self.around.moved()
         self._judge(before, ids)

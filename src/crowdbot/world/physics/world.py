@@ -15,6 +15,7 @@ from crowdbot.models import CrowdModel
 from crowdbot.world.drive import Twists
 from crowdbot.world.planar import PlanarWorld
 from crowdbot.world.robot import Robot
+from crowdbot.world.walk import Stepping
 from crowdbot.world.world import Contact
 
 from .camera import Camera, Images
@@ -219,8 +220,8 @@ class PhysicsWorld(PlanarWorld):
         self.chassis[agent].put(float(x), float(y), float(scene.heading[0, agent]))
         self._at = {**getattr(self, "_at", {}), agent: (float(x), float(y), float(scene.heading[0, agent]))}
 
-    def _walked(self, before: Scene) -> tuple[Scene, Scene]:
-        earlier, crowd = super()._walked(before.replace(walls=self._outlined))
+    def _walked(self, before: Scene) -> Stepping[tuple[Scene, Scene]]:
+        earlier, crowd = yield from super()._walked(before.replace(walls=self._outlined))
         return earlier.replace(walls=before.walls), crowd.replace(walls=before.walls)
 
     def _settled(self, earlier: Scene, after: Scene) -> Scene:
