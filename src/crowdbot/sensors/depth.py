@@ -167,5 +167,6 @@ class DepthCamera(Sensor):
 
 @functools.lru_cache(maxsize=16)
 def pixel_beams(lens: Lens) -> tuple[Beams, Floats]:
+    """Return the beams of the pixels, row by row, and how far each goes ahead for a metre of its length."""
     directions = pixel_directions(lens).reshape(-1, 3)
     return beams(directions), np.ascontiguousarray(directions[:, 0])

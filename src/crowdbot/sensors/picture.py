@@ -117,10 +117,10 @@ class RGBCamera(Sensor):
             rgb, hit = self._by_rays(scene, in_space(pose))
         else:
             images = source.render(self, in_space(pose))
-            rgb, hit = np.asarray(images["rgb"]), np.asarray(images["hit"]) if "hit" in images else None
+            rgb = np.asarray(images["rgb"])
+            hit = np.asarray(images.get("hit", np.full(rgb.shape[:3], NOTHING)))
             if any(self.distortion):
-                rgb = distorted(rgb, lens)
-                hit = None if hit is None else distorted(hit, lens, fill=NOTHING)
+                rgb, hit = distorted(rgb, lens), distorted(hit, lens, fill=NOTHING)
         if self.noises:
             values = disturbed(rgb.astype(np.float64), self.noises, rng)
             rgb = np.round(np.clip(np.where(np.isfinite(values), values, 0.0), 0.0, 255.0))

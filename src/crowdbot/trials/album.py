@@ -79,16 +79,19 @@ class Album:
         return self.path.with_name(f"{self.path.stem}{more}{'.png' if other else self.path.suffix}")
 
     def _numbered(self, shots: Iterator[Shot], kinds: list[str]) -> tuple[list[Path], int]:
-        files, count = [], 0
-        for count, shot in enumerate(shots, 1):
-            files += [_saved(shot, kind, self.path / f"{kind}-{count - 1:05d}.png") for kind in kinds]
+        files: list[Path] = []
+        count = 0
+        for shot in shots:
+            files += [_saved(shot, kind, self.path / f"{kind}-{count:05d}.png") for kind in kinds]
+            count += 1
         return files, count
 
     def _films(self, shots: Iterator[Shot], kinds: list[str]) -> tuple[list[Path], int]:
         reels = [_Reel(self._named(kind), self.rate) for kind in kinds]
         count = 0
         try:
-            for count, shot in enumerate(shots, 1):
+            for shot in shots:
+                count += 1
                 for kind, reel in zip(kinds, reels, strict=True):
                     reel.add(_painted(shot, kind))
             return [reel.finished() for reel in reels], count

@@ -71,7 +71,9 @@ class Camera:
 
 def overview(stage: Stage, places: np.ndarray) -> Camera:
     """Return a camera that sees a whole stage, and all ``places`` ``[N, 2]`` [m], from the south and above."""
-    points = np.concatenate([*stage.rings, places.reshape(-1, 2)]) if len(stage.rings) or len(places) else np.zeros((1, 2))
+    points = (
+        np.concatenate([*stage.rings, places.reshape(-1, 2)]) if len(stage.rings) or len(places) else np.zeros((1, 2))
+    )
     low, high = points.min(axis=0), points.max(axis=0)
     middle, size = 0.5 * (low + high), np.maximum(high - low, 4.0)
     pitch, view, wide, tall = math.radians(50.0), math.radians(60.0), 960, 600

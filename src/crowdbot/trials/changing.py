@@ -164,7 +164,9 @@ def _scene(simulation: Simulation, trial: Trial) -> Any:
     scene = simulation.world.scene
     if trial.stage != simulation.trial.stage:
         if trial.world == "physics":
-            raise InputError("the stage cannot change in a branch of the physics world: its walls and props have bodies")
+            raise InputError(
+                "the stage cannot change in a branch of the physics world: its walls and props have bodies"
+            )
         scene = scene.replace(walls=trial.stage.as_walls())
     columns = {
         name: getattr(scene, name).copy() for name in ("radius", "goal", "visible", "max_speed", "preferred_speed")

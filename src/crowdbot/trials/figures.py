@@ -81,8 +81,7 @@ def cast_of(trial: Trial, people: People, agents: int, seed: int) -> Figures:
     said += _some(bodies, busy, count - len(said), (seed, "sources"), None)
     names = [figure.body or one.name for figure, one in zip(said, default.persons, strict=True)]
     outfits = [
-        figure.outfit if figure.outfit >= 0 else int(own)
-        for figure, own in zip(said, default.variation, strict=True)
+        figure.outfit if figure.outfit >= 0 else int(own) for figure, own in zip(said, default.variation, strict=True)
     ]
     return Figures(humans.People.of(names, outfits), tuple(figure.activity or "walk" for figure in said))
 

@@ -44,7 +44,7 @@ def world_of(trial: Trial, people: People, seed: int) -> tuple[PlanarWorld, Figu
     router = None if trial.routing is None else trial.routing.router(scene.walls)
     figures = cast_of(trial, people, scene.shape[1], seed) if _embodied(trial) else None
     journeys = _journeys(trial, people, scene.shape[1])
-    whole = {
+    whole: dict[str, Any] = {
         "dt": trial.step,
         "seed": seed,
         "berth": trial.berth,

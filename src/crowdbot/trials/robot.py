@@ -70,7 +70,7 @@ class Mount:
     heading: float = attribute(0.0, about="counter-clockwise from forward", unit="rad")
 
     def __post_init__(self) -> None:
-        if self.z is None:
+        if getattr(self, "z", None) is None:
             object.__setattr__(self, "z", self.usual["z"])
         check(self)
 

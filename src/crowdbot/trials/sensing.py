@@ -113,18 +113,17 @@ def _skinned(sensor: Sensor) -> bool:
     return bool(getattr(sensor, "skins", False))
 
 
-def probes_of(trial: Any, robot: Robot, clock: Clock, seed: int, known: Mapping[str, Probe] | None = None) -> tuple[
-    Probe, ...
-]:
+def probes_of(
+    trial: Any, robot: Robot, clock: Clock, seed: int, known: Mapping[str, Probe] | None = None
+) -> tuple[Probe, ...]:
     """Return the sensors of a robot at work; those of ``known`` go on with their chance and what is on its way."""
     bodies = bodies_for(trial)
     found = []
     for mount in robot.sensors:
         sensor = mount.sensor
-        if bodies == "skins" and hasattr(sensor, "skins"):
-            mount = dataclasses.replace(mount, sensor=dataclasses.replace(sensor, skins=True))  # type: ignore[type-var]
+        more: Any = {"skins": True} if bodies == "skins" and hasattr(sensor, "skins") else {}
         probe = Probe(
-            mount,
+            dataclasses.replace(mount, sensor=dataclasses.replace(sensor, **more)) if more else mount,
             robot.placed(mount),
             Schedule.of(sensor, clock),
             stream(seed, "sensor", robot.name, mount.name),

@@ -14,6 +14,7 @@ from crowdbot.core import InputError, stream
 from crowdbot.core.errors import did_you_mean
 from crowdbot.sensors import DepthCamera, RGBCamera
 from crowdbot.sensors.camera import distorted
+from crowdbot.sensors.sensor import in_space
 from crowdbot.sensors.shapes import NOTHING
 
 from .camera import OVERVIEW, Camera, overview
@@ -102,9 +103,7 @@ def shots(
     name = camera or camera_names(trial)[0]
     if name not in camera_names(trial):
         known = camera_names(trial)
-        raise InputError(
-            f"{trial.name} has no camera {name!r}{did_you_mean(name, known)}; it has {', '.join(known)}"
-        )
+        raise InputError(f"{trial.name} has no camera {name!r}{did_you_mean(name, known)}; it has {', '.join(known)}")
     simulation = Simulation(trial, chosen, posed=True)
     first, last, every = _ticks(simulation, take)
     running = Running(simulation)
@@ -199,7 +198,7 @@ class _Lens:
         picture = camera.measure(around.flat, pose, self.rng, source=studio)
         if not (self.depth or self.segmentation):
             return picture.rgb[0], None, None
-        images = studio.render(camera, pose.lifted(0.0) if not hasattr(pose, "rotation") else pose)
+        images = studio.render(camera, in_space(pose))
         depth = distorted(images["depth"], camera.lens, np.inf)[0] if self.depth else None
         who = distorted(images["hit"], camera.lens, NOTHING)[0] if self.segmentation else None
         return picture.rgb[0], depth, who

@@ -159,7 +159,9 @@ class Simulation:
         self.world, figures = world_of(trial, people, seed)
         if posed and figures is None:
             figures = cast_of(trial, people, self.world.scene.shape[1], seed)
-        skins = trial.bodies == "skins" or any(getattr(m.sensor, "skins", False) for r in trial.robots for m in r.sensors)
+        skins = trial.bodies == "skins" or any(
+            getattr(m.sensor, "skins", False) for r in trial.robots for m in r.sensors
+        )
         self.around = Surroundings(trial, self.world, figures, seed, skins)
         self.carriers = [self._carrier(robot, len(people) + k) for k, robot in enumerate(trial.robots)]
         self.event: str | None = None
@@ -180,7 +182,9 @@ class Simulation:
         """Go one step on, and ask somebody else how the crowd walks: see :func:`crowdbot.trials.run_batch`."""
         before, ids = self.world.scene, self.ids.copy()
         physics = self.trial.world == "physics"
-        yield from self.world.stepping({c.agent: c.command if physics else c.obeyed(self.world.dt) for c in self.carriers})
+        yield from self.world.stepping(
+            {c.agent: c.command if physics else c.obeyed(self.world.dt) for c in self.carriers}
+        )
         self._let_leave()
         self.around.moved()
         self._judge(before, ids)
@@ -346,13 +350,12 @@ class Simulation:
         if self.ended is None:
             self.ended = ended(self)
 
-
     def _wall_gap(self, carrier: Carrier, path: NDArray[np.float64]) -> float:
         """Return the clearance [m] of a robot to what stands fast, below 0 when they touch."""
         if self.trial.world != "physics":
             return float(wall_clearance(path, carrier.robot.radius, self._segments)[1])
         depth = [one.depth for one in self.forces if one.first == ("robot", carrier.agent) and self._fast(one.second)]
-        return -max(max(depth), 1e-9) if depth else math.inf
+        return -max(*depth, 1e-9) if depth else math.inf
 
     def _fast(self, party: Party) -> bool:
         if party.kind == "prop":

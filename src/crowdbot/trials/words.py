@@ -19,7 +19,9 @@ KINDS = {
     "child": ("boy", "girl"),
     "mannequin": ("mannequin",),
 }
-ABOUT_BODY = "name of a body (woman-36) or kind (man, woman, adult, boy, girl, child, mannequin); of several one is drawn"
+ABOUT_BODY = (
+    "name of a body (woman-36) or kind (man, woman, adult, boy, girl, child, mannequin); of several one is drawn"
+)
 ABOUT_ACTIVITY = "walk, talk, phone, bottle, text or sit; of several one is drawn"
 
 
@@ -39,8 +41,8 @@ adult, child, mannequin or a name from crowdbot list humans
     for word in body.split():
         if word not in known:
             raise InputError(
-                f"body={shown(body)} has {word[:40]!r}{did_you_mean(word, known)}; it takes {', '.join(KINDS)} or a name"
-                " from crowdbot list humans"
+                f"body={shown(body)} has {word[:40]!r}{did_you_mean(word, known)}; it takes {', '.join(KINDS)} or a"
+                " name from crowdbot list humans"
             )
     for word in activity.split():
         if word not in humans.ACTIVITIES:

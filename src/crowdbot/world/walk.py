@@ -90,7 +90,7 @@ def _alike(first: CrowdModel, other: CrowdModel) -> bool:
     if isinstance(first, Mixture) and isinstance(other, Mixture):
         return len(first.models) == len(other.models) and all(map(_alike, first.models, other.models))
     values = ((getattr(one, part.name) for one in (first, other)) for part in dataclasses.fields(first))
-    return all(_number(a) and _number(b) or _same(a, b) for a, b in values)
+    return all((_number(a) and _number(b)) or _same(a, b) for a, b in values)
 
 
 def _number(value: Any) -> bool:
