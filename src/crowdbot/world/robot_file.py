@@ -17,15 +17,16 @@ from crowdbot.core.markup import Element, number, parse, read_bytes
 from crowdbot.sensors import Sensor
 
 from .drive import Drive
-from .robot import FILE, Robot, SensorMount, Wheel
+from .robot import FILE, Robot, SensorMount
 from .urdf.reading import read_urdf
+from .wheel import Wheel
 
 __all__ = ["read_robot"]
 
 KNOWN: dict[str, tuple[str, ...]] = {
     "robot": ("name", "urdf", "about", "base"),
     "footprint": ("points", "radius"),
-    "wheel": ("joint", "radius"),
+    "wheel": ("joint", "radius", "steering", "driven"),
     "posture": ("joint", "position"),
 }
 PLACES = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -141,12 +142,20 @@ class _Reader:
 
     def wheel(self, element: Element) -> Wheel | None:
         """Return a wheel."""
-        joint = self.words(element).get("joint", "")
+        row = self.words(element)
         radius = self.number(element, "radius")
+        driven = row.get("driven", "true")
+        if driven not in ("true", "false"):
+            self.say(element, f'driven="{driven[:40]}" must be true or false')
+            return None
         if radius <= 0.0:
             self.say(element, f'radius="{element.attributes["radius"][:40]}" must be above 0')
             return None
-        return Wheel(joint, radius)
+        try:
+            return Wheel(row.get("joint", ""), radius, row.get("steering", ""), driven == "true")
+        except InputError as error:
+            self.say(element, str(error))
+            return None
 
     def posture(self, element: Element) -> tuple[str, float]:
         """Return the name of a joint and its position."""

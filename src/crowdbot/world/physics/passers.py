@@ -34,7 +34,7 @@ RETURN = 1.5
 """Then they go back into the walk at this speed [m/s]."""
 GIVE, GIVEN = 1.0, 0.3
 """An arm or leg that is pressed by more than :data:`BRACE`, in the mean over about the reaction, gives way against the
-body: at most so fast [m/s] and so far [m]. Single knocks do not move it, otherwise a robot would knock its way through."""
+body: at most so fast [m/s] and so far [m]. Single knocks do not move it, or a robot would knock its way through."""
 CHAINS = {name: chain for chain in (("thigh", "shank", "foot"), ("upperarm", "forearm", "hand")) for name in chain}
 REGIONS = {ahead: tuple(region_of(name, ahead) for name in LIMB_NAMES) for ahead in (True, False)}
 
