@@ -64,7 +64,8 @@ def car(drive=None, wheels=None):
     parts = [
         f"<link name='base'><inertial><origin xyz='0.28 0 0.15'/><mass value='30'/>{inertia}</inertial>{box}</link>"
     ]
-    tire = "<collision><origin rpy='1.5707963 0 0'/><geometry><cylinder radius='0.1' length='0.04'/></geometry></collision>"
+    tire = "<geometry><cylinder radius='0.1' length='0.04'/></geometry>"
+    tire = f"<collision><origin rpy='1.5707963 0 0'/>{tire}</collision>"
     names = {}
     for end, x in (("rear", 0.0), ("front", 0.6)):
         for side, y in (("left", 0.2), ("right", -0.2)):
@@ -146,7 +147,8 @@ def tower():
     }
     parts += [link(kind, mass=0.5, moments=(0.01,) * 3) for kind in inside]
     parts += [joint(f"j_{kind}", kind, "base", kind, text) for kind, text in inside.items()]
-    follow = f"<origin xyz='0.2 0.1 0.3'/><axis xyz='0 0 1'/><mimic joint='j_revolute' multiplier='-0.5' offset='0.1'/>{limit}"
+    follow = "<mimic joint='j_revolute' multiplier='-0.5' offset='0.1'/>"
+    follow += f"<origin xyz='0.2 0.1 0.3'/><axis xyz='0 0 1'/>{limit}"
     parts += [
         link("follower", mass=0.5, moments=(0.01,) * 3),
         joint("j_follower", "revolute", "base", "follower", follow),

@@ -37,7 +37,7 @@ SPRING = "0.5 0.5 0.001 0.5 2"
 
 
 class Built(NamedTuple):
-    """A model as XML tree with its mesh files; ``prefixes`` of the names of each robot, and all ``wheels`` that drive."""
+    """A model as XML tree with its mesh files; ``prefixes`` of the names of each robot; joints of all ``wheels``."""
 
     root: Element
     files: dict[str, bytes]
