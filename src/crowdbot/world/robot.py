@@ -76,7 +76,7 @@ class Robot:
 
     >>> robot = Robot.load("turtlebot2")
     >>> robot.drive.max_speed, round(robot.radius, 3), [mount.name for mount in robot.mounts]
-    (0.65, 0.232, ['laser'])
+    (0.65, 0.232, ['laser', 'kinect_depth', 'odometry', 'gyro', 'bumper', 'cliff_left', 'cliff_centre', 'cliff_right'])
     """
 
     name: str
