@@ -84,7 +84,8 @@ def run(minutes: float, people: int) -> None:
     if len(forces):
         print(
             f"peak force by the two-body model: median {np.median(forces):.0f} N, largest {forces.max():.0f} N;"
-            f" largest in the engine {max(event.simulated_peak for event in events):.0f} N"
+            f" largest in the engine {max(event.simulated_peak for event in events):.0f} N,"
+            f" steady {max(event.steady_force for event in events):.0f} N"
         )
 
 

@@ -244,7 +244,7 @@ def test_what_cannot_be_is_refused():
     refused("agent 1 has a drive but is not external", robots={1: robot})
     refused("2 bodies are given for 1 agents that are no robots", people=People.of(["man-20", "man-20"]))
     car = dataclasses.replace(robot, drive=AckermannDrive())
-    refused('steers its wheels, which the physics world cannot; give it base="planar"', robots={0: car})
+    refused('drives as AckermannDrive and has no wheels that steer; give it base="planar"', robots={0: car})
     refused("has no wheels that a motor turns", robots={0: dataclasses.replace(robot, wheels=())})
     with pytest.raises(InputError, match="Cube: mass = 0.0 must be finite and above 0"):
         Cube(0.0, 0.0, mass=0.0)

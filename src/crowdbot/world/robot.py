@@ -20,11 +20,14 @@ from .servo import CommandDelay
 from .urdf.model import Inertial, Link, Part, RobotModel
 from .urdf.shapes import Cylinder
 from .urdf.transforms import frame, quaternion, roll_pitch_yaw, turning
+from .wheel import Wheel
 
 __all__ = ["Robot", "SensorMount", "Wheel", "builtin_robots", "spatial"]
 
 Floats = NDArray[np.float64]
 FILE = "robot.xml"
+SUNK = 2e-3
+"""Robots that reach deeper [m] below their root than this do not have it on the ground."""
 CLEAR = 0.01
 """Height [m] above the floor of a robot of which only the size is known: it does not rub."""
 
@@ -54,18 +57,6 @@ class SensorMount:
         return frame((self.x, self.y, self.z), roll_pitch_yaw(self.roll, self.pitch, self.yaw))
 
 
-@dataclass(frozen=True)
-class Wheel:
-    """A wheel that a motor turns: its joint, whose axis is the axle, and its radius [m]."""
-
-    joint: str
-    radius: float
-
-    def __post_init__(self) -> None:
-        if not 0.0 < self.radius < math.inf:
-            raise InputError(f"Wheel: radius = {self.radius} m must be finite and above 0")
-
-
 @dataclass(frozen=True, eq=False)
 class Robot:
     """A robot that can be put into a world.
@@ -79,13 +70,13 @@ class Robot:
             that roll in all directions).
         footprint: corners ``[N, 2]`` [m] of the room it takes on the ground, counter-clockwise.
         mounts: its sensors.
-        wheels: that motors turn.
+        wheels: that motors turn or steer.
         posture: positions of joints [rad, m] while it drives; those left out are at 0.
         about: one line for people.
 
     >>> robot = Robot.load("turtlebot2")
     >>> robot.drive.max_speed, round(robot.radius, 3), [mount.name for mount in robot.mounts]
-    (0.65, 0.232, ['laser'])
+    (0.65, 0.232, ['laser', 'kinect_depth', 'odometry', 'gyro', 'bumper', 'cliff_left', 'cliff_centre', 'cliff_right'])
     """
 
     name: str
@@ -120,10 +111,12 @@ class Robot:
             if mount.link not in self.model.links:
                 meant = did_you_mean(mount.link, self.model.links)
                 raise InputError(f"Robot: the sensor {mount.name!r} sits on {mount.link!r}, which is no link{meant}")
+        turning_joints = {joint.name for joint in self.model.movable if joint.size == 1}
         for wheel in self.wheels:
-            if wheel.joint not in {joint.name for joint in self.model.movable if joint.size == 1}:
-                meant = did_you_mean(wheel.joint, self.model.joints)
-                raise InputError(f"Robot: the wheel joint {wheel.joint!r} is no joint that turns{meant}")
+            for what, name in (("wheel", wheel.joint), ("steering", wheel.steering or wheel.joint)):
+                if name not in turning_joints:
+                    meant = did_you_mean(name, self.model.joints)
+                    raise InputError(f"Robot: the {what} joint {name!r} is no joint that turns{meant}")
 
     @classmethod
     def load(cls, source: str | Path, *, trust: bool = False) -> Robot:
@@ -178,6 +171,13 @@ class Robot:
         points = self.model.points(self.posture)
         return float(points[:, 2].max()) if len(points) else 0.0
 
+    @property
+    def lift(self) -> float:
+        """How far its root is above the floor when it stands in its posture [m]; 0 for a root on the ground."""
+        points = self.model.points(self.posture)
+        lowest = float(points[:, 2].min()) if len(points) else 0.0
+        return -lowest if lowest < -SUNK else 0.0
+
     def mount(self, name: str) -> SensorMount:
         """Return the sensor of this name.
 
@@ -214,7 +214,7 @@ class Robot:
         [[0.484, 0.0, 0.364]]
         """
         seat = self.mounted(name, positions)
-        found = [spatial(frame((x, y, 0.0), turning((0.0, 0.0, 1.0), a)) @ seat) for (x, y), a in zip(
+        found = [spatial(frame((x, y, self.lift), turning((0.0, 0.0, 1.0), a)) @ seat) for (x, y), a in zip(
             pose.position.tolist(), pose.heading.tolist(), strict=True)]  # fmt: skip
         return SpatialPose(
             np.concatenate([one.position for one in found]), np.concatenate([one.rotation for one in found])
@@ -228,16 +228,39 @@ class Robot:
         >>> Robot.load("turtlebot2").wheel_speeds(Twist(0.35, 0.0))
         {'wheel_left_joint': 10.0, 'wheel_right_joint': 10.0}
         """
-        poses = self.model.poses(self.posture)
+        steered = self.steering(twist)
+        poses = self.model.poses({**self.posture, **steered})
         speeds = {}
         for wheel in self.wheels:
-            joint = self.model.joints[wheel.joint]
-            matrix = poses[joint.parent] @ joint.origin
-            place, axle = matrix[:3, 3], matrix[:3, :3] @ joint.axis
-            rolling = np.array([axle[1], -axle[0]])  # axle x up
-            center = np.array([twist.forward - twist.turn * place[1], twist.left + twist.turn * place[0]])
-            speeds[wheel.joint] = round(float(center @ rolling) / wheel.radius, 12)
+            if wheel.driven:
+                joint = self.model.joints[wheel.joint]
+                matrix = poses[joint.parent] @ joint.origin
+                axle = matrix[:3, :3] @ joint.axis
+                rolling = np.array([axle[1], -axle[0]])  # axle x up
+                speeds[wheel.joint] = round(float(_carried(twist, matrix) @ rolling) / wheel.radius, 12)
         return speeds
+
+    def steering(self, twist: Twist) -> dict[str, float]:
+        """Return how far wheels that steer are turned [rad], by joint, so that all roll about the same point.
+
+        At rest, where every direction does, they look ahead. Backwards they are turned as ahead on the same circle.
+        """
+        poses = self.model.poses(self.posture)
+        angles = {}
+        for wheel in self.wheels:
+            if wheel.steering:
+                joint = self.model.joints[wheel.steering]
+                matrix = poses[joint.parent] @ joint.origin
+                x, y = (_carried(twist, matrix) * (-1.0 if twist.forward < 0.0 else 1.0)).tolist()
+                sense = 1.0 if (matrix[:3, :3] @ joint.axis)[2] > 0.0 else -1.0
+                angles[wheel.steering] = round(sense * math.atan2(y, x), 12)
+        return angles
+
+
+def _carried(twist: Twist, matrix: Floats) -> Floats:
+    """Return how fast the origin of a frame ``[4, 4]`` of the robot moves over the floor, ``[2]`` [m/s]."""
+    x, y = matrix[:2, 3].tolist()
+    return np.array([twist.forward - twist.turn * y, twist.left + twist.turn * x])
 
 
 def spatial(matrix: Floats) -> SpatialPose:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, SpatialPose, Twist
 from crowdbot.core.errors import did_you_mean
+from crowdbot.world.ackermann import AckermannDrive, SteeredTwists
 from crowdbot.world.drive import Twists
 from crowdbot.world.robot import Robot, spatial
 from crowdbot.world.servo import CommandDelay, Pending
@@ -44,10 +45,13 @@ class Chassis:
         self._sites = [int(model.site(prefix + link).id) for link in robot.model.links]
         self._servo = [model.actuator(f"{prefix}base_{name}").id for name in ("forward", "turn", "left")] if (
             robot.base == "planar") else []  # fmt: skip
-        wheels = [wheel.joint for wheel in robot.wheels]
-        self._wheels = [] if self._servo else [self._motor(joint) for joint in wheels]
+        named = [wheel.joint for wheel in robot.wheels if wheel.driven]
+        named += [wheel.steering for wheel in robot.wheels if wheel.steering]
+        self._wheels = {} if self._servo else {joint: self._motor(joint) for joint in named}
+        self._steers = any(wheel.steering for wheel in robot.wheels)
         units = [robot.wheel_speeds(Twist(*row)) for row in np.eye(3).tolist()]
-        self._rolling = np.array([[unit[joint] for unit in units] for joint in wheels]).reshape(-1, 3)
+        self._driven = [joint for joint in units[0] if joint in self._wheels]
+        self._rolling = np.array([[unit[joint] for unit in units] for joint in self._driven]).reshape(-1, 3)
         if self._servo:  # the engine takes the mean over three directions, one of which the base does not have
             model.body_invweight0[self.body, 0] = 1.0 / robot.model.mass
         self._delay = CommandDelay(robot.latency)
@@ -115,8 +119,21 @@ class Chassis:
             self._forced = now
         if self._servo:
             self._data.ctrl[self._servo] = aim
+        elif self._steers:
+            self._steered(self._aim)
         else:
-            self._data.ctrl[self._wheels] = self._rolling @ aim
+            self._data.ctrl[[self._wheels[joint] for joint in self._driven]] = self._rolling @ aim
+
+    def _steered(self, aim: Twists) -> None:
+        """Turn the wheels of a car; at rest they stay turned."""
+        drive = self.robot.drive
+        assert isinstance(drive, AckermannDrive)
+        bend = math.tan(float(aim.steering[0])) / drive.wheelbase if isinstance(aim, SteeredTwists) else 0.0
+        way = Twist(1.0, bend)
+        values = self.robot.steering(way)
+        values |= {joint: speed * float(aim.forward[0]) for joint, speed in self.robot.wheel_speeds(way).items()}
+        for joint, value in values.items():
+            self._data.ctrl[self._wheels[joint]] = value
 
     def command(self, joints: Mapping[str, float]) -> None:
         """Send values to motors of joints: positions, speeds or forces, as each motor is commanded.
@@ -124,9 +141,8 @@ class Chassis:
         Raises:
             InputError: a joint has no motor, is a wheel of the base, or a value is not finite.
         """
-        taken = {wheel.joint for wheel in self.robot.wheels} if self._wheels else set()
         for name, value in joints.items():
-            if name in taken:
+            if name in self._wheels:
                 raise InputError(f"the joint {name!r} of {self.robot.name} is a wheel; drive it by a Twist")
             if not math.isfinite(value):
                 raise InputError(f"the command {value} for joint {name!r} of {self.robot.name} is not finite")

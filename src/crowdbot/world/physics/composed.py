@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +16,7 @@ from crowdbot.world.urdf.geoms import row
 from crowdbot.world.urdf.mjcf import BaseServo, mjcf
 
 from .engine import engine
-from .layers import LIMB, ROBOT, TRUNK
+from .layers import LIMB, PULLED, ROBOT, TRUNK
 from .scenery import scenery
 from .stage import PhysicsStage
 
@@ -26,6 +26,10 @@ PARKED = 60.0
 """Height [m] at which limbs that nobody has wait."""
 PULL, SPIN = 4.0, 1.5
 """Largest force [N] and torque [N m] of a base that is pulled, per kg of the robot."""
+ROTOR = 1e-4
+"""Least inertia [kg m2] about the axis of a hinge (assumed, that of a small geared motor)."""
+QUICKEST = 0.5
+"""Motors of joints take at least two steps of the engine to follow."""
 SKIN = "0.85 0.70 0.60 1"
 ARENA = "64M"
 SPRING = "0.5 0.5 0.001 0.5 2"
@@ -33,16 +37,18 @@ SPRING = "0.5 0.5 0.001 0.5 2"
 
 
 class Built(NamedTuple):
-    """A model as XML tree with its mesh files; ``prefixes`` of the names of each robot."""
+    """A model as XML tree with its mesh files; ``prefixes`` of the names of each robot; joints of all ``wheels``."""
 
     root: Element
     files: dict[str, bytes]
     prefixes: dict[int, str]
+    wheels: frozenset[str]
 
     def load(self, timestep: float) -> Any:
         """Return the ``mujoco.MjModel``."""
         model = engine().MjModel.from_xml_string(written(self.root), self.files)
         model.opt.timestep = timestep
+        _steadied(model, self.wheels)
         return model
 
 
@@ -65,7 +71,7 @@ def built(
         posed: robots are not moved by the engine but put where they are.
 
     Raises:
-        InputError: a robot steers on wheels of its own.
+        InputError: a robot has no wheels to drive or to steer with.
     """
     assets, world = scenery(scene.walls, stage)
     sections: dict[str, list[Element]] = {"contact": [], "equality": [], "actuator": []}
@@ -89,7 +95,35 @@ def built(
     root = Element("mujoco", {"model": "crowdbot"}, _settings())
     root.children += [Element("asset", {}, assets), Element("worldbody", {}, world)]
     root.children += [Element(tag, {}, rows) for tag, rows in sections.items() if rows]
-    return Built(root, files, prefixes)
+    wheels = {prefixes[agent] + wheel.joint for agent, robot in robots.items() for wheel in robot.wheels}
+    return Built(root, files, prefixes, frozenset(wheels))
+
+
+def _steadied(model: Any, wheels: Collection[str]) -> None:
+    """Make light joints such that the steps of the engine can follow them; those of wheels carry the whole robot.
+
+    Hinges get a rotor as motors have one where next to nothing turns. Motors are as soft as their joint is light: a
+    stiff one would swing to and fro between its largest forces.
+    """
+    mj = engine()
+    hinge = model.jnt_type == mj.mjtJoint.mjJNT_HINGE
+    turned = model.jnt_dofadr[hinge]
+    lack = ROTOR - model.dof_M0[turned]
+    if np.any(lack > 0.0):
+        model.dof_armature[turned] += np.maximum(lack, 0.0)
+        mj.mj_setConst(model, mj.MjData(model))
+    for motor in range(model.nu):
+        name = model.actuator(motor).name
+        if model.actuator_trntype[motor] != mj.mjtTrn.mjTRN_JOINT or name in wheels:
+            continue
+        inertia = float(model.dof_M0[model.jnt_dofadr[model.actuator_trnid[motor, 0]]])
+        quickest = QUICKEST / model.opt.timestep
+        if model.actuator_biasprm[motor, 1] < -inertia * quickest**2:
+            model.actuator_gainprm[motor, 0] = inertia * quickest**2
+            model.actuator_biasprm[motor, 1:3] = -inertia * quickest**2, -2.0 * inertia * quickest
+        elif model.actuator_biasprm[motor, 1] == 0.0 and model.actuator_biasprm[motor, 2] < -inertia * quickest:
+            model.actuator_gainprm[motor, 0] = inertia * quickest
+            model.actuator_biasprm[motor, 2] = -inertia * quickest
 
 
 def _settings() -> list[Element]:
@@ -111,24 +145,29 @@ def _settings() -> list[Element]:
 
 def _robot(scene: Scene, agent: int, robot: Robot, prefix: str, motors: Mapping[str, str] | None) -> Any:
     planar = robot.base == "planar"
-    if isinstance(robot.drive, AckermannDrive) and not planar:
+    steers = any(wheel.steering for wheel in robot.wheels)
+    who = f"robot {robot.name} of agent {agent}"
+    if not planar and not any(wheel.driven for wheel in robot.wheels):
+        raise InputError(f"{who} has no wheels that a motor turns; name them in its file")
+    if not planar and steers != isinstance(robot.drive, AckermannDrive):
         raise InputError(
-            f"robot {robot.name} of agent {agent} steers its wheels, which the physics world cannot; give it"
-            ' base="planar"'
+            f"{who} drives as {type(robot.drive).__name__} and has {'' if steers else 'no '}wheels that steer; give it"
+            ' base="planar", or an AckermannDrive and wheels with steering joints'
         )
-    if not planar and not robot.wheels:
-        raise InputError(f"robot {robot.name} of agent {agent} has no wheels that a motor turns; name them in its file")
+    kinds = {wheel.joint: "velocity" for wheel in robot.wheels if wheel.driven and not planar}
+    kinds |= {wheel.steering: "position" for wheel in robot.wheels if wheel.steering and not planar}
+    said = {name: robot.model.joints[name].motor.kind or kind for name, kind in kinds.items()}
     x, y = scene.position[0, agent]
     mass = robot.model.mass
     return mjcf(
         robot.model,
         base="planar" if planar else "free",
-        place=(0.0, 0.0, 0.0) if planar else (float(x), float(y), 0.0),
+        place=(0.0, 0.0, robot.lift) if planar else (float(x), float(y), robot.lift),
         heading=0.0 if planar else float(scene.heading[0, agent]),
         prefix=prefix,
-        motors=motors,
+        motors={**said, **(motors or {})},
         servo=BaseServo(PULL * mass, SPIN * mass) if planar else None,
-        contact=ROBOT,
+        contact=PULLED if planar else ROBOT,
     )
 
 
@@ -142,6 +181,7 @@ def _person(slot: int) -> Element:
     for limb in LIMBS:
         layer = TRUNK if limb.region == "torso" else LIMB
         values = {"name": f"{name}/{limb.name}", "type": "capsule", "size": "0.05 0.1", "pos": f"0 0 {PARKED}"}
+        values["quat"] = "0.5 0.5 0.5 0.5"  # were they upright now, the engine would keep them so for good
         touch = {"priority": "2", "friction": row((0.4, 0.005, 0.0001)), "solimp": SPRING}
         body.children.append(Element("geom", {**values, **touch, **layer, "group": "4", "rgba": SKIN}))
     return body

@@ -6,17 +6,20 @@ them apart) nor the floor (their feet are placed on it); of a person only the tr
 
 from __future__ import annotations
 
-__all__ = ["DYNAMIC", "LIMB", "ROBOT", "STANDING", "TRUNK"]
+__all__ = ["DYNAMIC", "GROUND", "LIMB", "PULLED", "ROBOT", "STANDING", "TRUNK"]
 
-_ROBOT, _STAGE, _PERSON, _MOVED = 1, 2, 4, 8
+_ROBOT, _STAGE, _PERSON, _MOVED, _FLOOR = 1, 2, 4, 8, 16
 
 
 def _bits(kind: int, touches: int) -> dict[str, str]:
     return {"contype": str(kind), "conaffinity": str(touches)}
 
 
-ROBOT = (_ROBOT, _ROBOT | _STAGE | _PERSON | _MOVED)
+PULLED = (_ROBOT, _ROBOT | _STAGE | _PERSON | _MOVED)
+"""Robots whose base is pulled along: what of them would rub on the floor does not."""
+ROBOT = (_ROBOT, PULLED[1] | _FLOOR)
+GROUND = _bits(_FLOOR, 0)
 STANDING = _bits(_STAGE, _ROBOT | _MOVED)
-DYNAMIC = _bits(_MOVED, _ROBOT | _STAGE | _PERSON | _MOVED)
+DYNAMIC = _bits(_MOVED, _ROBOT | _STAGE | _PERSON | _MOVED | _FLOOR)
 LIMB = _bits(_PERSON, _ROBOT | _MOVED)
 TRUNK = _bits(_PERSON, _ROBOT | _MOVED | _STAGE)

@@ -34,7 +34,7 @@ RETURN = 1.5
 """Then they go back into the walk at this speed [m/s]."""
 GIVE, GIVEN = 1.0, 0.3
 """An arm or leg that is pressed by more than :data:`BRACE`, in the mean over about the reaction, gives way against the
-body: at most so fast [m/s] and so far [m]. Single knocks do not move it, otherwise a robot would knock its way through."""
+body: at most so fast [m/s] and so far [m]. Single knocks do not move it, or a robot would knock its way through."""
 CHAINS = {name: chain for chain in (("thigh", "shank", "foot"), ("upperarm", "forearm", "hand")) for name in chain}
 REGIONS = {ahead: tuple(region_of(name, ahead) for name in LIMB_NAMES) for ahead in (True, False)}
 
@@ -160,9 +160,11 @@ class Passers:
             return
         rows = [LIMB_NAMES.index(f"{name}_{limb[-1]}") for name in chain]
         shift = min(1.0, size / BRACE - 1.0) * GIVE * self.step * force / size
-        way = self._limbs_now[slot, rows] - self._walk_now[slot, rows] + np.tile(shift * (1.0, 1.0, 0.0), 2)
-        most = float(np.sqrt(np.sum(way.reshape(-1, 3) ** 2, axis=1)).max())
-        self._limbs_now[slot, rows] = self._walk_now[slot, rows] + way * min(1.0, GIVEN / max(most, 1e-12))
+        shift[2] = max(0.0, shift[2])  # not into the floor
+        moved = self._limbs_now[slot, rows] + np.tile(shift, 2)
+        away = np.sqrt(np.sum((moved - self._walk_now[slot, rows]).reshape(-1, 3) ** 2, axis=1))
+        if away.max() <= GIVEN:
+            self._limbs_now[slot, rows] = moved
 
     def end(self) -> tuple[Ints, Floats, Floats]:
         """Return who was pushed off the own way, with their places ``[P, 2]`` [m] and velocities ``[P, 2]`` [m/s]."""

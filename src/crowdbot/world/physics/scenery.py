@@ -9,7 +9,7 @@ from crowdbot.core import Walls
 from crowdbot.core.markup import Element
 from crowdbot.world.urdf.geoms import row
 
-from .layers import STANDING
+from .layers import GROUND, STANDING
 from .stage import PhysicsStage
 
 __all__ = ["joined", "scenery"]
@@ -74,7 +74,7 @@ def _ground(stage: PhysicsStage) -> tuple[list[Element], list[Element]]:
         Element("material", {"name": "floor", "texture": "floor", "texrepeat": "0.5 0.5", "texuniform": "true"}),
     ]
     floor = {"name": "floor", "type": "plane", "size": "0 0 1", "material": "floor", "group": "0"}
-    world = [Element("geom", {**floor, "friction": row((stage.friction, 0.005, 0.0001)), **STANDING})]
+    world = [Element("geom", {**floor, "friction": row((stage.friction, 0.005, 0.0001)), **GROUND})]
     if stage.lights:
         world += [light.element(f"light{k}") for k, light in enumerate(stage.lights)]
     else:

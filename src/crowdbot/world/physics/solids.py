@@ -159,7 +159,7 @@ class _Found:
 def _standing(scene: Scene, agent: int, robot: Robot, joints: Mapping[str, ArrayLike]) -> Frames:
     """Return the frames of the links of a robot that stands on the floor."""
     x, y = scene.position[0, agent].tolist()
-    base = frame((x, y, 0.0), turning((0.0, 0.0, 1.0), float(scene.heading[0, agent])))
+    base = frame((x, y, robot.lift), turning((0.0, 0.0, 1.0), float(scene.heading[0, agent])))
     poses = _posture(robot) if not joints else robot.model.poses({**robot.posture, **joints})
     return {link: base @ pose for link, pose in poses.items()}
 

@@ -168,7 +168,7 @@ class Studio:
         model, data, prefix = looks.model, looks.data, self._whole.prefixes[agent]
         body = model.body_mocapid[model.body(prefix + robot.model.root).id]
         heading = float(self._scene.heading[0, agent])
-        data.mocap_pos[body] = (*self._scene.position[0, agent].tolist(), 0.0)
+        data.mocap_pos[body] = (*self._scene.position[0, agent].tolist(), robot.lift)
         data.mocap_quat[body] = math.cos(0.5 * heading), 0.0, 0.0, math.sin(0.5 * heading)
         for name, place in robot.model.positions({**robot.posture, **self._joints.get(agent, {})}).items():
             joint = looks.joints.get(prefix + name)

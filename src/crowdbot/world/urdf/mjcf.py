@@ -338,6 +338,9 @@ def _motors(build: _Build, kinds: Mapping[str, str]) -> list[Element]:
             )
         elif kind == "position":
             stiff = {"kp": row((motor.effort / BENT if finite else 100.0,)), "dampratio": "1"}
+            joint = build.model.joints[name]
+            if joint.upper - joint.lower < 1e5:  # a servo does not press against its own stops
+                stiff |= {"ctrllimited": "true", "ctrlrange": row((joint.lower, joint.upper))}
             rows.append(Element("position", named | stiff))
         else:
             rows.append(Element("motor", named))
