@@ -76,7 +76,7 @@ def overview(stage: Stage, places: np.ndarray) -> Camera:
     )
     low, high = points.min(axis=0), points.max(axis=0)
     middle, size = 0.5 * (low + high), np.maximum(high - low, 4.0)
-    pitch, view, wide, tall = math.radians(50.0), math.radians(60.0), 960, 600
+    pitch, view, wide, tall = math.radians(60.0), math.radians(60.0), 960, 600
     across = 0.5 * size[0] / math.tan(0.5 * view)
     upwards = 0.5 * size[1] * math.sin(pitch) / (math.tan(0.5 * view) * tall / wide)
     away = 1.1 * float(max(across, upwards)) + 0.5 * float(size[1]) * math.cos(pitch)

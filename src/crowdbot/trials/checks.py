@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import FreeClock, InputError, TrialError
+from crowdbot.core.errors import did_you_mean
 
 from .attribute import shown
 from .checked import Checked, Problems
@@ -130,6 +131,24 @@ def _names(checked: Checked) -> Problems:
         for n, mount in enumerate(robot.sensors):
             if mount.name in mounts[:n]:
                 yield mount, f"name {mount.name!r} is taken by another sensor of this robot; give each its own"
+    yield from _cameras(checked)
+
+
+def _cameras(checked: Checked) -> Problems:
+    bodies = {robot.name: robot for robot in checked.robots}
+    for k, camera in enumerate(checked.cameras):
+        if camera.name in [other.name for other in checked.cameras[:k]]:
+            yield camera, f"name {camera.name!r} is taken by another camera; give each its own"
+        if not camera.robot:
+            if camera.link:
+                yield camera, f"link={shown(camera.link)} needs robot: the name of the robot whose link it is"
+        elif camera.robot not in bodies:
+            if "robot" not in checked.broken:
+                near = did_you_mean(camera.robot, bodies)
+                yield camera, f"robot={shown(camera.robot)} is no robot{near}; there are {', '.join(bodies) or 'none'}"
+        elif camera.link and camera.link not in (links := bodies[camera.robot].body.model.links):
+            near = did_you_mean(camera.link, links)
+            yield camera, f"link={shown(camera.link)} is no link of robot {camera.robot!r}{near}"
 
 
 def _size(checked: Checked) -> Problems:
