@@ -75,10 +75,10 @@ class TapeWriter:
             self._before += _bytes(Schema(self._schemas[name], text.encode(), "ros2msg", name))
         return self._schemas[name]
 
-    def channel(self, topic: str, schema: int) -> int:
-        """Return the number of a new channel."""
+    def channel(self, topic: str, schema: int, quality: str = "") -> int:
+        """Return the number of a new channel; ``quality`` is that of ROS 2 (YAML, as rosbag2 keeps it)."""
         self._channels += 1
-        self._before += _bytes(Channel(self._channels, topic, "cdr", {"offered_qos_profiles": ""}, schema))
+        self._before += _bytes(Channel(self._channels, topic, "cdr", {"offered_qos_profiles": quality}, schema))
         return self._channels
 
     def metadata(self, name: str, values: Mapping[str, str]) -> None:
