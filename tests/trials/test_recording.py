@@ -204,7 +204,9 @@ def test_nothing_is_left_behind_before_the_first_instant(tmp_path: Path) -> None
     (tmp_path / "kept" / "episode.mcap").write_text("old")
     warm = dataclasses.replace(TRIAL.robots[0], sensors=[Mount(name="warm", sensor=Thermometer())])
     for place in ("c", "kept"):
-        with pytest.raises(EpisodeError, match=r"sensor 'robot/warm' gives a Reading, which has no ROS message; let it give one of Scan"):
+        with pytest.raises(
+            EpisodeError, match=r"'robot/warm' gives a Reading, which has no ROS message; let it give one of Scan"
+        ):
             dataclasses.replace(TRIAL, robots=[warm]).run(out=tmp_path / place)
     assert os.listdir(tmp_path) == ["kept"]
     assert os.listdir(tmp_path / "kept") == ["episode.mcap"]
