@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import errno
 import os
 from collections.abc import Mapping, Sequence
@@ -11,6 +12,7 @@ from typing import Any
 
 from crowdbot.core import EpisodeError
 
+from .carried import carried
 from .contact_messages import pushes
 from .episode_file import CONTACTS, DIGEST, ENDING, FORMAT, MAP, METADATA, as_json, versions
 from .markers import KIND as MARKERS
@@ -21,6 +23,7 @@ from .readings import codec_of, said
 from .simulation import WALL, Frame
 from .tally import Tally
 from .tape import TapeWriter
+from .trial import Trial
 
 __all__ = ["Recorder"]
 
@@ -53,16 +56,25 @@ class Recorder:
         tally: of the run; it is told each instant before the recorder.
         origin: what the run branched from, as the metadata keeps it.
         begin: tick of the first instant.
+        earlier: the trials that it branched from, whose files it keeps too.
 
     Raises:
         InputError: the trial cannot be written as XML.
         EpisodeError: the file cannot be written.
     """
 
-    def __init__(self, path: Path, tally: Tally, origin: Sequence[Mapping[str, Any]] = (), begin: int = 0) -> None:
+    def __init__(
+        self,
+        path: Path,
+        tally: Tally,
+        origin: Sequence[Mapping[str, Any]] = (),
+        begin: int = 0,
+        earlier: Sequence[Trial] = (),
+    ) -> None:
         self.path, self.tally, self.origin, self.begin = path, tally, origin, begin
         self.trial, self.seed = tally.trial, tally.seed
         self.xml = self.trial.xml()
+        self.files = carried([self.trial, *earlier])
         self.messages = Messages()
         self.channels: dict[str, int] = {}
         self.made: list[Path] = []
@@ -91,6 +103,9 @@ class Recorder:
             raise EpisodeError(f"{self.path} cannot be written: {error.strerror}; give another place") from None
         self.tape = TapeWriter(self.path, "ros2", f"crowdbot {versions()['version']}")
         self.tape.metadata(METADATA, self._metadata())
+        for file, place in self.files:
+            if file.kept:
+                self.tape.attachment(file.name, place.read_bytes())
         return self
 
     def __exit__(
@@ -223,6 +238,7 @@ class Recorder:
             "step_ns": str(round(self.trial.step * 1e9)),
             "walls": as_json([ring.tolist() for ring in self.trial.stage.rings]),
             "robots": as_json(robots),
+            **({"files": as_json([dataclasses.asdict(file) for file, _ in self.files])} if self.files else {}),
             **({"origin": as_json(list(self.origin)), "begin": str(self.begin)} if self.origin else {}),
         }
 
