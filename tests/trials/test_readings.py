@@ -171,6 +171,9 @@ def test_pictures_are_images_with_their_lens(monkeypatch: pytest.MonkeyPatch) ->
     read = back(picture, None)
     same(read, picture, "picture")
     assert read.lens == lens  # type: ignore[attr-defined]
+    bare = dataclasses.replace(picture, hit=None)
+    assert "/labels" not in dict(said(make, Told(bare, None, "robot", "robot/eye")))
+    assert back(bare, None).hit is None  # type: ignore[attr-defined]
     ((parent, child, turn),) = picture_codec.frames("robot", "robot/eye")
     assert (parent, child) == ("robot/eye", "robot/eye_optical")
     assert np.allclose(turn.matrix[0], [[0, 0, 1], [-1, 0, 0], [0, -1, 0]])
@@ -249,12 +252,14 @@ def test_mounts_in_space_are_fixed_frames() -> None:
     from crowdbot.trials.reading_codec import mounted
 
     mount = types.SimpleNamespace(x=0.1, y=0.0, z=1.2, roll=0.0, pitch=0.4, heading=0.5)
-    rows = [("robot/base_link", "robot/eye", mounted(mount))]
-    (row,) = Messages().fixed(0, rows).transforms
+    robot = types.SimpleNamespace(placed=lambda one: (one.x, one.y, one.z, one.roll, one.pitch, one.heading))
+    (row,) = Messages().fixed(0, [("robot/base_link", "robot/eye", mounted(robot, mount))]).transforms
     turn = row.transform.rotation
     assert row.transform.translation.z == 1.2
     again = SpatialPose(np.zeros((1, 3)), np.array([[turn.w, turn.x, turn.y, turn.z]]))
     assert np.allclose(again.matrix, SpatialPose.of((0.0, 0.0, 0.0), 0.0, 0.4, 0.5).matrix)
+    plain = mounted(types.SimpleNamespace(), mount)
+    assert plain.position.tolist() == [[0.1, 0.0, 0.0]]
 
 
 def test_arrays_that_pretend_to_be_huge_are_refused() -> None:

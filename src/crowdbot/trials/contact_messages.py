@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -68,27 +68,28 @@ def pushes(make: Messages, now: int, frame: Any, names: Mapping[int, str]) -> It
         make: messages.
         now: simulated time [ns].
         frame: has ``forces`` and ``collisions`` when its world knows them.
-        names: of robots, by their numbers.
+        names: of robots, by their ids.
     """
-    forces = [_force(make, one, names) for one in getattr(frame, "forces", ())]
+    ids = frame.ids.tolist()
+
+    def called(party: Any) -> str:
+        kind, number = party
+        who = ids[number] if kind in ("robot", "person") else number
+        return {"robot": names.get(who, str(who)), "person": str(who), "wall": "wall"}.get(kind, f"{kind} {number}")
+
+    forces = [_force(make, one, called) for one in getattr(frame, "forces", ())]
     if forces:
         yield FORCES, make.make("crowdbot_msgs/msg/Forces", header=make.header(now), forces=forces)
-    collisions = [_collision(make, one, names) for one in getattr(frame, "collisions", ())]
+    collisions = [_collision(make, one, called) for one in getattr(frame, "collisions", ())]
     if collisions:
         yield COLLISIONS, make.make("crowdbot_msgs/msg/Collisions", header=make.header(now), collisions=collisions)
 
 
-def _called(party: Any, names: Mapping[int, str]) -> str:
-    kind, number = party
-    words = {"robot": names.get(number, str(number)), "person": str(number), "wall": "wall"}
-    return words.get(kind, f"{kind} {number}")
-
-
-def _force(make: Messages, one: Any, names: Mapping[int, str]) -> Any:
+def _force(make: Messages, one: Any, called: Callable[[Any], str]) -> Any:
     return make.make(
         "crowdbot_msgs/msg/Force",
-        first=_called(one.first, names),
-        second=_called(one.second, names),
+        first=called(one.first),
+        second=called(one.second),
         first_part=one.first_part,
         limb=one.limb,
         part=one.part,
@@ -99,13 +100,13 @@ def _force(make: Messages, one: Any, names: Mapping[int, str]) -> Any:
     )
 
 
-def _collision(make: Messages, one: Any, names: Mapping[int, str]) -> Any:
+def _collision(make: Messages, one: Any, called: Callable[[Any], str]) -> Any:
     words = ("cause", "limb", "part", "region", "steady_region")
     numbers = [name for name in Collided._fields if name not in ("first", "second", *words)]
     return make.make(
         "crowdbot_msgs/msg/Collision",
-        first=_called(one.first, names),
-        second=_called(one.second, names),
+        first=called(one.first),
+        second=called(one.second),
         **{name: str(getattr(one, name)) for name in words},
         **{name: float(getattr(one, name)) for name in numbers},
     )

@@ -117,7 +117,9 @@ def arrays_of(fields: Iterable[Any]) -> dict[str, Any]:
     return found
 
 
-def mounted(mount: Any) -> SpatialPose:
-    """Return where a sensor sits on its robot."""
-    place = (mount.x, mount.y, getattr(mount, "z", 0.0))
-    return SpatialPose.of(place, getattr(mount, "roll", 0.0), getattr(mount, "pitch", 0.0), mount.heading)
+def mounted(robot: Any, mount: Any) -> SpatialPose:
+    """Return where a sensor sits on its robot, which may know that from its own links."""
+    if hasattr(robot, "placed"):
+        x, y, z, roll, pitch, yaw = robot.placed(mount)
+        return SpatialPose.of((x, y, z), roll, pitch, yaw)
+    return SpatialPose.of((mount.x, mount.y, 0.0), yaw=mount.heading)

@@ -110,9 +110,12 @@ def _write_picture(make: Messages, told: Told) -> list[tuple[str, Any]]:
 
 
 def _read_picture(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str, Any]:
-    found = {"rgb": image_in(others["/image"])[None], "lens": lens_in(others["/camera_info"])}
     labels = others.get("/labels")
-    return found if labels is None else found | {"hit": image_in(labels).astype(np.int64)[None]}
+    return {
+        "rgb": image_in(others["/image"])[None],
+        "hit": None if labels is None else image_in(labels).astype(np.int64)[None],
+        "lens": lens_in(others["/camera_info"]),
+    }
 
 
 def _frames(robot: str, topic: str) -> list[tuple[str, str, SpatialPose]]:
@@ -122,4 +125,4 @@ def _frames(robot: str, topic: str) -> list[tuple[str, str, SpatialPose]]:
 
 depth_codec = Codec(_write_depth, _read_depth, rest=("part",), frames=_frames)
 picture_codec = Codec(_write_picture, _read_picture, frames=_frames)
-"""For readings with ``rgb`` ``[E, H, W, 3]`` uint8 and a ``lens``; ``hit`` ``[E, H, W]`` if they have one."""
+"""For readings with ``rgb`` ``[E, H, W, 3]`` uint8 and a ``lens``; ``hit`` ``[E, H, W]`` or None."""

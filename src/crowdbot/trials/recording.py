@@ -87,7 +87,7 @@ class Recorder:
         self._write_due = start
         self._names = {self.trial.people + k: robot.name for k, robot in enumerate(self.trial.robots)}
         self._mounts = [
-            (f"{robot.name}/base_link", f"{robot.name}/{mount.name}", mounted(mount))
+            (f"{robot.name}/base_link", f"{robot.name}/{mount.name}", mounted(robot, mount))
             for robot in self.trial.robots
             for mount in robot.sensors
         ]
