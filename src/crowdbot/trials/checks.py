@@ -99,8 +99,10 @@ def _periods(checked: Checked) -> Problems:
         periods.append((robot, "control-period", robot.control_period))
         carried = robot.usual["sensors"]
         for mount in robot.sensors:
+            if robot.rates == "nearest" and mount in carried:
+                continue
             thing = robot if mount in carried else mount
-            whose = f"sensor {mount.name!r} of its type: " if mount in carried else ""
+            whose = f'sensor {mount.name!r} of its type (rates="nearest" lets it fit): ' if mount in carried else ""
             periods.append((thing, f"{whose}rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate))
             if mount.sensor.delay > 0.0:
                 periods.append((thing, f"{whose}delay", mount.sensor.delay))

@@ -34,6 +34,7 @@ from crowdbot.sensors import (
     Inertial,
     Infrared,
     Odometry,
+    Picture,
     Reading,
     Scan,
     Touch,
@@ -42,7 +43,7 @@ from crowdbot.sensors import (
 
 from .reading_clouds import cloud_codec, touch_codec
 from .reading_codec import Codec, Told, arrays_of, packed
-from .reading_images import depth_codec
+from .reading_images import depth_codec, picture_codec
 
 if TYPE_CHECKING:
     from .messages import Messages
@@ -243,6 +244,7 @@ CODECS: dict[type[Reading], Codec] = {
     DepthImage: depth_codec,
     Inertial: Codec(_write_inertial, _read_inertial, rest=("velocity", "acceleration_bias", "turn_bias")),
     Odometry: Codec(_write_odometry, _read_odometry, rest=("estimate", "travelled", "ticks"), frames=_odometry_frames),
+    Picture: picture_codec,
     Touch: touch_codec,
     Tracked: Codec(_write_tracked, _read_tracked, rest=("present",)),
 }

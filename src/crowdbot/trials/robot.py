@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot import world
-from crowdbot.core import InputError, RobotError
+from crowdbot.core import Clock, InputError, RobotError
 from crowdbot.core.errors import did_you_mean
 from crowdbot.core.pose import MOUNT_HEIGHT
 from crowdbot.navigation import Navigator
-from crowdbot.sensors import Sensor
+from crowdbot.sensors import Schedule, Sensor
 from crowdbot.world import Drive, builtin_robots
 from crowdbot.world.urdf.transforms import frame, roll_pitch_yaw
 
@@ -119,6 +119,11 @@ class Robot:
         at_most=10.0,
     )  # fmt: skip
     equipped: bool = attribute(True, about="whether it carries the sensors of its type")
+    rates: str = attribute(
+        "exact",
+        about="whether sensors of its type must fit the time step, or measure as often as it allows",
+        choices=("exact", "nearest"),
+    )
     visible: bool = attribute(True, about="whether the crowd reacts to it")
     control_period: float = attribute(0.1, about="time between two commands", unit="s", above=0.0)
     goal: Goal = child(about="where it has to go")
@@ -195,6 +200,17 @@ class Robot:
         pitch = math.atan2(-found[2, 0], math.hypot(found[0, 0], found[1, 0]))
         roll, yaw = math.atan2(found[2, 1], found[2, 2]), math.atan2(found[1, 0], found[0, 0])
         return x, y, z, round(roll, 12), round(pitch, 12), round(yaw, 12)
+
+    def schedule(self, mount: Mount, clock: Clock) -> Schedule:
+        """Return when a sensor measures; see the attribute ``rates``.
+
+        Raises:
+            InputError: its period or its delay is not a whole number of time steps.
+        """
+        if self.rates == "exact" or mount not in self.usual["sensors"]:
+            return Schedule.of(mount.sensor, clock)
+        period, delay = 1.0 / mount.sensor.rate, mount.sensor.delay
+        return Schedule(max(1, round(period / clock.dt)), round(delay / clock.dt))
 
     @property
     def position(self) -> tuple[float, float]:

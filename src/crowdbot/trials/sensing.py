@@ -125,7 +125,7 @@ def probes_of(
         probe = Probe(
             dataclasses.replace(mount, sensor=dataclasses.replace(sensor, **more)) if more else mount,
             robot.placed(mount),
-            Schedule.of(sensor, clock),
+            robot.schedule(mount, clock),
             stream(seed, "sensor", robot.name, mount.name),
             spatial(robot, mount, bodies),
         )
