@@ -32,6 +32,7 @@ SENSORS: dict[str, Sensor] = {
     "DepthImage": sensors.DepthCamera(width=12, height=9),
     "Inertial": sensors.IMU(rate=100.0, acceleration_noise=0.01, turn_offset=0.1),
     "Odometry": sensors.WheelOdometry(slip=0.01, ticks_per_turn=500),
+    "Picture": sensors.RGBCamera(width=12, height=9, segmentation=True),
     "Touch": sensors.Bumper(radius=0.9),
     "Tracked": sensors.GroundTruthPeople(),
 }
