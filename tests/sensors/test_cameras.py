@@ -6,8 +6,20 @@ import numpy as np
 import pytest
 
 from crowdbot.core import FreeClock, InputError, Pose, Scene, SpatialPose, UnknownName, plug, stream
-from crowdbot.sensors import PRESETS, DepthCamera, Lens, Lidar2D, Lidar3D, Quantised, Reading, Schedule, Waiting, preset
-from crowdbot.sensors.camera import RGBCamera, distorted, pixel_directions, stereo_depth
+from crowdbot.sensors import (
+    PRESETS,
+    DepthCamera,
+    Lens,
+    Lidar2D,
+    Lidar3D,
+    Quantised,
+    Reading,
+    RGBCamera,
+    Schedule,
+    Waiting,
+    preset,
+)
+from crowdbot.sensors.camera import distorted, pixel_directions, stereo_depth
 
 BENT = (-0.28, 0.09, 0.0008, -0.0004, -0.01)
 
@@ -68,9 +80,10 @@ def test_images_are_bent_as_rays_are():
     by_image = distorted(ideal.depth, bent.lens, fill=np.nan)
     same = np.isclose(by_rays.depth, by_image, atol=0.15) | np.isnan(by_image)
     assert np.mean(same) > 0.97
-    colours = RGBCamera(Lens.of(50, 20, 1.0)).image(Painter(), pose)
+    colours = RGBCamera(width=50, height=20, field_of_view=1.0).measure(scene, pose, source=Painter()).rgb
     np.testing.assert_array_equal(colours[0, 5, :, 0], np.arange(50))
-    shrunk = RGBCamera(Lens.of(50, 20, 1.0, (0.3, 0.0, 0.0, 0.0, 0.0))).image(Painter(), pose)
+    shrunk = RGBCamera(width=50, height=20, field_of_view=1.0, distortion=(0.3, 0.0, 0.0, 0.0, 0.0))
+    shrunk = shrunk.measure(scene, pose, source=Painter()).rgb
     assert shrunk.dtype == np.uint8
     assert shrunk[0, 10, 45, 0] < 45
 

@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 import pytest
+from space_trials import LEAN
 from trial_texts import FLOW, GOOD, changed, written
 
 from crowdbot.core import TrialError
@@ -100,7 +101,7 @@ def test_a_trial_that_would_fill_the_memory_is_refused() -> None:
     assert "more than 100000000 places together" in refused(text)
 
 
-@pytest.mark.parametrize(("good", "count"), [(GOOD, 400), (FLOW, 150)], ids=["good", "flow"])
+@pytest.mark.parametrize(("good", "count"), [(GOOD, 400), (FLOW, 150), (LEAN, 100)], ids=["good", "flow", "room"])
 def test_mutated_files_are_read_or_refused_in_a_sentence(good: str, count: int) -> None:
     chance = random.Random(1)
     pool = ['"', "<", ">", "/", "&", "-", "nan", "1e999", "\x00", "é", " ", "\n", "robot", "zone", "uniform(", "9" * 30]

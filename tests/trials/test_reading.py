@@ -16,15 +16,19 @@ from crowdbot.models import ORCA
 from crowdbot.navigation import Straight
 from crowdbot.sensors import Gaussian, Lidar2D
 from crowdbot.trials import (
+    Camera,
+    Cube,
     Distribution,
     End,
     Goal,
+    Light,
     Mount,
     Obstacle,
     Recording,
     Robot,
     Spawner,
     Stage,
+    Table,
     Trial,
     Wall,
     builtin_trials,
@@ -79,6 +83,20 @@ def trials(draw: st.DrawFn) -> Trial:
         navigator=Straight(),
         sensors=[Mount(sensor=Lidar2D(rays=draw(st.integers(1, 99)), noise=(Gaussian(low),)), heading=draw(numbers))],
     )
+    typed = Robot(
+        name=draw(st.from_regex(r"\A[A-Za-z][A-Za-z0-9_]{0,6}\Z")),
+        type=draw(st.sampled_from(["pepper", "turtlebot2", "qolo"])),
+        rates="nearest",
+        equipped=draw(st.booleans()),
+        x=draw(numbers),
+        y=draw(numbers),
+        goal=Goal(draw(numbers), draw(numbers)),
+        latency=draw(st.none() | st.floats(0.0, 1.0)),
+        radius=draw(st.none() | st.floats(0.1, 1.0)),
+        drive=draw(st.none() | st.just(DifferentialDrive(max_speed=low))),
+        navigator=Straight(),
+        sensors=[Mount(name="mine", sensor=Lidar2D(), z=draw(st.none() | numbers), pitch=low, link="base_link")],
+    )
     return Trial(
         name=draw(st.from_regex(r"\A[a-z&<\"' ]{0,8}x\Z").map(lambda text: text.strip())),
         about=draw(words),
@@ -89,9 +107,25 @@ def trials(draw: st.DrawFn) -> Trial:
             walkable=draw(st.sampled_from([(), [(-99, -99), (99, -99), (99, 99), (-99, 99)]])),
             walls=[Wall([(corner[0], 60.0 + 1e-9), (0.1, 77)])],
             obstacles=[Obstacle([(60, 60), (60 + low, 60), (60, 61)])],
+            props=draw(st.sampled_from([(), (Table(x=70, y=-70, length=1.0 + low), Cube(x=80, y=-70, fixed=True))])),
+            lights=[Light(x=corner[0], y=0.0, brightness=low)],
         ),
-        spawners=[Spawner(count=draw(st.integers(0, 3)), zone=zone, goal=zone, speed=distribution)],
-        robots=draw(st.sampled_from([[], [robot]])),
+        cameras=[
+            Camera(name="look", x=corner[0], heading=corner[1], field_of_view=low, width=draw(st.integers(16, 99)))
+        ],
+        world=draw(st.sampled_from(["planar", "physics"])),
+        bodies=draw(st.sampled_from([None, "discs", "limbs", "skins"])),
+        spawners=[
+            Spawner(
+                count=draw(st.integers(0, 3)),
+                zone=zone,
+                goal=zone,
+                speed=distribution,
+                body=draw(st.sampled_from(["", "child man-20", "mannequin"])),
+                activity=draw(st.sampled_from(["", "talk", "walk  phone"])),
+            )
+        ],
+        robots=draw(st.sampled_from([[], [robot], [typed]])),
         end=End(draw(st.booleans()), draw(st.booleans())),
     )
 

@@ -53,7 +53,7 @@ def test_the_file_is_the_episode(recorded: tuple[Path, Episode]) -> None:
     assert len(read.scans) == len(episode.scans) == 41
     for one, two in zip(read.scans, episode.scans, strict=True):
         assert one.time == two.time
-        assert np.allclose(one.pose, two.pose, rtol=0, atol=1e-12)
+        assert one.pose == two.pose
         assert np.array_equal(one.ranges, two.ranges.astype(np.float32).astype(np.float64))
         assert np.array_equal(one.hit, two.hit)
         assert np.allclose(one.angles, two.angles, atol=1e-5)
@@ -66,6 +66,7 @@ def test_the_file_is_the_episode(recorded: tuple[Path, Episode]) -> None:
 def expected(episode: Episode) -> dict[str, int]:
     count = len(episode.times)
     topics = dict.fromkeys(("/clock", "/tf", "/people", "/robot/odom", "/robot/cmd_vel", "/robot/scan"), count)
+    topics |= {"/tf_static": count, "/robot/scan/reading": count}
     topics["/crowdbot/digest"] = count
     return topics | {"/crowd/markers": 9}
 
@@ -91,7 +92,11 @@ def test_rosbags_opens_the_file(recorded: tuple[Path, Episode]) -> None:
                 assert message.ranges.shape == (90,)
             if connection.topic == "/tf":
                 frames = [(t.header.frame_id, t.child_frame_id) for t in message.transforms]
-                assert frames == [("map", "robot/base_link"), ("robot/base_link", "robot/scan")]
+                assert frames == [("map", "robot/base_link")]
+            if connection.topic == "/tf_static":
+                (mount,) = message.transforms
+                assert (mount.header.frame_id, mount.child_frame_id) == ("robot/base_link", "robot/scan")
+                assert mount.transform.translation.x == 0.1
             if connection.topic == "/crowd/markers":
                 assert Counter(marker.ns for marker in message.markers) == {
                     "clear": 1, "people": 4, "robots": 1, "goals": 1, "walls": 1,
@@ -199,7 +204,9 @@ def test_nothing_is_left_behind_before_the_first_instant(tmp_path: Path) -> None
     (tmp_path / "kept" / "episode.mcap").write_text("old")
     warm = dataclasses.replace(TRIAL.robots[0], sensors=[Mount(name="warm", sensor=Thermometer())])
     for place in ("c", "kept"):
-        with pytest.raises(EpisodeError, match=r"sensor 'robot/warm' gives a Reading, which has no ROS message yet"):
+        with pytest.raises(
+            EpisodeError, match=r"'robot/warm' gives a Reading, which has no ROS message; let it give one of Scan"
+        ):
             dataclasses.replace(TRIAL, robots=[warm]).run(out=tmp_path / place)
     assert os.listdir(tmp_path) == ["kept"]
     assert os.listdir(tmp_path / "kept") == ["episode.mcap"]

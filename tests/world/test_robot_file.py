@@ -9,7 +9,7 @@ from robot_texts import BALL, joint, link, robot
 
 from crowdbot.cli import main
 from crowdbot.core import InputError, RobotError
-from crowdbot.sensors import Gaussian, Lidar2D
+from crowdbot.sensors import Gaussian, Lidar2D, preset
 from crowdbot.world import AckermannDrive, Robot, SensorMount, VelocityServo, Wheel
 from crowdbot.world.urdf import read_urdf
 
@@ -210,3 +210,36 @@ def test_check_takes_package_folders(capsys, tmp_path, urdf):
     assert "meshes  1 read" in capsys.readouterr().out
     assert main(["check", str(path), "--package", "parts"]) == 2
     assert "must be NAME=FOLDER" in capsys.readouterr().err
+
+
+def test_a_preset_names_a_product_and_attributes_change_it(tmp_path):
+    text = '<sensor name="top" preset="velodyne-vlp-16" link="head" z="0.1" columns="900" noise="gaussian(0.03)"/>'
+    top = Robot.load(folder(tmp_path, DRIVE, text)).mount("top")
+    assert top.sensor == dataclasses.replace(preset("velodyne-vlp-16"), columns=900, noise=Gaussian(0.03))
+    assert (top.link, top.z) == ("head", 0.1)
+
+
+@pytest.mark.parametrize(
+    ("text", "match"),
+    [
+        (
+            '<sensor name="a" preset="velodyne-16"/>',
+            "unknown sensor preset 'velodyne-16', did you mean 'velodyne-vlp-16'",
+        ),
+        ('<sensor name="a" preset="velodyne-vlp-16" type="lidar-3d"/>', "has a preset and a type; one says what it is"),
+        ('<sensor name="a" preset="velodyne-vlp-16" colums="9"/>', "colums"),
+        ('<sensor name="a" preset="velodyne-vlp-16" columns="-9"/>', "columns"),
+        ('<wheel joint="axle" radius="0.1" driven="perhaps"/>', 'driven="perhaps" must be true or false'),
+        ('<wheel joint="axle" radius="0.1" driven="false"/>', "'axle' neither drives nor steers"),
+        ('<wheel joint="axle" radius="0.1" steering="nek"/>', "the steering joint 'nek' is no joint that turns"),
+    ],
+)
+def test_wrong_presets_and_wheels_are_refused_in_one_sentence(tmp_path, text, match):
+    with pytest.raises(RobotError, match=match) as caught:
+        Robot.load(folder(tmp_path, DRIVE, text))
+    assert len(caught.value.problems) == 1
+
+
+def test_wheels_that_steer_are_read(tmp_path):
+    text = '<wheel joint="axle" radius="0.1" steering="neck" driven="false"/>'
+    assert Robot.load(folder(tmp_path, DRIVE, text)).wheels == (Wheel("axle", 0.1, "neck", driven=False),)

@@ -1,17 +1,21 @@
 """The robots that ship: on their wheels, as large and heavy as they say, and as fast as commanded."""
 
 import functools
+from importlib import resources
 
 import mujoco
 import numpy as np
 import pytest
+from physics_worlds import facing
 
 from crowdbot.core import Pose, Scene, Twist, stream
 from crowdbot.models import ORCA
+from crowdbot.sensors import WheelOdometry
 from crowdbot.world import DifferentialDrive, Omnidirectional, PlanarWorld, Robot, builtin_robots
 from crowdbot.world.urdf import BaseServo, mjcf
 
 NAMES = builtin_robots()
+ASSETS = resources.files("crowdbot").joinpath("assets", "robots")
 PUBLISHED = {  # mass [kg], height [m], and widest extent [m] with the tolerance; see the README files
     "cuybot": (100.0, 1.28, 0.573),
     "differential": (18.3, 0.355, 0.5),
@@ -52,10 +56,68 @@ def test_they_stand_on_the_ground_and_see_from_inside_their_height(name):
     assert robot.mounts
     for mount in robot.mounts:
         matrix = robot.mounted(mount.name)
-        assert 0.1 < matrix[2, 3] <= robot.height + 0.05
+        assert 0.0 <= matrix[2, 3] <= robot.height + 0.05
         x, y, heading = robot.planar_mount(mount.name)
-        pose = Pose.of((1.0, 2.0), 0.5).mounted(x, y, heading)
-        assert mount.sensor.measure(Scene.of([[9.0, 9.0]]), pose, stream(0, "scan")).ranges.shape[0] == 1
+        pose = Pose.of((1.0, 2.0), 0.5)
+        flat, deep = pose.mounted(x, y, heading), robot.sensor_pose(mount.name, pose)
+        assert deep.position[:, :2] == pytest.approx(flat.position)
+        scene = Scene.of([[9.0, 9.0]])
+        for place in (flat, deep):
+            assert mount.sensor.measure(scene, place, stream(0, "scan")).pose is place
+
+
+OWN = {  # what every robot senses with: names of its mounts by kind
+    "cuybot": {"Lidar2D": 1, "WheelOdometry": 1, "DepthCamera": 1},
+    "differential": {"Lidar2D": 1, "WheelOdometry": 1, "Bumper": 1},
+    "pepper": {"Lidar2D": 5, "Ultrasound": 2, "DepthCamera": 1, "IMU": 1, "Bumper": 1, "WheelOdometry": 1},
+    "qolo": {"Lidar2D": 2, "Lidar3D": 2, "DepthCamera": 1, "WheelOdometry": 1, "Bumper": 1},
+    "turtlebot2": {"Lidar2D": 1, "DepthCamera": 1, "WheelOdometry": 1, "IMU": 1, "Bumper": 1, "Infrared": 3},
+    "wheelchair": {"Lidar2D": 1, "WheelOdometry": 1, "IMU": 1},
+}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_robot_has_its_own_sensors_and_says_where_they_are_from(name):
+    robot = load(name)
+    kinds = [type(mount.sensor).__name__ for mount in robot.mounts]
+    assert {kind: kinds.count(kind) for kind in kinds} == OWN[name]
+    text = (ASSETS / name / "README.md").read_text(encoding="utf-8")
+    for mount in robot.mounts:
+        assert f"`{mount.name}`" in text
+    for mount in robot.mounts:
+        if isinstance(mount.sensor, WheelOdometry) and robot.base == "wheels":
+            speeds = robot.wheel_speeds(Twist(0.0, 1.0))
+            assert max(speeds.values()) * mount.sensor.wheel_radius == pytest.approx(0.5 * mount.sensor.track)
+            assert {wheel.radius for wheel in robot.wheels} == {mount.sensor.wheel_radius}
+
+
+def test_cliff_sensors_see_the_floor_and_bumpers_what_touches():
+    robot = load("turtlebot2")
+    pose = Pose.of((0.0, 0.0), 0.0)
+    free, near = Scene.of([[9.0, 9.0]]), Scene.of([[0.42, 0.0]], radius=0.25)
+    for side in ("left", "centre", "right"):
+        reading = robot.mount(f"cliff_{side}").sensor.measure(free, robot.sensor_pose(f"cliff_{side}", pose))
+        assert reading.ranges[0] == pytest.approx(0.0316)
+    bumper, place = robot.mount("bumper").sensor, robot.sensor_pose("bumper", pose)
+    assert not bumper.measure(free, place).pressed.any()
+    assert bumper.measure(near, place).pressed.tolist() == [[True, False, False, False, False, False]]
+
+
+def test_wheels_measure_what_was_driven_and_lasers_see_bodies_in_the_physics_world():
+    """Sensors of a robot in the physics world: odometry within 1 %, the laser meets a leg where it is."""
+    world = facing(load("turtlebot2"), gap=2.0, dt=0.1)
+    wheels = world.chassis[0].robot.mount("odometry").sensor
+    last = wheels.measure(world.scene, world.pose(0))
+    for _ in range(20):
+        world.step({0: Twist(0.4, 0.0)})
+        last = wheels.measure(world.scene, world.pose(0), last=last)
+    assert last.estimate.position[0] == pytest.approx(world.pose(0).position[0], abs=0.01)
+    laser = world.chassis[0].robot.mount("laser").sensor
+    scan = laser.measure(world.seen().without(0), world.chassis[0].mounted("laser"))
+    met = scan.hit[0] == 1
+    assert 2 <= met.sum() < 60
+    away = world.scene.position[0, 1, 0] - world.scene.position[0, 0, 0]
+    assert np.abs(scan.ranges[0, met] - away).max() < 0.4
 
 
 def resting(robot):

@@ -43,8 +43,17 @@ def catalogue(kind: str | None = None) -> dict[str, dict[str, str]]:
 
     >>> "orca" in catalogue("models")["models"]
     True
+    >>> "robot-speed" in catalogue("experiments")["experiments"]
+    True
     """
-    words = {"trials": _trials, "robots": _robots, "humans": _humans, "protocols": _protocols, "formats": _formats}
+    words = {
+        "trials": _trials,
+        "experiments": _experiments,
+        "robots": _robots,
+        "humans": _humans,
+        "protocols": _protocols,
+        "formats": _formats,
+    }
     known = [*KINDS, *words]
     if kind is not None and kind not in known:
         raise UnknownName("kind", kind, known)
@@ -107,6 +116,12 @@ def _trials() -> dict[str, str]:
     from crowdbot.trials import builtin_trials, load_trial
 
     return {name: load_trial(name).about for name in builtin_trials()}
+
+
+def _experiments() -> dict[str, str]:
+    from crowdbot.trials.experiment import builtin_experiments, load_experiment
+
+    return {name: load_experiment(name).about for name in builtin_experiments()}
 
 
 def _robots() -> dict[str, str]:

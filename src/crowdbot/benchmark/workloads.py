@@ -89,6 +89,8 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
     if sys.platform != "win32":  # which does not tell a process its peak
         found["orca-memory"] = _memory
     found |= {"orca-alone": _alone, "lidar-720": _lidar, "trial": _trial}
+    found |= {f"physics-{people}": functools.partial(_physics, people) for people in (50, 200)}
+    found["camera-50"] = _camera
     found["lidar2d-1080-limbs"] = _rays_of_limbs
     found["lidar3d-16x1800-limbs"] = functools.partial(_rays_of_limbs, rings=16)
     for predictor in ("ConstantVelocity", "Kalman", "Simulated"):
@@ -224,6 +226,47 @@ def _predictor(name: str) -> Measurement:
     past, _ = load_trial("crossing-flows").run().tracks(0.4).windows(8, 12)
     live = "2.5 windows/s of a live stream"
     return Measurement("windows/s", len(past), lambda: predictor.predict(past, 12), live, 2.5)
+
+
+def _physics(people: int) -> Measurement:
+    """Time one robot with a laser and its odometry among people, in steps of 5 ms."""
+    from crowdbot.core import Twist
+    from crowdbot.sensors import Lidar2D
+
+    world, robot = _bodies(people)
+    laser = Lidar2D(rays=1080)
+
+    def work() -> None:
+        for _ in range(20):
+            scene = world.step({robot: Twist(0.5, 0.3)})
+            laser.measure(scene.without(robot), world.pose(robot))
+
+    return Measurement("simulated s/s", 20 * DT, work, "real time", 1.0)
+
+
+def _camera() -> Measurement:
+    """Time images of 640 x 480 with depth."""
+    from crowdbot.world.physics import Camera
+
+    world, _ = _bodies(50)
+    camera = Camera((-2.0, -2.0, 3.0), (5.0, 5.0, 0.8), detail=2)
+    return Measurement("images/s", 1, lambda: world.render(camera, depth=True), "a camera of 10 Hz", 10.0)
+
+
+def _bodies(people: int) -> tuple[Any, int]:
+    """Return a physics world with a robot in the middle of a crowd, and the agent that it is."""
+    from crowdbot.models import ORCA
+    from crowdbot.world import Robot
+    from crowdbot.world.physics import PhysicsWorld
+
+    robot, some = Robot.load("differential"), crowd(people)
+    middle = some.position[0].mean(axis=0)
+    scene = Scene.of(
+        np.vstack([some.position[0], middle]), goal=np.vstack([some.goal[0], middle]), max_speed=1.8,
+        radius=np.append(np.full(people, 0.25), robot.radius), external=np.append(np.zeros(people, dtype=bool), True),
+        active=np.append(np.hypot(*(some.position[0] - middle).T) > robot.radius + 0.5, True),
+    )  # fmt: skip
+    return PhysicsWorld(scene, ORCA(), {people: robot}, DT), people
 
 
 def _trial() -> Measurement:

@@ -13,6 +13,7 @@ __all__ = ["main"]
 COMMANDS = {
     "demo": "the main job on built-in input, then a report",
     "run": "run one trial and record it",
+    "render": "make an image or a film of a trial",
     "replay": "run a recorded episode again and check its digest",
     "branch": "go on from an instant of a recorded episode, with other values",
     "repair": "give the file of a run that was killed its end and its index",

@@ -25,7 +25,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     add("--seed", type=int, help="seed of new chance from then on (default: chance goes on)")
     add("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
-    add("--trust", action="store_true", help="let the trial load code from outside its own folder")
+    add("--trust", action="store_true", help="run code that the episode brings, or that lies outside its folder")
     add_json(parser)
 
 

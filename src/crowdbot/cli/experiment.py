@@ -30,7 +30,16 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     new = _verb(verbs, "new", "write a small experiment to begin with")
     new.add_argument("folder", metavar="DIR", type=Path, help="a folder that is not there yet")
-    new.add_argument("--like", default="robot-speed", metavar="NAME", help="a built-in experiment")
+    begin = new.add_mutually_exclusive_group()
+    begin.add_argument("--like", default="robot-speed", metavar="NAME", help="a built-in experiment")
+    begin.add_argument(
+        "--import",
+        dest="original",
+        type=Path,
+        metavar="FILE",
+        help="a configuration or an order file of the CrowdBot simulator of 2021",
+    )
+    new.add_argument("--participant", type=int, metavar="N", help="whose order is imported (default: as configured)")
     for command in (order, summary, new):
         add_json(command)
 
@@ -185,17 +194,45 @@ def _new(options: argparse.Namespace) -> int:
     from crowdbot.trials.experiment import builtin_experiments
 
     known = builtin_experiments()
-    if options.like not in known:
+    if options.original is None and options.like not in known:
         raise UnknownName("experiment", options.like, known)
     if options.folder.exists():
         raise InputError(f"{options.folder} is there already; give a folder that is not there yet")
+    left_out: tuple[str, ...] = ()
     try:
-        shutil.copytree(known[options.like], options.folder)
+        if options.original is not None:
+            left_out = _imported(options)
+        else:
+            shutil.copytree(known[options.like], options.folder)
     except OSError as error:
         raise InputError(f"{options.folder} cannot be written: {error.strerror or error}") from None
     files = sorted(path.name for path in options.folder.iterdir())
     if options.json:
-        print_json({"folder": str(options.folder), "files": files})
-    else:
-        print(f"{options.folder}: {', '.join(files)}")
+        print_json({"folder": str(options.folder), "files": files, "left_out": list(left_out)})
+        return 0
+    print(f"{options.folder}: {', '.join(files)}")
+    if left_out:
+        print("not carried over:")
+    for sentence in left_out:
+        print(f"  - {sentence}")
     return 0
+
+
+def _imported(options: argparse.Namespace) -> tuple[str, ...]:
+    """Write an experiment of the original simulator with its trials, and return what is left out and to mend."""
+    from crowdbot.core import TrialError
+    from crowdbot.trials.experiment import import_experiment
+    from crowdbot.trials.experiment.loading import FILE
+
+    done = import_experiment(options.original, participant=options.participant)
+    texts = {name: trial.xml() for name, trial in done.trials} | {FILE: done.experiment.xml()}
+    options.folder.mkdir(parents=True)
+    for name, text in texts.items():
+        (options.folder / name).write_text(text, encoding="utf-8")
+    mend: list[str] = []
+    for name, trial in done.trials:
+        try:
+            trial.check()
+        except TrialError as error:
+            mend += [f"to mend in {name}: {sentence}" for sentence in error.problems]
+    return (*done.left_out, *mend)

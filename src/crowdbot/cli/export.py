@@ -13,7 +13,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("episode", metavar="EPISODE.mcap", type=Path)
     parser.add_argument("--to", type=Path, required=True, metavar="FILE", help="name that ends in .parquet or .csv")
     parser.add_argument(
-        "--table", default="people", metavar="NAME", help="people (robots too), robots, scans or contacts"
+        "--table",
+        default="people",
+        metavar="NAME",
+        help="people (robots too), robots, contacts, forces, collisions; of sensors: scans, points, ranges, images,"
+        " inertial, odometry, bumpers, tracked",
     )
     add_json(parser)
 

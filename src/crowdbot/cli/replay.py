@@ -11,7 +11,9 @@ from .output import add_json, print_json, progress
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument("episode", metavar="EPISODE.mcap", type=Path)
-    parser.add_argument("--trust", action="store_true", help="let the trial load code from outside its own folder")
+    parser.add_argument(
+        "--trust", action="store_true", help="run code that the episode brings, or that lies outside its folder"
+    )
     add_json(parser)
 
 

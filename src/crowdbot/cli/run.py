@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .output import add_json, number, print_json, print_metrics, print_table, progress
-from .settings import add_settings, chosen, settings
+from .settings import add_settings, add_world, chosen, settings
 
 if TYPE_CHECKING:
     from crowdbot.trials import Summary
@@ -21,6 +21,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
     parser.add_argument("--pace", type=float, metavar="X", help="X times real time (default: as fast as it can)")
     parser.add_argument("--trust", action="store_true", help="let the trial load code from outside its own folder")
+    add_world(parser)
     add_settings(parser)
     parser.add_argument("--variant", type=int, metavar="N", help="of a trial with sweeps: which one, from 1")
     add_json(parser)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
-__all__ = ["add_settings", "chosen", "settings"]
+__all__ = ["add_settings", "add_world", "chosen", "settings"]
 
 
 def add_settings(parser: argparse._ActionsContainer) -> None:
@@ -20,6 +20,15 @@ def add_settings(parser: argparse._ActionsContainer) -> None:
         default=[],
         metavar="NAME=VALUE",
         help="a parameter of a built-in trial (density=0.5), or a value by its path (spawner[1]/count=20); repeatable",
+    )
+
+
+def add_world(parser: argparse._ActionsContainer) -> None:
+    """Add the option ``--world``."""
+    parser.add_argument(
+        "--world",
+        choices=("planar", "physics"),
+        help="discs in the plane, or bodies with forces between them (default: the trial's own)",
     )
 
 
@@ -41,6 +50,11 @@ def settings(options: argparse.Namespace) -> dict[str, str]:
         if name.strip() in ("source", "trust"):
             raise InputError(f"--set {name.strip()}: no trial has such a parameter")
         found[name.strip()] = value.strip()
+    world = getattr(options, "world", None)
+    if world is not None:
+        if "world" in found:
+            raise InputError(f"--world {world} and --set world={found['world']} are both given; leave one out")
+        found["world"] = world
     return found
 
 

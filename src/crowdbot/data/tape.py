@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import BinaryIO, NamedTuple
 
-__all__ = ["MAGIC", "Heard", "Kind", "Tape", "TapeError", "Topic", "is_whole"]
+__all__ = ["MAGIC", "Heard", "Kind", "Tape", "TapeError", "Topic", "attachment", "is_whole"]
 
 MAGIC = b"\x89MCAP0\r\n"
 LARGEST = 1 << 30
@@ -23,7 +23,7 @@ class Kind:
     """Opcodes of records."""
 
     HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX = 1, 2, 3, 4, 5, 6, 7
-    METADATA, DATA_END = 12, 15
+    ATTACHMENT, METADATA, DATA_END = 9, 12, 15
 
 
 class TapeError(ValueError):
@@ -144,6 +144,24 @@ class Tape:
             return Heard(self.topics[number], stamp, body[22:])
         except (struct.error, KeyError):
             raise TapeError(f"the message at byte {self.end} is broken") from None
+
+
+def attachment(body: bytes) -> tuple[str, bytes]:
+    """Return name and content of an attachment record.
+
+    Raises:
+        TapeError: it is broken.
+    """
+    try:
+        name, place = _text(body, 16)
+        _, place = _text(body, place)
+        (length,) = struct.unpack_from("<Q", body, place)
+        (crc,) = struct.unpack_from("<I", body, place + 8 + length)
+    except (struct.error, UnicodeDecodeError, OverflowError) as error:
+        raise TapeError(f"an attachment is broken: {error}") from None
+    if crc not in (0, zlib.crc32(body[:-4])):
+        raise TapeError(f"the checksum of the attachment {name[:80]!r} is wrong")
+    return name, body[place + 8 : place + 8 + length]
 
 
 def is_whole(stream: BinaryIO) -> bool:

@@ -11,6 +11,7 @@ from .lidar3d import Cloud, Lidar3D
 from .noise import Dropout, Gaussian, Noise, Offset, Peak, Quantised, disturbed
 from .odometry import Odometry, WheelOdometry
 from .people import GroundTruthPeople, Tracked
+from .picture import Picture, RGBCamera
 from .presets import PRESETS, Preset, preset
 from .sensor import Reading, Sensor
 from .timing import Schedule, Waiting
@@ -37,8 +38,10 @@ __all__ = [
     "Odometry",
     "Offset",
     "Peak",
+    "Picture",
     "Preset",
     "Quantised",
+    "RGBCamera",
     "Reading",
     "Scan",
     "Schedule",

@@ -14,7 +14,7 @@ from crowdbot.core import InputError, SpatialPose
 
 from .noise import Randomness, normals
 
-__all__ = ["ImageSource", "Lens", "RGBCamera", "distorted", "pixel_directions", "stereo_depth"]
+__all__ = ["ImageSource", "Lens", "distorted", "pixel_directions", "stereo_depth"]
 
 Floats = NDArray[np.float64]
 
@@ -95,25 +95,6 @@ class Lens:
         """Return where the pixels look: right and down ``[H, W]`` at distance 1 ahead."""
         column, row = np.meshgrid(np.arange(self.width, dtype=np.float64), np.arange(self.height, dtype=np.float64))
         return self.straightened(np.asarray((column - self.cx) / self.fx), np.asarray((row - self.cy) / self.fy))
-
-
-@dataclass(frozen=True)
-class RGBCamera:
-    """A colour camera: its lens, rate and limits of view. It shows what an :class:`ImageSource` renders.
-
-    Fields:
-        lens: intrinsics.
-        rate: images per second [Hz]; near, far: limits of what is rendered [m].
-    """
-
-    lens: Lens
-    rate: float = 30.0
-    near: float = 0.05
-    far: float = 100.0
-
-    def image(self, source: ImageSource, pose: SpatialPose) -> NDArray[np.uint8]:
-        """Return the image ``[E, H, W, 3]`` with the distortion of the lens."""
-        return np.asarray(distorted(source.render(self, pose)["rgb"], self.lens), dtype=np.uint8)
 
 
 def pixel_directions(lens: Lens) -> Floats:

@@ -125,7 +125,7 @@ class DepthCamera(Sensor):
             InputError: scene and pose have different numbers of environments, or noise lacks a generator.
         """
         self.check(scene, pose)
-        bundle, ahead = _pixels(self.lens)
+        bundle, ahead = pixel_beams(self.lens)
         hits = cast(scene, in_space(pose), bundle, self.range_max / float(ahead.min()), skins=self.skins, normals=False)
         back = hits.facing >= math.cos(self.max_incidence) - 1e-12
         shape = (scene.shape[0], self.height, self.width)
@@ -166,6 +166,7 @@ class DepthCamera(Sensor):
 
 
 @functools.lru_cache(maxsize=16)
-def _pixels(lens: Lens) -> tuple[Beams, Floats]:
+def pixel_beams(lens: Lens) -> tuple[Beams, Floats]:
+    """Return the beams of the pixels, row by row, and how far each goes ahead for a metre of its length."""
     directions = pixel_directions(lens).reshape(-1, 3)
     return beams(directions), np.ascontiguousarray(directions[:, 0])

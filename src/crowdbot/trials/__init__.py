@@ -1,8 +1,10 @@
 """Trials: simulations as files, how they run, and their recordings. Contract :class:`Trial`, verb ``run``."""
 
 from .agent import Agent, Parameter
+from .batch import run_batch
 from .branch import branch
 from .builtin import builtin_trials, load_trial
+from .camera import Camera
 from .crowd import Contact, Crowd, Crowds, Limits, Routing
 from .distribution import Distribution
 from .drawn import Drawn
@@ -17,11 +19,13 @@ from .moments import Moment
 from .notation import Points
 from .original import Imported, import_original
 from .people import Group, Source, Spawner
+from .props import Cube, Light, Table, Tree
 from .recorded import Recorded, moments, read_episode
 from .recorded_people import RecordedPeople
 from .replay import Replay, replay
 from .run import Bridge, Running, opened, record, run
 from .schema import schema
+from .shots import Shot, Take, camera_names, shots
 from .simulation import Simulation, Touch
 from .stage import Obstacle, Stage, Wall
 from .sweep import Sweep
@@ -31,9 +35,11 @@ from .trial import End, Goal, Mount, Recording, Robot, Trial, When
 __all__ = [
     "Agent",
     "Bridge",
+    "Camera",
     "Contact",
     "Crowd",
     "Crowds",
+    "Cube",
     "Direction",
     "Distribution",
     "Drawn",
@@ -45,6 +51,7 @@ __all__ = [
     "Group",
     "Imported",
     "Journey",
+    "Light",
     "Limits",
     "Moment",
     "Mount",
@@ -62,19 +69,24 @@ __all__ = [
     "Running",
     "ScanRow",
     "Session",
+    "Shot",
     "Simulation",
     "Source",
     "Spawner",
     "Stage",
     "Summary",
     "Sweep",
+    "Table",
+    "Take",
     "Touch",
+    "Tree",
     "Trial",
     "Wall",
     "When",
     "Zone",
     "branch",
     "builtin_trials",
+    "camera_names",
     "explicit",
     "export",
     "import_original",
@@ -88,5 +100,7 @@ __all__ = [
     "repair",
     "replay",
     "run",
+    "run_batch",
     "schema",
+    "shots",
 ]

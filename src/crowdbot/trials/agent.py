@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from .attribute import attribute, check, children
 from .notation import Points
+from .words import ABOUT_ACTIVITY, ABOUT_BODY, check_words
 
 __all__ = ["Agent", "Parameter"]
 
@@ -51,10 +52,14 @@ class Agent:
     arrival: str = attribute("leave", about="what one does at the goal", choices=("leave", "stay"))
     crowd: str = attribute("", about="name of the crowd, by default the first")
     group: int = attribute(-1, about="number of the group that one walks with, -1 alone", at_least=-1, at_most=1e6)
+    body: str = attribute("", about=ABOUT_BODY)
+    outfit: int | None = attribute(None, about="number of the clothes and colours", at_least=0, at_most=1e6)
+    activity: str = attribute("", about=ABOUT_ACTIVITY)
     parameters: tuple[Parameter, ...] = children("parameter", about="own parameters of the model", at_most=100)
 
     def __post_init__(self) -> None:
         check(self)
+        check_words(self.body, self.activity)
 
     @property
     def count(self) -> int:

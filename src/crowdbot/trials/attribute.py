@@ -193,9 +193,10 @@ def children(
     return dataclasses.field(metadata=row) if at_least else dataclasses.field(default=(), metadata=row)
 
 
-def plugged(room: str, contract: str, *, about: str) -> Any:
+def plugged(room: str, contract: str, *, about: str, default: Any = dataclasses.MISSING) -> Any:
     """Make a field that is a child element with a ``type`` from a room, or with an address."""
-    return dataclasses.field(metadata={"role": "plugged", "plug": Plug(room, contract), "about": about})
+    row = {"role": "plugged", "plug": Plug(room, contract), "about": about}
+    return dataclasses.field(default=default, metadata=row)
 
 
 def mounted(room: str, contract: str, *, about: str, drawn: bool = False) -> Any:

@@ -8,9 +8,11 @@ from typing import Any
 
 from crowdbot.core import EpisodeError, InputError
 
+from .carried import unpacked
 from .changing import changed, turn_to
 from .course import Comparison, Course, Part, digests
 from .episode import Episode, Log
+from .recorded import read_metadata
 from .run import Sink, Stop, drive, stopping, target
 from .simulation import Simulation
 from .tally import Digest, Summary, Tally
@@ -57,8 +59,10 @@ def branch(
     source = Path(path)
     if out is not None and target(out).exists() and target(out).resolve() == source.resolve():
         raise InputError(f"{source} is the episode to branch from; record the branch to another place")
-    course = Course.of(source, folder, trust)
-    tally, outcome, steps = _run(course, at, digests(source), seed, changes, trial, out, progress, Tally, str(source))
+    with unpacked(source, read_metadata(source), folder, trust) as place:
+        course = Course.of(source, place, trust)
+        wanted = digests(source)
+        tally, outcome, steps = _run(course, at, wanted, seed, changes, trial, out, progress, Tally, str(source))
     summary: Summary = tally.summary(outcome, steps, None if out is None else target(out))
     return summary
 
@@ -156,8 +160,8 @@ def _recorded(
         return drive(simulation, sinks, stop, rest), simulation.tick
     from .recording import Recorder
 
-    course = Course(parts)
-    with Recorder(target(out), tally, course.origin, begin=parts[-1].tick) as recorder:
+    course, earlier = Course(parts), [part.trial for part in parts[:-1]]
+    with Recorder(target(out), tally, course.origin, begin=parts[-1].tick, earlier=earlier) as recorder:
         recorder.take(frame)
         outcome = drive(simulation, [tally, recorder], stop, rest)
         recorder.complete(outcome, simulation.tick)

@@ -9,6 +9,7 @@ from typing import Any
 from crowdbot.core import TrialError
 from crowdbot.core.errors import did_you_mean
 
+from .attribute import outline
 from .markup import read_bytes
 from .scenarios import PRESETS
 from .sweep import changed
@@ -35,7 +36,7 @@ def load_trial(source: str | Path, *, trust: bool = False, **values: Any) -> Tri
         source: a trial file or a built-in name; a file of that name in the working folder comes first.
         trust: whether the trial may load code from outside its own folder, or read files there.
         values: parameters of a built-in trial that has some; of any trial, values by their paths as
-            :class:`crowdbot.trials.Sweep` has them.
+            :class:`crowdbot.trials.Sweep` has them, such as ``world="physics"``.
 
     Raises:
         TrialError: there is no such trial, or with everything that is wrong with it, a sentence each.
@@ -46,6 +47,8 @@ def load_trial(source: str | Path, *, trust: bool = False, **values: Any) -> Tri
     10
     >>> load_trial("crossing-flows", **{"spawner[1]/count": 5}).people
     25
+    >>> load_trial("frontal", world="physics", gap=5).world
+    'physics'
     """
     path = Path(source)
     known = builtin_trials()
@@ -65,13 +68,14 @@ def _builtin(name: str, trust: bool, values: dict[str, Any]) -> Trial:
     if preset is None:
         inside = importlib.resources.files("crowdbot").joinpath("assets", "trials", f"{name}.xml")
         return _with(Trial.parse(inside.read_bytes(), place=f"{name}.xml", trust=trust), values, trust)
-    paths = {key: value for key, value in values.items() if "/" in key}
+    plain = {part.word for part in outline(Trial) if part.role == "attribute"} - {*preset.options}
+    paths = {key: value for key, value in values.items() if "/" in key or key.replace("_", "-") in plain}
     own = {key: value for key, value in values.items() if key not in paths}
     return _with(preset.trial(**own), paths, trust)
 
 
 def _with(trial: Trial, values: dict[str, Any], trust: bool) -> Trial:
-    texts = {key: text_of(value) for key, value in values.items()}
+    texts = {key.replace("_", "-") if "/" not in key else key: text_of(value) for key, value in values.items()}
     return changed(trial, texts, place=trial.name, trust=trust) if texts else trial
 
 

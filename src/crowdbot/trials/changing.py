@@ -9,21 +9,22 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core import InputError, stream
+from crowdbot.core import InputError
 from crowdbot.core.errors import did_you_mean
 from crowdbot.models.mixture import Mixture
 
 from .crowd import Crowds, crowd_names
 from .markup import Element, parse, written
 from .opening import limits_of
+from .sensing import probes_of
 from .simulation import Carrier, Simulation
 from .trial import Robot, Trial
 
 __all__ = ["changed", "turn_to"]
 
-FIXED = ("step", "capacity", "spawners", "agents", "recorded", "journeys")
+FIXED = ("world", "physics_step", "bodies", "step", "capacity", "spawners", "agents", "recorded", "journeys")
 """What cannot change once people are under way."""
-START = ("name", "x", "y", "heading")
+START = ("name", "type", "x", "y", "heading")
 """What cannot change of a robot that is under way."""
 WORD = re.compile(r"([A-Za-z0-9_-]+)(?:\[([^\]]+)\])?")
 
@@ -59,8 +60,9 @@ def _set(root: Element, path: str, text: str) -> None:
     element = root
     for step in steps:
         element = _inner(element, step, path)
-    if last == "type" and element.attributes.get("type") != text:  # the values of another type mean nothing to this one
-        own = ("name", "x", "y", "heading") if element.tag == "sensor" else ("name",)
+    other = last == "type" and element.tag != "robot" and element.attributes.get("type") != text
+    if other:  # the values of another type mean nothing to this one
+        own = ("name", "link", "x", "y", "z", "roll", "pitch", "heading") if element.tag == "sensor" else ("name",)
         element.attributes = {key: value for key, value in element.attributes.items() if key in own}
     element.attributes[last] = text
 
@@ -161,6 +163,10 @@ def _check(old: Trial, new: Trial, time: float) -> None:
 def _scene(simulation: Simulation, trial: Trial) -> Any:
     scene = simulation.world.scene
     if trial.stage != simulation.trial.stage:
+        if trial.world == "physics":
+            raise InputError(
+                "the stage cannot change in a branch of the physics world: its walls and props have bodies"
+            )
         scene = scene.replace(walls=trial.stage.as_walls())
     columns = {
         name: getattr(scene, name).copy() for name in ("radius", "goal", "visible", "max_speed", "preferred_speed")
@@ -190,19 +196,20 @@ def _router(old: Trial, new: Trial) -> dict[str, Any]:
 
 def _carrier(simulation: Simulation, old: Carrier, robot: Robot, seed: int | None) -> Carrier:
     """Return a robot that goes on: what it holds and what its sensors said, as far as it still has them."""
-    every = simulation.world.clock.every
-    before = {mount.name: rng for mount, rng in zip(old.robot.sensors, old.randomness, strict=True)}
-    chance, names = simulation.seed, {mount.name for mount in robot.sensors}
-    own = {} if seed is not None else before
+    clock, names = simulation.world.clock, {mount.name for mount in robot.sensors}
+    chassis = simulation.around.chassis(old.agent)
+    if chassis is not None:
+        chassis.robot = robot.body
+    probes = probes_of(simulation.trial, robot, clock, simulation.seed, {one.mount.name: one for one in old.probes})
+    if seed is not None:
+        fresh = probes_of(simulation.trial, robot, clock, seed)
+        probes = tuple(dataclasses.replace(one, rng=new.rng) for one, new in zip(probes, fresh, strict=True))
     return dataclasses.replace(
         old,
         robot=robot,
         limits=limits_of(robot.drive),
-        control_every=every(robot.control_period),
-        sensor_every=tuple(every(1.0 / mount.sensor.rate) for mount in robot.sensors),
-        randomness=tuple(
-            own.get(mount.name) or stream(chance, "sensor", robot.name, mount.name) for mount in robot.sensors
-        ),
+        control_every=clock.every(robot.control_period),
+        probes=probes,
         readings={name: reading for name, reading in old.readings.items() if name in names},
         seen={name: ids for name, ids in old.seen.items() if name in names},
         arrived=old.arrived and robot.goal == old.robot.goal,

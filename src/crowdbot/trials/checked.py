@@ -9,6 +9,7 @@ from typing import Any
 from crowdbot.models import CrowdModel
 
 from .agent import Agent
+from .camera import Camera
 from .crowd import Routing
 from .journey import Exit, Journey, Portal
 from .people import Source, Spawner
@@ -40,6 +41,7 @@ class Checked:
     exits: Sequence[Exit]
     portals: Sequence[Portal]
     robots: Sequence[Robot]
+    cameras: Sequence[Camera]
     capacity: int | None
     step: float | None
     seed: int
@@ -55,7 +57,7 @@ class Checked:
     @classmethod
     def of(cls, values: dict[str, Any], broken: Collection[str] = ()) -> Checked:
         """Take the parts from the fields of a trial that could be read."""
-        lists = ("journeys", "agents", "spawners", "sources", "recorded", "exits", "portals", "robots")
+        lists = ("journeys", "agents", "spawners", "sources", "recorded", "exits", "portals", "robots", "cameras")
         empty: dict[str, Any] = dict.fromkeys(lists, ()) | {"seed": 0}
         names = [field.name for field in fields(cls) if field.name != "broken"]
         parts: dict[str, Any] = {name: values.get(name, empty.get(name)) for name in names}

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import FreeClock, InputError, TrialError
+from crowdbot.core.errors import did_you_mean
 
 from .attribute import shown
 from .checked import Checked, Problems
@@ -96,12 +97,31 @@ def _periods(checked: Checked) -> Problems:
         periods += [(checked.recording, f"recording {n}", getattr(checked.recording, n)) for n in ("period", "markers")]
     for robot in checked.robots:
         periods.append((robot, "control-period", robot.control_period))
-        periods += [(mount, f"rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate) for mount in robot.sensors]
+        carried = robot.usual["sensors"]
+        for mount in robot.sensors:
+            if robot.rates == "nearest" and mount in carried:
+                continue
+            thing = robot if mount in carried else mount
+            whose = f'sensor {mount.name!r} of its type (rates="nearest" lets it fit): ' if mount in carried else ""
+            periods.append((thing, f"{whose}rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate))
+            if mount.sensor.delay > 0.0:
+                periods.append((thing, f"{whose}delay", mount.sensor.delay))
+    fits = _fitting([period for _, _, period in periods])
     for thing, name, period in periods:
         try:
             clock.every(period)
         except InputError:
-            yield thing, f"{name} {period:g} s is not a whole number of time steps of {checked.step:g} s"
+            yield thing, f"{name} {period:g} s is not a whole number of time steps of {checked.step:g} s{fits}"
+
+
+def _fitting(periods: Sequence[float]) -> str:
+    """Return which step all periods are whole numbers of, as the end of a sentence."""
+    step = math.gcd(*(round(period * 1e9) for period in periods)) / 1e9
+    if step < 0.005:
+        return ""
+    while step > 0.1:
+        step /= 2.0
+    return f'; with step="{step:g}" all are'
 
 
 def _names(checked: Checked) -> Problems:
@@ -113,6 +133,24 @@ def _names(checked: Checked) -> Problems:
         for n, mount in enumerate(robot.sensors):
             if mount.name in mounts[:n]:
                 yield mount, f"name {mount.name!r} is taken by another sensor of this robot; give each its own"
+    yield from _cameras(checked)
+
+
+def _cameras(checked: Checked) -> Problems:
+    bodies = {robot.name: robot for robot in checked.robots}
+    for k, camera in enumerate(checked.cameras):
+        if camera.name in [other.name for other in checked.cameras[:k]]:
+            yield camera, f"name {camera.name!r} is taken by another camera; give each its own"
+        if not camera.robot:
+            if camera.link:
+                yield camera, f"link={shown(camera.link)} needs robot: the name of the robot whose link it is"
+        elif camera.robot not in bodies:
+            if "robot" not in checked.broken:
+                near = did_you_mean(camera.robot, bodies)
+                yield camera, f"robot={shown(camera.robot)} is no robot{near}; there are {', '.join(bodies) or 'none'}"
+        elif camera.link and camera.link not in (links := bodies[camera.robot].body.model.links):
+            near = did_you_mean(camera.link, links)
+            yield camera, f"link={shown(camera.link)} is no link of robot {camera.robot!r}{near}"
 
 
 def _size(checked: Checked) -> Problems:

@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 from crowdbot.data import Trajectories
 from crowdbot.sensors import Reading, Scan
+from crowdbot.sensors.sensor import in_plane
 
 from .simulation import Frame
 from .tally import Digest, Tally, present
 from .trial import Trial
 
-__all__ = ["Digest", "Episode", "Log", "ScanRow", "tracks_of"]
+__all__ = ["Digest", "Episode", "Log", "ScanRow", "scan_row", "tracks_of"]
 
 Floats = NDArray[np.float64]
 
@@ -95,7 +96,7 @@ class Episode:
     def scans(self) -> tuple[ScanRow, ...]:
         """What the first laser scanner of the first robot measured."""
         for readings in self.readings.values():
-            rows = tuple(_scan_row(reading) for reading in readings if isinstance(reading, Scan))
+            rows = tuple(scan_row(reading) for reading in readings if isinstance(reading, Scan))
             if rows:
                 return rows
         return ()
@@ -219,6 +220,8 @@ def _by_person(rows: Sequence[NDArray[Any]], ids: Sequence[NDArray[np.int64]], a
     return out
 
 
-def _scan_row(scan: Scan) -> ScanRow:
-    (x, y), heading = scan.pose.position[0], scan.pose.heading[0]
+def scan_row(scan: Scan) -> ScanRow:
+    """Return a scan of one environment as a row."""
+    pose = in_plane(scan.pose)
+    (x, y), heading = pose.position[0], pose.heading[0]
     return ScanRow(scan.time, (float(x), float(y), float(heading)), scan.angles, scan.ranges[0], scan.hit[0])

@@ -12,6 +12,7 @@ from crowdbot.core import TrialError
 from .agent import Agent, Parameter
 from .crowd import Crowds, crowd_names
 from .drawn import Drawn
+from .figures import Figure, drawn
 from .notation import Points
 from .people import Spawner
 from .spawn import place
@@ -52,9 +53,9 @@ def explicit(trial: Trial, seed: int | None = None) -> Trial:
     if problems:
         raise TrialError(*(f"trial {trial.name!r}: {sentence}" for _, sentence in problems))
     agents = []
-    for a in range(len(people)):
+    for a, figure in enumerate(drawn(people, chosen)):
         owner = people.owners[int(people.owner[a])]
-        agent = owner if isinstance(owner, Agent) else _agent(people, a, owner)
+        agent = _dressed(owner if isinstance(owner, Agent) else _agent(people, a, owner), figure)
         agents.append(_with_own(trial, agent, a, chosen))
     return dataclasses.replace(trial, agents=tuple(agents), spawners=(), seed=chosen)
 
@@ -77,6 +78,11 @@ def _agent(people: Any, a: int, spawner: Any) -> Agent:
         crowd=spawner.crowd,
         group=int(people.group[a]),
     )
+
+
+def _dressed(agent: Agent, figure: Figure) -> Agent:
+    outfit = figure.outfit if figure.outfit >= 0 else None
+    return dataclasses.replace(agent, body=figure.body, outfit=outfit, activity=figure.activity)
 
 
 def _with_own(trial: Trial, agent: Agent, a: int, seed: int) -> Agent:

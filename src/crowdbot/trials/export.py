@@ -5,14 +5,16 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
 import numpy as np
 
 from crowdbot.core import EpisodeError, InputError
 from crowdbot.core.errors import did_you_mean
 
+from .contact_messages import Collided, Pushed
 from .moments import Moment
+from .reading_tables import READING_TABLES
 from .recorded import moments, read_metadata
 
 __all__ = ["TABLES", "export"]
@@ -33,7 +35,12 @@ def export(path: Path | str, to: Path | str, table: str = "people") -> int:
       it is asked for (command_forward, ...);
     * ``scans``: each beam: the sensor, x, y, heading of it in the world, angle [rad], range [m], and hit: the id of who
       was hit, -1 nothing, -2 a wall;
-    * ``contacts``: each contact in each time step: robot, other, clearance [m].
+    * ``contacts``: each contact in each time step: robot, other, clearance [m];
+    * ``forces`` and ``collisions``, of the physics world: who with whom, where on the body, force [N], ...;
+    * what other sensors measured, with the sensor and its x, y, z [m] and heading [rad] in the world: ``points`` of
+      clouds (where each beam ended in the world, range, intensity, ring, hit), ``ranges`` of ultrasound and infrared,
+      ``inertial``, ``odometry``, ``bumpers`` (each pressed sector), ``tracked`` (each person told of), and ``images``:
+      size, the nearest depth [m] and the ids that are seen; the pixels are in the episode file itself.
 
     Returns:
         The number of rows.
@@ -183,9 +190,35 @@ def _contacts(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
     }
 
 
+def _named(kind: type[Any], rows: list[Any], wide: tuple[str, ...] = ()) -> Columns:
+    """Return a column for each field of rows, three for fields with an x, y and z."""
+    columns: Columns = {}
+    hints = get_type_hints(kind)
+    for name in kind._fields:
+        values = [getattr(row, name) for row in rows]
+        if name in wide:
+            table = np.array(values, dtype=np.float64).reshape(-1, 3)
+            columns |= {f"{name}_{axis}": table[:, k] for k, axis in enumerate("xyz")}
+        else:
+            columns[name] = np.array(values, dtype=object if hints[name] is str else np.float64)
+    return columns
+
+
+def _forces(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
+    return _named(Pushed, moment.forces, ("vector", "point"))
+
+
+def _collisions(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
+    times = {"time": np.full(len(moment.collisions), moment.time)}
+    return times | _named(Collided, moment.collisions)
+
+
 TABLES: dict[str, Callable[[Moment, dict[str, tuple[int, float]]], Columns]] = {
     "people": _people,
     "robots": _robots,
     "scans": _scans,
     "contacts": _contacts,
+    "forces": _forces,
+    "collisions": _collisions,
+    **READING_TABLES,
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import re
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -19,7 +19,7 @@ from .beside import beside, read_beside
 if TYPE_CHECKING:
     import shapely
 
-__all__ = ["area_of", "map_of"]
+__all__ = ["area_of", "is_file_of_area", "map_files", "map_of"]
 
 MOST_CORNERS = 20_000
 MOST_TEXT = 4_000_000
@@ -44,7 +44,7 @@ def area_of(text: str, folder: Path | None, trust: bool) -> shapely.Geometry:
     """
     import shapely
 
-    if not WKT.match(text):
+    if is_file_of_area(text):
         path = beside(text, folder, trust)
         stamp = path.stat()
         return _from_file(path, stamp.st_mtime_ns, stamp.st_size)
@@ -53,6 +53,15 @@ def area_of(text: str, folder: Path | None, trust: bool) -> shapely.Geometry:
     except (shapely.errors.ShapelyError, ValueError) as error:
         raise InputError(f"is no WKT: {_first(error)}") from None
     return _checked(shape, "the WKT")
+
+
+def is_file_of_area(text: str) -> bool:
+    """Return whether an area is the name of a file, not WKT.
+
+    >>> is_file_of_area("hall.geojson"), is_file_of_area("POLYGON ((0 0, 4 0, 4 3, 0 0))")
+    (True, False)
+    """
+    return not WKT.match(text)
 
 
 @functools.lru_cache(maxsize=8)
@@ -129,13 +138,24 @@ def map_of(name: str, unknown: str, folder: Path | None, trust: bool) -> tuple[s
     Raises:
         InputError: a file is missing, too large or no map.
     """
+    _, row, image = _map_of(name, folder, trust)
+    stamp = image.stat()
+    return _solids(image, stamp.st_mtime_ns, stamp.st_size, row, unknown)
+
+
+def map_files(name: str, folder: Path | None, trust: bool) -> dict[str, Path]:
+    """Return the files of a map by their names in the folder: the ``.yaml`` and its image; see :func:`map_of`."""
+    path, row, image = _map_of(name, folder, trust)
+    return {name: path, (PurePosixPath(name).parent / row.image).as_posix(): image}
+
+
+def _map_of(name: str, folder: Path | None, trust: bool) -> tuple[Path, _Map, Path]:
     path = beside(name, folder, trust)
     row = _yaml(read_beside(path, 100_000), path.name)
     image = beside(row.image, path.parent, trust)
     if not trust and not image.is_relative_to((folder or Path.cwd()).resolve()):
         raise InputError(f"the file {row.image[:80]!r} lies outside the folder of the trial")
-    stamp = image.stat()
-    return _solids(image, stamp.st_mtime_ns, stamp.st_size, row, unknown)
+    return path, row, image
 
 
 def _yaml(data: bytes, name: str) -> _Map:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from crowdbot.core import Scene
+from crowdbot.core import Scene, SpatialPose
 
 from .cdr import people_bytes
 from .episode_file import MAP
@@ -31,15 +31,58 @@ string[] tags
 PEOPLE = "std_msgs/Header header\npeople_msgs/Person[] people\n"
 CONTACT = "string robot\nstring other\nfloat64 clearance\n"
 CONTACTS = "std_msgs/Header header\ncrowdbot_msgs/Contact[] contacts\n"
+ARRAY = "string name\nstring dtype\nuint32[] shape\nuint8[] data\n"
+READING = "std_msgs/Header header\nstring kind\ncrowdbot_msgs/Array[] fields\n"
+FORCE = """string first
+string second
+string first_part
+string limb
+string part
+float64 force
+geometry_msgs/Vector3 vector
+float64 depth
+geometry_msgs/Point point
+"""
+FORCES = "std_msgs/Header header\ncrowdbot_msgs/Force[] forces\n"
+COLLISION = """string first
+string second
+float64 begin
+float64 end
+float64 duration
+string cause
+float64 impact_speed
+float64 depth
+float64 impulse
+string limb
+string part
+string region
+float64 peak_force
+float64 steady_force
+string steady_region
+float64 simulated_peak
+float64 severity
+"""
+COLLISIONS = "std_msgs/Header header\ncrowdbot_msgs/Collision[] collisions\n"
+OWN = {
+    "people_msgs/msg/Person": PERSON,
+    "people_msgs/msg/People": PEOPLE,
+    "crowdbot_msgs/msg/Contact": CONTACT,
+    "crowdbot_msgs/msg/Contacts": CONTACTS,
+    "crowdbot_msgs/msg/Array": ARRAY,
+    "crowdbot_msgs/msg/Reading": READING,
+    "crowdbot_msgs/msg/Force": FORCE,
+    "crowdbot_msgs/msg/Forces": FORCES,
+    "crowdbot_msgs/msg/Collision": COLLISION,
+    "crowdbot_msgs/msg/Collisions": COLLISIONS,
+}
+"""Types that ROS 2 Humble does not bring; the text of each stands in the file."""
 
 
 @functools.cache
 def _store() -> Any:
     store = get_typestore(Stores.ROS2_HUMBLE)
-    store.register(get_types_from_msg(PERSON, "people_msgs/msg/Person"))
-    store.register(get_types_from_msg(PEOPLE, "people_msgs/msg/People"))
-    store.register(get_types_from_msg(CONTACT, "crowdbot_msgs/msg/Contact"))
-    store.register(get_types_from_msg(CONTACTS, "crowdbot_msgs/msg/Contacts"))
+    for name, text in OWN.items():
+        store.register(get_types_from_msg(text, name))
     return store
 
 
@@ -61,7 +104,7 @@ class Messages:
         """Return the message that CDR bytes hold."""
         return self.store.deserialize_cdr(data, kind)
 
-    def make(self, kind: str, **fields: Any) -> Any:
+    def make(self, kind: str, /, **fields: Any) -> Any:
         """Return a message of a type such as ``geometry_msgs/msg/Point``."""
         return self.store.types[kind](**fields)
 
@@ -97,12 +140,14 @@ class Messages:
         rows = (scene.position, scene.velocity, scene.radius, scene.heading)
         return people_bytes(nanoseconds, ids[there], *(row[0, there] for row in rows))
 
-    def odometry(self, nanoseconds: int, name: str, x: float, y: float, heading: float, twist: Sequence[float]) -> Any:
-        """Return ``nav_msgs/Odometry``: the true pose in the map, and the twist forward, turn, left in the robot."""
+    def odometry(
+        self, nanoseconds: int, name: str, x: float, y: float, heading: float, twist: Sequence[float], frame: str = MAP
+    ) -> Any:
+        """Return ``nav_msgs/Odometry``: a pose in a frame, and the twist forward, turn, left in the robot's own."""
         forward, turn, left = map(float, twist)
         return self.make(
             "nav_msgs/msg/Odometry",
-            header=self.header(nanoseconds),
+            header=self.header(nanoseconds, frame),
             child_frame_id=f"{name}/base_link",
             pose=self.make(
                 "geometry_msgs/msg/PoseWithCovariance", pose=self.pose(x, y, heading), covariance=np.zeros(36)
@@ -114,32 +159,24 @@ class Messages:
             ),
         )
 
-    def scan(
-        self,
-        nanoseconds: int,
-        frame: str,
-        sensor: Any,
-        angles: NDArray[np.float64],
-        ranges: NDArray[np.float64],
-        hit: NDArray[np.int64],
-    ) -> Any:
-        """Return ``sensor_msgs/LaserScan``; intensities hold what was hit: an id, -1 nothing, -2 a wall."""
-        return self.make(
-            "sensor_msgs/msg/LaserScan",
-            header=self.header(nanoseconds, frame),
-            angle_min=float(angles[0]),
-            angle_max=float(angles[-1]),
-            angle_increment=float(sensor.step),
-            time_increment=0.0,
-            scan_time=1.0 / float(sensor.rate),
-            range_min=float(sensor.range_min),
-            range_max=float(sensor.range_max),
-            ranges=ranges.astype(np.float32),
-            intensities=hit.astype(np.float32),
-        )
-
     def transforms(self, nanoseconds: int, rows: Iterable[tuple[str, str, float, float, float]]) -> Any:
         """Return ``tf2_msgs/TFMessage`` of rows: parent frame, child frame, x, y [m], heading [rad]."""
+        return self._transforms(
+            nanoseconds,
+            ((parent, child, (x, y, 0.0), self.quaternion(heading)) for parent, child, x, y, heading in rows),
+        )
+
+    def fixed(self, nanoseconds: int, rows: Iterable[tuple[str, str, SpatialPose]]) -> Any:
+        """Return ``tf2_msgs/TFMessage`` of rows: parent frame, child frame, where the child is in its parent."""
+        return self._transforms(
+            nanoseconds,
+            (
+                (parent, child, tuple(pose.position[0].tolist()), self.rotation(pose.rotation[0]))
+                for parent, child, pose in rows
+            ),
+        )
+
+    def _transforms(self, nanoseconds: int, rows: Iterable[tuple[str, str, tuple[float, ...], Any]]) -> Any:
         return self.make(
             "tf2_msgs/msg/TFMessage",
             transforms=[
@@ -149,11 +186,11 @@ class Messages:
                     child_frame_id=child,
                     transform=self.make(
                         "geometry_msgs/msg/Transform",
-                        translation=self.vector(x, y, 0.0),
-                        rotation=self.quaternion(heading),
+                        translation=self.vector(*place),
+                        rotation=turn,
                     ),
                 )
-                for parent, child, x, y, heading in rows
+                for parent, child, place, turn in rows
             ],
         )
 
@@ -177,6 +214,11 @@ class Messages:
         """Return the rotation about z."""
         half = 0.5 * heading
         return self.make("geometry_msgs/msg/Quaternion", x=0.0, y=0.0, z=math.sin(half), w=math.cos(half))
+
+    def rotation(self, quaternion: NDArray[np.float64]) -> Any:
+        """Return a rotation from w, x, y, z."""
+        w, x, y, z = quaternion.tolist()
+        return self.make("geometry_msgs/msg/Quaternion", x=x, y=y, z=z, w=w)
 
     def pose(self, x: float, y: float, heading: float, z: float = 0.0) -> Any:
         """Return a pose."""

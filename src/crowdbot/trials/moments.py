@@ -13,9 +13,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Pose
 from crowdbot.data.tape import Tape
+from crowdbot.sensors import Reading, Scan
 
-from .episode import ScanRow
+from .contact_messages import COLLISIONS, FORCES, Collided, Pushed, collided, pushed
+from .episode import ScanRow, scan_row
 from .episode_file import CONTACTS, DIGEST, MAP, heading_of
+from .readings import KIND, REST, reading_of
 from .travel import Instant
 
 __all__ = ["Moment", "RobotState", "Touched", "read_moments"]
@@ -52,7 +55,9 @@ class Moment:
         people: who is there, without robots; None when only readings or contacts were due.
         robots: by name.
         commands: by name of the robot: forward [m/s], turn [rad/s], left [m/s].
-        scans: by ``robot/sensor``.
+        readings: by ``robot/sensor``; none in files of crowdbot 0.4 and before.
+        scans: those of planar laser scanners, by ``robot/sensor``.
+        forces, collisions: of the physics world: of the step that ended at this instant, and those that are over.
         contacts: of the step that ended at this instant.
         digest: of the episode up to here, as if it were interrupted here; empty in files of format 1.
     """
@@ -61,7 +66,10 @@ class Moment:
     people: Instant | None = None
     robots: dict[str, RobotState] = field(default_factory=dict)
     commands: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+    readings: dict[str, Reading] = field(default_factory=dict)
     scans: dict[str, ScanRow] = field(default_factory=dict)
+    forces: list[Pushed] = field(default_factory=list)
+    collisions: list[Collided] = field(default_factory=list)
     contacts: list[Touched] = field(default_factory=list)
     digest: str = ""
 
@@ -73,7 +81,9 @@ class Moment:
     def named(self) -> set[int]:
         """Return the largest id of people that this instant names, if any."""
         seen = [] if self.people is None else [int(self.people.ids.max(initial=-1))]
-        return {*seen, *(int(scan.hit.max(initial=-1)) for scan in self.scans.values())}
+        hits = [getattr(reading, "hit", None) for reading in self.readings.values()]
+        hits += [scan.hit for scan in self.scans.values()]
+        return {*seen, *(int(hit.max(initial=-1)) for hit in hits if hit is not None)}
 
     def everyone(self, robots: Mapping[str, tuple[int, float]]) -> Instant:
         """Return people and robots together.
@@ -117,31 +127,48 @@ def read_moments(tape: Tape) -> Iterator[Moment]:
 
 def _moment(stamp: int, messages: list[tuple[str, Any]]) -> Moment:
     moment = Moment(stamp)
+    topics = dict(messages)
+    sensors = {topic.removesuffix(REST) for topic, message in messages if message.__msgtype__ == KIND}
+    for topic in sorted(sensors):
+        others = {name.removeprefix(topic): one for name, one in topics.items() if name.startswith(topic)}
+        reading = reading_of(topics[topic + REST], others)
+        moment.readings[topic.strip("/")] = reading
+        if isinstance(reading, Scan):
+            moment.scans[topic.strip("/")] = scan_row(reading)
     poses: dict[str, tuple[str, float, float, float]] = {}
     for topic, message in messages:
-        robot = topic.strip("/").rpartition("/")[0]
-        kind = message.__msgtype__
-        if topic == "/people":
-            moment.people = _people(moment.time, message.people)
-        elif topic == DIGEST:
-            moment.digest = str(message.data)
-        elif topic == CONTACTS:
-            moment.contacts = [Touched(moment.time, c.robot, c.other, c.clearance) for c in message.contacts]
-        elif kind == "tf2_msgs/msg/TFMessage":
-            for row in message.transforms:
-                shift = row.transform.translation
-                poses[row.child_frame_id] = (
-                    row.header.frame_id, shift.x, shift.y, heading_of(row.transform.rotation)
-                )  # fmt: skip
-        elif kind == "nav_msgs/msg/Odometry":
-            moment.robots[robot] = _robot(message)
-        elif kind == "geometry_msgs/msg/Twist":
-            moment.commands[robot] = message.linear.x, message.angular.z, message.linear.y
+        _take(moment, poses, topic, message, sensors)
     for topic, message in messages:
-        if message.__msgtype__ == "sensor_msgs/msg/LaserScan":
+        if message.__msgtype__ == "sensor_msgs/msg/LaserScan" and topic not in sensors:
             name = topic.strip("/")
             moment.scans[name] = _scan(poses, name, moment.time, message)
     return moment
+
+
+def _take(
+    moment: Moment, poses: dict[str, tuple[str, float, float, float]], topic: str, message: Any, sensors: set[str]
+) -> None:
+    """Take a message that is no reading."""
+    robot = topic.strip("/").rpartition("/")[0]
+    kind = message.__msgtype__
+    if topic == "/people":
+        moment.people = _people(moment.time, message.people)
+    elif topic == DIGEST:
+        moment.digest = str(message.data)
+    elif topic == CONTACTS:
+        moment.contacts = [Touched(moment.time, c.robot, c.other, c.clearance) for c in message.contacts]
+    elif topic == FORCES:
+        moment.forces = pushed(moment.time, message)
+    elif topic == COLLISIONS:
+        moment.collisions = collided(message)
+    elif kind == "tf2_msgs/msg/TFMessage":
+        for row in message.transforms:
+            shift = row.transform.translation
+            poses[row.child_frame_id] = row.header.frame_id, shift.x, shift.y, heading_of(row.transform.rotation)
+    elif kind == "nav_msgs/msg/Odometry" and topic not in sensors:
+        moment.robots[robot] = _robot(message)
+    elif kind == "geometry_msgs/msg/Twist":
+        moment.commands[robot] = message.linear.x, message.angular.z, message.linear.y
 
 
 def _people(time: float, people: Any) -> Instant:

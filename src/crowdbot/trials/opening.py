@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,14 +18,18 @@ from .agent import Agent
 from .company import People
 from .crowd import Crowds, crowd_names
 from .drawn import own
+from .figures import Figures, cast_of
 from .recorded_people import RecordedPeople
-from .trial import Trial
+from .sensing import bodies_for, spatial
+from .trial import Robot, Trial
 
 __all__ = ["limits_of", "start_scene", "world_of"]
 
 
-def world_of(trial: Trial, people: People, seed: int) -> PlanarWorld:
+def world_of(trial: Trial, people: People, seed: int) -> tuple[PlanarWorld, Figures | None]:
     """Return the world of a trial at the beginning: people, robots, then free places for who comes in.
+
+    With it come the bodies of people, when the world has bodies or a sensor looks at them.
 
     People are numbered first, then robots, then everybody who comes in, so that whoever is there at the beginning has
     the number of the own place. Free places have numbers below 0.
@@ -38,30 +42,59 @@ def world_of(trial: Trial, people: People, seed: int) -> PlanarWorld:
     scene = start_scene(trial, people, spare := _spare(trial, first, sources, seed))
     there = first + len(trial.robots)
     router = None if trial.routing is None else trial.routing.router(scene.walls)
+    figures = cast_of(trial, people, scene.shape[1], seed) if _embodied(trial) else None
     journeys = _journeys(trial, people, scene.shape[1])
-    world = PlanarWorld(
-        scene,
-        _model(trial, people, scene.shape[1], seed),
-        {first + k: robot.drive for k, robot in enumerate(trial.robots)},
-        trial.step,
-        seed,
-        berth=trial.berth,
-        router=router,
-        contact=None if trial.contact is None else trial.contact.bodies(),
-        limits=None if trial.limits is None else trial.limits.kept(),
-        journeys=journeys,
-        sources=sources,
-        exits=[way.out() for way in trial.exits],
-        portals=[portal.gate() for portal in trial.portals],
-        script=_script(people),
-        symmetry=trial.symmetry,
-        substeps=trial.substeps,
-        ids=np.concatenate([np.arange(there), -1 - np.arange(spare)]),
-    )
+    whole: dict[str, Any] = {
+        "dt": trial.step,
+        "seed": seed,
+        "berth": trial.berth,
+        "router": router,
+        "contact": None if trial.contact is None else trial.contact.bodies(),
+        "limits": None if trial.limits is None else trial.limits.kept(),
+        "journeys": journeys,
+        "sources": sources,
+        "exits": [way.out() for way in trial.exits],
+        "portals": [portal.gate() for portal in trial.portals],
+        "script": _script(people),
+        "symmetry": trial.symmetry,
+        "substeps": trial.substeps,
+        "ids": np.concatenate([np.arange(there), -1 - np.arange(spare)]),
+    }
+    model = _model(trial, people, scene.shape[1], seed)
+    robots = {first + k: robot for k, robot in enumerate(trial.robots)}
+    if trial.world == "physics":
+        world = _with_bodies(trial, scene, model, robots, figures, whole)
+    else:
+        world = PlanarWorld(scene, model, {agent: robot.drive for agent, robot in robots.items()}, **whole)
     walkers = first - len(people.walks)
     if walkers and (router or journeys):
         world.scene = _setting_off(world.scene, walkers, router, journeys, people.heading)
-    return world
+    return world, figures
+
+
+def _embodied(trial: Trial) -> bool:
+    """Whether anything needs the bodies of people."""
+    if trial.world == "physics":
+        return True
+    kind = bodies_for(trial)
+    return any(spatial(robot, mount, kind) for robot in trial.robots for mount in robot.sensors)
+
+
+def _with_bodies(
+    trial: Trial, scene: Scene, model: CrowdModel, robots: Mapping[int, Robot], figures: Any, whole: dict[str, Any]
+) -> PlanarWorld:
+    from crowdbot.world.physics import PhysicsWorld
+
+    stage = trial.stage
+    return PhysicsWorld(
+        scene.replace(walls=stage.as_walls(props=False), wall_height=stage.wall_height),
+        model,
+        {agent: robot.body for agent, robot in robots.items()},
+        stage=stage.physical(),
+        people=figures.people,
+        physics_dt=trial.physics_step,
+        **whole,
+    )
 
 
 def start_scene(trial: Trial, people: People, spare: int = 0) -> Scene:

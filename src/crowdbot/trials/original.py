@@ -14,20 +14,19 @@ from pathlib import Path
 from crowdbot.core import InputError, TrialError
 
 from .agent import Agent
-from .beside import beside
 from .crowd import Crowds, Routing
 from .journey import Direction, Journey, Point
 from .markup import Element, parse, read_bytes
 from .notation import Points, number
 from .original_crowd import Walker, crowds_of
+from .original_order import DEFAULT, Plan
 from .stage import Obstacle, Stage, Wall
 from .trial import End, Goal, Robot, Trial, When
 
-__all__ = ["Imported", "import_original"]
+__all__ = ["Imported", "import_original", "plan_of", "trials_of"]
 
 NEVER = 600.0
 """Duration [s] of a trial that never ended."""
-MOST_LINES = 1000
 ROOTS = ("Trial", "Config")
 
 
@@ -45,62 +44,89 @@ class Imported:
 
 
 def import_original(path: str | Path, *, participant: int | None = None) -> Imported:
-    """Read a trial or a configuration of the original simulator.
+    """Read a trial, a configuration or an order of the original simulator.
 
     Args:
-        path: of a file with the root element ``Trial`` or ``Config``; files that a configuration names lie in its
-            folder or below.
+        path: of a file with the root element ``Trial`` or ``Config``, or of an order file (a trial a line); files that
+            these name lie in their folder or below, or below one of the three folders around it.
         participant: who, for a configuration; None takes the one it names.
 
     Raises:
         TrialError: the file is missing, hostile, or none of these.
     """
     path = Path(path)
-    root = parse(read_bytes(path), str(path))
-    if root.tag == "Trial":
-        reader = _Reader(path.stem)
-        trial = reader.trial(root)
-        return Imported(((path.stem, trial),), tuple(reader.notes))
-    if root.tag == "Config":
-        return _experiment(root, path, participant)
-    raise TrialError(
-        f"{path}:{root.line}: the root element is <{root.tag[:40]}>, an original file has {' or '.join(ROOTS)}"
+    data = read_bytes(path)
+    if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<":
+        root = parse(data, str(path))
+        if root.tag == "Trial":
+            return _one(root, path)
+    plan = plan_of(path)
+    rows, notes = trials_of(plan, plan.user if participant is None else participant)
+    return Imported(tuple((Path(entry).stem, trial) for entry, trial in rows), notes)
+
+
+def plan_of(path: str | Path) -> Plan:
+    """Read which trials a configuration or an order file names.
+
+    Raises:
+        TrialError: the file is missing, hostile, or neither.
+    """
+    path = Path(path)
+    data = read_bytes(path)
+    if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] != b"<":
+        return Plan(path, path.parent, pattern=path.name.replace("{", "").replace("}", ""))
+    root = parse(data, str(path))
+    if root.tag != "Config":
+        raise TrialError(
+            f"{path}:{root.line}: the root element is <{root.tag[:40]}>, an original file has {' or '.join(ROOTS)}"
+        )
+    experience = _find(root, "experience") or Element("experience")
+    notes = {
+        f"<{element.tag}> of the configuration: recording and plug-ins are chosen anew": None
+        for element in root.children
+        if element.tag in ("log", "Recording", "AddOns")
+    }
+    if _text(experience, "userHeight"):
+        notes["userHeight of the configuration: the height of eyes is that of whoever takes part"] = None
+    return Plan(
+        path,
+        path.parent,
+        _text(experience, "sourceFileExperiment") or DEFAULT,
+        int(_number(experience, "currentUser", 0.0)),
+        max(0, int(_number(experience, "startingTrial", 0.0))),
+        tuple(notes),
     )
 
 
-def _experiment(root: Element, path: Path, participant: int | None) -> Imported:
-    """Return the trials of the order file that a configuration names."""
-    experience = _find(root, "experience") or Element("experience")
-    user = int(_number(experience, "currentUser", 0.0)) if participant is None else participant
-    first = max(0, int(_number(experience, "startingTrial", 0.0)))
-    name = _text(experience, "sourceFileExperiment") or "./Scenario/Test/FileOrder{USER}.csv"
-    order = _filled(name, user)
-    try:
-        file = beside(order, path.parent, trust=False)
-        lines = [line.strip() for line in file.read_text(encoding="utf-8-sig").splitlines() if line.strip()]
-    except (InputError, UnicodeDecodeError) as error:
-        raise TrialError(f"{path}: the order file {order[:80]!r} cannot be read: {error}") from None
-    trials: list[tuple[str, Trial]] = []
-    notes: dict[str, None] = {}
-    for element in root.children:
-        if element.tag in ("log", "Recording", "AddOns"):
-            notes[f"<{element.tag}> of the configuration: recording and plug-ins are chosen anew"] = None
-    for line in lines[first : first + MOST_LINES]:
-        entry = _filled(line.split(";")[0].split(",")[0].strip(), user)
+def trials_of(plan: Plan, user: int) -> tuple[list[tuple[str, Trial]], tuple[str, ...]]:
+    """Return the trials of a participant by their entries in the order, and what could not be carried over.
+
+    Raises:
+        TrialError: not one can be read.
+    """
+    rows: list[tuple[str, Trial]] = []
+    notes = dict.fromkeys(plan.notes)
+    for entry in plan.entries(user):
         try:
-            inner = import_original(beside(entry, path.parent, trust=False))
+            place = plan.place(entry)
+            inner = _one(parse(read_bytes(place), str(place)), place)
         except (InputError, TrialError) as error:
             notes[f"trial {entry[:80]!r} and all after it: {error}"] = None
             break
-        trials += inner.trials
+        rows += [(entry, trial) for _, trial in inner.trials]
         notes |= dict.fromkeys(inner.left_out)
-    if not trials:
-        raise TrialError(f"{path}: no trial of the order file {order[:80]!r} could be read: {'; '.join(notes)}")
-    return Imported(tuple(trials), tuple(notes))
+    if not rows:
+        said = "; ".join(notes)
+        raise TrialError(f"{plan.path}: no trial of the order {plan.named(plan.pattern, user)[:80]!r} is read: {said}")
+    return rows, tuple(notes)
 
 
-def _filled(name: str, user: int) -> str:
-    return name.replace("\\", "/").replace("{USER}", str(user)).replace("{TWO}", str(user % 2))
+def _one(root: Element, path: Path) -> Imported:
+    if root.tag != "Trial":
+        raise TrialError(f"{path}:{root.line}: the root element is <{root.tag[:40]}>, an original trial has Trial")
+    reader = _Reader(path.stem)
+    trial = reader.trial(root)
+    return Imported(((path.stem, trial),), tuple(reader.notes))
 
 
 @dataclass

@@ -12,6 +12,7 @@ from .attribute import attribute, check, children
 from .distribution import Distribution
 from .journey import Journey
 from .notation import Points
+from .words import ABOUT_ACTIVITY, ABOUT_BODY, check_words
 
 __all__ = ["Group", "Source", "Spawner"]
 
@@ -57,6 +58,8 @@ class Spawner:
     radius: Distribution = attribute(BODY_RADIUS, about="radius of the body", unit="m", above=0.0, at_most=5.0)
     arrival: str = attribute("leave", about="what people do in the goal zone", choices=("leave", "stay"))
     crowd: str = attribute("", about="name of their crowd, by default the first")
+    body: str = attribute("", about=ABOUT_BODY)
+    activity: str = attribute("", about=ABOUT_ACTIVITY)
     stands: bool = attribute(False, about="they stay where they are placed, without goal and journey")
     heading: float | None = attribute(
         None, about="where they look at first, by default towards the goal, of who stands at random", unit="rad"
@@ -65,6 +68,7 @@ class Spawner:
 
     def __post_init__(self) -> None:
         check(self)
+        check_words(self.body, self.activity)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,9 +95,12 @@ class Source:
     radius: Distribution = attribute(BODY_RADIUS, about="radius of the body", unit="m", above=0.0, at_most=5.0)
     arrival: str = attribute("leave", about="what people do in the goal zone", choices=("leave", "stay"))
     crowd: str = attribute("", about="name of their crowd, by default the first")
+    body: str = attribute("", about=ABOUT_BODY)
+    activity: str = attribute("", about=ABOUT_ACTIVITY)
 
     def __post_init__(self) -> None:
         check(self)
+        check_words(self.body, self.activity)
 
     def expected(self, duration: float) -> float:
         """Return how many people come within a duration [s]: evenly the most, at random the mean."""

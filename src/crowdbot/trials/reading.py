@@ -24,7 +24,7 @@ from .notation import number
 from .sweep import sweep_problems
 from .trial import Trial
 
-__all__ = ["read_trial"]
+__all__ = ["Reader", "read_trial"]
 
 MOST_PROBLEMS = 100
 ROOT = "trial"
@@ -53,7 +53,7 @@ max-neighbors, time-horizon, time-horizon-walls, max-speed, name
     except UnicodeEncodeError:
         raise TrialError(f"{place}: this is not well-formed XML: it holds half a character") from None
     root = parse(data, place, "utf-8" if isinstance(text, str) else None)
-    reader = _Reader(place, folder or Path.cwd(), trust)
+    reader = Reader(place, folder or Path.cwd(), trust)
     if root.tag != ROOT:
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
     trial, values = reader.element(Trial, root)
@@ -69,8 +69,19 @@ max-neighbors, time-horizon, time-horizon-walls, max-speed, name
     return trial
 
 
-class _Reader:
-    """Collects problems while it makes the tree."""
+class Reader:
+    """Makes a tree of frozen dataclasses of XML elements, and collects every problem meanwhile.
+
+    Args:
+        place: name of the file for messages.
+        folder: where code and files that the tree names lie.
+        trust: whether they may lie elsewhere.
+
+    Attributes:
+        made: everything that could be made.
+        lines, words: line and tag of it, by its ``id``.
+        broken: tags of elements that could not be read.
+    """
 
     def __init__(self, place: str, folder: Path, trust: bool) -> None:
         self.place, self.folder, self.trust = place, folder, trust
@@ -82,6 +93,7 @@ class _Reader:
         """Elements of which one could not be read, so that others may well have named it."""
 
     def say(self, line: int, tag: str, sentence: str) -> None:
+        """Add a problem of an element."""
         self.found.append((line, f"{self.place}:{line}: <{tag[:40]}> {sentence}"))
 
     def finish(self) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 from crowdbot.core import EpisodeError
 from crowdbot.data import Trajectories
 from crowdbot.data.tape import MAGIC, Tape
+from crowdbot.sensors import Reading
 
+from .contact_messages import Collided, Pushed
 from .ending import Ending
 from .episode import ScanRow, tracks_of
 from .episode_file import END_KEYS, ENDING, KEYS, METADATA, from_json
@@ -44,10 +46,13 @@ class Recorded:
         ids: ``[A]``.
         robots: indices of the robots.
         commands: ``[T, R, 3]`` forward [m/s], turn [rad/s], left [m/s].
-        scans_by_topic: by ``robot/sensor``; ranges have the 32 bits of the message.
+        readings: by ``robot/sensor``, everything that was measured; numbers have the 32 bits of those messages that
+            have no more (:mod:`crowdbot.trials.readings`).
+        scans_by_topic: those of planar laser scanners, by ``robot/sensor``.
         walls: rings ``[N, 2]`` [m].
         metrics: by name.
         contacts: of robots, in every time step.
+        forces, collisions: of the physics world, with whom, where on the body, and how hard.
         digests: ``[T]`` of the episode up to each instant, as if it had been interrupted there.
     """
 
@@ -68,6 +73,9 @@ class Recorded:
     metrics: Mapping[str, float]
     contacts: tuple[Touched, ...]
     digests: tuple[str, ...]
+    readings: Mapping[str, tuple[Reading, ...]] = field(default_factory=dict)
+    forces: tuple[Pushed, ...] = ()
+    collisions: tuple[Collided, ...] = ()
 
     @property
     def xml(self) -> str:
@@ -224,9 +232,12 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[Moment]) -> Re
             arrays.put_robot(k, places[r], float(robot["radius"]), moment.robots[robot["name"]])
             commands[k, r] = moment.commands[robot["name"]]
     scans: dict[str, list[ScanRow]] = {}
+    readings: dict[str, list[Reading]] = {}
     for moment in found:
         for topic, scan in moment.scans.items():
             scans.setdefault(topic, []).append(scan)
+        for topic, reading in moment.readings.items():
+            readings.setdefault(topic, []).append(reading)
     times = np.array([moment.time for moment, _ in due])
     if not complete:
         ending = Ending(known)
@@ -251,6 +262,9 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[Moment]) -> Re
         from_json(known["metrics"]),
         tuple(contact for moment in found for contact in moment.contacts),
         tuple(moment.digest for moment, _ in due),
+        {topic: tuple(rows) for topic, rows in readings.items()},
+        tuple(force for moment in found for force in moment.forces),
+        tuple(collision for moment in found for collision in moment.collisions),
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import errno
 import os
 from collections.abc import Mapping, Sequence
@@ -10,18 +11,29 @@ from types import TracebackType
 from typing import Any
 
 from crowdbot.core import EpisodeError
-from crowdbot.sensors import Scan
 
+from .carried import carried
+from .contact_messages import pushes
 from .episode_file import CONTACTS, DIGEST, ENDING, FORMAT, MAP, METADATA, as_json, versions
 from .markers import KIND as MARKERS
 from .markers import markers
 from .messages import Messages
+from .reading_codec import Told, mounted
+from .readings import codec_of, said
 from .simulation import WALL, Frame
 from .tally import Tally
 from .tape import TapeWriter
+from .trial import Trial
 
 __all__ = ["Recorder"]
 
+FOREVER = "{sec: 2147483647, nsec: 4294967295}"
+LATCHED = (
+    "- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n"
+    f"  deadline: {FOREVER}\n  lifespan: {FOREVER}\n"
+    f"  liveliness: 1\n  liveliness_lease_duration: {FOREVER}\n  avoid_ros_namespace_conventions: false\n"
+)
+"""Quality of service of fixed frames, so that ROS hands them to who listens later, too (rosbag2 reads this)."""
 APART = 500_000_000
 """The file grows every so many nanoseconds of simulated time: its bytes do not depend on the wall clock."""
 
@@ -29,9 +41,11 @@ APART = 500_000_000
 class Recorder:
     """Writes what a run tells it to a file that can be read at any moment, also after the run was killed.
 
-    Topics: ``/clock``, ``/tf`` (``map`` to each robot and its sensors), ``/people``, ``/crowd/markers``,
-    ``/crowdbot/digest``, for each robot ``/<robot>/odom``, ``/<robot>/cmd_vel`` and ``/<robot>/<sensor>``, and
-    ``/crowdbot/contacts`` whenever a robot touches somebody or a wall. Every stamp is simulated time.
+    Topics: ``/clock``, ``/tf`` (``map`` to each robot), ``/tf_static`` (each robot to its sensors), ``/people``,
+    ``/crowd/markers``, ``/crowdbot/digest``, for each robot ``/<robot>/odom``, ``/<robot>/cmd_vel`` and
+    ``/<robot>/<sensor>`` (what it is of which sensor: :mod:`crowdbot.trials.readings`), and ``/crowdbot/contacts``
+    whenever a robot touches somebody or a wall; in the physics world ``/crowdbot/forces`` and
+    ``/crowdbot/collisions`` too. Every stamp is simulated time.
 
     The file appears with the first recorded instant, in place of one that was there, and grows every half second of
     simulated time. Use as a context: when it ends without :meth:`complete`, the file is left as a killed run leaves
@@ -42,16 +56,25 @@ class Recorder:
         tally: of the run; it is told each instant before the recorder.
         origin: what the run branched from, as the metadata keeps it.
         begin: tick of the first instant.
+        earlier: the trials that it branched from, whose files it keeps too.
 
     Raises:
         InputError: the trial cannot be written as XML.
         EpisodeError: the file cannot be written.
     """
 
-    def __init__(self, path: Path, tally: Tally, origin: Sequence[Mapping[str, Any]] = (), begin: int = 0) -> None:
+    def __init__(
+        self,
+        path: Path,
+        tally: Tally,
+        origin: Sequence[Mapping[str, Any]] = (),
+        begin: int = 0,
+        earlier: Sequence[Trial] = (),
+    ) -> None:
         self.path, self.tally, self.origin, self.begin = path, tally, origin, begin
         self.trial, self.seed = tally.trial, tally.seed
         self.xml = self.trial.xml()
+        self.files = carried([self.trial, *earlier])
         self.messages = Messages()
         self.channels: dict[str, int] = {}
         self.made: list[Path] = []
@@ -62,8 +85,9 @@ class Recorder:
         start = begin * round(self.trial.step * 1e9)
         self._markers_due = -(-start // self._markers_every) * self._markers_every
         self._write_due = start
-        self._static = [
-            (f"{robot.name}/base_link", f"{robot.name}/{mount.name}", mount.x, mount.y, mount.heading)
+        self._names = {self.trial.people + k: robot.name for k, robot in enumerate(self.trial.robots)}
+        self._mounts = [
+            (f"{robot.name}/base_link", f"{robot.name}/{mount.name}", mounted(robot, mount))
             for robot in self.trial.robots
             for mount in robot.sensors
         ]
@@ -79,6 +103,9 @@ class Recorder:
             raise EpisodeError(f"{self.path} cannot be written: {error.strerror}; give another place") from None
         self.tape = TapeWriter(self.path, "ros2", f"crowdbot {versions()['version']}")
         self.tape.metadata(METADATA, self._metadata())
+        for file, place in self.files:
+            if file.kept:
+                self.tape.attachment(file.name, place.read_bytes())
         return self
 
     def __exit__(
@@ -95,18 +122,16 @@ class Recorder:
         now, make = frame.nanoseconds, self.messages
         self._write("/clock", make.clock(now), now)
         if self.trial.robots:
-            self._write("/tf", make.transforms(now, [*self._poses(frame, first), *self._static]), now)
+            self._write("/tf", make.transforms(now, self._poses(frame, first)), now)
+        self._fixed(frame)
         for robot, mount, reading in frame.readings:
-            topic = f"{robot.name}/{mount.name}"
-            if isinstance(reading, Scan):
-                scan = make.scan(now, topic, mount.sensor, reading.angles, reading.ranges[0], reading.hit[0])
-                self._write(f"/{topic}", scan, now)
-            else:
-                raise EpisodeError(
-                    f"sensor {topic!r} gives a {type(reading).__name__}, which has no ROS message yet; run without out"
-                )
+            told = Told(reading, mount.sensor, robot.name, f"{robot.name}/{mount.name}")
+            for ending, message in said(make, told):
+                self._write(f"/{told.topic}{ending}", message, now)
         if frame.touches:
             self._write(CONTACTS, make.contacts(now, self._touches(frame)), now)
+        for topic, message in pushes(make, now, frame, self._names):
+            self._write(topic, message, now)
         if frame.due:
             self._scene(frame, first)
             self.last = frame.tick, self.tally.digest.ended("interrupted")
@@ -146,6 +171,15 @@ class Recorder:
             self._markers_due = now - now % self._markers_every + self._markers_every
             self._put("/crowd/markers", MARKERS, markers(now, scene, frame.ids, self.trial.robots), now)
 
+    def _fixed(self, frame: Frame) -> None:
+        """Write where sensors sit, at every instant, so that each tells by itself where everything was."""
+        rows = list(self._mounts)
+        for robot, mount, reading in frame.readings:
+            topic = f"{robot.name}/{mount.name}"
+            rows += codec_of(type(reading), topic).frames(robot.name, topic)
+        if rows:
+            self._write("/tf_static", self.messages.fixed(frame.nanoseconds, rows), frame.nanoseconds)
+
     def _poses(self, frame: Frame, first: int) -> list[tuple[str, str, float, float, float]]:
         scene = frame.scene
         return [
@@ -160,7 +194,7 @@ class Recorder:
         ]
 
     def _touches(self, frame: Frame) -> list[tuple[str, str, float]]:
-        names = {self.trial.people + k: robot.name for k, robot in enumerate(self.trial.robots)} | {WALL: "wall"}
+        names = self._names | {WALL: "wall"}
         return [(names[one.robot], names.get(one.other, str(one.other)), one.clearance) for one in frame.touches]
 
     def _write(self, topic: str, message: Any, nanoseconds: int) -> None:
@@ -169,7 +203,8 @@ class Recorder:
     def _put(self, topic: str, kind: str, data: bytes, nanoseconds: int) -> None:
         assert self.tape is not None
         if topic not in self.channels:
-            self.channels[topic] = self.tape.channel(topic, self.tape.schema(kind, self.messages.definition(kind)))
+            schema = self.tape.schema(kind, self.messages.definition(kind))
+            self.channels[topic] = self.tape.channel(topic, schema, LATCHED if topic == "/tf_static" else "")
         try:
             self.tape.message(self.channels[topic], nanoseconds, data)
         except OSError as error:
@@ -203,6 +238,7 @@ class Recorder:
             "step_ns": str(round(self.trial.step * 1e9)),
             "walls": as_json([ring.tolist() for ring in self.trial.stage.rings]),
             "robots": as_json(robots),
+            **({"files": as_json([dataclasses.asdict(file) for file, _ in self.files])} if self.files else {}),
             **({"origin": as_json(list(self.origin)), "begin": str(self.begin)} if self.origin else {}),
         }
 

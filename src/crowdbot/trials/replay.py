@@ -9,6 +9,7 @@ from typing import Any
 
 from crowdbot.core import EpisodeError
 
+from .carried import unpacked
 from .course import Comparison, Course, digests
 from .episode_file import END_KEYS, versions
 from .recorded import read_metadata
@@ -92,8 +93,9 @@ def replay(
 
     Args:
         path: of the episode.
-        folder: where code that the trial names lies (default: the folder of the episode).
-        trust: whether code from outside that folder may be loaded.
+        folder: where code that the trial names lies (default: the folder of the episode). Data that it names are
+            those that were recorded, which the episode holds.
+        trust: whether code from outside that folder may be loaded, the code that the episode holds included.
         progress: called with the share that is done, 0 to 1.
 
     Raises:
@@ -106,9 +108,9 @@ def replay(
     if not (complete or wanted):
         raise EpisodeError(f"{path} holds no recorded instant: the run was killed before it began")
     recorded = known if complete else known | _ended(known, wanted)
-    course = Course.of(path, folder, trust)
     comparison = Comparison(Digest(), wanted)
-    with stopping() as stop:
+    with unpacked(path, known, folder, trust) as place, stopping() as stop:
+        course = Course.of(path, place, trust)
         simulation = course.begun(comparison, stop)
         ticks = int(recorded["steps"]) if recorded["outcome"] == "interrupted" else None
         outcome = drive(simulation, [comparison], stop, progress, ticks)

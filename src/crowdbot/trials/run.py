@@ -13,6 +13,7 @@ from typing import Protocol, TypeVar
 
 from crowdbot.core import Clock, ExternalClock, InputError
 from crowdbot.sensors import Reading
+from crowdbot.world.walk import Stepping, alone
 
 from .episode import Episode, Log
 from .simulation import Frame, Simulation
@@ -90,9 +91,13 @@ class Running:
         Raises:
             InputError: it has ended before.
         """
+        return alone(self.stepping())
+
+    def stepping(self) -> Stepping[str | None]:
+        """Go one step on as :meth:`step` does, and ask somebody else how the crowd walks."""
         if self.outcome is not None:
             raise InputError(f"the run has ended ({self.outcome}) at {self.simulation.world.clock.time:g} s")
-        self.simulation.step()
+        yield from self.simulation.stepping()
         self._observe()
         return self.outcome
 
@@ -121,8 +126,8 @@ class Running:
         if due:
             stopped = self.stop.asked or (self.ticks is not None and simulation.tick >= self.ticks)
             self.outcome = _outcome(simulation) or ("interrupted" if stopped else None)
-        if due or readings or simulation.touches:
-            frame = simulation.frame(readings, due)
+        if due or readings or simulation.eventful:
+            frame = simulation.frame(readings, due, last=self.outcome is not None)
             for sink in self.sinks:
                 sink.take(frame)
 

@@ -16,23 +16,33 @@ At tick 0 only 6 to 8 happen. A sensor, a navigator and a recorder are due every
 
 from __future__ import annotations
 
-import dataclasses
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, InputError, Scene, TrialError, Twist, stream
+from crowdbot.core import Clock, InputError, Scene, TrialError, Twist
 from crowdbot.metrics import wall_clearance
+from crowdbot.metrics.contacts import HOLD
 from crowdbot.navigation import Limits, Observation
 from crowdbot.sensors import Reading, Scan
+from crowdbot.world.drive import Twists
+from crowdbot.world.servo import CommandDelay, Pending
+from crowdbot.world.walk import Stepping, alone
 
+from .figures import cast_of
 from .leaving import ended, ways_out
 from .opening import limits_of, start_scene, world_of
+from .sensing import Probe, probes_of
 from .spawn import place
+from .surroundings import Surroundings
 from .trial import Mount, Robot, Trial
+
+if TYPE_CHECKING:
+    from crowdbot.world.physics import BodyForce, Collision, Party
 
 __all__ = ["Carrier", "Frame", "Simulation", "Touch", "start_scene"]
 
@@ -65,6 +75,8 @@ class Frame:
         readings: what was measured at this instant, with who measured it; scans hit people by their ids.
         due: whether the scene is to be recorded; otherwise only the readings and contacts are.
         touches: the contacts of the step that ended now.
+        forces: in the physics world what bodies did to each other in that step.
+        collisions: in the physics world those that have come to an end since the last frame.
     """
 
     tick: int
@@ -76,6 +88,8 @@ class Frame:
     readings: tuple[tuple[Robot, Mount, Reading], ...]
     due: bool
     touches: tuple[Touch, ...] = ()
+    forces: tuple[BodyForce, ...] = ()
+    collisions: tuple[Collision, ...] = ()
 
 
 @dataclass
@@ -86,13 +100,23 @@ class Carrier:
     agent: int
     limits: Limits
     control_every: int
-    sensor_every: tuple[int, ...]
-    randomness: tuple[np.random.Generator, ...]
+    probes: tuple[Probe, ...]
     readings: dict[str, Reading] = field(default_factory=dict)
     seen: dict[str, NDArray[np.int64]] = field(default_factory=dict)
-    """Ids of those whom each sensor hit last."""
+    """Ids of those whom each sensor showed last."""
     command: Twist = field(default_factory=Twist)
     arrived: bool = False
+    pending: tuple[Pending, ...] = ()
+    in_force: Twist | Twists = field(default_factory=Twist)
+    """Of a drive with latency in the plane: commands on their way, and the one that the wheels follow."""
+
+    def obeyed(self, dt: float) -> Twist | Twists:
+        """Return the command that the wheels follow in the next step; the physics world delays it by itself."""
+        if self.robot.latency == 0.0:
+            return self.command
+        delay = CommandDelay(self.robot.latency)
+        self.pending, self.in_force = delay.step(self.pending, self.in_force, self.command, dt)
+        return self.in_force
 
 
 class Simulation:
@@ -101,8 +125,10 @@ class Simulation:
     Args:
         trial, seed: what runs.
         clock: who allows the steps, at tick 0 and with the time step of the trial; None: a free clock.
+        posed: whether people have bodies although no sensor looks at them, for who draws them.
 
     Attributes:
+        around: the world as sensors and cameras see it.
         world: who moves people and robots, and counts the time.
         carriers: the robots.
         event: ``success`` or ``collision`` once that has happened, whichever came first.
@@ -121,7 +147,7 @@ class Simulation:
     50000000
     """
 
-    def __init__(self, trial: Trial, seed: int, clock: Clock | None = None) -> None:
+    def __init__(self, trial: Trial, seed: int, clock: Clock | None = None, *, posed: bool = False) -> None:
         self.trial = trial
         self.seed = seed
         recorded = [(one, one.walks(trial.duration)) for one in trial.recorded]
@@ -130,7 +156,13 @@ class Simulation:
             what = ((type(one).__name__.lower(), one.name, sentence) for one, sentence in problems)
             raise TrialError(*(f"trial {trial.name!r}: {word} {name!r}: {sentence}" for word, name, sentence in what))
         self.people = people
-        self.world = world_of(trial, people, seed)
+        self.world, figures = world_of(trial, people, seed)
+        if posed and figures is None:
+            figures = cast_of(trial, people, self.world.scene.shape[1], seed)
+        skins = trial.bodies == "skins" or any(
+            getattr(m.sensor, "skins", False) for r in trial.robots for m in r.sensors
+        )
+        self.around = Surroundings(trial, self.world, figures, seed, skins)
         self.carriers = [self._carrier(robot, len(people) + k) for k, robot in enumerate(trial.robots)]
         self.event: str | None = None
         self.touches: tuple[Touch, ...] = ()
@@ -138,30 +170,36 @@ class Simulation:
         if clock is not None:
             self._keep_time(clock)
         self.ended: str | None = None
-        self._segments = self.world.scene.walls.segments()
+        self._segments = trial.stage.as_walls().segments()
         self._ways_out = ways_out(people)
+        self._told = 0
 
     def step(self) -> None:
         """Go one step on: parts 1 to 5 of the order."""
+        alone(self.stepping())
+
+    def stepping(self) -> Stepping[None]:
+        """Go one step on, and ask somebody else how the crowd walks: see :func:`crowdbot.trials.run_batch`."""
         before, ids = self.world.scene, self.ids.copy()
-        self.world.step({carrier.agent: carrier.command for carrier in self.carriers})
+        physics = self.trial.world == "physics"
+        yield from self.world.stepping(
+            {c.agent: c.command if physics else c.obeyed(self.world.dt) for c in self.carriers}
+        )
         self._let_leave()
+        self.around.moved()
         self._judge(before, ids)
 
     def sense(self) -> tuple[tuple[Robot, Mount, Reading], ...]:
-        """Return what the sensors that are due measure: the first half of part 6."""
+        """Let the sensors that are due measure, and return what arrives now: the first half of part 6."""
         new = []
         for carrier in self.carriers:
-            pose = self.world.pose(carrier.agent)
-            others = self.world.scene.without(carrier.agent)
-            rows = zip(carrier.robot.sensors, carrier.sensor_every, carrier.randomness, strict=True)
-            for mount, every, rng in rows:
-                if self.tick % every == 0:
-                    reading = mount.sensor.measure(others, pose.mounted(mount.x, mount.y, mount.heading), rng)
-                    carrier.readings[mount.name] = reading
-                    if isinstance(reading, Scan):
-                        carrier.seen[mount.name] = self.ids[reading.seen(len(self.ids))[0]]
-                    new.append((carrier.robot, mount, reading))
+            for probe in carrier.probes:
+                name = probe.mount.name
+                for told in probe.work(self.tick, carrier.agent, self.around, self.ids):
+                    carrier.readings[name] = told.reading
+                    if told.seen is not None:
+                        carrier.seen[name] = told.seen
+                    new.append((carrier.robot, probe.mount, told.reading))
         return tuple(new)
 
     def decide(self) -> None:
@@ -171,11 +209,11 @@ class Simulation:
                 carrier.command = _asked(carrier.robot, self.observation(carrier))
 
     def observation(self, carrier: Carrier) -> Observation:
-        """Return what a robot knows: of the people, those whom its latest scans hit with at least one beam.
+        """Return what a robot knows: of the people, those whom its sensors showed last, as by one beam of a scan.
 
         These it knows by their true positions and velocities, as from a perfect tracker.
         """
-        scene = self.world.scene
+        scene = self.around.flat
         seen = np.zeros(scene.shape[1], dtype=np.bool_)
         for hit in carrier.seen.values():
             seen |= np.isin(self.ids, hit)
@@ -190,8 +228,10 @@ class Simulation:
             scan=scans[0] if scans else None,
         )
 
-    def frame(self, readings: tuple[tuple[Robot, Mount, Reading], ...] = (), due: bool = True) -> Frame:
-        """Return what is to be recorded of this instant: part 8."""
+    def frame(
+        self, readings: tuple[tuple[Robot, Mount, Reading], ...] = (), due: bool = True, last: bool = False
+    ) -> Frame:
+        """Return what is to be recorded of this instant: part 8; the ``last`` one has collisions that go on."""
         twists = [self.world.twists[carrier.agent].at(0) for carrier in self.carriers]
         return Frame(
             self.tick,
@@ -200,15 +240,39 @@ class Simulation:
             self.ids.copy(),
             _rows(twists),
             _rows([carrier.command for carrier in self.carriers]),
-            tuple((robot, mount, _by_id(reading, self.ids)) for robot, mount, reading in readings),
+            readings,
             due,
             self.touches,
+            self.forces,
+            self._collisions(last),
         )
+
+    @property
+    def forces(self) -> tuple[BodyForce, ...]:
+        """What bodies of the physics world did to each other in the latest step; none in the plane."""
+        return tuple(getattr(self.world, "forces", ()))
+
+    @property
+    def eventful(self) -> bool:
+        """Whether something has happened that is recorded even when no scene is due."""
+        return bool(self.touches or self.forces)
+
+    def _collisions(self, last: bool) -> tuple[Collision, ...]:
+        """Return the collisions that have ended since they were asked for before, by their ends."""
+        world: Any = self.world
+        if self.trial.world != "physics":
+            return ()
+        now = self.world.clock.time
+        over = [one for one in world.collisions if last or now - one.end > HOLD]
+        over.sort(key=lambda one: (one.end, one.begin, one.first, one.second))
+        new, self._told = over[self._told :], len(over)
+        return tuple(new)
 
     def turn_to(self, trial: Trial, seed: int) -> None:
         """Go on by another trial; see :func:`crowdbot.trials.changing.turn_to`, which changes the world first."""
         self.trial, self.seed = trial, seed
-        self._segments = self.world.scene.walls.segments()
+        self.around.trial = trial
+        self._segments = trial.stage.as_walls().segments()
 
     def ask(self, robot: str, command: Twist) -> None:
         """Give a robot another command, which it holds until its navigator decides again: for bridges, part 7.
@@ -240,8 +304,7 @@ class Simulation:
             agent,
             limits_of(robot.drive),
             every(robot.control_period),
-            tuple(every(1.0 / mount.sensor.rate) for mount in robot.sensors),
-            tuple(stream(self.seed, "sensor", robot.name, mount.name) for mount in robot.sensors),
+            probes_of(self.trial, robot, self.world.clock, self.seed),
         )
 
     def _keep_time(self, clock: Clock) -> None:
@@ -273,7 +336,7 @@ class Simulation:
         touches = [Touch(int(ids[one.robot]), int(ids[one.other]), one.clearance) for one in self.world.contacts]
         for carrier in self.carriers:
             path = np.stack([before.position[0, carrier.agent], now.position[0, carrier.agent]])
-            gap = float(wall_clearance(path, carrier.robot.radius, self._segments)[1])
+            gap = self._wall_gap(carrier, path)
             if gap < 0.0:
                 touches.append(Touch(int(ids[carrier.agent]), WALL, gap))
             away = float(np.hypot(*(path[1] - np.array(carrier.robot.goal.position))))
@@ -287,6 +350,18 @@ class Simulation:
         if self.ended is None:
             self.ended = ended(self)
 
+    def _wall_gap(self, carrier: Carrier, path: NDArray[np.float64]) -> float:
+        """Return the clearance [m] of a robot to what stands fast, below 0 when they touch."""
+        if self.trial.world != "physics":
+            return float(wall_clearance(path, carrier.robot.radius, self._segments)[1])
+        depth = [one.depth for one in self.forces if one.first == ("robot", carrier.agent) and self._fast(one.second)]
+        return -max(*depth, 1e-9) if depth else math.inf
+
+    def _fast(self, party: Party) -> bool:
+        if party.kind == "prop":
+            return not self.trial.stage.props[party.number].prop().movable
+        return party.kind == "wall"
+
 
 def _asked(robot: Robot, observation: Observation) -> Twist:
     answer: Any = robot.navigator.act(observation)
@@ -296,13 +371,6 @@ def _asked(robot: Robot, observation: Observation) -> Twist:
             " it must give a Twist"
         )
     return Twist(*map(float, answer))
-
-
-def _by_id(reading: Reading, ids: NDArray[np.int64]) -> Reading:
-    """Return a reading in which people are named by who they are, not by their places among the agents."""
-    if not isinstance(reading, Scan) or np.array_equal(ids, np.arange(len(ids))):
-        return reading
-    return dataclasses.replace(reading, hit=np.where(reading.hit >= 0, ids[reading.hit], reading.hit))
 
 
 def _rows(twists: Sequence[Twist]) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,10 @@ from crowdbot.core import InputError, Walls
 from .attribute import attribute, check, children, shown
 from .ground import area_of, map_of
 from .notation import Points
+from .props import Cube, Light, Prop, Table, Tree
+
+if TYPE_CHECKING:
+    from crowdbot.world.physics import PhysicsStage
 
 __all__ = ["Obstacle", "Stage", "Wall", "area"]
 
@@ -47,7 +51,9 @@ class Obstacle:
 
 @dataclass(frozen=True)
 class Stage:
-    """Walls, obstacles and, when given, the walkable area: its border is a wall, and nobody can be outside.
+    """Walls, obstacles, props and, when given, the walkable area: its border is a wall, and nobody can be outside.
+
+    In the plane props are solid by their outlines, the trunk of a tree; only a physics world has bodies to push.
 
     >>> stage = Stage(walkable=[(0, 0), (8, 0), (8, 4), (0, 4)], obstacles=[Obstacle([(3, 1), (4, 1), (4, 2)])])
     >>> len(stage.rings), stage.clearance([(1.0, 2.0), (3.9, 1.5), (9.0, 9.0)]).tolist()
@@ -62,8 +68,12 @@ class Stage:
     )
     map: str = attribute("", about="name of the .yaml of a map of ROS: occupied cells are solid")
     unknown: str = attribute("occupied", about="what unknown cells of the map are", choices=("occupied", "free"))
+    wall_height: float = attribute(2.5, about="of all walls and obstacles", unit="m", above=0.0, at_most=100.0)
+    friction: float = attribute(1.0, about="coefficient of the floor in the physics world", above=0.0, at_most=10.0)
     walls: tuple[Wall, ...] = children("wall", about="thin walls")
     obstacles: tuple[Obstacle, ...] = children("obstacle", about="solid polygons")
+    props: tuple[Prop, ...] = children({"cube": Cube, "table": Table, "tree": Tree}, about="what stands there")
+    lights: tuple[Light, ...] = children("light", about="lamps; without them it is day", at_most=50)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     trust: bool = dataclasses.field(default=True, compare=False, repr=False)
     """Where the files lie, and whether they may lie outside; not part of the tree."""
@@ -89,11 +99,19 @@ class Stage:
         lines = [np.array(w.points[k : k + 2]) for w in self.walls for k in range(len(w.points) - 1)]
         solids = [_turned(o.points, counter_clockwise=True) for o in self.obstacles]
         around = [_turned(self.walkable, counter_clockwise=False)] if self.walkable else []
-        return (*lines, *solids, *around, *_rings(self._ground, solid=False), *_rings(self._map, solid=True))
+        fixed = (*lines, *solids, *around, *_rings(self._ground, solid=False), *_rings(self._map, solid=True))
+        return (*fixed, *(prop.ring for prop in self.props))
 
-    def as_walls(self) -> Walls:
-        """Return the walls of a scene on this stage."""
-        return Walls.of(self.rings)
+    def as_walls(self, props: bool = True) -> Walls:
+        """Return the walls of a scene on this stage, with the outlines of props or without."""
+        return Walls.of(self.rings if props else self.rings[: len(self.rings) - len(self.props)])
+
+    def physical(self) -> PhysicsStage:
+        """Return what a world with bodies has beside walls."""
+        from crowdbot.world.physics import PhysicsStage
+
+        props, lights = tuple(one.prop() for one in self.props), tuple(one.light() for one in self.lights)
+        return PhysicsStage(self.wall_height, self.friction, props, lights)
 
     def clearance(self, points: Any) -> NDArray[np.float64]:
         """Return ``[N]`` how far points ``[N, 2]`` are from the nearest solid [m]; 0 inside it or off the area."""
@@ -128,7 +146,10 @@ class Stage:
         return next((self._called(k) for k in near if shape.intersection(blocks[k]).area > smallest), "")
 
     def _called(self, block: int) -> str:
-        return f"obstacle {block + 1} of the stage" if block < len(self.obstacles) else "a solid of the map"
+        if block < len(self.obstacles):
+            return f"obstacle {block + 1} of the stage"
+        prop = block - len(self.obstacles) - len(self._map)
+        return f"prop {prop + 1} of the stage" if prop >= 0 else "a solid of the map"
 
     @functools.cached_property
     def _ground(self) -> tuple[Any, ...]:
@@ -153,7 +174,8 @@ class Stage:
     def _blocks(self) -> Any:
         import shapely
 
-        return shapely.STRtree([*(area(obstacle.points) for obstacle in self.obstacles), *self._map])
+        props = [shapely.Polygon(prop.ring) for prop in self.props]
+        return shapely.STRtree([*(area(obstacle.points) for obstacle in self.obstacles), *self._map, *props])
 
     @functools.cached_property
     def _solids(self) -> Any:

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Pose
+from crowdbot.core import Pose, SpatialPose
 
+from .contact_messages import hashed
 from .simulation import Frame
 from .travel import Instant, Travel
 from .trial import Trial
@@ -53,7 +54,7 @@ class Digest:
         self._sum = hashlib.blake2b(digest_size=16)
 
     def take(self, frame: Frame) -> None:
-        """Add an instant: every array of its readings, then, when it is due, of its scene."""
+        """Add an instant: every array of its readings, then, when it is due, of its scene, then forces."""
         for robot, mount, reading in frame.readings:
             self._sum.update(f"reading {frame.nanoseconds} {robot.name}/{mount.name}\n".encode())
             for field in dataclasses.fields(reading):
@@ -63,6 +64,8 @@ class Digest:
             who = [] if np.array_equal(frame.ids, np.arange(len(frame.ids))) else [frame.ids]
             for array in (*who, *present(frame), frame.twists, frame.commands):
                 self._sum.update(_bytes(array))
+        for words in hashed(frame):
+            self._sum.update(words)
 
     def ended(self, outcome: str) -> str:
         """Return the hash of everything so far and the outcome."""
@@ -167,5 +170,9 @@ def _instant(frame: Frame) -> Instant:
 def _bytes(value: Any) -> bytes:
     if isinstance(value, Pose):
         value = np.column_stack([value.position, value.heading])
+    elif isinstance(value, SpatialPose):
+        value = np.column_stack([value.position, value.rotation])
+    elif dataclasses.is_dataclass(value):
+        return b"".join(_bytes(getattr(value, field.name)) for field in dataclasses.fields(value))
     array = np.ascontiguousarray(value)
     return repr(value).encode() if array.dtype.hasobject else array.tobytes()

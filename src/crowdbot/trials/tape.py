@@ -18,6 +18,8 @@ from typing import BinaryIO
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.records import (
+    Attachment,
+    AttachmentIndex,
     Channel,
     ChunkIndex,
     DataEnd,
@@ -31,7 +33,7 @@ from mcap.records import (
     SummaryOffset,
 )
 
-from crowdbot.data.tape import MAGIC, Kind, Tape
+from crowdbot.data.tape import MAGIC, Kind, Tape, attachment
 
 __all__ = ["TapeWriter", "finish"]
 
@@ -75,11 +77,15 @@ class TapeWriter:
             self._before += _bytes(Schema(self._schemas[name], text.encode(), "ros2msg", name))
         return self._schemas[name]
 
-    def channel(self, topic: str, schema: int) -> int:
-        """Return the number of a new channel."""
+    def channel(self, topic: str, schema: int, quality: str = "") -> int:
+        """Return the number of a new channel; ``quality`` is that of ROS 2 (YAML, as rosbag2 keeps it)."""
         self._channels += 1
-        self._before += _bytes(Channel(self._channels, topic, "cdr", {"offered_qos_profiles": ""}, schema))
+        self._before += _bytes(Channel(self._channels, topic, "cdr", {"offered_qos_profiles": quality}, schema))
         return self._channels
+
+    def attachment(self, name: str, data: bytes) -> None:
+        """Add a file; its times are 0, so that the same run writes the same bytes."""
+        self._before += _bytes(Attachment(0, 0, name, "application/octet-stream", data))
 
     def metadata(self, name: str, values: Mapping[str, str]) -> None:
         """Add a metadata record."""
@@ -153,6 +159,7 @@ class _Layout:
     records: dict[int, dict[int, bytes]] = field(default_factory=lambda: {Kind.SCHEMA: {}, Kind.CHANNEL: {}})
     chunks: list[ChunkIndex] = field(default_factory=list)
     metadata: list[MetadataIndex] = field(default_factory=list)
+    attachments: list[AttachmentIndex] = field(default_factory=list)
     counts: dict[int, int] = field(default_factory=dict)
 
     def take(self, kind: int, place: int, body: bytes) -> None:
@@ -163,6 +170,11 @@ class _Layout:
         elif kind == Kind.METADATA:
             length = int.from_bytes(body[:4], "little")
             self.metadata.append(MetadataIndex(place, 9 + len(body), body[4 : 4 + length].decode()))
+        elif kind == Kind.ATTACHMENT:
+            name, data = attachment(body)
+            media = len(body) - len(data) - len(name.encode()) - 36
+            how = body[24 + len(name.encode()) :][:media].decode()
+            self.attachments.append(AttachmentIndex(place, 9 + len(body), 0, 0, len(data), name, how))
         elif kind == Kind.CHUNK:
             start, end, size, _, word = struct.unpack_from("<QQQII", body)
             how = body[32 : 32 + word].decode()
@@ -177,7 +189,7 @@ class _Layout:
     def statistics(self) -> Statistics:
         """How much there is."""
         return Statistics(
-            attachment_count=0,
+            attachment_count=len(self.attachments),
             channel_count=len(self.records[Kind.CHANNEL]),
             channel_message_counts=dict(sorted(self.counts.items())),
             chunk_count=len(self.chunks),
@@ -224,6 +236,7 @@ def _summary(layout: _Layout, start: int) -> bytes:
         Opcode.CHANNEL: b"".join(layout.records[Kind.CHANNEL].values()),
         Opcode.STATISTICS: _bytes(layout.statistics),
         Opcode.CHUNK_INDEX: _bytes(*layout.chunks),
+        Opcode.ATTACHMENT_INDEX: _bytes(*layout.attachments),
         Opcode.METADATA_INDEX: _bytes(*layout.metadata),
     }
     summary, offsets = b"", b""

@@ -11,17 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 from crowdbot.core import InputError
 from crowdbot.models import CrowdModel
-from crowdbot.navigation import Navigator
-from crowdbot.sensors import Sensor
-from crowdbot.world import Drive
 
 from .agent import Agent
-from .attribute import attribute, check, child, children, mounted, plugged
+from .attribute import attribute, check, child, children
+from .camera import Camera
 from .crowd import Contact, Crowd, Crowds, Limits, Routing
 from .journey import Exit, Journey, Portal
-from .notation import NAME
 from .people import Source, Spawner
 from .recorded_people import RecordedPeople
+from .robot import Goal, Mount, Robot
 from .stage import Stage
 from .sweep import Sweep
 
@@ -29,62 +27,6 @@ if TYPE_CHECKING:
     from .episode import Episode
 
 __all__ = ["End", "Goal", "Mount", "Recording", "Robot", "Trial", "When"]
-
-
-@dataclass(frozen=True)
-class Goal:
-    """Where a robot has to go: it has arrived when its centre is within the tolerance."""
-
-    x: float = attribute(about="place", unit="m")
-    y: float = attribute(about="place", unit="m")
-    tolerance: float = attribute(0.3, about="how near its centre must come", unit="m", above=0.0)
-
-    def __post_init__(self) -> None:
-        check(self)
-
-    @property
-    def position(self) -> tuple[float, float]:
-        """``x, y`` [m]."""
-        return self.x, self.y
-
-
-@dataclass(frozen=True, kw_only=True)
-class Mount:
-    """A sensor and where it sits on its robot (x forward, y left)."""
-
-    name: str = attribute("scan", about="last part of its topic", pattern=NAME)
-    sensor: Sensor = mounted("sensors", "Sensor", about="what measures")
-    x: float = attribute(0.0, about="forward of the robot's centre", unit="m")
-    y: float = attribute(0.0, about="left of the robot's centre", unit="m")
-    heading: float = attribute(0.0, about="counter-clockwise from forward", unit="rad")
-
-    def __post_init__(self) -> None:
-        check(self)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Robot:
-    """A robot: where it begins and has to go, how it moves, what it sees with and who steers it."""
-
-    name: str = attribute("robot", about="first part of its topics", pattern=NAME)
-    x: float = attribute(about="start", unit="m")
-    y: float = attribute(about="start", unit="m")
-    heading: float = attribute(0.0, about="start, counter-clockwise from +x", unit="rad")
-    radius: float = attribute(0.3, about="radius of the disc that holds it", unit="m", above=0.0, at_most=10.0)
-    visible: bool = attribute(True, about="whether the crowd reacts to it")
-    control_period: float = attribute(0.1, about="time between two commands", unit="s", above=0.0)
-    goal: Goal = child(about="where it has to go")
-    drive: Drive = plugged("world", "Drive", about="how it moves")
-    navigator: Navigator = plugged("navigation", "Navigator", about="who steers it")
-    sensors: tuple[Mount, ...] = children("sensor", about="what it sees with", at_most=50)
-
-    def __post_init__(self) -> None:
-        check(self)
-
-    @property
-    def position(self) -> tuple[float, float]:
-        """Start ``x, y`` [m]."""
-        return self.x, self.y
 
 
 @dataclass(frozen=True)
@@ -155,6 +97,18 @@ class Trial:
     name: str = attribute(about="name of the trial", pattern=r"\S.{0,79}")
     about: str = attribute("", about="one line for people")
     duration: float = attribute(about="longest simulated time", unit="s", above=0.0, at_most=86_400.0)
+    world: str = attribute(
+        "planar", about="discs in the plane, or bodies with forces between them", choices=("planar", "physics")
+    )
+    physics_step: float = attribute(
+        0.005, about="time step of bodies in the physics world", unit="s", at_least=0.0001, at_most=0.02
+    )
+    bodies: str | None = attribute(
+        None,
+        about="what laser scanners see of people, by default discs in the plane and limbs in the physics world;"
+        " other sensors see limbs at least",
+        choices=("discs", "limbs", "skins"),
+    )
     step: float = attribute(0.05, about="time step of the world", unit="s", at_least=0.001, at_most=1.0)
     substeps: int = attribute(1, about="steps of the crowd in a step of the world", at_least=1, at_most=10_000)
     seed: int = attribute(0, about="seed of everything random", at_least=-(2**53), at_most=2**53)
@@ -184,6 +138,7 @@ class Trial:
     exits: tuple[Exit, ...] = children("exit", about="where people leave", at_most=1000)
     portals: tuple[Portal, ...] = children("portal", about="where people come out elsewhere", at_most=1000)
     robots: tuple[Robot, ...] = children("robot", about="robots", at_most=100)
+    cameras: tuple[Camera, ...] = children("camera", about="what looks on", at_most=100)
     end: End = child(End, about="what ends the trial")
     recording: Recording = child(Recording, about="how often what is recorded")
     sweeps: tuple[Sweep, ...] = children("sweep", about="values that differ from variant to variant", at_most=20)
@@ -192,6 +147,12 @@ class Trial:
 
     def __post_init__(self) -> None:
         check(self)
+        steps = self.step / self.physics_step
+        if self.world == "physics" and (steps < 1.0 - 1e-6 or abs(steps - round(steps)) > 1e-6):
+            raise InputError(
+                f'step="{self.step:g}" must be a whole number of steps of the physics world, physics-step='
+                f'"{self.physics_step:g}" s'
+            )
 
     @classmethod
     def load(cls, source: str | Path, *, trust: bool = False, **values: Any) -> Trial:

@@ -16,7 +16,7 @@ from .drawn import Drawn
 from .markup import Element, written
 from .notation import plain
 
-__all__ = ["element_of", "xml"]
+__all__ = ["element_from", "element_of", "xml"]
 
 
 def xml(trial: Any) -> str:
@@ -38,15 +38,19 @@ def xml(trial: Any) -> str:
 
 def element_of(trial: Any) -> Element:
     """Return the tree that :func:`xml` writes."""
-    return _element("trial", trial, trial.folder)
+    return element_from("trial", trial, trial.folder)
 
 
-def _element(tag: str, thing: Any, folder: Path | None) -> Element:
+def element_from(tag: str, thing: Any, folder: Path | None) -> Element:
+    """Return the element of a tree of attributes and children; addresses are as seen from ``folder``."""
     element = Element(tag)
     cls: type = type(thing)
+    usual = getattr(thing, "usual", {})
     for part in outline(cls):
         value = getattr(thing, part.name)
-        if not part.required and value == part.default:
+        if part.role == "children" and part.name in usual:
+            value = tuple(one for one in value if one not in usual[part.name])
+        if not part.required and value == usual.get(part.name, part.default):
             continue
         _add(element, part, value, folder)
     return element
@@ -57,7 +61,7 @@ def _add(element: Element, part: Part, value: Any, folder: Path | None) -> None:
         element.attributes[part.word] = _text(value, part.word)
     elif part.role in ("child", "children"):
         ones = part.into.spread(value) if part.into else (value if part.role == "children" else (value,))
-        element.children += [_element(_word(part, one), one, folder) for one in ones]
+        element.children += [element_from(_word(part, one), one, folder) for one in ones]
     elif part.role == "plugged":
         element.children.append(Element(part.word, _plug(part, value, folder)))
     else:

@@ -8,11 +8,12 @@ from .journey import Journey, Journeys
 from .limits import CrowdLimits
 from .planar import PlanarWorld
 from .portal import Portal
-from .robot import Robot, SensorMount, Wheel, builtin_robots
+from .robot import Robot, SensorMount, builtin_robots
 from .routing import Router
 from .script import Script, Track
 from .servo import CommandDelay, VelocityServo
 from .stop import Direction, Point, Stop, Zone
+from .wheel import Wheel
 from .world import Contact, World
 
 __all__ = [

@@ -25,6 +25,7 @@ from .routing import WAY, Router
 from .script import Script
 from .stop import Zone
 from .traffic import Traffic
+from .walk import Stepping, Walk, alone
 from .world import Contact, World
 
 __all__ = ["PlanarWorld"]
@@ -124,10 +125,14 @@ class PlanarWorld(World):
 
     def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
         """Go one time step on and return the new scene; see :class:`World`."""
+        return alone(self.stepping(commands))
+
+    def stepping(self, commands: Mapping[int, Twist | Twists]) -> Stepping[Scene]:
+        """Go one time step on, and ask somebody else how the crowd walks; see :func:`crowdbot.world.walk.alone`."""
         asked = self._checked(commands)
         before = self._held(self.scene)
         self.clock.advance()
-        earlier, crowd = self._walked(before)
+        earlier, crowd = yield from self._walked(before)
         after = self._driven(before, crowd, asked)
         after = self._settled(earlier, after).replace(external=self.scene.external)
         after = after.replace(time=self._begin + self.clock.time)
@@ -190,7 +195,7 @@ class PlanarWorld(World):
         """Return the scene in which who follows a script is external."""
         return scene if self.script is None else scene.replace(external=scene.external | self.script.held(scene))
 
-    def _walked(self, before: Scene) -> tuple[Scene, Scene]:
+    def _walked(self, before: Scene) -> Stepping[tuple[Scene, Scene]]:
         """Return the scene before the last substep of the crowd, and after it."""
         wide = before.radius.copy()
         wide[:, list(self.twists)] += self.berth
@@ -200,7 +205,7 @@ class PlanarWorld(World):
             if k > 0:
                 crowd = self._settled(earlier, crowd.replace(radius=before.radius)).replace(radius=wide)
             earlier = crowd
-            crowd = self.model.step(earlier, h, self._rng)
+            crowd = yield Walk(self.model, earlier, h, self._rng)
             if self.limits is not None:
                 crowd = self.limits.kept(earlier, crowd, h)
         own = {"radius": before.radius, "goal": before.goal, "preferred_velocity": before.preferred_velocity}

@@ -11,19 +11,25 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, RobotError, Twist
+from crowdbot.core import InputError, Pose, RobotError, SpatialPose, Twist
 from crowdbot.core.errors import did_you_mean
 from crowdbot.sensors import Sensor
 
 from .drive import Drive
 from .servo import CommandDelay
-from .urdf.model import RobotModel
-from .urdf.transforms import frame, roll_pitch_yaw
+from .urdf.model import Inertial, Link, Part, RobotModel
+from .urdf.shapes import Cylinder
+from .urdf.transforms import frame, quaternion, roll_pitch_yaw, turning
+from .wheel import Wheel
 
-__all__ = ["Robot", "SensorMount", "Wheel", "builtin_robots"]
+__all__ = ["Robot", "SensorMount", "Wheel", "builtin_robots", "spatial"]
 
 Floats = NDArray[np.float64]
 FILE = "robot.xml"
+SUNK = 2e-3
+"""Robots that reach deeper [m] below their root than this do not have it on the ground."""
+CLEAR = 0.01
+"""Height [m] above the floor of a robot of which only the size is known: it does not rub."""
 
 
 @dataclass(frozen=True)
@@ -51,18 +57,6 @@ class SensorMount:
         return frame((self.x, self.y, self.z), roll_pitch_yaw(self.roll, self.pitch, self.yaw))
 
 
-@dataclass(frozen=True)
-class Wheel:
-    """A wheel that a motor turns: its joint, whose axis is the axle, and its radius [m]."""
-
-    joint: str
-    radius: float
-
-    def __post_init__(self) -> None:
-        if not 0.0 < self.radius < math.inf:
-            raise InputError(f"Wheel: radius = {self.radius} m must be finite and above 0")
-
-
 @dataclass(frozen=True, eq=False)
 class Robot:
     """A robot that can be put into a world.
@@ -76,13 +70,13 @@ class Robot:
             that roll in all directions).
         footprint: corners ``[N, 2]`` [m] of the room it takes on the ground, counter-clockwise.
         mounts: its sensors.
-        wheels: that motors turn.
+        wheels: that motors turn or steer.
         posture: positions of joints [rad, m] while it drives; those left out are at 0.
         about: one line for people.
 
     >>> robot = Robot.load("turtlebot2")
     >>> robot.drive.max_speed, round(robot.radius, 3), [mount.name for mount in robot.mounts]
-    (0.65, 0.232, ['laser'])
+    (0.65, 0.232, ['laser', 'kinect_depth', 'odometry', 'gyro', 'bumper', 'cliff_left', 'cliff_centre', 'cliff_right'])
     """
 
     name: str
@@ -117,10 +111,12 @@ class Robot:
             if mount.link not in self.model.links:
                 meant = did_you_mean(mount.link, self.model.links)
                 raise InputError(f"Robot: the sensor {mount.name!r} sits on {mount.link!r}, which is no link{meant}")
+        turning_joints = {joint.name for joint in self.model.movable if joint.size == 1}
         for wheel in self.wheels:
-            if wheel.joint not in {joint.name for joint in self.model.movable if joint.size == 1}:
-                meant = did_you_mean(wheel.joint, self.model.joints)
-                raise InputError(f"Robot: the wheel joint {wheel.joint!r} is no joint that turns{meant}")
+            for what, name in (("wheel", wheel.joint), ("steering", wheel.steering or wheel.joint)):
+                if name not in turning_joints:
+                    meant = did_you_mean(name, self.model.joints)
+                    raise InputError(f"Robot: the {what} joint {name!r} is no joint that turns{meant}")
 
     @classmethod
     def load(cls, source: str | Path, *, trust: bool = False) -> Robot:
@@ -138,6 +134,32 @@ class Robot:
 
         return read_robot(_folder(source), trust=trust)
 
+    @classmethod
+    def disc(cls, name: str, drive: Drive, radius: float, *, height: float = 1.0, mass: float = 50.0) -> Robot:
+        """Return a robot of which only the size is known: an upright cylinder that is pulled along the floor.
+
+        Args:
+            name: of the robot.
+            drive: how it follows commands.
+            radius, height: [m].
+            mass: [kg].
+
+        Raises:
+            InputError: a size or the mass is not finite and above 0.
+
+        >>> from crowdbot.world import DifferentialDrive
+        >>> round(Robot.disc("puck", DifferentialDrive(), 0.3).radius, 3)
+        0.3
+        """
+        for what, value in (("radius", radius), ("height", height), ("mass", mass)):
+            if not 0.0 < value < math.inf:
+                raise InputError(f"Robot.disc: {what} = {value} must be finite and above 0")
+        origin = frame((0.0, 0.0, 0.5 * height + CLEAR))
+        column = Cylinder(radius, height)
+        whole = Inertial(mass, origin[:3, 3], column.solid().inertia(mass))
+        link = Link("base_link", whole, (Part(column, origin),), (Part(column, origin),))
+        return cls(name, RobotModel(name, {"base_link": link}, {}, "base_link"), drive, base="planar")
+
     @property
     def radius(self) -> float:
         """Radius [m] of the disc about its origin that holds the footprint."""
@@ -148,6 +170,13 @@ class Robot:
         """Height [m] of its highest collider above its root, in its posture."""
         points = self.model.points(self.posture)
         return float(points[:, 2].max()) if len(points) else 0.0
+
+    @property
+    def lift(self) -> float:
+        """How far its root is above the floor when it stands in its posture [m]; 0 for a root on the ground."""
+        points = self.model.points(self.posture)
+        lowest = float(points[:, 2].min()) if len(points) else 0.0
+        return -lowest if lowest < -SUNK else 0.0
 
     def mount(self, name: str) -> SensorMount:
         """Return the sensor of this name.
@@ -178,6 +207,19 @@ class Robot:
         heading = math.atan2(matrix[1, 0], matrix[0, 0])
         return round(float(matrix[0, 3]), 12), round(float(matrix[1, 3]), 12), round(heading, 9)
 
+    def sensor_pose(self, name: str, pose: Pose, positions: Mapping[str, float] | None = None) -> SpatialPose:
+        """Return where a sensor is in space when the robot stands on the floor at ``pose`` ``[E]``.
+
+        >>> Robot.load("qolo").sensor_pose("lidar_rear", Pose.of((1.0, 0.0), 0.0)).position.round(3).tolist()
+        [[0.484, 0.0, 0.364]]
+        """
+        seat = self.mounted(name, positions)
+        found = [spatial(frame((x, y, self.lift), turning((0.0, 0.0, 1.0), a)) @ seat) for (x, y), a in zip(
+            pose.position.tolist(), pose.heading.tolist(), strict=True)]  # fmt: skip
+        return SpatialPose(
+            np.concatenate([one.position for one in found]), np.concatenate([one.rotation for one in found])
+        )
+
     def wheel_speeds(self, twist: Twist) -> dict[str, float]:
         """Return how fast the wheels must turn [rad/s], by joint, so that none slips along its rolling direction.
 
@@ -186,16 +228,44 @@ class Robot:
         >>> Robot.load("turtlebot2").wheel_speeds(Twist(0.35, 0.0))
         {'wheel_left_joint': 10.0, 'wheel_right_joint': 10.0}
         """
-        poses = self.model.poses(self.posture)
+        steered = self.steering(twist)
+        poses = self.model.poses({**self.posture, **steered})
         speeds = {}
         for wheel in self.wheels:
-            joint = self.model.joints[wheel.joint]
-            matrix = poses[joint.parent] @ joint.origin
-            place, axle = matrix[:3, 3], matrix[:3, :3] @ joint.axis
-            rolling = np.array([axle[1], -axle[0]])  # axle x up
-            center = np.array([twist.forward - twist.turn * place[1], twist.left + twist.turn * place[0]])
-            speeds[wheel.joint] = round(float(center @ rolling) / wheel.radius, 12)
+            if wheel.driven:
+                joint = self.model.joints[wheel.joint]
+                matrix = poses[joint.parent] @ joint.origin
+                axle = matrix[:3, :3] @ joint.axis
+                rolling = np.array([axle[1], -axle[0]])  # axle x up
+                speeds[wheel.joint] = round(float(_carried(twist, matrix) @ rolling) / wheel.radius, 12)
         return speeds
+
+    def steering(self, twist: Twist) -> dict[str, float]:
+        """Return how far wheels that steer are turned [rad], by joint, so that all roll about the same point.
+
+        At rest, where every direction does, they look ahead. Backwards they are turned as ahead on the same circle.
+        """
+        poses = self.model.poses(self.posture)
+        angles = {}
+        for wheel in self.wheels:
+            if wheel.steering:
+                joint = self.model.joints[wheel.steering]
+                matrix = poses[joint.parent] @ joint.origin
+                x, y = (_carried(twist, matrix) * (-1.0 if twist.forward < 0.0 else 1.0)).tolist()
+                sense = 1.0 if (matrix[:3, :3] @ joint.axis)[2] > 0.0 else -1.0
+                angles[wheel.steering] = round(sense * math.atan2(y, x), 12)
+        return angles
+
+
+def _carried(twist: Twist, matrix: Floats) -> Floats:
+    """Return how fast the origin of a frame ``[4, 4]`` of the robot moves over the floor, ``[2]`` [m/s]."""
+    x, y = matrix[:2, 3].tolist()
+    return np.array([twist.forward - twist.turn * y, twist.left + twist.turn * x])
+
+
+def spatial(matrix: Floats) -> SpatialPose:
+    """Return a frame ``[4, 4]`` of the world as a pose, E = 1."""
+    return SpatialPose(matrix[None, :3, 3].copy(), np.asarray(quaternion(matrix[:3, :3]))[None])
 
 
 def builtin_robots() -> tuple[str, ...]:

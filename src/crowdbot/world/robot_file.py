@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import types
 from collections.abc import Mapping
@@ -14,18 +15,19 @@ import crowdbot.sensors
 from crowdbot.core import InputError, RobotError, plug
 from crowdbot.core.errors import did_you_mean
 from crowdbot.core.markup import Element, number, parse, read_bytes
-from crowdbot.sensors import Sensor
+from crowdbot.sensors import Sensor, preset
 
 from .drive import Drive
-from .robot import FILE, Robot, SensorMount, Wheel
+from .robot import FILE, Robot, SensorMount
 from .urdf.reading import read_urdf
+from .wheel import Wheel
 
 __all__ = ["read_robot"]
 
 KNOWN: dict[str, tuple[str, ...]] = {
     "robot": ("name", "urdf", "about", "base"),
     "footprint": ("points", "radius"),
-    "wheel": ("joint", "radius"),
+    "wheel": ("joint", "radius", "steering", "driven"),
     "posture": ("joint", "position"),
 }
 PLACES = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -141,12 +143,20 @@ class _Reader:
 
     def wheel(self, element: Element) -> Wheel | None:
         """Return a wheel."""
-        joint = self.words(element).get("joint", "")
+        row = self.words(element)
         radius = self.number(element, "radius")
+        driven = row.get("driven", "true")
+        if driven not in ("true", "false"):
+            self.say(element, f'driven="{driven[:40]}" must be true or false')
+            return None
         if radius <= 0.0:
             self.say(element, f'radius="{element.attributes["radius"][:40]}" must be above 0')
             return None
-        return Wheel(joint, radius)
+        try:
+            return Wheel(row.get("joint", ""), radius, row.get("steering", ""), driven == "true")
+        except InputError as error:
+            self.say(element, str(error))
+            return None
 
     def posture(self, element: Element) -> tuple[str, float]:
         """Return the name of a joint and its position."""
@@ -197,10 +207,39 @@ class _Reader:
             self.say(element, "needs the attribute 'name'")
         place = {key: self.number(element, key) for key in PLACES if key in row}
         rest = {key: text for key, text in row.items() if key not in PLACES}
-        made = self.plugged(element, rest, crowdbot.sensors, Sensor, ("name", "link", *PLACES))
+        also = ("name", "link", *PLACES)
+        if "preset" in rest:
+            made = self.product(element, rest, also)
+        else:
+            made = self.plugged(element, rest, crowdbot.sensors, Sensor, also)
         if made is None:
             return None
         return lambda root: SensorMount(name, made, link or root, **place)
+
+    def product(self, element: Element, row: Mapping[str, str], also: tuple[str, ...]) -> Sensor | None:
+        """Return the sensor that ``preset`` names, with what else the attributes say; None when that is impossible."""
+        rest = dict(row)
+        name = rest.pop("preset")
+        if "type" in rest:
+            self.say(element, "has a preset and a type; one says what it is")
+            return None
+        try:
+            made = preset(name)
+        except InputError as error:
+            self.say(element, str(error))
+            return None
+        problems = plug.problems(type(made), rest, ("preset", *also))
+        for problem in problems:
+            self.say(element, problem)
+        if problems:
+            return None
+        try:
+            other = plug.read(type(made), rest)
+            names = [key.replace("-", "_") for key in rest]
+            return dataclasses.replace(made, **{key: getattr(other, key) for key in names})
+        except InputError as error:
+            self.say(element, str(error))
+            return None
 
     def plugged(
         self, element: Element, row: Mapping[str, str], room: types.ModuleType, contract: type, also: tuple[str, ...]

@@ -9,6 +9,7 @@ from .event import Abort, Answered, Begin, Event, Fail, Finish, Next, Pause, Rep
 from .experiment import Block, Experiment, Screen, TrialEntry
 from .loading import builtin_experiments, is_experiment, load_experiment
 from .order import orders, rows_of, seed_of, williams
+from .original import ImportedExperiment, import_experiment
 from .page import Page, page_of
 from .person import Given, Person, Typed
 from .plan import Step, plan
@@ -19,8 +20,8 @@ from .summary import save_summary, session_of, summary
 
 __all__ = [
     "Abort", "Answered", "Begin", "Block", "Choice", "Console", "Event", "Experiment", "Fail", "Finish", "FreeText",
-    "Given", "Left", "Next", "Number", "Option", "Page", "Pause", "Person", "Question", "Repeat", "Result", "Resume",
-    "Scale", "Screen", "Session", "Sitting", "Start", "Step", "TrialEntry", "Typed", "builtin_experiments",
-    "is_experiment", "load_experiment", "orders", "page_of", "plan", "rows_of", "save_summary", "seed_of", "session_of",
-    "summary", "williams",
+    "Given", "ImportedExperiment", "Left", "Next", "Number", "Option", "Page", "Pause", "Person", "Question",
+    "Repeat", "Result", "Resume", "Scale", "Screen", "Session", "Sitting", "Start", "Step", "TrialEntry", "Typed",
+    "builtin_experiments", "import_experiment", "is_experiment", "load_experiment", "orders", "page_of", "plan",
+    "rows_of", "save_summary", "seed_of", "session_of", "summary", "williams",
 ]  # fmt: skip

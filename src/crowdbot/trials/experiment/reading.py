@@ -7,8 +7,8 @@ from pathlib import Path
 
 from crowdbot.core import TrialError
 from crowdbot.trials.markup import parse, written
-from crowdbot.trials.reading import _Reader
-from crowdbot.trials.writing import _element
+from crowdbot.trials.reading import Reader
+from crowdbot.trials.writing import element_from
 
 from .checks import problems_of
 from .experiment import Experiment
@@ -44,7 +44,7 @@ name, order, repetitions, seeds
     except UnicodeEncodeError:
         raise TrialError(f"{place}: this is not well-formed XML: it holds half a character") from None
     root = parse(data, place, "utf-8" if isinstance(text, str) else None)
-    reader = _Reader(place, folder or Path.cwd(), trust)
+    reader = Reader(place, folder or Path.cwd(), trust)
     if root.tag != ROOT:
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
     experiment, _ = reader.element(Experiment, root)
@@ -57,4 +57,4 @@ name, order, repetitions, seeds
 
 def experiment_xml(experiment: Experiment) -> str:
     """Return the XML text of an experiment."""
-    return written(_element(ROOT, experiment, None))
+    return written(element_from(ROOT, experiment, None))

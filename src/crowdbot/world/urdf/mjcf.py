@@ -40,10 +40,11 @@ BENT = 0.05
 
 
 class Mjcf(NamedTuple):
-    """The XML of a robot and the mesh files that it names."""
+    """The XML of a robot, the mesh files that it names, and the XML as a tree."""
 
     xml: str
     assets: dict[str, bytes]
+    root: Element
 
     def load(self) -> Any:
         """Return the ``mujoco.MjModel``.
@@ -147,7 +148,7 @@ def mjcf(
         Element("actuator", {}, [*_servo(build, servo), *_motors(build, kinds)]),
     )
     root.children += [section for section in sections if section.children]
-    return Mjcf(written(root), build.geoms.files)
+    return Mjcf(written(root), build.geoms.files, root)
 
 
 def _motor_kinds(model: RobotModel, given: Mapping[str, str]) -> dict[str, str]:
@@ -181,7 +182,7 @@ def _body(build: _Build, link: str, origin: Floats, joint: Joint | None = None) 
     if joint is None:
         height = float(build.model.inertial().center[2])
         body.children.append(
-            Element("site", {"name": build.called("base"), "group": "4", "pos": row((0.0, 0.0, height))})
+            Element("site", {"name": build.called("base/pull"), "group": "4", "pos": row((0.0, 0.0, height))})
         )
     axle = joint.axis if joint is not None and joint.kind in ("continuous", "revolute") else None
     for name, matrix in fixed.items():
@@ -316,7 +317,7 @@ def _servo(build: _Build, servo: BaseServo | None) -> list[Element]:
         ("base_left", "0 1 0 0 0 0", servo.max_force, whole.mass),
         ("base_turn", "0 0 0 0 0 1", servo.max_torque, float(whole.tensor[2, 2])),
     ):
-        values = {"name": build.called(name), "site": build.called("base"), "gear": gear}
+        values = {"name": build.called(name), "site": build.called("base/pull"), "gear": gear}
         values |= {"kv": row((load / servo.time_constant,)), **_capped(force)}
         rows.append(Element("velocity", values))
     return rows
@@ -337,6 +338,9 @@ def _motors(build: _Build, kinds: Mapping[str, str]) -> list[Element]:
             )
         elif kind == "position":
             stiff = {"kp": row((motor.effort / BENT if finite else 100.0,)), "dampratio": "1"}
+            joint = build.model.joints[name]
+            if joint.upper - joint.lower < 1e5:  # a servo does not press against its own stops
+                stiff |= {"ctrllimited": "true", "ctrlrange": row((joint.lower, joint.upper))}
             rows.append(Element("position", named | stiff))
         else:
             rows.append(Element("motor", named))

@@ -1,0 +1,125 @@
+"""``crowdbot render TRIAL --camera NAME``: make an image or a film of a trial."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .output import add_json, number, print_json, print_table, progress
+from .settings import add_settings, add_world, chosen, settings
+
+if TYPE_CHECKING:
+    from crowdbot.trials import Trial
+    from crowdbot.trials.shots import Take
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.add_argument("trial", metavar="TRIAL", help="a trial file or a built-in name, such as crossing-flows")
+    parser.add_argument(
+        "--camera",
+        metavar="NAME",
+        help="a camera of the trial, robot/sensor, or overview (default: the first of the trial, or overview)",
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="FILE",
+        help=".png, .jpg or .webp for an image, .mp4, .gif or .webp for a film, or a folder for numbered images",
+    )
+    parser.add_argument("--at", type=float, metavar="T", help="one image at T s (default: 0)")
+    parser.add_argument("--from", dest="begin", type=float, metavar="T", help="a film from T s on (default: 0)")
+    parser.add_argument("--to", dest="end", type=float, metavar="T", help="a film until T s")
+    parser.add_argument("--fps", type=float, metavar="F", help="images a second (default: about 25)")
+    parser.add_argument("--depth", action="store_true", help="also the depth: PNG of millimetres, or grey in a film")
+    parser.add_argument("--segmentation", action="store_true", help="also who and what is where, by colours")
+    parser.add_argument("--list", action="store_true", help="only name the cameras of the trial")
+    parser.add_argument("--seed", type=int, help="seed of everything random (default: the trial's own)")
+    parser.add_argument("--trust", action="store_true", help="let the trial load code from outside its own folder")
+    add_world(parser)
+    add_settings(parser)
+    parser.add_argument("--variant", type=int, metavar="N", help="of a trial with sweeps: which one, from 1")
+    add_json(parser)
+
+
+def main(options: argparse.Namespace) -> int:
+    """Make the image or the film."""
+    from crowdbot.trials import load_trial
+    from crowdbot.trials.album import Album
+    from crowdbot.trials.shots import camera_names, shots
+
+    trial = chosen(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
+    if options.list:
+        return _listed(trial, options.json)
+    take = _take(options, trial.duration)
+    camera = options.camera or camera_names(trial)[0]
+    film = take.end is not None
+    album = Album(options.out or _default(trial.name, camera, film), film, _rate(take, trial.step))
+    with progress(options.json) as report:
+        found = shots(
+            trial,
+            camera,
+            take,
+            seed=options.seed,
+            depth=options.depth,
+            segmentation=options.segmentation,
+            progress=lambda share: report(f"render {trial.name}", share),
+        )
+        files, count = album.write(found)
+    summary = {
+        "trial": trial.name,
+        "seed": trial.seed if options.seed is None else options.seed,
+        "world": trial.world,
+        "camera": camera,
+        "images": count,
+        "rate": album.rate if film else None,
+    }
+    if options.json:
+        print_json({**summary, "files": [str(path) for path in files]})
+        return 0
+    shown = [str(path) for path in files] if len(files) <= 3 else [f"{len(files)} files in {files[0].parent}"]
+    rows = [(key, number(value)) for key, value in summary.items()] + [("file", name) for name in shown]
+    print_table(f"{trial.name}, seen by {camera}", ("", ""), rows)
+    return 0
+
+
+def _take(options: argparse.Namespace, duration: float) -> Take:
+    from crowdbot.core import InputError
+    from crowdbot.trials.shots import Take
+
+    span = [word for word, value in (("--from", options.begin), ("--to", options.end)) if value is not None]
+    if options.at is not None and span:
+        raise InputError(f"--at is for one image and {span[0]} for a film; give one of them")
+    out = options.out
+    if options.at is not None or (not span and (out is None or out.suffix.lower() not in (".mp4", ".gif"))):
+        if options.fps is not None:
+            raise InputError("--fps is for a film; give --to T as well")
+        return Take(options.at or 0.0)
+    return Take(options.begin or 0.0, duration if options.end is None else options.end, options.fps)
+
+
+def _rate(take: Take, step: float) -> float:
+    """Return how many images a second of a film are shown."""
+    import math
+
+    from crowdbot.trials.shots import SMOOTH
+
+    return take.rate or 1.0 / (step * max(1, math.ceil(SMOOTH / step - 1e-9)))
+
+
+def _default(trial: str, camera: str, film: bool) -> Path:
+    name = re.sub(r"[^A-Za-z0-9]+", "-", f"{trial}-{camera}").strip("-").lower() or "trial"
+    return Path(f"{name}{'.mp4' if film else '.png'}")
+
+
+def _listed(trial: Trial, as_json: bool) -> int:
+    from crowdbot.trials.shots import camera_names
+
+    names = camera_names(trial)
+    if as_json:
+        print_json({"trial": trial.name, "cameras": list(names)})
+    else:
+        print_table(f"cameras of {trial.name}", ("name",), [(name,) for name in names])
+    return 0

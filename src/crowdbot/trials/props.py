@@ -1,0 +1,133 @@
+"""Props: what stands on a stage beside walls, and what lights it."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .attribute import attribute, check
+
+if TYPE_CHECKING:
+    from crowdbot.world import physics
+
+__all__ = ["Cube", "Light", "Prop", "Table", "Tree"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cube:
+    """A box on the floor; robots and people of the physics world can push it unless it is fixed.
+
+    >>> Cube(x=1, y=2, size=0.4).ring.round(9).tolist()[0]
+    [0.8, 1.8]
+    """
+
+    x: float = attribute(about="middle", unit="m")
+    y: float = attribute(about="middle", unit="m")
+    heading: float = attribute(0.0, about="counter-clockwise from +x", unit="rad")
+    size: float = attribute(0.5, about="of its sides", unit="m", above=0.0, at_most=100.0)
+    mass: float = attribute(10.0, about="of the whole", unit="kg", above=0.0, at_most=1e5)
+    friction: float = attribute(0.5, about="coefficient on the floor", above=0.0, at_most=10.0)
+    fixed: bool = attribute(False, about="whether nothing moves it")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def ring(self) -> NDArray[np.float64]:
+        """Its outline ``[N, 2]`` [m], counter-clockwise."""
+        return _outline(dataclasses.replace(self, fixed=True))
+
+    def prop(self) -> physics.Prop:
+        """Return it for a world with bodies."""
+        from crowdbot.world import physics
+
+        return physics.Cube(**_values(self))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table:
+    """A table that stands fast."""
+
+    x: float = attribute(about="middle", unit="m")
+    y: float = attribute(about="middle", unit="m")
+    heading: float = attribute(0.0, about="of its long side, counter-clockwise from +x", unit="rad")
+    length: float = attribute(1.6, about="of its top", unit="m", above=0.05, at_most=100.0)
+    width: float = attribute(0.8, about="of its top", unit="m", above=0.05, at_most=100.0)
+    height: float = attribute(0.74, about="above the floor", unit="m", above=0.05, at_most=100.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def ring(self) -> NDArray[np.float64]:
+        """Its outline ``[N, 2]`` [m], counter-clockwise."""
+        return _outline(self)
+
+    def prop(self) -> physics.Prop:
+        """Return it for a world with bodies."""
+        from crowdbot.world import physics
+
+        return physics.Table(**_values(self))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tree:
+    """A tree that stands fast."""
+
+    x: float = attribute(about="middle", unit="m")
+    y: float = attribute(about="middle", unit="m")
+    heading: float = attribute(0.0, about="counter-clockwise from +x", unit="rad")
+    height: float = attribute(5.0, about="to the top", unit="m", above=0.0, at_most=100.0)
+    trunk: float = attribute(0.15, about="radius of the trunk", unit="m", above=0.0, at_most=10.0)
+    crown: float = attribute(1.4, about="radius of the crown", unit="m", above=0.0, at_most=50.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def ring(self) -> NDArray[np.float64]:
+        """Outline ``[N, 2]`` [m] of the trunk, counter-clockwise."""
+        return _outline(self)
+
+    def prop(self) -> physics.Prop:
+        """Return it for a world with bodies."""
+        from crowdbot.world import physics
+
+        return physics.Tree(**_values(self))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Light:
+    """A lamp that shines down; without lamps it is day."""
+
+    x: float = attribute(about="place", unit="m")
+    y: float = attribute(about="place", unit="m")
+    z: float = attribute(4.0, about="above the floor", unit="m", above=0.0, at_most=1000.0)
+    brightness: float = attribute(0.5, about="from 0 to 1", at_least=0.0, at_most=1.0)
+    shadows: bool = attribute(False, about="whether it throws shadows")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def light(self) -> physics.Light:
+        """Return it for a world with bodies."""
+        from crowdbot.world import physics
+
+        return physics.Light(**_values(self))
+
+
+Prop = Cube | Table | Tree
+
+
+def _values(thing: Any) -> dict[str, Any]:
+    return {field.name: getattr(thing, field.name) for field in dataclasses.fields(thing)}
+
+
+def _outline(prop: Prop) -> NDArray[np.float64]:
+    ring = prop.prop().outline()
+    assert ring is not None
+    return ring

@@ -1,0 +1,290 @@
+"""Robot of a trial: where it begins and has to go, what it is, what it sees with and who steers it."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot import world
+from crowdbot.core import Clock, InputError, RobotError
+from crowdbot.core.errors import did_you_mean
+from crowdbot.core.pose import MOUNT_HEIGHT
+from crowdbot.navigation import Navigator
+from crowdbot.sensors import Schedule, Sensor
+from crowdbot.world import Drive, builtin_robots
+from crowdbot.world.urdf.transforms import frame, roll_pitch_yaw
+
+from .attribute import attribute, check, child, children, mounted, plugged, shown
+from .notation import NAME
+
+__all__ = ["Goal", "Mount", "Robot"]
+
+Floats = NDArray[np.float64]
+RADIUS, HEIGHT, MASS = 0.3, 1.0, 40.0
+"""Of a robot without a type [m, m, kg]."""
+MOST_FILES = 500
+
+
+@dataclass(frozen=True)
+class Goal:
+    """Where a robot has to go: it has arrived when its centre is within the tolerance."""
+
+    x: float = attribute(about="place", unit="m")
+    y: float = attribute(about="place", unit="m")
+    tolerance: float = attribute(0.3, about="how near its centre must come", unit="m", above=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def position(self) -> tuple[float, float]:
+        """``x, y`` [m]."""
+        return self.x, self.y
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mount:
+    """A sensor and where it sits on its robot, or on one of its links (x forward, y left, z up).
+
+    >>> from crowdbot.sensors import Lidar2D
+    >>> Mount(sensor=Lidar2D()).z, Mount(sensor=Lidar2D(), link="head").z
+    (0.4, 0.0)
+    """
+
+    name: str = attribute("scan", about="last part of its topic", pattern=NAME)
+    sensor: Sensor = mounted("sensors", "Sensor", about="what measures")
+    link: str = attribute("", about="link of the robot that it sits on, by default the robot itself")
+    x: float = attribute(0.0, about="forward of the robot's centre, or of the link", unit="m")
+    y: float = attribute(0.0, about="left of the robot's centre, or of the link", unit="m")
+    z: float = attribute(None, about="above the floor, by default 0.4, or above the link, by default 0", unit="m")
+    roll: float = attribute(0.0, about="about forward, as in URDF", unit="rad")
+    pitch: float = attribute(0.0, about="nose down, as in URDF", unit="rad")
+    heading: float = attribute(0.0, about="counter-clockwise from forward", unit="rad")
+
+    def __post_init__(self) -> None:
+        if getattr(self, "z", None) is None:
+            object.__setattr__(self, "z", self.usual["z"])
+        check(self)
+
+    @property
+    def usual(self) -> Mapping[str, Any]:
+        """What fields are when they are not given."""
+        return {"z": 0.0 if self.link else MOUNT_HEIGHT}
+
+    @property
+    def origin(self) -> Floats:
+        """Its frame ``[4, 4]`` in that of the robot or of the link."""
+        return frame((self.x, self.y, self.z), roll_pitch_yaw(self.roll, self.pitch, self.heading))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Robot:
+    """A robot: where it begins and has to go, what it is, what it sees with and who steers it.
+
+    With a type it has the drive, size and sensors of that robot; what is given here counts instead, and sensors come on
+    top (or, with the name of one of the type, in its place). Without one it is an upright cylinder with a drive.
+
+    Raises:
+        InputError: a value is not allowed, there is no such type, or a sensor sits on no link.
+
+    >>> from crowdbot.navigation import Straight
+    >>> robot = Robot(type="turtlebot2", x=0, y=0, goal=Goal(5, 0), navigator=Straight())
+    >>> robot.drive.max_speed, round(robot.radius, 3), [mount.name for mount in robot.sensors]
+    (0.65, 0.232, ['laser'])
+    """
+
+    name: str = attribute("robot", about="first part of its topics", pattern=NAME)
+    type: str = attribute("", about="what it is: a built-in robot such as pepper, or a robot folder beside the trial")
+    x: float = attribute(about="start", unit="m")
+    y: float = attribute(about="start", unit="m")
+    heading: float = attribute(0.0, about="start, counter-clockwise from +x", unit="rad")
+    radius: float = attribute(
+        None, about="radius of the disc that holds it, by default that of its type, or 0.3", unit="m", above=0.0,
+        at_most=10.0,
+    )  # fmt: skip
+    height: float = attribute(
+        None, about="without a type: how tall it is, by default 1", unit="m", above=0.0, at_most=10.0
+    )
+    mass: float = attribute(None, about="without a type: by default 40", unit="kg", above=0.0, at_most=1e5)
+    latency: float = attribute(
+        None, about="between a command and the wheels, by default that of its type, or 0", unit="s", at_least=0.0,
+        at_most=10.0,
+    )  # fmt: skip
+    equipped: bool = attribute(True, about="whether it carries the sensors of its type")
+    rates: str = attribute(
+        "exact",
+        about="whether sensors of its type must fit the time step, or measure as often as it allows",
+        choices=("exact", "nearest"),
+    )
+    visible: bool = attribute(True, about="whether the crowd reacts to it")
+    control_period: float = attribute(0.1, about="time between two commands", unit="s", above=0.0)
+    goal: Goal = child(about="where it has to go")
+    drive: Drive = plugged("world", "Drive", about="how it moves, by default as its type", default=None)
+    navigator: Navigator = plugged("navigation", "Navigator", about="who steers it")
+    sensors: tuple[Mount, ...] = children("sensor", about="what it sees with", at_most=50)
+    folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
+    trust: bool = dataclasses.field(default=True, compare=False, repr=False)
+    """Where its folder lies, and whether it may lie outside; not part of the tree."""
+
+    def __post_init__(self) -> None:
+        usual = self.usual
+        for name in ("radius", "height", "mass", "latency", "drive"):
+            if getattr(self, name) is None:
+                object.__setattr__(self, name, usual.get(name))
+        if self.drive is None:
+            raise InputError(f"needs the element <drive>: how it moves; or a type, such as {builtin_robots()[0]}")
+        if isinstance(self.sensors, list | tuple):
+            object.__setattr__(self, "sensors", _merged(usual["sensors"], self.sensors))
+        check(self)
+        if self.type and (self.height, self.mass) != (usual["height"], usual["mass"]):
+            raise InputError(f"has height or mass beside type={shown(self.type)}, which has its own; leave them out")
+        for mount in self.sensors:
+            links = self.body.model.links
+            if mount.link and mount.link not in links:
+                raise InputError(f"sensor {mount.name!r} sits on link={shown(mount.link)}, which it has not"
+                                 f"{did_you_mean(mount.link, links)}")  # fmt: skip
+
+    @property
+    def usual(self) -> Mapping[str, Any]:
+        """What fields are when they are not given."""
+        if not self.type:
+            return {"radius": RADIUS, "height": HEIGHT, "mass": MASS, "latency": 0.0, "sensors": ()}
+        kind = self._kind
+        mounts = tuple(
+            Mount(name=m.name, sensor=m.sensor, link=m.link, x=m.x, y=m.y, z=m.z, roll=m.roll, pitch=m.pitch,
+                  heading=m.yaw)
+            for m in kind.mounts
+        )  # fmt: skip
+        return {
+            "radius": round(kind.radius, 9),
+            "height": round(kind.height, 9),
+            "mass": round(kind.model.mass, 9),
+            "latency": kind.latency,
+            "drive": kind.drive,
+            "sensors": mounts if self.equipped else (),
+        }
+
+    @functools.cached_property
+    def body(self) -> world.Robot:
+        """The robot of a world, with the drive and the latency that count here."""
+        if not self.type:
+            return world.Robot.disc(self.name, self.drive, self.radius, height=self.height, mass=self.mass)
+        return dataclasses.replace(self._kind, drive=self.drive, latency=self.latency)
+
+    def frame_of(self, mount: Mount) -> Floats:
+        """Return the frame ``[4, 4]`` of a sensor in that of the robot, which is on the floor, in its posture."""
+        if not mount.link:
+            return mount.origin
+        return np.asarray(self.body.model.poses(self.body.posture)[mount.link] @ mount.origin)
+
+    def placed(self, mount: Mount) -> tuple[float, float, float, float, float, float]:
+        """Return x, y, z [m], roll, pitch and yaw [rad] of a sensor in the frame of the robot.
+
+        >>> from crowdbot.navigation import Straight
+        >>> robot = Robot(type="qolo", x=0, y=0, goal=Goal(5, 0), navigator=Straight())
+        >>> [round(value, 3) for value in robot.placed(robot.sensors[0])][:2]
+        [0.035, 0.0]
+        """
+        if not mount.link:
+            return mount.x, mount.y, mount.z, mount.roll, mount.pitch, mount.heading
+        found = self.frame_of(mount)
+        x, y, z = (round(float(value), 12) for value in found[:3, 3])
+        pitch = math.atan2(-found[2, 0], math.hypot(found[0, 0], found[1, 0]))
+        roll, yaw = math.atan2(found[2, 1], found[2, 2]), math.atan2(found[1, 0], found[0, 0])
+        return x, y, z, round(roll, 12), round(pitch, 12), round(yaw, 12)
+
+    def schedule(self, mount: Mount, clock: Clock) -> Schedule:
+        """Return when a sensor measures; see the attribute ``rates``.
+
+        Raises:
+            InputError: its period or its delay is not a whole number of time steps.
+        """
+        if self.rates == "exact" or mount not in self.usual["sensors"]:
+            return Schedule.of(mount.sensor, clock)
+        period, delay = 1.0 / mount.sensor.rate, mount.sensor.delay
+        return Schedule(max(1, round(period / clock.dt)), round(delay / clock.dt))
+
+    @property
+    def position(self) -> tuple[float, float]:
+        """Start ``x, y`` [m]."""
+        return self.x, self.y
+
+    def files(self) -> tuple[Path, ...]:
+        """Return the files of its folder, none when it is built in."""
+        place = _folder(self.type, self.folder, self.trust) if self.type else None
+        if place is None:
+            return ()
+        return tuple(sorted(path for path in place.rglob("*") if path.is_file()))[:MOST_FILES]
+
+    @property
+    def _kind(self) -> world.Robot:
+        if not isinstance(self.type, str):
+            raise InputError(f"Robot: type={shown(self.type)} is not a str")
+        place = _folder(self.type, self.folder, self.trust)
+        if place is None:
+            return _built_in(self.type)
+        stamp = (place / "robot.xml").stat().st_mtime_ns
+        return _loaded(place, self.trust, stamp)
+
+
+def _merged(carried: tuple[Mount, ...], own: Any) -> tuple[Mount, ...]:
+    """Return the sensors of a type, each replaced by an own one of its name, then the other own ones."""
+    named = {getattr(mount, "name", ""): mount for mount in own}
+    names = {mount.name for mount in carried}
+    others = [mount for mount in own if getattr(mount, "name", "") not in names]
+    return (*(named.get(mount.name, mount) for mount in carried), *others)
+
+
+def _folder(name: str, folder: Path | None, trust: bool) -> Path | None:
+    """Return the robot folder beside the trial, None for a built-in robot."""
+    root = folder or Path.cwd()
+    known = builtin_robots()
+    try:
+        place = (root / name).resolve()
+        there = (place / "robot.xml").is_file()
+    except (OSError, ValueError, RuntimeError):
+        there = False
+    if there and not trust and not place.is_relative_to(root.resolve()):
+        raise InputError(
+            f"type={shown(name)}: the robot lies outside {root}; move its folder there, or pass --trust to allow it"
+        )
+    if there:
+        return place
+    if name in known:
+        return None
+    raise InputError(
+        f"type={shown(name)} is no robot{did_you_mean(name, known)}: no folder {name[:60]!r} with a robot.xml is in"
+        f" {root}, and built in are {', '.join(known)}"
+    )
+
+
+@functools.cache
+def _built_in(name: str) -> world.Robot:
+    from crowdbot.world.robot_file import read_robot
+
+    return read_robot(_assets(name))
+
+
+def _assets(name: str) -> Path:
+    import importlib.resources
+
+    return Path(str(importlib.resources.files("crowdbot").joinpath("assets", "robots", name)))
+
+
+@functools.lru_cache(maxsize=16)
+def _loaded(place: Path, trust: bool, stamp: int) -> world.Robot:
+    from crowdbot.world.robot_file import read_robot
+
+    try:
+        return read_robot(place, trust=trust)
+    except RobotError as error:
+        more = f" (and {len(error.problems) - 1} more; see crowdbot check)" if len(error.problems) > 1 else ""
+        raise InputError(f"type={shown(place.name)}: {error.problems[0]}{more}") from None

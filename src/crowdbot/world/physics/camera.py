@@ -1,0 +1,149 @@
+"""Cameras that look at a physics world, and the images they give."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, SpatialPose
+from crowdbot.sensors import Lens
+
+__all__ = ["LARGEST", "Camera", "Images", "View"]
+
+Floats = NDArray[np.float64]
+LARGEST = (1920, 1200)
+Point = tuple[float, float, float]
+
+
+class Images(NamedTuple):
+    """What a camera saw; what was not asked for is None.
+
+    Fields:
+        rgb: ``[H, W, 3]`` red, green, blue from 0 to 255.
+        depth: ``[H, W]`` [m] along the camera's axis, infinite where there is nothing.
+        segmentation: ``[H, W]`` index of the agent; -1 nothing, -2 wall, -3 floor, -4 prop.
+    """
+
+    rgb: NDArray[np.uint8] | None
+    depth: NDArray[np.float32] | None
+    segmentation: NDArray[np.int32] | None
+
+
+class View(NamedTuple):
+    """Where an ideal camera is, and what of the world goes through it.
+
+    Fields:
+        place, forward, up: ``[3]`` in the world.
+        left, right, bottom, top: edges of the image at the distance 1 along the axis.
+        near, far: what is nearer or farther is not seen [m].
+        width, height: of the image [pixels].
+    """
+
+    place: Floats
+    forward: Floats
+    up: Floats
+    left: float
+    right: float
+    bottom: float
+    top: float
+    near: float
+    far: float
+    width: int
+    height: int
+
+    @classmethod
+    def through(cls, lens: Lens, pose: SpatialPose, near: float, far: float) -> View:
+        """Return what a lens without its distortion sees along the x axis of a pose, E = 1; z is up in the image.
+
+        Raises:
+            InputError: the image is larger than can be drawn, or there are several poses.
+
+        >>> View.through(Lens.of(4, 2, math.pi / 2.0), SpatialPose.of((0.0, 0.0, 1.0)), 0.1, 9.0)[3:7]
+        (-1.0, 1.0, -0.5, 0.5)
+        """
+        if len(pose.position) != 1:
+            raise InputError(
+                f"camera: there are poses in {len(pose.position)} environments; one can be drawn at a time"
+            )
+        _checked_size("camera", lens.width, lens.height)
+        matrix = pose.matrix[0]
+        left, right = (round(edge / lens.fx, 12) for edge in (-0.5 - lens.cx, lens.width - 0.5 - lens.cx))
+        bottom, top = (round(edge / lens.fy, 12) for edge in (lens.cy + 0.5 - lens.height, lens.cy + 0.5))
+        axes = pose.position[0], matrix[:, 0], matrix[:, 2]
+        return cls(*axes, left, right, bottom, top, near, far, lens.width, lens.height)
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A camera without distortion.
+
+    Fields:
+        position, target: where it is and what it looks at [m]: in the world, or in the frame of a link of a robot.
+        width, height: of the image [pixels].
+        view: vertical angle of view [rad].
+        robot: the agent that carries it; None: it stands in the world.
+        link: of the robot that carries it; empty: its root.
+        near, far: what is nearer or farther is not seen [m].
+        detail: of people's skins, 0 (finest) to 2.
+        shadows: whether lights throw shadows, which is slow without a graphics card.
+
+    Raises:
+        InputError: a number is not allowed, or the camera looks nowhere.
+
+    >>> Camera((0.0, -5.0, 2.0), (0.0, 0.0, 1.0)).focal_length
+    415.69...
+    """
+
+    position: Point
+    target: Point
+    width: int = 640
+    height: int = 480
+    view: float = math.radians(60.0)
+    robot: int | None = None
+    link: str = ""
+    near: float = 0.05
+    far: float = 200.0
+    detail: int = 1
+    shadows: bool = False
+
+    def __post_init__(self) -> None:
+        _checked_size("Camera", self.width, self.height)
+        if not 0.0 < self.view < math.pi:
+            raise InputError(f"Camera: view = {self.view} rad must be above 0 and below pi")
+        if not 0.0 < self.near < self.far < math.inf:
+            raise InputError(f"Camera: near = {self.near} m must be above 0 and below far = {self.far} m")
+        if self.detail not in (0, 1, 2):
+            raise InputError(f"Camera: detail = {self.detail} must be 0, 1 or 2")
+        away = np.subtract(self.target, self.position)
+        if away.shape != (3,) or not np.all(np.isfinite(away)) or not np.any(away):
+            raise InputError(f"Camera: position {self.position} and target {self.target} must be two different points")
+
+    @property
+    def focal_length(self) -> float:
+        """Focal length [pixels]; the principal point is in the middle of the image."""
+        return 0.5 * self.height / math.tan(0.5 * self.view)
+
+    def axes(self, carrier: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return place, forward and up axis ``[3]`` in the world, on a carrier with the frame ``[4, 4]``."""
+        place, aim = (carrier[:3, :3] @ np.asarray(point) + carrier[:3, 3] for point in (self.position, self.target))
+        forward = (aim - place) / np.linalg.norm(aim - place)
+        up = carrier[:3, 2] - (carrier[:3, 2] @ forward) * forward
+        if np.linalg.norm(up) < 1e-6:  # straight up or down: the top of the image is ahead
+            up = carrier[:3, 0] - (carrier[:3, 0] @ forward) * forward
+        return place, forward, up / np.linalg.norm(up)
+
+    def on(self, carrier: Floats) -> View:
+        """Return what it sees on a carrier with the frame ``[4, 4]``."""
+        high = math.tan(0.5 * self.view)
+        wide = high * self.width / self.height
+        return View(*self.axes(carrier), -wide, wide, -high, high, self.near, self.far, self.width, self.height)
+
+
+def _checked_size(what: str, width: int, height: int) -> None:
+    for name, value, most in (("width", width, LARGEST[0]), ("height", height, LARGEST[1])):
+        if not 1 <= value <= most:
+            raise InputError(f"{what}: {name} = {value} pixels must be from 1 to {most}")

@@ -1,0 +1,25 @@
+"""The physics engine, loaded when the first physics world is made."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from crowdbot.core import MissingExtra
+
+__all__ = ["engine"]
+
+
+def engine() -> Any:
+    """Return the module ``mujoco``.
+
+    Raises:
+        MissingExtra: mujoco is not installed.
+
+    >>> engine().__name__
+    'mujoco'
+    """
+    try:
+        import mujoco
+    except ImportError:
+        raise MissingExtra("the physics world", "sim") from None
+    return mujoco

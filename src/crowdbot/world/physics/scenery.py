@@ -1,0 +1,117 @@
+"""The floor, the walls, the props and the lights of a world as MJCF."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Walls
+from crowdbot.core.markup import Element
+from crowdbot.world.urdf.geoms import row
+
+from .layers import GROUND, STANDING
+from .stage import PhysicsStage
+
+__all__ = ["joined", "scenery"]
+
+Floats = NDArray[np.float64]
+THIN, THICK = 0.01, 0.025
+"""Half the thickness [m] of a thin wall, and of the skin of a solid that is not convex."""
+SLIVER = 1e-3
+"""Solids of a smaller area [m2] are boards."""
+
+
+def scenery(walls: Walls, stage: PhysicsStage) -> tuple[list[Element], list[Element]]:
+    """Return the assets and what belongs into the world: solids, thin walls, props and lights.
+
+    Convex solids become prisms, every other edge a board on the solid side of it.
+    """
+    assets, world = _ground(stage)
+    rgba = row((*stage.wall_color, 1.0))
+    for number, ring in enumerate(_rings(walls)):
+        points = walls.start[ring]
+        if len(ring) > 2 and np.all(walls.convex[ring]) and _area(points) > SLIVER:
+            heights = np.repeat([0.0, stage.wall_height], len(points))
+            corners = np.column_stack([np.tile(points, (2, 1)), heights])
+            assets.append(Element("mesh", {"name": f"wall{number}", "vertex": row(corners.ravel())}))
+            shape = {"type": "mesh", "mesh": f"wall{number}"}
+            world.append(Element("geom", {"name": f"wall/{number}", "rgba": rgba, "group": "0", **shape, **STANDING}))
+            continue
+        edges = ring[:1] if len(ring) == 2 else ring
+        for k, edge in enumerate(edges):
+            board = _board(walls.start[edge], walls.end[edge], stage.wall_height, thin=len(ring) == 2)
+            name = f"wall/{number}.{k}"
+            world.append(Element("geom", {"name": name, "rgba": rgba, "group": "0", **board, **STANDING}))
+    world += [prop.body(f"prop{k}") for k, prop in enumerate(stage.props)]
+    return assets, world
+
+
+def joined(walls: Walls, rings: tuple[Floats, ...]) -> Walls:
+    """Return walls with more rings.
+
+    >>> len(joined(Walls.of([[(0, 0), (1, 0)]]), (np.array([[2.0, 0.0], [3.0, 0.0], [3.0, 1.0]]),)))
+    5
+    """
+    more = Walls.of(rings)
+    first = len(walls)
+    return Walls(
+        np.concatenate([walls.start, more.start]),
+        np.concatenate([walls.end, more.end]),
+        np.concatenate([walls.previous, more.previous + first]),
+        np.concatenate([walls.next, more.next + first]),
+        np.concatenate([walls.convex, more.convex]),
+    )
+
+
+def _ground(stage: PhysicsStage) -> tuple[list[Element], list[Element]]:
+    dark = tuple(0.93 * part for part in stage.floor_color)
+    squares = {"type": "2d", "builtin": "checker", "width": "256", "height": "256"}
+    colors = {"rgb1": row(stage.floor_color), "rgb2": row(dark)}
+    sky = {"type": "skybox", "builtin": "gradient", "width": "64", "height": "384"}
+    assets = [
+        Element("texture", {"name": "sky", "rgb1": "0.80 0.87 0.94", "rgb2": "0.97 0.97 0.97", **sky}),
+        Element("texture", {"name": "floor", **squares, **colors}),
+        Element("material", {"name": "floor", "texture": "floor", "texrepeat": "0.5 0.5", "texuniform": "true"}),
+    ]
+    floor = {"name": "floor", "type": "plane", "size": "0 0 1", "material": "floor", "group": "0"}
+    world = [Element("geom", {**floor, "friction": row((stage.friction, 0.005, 0.0001)), **GROUND})]
+    if stage.lights:
+        world += [light.element(f"light{k}") for k, light in enumerate(stage.lights)]
+    else:
+        sun = {"directional": "true", "pos": "0 0 2.5", "diffuse": "0.55 0.55 0.53", "specular": "0.1 0.1 0.1"}
+        world.append(Element("light", {"name": "sun", "dir": "-0.2 0.3 -1", "castshadow": "true", **sun}))
+    return assets, world
+
+
+def _rings(walls: Walls) -> list[NDArray[np.int64]]:
+    """Return the indices of the edges of each ring, in order."""
+    found, known = [], np.zeros(len(walls), dtype=np.bool_)
+    for first in range(len(walls)):
+        if known[first]:
+            continue
+        ring, edge = [], first
+        while not known[edge]:
+            known[edge] = True
+            ring.append(edge)
+            edge = int(walls.next[edge])
+        found.append(np.array(ring, dtype=np.int64))
+    return found
+
+
+def _area(points: Floats) -> float:
+    x, y = points.T
+    return 0.5 * abs(float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)))
+
+
+def _board(start: Floats, end: Floats, height: float, thin: bool) -> dict[str, str]:
+    along = end - start
+    length = float(np.hypot(*along))
+    left = np.array([-along[1], along[0]]) / length
+    half = THIN if thin else THICK
+    middle = 0.5 * (start + end) + (0.0 if thin else half) * left
+    return {
+        "type": "box",
+        "pos": row((*middle, height / 2)),
+        "euler": row((0.0, 0.0, float(np.arctan2(along[1], along[0])))),
+        "size": row((length / 2, half, height / 2)),
+    }

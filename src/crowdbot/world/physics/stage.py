@@ -1,0 +1,233 @@
+"""What stands on a stage beside people and robots: the height of its walls, its floor, and props."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError
+from crowdbot.core.markup import Element
+from crowdbot.world.urdf.geoms import row
+
+from .layers import DYNAMIC, STANDING
+
+__all__ = ["Cube", "Light", "PhysicsStage", "Prop", "Table", "Tree"]
+
+Floats = NDArray[np.float64]
+Color = tuple[float, float, float]
+LEG = 0.05
+"""Width of the legs and thickness of the top of a table [m]."""
+BARK = "0.45 0.33 0.22 1"
+LEAF = "0.33 0.52 0.27 1"
+
+
+@dataclass(frozen=True)
+class Prop(ABC):
+    """Something that stands on the floor at ``x``, ``y`` [m], turned by ``heading`` [rad]."""
+
+    x: float
+    y: float
+    heading: float = 0.0
+
+    def __post_init__(self) -> None:
+        for part in fields(self):
+            value = getattr(self, part.name)
+            number = not isinstance(value, bool | str | tuple)
+            signed = part.name in ("x", "y", "heading")
+            if number and not (math.isfinite(value) and (signed or value > 0.0)):
+                raise InputError(
+                    f"{type(self).__name__}: {part.name} = {value} must be finite{'' if signed else ' and above 0'}"
+                )
+
+    @property
+    def movable(self) -> bool:
+        """Whether it can be pushed."""
+        return False
+
+    @property
+    def weight(self) -> float:
+        """Mass against who runs into it [kg]; infinite when it stands fast."""
+        return math.inf
+
+    @abstractmethod
+    def body(self, name: str) -> Element:
+        """Return it as a body of MJCF."""
+
+    @abstractmethod
+    def outline(self) -> Floats | None:
+        """Return the ring ``[N, 2]`` [m] that people walk around, counter-clockwise; None: they do not see it."""
+
+    def _standing(self, name: str, height: float) -> Element:
+        place = {"pos": row((self.x, self.y, height)), "euler": row((0.0, 0.0, self.heading))}
+        return Element("body", {"name": name, **place})
+
+    def _ring(self, length: float, width: float) -> Floats:
+        cos, sin = math.cos(self.heading), math.sin(self.heading)
+        corners = 0.5 * np.array([[-length, -width], [length, -width], [length, width], [-length, width]])
+        return np.asarray(corners @ np.array([[cos, sin], [-sin, cos]]) + (self.x, self.y))
+
+
+@dataclass(frozen=True)
+class Cube(Prop):
+    """A box of ``size`` [m] and ``mass`` [kg] on the floor; it can be pushed unless it is ``fixed``.
+
+    Raises:
+        InputError: a number is not finite, or a size, mass or friction is not above 0.
+
+    >>> Cube(1.0, 2.0, size=0.4).movable
+    True
+    """
+
+    size: float = 0.5
+    mass: float = 10.0
+    friction: float = 0.5
+    fixed: bool = False
+    color: Color = (0.80, 0.62, 0.38)
+
+    @property
+    def movable(self) -> bool:
+        """Whether it can be pushed."""
+        return not self.fixed
+
+    @property
+    def weight(self) -> float:
+        """Mass against who runs into it [kg]."""
+        return math.inf if self.fixed else self.mass
+
+    def body(self, name: str) -> Element:
+        """Return it as a body of MJCF."""
+        half = 0.5 * self.size
+        found = self._standing(name, half)
+        if not self.fixed:
+            inertia = self.mass * self.size**2 / 6.0
+            found.children += [
+                Element("freejoint", {"name": name}),
+                Element("inertial", {"pos": "0 0 0", "mass": row((self.mass,)), "diaginertia": row([inertia] * 3)}),
+            ]
+        touch = DYNAMIC if not self.fixed else STANDING
+        values = {"type": "box", "size": row([half] * 3), "rgba": row((*self.color, 1.0)), "group": "0"}
+        rub = {"friction": row((self.friction, 0.005, 0.0001)), "priority": "1"}  # its own friction, not the floor's
+        found.children.append(Element("geom", {"name": f"{name}/0", **values, **rub, **touch}))
+        return found
+
+    def outline(self) -> Floats | None:
+        """Return the ring that people walk around; nobody sees what can be pushed."""
+        return self._ring(self.size, self.size) if self.fixed else None
+
+
+@dataclass(frozen=True)
+class Table(Prop):
+    """A table that stands fast: a top of ``length``, ``width`` at ``height`` [m] on four legs."""
+
+    length: float = 1.6
+    width: float = 0.8
+    height: float = 0.74
+
+    def body(self, name: str) -> Element:
+        """Return it as a body of MJCF."""
+        found = self._standing(name, 0.0)
+        shared = {"type": "box", "rgba": "0.62 0.44 0.30 1", "group": "0", **STANDING}
+        top = {"pos": row((0.0, 0.0, self.height - LEG / 2)), "size": row((self.length / 2, self.width / 2, LEG / 2))}
+        found.children.append(Element("geom", {"name": f"{name}/0", **shared, **top}))
+        tall = (self.height - LEG) / 2
+        corners = [(a * (self.length - LEG) / 2, b * (self.width - LEG) / 2) for a in (-1, 1) for b in (-1, 1)]
+        for number, (x, y) in enumerate(corners):
+            leg = {"pos": row((x, y, tall)), "size": row((LEG / 2, LEG / 2, tall))}
+            found.children.append(Element("geom", {"name": f"{name}/{number + 1}", **shared, **leg}))
+        return found
+
+    def outline(self) -> Floats | None:
+        """Return the ring that people walk around."""
+        return self._ring(self.length, self.width)
+
+
+@dataclass(frozen=True)
+class Tree(Prop):
+    """A tree of ``height`` [m] with a trunk of ``trunk`` and a crown of ``crown`` [m] radius."""
+
+    height: float = 5.0
+    trunk: float = 0.15
+    crown: float = 1.4
+
+    def body(self, name: str) -> Element:
+        """Return it as a body of MJCF."""
+        found = self._standing(name, 0.0)
+        stem = max(0.3 * self.height, self.height - 1.6 * self.crown)
+        wood = {"type": "cylinder", "size": row((self.trunk, stem / 2)), "pos": row((0.0, 0.0, stem / 2))}
+        found.children.append(Element("geom", {"name": f"{name}/0", "rgba": BARK, "group": "0", **wood, **STANDING}))
+        tall = 0.5 * (self.height - stem) + 0.2 * self.crown
+        leaves = {"type": "ellipsoid", "size": row((self.crown, self.crown, tall))}
+        leaves |= {"pos": row((0.0, 0.0, self.height - tall)), "rgba": LEAF, "group": "0"}
+        found.children.append(Element("geom", {"name": f"{name}/1", "contype": "0", "conaffinity": "0", **leaves}))
+        return found
+
+    def outline(self) -> Floats | None:
+        """Return the ring that people walk around."""
+        return self._ring(2.0 * self.trunk, 2.0 * self.trunk)
+
+
+@dataclass(frozen=True)
+class Light:
+    """A lamp at ``x``, ``y``, ``z`` [m] that shines down, with a brightness from 0 to 1.
+
+    Raises:
+        InputError: a number is not finite, or the brightness is outside 0 to 1.
+    """
+
+    x: float
+    y: float
+    z: float = 4.0
+    brightness: float = 0.5
+    shadows: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("x", "y", "z"):
+            if not math.isfinite(getattr(self, name)):
+                raise InputError(f"Light: {name} = {getattr(self, name)} m must be finite")
+        if not 0.0 <= self.brightness <= 1.0:
+            raise InputError(f"Light: brightness = {self.brightness} must be from 0 to 1")
+
+    def element(self, name: str) -> Element:
+        """Return it as MJCF."""
+        values = {"name": name, "pos": row((self.x, self.y, self.z)), "dir": "0 0 -1", "cutoff": "85"}
+        values |= {"diffuse": row([self.brightness] * 3), "specular": row([0.2 * self.brightness] * 3)}
+        return Element("light", values | {"castshadow": str(self.shadows).lower()})
+
+
+@dataclass(frozen=True)
+class PhysicsStage:
+    """What a stage is made of, beside the walls of its scene.
+
+    Fields:
+        wall_height: of all walls [m].
+        friction: coefficient of the floor.
+        props: what stands on it.
+        lights: lamps; none: daylight.
+        floor_color, wall_color: red, green, blue from 0 to 1.
+
+    Raises:
+        InputError: the height or the friction is not finite and above 0.
+
+    >>> PhysicsStage(props=(Cube(1.0, 0.0), Table(3.0, 0.0))).outlines()[0].tolist()
+    [[2.2, -0.4], [3.8, -0.4], [3.8, 0.4], [2.2, 0.4]]
+    """
+
+    wall_height: float = 2.5
+    friction: float = 1.0
+    props: tuple[Prop, ...] = ()
+    lights: tuple[Light, ...] = ()
+    floor_color: Color = (0.80, 0.80, 0.78)
+    wall_color: Color = (0.86, 0.84, 0.80)
+
+    def __post_init__(self) -> None:
+        for name in ("wall_height", "friction"):
+            if not 0.0 < getattr(self, name) < math.inf:
+                raise InputError(f"PhysicsStage: {name} = {getattr(self, name)} must be finite and above 0")
+
+    def outlines(self) -> tuple[Floats, ...]:
+        """Return the rings of what people walk around."""
+        return tuple(ring for prop in self.props if (ring := prop.outline()) is not None)

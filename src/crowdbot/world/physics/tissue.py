@@ -1,0 +1,155 @@
+"""How soft and heavy the regions of a body are, and how hard a touch is: the two-body model of ISO/TS 15066.
+
+A body that is modelled as rigid and immovable would give forces that nobody ever feels. So the peak force of an impact
+follows from its speed: a spring with the stiffness of the region between the moving mass of the robot and the effective
+mass of the region, ``F = v sqrt(k mu)``. What a solver says during the impact is never reported as such.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from crowdbot.core import InputError, Paper
+
+__all__ = ["SOURCE", "TISSUES", "Tissue", "permitted_speed", "reduced_mass", "region_of", "softness", "two_body_force"]
+
+SOURCE = Paper(
+    "ISO",
+    2016,
+    "Robots and robotic devices: Collaborative robots",
+    "ISO/TS 15066:2016, annex A, tables A.2 and A.3",
+    "",
+)
+
+
+class Tissue(NamedTuple):
+    """A region of the body.
+
+    Fields:
+        stiffness: [N/m].
+        mass: effective, of the region when it is hit [kg].
+        limit: quasi-static force at the onset of pain of adults [N].
+        transient: how many times the limit a short impact may have; 0: none is allowed.
+    """
+
+    stiffness: float
+    mass: float
+    limit: float
+    transient: float = 2.0
+
+
+TISSUES: dict[str, Tissue] = {
+    "skull": Tissue(150e3, 4.4, 130.0, 0.0),
+    "face": Tissue(75e3, 4.4, 65.0, 0.0),
+    "neck": Tissue(50e3, 1.2, 150.0),
+    "back": Tissue(35e3, 40.0, 210.0),
+    "chest": Tissue(25e3, 40.0, 140.0),
+    "belly": Tissue(10e3, 40.0, 110.0),
+    "pelvis": Tissue(25e3, 40.0, 180.0),
+    "upper arm": Tissue(30e3, 3.0, 150.0),
+    "forearm": Tissue(40e3, 2.0, 160.0),
+    "hand": Tissue(75e3, 0.6, 140.0),
+    "thigh": Tissue(50e3, 75.0, 220.0),
+    "lower leg": Tissue(60e3, 75.0, 130.0),
+}
+"""Regions of :data:`SOURCE`; for certification buy the standard. Limits are for adults; those of children are lower."""
+
+DAMPING = 0.3
+"""Share of critical damping of a touch: bodies part with 37 % of the speed at which they met (assumed)."""
+SHORTEST = 6.0
+"""A touch lasts at least so many steps, otherwise the solver could not follow it."""
+
+LIMB_REGIONS = {
+    "pelvis": "pelvis",
+    "abdomen": "belly",
+    "chest": "chest",
+    "neck": "neck",
+    "head": "skull",
+    "upperarm": "upper arm",
+    "forearm": "forearm",
+    "hand": "hand",
+    "thigh": "thigh",
+    "shank": "lower leg",
+    "foot": "lower leg",
+}
+BEHIND = {"chest": "back", "belly": "back"}
+AHEAD = {"skull": "face"}
+
+
+def region_of(limb: str, ahead: bool = True) -> str:
+    """Return the region of :data:`TISSUES` of a limb that is touched from ahead or from behind.
+
+    Raises:
+        InputError: there is no such limb.
+
+    >>> region_of("chest"), region_of("chest", ahead=False), region_of("shank_l"), region_of("head")
+    ('chest', 'back', 'lower leg', 'face')
+    """
+    stem = limb.removesuffix("_l").removesuffix("_r")
+    if stem not in LIMB_REGIONS:
+        raise InputError(f"there is no limb {limb!r}; there are {', '.join(LIMB_REGIONS)}")
+    region = LIMB_REGIONS[stem]
+    return (AHEAD if ahead else BEHIND).get(region, region)
+
+
+def reduced_mass(one: float, other: float) -> float:
+    """Return the mass [kg] that two masses [kg] have against each other; either may be infinite.
+
+    >>> reduced_mass(60.0, 40.0), reduced_mass(math.inf, 40.0)
+    (24.0, 40.0)
+    """
+    if math.isinf(one) or math.isinf(other):
+        return min(one, other)
+    return one * other / (one + other)
+
+
+def two_body_force(speed: float, mass: float, region: str, person_mass: float = math.inf) -> float:
+    """Return the peak force [N] of an impact on a region of the body (ISO/TS 15066, annex A).
+
+    Args:
+        speed: closing speed along the normal [m/s].
+        mass: of what hits [kg]; of a mobile robot its whole moving mass.
+        region: one of :data:`TISSUES`.
+        person_mass: mass of the whole person [kg]; no region is heavier.
+
+    >>> round(two_body_force(1.0, 60.0, "chest"), 1)
+    774.6
+    """
+    tissue = TISSUES[region]
+    return max(0.0, speed) * math.sqrt(tissue.stiffness * reduced_mass(mass, min(tissue.mass, person_mass)))
+
+
+def permitted_speed(mass: float, region: str) -> float:
+    """Return the largest closing speed [m/s] whose impact stays at the limit of the region, 0 when none is allowed.
+
+    >>> round(permitted_speed(60.0, "chest"), 2)
+    0.36
+    """
+    tissue = TISSUES[region]
+    return tissue.transient * tissue.limit / two_body_force(1.0, mass, region)
+
+
+def softness(region: str, person: float, mass: float, dt: float) -> tuple[float, float]:
+    """Return stiffness and damping of a touch per reduced mass [1/s2, 1/s], for the solver.
+
+    In the solver the whole person (``person`` [kg]) is behind every limb. The touch is so soft that its peak force is
+    nevertheless that of :func:`two_body_force`, whatever the ratio of the masses, and so long that the steps ``dt`` [s]
+    can follow it.
+
+    >>> stiffness, _ = softness("chest", 40.0, 60.0, 0.005)
+    >>> round(math.sqrt(stiffness / (25e3 / 24.0)), 3)  # stiffer by what damping takes from the peak
+    1.229
+    """
+    tissue = TISSUES[region]
+    whole = reduced_mass(person, mass)
+    wanted = tissue.stiffness * reduced_mass(mass, min(tissue.mass, person)) / whole**2
+    frequency = min(math.sqrt(wanted) / _peak(DAMPING), math.pi / (SHORTEST * dt))
+    return frequency**2, 2.0 * DAMPING * frequency
+
+
+def _peak(damping: float) -> float:
+    """Return the largest force of a damped spring that is hit, over that of an undamped one."""
+    root = math.sqrt(1.0 - damping**2)
+    angle = math.atan2(root * (1.0 - 4.0 * damping**2), damping * (3.0 - 4.0 * damping**2))
+    return math.exp(-damping / root * angle)

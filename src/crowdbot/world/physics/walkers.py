@@ -1,0 +1,135 @@
+"""The people of a scene as bodies: who they are, how they walk, and where their limbs are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Scene, stream
+from crowdbot.humans import LIMBS, Gait, Gaits, People
+
+__all__ = ["Limbs", "Walkers"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+NAMES = tuple(limb.name for limb in LIMBS)
+BELOW = {
+    "thigh": ("thigh", "shank", "foot"),
+    "shank": ("shank", "foot"),
+    "foot": ("shank", "foot"),
+    "upperarm": ("upperarm", "forearm", "hand"),
+    "forearm": ("forearm", "hand"),
+}
+FASTEST = 11.9
+"""Speeds [m/s] that models give are cut to this for the legs."""
+
+
+class Limbs(NamedTuple):
+    """Capsules of the limbs of people, E = 1; the names are those of bodies in a scene.
+
+    Fields:
+        start, end: ``[1, B, 3]`` [m]; radius: ``[1, B]`` [m], 0 for who is absent.
+        owner: ``[B]`` the agent; part: ``[B]`` index into ``parts``.
+        parts: the names of the limbs.
+    """
+
+    start: Floats
+    end: Floats
+    radius: Floats
+    owner: Ints
+    part: Ints
+    parts: tuple[str, ...]
+
+
+class Walkers:
+    """People who walk along in a scene.
+
+    Args:
+        scene: E = 1.
+        agents: which agents are people.
+        people: their bodies, one for each of ``agents``; None draws adults.
+        seed: of bodies and of ways to walk.
+
+    Attributes:
+        people: their bodies; state: how they stand now.
+
+    Raises:
+        InputError: there are not as many people as agents.
+    """
+
+    def __init__(self, scene: Scene, agents: Ints, people: People | None = None, seed: int = 0) -> None:
+        self.agents = agents
+        self.people = People.drawn(len(agents), stream(seed, "people")) if people is None else people
+        if len(self.people) != len(agents):
+            raise InputError(
+                f"people: {len(self.people)} bodies are given for {len(agents)} agents that are no robots;"
+                " give one each"
+            )
+        self.row = np.full(scene.shape[1], -1, dtype=np.int64)
+        self.row[agents] = np.arange(len(agents))
+        self.gait = Gait(self.people, seed)
+        place, velocity, heading = self._of(scene)
+        self.state: Gaits = self.gait.start(place, heading, velocity)
+        self.ends, self.radius = self._measured(self.state)
+
+    def begin(self, scene: Scene, activity: str | Sequence[str]) -> None:
+        """Begin anew where everyone is in ``scene``, in one activity or each in the own, which they keep."""
+        place, velocity, heading = self._of(scene)
+        self.take(self.gait.start(place, heading, velocity, activity))
+
+    def walk(self, scene: Scene, dt: float) -> None:
+        """Walk on for ``dt`` [s] to where everyone is in ``scene``: what a world in the plane does after each step."""
+        self.take(self.stepped(scene, dt))
+
+    def stepped(self, scene: Scene, dt: float) -> Gaits:
+        """Return how everyone stands ``dt`` [s] later, when they have come to where they are in ``scene``."""
+        place, velocity, heading = self._of(scene)
+        return self.gait.step(self.state, place, velocity, heading, dt)
+
+    def take(self, state: Gaits, ends: Floats | None = None) -> None:
+        """Go on with this state; ``ends`` are its limbs if they are known."""
+        self.state = state
+        self.ends = self._measured(state)[0] if ends is None else ends
+
+    def ends_of(self, state: Gaits) -> Floats:
+        """Return both ends of all limbs ``[N, L, 6]`` [m] in the world."""
+        return self._measured(state)[0]
+
+    def limb_mass(self, agent: int, limb: str) -> float:
+        """Return the mass [kg] that swings with a limb of a person: from there to fingers or toes."""
+        own = self.people.limb_mass[self.row[agent]]
+        stem, _, side = limb.partition("_")
+        below = BELOW.get(stem, (stem,))
+        return float(sum(own[NAMES.index(f"{name}_{side}" if side else name)] for name in below))
+
+    def limbs(self, active: NDArray[np.bool_]) -> Limbs:
+        """Return the capsules of everyone.
+
+        Args:
+            active: ``[A]`` who is there.
+        """
+        count = len(self.agents) * len(LIMBS)
+        there = np.where(active[self.agents, None], self.radius, 0.0)
+        return Limbs(
+            self.ends[..., :3].reshape(1, count, 3),
+            self.ends[..., 3:].reshape(1, count, 3),
+            there.reshape(1, count),
+            np.repeat(self.agents, len(LIMBS)),
+            np.tile(np.arange(len(LIMBS)), len(self.agents)),
+            NAMES,
+        )
+
+    def _of(self, scene: Scene) -> tuple[Floats, Floats, Floats]:
+        here = scene.active[0, self.agents]
+        place = np.where(here[:, None], scene.position[0, self.agents], 0.0)
+        velocity = np.where(here[:, None], scene.velocity[0, self.agents], 0.0)
+        speed = np.sqrt(np.sum(velocity * velocity, axis=1, keepdims=True))
+        velocity = velocity * np.minimum(1.0, FASTEST / np.maximum(speed, 1e-9))
+        return place, velocity, np.where(here, scene.heading[0, self.agents], 0.0)
+
+    def _measured(self, state: Gaits) -> tuple[Floats, Floats]:
+        found = self.gait.limbs(state)
+        return np.concatenate([found.start, found.end], axis=-1), found.radius

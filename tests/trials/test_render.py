@@ -1,0 +1,158 @@
+"""Images and films of trials, by every kind of camera, and what is said when that is impossible."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from space_trials import LEAN, ROOM, room
+
+from crowdbot.cli import main
+from crowdbot.core import InputError, MissingExtra
+from crowdbot.trials import Take, Trial, camera_names, load_trial, shots
+from crowdbot.trials.album import Album, painted_segmentation
+from crowdbot.world.physics import drawing
+
+
+def test_cameras_have_names() -> None:
+    assert camera_names(Trial.parse(ROOM)) == ("door", "head", "overview", "pepper/depth", "pepper/eyes")
+    assert camera_names(load_trial("frontal")) == ("overview",)
+
+
+@pytest.mark.parametrize("world", ["planar", "physics"])
+def test_every_camera_sees_the_room(world: str) -> None:
+    trial = Trial.parse(room(world))
+    for name in ("door", "head", "pepper/eyes"):
+        (shot,) = shots(trial, name, Take(0.2), depth=True, segmentation=True)
+        assert shot.time == pytest.approx(0.2)
+        assert shot.rgb.shape[:2] == ((24, 32) if "/" in name else (48, 64))
+        assert shot.depth is not None
+        assert shot.segmentation is not None
+        assert {-3, -2} <= set(np.unique(shot.segmentation))
+        near = shot.depth[shot.segmentation >= 0]
+        assert len(near)
+        assert near.max() < 12.0
+        assert shot.rgb.std() > 5.0
+
+
+def test_a_film_is_even_and_the_same_each_time() -> None:
+    trial = Trial.parse(room(text=LEAN))
+    films = [list(shots(trial, "door", Take(0.2, 0.6, 12.5))) for _ in range(2)]
+    assert [round(shot.time, 2) for shot in films[0]] == [0.2, 0.28, 0.36, 0.44, 0.52, 0.6]
+    assert all(np.array_equal(a.rgb, b.rgb) for a, b in zip(*films, strict=True))
+    assert not np.array_equal(films[0][0].rgb, films[0][-1].rgb)
+    assert len(list(shots(trial, "door", Take(0.0, 0.4)))) == 11
+
+
+def test_a_camera_does_not_change_the_run() -> None:
+    trial = Trial.parse(room(text=LEAN))
+    before = trial.run().digest
+    list(shots(trial, "door", Take(0.5)))
+    assert trial.run().digest == before
+
+
+@pytest.mark.parametrize("ending", [".png", ".jpg", ".webp"])
+def test_an_image_is_written(ending: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "deep" / f"door{ending}"
+    (tmp_path / "room.xml").write_text(LEAN)
+    words = ["render", str(tmp_path / "room.xml"), "--at", "0.2", "--out", str(path), "--depth", "--segmentation"]
+    assert main([*words, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert (told["camera"], told["images"], told["rate"], told["world"]) == ("door", 1, None, "planar")
+    names = [path, path.with_name("door-depth.png"), path.with_name("door-segmentation.png")]
+    assert told["files"] == [str(name) for name in names]
+    (shot,) = shots(Trial.parse(LEAN), "door", Take(0.2), depth=True, segmentation=True)
+    assert np.asarray(Image.open(path)).shape == (48, 64, 3)
+    metres = np.asarray(Image.open(names[1])) / 1000.0
+    seen = np.isfinite(shot.depth)
+    np.testing.assert_allclose(metres[seen], shot.depth[seen], atol=6e-4)
+    labels = Image.open(names[2])
+    assert labels.mode == "P"
+    who = np.asarray(labels)
+    assert np.array_equal(who == 2, shot.segmentation == -3)
+    assert np.array_equal(np.asarray(labels.convert("RGB")), painted_segmentation(shot.segmentation))
+    assert sorted(path.parent.iterdir()) == sorted(names)
+
+
+@pytest.mark.parametrize("ending", [".gif", ".webp", ".mp4", ""])
+def test_a_film_is_written(ending: str, tmp_path: Path) -> None:
+    path = tmp_path / f"film{ending}"
+    (tmp_path / "room.xml").write_text(LEAN)
+    words = ["render", str(tmp_path / "room.xml"), "--to", "0.4", "--fps", "12.5", "--out", str(path), "--depth"]
+    assert main(words) == 0
+    if ending == "":
+        assert len(list(path.glob("rgb-*.png"))) == len(list(path.glob("depth-*.png"))) == 6
+    elif ending == ".mp4":
+        import av
+
+        with av.open(str(path)) as film:
+            images = [frame.to_ndarray(format="rgb24") for frame in film.decode(video=0)]
+            assert film.streams.video[0].average_rate == 12.5
+        first = next(shots(Trial.parse(LEAN), "door"))
+        assert len(images) == 6
+        assert np.abs(images[0].astype(int) - first.rgb).mean() < 6.0
+    else:
+        with Image.open(path) as film:
+            assert film.n_frames == 6
+            assert film.size == (64, 48)
+    assert not list(tmp_path.rglob("*.part"))
+
+
+WRONG = {
+    "camera": (["--camera", "dor"], r"room has no camera 'dor', did you mean 'door'\?; it has door, overview"),
+    "late": (["--at", "7"], r"begin = 7 s must be from 0 to the duration of the trial, 1 s"),
+    "backwards": (["--from", "0.6", "--to", "0.2"], r"end = 0.2 s is before the beginning, 0.6 s"),
+    "rate": (
+        ["--to", "0.4", "--fps", "30"],
+        r"rate = 30 Hz: 0.0333333 s is not a whole number of time steps",
+    ),
+    "both": (["--at", "0.4", "--to", "0.6"], r"--at is for one image and --to for a film"),
+    "fps of an image": (["--at", "0.4", "--fps", "5"], r"--fps is for a film"),
+    "ending": (["--out", "a.tiff"], r"a.tiff must end in .png, .jpg, .webp for an image, or be a folder"),
+    "world": (
+        ["--world", "physics", "--set", "world=planar"],
+        r"--world physics and --set world=planar are both",
+    ),
+}
+
+
+@pytest.mark.parametrize("mistake", WRONG)
+def test_a_mistake_is_said_in_a_sentence(mistake: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    import re
+
+    (tmp_path / "room.xml").write_text(LEAN)
+    words, sentence = WRONG[mistake]
+    out = [] if "--out" in words else ["--out", str(tmp_path / "out" / "a.webp")]
+    assert main(["render", str(tmp_path / "room.xml"), *words, *out]) == 2
+    said = capsys.readouterr().err
+    assert re.search(sentence, said), said
+    assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
+
+
+def test_without_a_way_to_draw_nothing_is_written(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("MUJOCO_GL", "disabled")
+    drawing.backend.cache_clear()
+    try:
+        with pytest.raises(InputError, match="MUJOCO_GL = 'disabled' must be one of egl, osmesa"):
+            list(shots(load_trial("frontal")))
+    finally:
+        drawing.backend.cache_clear()
+
+
+def test_without_extras(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    import sys
+
+    monkeypatch.setitem(sys.modules, "av", None)
+    with pytest.raises(MissingExtra, match=r"a film as .mp4 needs the extra \[sim\]"):
+        Album(tmp_path / "a.mp4", film=True)
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    with pytest.raises(MissingExtra, match=r"needs the extra \[sim\]: pip install"):
+        list(shots(load_trial("frontal")))
+
+
+def test_cameras_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["render", "frontal", "--list", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["cameras"] == ["overview"]

@@ -1,0 +1,301 @@
+"""The same trial in both worlds: every built-in one, digests, what sensors see, who is who."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from space_trials import LEAN, ROOM, WORLDS, room
+from test_schema import valid
+
+from crowdbot.core import ExternalClock, InputError, MissingExtra, TrialError
+from crowdbot.sensors import Picture, Tracked
+from crowdbot.trials import Trial, branch, builtin_trials, load_trial, opened, read_episode, record, replay, run
+from crowdbot.trials.figures import cast_of
+from crowdbot.trials.run import Running, drive
+from crowdbot.trials.simulation import Simulation
+
+STEPS = 4
+
+
+def short(name: str, world: str) -> Trial:
+    """A built-in trial in a world, over after a few steps."""
+    trial = load_trial(name, world=world)
+    first = trial.variants()[0] if trial.sweeps else trial
+    period = first.recording.period
+    return dataclasses.replace(first, duration=max(period, math.ceil(STEPS * first.step / period) * period))
+
+
+@pytest.mark.parametrize("name", builtin_trials())
+def test_every_builtin_trial_runs_in_both_worlds_and_is_recorded(name: str, tmp_path: Path) -> None:
+    for world in WORLDS:
+        trial = short(name, world)
+        done = record(trial, out=f"{tmp_path}/{world}")
+        assert done.steps == trial.ticks
+        read = read_episode(f"{tmp_path}/{world}/episode.mcap")
+        assert ('world="physics"' in read.metadata["trial"]) == (world == "physics")
+        assert read.digest == done.digest
+
+
+@pytest.mark.parametrize("world", WORLDS)
+def test_the_same_seed_gives_the_same_bytes_however_time_passes(world: str, tmp_path: Path) -> None:
+    trial = Trial.parse(room(world))
+    once = run(trial, out=f"{tmp_path}/free")
+    with opened(trial, out=f"{tmp_path}/outside", clock=ExternalClock(trial.step)) as running:
+        now = 0
+        while running.outcome is None:
+            now += 37_000_001
+            running.until(now)
+    files = [(tmp_path / name / "episode.mcap").read_bytes() for name in ("free", "outside")]
+    assert files[0] == files[1]
+    assert replay(f"{tmp_path}/free/episode.mcap", trust=True).equal
+    later = branch(f"{tmp_path}/free/episode.mcap", at=0.52)
+    assert later.digest == once.digest
+
+
+def test_a_room_with_everything_is_the_identity_and_valid() -> None:
+    trial = Trial.parse(ROOM)
+    assert Trial.parse(trial.xml()) == trial
+    assert Trial.parse(trial.xml()).xml() == trial.xml()
+    assert valid(trial.xml())
+    whole = trial.explicit()
+    assert Trial.parse(whole.xml()) == whole
+    assert valid(whole.xml())
+
+
+@pytest.mark.parametrize("world", WORLDS)
+def test_explicit_people_have_the_same_bodies(world: str) -> None:
+    trial = Trial.parse(room(world, LEAN))
+    simulations = [Simulation(one, 4, posed=True) for one in (trial, trial.explicit(4))]
+    casts = [cast_of(one.trial, one.people, one.world.scene.shape[1], 4) for one in simulations]
+    assert [one.name for one in casts[0].people.persons] == [one.name for one in casts[1].people.persons]
+    assert casts[0].people.variation.tolist() == casts[1].people.variation.tolist()
+    assert casts[0].activity == casts[1].activity
+    assert casts[0].people.persons[0].name == "woman-36"
+    assert casts[0].people.variation[0] == 3
+    assert casts[0].activity[:2] == ("walk", "phone")
+    assert run(trial, 4).digest == run(trial.explicit(4)).digest
+
+
+@pytest.mark.parametrize("world", WORLDS)
+def test_readings_of_the_room(world: str) -> None:
+    episode = run(Trial.parse(room(world)))
+    found = episode.readings
+    pictures = found["pepper/eyes"]
+    assert isinstance(pictures[0], Picture)
+    assert pictures[0].rgb.shape == (1, 24, 32, 3)
+    assert pictures[0].hit is not None
+    assert {one for picture in pictures for one in np.unique(picture.hit)} >= {-2, -3, 0}
+    assert len(found["pepper/laser_rear"][0].angles) == 31  # type: ignore[attr-defined]
+    assert len(found["pepper/laser_front"][0].angles) == 481  # type: ignore[attr-defined]
+    near = found["pepper/depth"][0]
+    assert near.pose.position[0, 2] == pytest.approx(1.0, abs=0.01)
+    told = found["pepper/people"][-1]
+    assert isinstance(told, Tracked)
+    assert told.ids() == [0, 1, 2, 3, 4, 6]
+    turning = found["pepper/imu"][-1].acceleration  # type: ignore[attr-defined]
+    assert np.isfinite(turning).all()
+    with_people = {one for cloud in found["pepper/rings"] for one in np.unique(cloud.hit)}  # type: ignore[attr-defined]
+    assert {-4, -3, -2} <= with_people
+    assert with_people & {0, 1, 2, 3, 4}
+
+
+@pytest.mark.parametrize("world", WORLDS)
+def test_readings_arrive_late_and_keep_their_instant(world: str) -> None:
+    simulation = Simulation(Trial.parse(room(world)), 4)
+    arrived = []
+
+    class Listener:
+        def exchange(self, simulation: Simulation, readings: object) -> None:
+            for _, mount, reading in readings:  # type: ignore[attr-defined]
+                if mount.name == "wheels":
+                    arrived.append((simulation.tick, round(reading.time / 0.04)))
+
+    running = Running(simulation, bridges=[Listener()])
+    while simulation.tick < 6:
+        running.step()
+    assert arrived == [(k + 2, k) for k in range(5)]
+
+
+def test_a_late_drive_follows_late_in_the_plane() -> None:
+    trial = Trial.parse(LEAN)
+    simulation = Simulation(trial, 4)
+    running = Running(simulation)
+    moving = []
+    for _ in range(5):
+        running.step()
+        moving.append(float(simulation.world.twists[simulation.carriers[0].agent].forward[0]) > 0.0)
+    assert moving == [False, False, False, True, True]
+
+
+def test_flat_lasers_see_discs_unless_asked_for_limbs() -> None:
+    lasers = {}
+    for bodies in ("discs", "limbs", "skins"):
+        scans = run(Trial.parse(room(text=LEAN, bodies=bodies))).readings["puck/scan"]
+        lasers[bodies] = scans[5].ranges[0]  # type: ignore[attr-defined]
+    assert not np.array_equal(lasers["discs"], lasers["limbs"])
+    assert not np.array_equal(lasers["skins"], lasers["limbs"])
+    default = run(Trial.parse(LEAN)).readings["puck/scan"][5].ranges[0]  # type: ignore[attr-defined]
+    assert np.array_equal(default, lasers["discs"])
+    physical = run(Trial.parse(room("physics", LEAN))).readings["puck/scan"][5]
+    assert physical.pose.position.shape == (1, 3)
+
+
+def test_props_are_solid_in_the_plane_and_have_bodies_in_physics() -> None:
+    lines = LEAN.splitlines()
+    text = "\n".join(line for line in lines if not line.startswith(("  <agent", "  <spawner", "  <tree", "  <table")))
+    for world in WORLDS:
+        trial = Trial.parse(text.replace('seed="4"', f'seed="4" world="{world}" bodies="discs"').replace(
+            'duration="1"', 'duration="4"').replace('<end collision="false"', '<end collision="true"'))  # fmt: skip
+        episode = run(trial)
+        assert episode.outcome == "collision"
+        touching = episode.position[-1, episode.robots[0]]
+        assert touching[0] == pytest.approx(4.0 - 0.3 - 0.3, abs=0.05)
+        scans = episode.readings["puck/scan"]
+        assert scans[0].ranges[0, 30] == pytest.approx(1.7, abs=0.01)  # type: ignore[attr-defined]
+
+
+def test_a_cube_is_pushed_in_physics() -> None:
+    lines = [
+        line for line in LEAN.splitlines() if not line.startswith(("  <agent", "  <spawner", "  <tree", "  <table"))
+    ]
+    text = "\n".join(lines).replace('x="4" y="2" size="0.6" fixed="true"', 'x="4" y="2.2" size="0.6"')
+    trial = Trial.parse(text.replace('seed="4"', 'seed="4" world="physics"').replace('duration="1"', 'duration="4"'))
+    simulation = Simulation(trial, 4)
+    running = Running(simulation)
+    while running.outcome is None:
+        running.step()
+    world: object = simulation.world
+    assert world.prop(0)[0, 3] > 4.3  # type: ignore[attr-defined]
+    scan = simulation.carriers[0].readings["scan"]
+    assert scan.ranges[0, 30] < 0.7  # type: ignore[attr-defined]
+    wall = [touch for touch in simulation.touches if touch.other == -2]
+    assert not wall
+
+
+def test_collisions_and_forces_are_told_once() -> None:
+    text = LEAN.replace(
+        '<agent x="6" y="4" goal="1,4" body="woman-36" outfit="3"/>', '<agent x="3" y="2.2" heading="0"/>'
+    )
+    trial = Trial.parse(text.replace('seed="4"', 'seed="4" world="physics"').replace('duration="1"', 'duration="3"'))
+    simulation = Simulation(trial, 4)
+    frames = []
+
+    class Keeper:
+        def take(self, frame: object) -> None:
+            frames.append(frame)
+
+    from crowdbot.trials.run import Stop
+
+    drive(simulation, [Keeper()], Stop())
+    told = [one for frame in frames for one in frame.collisions]
+    world: object = simulation.world
+    assert sorted(map(repr, told)) == sorted(map(repr, world.collisions))  # type: ignore[attr-defined]
+    assert told
+    assert any(frame.forces for frame in frames)
+    assert simulation.event == "collision"
+
+
+WRONG = {
+    "no such robot": (
+        'type="pepper"',
+        'type="peper"',
+        r"type=\"peper\" is no robot, did you mean 'pepper'\?.*built in are",
+    ),
+    "outside": ('type="pepper"', 'type="../pepper"', r"is no robot|lies outside"),
+    "mass beside a type": ('type="pepper"', 'type="pepper" mass="3"', r"has height or mass beside type=\"pepper\""),
+    "no such link": (
+        'link="CameraTop_frame"',
+        'link="CameraTop"',
+        r"sits on link=\"CameraTop\", which it has not, did you",
+    ),
+    "no drive": ('<drive type="differential-drive"/>', "", r"needs the element <drive>: how it moves; or a type"),
+    "no body": ('body="woman-36"', 'body="woman-37"', r"body=\"woman-37\" has 'woman-37', did you mean 'woman-"),
+    "no activity": ('activity="phone"', 'activity="fone"', r"activity=\"fone\" has 'fone', did you mean 'phone'\?"),
+    "no world": ('seed="4"', 'seed="4" world="phisics"', r"must be planar or physics, did you mean 'physics'\?"),
+    "steps that do not fit": (
+        'seed="4"',
+        'seed="4" world="physics" physics-step="0.015"',
+        r"whole number of steps of the ph",
+    ),
+    "a camera on nobody": (
+        'robot="pepper" link',
+        'robot="peper" link',
+        r"robot=\"peper\" is no robot, did you mean 'pepper'\?",
+    ),
+    "a camera on no link": (
+        'link="Head"',
+        'link="head"',
+        r"link=\"head\" is no link of robot 'pepper', did you mean 'Head'",
+    ),
+    "a link of nobody": ('robot="pepper" link="Head"', 'link="Head"', r"link=\"Head\" needs robot"),
+    "a camera twice": ('camera name="head"', 'camera name="door"', r"name 'door' is taken by another camera"),
+    "a rate of a type": (
+        'rates="nearest" ',
+        "",
+        r"sensor 'base_laser_front' of its type \(rates=\"nearest\" lets it fit\): rate 6.66667 Hz",
+    ),
+    "a delay": ('delay="0.08"', 'delay="0.07"', r"delay 0.07 s is not a whole number of time steps"),
+    "a prop": ('size="0.3"', 'size="0"', r"<cube> size=\"0\" must be above 0 m"),
+    "in a prop": ('x="7" y="2.2"', 'x="9" y="6.5"', r"<agent> stands at 9,6.5, 0.00 m from a wall"),
+}
+
+
+@pytest.mark.parametrize("mistake", WRONG)
+def test_a_mistake_is_named(mistake: str) -> None:
+    old, new, sentence = WRONG[mistake]
+    assert old in ROOM
+    with pytest.raises(TrialError, match=sentence):
+        Trial.parse(ROOM.replace(old, new), place="room.xml")
+
+
+def test_without_mujoco_the_physics_world_is_refused_in_one_sentence(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    import sys
+
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    with pytest.raises(MissingExtra, match=r"the physics world needs the extra \[sim\]: pip install 'crowdbot\[sim\]'"):
+        run(load_trial("frontal", world="physics"), out=f"{tmp_path}/out")
+    assert not (tmp_path / "out").exists()
+    assert run(load_trial("frontal", duration=0.2)).outcome
+
+
+def test_a_robot_of_a_folder_beside_the_trial(tmp_path: Path) -> None:
+    from shutil import copytree
+
+    from crowdbot.trials.robot import _assets
+
+    home = tmp_path
+    copytree(_assets("turtlebot2"), home / "mine")
+    (home / "deep").mkdir()
+    text = ROOM.replace('<robot name="puck"', '<robot name="puck" type="mine"').replace(' height="0.4" mass="15"', "")
+    text = text.replace('<drive type="differential-drive"/>', "").replace('latency="0.12" ', 'equipped="false" ')
+    (home / "trial.xml").write_text(text)
+    (home / "deep" / "trial.xml").write_text(text.replace('type="mine"', 'type="../mine"'))
+    trial = load_trial(home / "trial.xml")
+    puck = trial.robots[1]
+    assert (puck.drive.max_speed, [mount.name for mount in puck.sensors]) == (0.65, ["scan"])  # type: ignore[attr-defined]
+    assert 'type="mine"' in trial.xml()
+    assert {path.name for path in puck.files()} >= {"robot.xml", "turtlebot2.urdf"}
+    with pytest.raises(TrialError, match=r"lies outside .*--trust"):
+        load_trial(home / "deep" / "trial.xml")
+    assert load_trial(home / "deep" / "trial.xml", trust=True).robots[1].radius == puck.radius
+    (home / "mine" / "robot.xml").write_text("<robot/>")
+    with pytest.raises(TrialError, match=r"<robot> type=\"mine\": .*robot.xml:1: <robot> needs"):
+        load_trial(home / "trial.xml")
+
+
+def test_a_branch_of_the_physics_world_keeps_its_stage(tmp_path: Path) -> None:
+    trial = Trial.parse(room("physics", LEAN))
+    episode = run(trial)
+    slow = episode.branch(at=0.52, **{"robot[puck].drive.max-speed": 0.1})
+    assert slow.digest != episode.digest
+    assert slow.position[-1, 5, 0] < episode.position[-1, 5, 0]
+    with pytest.raises(InputError, match="the stage cannot change in a branch of the physics world"):
+        episode.branch(at=0.52, **{"stage.wall-height": 3})
+    with pytest.raises(InputError, match="world cannot change in a branch"):
+        episode.branch(at=0.52, world="planar")
