@@ -5,8 +5,8 @@
     python tools/train_social_ways.py table OUT OUT
     python tools/train_social_ways.py ship OUT ASSETS
 
-``fold``: leave-one-out. DATA holds train/, val/ and all_data/ as SGAN published them; only train/ of the other places is
-learned from, val/ of the other places chooses the checkpoint. ``split``: the report's own protocol. DATA holds
+``fold``: leave-one-out. DATA holds train/, val/ and all_data/ as SGAN published them; only train/ of the other places
+is learned from, val/ of the other places chooses the checkpoint. ``split``: the report's own protocol. DATA holds
 eth_biwi/ and ucy/ with an obsmat.txt for every place; the first four fifths of each are learned from, and the last
 weights are scored on the last fifth. Each run is the loop that ``crowdbot train social-ways`` runs.
 """

@@ -53,9 +53,7 @@ def mahalanobis(forecast: Forecast, future: Windows) -> tuple[Floats, Floats]:
     away = samples - middle[:, None]
     unbiased = np.maximum(1.0 - np.sum(share * share, axis=1), np.finfo(np.float64).tiny)[..., 0]  # [N, 1]
     weight = share[..., 0]
-    xx, xy, yy = (
-        np.sum(weight * away[..., i] * away[..., j], axis=1) / unbiased for i, j in ((0, 0), (0, 1), (1, 1))
-    )
+    xx, xy, yy = (np.sum(weight * away[..., i] * away[..., j], axis=1) / unbiased for i, j in ((0, 0), (0, 1), (1, 1)))
     mean, radius = (xx + yy) / 2.0, np.hypot((xx - yy) / 2.0, xy)
     known = future.present[window, :, person] & (mean - radius > FLAT * (mean + radius))
     determinant = np.where(known, xx * yy - xy * xy, 1.0)

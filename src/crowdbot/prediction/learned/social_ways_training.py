@@ -29,19 +29,19 @@ DRAWS, CHECKED = 20, 60
 
 
 def learner(
-    settings: str, values: Mapping[str, str], samples: Samples, watched: Samples, seed: int, device: str
+    settings: str | None, values: Mapping[str, str], samples: Samples, watched: Samples, seed: int, device: str
 ) -> SocialWaysTraining:
     """Return Social Ways ready to train, as the command line asks for it.
 
     Args:
-        settings: name of a preset.
+        settings: name of a preset; None is ``report``.
         values: settings that differ, as text.
         samples, watched, seed, device: as of :class:`SocialWaysTraining`.
     """
     rows = {"observe": samples.observe, "predict": samples.predict}
     read = plug.read(SocialWaysConfig, dict(values))
     changed = {name.replace("-", "_"): getattr(read, name.replace("-", "_")) for name in values}
-    return SocialWaysTraining(preset(settings, rows | changed), samples, watched, seed, device)
+    return SocialWaysTraining(preset(settings or "report", rows | changed), samples, watched, seed, device)
 
 
 class _Lesson(NamedTuple):
