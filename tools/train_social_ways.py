@@ -1,4 +1,4 @@
-"""Trains Social Ways fold by fold and seed by seed, and scores it; what is done is not repeated, what was stopped goes on.
+"""Trains Social Ways fold by fold and seed by seed, and scores it; what was stopped goes on.
 
     python tools/train_social_ways.py fold DATA OUT --fold eth hotel univ zara1 zara2 --seed 0 1 2
     python tools/train_social_ways.py split DATA OUT --fold eth hotel univ zara1 zara2

@@ -62,7 +62,7 @@ def test_the_anchor_network_learns_and_scores_the_same_way(
     walks: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = ["train", "anchor-net", "--data", *walks, "--fps", "2.5", "--leave-out", "plaza", "--out", str(tmp_path),
-             "--updates", "4", "--check-every", "2", "--set", "width=16", "social=8", "people=16", "mirror=0"]  # fmt: skip
+             "--updates", "4", "--check-every", "2", "--set", "width=16", "social=8", "people=16"]  # fmt: skip
     status, out, _ = said([*words, "--json"], capsys)
     done = json.loads(out)
     assert (status, [row["update"] for row in done["log"]]) == (0, [2, 4])
