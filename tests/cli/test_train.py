@@ -75,6 +75,20 @@ def test_the_anchor_network_learns_and_scores_the_same_way(
     assert total["ade"] < 1.0
 
 
+def test_weights_that_do_not_fit_are_said_and_a_baseline_answers(
+    walks: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["predict", "--predictor", "anchor-net", "social-ways", "--samples", "3", "--fps", "1", "--every", "20",
+             "--data", walks[0]]  # fmt: skip
+    status, _, err = said(words, capsys)
+    assert status == 0
+    assert "anchor-net: street.txt has steps of 1 s, it was learned at 0.4 s and takes up to 0.7 s; a baseline" in err
+    assert "social-ways: street.txt has steps of 1 s, it was learned at 0.4 s: bring it there with --step 0.4" in err
+    assert "UserWarning" not in err
+    status, out, _ = said([*words, "--json"], capsys)
+    assert [len(one["notes"]) for one in json.loads(out)["results"]] == [1, 1]
+
+
 @pytest.mark.parametrize(
     ("words", "why"),
     [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -13,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import InputError, Paper
 from crowdbot.data import Forecast, Windows
 from crowdbot.prediction.constant import ConstantVelocity, SampledConstantVelocity
-from crowdbot.prediction.joint import before_walls
+from crowdbot.prediction.joint import before_walls, kept_apart
 from crowdbot.prediction.predictor import Predictor, window_streams
 
 from .checkpoint import load_checkpoint
@@ -153,8 +154,13 @@ class SocialWays(LearnedPredictor):
     in which the fewest people walk through a wall, and who still would ends before it. Where the shipped
     weights do not fit (other steps than 0.4 s, pixels), a baseline answers and a warning says so; own weights raise.
 
+    Fields:
+        contact: people of one draw are moved aside to stay so far apart [m]; 0, as in the report, leaves them alone.
+
     Paper: Amirian, Hayet, Pettré (2019), doi 10.48550/arXiv.1904.09507.
     """
+
+    contact: float = 0.0
 
     paper: ClassVar[Paper] = Paper(
         "Amirian, Hayet, Pettré",
@@ -164,10 +170,20 @@ class SocialWays(LearnedPredictor):
         "10.48550/arXiv.1904.09507",
     )
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0.0 <= self.contact < math.inf:
+            raise InputError(f"{KIND}: contact = {self.contact} m must be finite and at least 0")
+
     @property
     def kind(self) -> str:
         """Name on the command line."""
         return KIND
+
+    @property
+    def name(self) -> str:
+        """Name on the command line, with what differs from a plain Social Ways."""
+        return super().name + (f"(contact={self.contact:g})" if self.contact else "")
 
     def network(self, source: str = "") -> SocialWaysNetwork:
         """Return the network with the weights for a recording of this name; read once."""
@@ -194,7 +210,7 @@ class SocialWays(LearnedPredictor):
             if len(people):
                 only = _only(past[window : window + 1], people)
                 place[window][:, :, people] = _drawn(network, only, steps, samples, own)
-        return self.forecast(past, place)
+        return self.forecast(past, kept_apart(past, place, self.contact))
 
 
 def _drawn(
