@@ -179,7 +179,10 @@ def weights_file(options: argparse.Namespace, fold: str, seed: int) -> str:
 
 def windows_left_out(options: argparse.Namespace, fold: str) -> list[tuple[Windows, Windows]]:
     """Return past and future of every window, or of every so many-th, of the recordings that a fold leaves out."""
-    cut = [tracks.windows() for tracks in recordings(options.data / "all_data", fold, left_out=True)]
+    found = recordings(options.data / "all_data", fold, left_out=True)
+    if fold == "eth" and options.eth is not None:
+        found = [load(options.eth)]
+    cut = [tracks.windows() for tracks in found]
     return [(past[:: options.every], future[:: options.every]) for past, future in cut]
 
 
@@ -193,6 +196,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, nargs="+", default=[0])
     parser.add_argument("--updates", type=int, default=UPDATES)
     parser.add_argument("--every", type=int, default=1, help="score every so many-th window only")
+    parser.add_argument("--eth", type=Path, help="obsmat.txt of eth, its true time base, in place of biwi_eth.txt")
     parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help="other settings of the training")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
