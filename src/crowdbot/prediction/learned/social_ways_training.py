@@ -29,19 +29,19 @@ DRAWS, CHECKED = 20, 60
 
 
 def learner(
-    settings: str, values: Mapping[str, str], samples: Samples, watched: Samples, seed: int, device: str
+    settings: str | None, values: Mapping[str, str], samples: Samples, watched: Samples, seed: int, device: str
 ) -> SocialWaysTraining:
     """Return Social Ways ready to train, as the command line asks for it.
 
     Args:
-        settings: name of a preset.
+        settings: name of a preset; None is ``report``.
         values: settings that differ, as text.
         samples, watched, seed, device: as of :class:`SocialWaysTraining`.
     """
     rows = {"observe": samples.observe, "predict": samples.predict}
     read = plug.read(SocialWaysConfig, dict(values))
     changed = {name.replace("-", "_"): getattr(read, name.replace("-", "_")) for name in values}
-    return SocialWaysTraining(preset(settings, rows | changed), samples, watched, seed, device)
+    return SocialWaysTraining(preset(settings or "report", rows | changed), samples, watched, seed, device)
 
 
 class _Lesson(NamedTuple):
@@ -129,7 +129,7 @@ class SocialWaysTraining(Trainable):
         rng = stream(0, "check")
         sums = np.zeros(3)
         observe = self.samples.observe
-        for part in self.watched.batches(stream(0, "parts"), 4 * self.config.batch):
+        for part in self.watched.batches(stream(0, "parts"), self.config.batch):
             scenes = self.watched.batch(part)
             lesson = self._lesson(scenes)
             with torch.no_grad():
@@ -186,7 +186,8 @@ class SocialWaysTraining(Trainable):
 
     def _made(self, lesson: _Lesson, noise: Tensor) -> tuple[Tensor, Tensor]:
         """Return drawn positions ``[K, N, T, 2]`` [m] and states ``[K, N, T, 4]`` of those who count."""
-        place, state = self._rolled(lesson.sight, noise)
+        with torch.autocast(self.device.type, torch.bfloat16, enabled=self.config.mixed):
+            place, state = self._rolled(lesson.sight, noise)
         return place.transpose(2, 3)[:, lesson.scored], state.transpose(2, 3)[:, lesson.scored]
 
     def _discriminator_step(self, lesson: _Lesson, made: Tensor, codes: Tensor) -> dict[str, float]:
