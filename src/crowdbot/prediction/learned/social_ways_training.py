@@ -95,7 +95,9 @@ class SocialWaysTraining(Trainable):
         self.discriminator.to(self.device)
         betas = (config.momentum, 0.999)
         self.of_generator = torch.optim.Adam(self.generator.parameters(), config.generator_rate, betas, fused=True)
-        self.of_discriminator = torch.optim.Adam(self.discriminator.parameters(), config.discriminator_rate, betas, fused=True)
+        self.of_discriminator = torch.optim.Adam(
+            self.discriminator.parameters(), config.discriminator_rate, betas, fused=True
+        )
         self.mean = {name: value.detach().clone() for name, value in self.generator.state_dict().items()}
 
     def batches(self, rng: np.random.Generator) -> list[Any]:
