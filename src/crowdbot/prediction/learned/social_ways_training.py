@@ -213,6 +213,7 @@ class SocialWaysTraining(Trainable):
 
     def _generator_step(self, lesson: _Lesson, made: Tensor, codes: Tensor) -> dict[str, float]:
         c = self.config
+        self.discriminator.requires_grad_(False)  # it only passes on what the generator should change
         fake, read = self.discriminator(lesson.observed, made[0])
         parts = {"adversarial": c.adversarial_weight * adversarial_loss(fake, True, c)}
         if c.use_info_loss:
@@ -223,6 +224,7 @@ class SocialWaysTraining(Trainable):
         if c.use_variety_loss:
             parts["variety"] = c.variety_weight * variety_loss(made[..., :2], true)
         self._stepped(torch.stack(list(parts.values())).sum(), self.of_generator, self.generator)
+        self.discriminator.requires_grad_(True)
         return {name: float(value.detach()) for name, value in parts.items()}
 
     def _penalty(self, done: float) -> float:
