@@ -230,7 +230,7 @@ class SocialWaysTraining(Trainable):
     def _penalty(self, done: float) -> float:
         """Return the weight of the slope penalty when this share of the updates is done."""
         fallen = min(1.0, max(0.0, (done - 0.3) / 0.6))
-        return self.config.slope_penalty * self.config.slope_penalty_left**fallen
+        return float(self.config.slope_penalty * self.config.slope_penalty_left**fallen)
 
     def _info(self, read: Tensor, codes: Tensor) -> Tensor:
         """Return the loss of information: a normal density around what is read, so a squared distance."""
