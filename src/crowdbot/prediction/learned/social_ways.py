@@ -80,6 +80,8 @@ class Generator(nn.Module):
         hidden = (hidden[0].repeat(draws, 1), hidden[1].repeat(draws, 1))  # [K * B * A, H]
         seen = sight.drawn(draws)  # [K * B, ...]
         rows = noise.reshape(draws * scenes * people, -1)  # [K * B * A, M]
+        if self.config.noise_gain > 0.0:
+            rows = (rows - 0.5) * self.config.noise_gain
         spoken = (torch.zeros_like(hidden[0]), torch.zeros_like(hidden[0]))  # k: [K * B * A, H]
         place, velocity = seen.place, seen.velocity  # [K * B, A, 2]
         places, states = [], []
