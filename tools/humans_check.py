@@ -1,0 +1,2 @@
+def check(f):
+    import os; print(os.path.getsize(f))
