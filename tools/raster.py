@@ -10,17 +10,27 @@ FINER = 2
 
 
 def drawn(
-    triangles: np.ndarray, colors: np.ndarray, normals: np.ndarray, azimuth: float, elevation: float, scale: float, margin: float = 0.08,
-    aside: float = -0.4,
-) -> np.ndarray:  # fmt: skip
+    triangles: np.ndarray,
+    colors: np.ndarray,
+    normals: np.ndarray,
+    azimuth: float,
+    elevation: float,
+    scale: float,
+    margin: float = 0.08,
+) -> np.ndarray:
     """Image ``[H, W, 3]`` (uint8) of triangles ``[M, 3, 3]`` [m] with colours ``[M, 3]``, seen from far away.
 
-    ``normals [M, 3, 3]`` of the corners shade them; ``azimuth`` and ``elevation`` [rad] say where the eye is, ``scale`` pixels per metre, ``aside`` where the light is.
+    Args:
+        triangles, colors: what is drawn; those that are turned away are not.
+        normals: ``[M, 3, 3]`` of the corners, which shade.
+        azimuth, elevation: where the eye is [rad].
+        scale: pixels per metre.
+        margin: around what is drawn [m].
     """
     eye = np.array([np.cos(azimuth) * np.cos(elevation), np.sin(azimuth) * np.cos(elevation), np.sin(elevation)])
     right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
     up = np.cross(eye, right)
-    light = eye + 0.8 * up + aside * right
+    light = eye + 0.8 * up - 0.4 * right
     light /= np.linalg.norm(light)
     flat = np.stack([triangles @ right, triangles @ up, triangles @ eye], axis=-1)
     low, high = flat[..., :2].min((0, 1)) - margin, flat[..., :2].max((0, 1)) + margin
@@ -48,7 +58,7 @@ def corner_normals(vertex: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 
 @njit(cache=False)
-def _fill(points, colors, shade, image, depth):  # noqa: ANN001, ANN202
+def _fill(points, colors, shade, image, depth):
     for m in range(len(points)):
         (ax, ay, az), (bx, by, bz), (cx, cy, cz) = points[m, 0], points[m, 1], points[m, 2]
         area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
