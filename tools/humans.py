@@ -35,6 +35,8 @@ from humans_surface import (
 from humans_thick import normals, thicker
 
 UNIT = 1e-4
+DEEPER = (0.0, 0.002, 0.01)
+"""Skin under the cloth of a level lies so much deeper [m], because coarse cloth cuts corners."""
 PARTS = ("skin", "top", "legs", "skirt", "hair_short", "hair_long")
 FACES = {
     "skin": (3100, 780, 220),
@@ -66,7 +68,7 @@ def made(b: Bodies) -> dict[str, np.ndarray]:
     pieces = {
         "skin": head,
         "cloth": cloth(b, mean, joint),
-        "skirt": skirt(b, mean),
+        "skirt": skirt(b, mean, joint),
         "hair_short": hair(b, head, mean, SHORT),
         "hair_long": hair(b, head, mean, LONG),
     }
@@ -80,7 +82,9 @@ def made(b: Bodies) -> dict[str, np.ndarray]:
             now, kept = thinning.result(piece.mesh)
             coarse = shape[:, kept]
             if k > 0 and name in ("skin", "cloth"):
-                coarse = coarse + thicker(shape[-1], coarse[-1], now.faces)[:, None] * normals(coarse, now.faces)
+                more = thicker(shape[-1], coarse[-1], now.faces)
+                more[piece.out[kept] < 0] = -DEEPER[k]
+                coarse = coarse + more[:, None] * normals(coarse, now.faces)
                 coarse[..., 2] = np.clip(coarse[..., 2], 0.0, shape[..., 2].max(axis=1)[:, None])
             levels[k] += _split(name, now, coarse[:-1], piece.weight[kept])
     for k in range(3):

@@ -22,6 +22,8 @@ COLLAR = (0.03, -0.025)
 """Height of the collar behind and in front, over the lower joint of the neck [m], on the mean body."""
 UNDER = 0.03
 """Skin goes on so far under the cloth [m] and is drawn in there, so that it does not come through."""
+WAIST = -0.025
+"""Height of the hem of the top over the hip joints [m]."""
 HEM = 0.285
 """Skirts end at this share of stature, about the knee: longer ones would not let the legs walk."""
 SHORT, LONG = 0.013, 0.021
@@ -80,7 +82,7 @@ def cloth(b: Bodies, mean: np.ndarray, joint: dict[str, np.ndarray]) -> Piece:
     """Top, trousers and shoes as one closed surface, cut at every hem."""
     m = mesh(b.faces["helper-tights"], mean, TOP)
     shoulder, knee, ankle = joint["upperarm_l"], joint["calf_l"], joint["foot_l"]
-    waist = joint["thigh_l"][2] - 0.025
+    waist = joint["thigh_l"][2] + WAIST
 
     def line(value_of, old: tuple[int, ...], new: int) -> None:
         nonlocal m
@@ -229,10 +231,12 @@ def hair(b: Bodies, head: Piece, mean: np.ndarray, thick: float) -> Piece:
     return _piece(m, b, out=0.0015 + (thick - 0.0015) * grown * (2.0 - grown))
 
 
-def skirt(b: Bodies, mean: np.ndarray) -> Piece:
-    """A skirt to the knee."""
+def skirt(b: Bodies, mean: np.ndarray, joint: dict[str, np.ndarray]) -> Piece:
+    """A skirt from the hem of the top to the knee."""
     m = mesh(b.faces["helper-skirt"], mean, SKIRT)
     value = HEM * mean[:13380, 2].max() - m.of(mean)[:, 2]
+    m = cut(m, snapped(m, value), (SKIRT,), -1)
+    value = m.of(mean)[:, 2] - joint["thigh_l"][2] - WAIST
     m = cut(m, snapped(m, value), (SKIRT,), -1)
     return _piece(m.picked(m.label == SKIRT), b)
 

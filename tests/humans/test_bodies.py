@@ -206,8 +206,8 @@ def test_nobody_and_drawn_people_work():
     nobody = Gait(People.of([]))
     state = nobody.start(np.zeros((0, 2)), np.zeros(0))
     state = nobody.step(state, np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0), 0.1)
-    assert nobody.skin(state).shape == (0, 442, 3)
+    assert nobody.skin(state).shape == (0, 447, 3)
     assert nobody.limbs(state).radius.shape == (0, 17)
     drawn = People.drawn(30, np.random.default_rng(4), kinds=("man", "girl"))
     assert {p.sex for p in drawn.persons} == {"m", "f"}
-    assert posing_and_skinning(5, 1)().shape == (5, 1238, 3)
+    assert posing_and_skinning(5, 1)().shape == (5, 1243, 3)

@@ -48,7 +48,7 @@ class Gait:
     >>> for k in range(1, 101):
     ...     state = gait.step(state, position=[[0.014 * k, 0]], velocity=[[1.4, 0]], heading=[0.0], dt=0.01)
     >>> gait.skin(state, level=2).shape, gait.limbs(state).radius.shape, float(state.moving[0])
-    ((1, 442, 3), (1, 17), 1.0)
+    ((1, 447, 3), (1, 17), 1.0)
     """
 
     paper: ClassVar[Paper] = Paper(
@@ -197,7 +197,7 @@ def posing_and_skinning(count: int = 100, level: int = 2) -> Callable[[], Floats
     """Return a piece of work to time: pose ``count`` drawn walkers and deform their skins at a level of detail.
 
     >>> posing_and_skinning(3)().shape
-    (3, 442, 3)
+    (3, 447, 3)
     """
     draw = stream(0, "posing and skinning", count)
     gait = Gait(People.drawn(count, draw))
