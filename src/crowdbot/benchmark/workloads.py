@@ -14,6 +14,7 @@ import numpy as np
 
 from crowdbot.core import Scene, parameters, stream
 
+from . import skins
 from .bodies import mujoco_rays, people_with_limbs
 from .engines import JUPEDSIM, jupedsim_step, power_law_in_numpy
 
@@ -93,6 +94,7 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
     found["camera-50"] = _camera
     found["lidar2d-1080-limbs"] = _rays_of_limbs
     found["lidar3d-16x1800-limbs"] = functools.partial(_rays_of_limbs, rings=16)
+    found["posing-and-skinning"] = skins.posing_and_skinning
     for predictor in ("ConstantVelocity", "Kalman", "Simulated"):
         found[f"predict-{kebab(predictor)}"] = functools.partial(_predictor, predictor)
     return found
