@@ -1,10 +1,11 @@
-"""Draws the report's figure 19: futures of Social Ways and of a Vanilla GAN on two places of the Stanford Drone Dataset.
+"""Draws the report's figure 19: Social Ways and a Vanilla GAN on two places of the Stanford Drone Dataset.
 
     python tools/sdd_modes.py SDD TRAJNET OUT --updates 600
 
-SDD holds gates/video2/annotations.txt, TRAJNET holds Train/stanford/hyang_6.txt. Both networks see the coordinates of the
-place, as in the report, learn from the first four fifths in time and draw 128 futures of people of the last fifth. A mode
-is a place where at least a tenth of the draws end within 1 m; it is looked for again among the draws more than 2 m away.
+SDD holds gates/video2/annotations.txt, TRAJNET holds Train/stanford/hyang_6.txt. Both networks see the coordinates of
+the place, as in the report, learn from the first four fifths in time and draw 128 futures of people of the last fifth.
+A mode is a place where at least a tenth of the draws end within 1 m; the next is looked for among the draws that are
+more than 2 m away from it.
 """
 
 from __future__ import annotations

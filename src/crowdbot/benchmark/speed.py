@@ -58,9 +58,11 @@ def measure(
     """
     if repeats < 1:
         raise InputError(f"repeats {repeats} is below 1")
-    known = measurements() | learning() | {
-        f"scheme-frame{'-warm' * warm}": functools.partial(scheme_frames, warm, recording) for warm in (False, True)
-    }
+    known = (
+        measurements()
+        | learning()
+        | {f"scheme-frame{'-warm' * warm}": functools.partial(scheme_frames, warm, recording) for warm in (False, True)}
+    )
     unknown = next((name for name in names if name not in known), None)
     if unknown is not None:
         raise UnknownName("measurement", unknown, known)

@@ -213,9 +213,7 @@ class SocialWays(LearnedPredictor):
         return self.forecast(past, kept_apart(past, place, self.contact))
 
 
-def _drawn(
-    network: SocialWaysNetwork, past: Windows, steps: int, samples: int, rng: np.random.Generator
-) -> Floats:
+def _drawn(network: SocialWaysNetwork, past: Windows, steps: int, samples: int, rng: np.random.Generator) -> Floats:
     """Return draws ``[K, T, A, 2]`` [m] of one window, none through a wall of it."""
     people = np.arange(past.present.shape[2])
     tries = TRIES if past.walls else 1
@@ -226,7 +224,7 @@ def _drawn(
     now = past.position[0, -1]
     path, hit = before_walls(past, np.moveaxis(place - now, 2, 0), np.zeros_like(people), people)
     chosen = np.argmin(hit.sum(axis=0).reshape(samples, tries), axis=1) + tries * np.arange(samples)
-    return now + np.moveaxis(path[:, chosen], 0, 2)
+    return np.asarray(now + np.moveaxis(path[:, chosen], 0, 2))
 
 
 @functools.lru_cache(maxsize=4)
