@@ -15,7 +15,7 @@ from crowdbot.core import InputError, stream
 from crowdbot.prediction.learned.extra import threads
 from crowdbot.prediction.learned.social_ways_config import SocialWaysConfig
 from crowdbot.prediction.learned.toy import Toy
-from crowdbot.prediction.learned.toy_study import METHODS, Run, ToyStudy, with_values
+from crowdbot.prediction.learned.toy_study import MEASURES, METHODS, Run, ToyStudy, with_values
 from crowdbot.prediction.learned.toy_training import ToyTraining, drawn_from, toy_config
 
 SMALL = {"hidden": 8, "pooled": 4, "noise": 6, "batch": 32}
@@ -123,3 +123,12 @@ def test_a_study_goes_seed_by_seed_and_resumes_to_the_same_runs(tmp_path: Path) 
         np.testing.assert_array_equal(one.drawn, other.drawn)
         assert list(one.update) == [2, 4]
     assert [row["seeds"] for row in ToyStudy.rows(again)] == [2, 2]
+
+
+def test_a_row_is_the_mean_of_the_last_quarter() -> None:
+    measures = {name: np.arange(8.0) for name in MEASURES}
+    runs = [Run("vanilla", seed, np.arange(8) + 1, measures, np.zeros((1, 1, 2, 2))) for seed in (0, 1)]
+    (row,) = ToyStudy.rows(runs)
+    assert (row["emd"], row["emd_sd"], row["updates"], row["seeds"]) == (6.5, 0.0, 8, 2)
+    short = [dataclasses.replace(runs[0], update=np.array([1]), measures={name: np.ones(1) for name in MEASURES})]
+    assert ToyStudy.rows(short)[0]["emd"] == 1.0

@@ -77,7 +77,7 @@ def _said(options: argparse.Namespace, study: ToyStudy, runs: list[Run]) -> int:
     rows += [(row["method"], *(number(row[name]) for name in names)) for row in found["methods"]]
     caption = (
         f"{study.updates} updates, {len(study.seeds)} seeds; 200 real against 200 drawn paths of each group, and 20"
-        " against 20 as in the report; means over the last 5 measurements"
+        " against 20 as in the report; means over the last quarter of the measurements"
     )
     print_table(
         "GANs on the toy set",

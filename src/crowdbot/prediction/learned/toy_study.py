@@ -120,12 +120,13 @@ class ToyStudy:
         return real_paths(self.toy, stream(number, "ideal"))
 
     @staticmethod
-    def rows(runs: Sequence[Run], last: int = 5) -> list[dict[str, Any]]:
-        """Return a line for each method: its measures, means over the last measurements of each seed, and their sd."""
+    def rows(runs: Sequence[Run]) -> list[dict[str, Any]]:
+        """Return a line for each method: means over the last quarter of the measurements of each seed, and their sd."""
         found = []
         for method in dict.fromkeys(run.method for run in runs):
             own = [run for run in runs if run.method == method]
             row: dict[str, Any] = {"method": method, "seeds": len(own), "updates": int(own[0].update[-1])}
+            last = max(1, len(own[0].update) // 4)
             for name in MEASURES:
                 ends = [float(run.measures[name][-last:].mean()) for run in own]
                 row[name], row[f"{name}_sd"] = float(np.mean(ends)), float(np.std(ends))
