@@ -76,17 +76,17 @@ def run(minutes: float, people: int) -> None:
             used.append(round(memory(), 1))
     took = time.perf_counter() - begin
     events = [event for event in world.collisions if event.second.kind == "person"]
-    forces = np.array([event.peak_force for event in events])
     print(f"{minutes:g} simulated minutes, {people} people: {minutes * 60.0 / took:.1f} times real time")
     print(f"memory at quarters of the run [MB]: {used}")
     print(f"farthest from the middle: {farthest:.2f} m of {HALF} m; robot tilt {world.chassis[robot].tilt:.4f} rad")
     print(f"{len(world.collisions)} collisions, {len(events)} with people; {world.left_out} without a body at the end")
-    if len(forces):
-        print(
-            f"peak force by the two-body model: median {np.median(forces):.0f} N, largest {forces.max():.0f} N;"
-            f" largest in the engine {max(event.simulated_peak for event in events):.0f} N,"
-            f" steady {max(event.steady_force for event in events):.0f} N"
-        )
+    for kind in ("robot", "prop"):
+        some = [event for event in events if event.first.kind == kind]
+        for name in ("impact_speed", "peak_force", "steady_force", "simulated_peak", "severity") if some else ():
+            shares = np.percentile([getattr(event, name) for event in some], (50, 90, 100))
+            print(
+                f"{len(some)} with a {kind}: {name} median {shares[0]:.2f}, 90 % {shares[1]:.2f}, largest {shares[2]:.2f}"
+            )
 
 
 if __name__ == "__main__":

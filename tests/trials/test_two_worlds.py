@@ -195,7 +195,13 @@ def test_collisions_and_forces_are_told_once() -> None:
     world: object = simulation.world
     assert sorted(map(repr, told)) == sorted(map(repr, world.collisions))  # type: ignore[attr-defined]
     assert told
-    assert any(frame.forces for frame in frames)
+    forced = {frame.nanoseconds / 1e9 for frame in frames if frame.forces}
+    assert forced
+    for one in told:  # forces are stamped with the ends of their steps, of which some are in the collision
+        assert 0.0 <= one.begin < one.end <= 3.0 + 1e-9
+        assert min(abs(stamp - one.begin) for stamp in forced) <= trial.step + 1e-9
+        assert any(one.begin < stamp <= one.end + trial.step for stamp in forced)
+    assert max(one.end for one in told) > max(forced) - trial.step - 1e-9
     assert simulation.event == "collision"
 
 

@@ -71,7 +71,7 @@ def test_a_steady_push_on_a_person_is_75_newton_and_the_person_yields():
     (event,) = world.collisions
     assert 30.0 < event.steady_force < 80.0  # one foot may carry all of it
     assert event.steady_region == "lower leg"
-    assert event.severity < 2.0
+    assert event.severity < 2.5  # the knocks of a leg that comes back
 
 
 def test_more_than_people_can_brace_against_pushes_them_along():

@@ -46,6 +46,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Carrier", "Frame", "Simulation", "Touch", "start_scene"]
 
+INSTANT = 1e-9
+"""Times [s] that differ by less are the same."""
 ARRIVED = 0.3
 """People also leave this near [m] to their own point of the goal zone."""
 
@@ -263,7 +265,7 @@ class Simulation:
         if self.trial.world != "physics":
             return ()
         now = self.world.clock.time
-        over = [one for one in world.collisions if last or now - one.end > HOLD]
+        over = [one for one in world.collisions if last or now - one.end > HOLD + INSTANT]
         over.sort(key=lambda one: (one.end, one.begin, one.first, one.second))
         new, self._told = over[self._told :], len(over)
         return tuple(new)

@@ -21,9 +21,9 @@ __all__ = ["BodyForce", "Collision", "CollisionBook"]
 
 Floats = NDArray[np.float64]
 CLAMPED = 0.5
-"""From so long [s] after the first touch a force counts as quasi-static (ISO/TS 15066)."""
+"""A limb that is pressed for so long [s] is clamped: from then on its force counts as quasi-static (ISO/TS 15066)."""
 WINDOW = 0.1
-"""Quasi-static forces are means over this time [s]."""
+"""Quasi-static forces are means over this time [s]; a limb that is free for longer is let go."""
 ANEW = 0.05
 """A limb that was free for so long [s] is hit anew."""
 PARTS = {limb.name: limb.region for limb in LIMBS}
@@ -61,14 +61,16 @@ class Collision:
         first, second: who.
         begin, end: first and last touch [s].
         cause: ``first``, ``second`` or ``mutual``: who closed in, see :func:`crowdbot.metrics.contacts.cause_of`.
-        impact_speed: closing speed along the normal at the first touch [m/s].
+        impact_speed: closing speed along the normal at the first touch [m/s], of the surfaces there: a foot in its
+            stride comes at three to four times the speed of the person.
         depth: deepest overlap [m].
         impulse: integral of the force [N s].
         limb, part, region: of the person, what was hit hardest: the limb, one of ``head``, ``torso``, ``arm``, ``leg``,
             and the region of ISO/TS 15066; empty without a person.
-        peak_force: of the hardest impact by the two-body model [N]; NaN without a person.
-        steady_force: largest mean over 0.1 s, later than 0.5 s after the first touch, on one limb [N]; 0 in a short
-            collision. Without a person over all that touches.
+        peak_force: of the hardest impact by the two-body model [N]; NaN without a person. What bears a limb from below
+            (somebody treads on it) is left out of this force and the next: people here cannot be lifted.
+        steady_force: largest mean over 0.1 s on one limb that has been pressed for 0.5 s without being free for 0.1 s
+            [N]; 0 when none was: repeated impacts are no clamping. Without a person over all that touches.
         steady_region: where that was; empty without a person.
         simulated_peak: largest force on one limb that the engine found in one of its steps [N]; it is there to be
             compared and not an injury force.
@@ -112,8 +114,9 @@ class Collision:
 
 @dataclass
 class _Pressed:
-    """A limb, or the whole, during a collision."""
+    """A limb, or the whole, during a collision; pressed since ``since``, the last time at ``last``."""
 
+    since: float
     last: float
     recent: deque[float]
 
@@ -181,7 +184,7 @@ class CollisionBook:
         found = []
         for (first, second, one, limb), (force, depth, point) in self._sums.items():
             mean = force / steps
-            size = float(np.sqrt(mean @ mean))
+            size = _size(mean)
             found.append(
                 BodyForce(first, second, one, limb, PARTS.get(limb, ""), size, _three(mean), depth, _three(point))
             )
@@ -230,6 +233,7 @@ class CollisionBook:
             two_body_force(body, mass, region, self._mass_of(person)),
             two_body_force(surface, mass, region, self._limb_mass_of(person.number, limb)),
         )
+        force *= _size(_borne(-towards))
         if force > running.hardest[0]:
             running.hardest = (force, limb, region)
 
@@ -239,19 +243,34 @@ class CollisionBook:
         for touch in rows:
             limb = touch.first_part if touch.first.kind == "person" else touch.second_part
             where = limb if limb in PARTS else ""
-            sums[where] = sums.get(where, np.zeros(3)) + touch.force
+            on_limb = -touch.force if touch.first.kind == "person" else touch.force
+            sums[where] = sums.get(where, np.zeros(3)) + on_limb
+        borne = {where: _size(_borne(force) if where else force) for where, force in sums.items()}
         for where in sums.keys() - running.pressed.keys():
-            running.pressed[where] = _Pressed(time, deque(maxlen=self._window))
+            running.pressed[where] = _Pressed(time, time, deque(maxlen=self._window))
         for where, pressed in running.pressed.items():
-            force = float(np.sqrt(np.sum(sums[where] ** 2))) if where in sums else 0.0
+            force = _size(sums[where]) if where in sums else 0.0
             if where in sums:
+                pressed.since = time if time - pressed.last > WINDOW else pressed.since
                 pressed.last = time
-            pressed.recent.append(force)
+            pressed.recent.append(borne.get(where, 0.0))
             running.impulse += force * self._step
             running.simulated_peak = max(running.simulated_peak, force)
             mean = sum(pressed.recent) / self._window
-            if time - running.begin >= CLAMPED and mean > running.steady[0]:
+            if time - pressed.since >= CLAMPED and mean > running.steady[0]:
                 running.steady = (mean, running.region.get(where, ""))
+
+
+def _borne(push: Floats) -> Floats:
+    """Return what of a push on a person counts: not what bears the own weight and step from below.
+
+    People here cannot be lifted, so the upward part of a force would be that of somebody who is immovable.
+    """
+    return push * (1.0, 1.0, 0.0) if push[2] > 0.0 else push
+
+
+def _size(vector: Floats) -> float:
+    return float(np.sqrt(vector @ vector))
 
 
 def _three(vector: Floats) -> tuple[float, float, float]:

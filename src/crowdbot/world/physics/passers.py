@@ -32,6 +32,12 @@ HOLD = 0.05
 """So long [s] after a touch the limbs stay as they are, against the body."""
 RETURN = 1.5
 """Then they go back into the walk at this speed [m/s]."""
+QUICK = 5.0
+"""No limb moves faster [m/s] against the body (assumed: feet in their stride reach 4 to 5 m/s over the floor). A walk
+whose direction jumps, as models of crowds let it, would swing a foot at twice that."""
+TREAD, LIFTED = 0.5, 0.5
+"""An arm or leg that something presses upwards, by at least this share of the force, is lifted by it at once, by up to
+so much [m]: these bodies glide, and would otherwise press it down as if held from above."""
 GIVE, GIVEN = 1.0, 0.3
 """An arm or leg that is pressed by more than :data:`BRACE`, in the mean over about the reaction, gives way against the
 body: at most so fast [m/s] and so far [m]. Single knocks do not move it, or a robot would knock its way through."""
@@ -68,6 +74,7 @@ class Passers:
         self._limbs_now = np.zeros((slots, LIMB_COUNT, 6))
         self._walk_now = np.zeros((slots, LIMB_COUNT, 6))
         self._load = np.zeros((slots, LIMB_COUNT, 3))
+        self._stride = np.zeros((slots, LIMB_COUNT, 6))
         self._late = np.zeros(slots, dtype=np.bool_)
         self._touched = np.zeros(slots, dtype=np.int64)
         self._since = np.zeros(slots, dtype=np.int64)
@@ -115,7 +122,7 @@ class Passers:
         self._off[held] = self._velocity(held) - self._way[held]
         self.pushed[:] = np.any(self._off != 0.0, axis=1)
         self._limbs = (before[agents], after[agents])
-        self.swing[here] = (after[agents] - before[agents]) / duration
+        self._stride[here] = self.swing[here] = (after[agents] - before[agents]) / duration
         for axis in (0, 1):
             self._data.qpos[self._place[here] + axis] = place[agents, axis]
             self._data.qvel[self._speed[here] + axis] = way[agents, axis] + self._off[here, axis]
@@ -144,6 +151,7 @@ class Passers:
                     self._touched[slot] = self._hold
                     row = LIMB_NAMES.index(limb)
                     self._load[slot, row] += fresh * sign * touch.force
+                    self._lift(slot, limb, sign * float(touch.normal[2]), touch.depth)
                     if self._since[slot] >= REACTION / self.step:
                         self._give_way(slot, limb, self._load[slot, row])
         here = self._here
@@ -152,13 +160,22 @@ class Passers:
             self.pushed[here] |= np.any(now != self._way[here] + self._off[here], axis=1)
         self._since[self.pushed] += 1
 
+    def _lift(self, slot: int, limb: str, upwards: float, depth: float) -> None:
+        """Take the arm or leg that a limb belongs to up from what it treads on."""
+        rows = _chain(limb)
+        if upwards < TREAD or not rows:
+            return
+        up = min(depth / upwards, QUICK * self.step)
+        raised = self._limbs_now[slot, rows][:, [2, 5]] + up
+        if np.max(raised - self._walk_now[slot, rows][:, [2, 5]]) <= LIFTED:
+            self._limbs_now[slot, rows] += (0.0, 0.0, up, 0.0, 0.0, up)
+
     def _give_way(self, slot: int, limb: str, force: Floats) -> None:
         """Move the arm or leg that a limb belongs to the way it is pressed, when that is more than it can hold."""
         size = float(np.sqrt(force @ force))
-        chain = CHAINS.get(limb.split("_", maxsplit=1)[0], ())
-        if size <= BRACE or not chain:
+        rows = _chain(limb)
+        if size <= BRACE or not rows:
             return
-        rows = [LIMB_NAMES.index(f"{name}_{limb[-1]}") for name in chain]
         shift = min(1.0, size / BRACE - 1.0) * GIVE * self.step * force / size
         shift[2] = max(0.0, shift[2])  # not into the floor
         moved = self._limbs_now[slot, rows] + np.tile(shift, 2)
@@ -226,14 +243,17 @@ class Passers:
         late = held | self._late[here]
         lag = walk - self._limbs_now[here]
         length = np.sqrt(np.maximum(np.sum(lag[..., :3] ** 2, axis=-1), np.sum(lag[..., 3:] ** 2, axis=-1)))
-        share = np.minimum(1.0, RETURN * self.step / np.maximum(length, 1e-12))
+        fastest = np.where(late, RETURN, QUICK)[:, None]
+        share = np.minimum(1.0, fastest * self.step / np.maximum(length, 1e-12))
         share[held] = 0.0
-        share[~late] = 1.0
+        share[self._fresh[here]] = 1.0
         late &= held | np.any(share < 1.0, axis=1)
-        now = np.where(late[:, None, None], self._limbs_now[here] + share[..., None] * lag, walk)
+        behind = (late[:, None] | (share < 1.0))[..., None]
+        moved = share[..., None] * lag
+        now = np.where(behind, self._limbs_now[here] + moved, walk)
+        self.swing[here] = np.where(behind, moved / self.step, self._stride[here])
         self._limbs_now[here], self._late[here], self._fresh[here] = now, late, False
         self._walk_now[here] = walk
-        self.swing[here[late]] = 0.0
         self._pose(here, now)
 
     def _pose(self, here: Ints, limbs: Floats) -> None:
@@ -251,6 +271,11 @@ class Passers:
 
 STEADY = 1e-4
 """Who is off the own velocity by less [m/s] has got over the push."""
+
+
+def _chain(limb: str) -> list[int]:
+    """Return the rows of the arm or leg that a limb belongs to; of the trunk, none."""
+    return [LIMB_NAMES.index(f"{name}_{limb[-1]}") for name in CHAINS.get(limb.split("_", maxsplit=1)[0], ())]
 
 
 def _upright_to(direction: Floats) -> Floats:

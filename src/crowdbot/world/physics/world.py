@@ -241,10 +241,10 @@ class PhysicsWorld(PlanarWorld):
                 self._put(agent, before)
             chassis.ask(asked[agent])
         gait, ends = self._prepared(before, after)
-        begin = self.clock.time
+        end = self.clock.time  # the clock is at the end of this step already
         self._touched = {}
         for k in range(self._steps):
-            self._substep((k + 1) / self._steps, begin + (k + 1) * self.physics_dt)
+            self._substep((k + 1) / self._steps, end - (self._steps - 1 - k) * self.physics_dt)
         self.forces = self._book.forces(self._steps)
         scene, moved = self._read(before, after)
         if moved:
