@@ -67,11 +67,27 @@ def test_they_stand_on_the_ground_and_see_from_inside_their_height(name):
 
 
 OWN = {  # what every robot senses with: names of its mounts by kind
-    "cuybot": {"Lidar2D": 1, "WheelOdometry": 1, "DepthCamera": 1},
+    "cuybot": {"Lidar2D": 1, "WheelOdometry": 1, "DepthCamera": 1, "RGBCamera": 1},
     "differential": {"Lidar2D": 1, "WheelOdometry": 1, "Bumper": 1},
-    "pepper": {"Lidar2D": 5, "Ultrasound": 2, "DepthCamera": 1, "IMU": 1, "Bumper": 1, "WheelOdometry": 1},
-    "qolo": {"Lidar2D": 2, "Lidar3D": 2, "DepthCamera": 1, "WheelOdometry": 1, "Bumper": 1},
-    "turtlebot2": {"Lidar2D": 1, "DepthCamera": 1, "WheelOdometry": 1, "IMU": 1, "Bumper": 1, "Infrared": 3},
+    "pepper": {
+        "Lidar2D": 5,
+        "Ultrasound": 2,
+        "DepthCamera": 1,
+        "RGBCamera": 2,
+        "IMU": 1,
+        "Bumper": 1,
+        "WheelOdometry": 1,
+    },
+    "qolo": {"Lidar2D": 2, "Lidar3D": 2, "DepthCamera": 1, "RGBCamera": 1, "WheelOdometry": 1, "Bumper": 1},
+    "turtlebot2": {
+        "Lidar2D": 1,
+        "DepthCamera": 1,
+        "RGBCamera": 1,
+        "WheelOdometry": 1,
+        "IMU": 1,
+        "Bumper": 1,
+        "Infrared": 3,
+    },
     "wheelchair": {"Lidar2D": 1, "WheelOdometry": 1, "IMU": 1},
 }
 
@@ -89,6 +105,23 @@ def test_every_robot_has_its_own_sensors_and_says_where_they_are_from(name):
             speeds = robot.wheel_speeds(Twist(0.0, 1.0))
             assert max(speeds.values()) * mount.sensor.wheel_radius == pytest.approx(0.5 * mount.sensor.track)
             assert {wheel.radius for wheel in robot.wheels} == {mount.sensor.wheel_radius}
+
+
+def test_colour_cameras_look_where_their_frames_look():
+    """Pepper's upper one ahead, the lower one 40 degrees down; as wide as high in pixels of one size."""
+    pepper = load("pepper")
+    ahead = {name: pepper.mounted(name)[:3, 0] for name in ("camera_top", "camera_bottom")}
+    assert ahead["camera_top"] == pytest.approx([1.0, 0.0, 0.0], abs=1e-6)
+    assert np.degrees(np.arcsin(-ahead["camera_bottom"][2])) == pytest.approx(40.0, abs=0.01)
+    lens = pepper.mount("camera_top").sensor.lens
+    assert np.degrees(2.0 * np.arctan(0.5 * lens.width / lens.fx)) == pytest.approx(57.2, abs=0.01)
+    assert np.degrees(2.0 * np.arctan(0.5 * lens.height / lens.fy)) == pytest.approx(44.3, abs=0.3)
+    lens = load("qolo").mount("color_front").sensor.lens
+    assert np.degrees(2.0 * np.arctan(0.5 * lens.height / lens.fy)) == pytest.approx(42.5, abs=0.2)
+    for name, camera, depth in (("turtlebot2", "kinect_rgb", "kinect_depth"), ("cuybot", "camera", "depth")):
+        robot = load(name)
+        assert robot.mounted(camera) == pytest.approx(robot.mounted(depth))
+        assert robot.mount(camera).sensor.field_of_view == robot.mount(depth).sensor.field_of_view
 
 
 def test_cliff_sensors_see_the_floor_and_bumpers_what_touches():

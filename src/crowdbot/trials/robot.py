@@ -89,7 +89,7 @@ class Mount:
 class Robot:
     """A robot: where it begins and has to go, what it is, what it sees with and who steers it.
 
-    With a type it has the drive, size and sensors of that robot; what is given here counts instead, and sensors come on
+    With a type it has the drive, size and sensors of that robot, colour cameras only when asked; what is given here counts instead, and sensors come on
     top (or, with the name of one of the type, in its place). Without one it is an upright cylinder with a drive.
 
     Raises:
@@ -119,6 +119,9 @@ class Robot:
         at_most=10.0,
     )  # fmt: skip
     equipped: bool = attribute(True, about="whether it carries the sensors of its type")
+    cameras: bool = attribute(
+        False, about="whether it also carries the colour cameras of its type, which are drawn and slow"
+    )
     rates: str = attribute(
         "exact",
         about="whether sensors of its type must fit the time step, or measure as often as it allows",
@@ -146,6 +149,9 @@ class Robot:
         check(self)
         if self.type and (self.height, self.mass) != (usual["height"], usual["mass"]):
             raise InputError(f"has height or mass beside type={shown(self.type)}, which has its own; leave them out")
+        if self.cameras and not any(_drawn(mount) for mount in usual["sensors"]):
+            raise InputError('has cameras="true" but none would come: it needs a type with colour cameras, such as pepper,'
+                             ' and its sensors')  # fmt: skip
         for mount in self.sensors:
             links = self.body.model.links
             if mount.link and mount.link not in links:
@@ -162,6 +168,7 @@ class Robot:
             Mount(name=m.name, sensor=m.sensor, link=m.link, x=m.x, y=m.y, z=m.z, roll=m.roll, pitch=m.pitch,
                   heading=m.yaw)
             for m in kind.mounts
+            if self.cameras or not _drawn(m)
         )  # fmt: skip
         return {
             "radius": round(kind.radius, 9),
@@ -233,6 +240,11 @@ class Robot:
             return _built_in(self.type)
         stamp = (place / "robot.xml").stat().st_mtime_ns
         return _loaded(place, self.trust, stamp)
+
+
+def _drawn(mount: Mount | world.SensorMount) -> bool:
+    """Whether a sensor shows what somebody draws: slow, and not to be had on every machine."""
+    return bool(getattr(mount.sensor, "draws", False))
 
 
 def _merged(carried: tuple[Mount, ...], own: Any) -> tuple[Mount, ...]:
