@@ -8,8 +8,7 @@ from physics_worlds import facing
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, Twist
 from crowdbot.models import ORCA
-from crowdbot.sensors import Lens
-from crowdbot.sensors.camera import RGBCamera
+from crowdbot.sensors import Lens, RGBCamera
 from crowdbot.world import DifferentialDrive, PlanarWorld, Robot
 from crowdbot.world.physics import Camera, Cube, PhysicsStage, Studio, Walkers
 
