@@ -53,8 +53,8 @@ def robots(folder: Path) -> None:
 
 def cameras(folder: Path) -> None:
     """Draw a populated stage: from outside, and colours, depth and segmentation from the robot."""
-    world = crowd(Robot.load("pepper"), 40)
-    outside = Camera((-7.0, -8.0, 3.5), (0.0, 0.5, 0.6), 1000, 560, detail=1, shadows=True, view=0.75)
+    world = crowd(Robot.load("pepper"), 28)
+    outside = Camera((-6.4, -4.0, 2.9), (-0.9, 0.7, 0.7), 1000, 560, detail=0, shadows=True, view=0.66)
     imsave(folder / "stage.png", world.render(outside).rgb)
     robot = max(world.chassis)
     seen = world.render(Camera((0.1, 0.0, 1.15), (2.0, 0.0, 1.0), robot=robot, detail=0), depth=True, segmentation=True)
@@ -70,8 +70,47 @@ def cameras(folder: Path) -> None:
     figure.savefig(folder / "cameras.png", dpi=80)
 
 
+def rays(folder: Path) -> None:
+    """Draw what a laser of a robot meets among limbs, from above, and where one LiDAR meets the world, in space."""
+    world = crowd(Robot.load("qolo"), 28)
+    robot = max(world.chassis)
+    chassis, seen = world.carrier(robot), world.seen()
+    figure = Figure(figsize=(12, 5.2), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    scan = chassis.robot.mount("lidar_front").sensor.measure(
+        seen.without(robot), chassis.mounted("lidar_front"), stream(0, "scan")
+    )
+    ends, hit = scan.points()[0], scan.hit[0]
+    start = chassis.mounted("lidar_front").position[0]
+    for end in ends[np.isfinite(ends[:, 0]) & (np.hypot(*(ends - start).T[:2]) < 9.0)]:
+        left.plot([start[0], end[0]], [start[1], end[1]], color="0.85", linewidth=0.6, zorder=1)
+    limbs = world.limbs()
+    here = limbs.radius[0] > 0.0
+    left.plot(
+        *np.stack([limbs.start[0, here], limbs.end[0, here]])[..., :2].transpose(2, 0, 1),
+        color="0.6",
+        linewidth=1.2,
+        zorder=0,
+    )
+    left.scatter(*ends[hit >= 0].T[:2], c="tab:red", s=6, zorder=3, label="people")
+    left.scatter(*ends[hit < 0].T[:2], c="tab:blue", s=6, zorder=2, label="walls and props")
+    left.set(xlim=(-6, 6), ylim=(-5, 7.5), aspect="equal", xlabel="x [m]", ylabel="y [m]")
+    left.set_title("lidar_front of Qolo, 160 degrees")
+    left.legend(loc="lower left")
+    cloud = chassis.robot.mount("velodyne_front").sensor.measure(seen.without(robot), chassis.mounted("velodyne_front"))
+    points, who = cloud.points(in_world=True)[0].reshape(-1, 3), cloud.hit[0].ravel()
+    near = np.isfinite(points[:, 0]) & (np.abs(points[:, 0]) < 8.0) & (np.abs(points[:, 1]) < 8.0)
+    view = np.array([0.77, 0.64]) @ points[near, :2].T
+    right.scatter(view, points[near, 2] + 0.12 * (np.array([-0.64, 0.77]) @ points[near, :2].T), s=0.5,
+                  c=np.where(who[near] >= 0, who[near] * 7 % 20 + 1, 0), cmap="tab20")  # fmt: skip
+    right.set(aspect="equal", title="velodyne_front: VLP-16, people by colour")
+    right.axis("off")
+    figure.savefig(folder / "rays.png", dpi=80)
+
+
 if __name__ == "__main__":
     target = Path(sys.argv[1] if len(sys.argv) > 1 else "docs/physics")
     target.mkdir(parents=True, exist_ok=True)
     robots(target)
     cameras(target)
+    rays(target)

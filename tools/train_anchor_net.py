@@ -15,6 +15,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import json
+import shutil
 import time
 from pathlib import Path
 
@@ -25,7 +26,9 @@ from crowdbot.metrics import Score
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, evaluate
 from crowdbot.prediction.learned.anchor_calibration import calibrated
 from crowdbot.prediction.learned.anchor_data import Variation, gathered
-from crowdbot.prediction.learned.anchor_training import AnchorTraining, train
+from crowdbot.prediction.learned.anchor_training import UPDATES, AnchorNetTraining, AnchorTraining
+from crowdbot.prediction.learned.extra import threads
+from crowdbot.prediction.learned.training import Schedule, train
 from crowdbot.prediction.places import ALL, FOLDS, kept_out
 
 SHOWN = ("ade", "fde", "nll", "energy", "collisions")
@@ -51,19 +54,22 @@ def train_fold(options: argparse.Namespace, fold: str, seed: int) -> None:
     if seed == 0:
         anchors = Anchors.fit(*(tracks.windows() for tracks in used))
         np.savez(options.out / f"anchors-{fold}.npz", shapes=anchors.shapes.astype(np.float32), share=anchors.share)
-    material = gathered(used)
-    how = AnchorTraining(seed=seed, updates=options.updates, **_changes(options.set))
-    begin, work = time.perf_counter(), time.process_time()
+    how = AnchorTraining(seed=seed, **_changes(options.set))
+    watched = gathered(recordings(options.data / "val", fold), reverse=False)
+    model = AnchorNetTraining(how, gathered(used), watched, [tracks.name for tracks in used])
+    schedule = Schedule(options.updates, check_every=options.updates, keep_every=500, seed=seed)
+    work, folder = time.process_time(), options.out / name
 
-    def tell(update: int, loss: float) -> None:
+    def tell(update: int, total: int) -> None:
         if update % 500 == 0:
-            print(f"{name}: update {update} of {how.updates}, loss {loss:.3f}, {time.process_time() - work:.0f} CPU s,"
-                  f" {time.perf_counter() - begin:.0f} s", flush=True)  # fmt: skip
+            print(f"{name}: update {update} of {total}, {time.process_time() - work:.0f} CPU s", flush=True)
 
-    state = options.out / f"{name}.state"
-    write(options, fold, done, train(material, how, tell, state))
-    state.unlink(missing_ok=True)
-    print(f"{name}: {time.process_time() - work:.0f} CPU s", flush=True)
+    with threads():
+        course = train(model, schedule, folder, resume=True, tick=tell)
+    write(options, fold, done, model.numbers())
+    shutil.rmtree(folder)
+    watch = " ".join(f"{key} {value:.3f}" for key, value in course.rows[-1].items())
+    print(f"{name}: {watch}, {time.process_time() - work:.0f} CPU s", flush=True)
 
 
 def write(options: argparse.Namespace, fold: str, file: Path, numbers: dict[str, np.ndarray]) -> None:
@@ -173,7 +179,10 @@ def weights_file(options: argparse.Namespace, fold: str, seed: int) -> str:
 
 def windows_left_out(options: argparse.Namespace, fold: str) -> list[tuple[Windows, Windows]]:
     """Return past and future of every window, or of every so many-th, of the recordings that a fold leaves out."""
-    cut = [tracks.windows() for tracks in recordings(options.data / "all_data", fold, left_out=True)]
+    found = recordings(options.data / "all_data", fold, left_out=True)
+    if fold == "eth" and options.eth is not None:
+        found = [load(options.eth)]
+    cut = [tracks.windows() for tracks in found]
     return [(past[:: options.every], future[:: options.every]) for past, future in cut]
 
 
@@ -185,15 +194,13 @@ def main() -> None:
     parser.add_argument("out", type=Path)
     parser.add_argument("--fold", nargs="+", default=[*FOLDS], choices=[*FOLDS, ALL])
     parser.add_argument("--seed", type=int, nargs="+", default=[0])
-    parser.add_argument("--updates", type=int, default=AnchorTraining.updates)
+    parser.add_argument("--updates", type=int, default=UPDATES)
     parser.add_argument("--every", type=int, default=1, help="score every so many-th window only")
+    parser.add_argument("--eth", type=Path, help="obsmat.txt of eth, its true time base, in place of biwi_eth.txt")
     parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help="other settings of the training")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     if options.what == "train":
-        import torch
-
-        torch.set_num_threads(1)
         for seed in options.seed:
             for fold in options.fold:
                 train_fold(options, fold, seed)

@@ -20,6 +20,8 @@ _ROOMS = {
     "world": ("Robot",),
     "navigation": ("Navigator", "Observation"),
     "prediction": (
+        "AnchorNet",
+        "Anchors",
         "ConstantAcceleration",
         "ConstantVelocity",
         "Kalman",
@@ -29,6 +31,7 @@ _ROOMS = {
         "Predictor",
         "SampledConstantVelocity",
         "Simulated",
+        "SocialWays",
     ),
     "trials": ("Episode", "Trial", "load_trial", "replay"),
     "benchmark": ("cite",),
@@ -73,6 +76,8 @@ if TYPE_CHECKING:
     from .models import SocialForce as SocialForce
     from .navigation import Navigator as Navigator
     from .navigation import Observation as Observation
+    from .prediction import AnchorNet as AnchorNet
+    from .prediction import Anchors as Anchors
     from .prediction import ConstantAcceleration as ConstantAcceleration
     from .prediction import ConstantVelocity as ConstantVelocity
     from .prediction import Kalman as Kalman
@@ -82,6 +87,7 @@ if TYPE_CHECKING:
     from .prediction import Predictor as Predictor
     from .prediction import SampledConstantVelocity as SampledConstantVelocity
     from .prediction import Simulated as Simulated
+    from .prediction import SocialWays as SocialWays
     from .sensors import Lidar2D as Lidar2D
     from .sensors import Sensor as Sensor
     from .trials import Episode as Episode

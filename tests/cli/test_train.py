@@ -58,10 +58,43 @@ def test_weights_are_learned_resumed_and_scored(
     assert total["ade"] < 5.0
 
 
+def test_the_anchor_network_learns_and_scores_the_same_way(
+    walks: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["train", "anchor-net", "--data", *walks, "--fps", "2.5", "--leave-out", "plaza", "--out", str(tmp_path),
+             "--updates", "4", "--check-every", "2", "--set", "width=16", "social=8", "people=16"]  # fmt: skip
+    status, out, _ = said([*words, "--json"], capsys)
+    done = json.loads(out)
+    assert (status, [row["update"] for row in done["log"]]) == (0, [2, 4])
+    status, out, _ = said(
+        ["predict", "--predictor", "anchor-net", "--set", f"file={done['checkpoint']}", "--samples", "20",
+         "--fps", "2.5", "--data", walks[1], "--every", "12", "--json"], capsys,
+    )  # fmt: skip
+    total = json.loads(out)["results"][0]["total"]
+    assert (status, total["samples"]) == (0, 20)
+    assert total["ade"] < 1.0
+
+
+def test_weights_that_do_not_fit_are_said_and_a_baseline_answers(
+    walks: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["predict", "--predictor", "anchor-net", "social-ways", "--samples", "3", "--fps", "1", "--every", "20",
+             "--data", walks[0]]  # fmt: skip
+    status, _, err = said(words, capsys)
+    assert status == 0
+    assert "anchor-net: street.txt has steps of 1 s, it was learned at 0.4 s and takes up to 0.7 s; a baseline" in err
+    assert "social-ways: street.txt has steps of 1 s, it was learned at 0.4 s: bring it there with --step 0.4" in err
+    assert "UserWarning" not in err
+    status, out, _ = said([*words, "--json"], capsys)
+    assert [len(one["notes"]) for one in json.loads(out)["results"]] == [1, 1]
+
+
 @pytest.mark.parametrize(
     ("words", "why"),
     [
         (["sociel-ways"], "unknown learned predictor 'sociel-ways', did you mean 'social-ways'"),
+        (["anchor-net", "--set", "hiden=3"], "has no attribute 'hiden'"),
+        (["anchor-net", "--device", "cuda"], "is asked for, but torch sees 0 CUDA devices"),
         (["social-ways", "--device", "cuda:99"], "is asked for, but torch sees"),
         (["social-ways", "--updates", "1", "--epochs", "1"], "either a number of updates or"),
         (["social-ways", "--leave-out", "nowhere"], "no recording is called 'nowhere'"),

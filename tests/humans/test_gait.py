@@ -73,7 +73,7 @@ def test_kernels_do_what_their_python_says():
     lengths = np.stack([m.thigh, m.shank, m.arm[:, 0], m.arm[:, 1], m.height], axis=1)
     R, P = np.empty_like(out.rotation), np.empty_like(out.position)
     parents = posture_kernels.shapes().parents
-    posture_kernels._pose.py_func(fast, lengths, m.head, m.frame, gait.style, gait.size, parents, R, P)
+    posture_kernels._pose.py_func(fast, lengths, m.head, m.frame, gait.style, gait.size, gait.seats, parents, R, P)
     np.testing.assert_allclose(P, out.position, atol=1e-12)
 
 

@@ -71,8 +71,7 @@ def test_knee_and_pelvis_move_as_people_s_at_the_usual_speed():
     height = np.array([p.position[:, 0, 2] for p in postures[50:]])
     bob = height.max(axis=0) - height.min(axis=0)
     assert peak.min() > 55
-    assert peak.max() < 66
-    assert np.mean(peak) < 65
+    assert peak.max() < 65
     assert bob.min() > 0.040
     assert bob.max() < 0.050
 

@@ -51,13 +51,18 @@ def walk(path, time, dt, people=WALKERS, seed=0, moving=False, activity="walk", 
     return gait, states, postures, points, np.array(under)
 
 
-def slip(states, points, dt):
-    """Speed of the lowest point of every planted sole over the floor, [m/s]; nan while the foot is in the air."""
+def slip(states, points, dt, floor=1e-3):
+    """Fastest speed over the floor of the points of every planted sole that lie on it before and after, [m/s].
+
+    The lowest point counts when none stays within ``floor`` [m]; nan while the foot is in the air.
+    """
     planted = np.array([s.planted for s in states]) > 0
     both = planted[1:] & planted[:-1]
     speed = np.linalg.norm(np.diff(points[..., :2], axis=0), axis=-1) / dt
-    lowest = np.argmin(points[:-1, ..., 2], axis=-1)[..., None]
-    return np.where(both, np.take_along_axis(speed, lowest, -1)[..., 0], np.nan)
+    high = np.maximum(points[1:, ..., 2], points[:-1, ..., 2])
+    lowest = np.take_along_axis(speed, np.argmin(high, axis=-1)[..., None], -1)[..., 0]
+    touching = np.where(high < floor, speed, -1.0).max(axis=-1)
+    return np.where(both, np.where(touching >= 0.0, touching, lowest), np.nan)
 
 
 def knees(postures, side="l"):

@@ -13,19 +13,21 @@ import torch
 from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories
 from crowdbot.prediction.anchor_net import NEEDED, network_output
-from crowdbot.prediction.learned import anchor_training
-from crowdbot.prediction.learned.anchor_calibration import calibrated
-from crowdbot.prediction.learned.anchor_data import NONE, Material, Variation, backwards, batch, gathered
+from crowdbot.prediction.learned.anchor_data import NONE, Material, Variation, backwards, batch, gathered, material_of
 from crowdbot.prediction.learned.anchor_training import (
+    AnchorNetTraining,
     AnchorTraining,
+    learner,
     network,
     outputs,
     shapes_of,
-    train,
 )
+from crowdbot.prediction.learned.extra import threads
+from crowdbot.prediction.learned.samples import Samples
+from crowdbot.prediction.learned.training import Schedule, train
 from crowdbot.prediction.own_frame import AHEAD, COMPANY, INPUTS, NEAR
 
-TINY = AnchorTraining(updates=60, people=32, width=16, social=8, warm=5)
+TINY = AnchorTraining(people=32, width=16, social=8, warm=5)
 
 
 @pytest.fixture(scope="module")
@@ -100,40 +102,68 @@ def best_of_twenty(numbers: dict[str, np.ndarray], material: Material) -> float:
     return float(np.linalg.norm(away, axis=3).mean(axis=2).min(axis=1).mean())
 
 
-def test_training_learns_repeats_itself_and_goes_on_after_a_stop(
-    material: Material, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(anchor_training, "KEPT_EVERY", 100)
-    how = dataclasses.replace(TINY, updates=200, average=0.9, variation=NONE)
-    whole = train(material, how)
+def trained(material: Material, how: AnchorTraining, updates: int, folder: Path | None = None) -> AnchorNetTraining:
+    model = AnchorNetTraining(how, material, material)
+    with threads():
+        train(model, Schedule(updates, check_every=updates, keep_every=100, seed=how.seed), folder, resume=True)
+    return model
+
+
+def test_training_learns_repeats_itself_and_goes_on_after_a_stop(material: Material, tmp_path: Path) -> None:
+    how = dataclasses.replace(TINY, average=0.9, variation=NONE)
+    model = trained(material, how, 200)
+    whole = model.numbers()
     still = whole | {name: 0.0 * whole[name] for name in ("out_weight", "out_bias")}
     assert best_of_twenty(whole, material) < 0.99 * best_of_twenty(still, material)
+    assert model.check()["ade"] == pytest.approx(best_of_twenty(whole, material))
 
     class Stopped(Exception):
         pass
 
-    def stop(update: int, loss: float) -> None:
-        if update == 200:
+    def stop(update: int, total: int) -> None:
+        if update == 150:
             raise Stopped
 
-    keep = tmp_path / "state"
-    with pytest.raises(Stopped):
-        train(material, how, stop, keep)
-    later: list[int] = []
-    again = train(material, how, lambda update, loss: later.append(update), keep)
-    assert later == [200]
+    schedule = Schedule(200, check_every=200, keep_every=100)
+    with pytest.raises(Stopped), threads():
+        train(AnchorNetTraining(how, material, material), schedule, tmp_path, tick=stop)
+    again = trained(material, how, 200, tmp_path).numbers()
     assert whole.keys() == again.keys()
     assert all(np.array_equal(whole[name], again[name]) for name in whole)
-    with pytest.raises(InputError, match="holds a training of other people or settings"):
-        train(material, dataclasses.replace(how, seed=1), keep=keep)
+    with pytest.raises(InputError, match="holds a training with other settings"):
+        trained(material, dataclasses.replace(how, choice=0.2), 200, tmp_path)
 
 
 def test_calibrated_numbers_are_complete(material: Material) -> None:
-    numbers = calibrated(train(material, TINY), material)
+    numbers = AnchorNetTraining(TINY, material, material).weights()
     assert set(NEEDED) <= set(numbers)
     for name in ("temperature", "widening"):
         assert numbers[name].shape == (6,)
         assert np.all((numbers[name] > 0.04) & (numbers[name] < 5.0))
+
+
+def test_windows_of_any_recording_give_the_same_people(
+    material: Material, recorded: Callable[[str], Trajectories]
+) -> None:
+    samples = Samples.cut(*recorded("biwi_hotel").windows(), "hotel")
+    plain, both = material_of(samples, reverse=False), material_of(samples)
+    forward = gathered([recorded("biwi_hotel")], reverse=False)
+    assert (len(plain), len(both)) == (1197, 2 * 1197)
+    for one, other in ((plain.ahead, forward.ahead), (plain.people.past, forward.people.past)):
+        rows = [np.unique(array.reshape(len(array), -1).round(6), axis=0) for array in (one, other)]
+        assert np.array_equal(*rows)
+    assert plain.people.there.sum() == forward.people.there.sum()
+
+
+def test_what_the_command_line_says_is_read(recorded: Callable[[str], Trajectories]) -> None:
+    samples = Samples.cut(*recorded("biwi_hotel").windows(), "hotel")
+    model = learner(None, {"width": "16", "social": "8", "scale": "0.1"}, samples, samples, 3, "cpu")
+    assert (model.config.width, model.config.variation.scale, model.config.seed) == (16, 0.1, 3)
+    with pytest.raises(InputError, match="unknown settings 'shiped', did you mean"):
+        learner("shiped", {}, samples, samples, 0, "cpu")
+    pixels = dataclasses.replace(samples, units="px")
+    with pytest.raises(InputError, match="anchor-net learns 8 [+] 12 rows of 0.4 s in metres, hotel is cut into"):
+        learner(None, {}, pixels, samples, 0, "cpu")
 
 
 def test_what_cannot_be_learned_from_is_one_sentence(recorded: Callable[[str], Trajectories]) -> None:

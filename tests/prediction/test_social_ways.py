@@ -168,7 +168,7 @@ def test_the_variety_loss_takes_the_best_draw_of_each_person() -> None:
 @pytest.mark.parametrize("values", [
     {}, {"unrolling_steps": 2}, {"use_l2_loss": True}, {"use_variety_loss": True}, {"adversarial": "least-squares"},
     {"use_info_loss": False}, {"social": False}, {"frame": "world", "residual": False}, {"clip": 1.0, "decay": True},
-    {"average": 0.9, "mirror": True, "reverse": True, "scale_sd": 0.3},
+    {"mixed": True, "use_variety_loss": True}, {"average": 0.9, "mirror": True, "reverse": True, "scale_sd": 0.3},
 ])  # fmt: skip
 def test_every_setting_trains(values: dict[str, object]) -> None:
     done = train(
@@ -180,6 +180,17 @@ def test_every_setting_trains(values: dict[str, object]) -> None:
         if not getattr(dataclasses.replace(TINY, **values), field):
             wanted.discard(name)
     assert losses == wanted
+
+
+def test_mixed_precision_draws_nearly_the_same_in_full_numbers() -> None:
+    model = SocialWaysTraining(TINY, walks(), walks(1))
+    lesson = model._lesson(walks().batch(np.arange(4)))
+    noise = torch.rand(3, *lesson.scored.shape, TINY.inputs)
+    plain, _ = model._made(lesson, noise)
+    model.config = dataclasses.replace(TINY, mixed=True)
+    mixed, states = model._made(lesson, noise)
+    assert mixed.dtype == states.dtype == torch.float32
+    assert 0.0 < (mixed - plain).abs().max() < 0.05
 
 
 def test_looking_ahead_leaves_no_trace_in_the_discriminator() -> None:

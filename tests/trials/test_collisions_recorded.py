@@ -80,7 +80,7 @@ GRAZED = dataclasses.replace(HIT, first=PROP, second=WALL, limb="", part="", reg
 
 
 def physical(frame: Frame, **more: Any) -> Physical:
-    return Physical(**{field.name: getattr(frame, field.name) for field in dataclasses.fields(frame)}, **more)
+    return Physical(**({field.name: getattr(frame, field.name) for field in dataclasses.fields(frame)} | more))
 
 
 @pytest.fixture(scope="module")

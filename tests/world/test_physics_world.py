@@ -2,6 +2,7 @@
 
 import dataclasses
 import functools
+import tracemalloc
 
 import mujoco
 import numpy as np
@@ -293,3 +294,32 @@ def test_people_who_come_in_have_bodies():
         middle = limbs.start[0, rows, :2].mean(axis=0)
         assert np.abs(middle - scene.position[0, agent]).max() < 0.4
     assert mujoco.mj_versionString()
+
+
+def test_a_crowd_stays_sound_and_memory_does_not_grow():
+    """People go to and fro in a closed room among props and a robot; ``tools/endurance.py`` does it for long."""
+    robot = load("cuybot")
+    scene = crowded(30, robot, seed=2, size=9.0)
+    scene = scene.replace(walls=Scene.of([[0.0, 0.0]], walls=[[(-6, -6), (-6, 6), (6, 6), (6, -6)]]).walls)
+    stage = PhysicsStage(props=(Cube(2.0, 2.0), Table(-4.0, 4.0)))
+    world = PhysicsWorld(scene, ORCA(), {30: robot}, 0.1, stage=stage, contact=BodyContact())
+    draw, used = np.random.default_rng(0), []
+    for k in range(150):
+        if k % 30 == 0:
+            goal = draw.uniform(-5.0, 5.0, scene.goal.shape)
+            world.scene = world.scene.replace(goal=np.where(scene.external[..., None], scene.goal, goal))
+        if k == 50:
+            tracemalloc.start()
+        now = world.step({30: Twist(0.5, 0.4)})
+        here = now.position[now.active]
+        assert np.all(np.isfinite(here))
+        assert np.all(np.isfinite(world.data.qpos))
+        assert np.abs(here).max() < 6.0
+        if k in (90, 149):
+            used.append(tracemalloc.get_traced_memory()[0])
+    tracemalloc.stop()
+    assert np.abs(world.prop(0)[:2, 3]).max() < 6.0
+    assert used[1] - used[0] < 200_000
+    events = [event for event in world.collisions if event.second.kind == "person"]
+    assert events
+    assert max(event.simulated_peak for event in events) < 4000.0  # no limb is ever put inside of something

@@ -53,11 +53,12 @@ def plot_measures(study: ToyStudy, runs: Sequence[Run], ideal: Mapping[str, floa
     figure = Figure(figsize=(7.0, 8.5), layout="constrained")
     for panel, (measure, label) in enumerate(PANELS.items()):
         axes = figure.add_subplot(len(PANELS), 1, panel + 1)
-        for colour, method in zip(COLOURS * len(study.methods), study.methods, strict=False):
+        for number, method in enumerate(study.methods):
+            colour, line = COLOURS[number % len(COLOURS)], "-" if number < len(COLOURS) else "--"
             own = [run for run in runs if run.method == method]
             if own:
                 values = np.stack([run.measures[measure] for run in own])
-                axes.plot(own[0].update, values.mean(axis=0), color=colour, label=method, lw=1.4)
+                axes.plot(own[0].update, values.mean(axis=0), color=colour, label=method, lw=1.4, ls=line)
                 axes.fill_between(own[0].update, values.min(axis=0), values.max(axis=0), color=colour, alpha=0.12, lw=0)
         axes.axhline(ideal[measure], color=REAL, ls="--", lw=1.0, label="real against real")
         axes.set(ylabel=label.format(modes=len(study.toy.modes)), xlabel="updates")

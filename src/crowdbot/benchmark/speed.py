@@ -21,6 +21,7 @@ import numpy as np
 from crowdbot.core import InputError, MissingExtra, UnknownName
 
 from .frames import scheme_frames
+from .learning import learning
 from .workloads import Gauge, Measurement, measurements
 
 __all__ = ["Row", "environment", "measure"]
@@ -57,9 +58,11 @@ def measure(
     """
     if repeats < 1:
         raise InputError(f"repeats {repeats} is below 1")
-    known = measurements() | {
-        f"scheme-frame{'-warm' * warm}": functools.partial(scheme_frames, warm, recording) for warm in (False, True)
-    }
+    known = (
+        measurements()
+        | learning()
+        | {f"scheme-frame{'-warm' * warm}": functools.partial(scheme_frames, warm, recording) for warm in (False, True)}
+    )
     unknown = next((name for name in names if name not in known), None)
     if unknown is not None:
         raise UnknownName("measurement", unknown, known)

@@ -14,6 +14,7 @@ import numpy as np
 
 from crowdbot.core import Scene, parameters, stream
 
+from . import skins
 from .bodies import mujoco_rays, people_with_limbs
 from .engines import JUPEDSIM, jupedsim_step, power_law_in_numpy
 
@@ -93,6 +94,7 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
     found["camera-50"] = _camera
     found["lidar2d-1080-limbs"] = _rays_of_limbs
     found["lidar3d-16x1800-limbs"] = functools.partial(_rays_of_limbs, rings=16)
+    found["posing-and-skinning"] = skins.posing_and_skinning
     for predictor in ("ConstantVelocity", "Kalman", "Simulated"):
         found[f"predict-{kebab(predictor)}"] = functools.partial(_predictor, predictor)
     return found
@@ -229,17 +231,20 @@ def _predictor(name: str) -> Measurement:
 
 
 def _physics(people: int) -> Measurement:
-    """Time one robot with a laser and its odometry among people, in steps of 5 ms."""
+    """Time one robot among people in steps of 5 ms, with its odometry and a laser that sees limbs, both at 10 Hz."""
     from crowdbot.core import Twist
     from crowdbot.sensors import Lidar2D
 
     world, robot = _bodies(people)
-    laser = Lidar2D(rays=1080)
+    laser, chassis = Lidar2D(rays=1080), world.carrier(robot)
+    wheels = chassis.robot.mount("odometry").sensor
+    told = [wheels.measure(world.scene, world.pose(robot))]
 
     def work() -> None:
         for _ in range(20):
-            scene = world.step({robot: Twist(0.5, 0.3)})
-            laser.measure(scene.without(robot), world.pose(robot))
+            world.step({robot: Twist(0.5, 0.3)})
+            told[0] = wheels.measure(world.scene, world.pose(robot), last=told[0])
+            laser.measure(world.seen().without(robot), chassis.mounted("laser"))
 
     return Measurement("simulated s/s", 20 * DT, work, "real time", 1.0)
 

@@ -32,7 +32,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="crowdbot list degradations, each swept alone; A+B: one after the other, A is swept; all: every one",
     )
     add("--levels", nargs="+", type=float, metavar="X", help="levels of the sweep (default: its own)")
-    add("--predictor", nargs="+", metavar="NAME", help="crowdbot list predictors, or file.py:Name (default: all)")
+    add("--predictor", nargs="+", metavar="NAME", help="names or file.py:Name (default: all that need no PyTorch)")
     add_scheme(parser, many=True)
     add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="of the degradation, also occlusion.eye=3,1.5")
     add("--out", type=Path, metavar="DIR", help="folder for degraded.json, degraded.png and degraded.svg")
@@ -149,8 +149,11 @@ def _predictors(options: argparse.Namespace, found: Sequence[Recording]) -> list
     """Return what is scored; a goal that learns does so from the clean begin of the one recording."""
     from crowdbot import prediction
     from crowdbot.core import InputError, plug
+    from crowdbot.prediction.learned.predictor import LearnedPredictor
 
-    options.predictor = [*dict.fromkeys(options.predictor or plug.built_in(prediction, prediction.Predictor))]
+    known = plug.built_in(prediction, prediction.Predictor)
+    plain = (name for name in known if not issubclass(known[name], LearnedPredictor) and not plug.needs(known[name]))
+    options.predictor = [*dict.fromkeys(options.predictor or plain)]
     options.set = []  # they are parameters of the degradation here
     made = recipes(options)
     late = next((one.goal for one in made if one.goal is not None), None)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -48,7 +49,8 @@ def main(options: argparse.Namespace) -> int:
     if options.animate is not None:
         study.window_at(options.animate)  # says now, not after the work, that there is none
     keep = None if options.out is None else options.out / "parts"
-    with progress(options.json) as report:
+    with progress(options.json) as report, warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message=".* answers instead$")  # a note says it, once
         done = _done(study, options, keep, report)
     results = study.results(done)
     if options.out is not None:
@@ -57,11 +59,16 @@ def main(options: argparse.Namespace) -> int:
         print_json(as_json(study, results))
         return 0
     tell_notes(found)
-    for sentence in dict.fromkeys(r.recipe.predictor.note(r.recording.windows[0]) for r in results):
-        if sentence:
-            note(sentence)
+    for sentence in _notes(results):
+        note(sentence)
     _tables(options, study, results)
     return 0
+
+
+def _notes(results: list[Result]) -> list[str]:
+    """Return what predictors say about the recordings, each sentence once."""
+    said = (one.recipe.predictor.note(one.recording.windows[0]) for one in results)
+    return [sentence for sentence in dict.fromkeys(said) if sentence]
 
 
 def _done(study: Study, options: argparse.Namespace, keep: Path | None, report: Progress) -> list[tuple[Piece, Part]]:
@@ -132,6 +139,7 @@ def as_json(study: Study, results: list[Result]) -> dict[str, Any]:
         "results": [
             {
                 "predictor": recipe.name,
+                "notes": _notes([one for one in results if one.recipe is recipe]),
                 "total": Score.total([one.score for one in results if one.recipe is recipe]).as_dict(),
                 "data": {one.recording.path: one.score.as_dict() for one in results if one.recipe is recipe},
             }

@@ -17,8 +17,12 @@ if TYPE_CHECKING:
     from crowdbot.prediction.learned.samples import Samples
     from crowdbot.prediction.learned.training import Row, Trained
 
-LEARNERS = {"social-ways": "crowdbot.prediction.learned.social_ways_training"}
-"""Modules with a function ``learner(settings, values, samples, watched, seed, device)`` that makes a Trainable."""
+LEARNERS = {
+    "anchor-net": ("crowdbot.prediction.learned.anchor_training", "file"),
+    "social-ways": ("crowdbot.prediction.learned.social_ways_training", "checkpoint"),
+}
+"""Modules with a function ``learner(settings, values, samples, watched, seed, device)`` that makes a Trainable, and
+the parameter of the predictor that takes its weights."""
 EPOCHS = 100
 """Epochs when neither these nor updates are given."""
 
@@ -37,7 +41,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add("--updates", type=int, metavar="N", help="in place of epochs")
     add("--check-every", type=int, default=200, metavar="N", help="updates between checks (default 200)")
     add("--patience", type=int, metavar="N", help="stop after so many checks without a better one")
-    add("--settings", default="report", metavar="NAME", help="named settings (social-ways: report, variety)")
+    add("--settings", metavar="NAME", help="named settings (social-ways: report, variety; default report)")
     add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="single settings")
     add("--device", default="cpu", metavar="NAME", help="cpu, cuda or cuda:N (default cpu)")
     add("--threads", type=int, default=1, metavar="N", help="of torch; the bytes depend on it (default 1)")
@@ -66,7 +70,7 @@ def main(options: argparse.Namespace) -> int:
         for sentence in short_recordings(learned):
             note(f"warning: {sentence}")
     samples, check = watched
-    make = importlib.import_module(LEARNERS[options.what]).learner
+    make = importlib.import_module(LEARNERS[options.what][0]).learner
     model = make(options.settings, assignments(options.set), samples, check, options.seed, options.device)
     if not options.json:
         note(f"{options.what} learns {samples.people} futures in {len(samples)} windows of {len(learned)} recordings")
@@ -151,4 +155,5 @@ def _said(options: argparse.Namespace, done: Trained, file: Path, left: list[str
     caption = f"{done.updates} updates in {done.seconds:.0f} s{', stopped early' if done.stopped else ''}; on {file}"
     print_table(f"{options.what}, best of 20 on what is watched", ("", "update", "ADE [m]", "FDE [m]"), rows, caption)
     data = " ".join(left) or "PATH"
-    note(f"to score it: crowdbot predict --predictor {options.what} --set checkpoint={file} --samples 20 --data {data}")
+    said = f"--predictor {options.what} --set {LEARNERS[options.what][1]}={file}"
+    note(f"to score it: crowdbot predict {said} --samples 20 --data {data}")

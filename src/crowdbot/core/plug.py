@@ -22,7 +22,7 @@ import numpy as np
 
 from .errors import InputError, UnknownName, did_you_mean
 
-__all__ = ["built_in", "find", "kebab", "problems", "read"]
+__all__ = ["built_in", "find", "kebab", "needs", "problems", "read"]
 
 
 def kebab(name: str) -> str:
@@ -97,11 +97,7 @@ def read(cls: type, attributes: Mapping[str, str], where: str = "") -> Any:
                 f" it takes {', '.join(known) or 'none'}"
             )
         values[name] = _convert(text, hints[name], f"{prefix}{kebab(cls.__name__)} {key}")
-    missing = [
-        f.name
-        for f in fields.values()
-        if f.name not in values and f.default is dataclasses.MISSING and f.default_factory is dataclasses.MISSING
-    ]
+    missing = [name for name in needs(cls) if name not in values]
     if missing:
         raise InputError(f"{prefix}{kebab(cls.__name__)} needs the attribute {missing[0].replace('_', '-')!r}")
     try:
@@ -137,11 +133,17 @@ def problems(cls: type, attributes: Mapping[str, str], also: Iterable[str] = ())
         except InputError as error:
             found.append(str(error))
     given = {key.replace("-", "_") for key in attributes}
-    for field in fields.values():
-        needed = field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
-        if needed and field.name not in given:
-            found.append(f"needs the attribute {field.name.replace('_', '-')!r}")
+    found += [f"needs the attribute {name.replace('_', '-')!r}" for name in needs(cls) if name not in given]
     return found
+
+
+def needs(cls: Any) -> list[str]:
+    """Return the fields of a dataclass that have no default."""
+    return [
+        field.name
+        for field in dataclasses.fields(cls)
+        if field.init and field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
+    ]
 
 
 def _convert(text: str, kind: Any, what: str) -> Any:

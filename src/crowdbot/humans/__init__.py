@@ -7,12 +7,15 @@ from .limbs import LIMBS, REGIONS, Limb, mass_shares
 from .people import Capsules, People
 from .person import Person, names, person, persons
 from .posture import Posture
+from .seat import CHAIR, WHEELCHAIR, Seat
 from .wardrobe import Outfit, outfit
 
 __all__ = [
     "ACTIVITIES",
+    "CHAIR",
     "LIMBS",
     "REGIONS",
+    "WHEELCHAIR",
     "Capsules",
     "Gait",
     "Gaits",
@@ -21,6 +24,7 @@ __all__ = [
     "People",
     "Person",
     "Posture",
+    "Seat",
     "mass_shares",
     "names",
     "outfit",

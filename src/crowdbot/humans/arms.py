@@ -69,16 +69,31 @@ def _hang(angles: Floats, side: float, R: Floats, axis: Floats, hinge: Floats) -
 
 
 @kernel
-def _to_ear(
-    shoulder: Floats, head: Floats, turned: Floats, side: float, stature: float, upper: float, lower: float,
-    axis: Floats, hinge: Floats, work: Floats,
-) -> float:  # fmt: skip
-    """Write the arm that brings the wrist below the ear, and return the bend of its elbow [rad]."""
-    aim, pole = work[0], work[1]
+def _to_ear(head: Floats, turned: Floats, side: float, stature: float, goal: Floats, pole: Floats) -> None:
+    """Write where the wrist is when the hand is at the ear, and to where the elbow points."""
     ax, ay, az = 0.060 * stature, side * 0.060 * stature, -0.070 * stature
     for r in range(3):
-        aim[r] = head[r] + turned[r, 0] * ax + turned[r, 1] * ay + turned[r, 2] * az - shoulder[r]
+        goal[r] = head[r] + turned[r, 0] * ax + turned[r, 1] * ay + turned[r, 2] * az
         pole[r] = 0.5 * turned[r, 0] + side * 0.45 * turned[r, 1] - 1.0 * turned[r, 2]
+
+
+@kernel
+def _to_rest(g: Gaits, i: int, side: float, seat: Floats, goal: Floats, pole: Floats) -> None:
+    """Write where the wrist is on the arm rest of a seat, and to where the elbow points."""
+    c, s = math.cos(g.yaw[i]), math.sin(g.yaw[i])
+    goal[0] = g.position[i, 0] + c * seat[9] - s * side * seat[10]
+    goal[1] = g.position[i, 1] + s * seat[9] + c * side * seat[10]
+    goal[2] = seat[11]
+    pole[0], pole[1], pole[2] = -0.7 * c - s * side * 0.35, -0.7 * s + c * side * 0.35, -0.7
+
+
+@kernel
+def _reached(
+    shoulder: Floats, goal: Floats, pole: Floats, upper: float, lower: float, axis: Floats, hinge: Floats, aim: Floats
+) -> float:
+    """Write the arm that brings the wrist to ``goal``, and return the bend of its elbow [rad]."""
+    for r in range(3):
+        aim[r] = goal[r] - shoulder[r]
     reach = min(max(unit(aim), abs(upper - lower) + 0.03), 0.995 * (upper + lower))
     cross(pole, aim, hinge)
     unit(hinge)
@@ -90,8 +105,8 @@ def _to_ear(
 
 @kernel
 def pose_arm(
-    g: Gaits, i: int, side: int, vigour: float, sit: float, lengths: Floats, frame: Floats, style: Floats, R: Floats,
-    P: Floats, work: Floats,
+    g: Gaits, i: int, side: int, vigour: float, sit: float, lengths: Floats, frame: Floats, style: Floats, seat: Floats,
+    R: Floats, P: Floats, work: Floats,
 ) -> None:  # fmt: skip
     """Turn upper arm, forearm, hand and fingers of one side; trunk and shoulder joints are placed already."""
     sign = 1.0 - 2.0 * side
@@ -102,9 +117,15 @@ def pose_arm(
     _hang(angles, sign, R[3], axis, hinge)
     elbow, twist = angles[2], angles[4]
     phone = g.blend[i, 2] if side == RIGHT else 0.0
-    if phone > 1e-3:
-        share = phone * phone * (3.0 - 2.0 * phone)
-        bend = _to_ear(P[first], P[5], R[5], sign, lengths[4], lengths[2], lengths[3], axis2, hinge2, work)
+    resting = g.blend[i, 5] if seat[8] > 0.0 else 0.0
+    most = max(phone, resting)
+    if most > 1e-3:
+        share = most * most * (3.0 - 2.0 * most)
+        if phone >= resting:
+            _to_ear(P[5], R[5], sign, lengths[4], work[0], work[1])
+        else:
+            _to_rest(g, i, sign, seat, work[0], work[1])
+        bend = _reached(P[first], work[0], work[1], lengths[2], lengths[3], axis2, hinge2, work[7])
         for k in range(3):
             axis[k] += share * (axis2[k] - axis[k])
             hinge[k] += share * (hinge2[k] - hinge[k])
@@ -114,7 +135,7 @@ def pose_arm(
             hinge[k] -= dot * axis[k]
         unit(hinge)
         elbow += share * (bend - elbow)
-        twist += share * (0.3 - twist)
+        twist += share * ((0.3 if phone >= resting else 1.3) - twist)
     framed(frame[4 + side], axis, hinge, R[first])
     about(hinge, elbow, axis, lower)
     framed(frame[6 + side], lower, hinge, R[first + 1])

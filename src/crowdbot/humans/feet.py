@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core.kernels import kernel
 
-from .stride import LANDED, STRIKE, TIPPING, ankle_over, cycle, foot_pose, wrapped
+from .stride import LANDED, STRIKE, TIPPING, ankle_over, cycle, foot_pose, smooth, wrapped
 
 __all__ = ["Gaits", "advance", "foot_now"]
 
@@ -219,7 +219,7 @@ def _haste(g: Gaits, i: int, leg: float) -> float:
     stretch = max(most, 0.72 * sum_)  # stays below 0.75 in a steady walk
     if stretch > LOST:
         return -1.0
-    return 1.0 + 16.0 * min(max(stretch - 0.72, 0.0), 0.25) + 4.0 * min(max(twist - 0.7, 0.0), 0.6)
+    return 1.0 + 16.0 * min(max(stretch - 0.72, 0.0), 0.25) + 7.0 * min(max(twist - 0.6, 0.0), 0.7)
 
 
 @kernel
@@ -297,8 +297,10 @@ def _follow(g: Gaits, i: int, velocity: Floats, heading: float, h: float) -> Non
     keep = math.exp(-h / FILTER)
     g.drift[i, 0] = velocity[0] + keep * (g.drift[i, 0] - velocity[0])
     g.drift[i, 1] = velocity[1] + keep * (g.drift[i, 1] - velocity[1])
-    rate = wrapped(heading - g.yaw[i]) * (1.0 - math.exp(-h / TURN_LAG)) / h
-    rate = min(max(rate, -TURN_LIMIT), TURN_LIMIT)
+    free = 1.0 - smooth(g.blend[i, SITTING])  # who sits turns as the seat does
+    rate = wrapped(heading - g.yaw[i]) * (1.0 - free * math.exp(-h / TURN_LAG)) / h
+    limit = TURN_LIMIT / max(free, 1e-6)
+    rate = min(max(rate, -limit), limit)
     g.yaw[i] = wrapped(g.yaw[i] + rate * h)
     g.turn[i] = rate + keep * (g.turn[i] - rate)
     g.clock[i] += h

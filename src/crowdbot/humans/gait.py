@@ -17,6 +17,7 @@ from .activities import ACTIVITIES, activity_index
 from .feet import Gaits, advance
 from .people import Capsules, People
 from .posture import Posture, posture
+from .seat import CHAIR, Seat, seat_rows
 
 __all__ = ["Gait", "posing_and_skinning"]
 
@@ -34,10 +35,11 @@ class Gait:
         seed: of everyone's own style: phase, stride, arms, toes, lean, gestures. A person's style depends on the seed
             and on ``ids`` only, not on who else walks.
         ids: ``[N]``, a number for each person; None counts from 0.
+        seat: what people sit on when they sit, one for all or one for each.
 
     People walk; nobody runs: above about 2 m/s the legs only go faster. A foot that stands stays where it is unless the
     body leaves it behind (velocities that jump by several m/s) or turns more than 80 degrees against it; who sits is
-    carried along.
+    carried along and turns with the seat, as on the robot ``wheelchair`` with ``seat=WHEELCHAIR`` and its pose.
 
     Source: relations of stride and speed by Boulic, Magnenat-Thalmann & Thalmann 1990, doi:10.1007/BF01901021.
 
@@ -46,7 +48,7 @@ class Gait:
     >>> for k in range(1, 101):
     ...     state = gait.step(state, position=[[0.014 * k, 0]], velocity=[[1.4, 0]], heading=[0.0], dt=0.01)
     >>> gait.skin(state, level=2).shape, gait.limbs(state).radius.shape, float(state.moving[0])
-    ((1, 330, 3), (1, 17), 1.0)
+    ((1, 447, 3), (1, 17), 1.0)
     """
 
     paper: ClassVar[Paper] = Paper(
@@ -60,6 +62,8 @@ class Gait:
     people: People
     seed: int = 0
     ids: Sequence[int] | None = None
+    seat: Seat | Sequence[Seat] = CHAIR
+    seats: Floats = field(init=False, repr=False)
     style: Floats = field(init=False, repr=False)
     size: Floats = field(init=False, repr=False)
 
@@ -71,6 +75,7 @@ class Gait:
         style = np.array([_style(self.seed, int(k)) for k in numbers]).reshape(len(self.people), 9)
         m = self.people.measures
         size = np.stack([m.ankle, m.ball[:, 0], m.ball[:, 1], m.heel, m.toe, m.leg, m.thigh + m.shank], axis=1)
+        object.__setattr__(self, "seats", seat_rows(self.seat, len(self.people)))
         object.__setattr__(self, "style", style)
         object.__setattr__(self, "size", size)
 
@@ -141,7 +146,7 @@ class Gait:
 
     def posture(self, state: Gaits) -> Posture:
         """Return where the bones of everyone are."""
-        return posture(state, self.people.measures, self.style, self.size)
+        return posture(state, self.people.measures, self.style, self.size, self.seats)
 
     def limbs(self, state: Gaits) -> Capsules:
         """Return the capsules of everyone in the world, in the order of :data:`LIMBS`."""
@@ -192,7 +197,7 @@ def posing_and_skinning(count: int = 100, level: int = 2) -> Callable[[], Floats
     """Return a piece of work to time: pose ``count`` drawn walkers and deform their skins at a level of detail.
 
     >>> posing_and_skinning(3)().shape
-    (3, 330, 3)
+    (3, 447, 3)
     """
     draw = stream(0, "posing and skinning", count)
     gait = Gait(People.drawn(count, draw))

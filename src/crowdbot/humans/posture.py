@@ -33,8 +33,6 @@ HIGHEST = 0.235
 """Phase at which the pelvis is highest over the left leg; it is lowest a quarter of a cycle later."""
 SOFT = 0.004
 """Width [m] over which the limits of the legs on the height of the pelvis pass into each other."""
-SEAT = 0.46
-"""Height of seats [m]."""
 SEAT_FLESH = 0.055
 """Height of the hip joints above the seat, as a share of stature."""
 SITTING = 5
@@ -48,7 +46,7 @@ class Posture(NamedTuple):
 
 
 @kernel
-def _trunk(g: Gaits, i: int, vigour: float, style: Floats, sit: float, R: Floats) -> None:
+def _trunk(g: Gaits, i: int, vigour: float, style: Floats, sit: float, recline: float, R: Floats) -> None:
     """Write the rotations of pelvis, spine, neck, head and collar bones (bones 0 to 6 and 13)."""
     wave = 2.0 * math.pi * g.phase[i]
     strong = min(vigour, 1.2) * (1.0 - sit)
@@ -60,7 +58,7 @@ def _trunk(g: Gaits, i: int, vigour: float, style: Floats, sit: float, R: Floats
     beat = style[6] * g.clock[i] + 6.283 * style[5]
     for b in range(4):
         share = b / 3.0
-        pitch = lean * (0.4 + 0.6 * share) - 0.12 * sit * (1.0 - share)
+        pitch = lean * (0.4 + 0.6 * share) - sit * max(0.12 * (1.0 - share), recline)
         turn_zxy(g.yaw[i] + yaw + share * (chest - yaw), roll * (1.0 - share), pitch, R[b])
     R[6], R[13] = R[3], R[3]
     look = 0.14 * talk * math.sin(1.3 * beat) + 0.05 * math.sin(0.31 * beat) - 0.12 * phone
@@ -79,23 +77,36 @@ def _hip(head: Floats, b: int, R: Floats, out: Floats) -> None:
 
 
 @kernel
+def _resting(g: Gaits, i: int, f: int, hip: float, lengths: Floats, size: Floats, seat: Floats, out: Floats) -> None:
+    """Write ankle x, y, z and pitch of foot ``f`` of who sits: on the rest if the leg reaches it, else on the floor."""
+    side, thigh, shank = 1.0 - 2.0 * f, lengths[0], lengths[1]
+    ahead, aside, pitch = seat[1] + thigh + 0.02, side * 0.11 * size[5], 0.0
+    height = max(size[0], hip - shank * 0.995)
+    if seat[4] > 0.0:
+        x, z = ankle_over(-seat[3], -seat[3], size)
+        x, z = seat[5] - size[3] + x, seat[7] + z
+        if math.sqrt((x - seat[1]) ** 2 + (z - hip) ** 2) < 0.995 * (thigh + shank):
+            ahead, aside, height, pitch = x, side * seat[6], z, -seat[3]
+    c, s = math.cos(g.yaw[i]), math.sin(g.yaw[i])
+    out[0] = g.position[i, 0] + c * ahead - s * aside
+    out[1] = g.position[i, 1] + s * ahead + c * aside
+    out[2], out[3] = height, pitch
+
+
+@kernel
 def _ankles(
-    g: Gaits, i: int, sit: float, hip: float, thigh: float, shank: float, style: Floats, size: Floats, out: Floats
+    g: Gaits, i: int, sit: float, hip: float, lengths: Floats, style: Floats, size: Floats, seat: Floats, out: Floats
 ) -> None:
     """Write both feet as :func:`foot_now` does, drawn to where they are when sitting."""
-    c, s = math.cos(g.yaw[i]), math.sin(g.yaw[i])
+    rest = np.empty(4)
     for f in range(2):
         foot_now(g, i, f, style, size, out[f])
         if sit > 0.0:
-            side = 1.0 - 2.0 * f
-            ahead, aside = thigh + 0.02, side * 0.11 * size[5]
-            floor = max(size[0], hip - shank * 0.995)
-            keep = 1.0 - sit
-            out[f, 0] = keep * out[f, 0] + sit * (g.position[i, 0] + c * ahead - s * aside)
-            out[f, 1] = keep * out[f, 1] + sit * (g.position[i, 1] + s * ahead + c * aside)
-            out[f, 2] = keep * out[f, 2] + sit * floor
-            out[f, 4] *= keep
-            out[f, 5] *= keep
+            _resting(g, i, f, hip, lengths, size, seat, rest)
+            for k in range(3):
+                out[f, k] += sit * (rest[k] - out[f, k])
+            out[f, 4] += sit * (rest[3] - out[f, 4])
+            out[f, 5] += sit * (rest[3] - out[f, 5])
 
 
 @kernel
@@ -164,26 +175,26 @@ def _chain(first: int, last: int, head: Floats, parents: Ints, R: Floats, P: Flo
 
 @kernel
 def _pose_one(
-    g: Gaits, i: int, lengths: Floats, head: Floats, frame: Floats, style: Floats, size: Floats, parents: Ints,
-    R: Floats, P: Floats,
+    g: Gaits, i: int, lengths: Floats, head: Floats, frame: Floats, style: Floats, size: Floats, seat: Floats,
+    parents: Ints, R: Floats, P: Floats,
 ) -> None:  # fmt: skip
     thigh, shank, stature = lengths[0], lengths[1], lengths[4]
     sit = smooth(g.blend[i, SITTING])
     time, support, lead, vigour = cycle(g.drift[i, 0], g.drift[i, 1], g.yaw[i], size[5], style[1])
     speed = math.sqrt(g.drift[i, 0] ** 2 + g.drift[i, 1] ** 2)
-    _trunk(g, i, vigour, style, sit, R)
+    _trunk(g, i, vigour, style, sit, seat[2], R)
     work, hips, feet = np.empty((8, 3)), np.empty((2, 3)), np.empty((2, 6))
     _hip(head, 20, R, hips[0])
     _hip(head, 24, R, hips[1])
-    seat = SEAT + SEAT_FLESH * stature
-    _ankles(g, i, sit, seat, thigh, shank, style, size, feet)
+    sat = seat[0] + SEAT_FLESH * stature
+    _ankles(g, i, sit, sat, lengths, style, size, seat, feet)
     sway = SWAY * size[5] * min(speed / 0.6, 1.0) * math.sin(2.0 * math.pi * g.phase[i] - 0.3)
-    x = g.position[i, 0] - sway * math.sin(g.yaw[i])
-    y = g.position[i, 1] + sway * math.cos(g.yaw[i])
+    x = g.position[i, 0] - sway * math.sin(g.yaw[i]) + sit * seat[1] * math.cos(g.yaw[i])
+    y = g.position[i, 1] + sway * math.cos(g.yaw[i]) + sit * seat[1] * math.sin(g.yaw[i])
     rest = 0.5 * (hips[0, 2] + hips[1, 2])
     tallest = _swinging(g.phase[i], speed, lead * support * time * speed, vigour, thigh + shank, size) - rest
     height = _height(hips, feet, x, y, STRAIGHT * (thigh + shank), tallest)
-    height += sit * (seat - rest - height)
+    height += sit * (sat - rest - height)
     P[0, 0], P[0, 1], P[0, 2] = x, y, height
     for f in range(2):
         for k in range(3):
@@ -193,25 +204,25 @@ def _pose_one(
     _chain(1, 8, head, parents, R, P)
     _chain(13, 15, head, parents, R, P)
     for f in range(2):
-        pose_arm(g, i, f, vigour, sit, lengths, frame, style, R, P, work)
+        pose_arm(g, i, f, vigour, sit, lengths, frame, style, seat, R, P, work)
     _chain(8, 13, head, parents, R, P)
     _chain(15, 28, head, parents, R, P)
 
 
 @kernel
 def _pose(
-    g: Gaits, lengths: Floats, heads: Floats, frames: Floats, style: Floats, size: Floats, parents: Ints,
-    R: Floats, P: Floats,
+    g: Gaits, lengths: Floats, heads: Floats, frames: Floats, style: Floats, size: Floats, seats: Floats,
+    parents: Ints, R: Floats, P: Floats,
 ) -> None:  # fmt: skip
     """Pose everyone."""
     for i in range(len(lengths)):
-        _pose_one(g, i, lengths[i], heads[i], frames[i], style[i], size[i], parents, R[i], P[i])
+        _pose_one(g, i, lengths[i], heads[i], frames[i], style[i], size[i], seats[i], parents, R[i], P[i])
 
 
-def posture(state: Gaits, body: Measures, style: Floats, size: Floats) -> Posture:
+def posture(state: Gaits, body: Measures, style: Floats, size: Floats, seats: Floats) -> Posture:
     """Return the posture of everyone in ``state``."""
     lengths = np.stack([body.thigh, body.shank, body.arm[:, 0], body.arm[:, 1], body.height], axis=1)
     count, bones = body.head.shape[:2]
     out = Posture(np.empty((count, bones, 3, 3)), np.empty((count, bones, 3)))
-    _pose(state, lengths, body.head, body.frame, style, size, shapes().parents, out.rotation, out.position)
+    _pose(state, lengths, body.head, body.frame, style, size, seats, shapes().parents, out.rotation, out.position)
     return out

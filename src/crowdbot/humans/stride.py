@@ -35,7 +35,7 @@ STRIKE, PUSH = math.radians(20.0), math.radians(68.0)
 LANDED, ROLLING, TIPPING = 0.19, 0.50, 0.75
 """Shares of support: until the first the foot comes down about the heel, from the second it rolls over the ball, from
 the third over the tip of the toes."""
-HOP = 0.037
+HOP = 0.0355
 """Lift of the ankle in the first half of the swing [leg lengths]; it bends the knee to about 62 degrees."""
 TIPPED = math.radians(35.0)
 """Pitch of the toes when they leave, at a relative speed of 0.9."""

@@ -7,6 +7,7 @@ from .earth_mover import earth_mover_distance
 from .energy import energy_score
 from .interval import Intervals, bootstrap_interval
 from .likelihood import kde_nll
+from .mahalanobis import mahalanobis
 from .modes import mode_count, mode_coverage, mode_shares
 from .motion import heading_change, jerk, longest_stall, path_efficiency, path_length, stalled_time
 from .navigation import NAVIGATION_METRICS, Outcome, navigation_metrics, outcome
@@ -50,6 +51,7 @@ __all__ = [
     "kde_nll",
     "local_density",
     "longest_stall",
+    "mahalanobis",
     "miss_rate",
     "mode_count",
     "mode_coverage",

@@ -21,6 +21,7 @@ from .anchor_kernels import attend, dense
 from .anchors import CHAI, misfit, scattered, spread_over_time
 from .constant import ConstantVelocity, SampledConstantVelocity
 from .joint import before_walls, drawn_together, kept_apart, set_together
+from .learned.checkpoint import load_checkpoint
 from .own_frame import AHEAD, COMPANY, GAITS, INPUTS, STEP, features, forward, gait, people_of, turned
 from .places import ALL, AUTO, Numbers, check_fold, fold_of, learned, read_numbers
 from .predictor import Predictor, window_streams
@@ -93,7 +94,7 @@ class AnchorNet(Predictor):
             after, else ``all``.
         sample: what more than one sample is. ``set``: the fixed futures, weighed by how probable they are, at most
             20, and K = 1 is the single answer. ``draws``: as many independent draws of one future as are asked for.
-        file: own weights, as tools/train_anchor_net.py writes them, in place of the shipped ones.
+        file: own weights, as ``crowdbot train anchor-net`` makes them, in place of the shipped ones.
         contact: people of one joint future stay so far apart [m]; 0 leaves everyone alone.
 
     Predictions commute with shifts and rotations of the world, except for who has never moved. Rows at other time
@@ -225,6 +226,9 @@ def _own(file: str, changed: int) -> Numbers:
     known = _OWN.get(file)
     if known is None or known[0] != changed:
         numbers = read_numbers(Path(file))
+        if "content" in numbers:  # what crowdbot train keeps
+            weights = load_checkpoint(file, "anchor-net")["weights"]
+            numbers = {name: np.asarray(values, dtype=np.float64) for name, values in weights.items()}
         missing = [name for name in NEEDED if name not in numbers]
         shapes = {"own_1_weight": INPUTS, "near_1_weight": COMPANY, "temperature": len(GAITS) + 1}
         wrong = [name for name, rows in shapes.items() if not missing and numbers[name].shape[:1] != (rows,)]

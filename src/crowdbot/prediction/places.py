@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError, InputError
 from crowdbot.core.errors import did_you_mean
 
-__all__ = ["ALL", "AUTO", "FOLDS", "Numbers", "check_fold", "fold_of", "kept_out", "learned", "read_numbers"]
+__all__ = ["ALL", "AUTO", "FOLDS", "Numbers", "check_fold", "fold_of", "kept_out", "learned", "read_numbers", "shipped"]
 
 Numbers = dict[str, NDArray[np.float64]]
 
@@ -60,9 +60,12 @@ def learned(kind: str, fold: str) -> Numbers:
     Raises:
         DataError: the file is missing from the installation.
     """
-    place = importlib.resources.files("crowdbot").joinpath("assets", "predictors", f"{kind}-{fold}.npz")
-    with importlib.resources.as_file(place) as path:
-        return read_numbers(path)
+    return read_numbers(shipped(kind, fold))
+
+
+def shipped(kind: str, fold: str) -> Path:
+    """Return the file of what a predictor learned without a place."""
+    return Path(str(importlib.resources.files("crowdbot").joinpath("assets", "predictors", f"{kind}-{fold}.npz")))
 
 
 def read_numbers(path: Path) -> Numbers:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -12,11 +13,16 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 from crowdbot.data.trajectories import Trajectories
 from crowdbot.data.windows import Windows
-from crowdbot.prediction.own_frame import AHEAD, STEP, People, completed, features, forward, people_of, turned
+from crowdbot.prediction.own_frame import AHEAD, ROWS, STEP, People, completed, features, forward, people_of, turned
 
-__all__ = ["Batch", "Material", "Variation", "backwards", "batch", "gathered"]
+from .samples import Samples
+
+__all__ = ["Batch", "Material", "Variation", "backwards", "batch", "gathered", "material_of"]
 
 Floats = NDArray[np.float64]
+
+AT_ONCE = 64
+"""About so many scenes, of nearly the same size, are laid out together."""
 
 
 class Material(NamedTuple):
@@ -31,6 +37,14 @@ class Material(NamedTuple):
     def __len__(self) -> int:
         """Return the number of people."""
         return len(self.ahead)
+
+    @property
+    def digest(self) -> str:
+        """Hash of where everyone was, went, and who was near."""
+        found = hashlib.blake2b(digest_size=12)
+        for array in (self.ahead, *self.people, *self.planned):
+            found.update(np.ascontiguousarray(array).tobytes())
+        return found.hexdigest()
 
 
 class Batch(NamedTuple):
@@ -95,11 +109,42 @@ def gathered(recordings: Sequence[Trajectories], reverse: bool = True) -> Materi
             parts.append(_people(*one.windows()))
     if not parts:
         raise InputError("there is no recording to learn from")
-    return Material(
-        _joined([part.people for part in parts]),
-        _joined([part.planned for part in parts]),
-        np.concatenate([part.ahead for part in parts]),
+    return _material(parts)
+
+
+def material_of(samples: Samples, reverse: bool = True) -> Material:
+    """Return everyone of the samples who is seen over 8 + 12 rows, and with ``reverse`` also as if time ran backwards.
+
+    Backwards, only those are near who were there at both ends of the observed rows.
+
+    Raises:
+        InputError: there is nobody, or rows or units do not fit.
+    """
+    if (samples.observe, samples.predict, samples.units) != (ROWS, AHEAD, "m") or abs(samples.dt - STEP) > 0.01 * STEP:
+        raise InputError(
+            f"anchor-net learns {ROWS} + {AHEAD} rows of {STEP} s in metres, {samples.names[0]} is cut into"
+            f" {samples.observe} + {samples.predict} rows of {samples.dt:.4g} s in {samples.units}; resample with"
+            f" --step {STEP}"
+        )
+    if samples.people == 0:
+        raise InputError("nobody is there at all rows of any window: there is nothing to learn from")
+    parts = []
+    size = np.diff(samples.first)
+    for scenes in np.array_split(np.argsort(size, kind="stable"), max(1, len(samples) // AT_ONCE)):
+        place, there, scored, _ = samples.batch(scenes)
+        for way in (1, -1) if reverse else (1,):
+            parts.append(_people(*_windows(place[:, ::way], there[:, ::way], scored, samples.names[0])))
+    return _material(parts)
+
+
+def _windows(place: Floats, there: NDArray[np.bool_], scored: NDArray[np.bool_], name: str) -> tuple[Windows, Windows]:
+    S, T, A, _ = place.shape
+    id, nobody = np.tile(np.arange(A), (S, 1)), np.zeros((S, A), dtype=np.bool_)
+    past, future = (
+        Windows(place[:, rows], there[:, rows], who, nobody, id, np.tile(np.arange(T)[rows], (S, 1)), STEP, "all", name)
+        for rows, who in ((slice(0, ROWS), nobody), (slice(ROWS, T), scored))
     )
+    return past, future
 
 
 def backwards(tracks: Trajectories) -> Trajectories:
@@ -189,6 +234,14 @@ def _people(past: Windows, future: Windows) -> Material:
     window, slot = window[kept], slot[kept]
     ahead = future.position[window, :, slot] - past.position[window, -1, slot][:, None]
     return Material(people.at(kept), planned.at(kept), ahead)
+
+
+def _material(parts: Sequence[Material]) -> Material:
+    return Material(
+        _joined([part.people for part in parts]),
+        _joined([part.planned for part in parts]),
+        np.concatenate([part.ahead for part in parts]),
+    )
 
 
 def _joined(parts: Sequence[People]) -> People:

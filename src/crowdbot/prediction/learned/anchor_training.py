@@ -1,4 +1,4 @@
-"""Training of the anchor network: a few minutes on one core, the same bits for the same seed, stopped and gone on with.
+"""Training of the anchor network: a minute on one core, the same bits for the same seed, stopped and gone on with.
 
 The numbers that come out are those that :class:`~crowdbot.prediction.AnchorNet` reads.
 """
@@ -6,28 +6,33 @@ The numbers that come out are those that :class:`~crowdbot.prediction.AnchorNet`
 from __future__ import annotations
 
 import dataclasses
-import os
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
 
 import numpy as np
+import torch
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, stream
-from crowdbot.core.errors import MissingExtra
+from crowdbot.core import InputError, plug, stream
+from crowdbot.core.errors import did_you_mean
+from crowdbot.prediction.anchor_net import network_output
 from crowdbot.prediction.anchors import centres
-from crowdbot.prediction.own_frame import AHEAD, COMPANY, INPUTS, forward, turned
+from crowdbot.prediction.own_frame import AHEAD, COMPANY, INPUTS, STEP, forward, turned
 
-from .anchor_data import Batch, Material, Variation, batch
+from .anchor_calibration import calibrated
+from .anchor_data import NONE, Batch, Material, Variation, material_of
+from .anchor_data import batch as batch_of
+from .extra import device_of, tensors
+from .samples import Samples
+from .training import Trainable
 
-__all__ = ["AnchorTraining", "network", "outputs", "shapes_of", "train"]
+__all__ = ["UPDATES", "AnchorNetTraining", "AnchorTraining", "learner", "network", "outputs", "shapes_of"]
 
 Floats = NDArray[np.float64]
 Numbers = dict[str, NDArray[Any]]
 
-KEPT_EVERY = 500
-"""Updates after which the state is written."""
+UPDATES = 4000
+"""Steps of the optimiser behind the shipped weights; the last weights are taken, averaged, none is picked."""
 RANK = 6
 """Numbers that a bend is made of; they reconstruct what constant velocity misses to about 2 cm."""
 
@@ -37,7 +42,6 @@ class AnchorTraining:
     """How the anchor network is trained.
 
     Fields:
-        updates: steps of the optimiser; the last weights are taken, averaged over the last thousand, none is picked.
         people: in one batch.
         width, social: numbers in a hidden layer, and about a neighbour.
         count: futures.
@@ -51,7 +55,6 @@ class AnchorTraining:
         variation: of the people.
     """
 
-    updates: int = 4000
     people: int = 256
     width: int = 256
     social: int = 64
@@ -66,6 +69,30 @@ class AnchorTraining:
     likely: float = 0.02
     seed: int = 0
     variation: Variation = dataclasses.field(default_factory=Variation)
+
+
+def learner(
+    settings: str | None, values: Mapping[str, str], samples: Samples, watched: Samples, seed: int, device: str
+) -> AnchorNetTraining:
+    """Return the anchor network ready to train, as the command line asks for it.
+
+    Args:
+        settings: there is one kind, ``shipped``, that of the shipped weights.
+        values: settings that differ, as text; those of the variation too.
+        samples, watched, seed, device: as of :class:`AnchorNetTraining`.
+
+    Raises:
+        InputError: a name or value is not known, or rows are not 8 + 12 at 0.4 s in metres.
+    """
+    if settings not in (None, "shipped"):
+        raise InputError(f"anchor-net: unknown settings {settings!r}{did_you_mean(str(settings), ['shipped'])}; there"
+                         " is shipped")  # fmt: skip
+    varied = {field.name for field in dataclasses.fields(Variation)}
+    plain = {name.replace("-", "_"): value for name, value in values.items()}
+    variation = plug.read(Variation, {name: value for name, value in plain.items() if name in varied})
+    how = plug.read(AnchorTraining, {name: value for name, value in plain.items() if name not in varied})
+    how = dataclasses.replace(how, seed=seed, variation=variation)
+    return AnchorNetTraining(how, material_of(samples), material_of(watched, reverse=False), samples.names, device)
 
 
 def shapes_of(material: Material, count: int = 20, seed: int = 0) -> Numbers:
@@ -86,10 +113,17 @@ def shapes_of(material: Material, count: int = 20, seed: int = 0) -> Numbers:
 
 def network(how: AnchorTraining) -> Any:
     """Return the layers, a torch module; what they give is turned into futures by :func:`_losses`."""
-    import torch
-
     W, S, K = how.width, how.social, how.count
-    torch.manual_seed(how.seed)
+    with torch.random.fork_rng(devices=[]):
+        torch.manual_seed(how.seed)
+        layers = _layers(W, S, K)
+    with torch.no_grad():
+        layers["out"].weight.mul_(0.1)
+        layers["out"].bias.zero_()
+    return layers
+
+
+def _layers(W: int, S: int, K: int) -> Any:
     layers: Any = torch.nn.ModuleDict(
         {
             "own_1": torch.nn.Linear(INPUTS, W), "own_2": torch.nn.Linear(W, W),
@@ -98,9 +132,6 @@ def network(how: AnchorTraining) -> Any:
             "out": torch.nn.Linear(W, RANK * K + K + 2 * RANK),
         }
     )  # fmt: skip
-    with torch.no_grad():
-        layers["out"].weight.mul_(0.1)
-        layers["out"].bias.zero_()
     layers.register_parameter("nobody", torch.nn.Parameter(torch.zeros(S)))
     layers.register_parameter("alone", torch.nn.Parameter(torch.zeros(S)))
     layers.register_parameter("width", torch.nn.Parameter(torch.full((K, RANK), -1.0)))
@@ -109,8 +140,6 @@ def network(how: AnchorTraining) -> Any:
 
 def outputs(layers: Any, own: Any, company: Any, there: Any) -> Any:
     """Return ``[N, 20 * 6 + 20 + 6 + 6]``: bends of all futures, their scores, the single bend, and spreads."""
-    import torch
-
     hidden = torch.relu(layers["own_2"](torch.relu(layers["own_1"](own))))
     near = torch.relu(layers["near_2"](torch.relu(layers["near_1"](company))))  # [N, M, S]
     query = layers["query"](hidden)
@@ -123,84 +152,111 @@ def outputs(layers: Any, own: Any, company: Any, there: Any) -> Any:
     return layers["out"](torch.relu(layers["both_2"](both)))
 
 
-def train(
-    material: Material,
-    how: AnchorTraining | None = None,
-    progress: Callable[[int, float], None] | None = None,
-    keep: Path | None = None,
-) -> Numbers:
-    """Return the trained numbers, those of :func:`shapes_of` among them.
+class AnchorNetTraining(Trainable):
+    """The anchor network with its people; see :class:`~crowdbot.prediction.learned.training.Trainable`.
+
+    The last weights, averaged, are as good as any: with ``check_every`` as large as the number of updates none is
+    picked. Probabilities and spreads are calibrated on who is watched, whenever weights are given out.
 
     Args:
+        config: how it is trained.
         material: people to learn from.
-        how: None means the defaults.
-        progress: told the update and the loss, every hundred updates.
-        keep: file of the state, written every :data:`KEPT_EVERY` updates; training goes on from it when it exists.
-
-    Raises:
-        MissingExtra: PyTorch is not installed.
-        InputError: the state in ``keep`` belongs to another training.
+        watched: people on whom errors are watched and probabilities calibrated.
+        names: of the recordings that are learned from.
+        device: ``cpu`` or ``cuda``.
     """
-    try:
-        import torch
-    except ImportError:
-        raise MissingExtra("learned prediction", "learn") from None
-    before = torch.get_num_threads()
-    torch.set_num_threads(1)  # sums are then made in one order
-    try:
-        return _trained(material, how or AnchorTraining(), progress, keep)
-    finally:
-        torch.set_num_threads(before)
 
+    kind: ClassVar[str] = "anchor-net"
 
-def _trained(
-    material: Material, how: AnchorTraining, progress: Callable[[int, float], None] | None, keep: Path | None
-) -> Numbers:
-    import torch
+    def __init__(
+        self, config: AnchorTraining, material: Material, watched: Material, names: Sequence[str] = (),
+        device: str = "cpu",
+    ) -> None:  # fmt: skip
+        self.device = device_of(device)
+        self.config, self.material, self.watched = config, material, watched
+        self.data = f"{material.digest}-{watched.digest}"
+        self.facts = {"dt": STEP, "units": "m", "learned": list(names)}
+        self.shapes = shapes_of(material, config.count, config.seed)
+        self.fixed = {
+            name: torch.tensor(values, dtype=torch.float32, device=self.device) for name, values in self.shapes.items()
+        }
+        self.layers = network(config).to(self.device)
+        self.mean = {name: value.detach().clone() for name, value in self.layers.state_dict().items()}
+        self.optimiser = torch.optim.AdamW(self.layers.parameters(), lr=config.rate, weight_decay=config.decay)
 
-    shapes = shapes_of(material, how.count, how.seed)
-    fixed = {name: torch.tensor(values, dtype=torch.float32) for name, values in shapes.items()}
-    layers = network(how)
-    mean = {name: value.detach().clone() for name, value in layers.state_dict().items()}
-    optimiser = torch.optim.AdamW(layers.parameters(), lr=how.rate, weight_decay=how.decay)
-    state = {"layers": layers, "optimiser": optimiser}
-    first = _resumed(state, mean, keep, _mark(material, how))
-    for update in range(first, how.updates):
-        rng = stream(how.seed, "batch", update)
-        shown = batch(material, rng.integers(0, len(material), how.people), how.variation, rng)
-        for group in optimiser.param_groups:
-            group["lr"] = how.rate * _pace(update, how)
-        loss = _loss(layers, fixed, shown, how, 1.0 - update / how.updates)
-        optimiser.zero_grad()
+    def batches(self, rng: np.random.Generator) -> list[Any]:
+        """Return as many batches as it takes to see about everyone once; each update draws its own people."""
+        del rng
+        return [None] * -(-len(self.material) // self.config.people)
+
+    def update(self, batch: Any, rng: np.random.Generator, number: int, total: int) -> Mapping[str, float]:
+        """Do one update; people and how they are varied come from a stream named by seed and number."""
+        del batch, rng
+        how, own = self.config, stream(self.config.seed, "batch", number)
+        shown = batch_of(self.material, own.integers(0, len(self.material), how.people), how.variation, own)
+        for group in self.optimiser.param_groups:
+            group["lr"] = how.rate * _pace(number, total, how)
+        loss = _loss(self.layers, self.fixed, shown, how, 1.0 - number / total)
+        self.optimiser.zero_grad()
         loss.backward()
-        torch.nn.utils.clip_grad_norm_(layers.parameters(), 1.0)
-        optimiser.step()
-        share = min(how.average, (1.0 + update) / (10.0 + update))
+        torch.nn.utils.clip_grad_norm_(self.layers.parameters(), 1.0)
+        self.optimiser.step()
+        share = min(how.average, (1.0 + number) / (10.0 + number))
         with torch.no_grad():
-            for name, value in layers.state_dict().items():
-                mean[name].lerp_(value, 1.0 - share)
-        if progress is not None and (update + 1) % 100 == 0:
-            progress(update + 1, float(loss.detach()))
-        if keep is not None and (update + 1) % KEPT_EVERY == 0:
-            _kept(state, mean, keep, update + 1, _mark(material, how))
-    return shapes | _plain(mean)
+            for name, value in self.layers.state_dict().items():
+                self.mean[name].lerp_(value, 1.0 - share)
+        return {"loss": float(loss.detach())}
+
+    def check(self) -> Mapping[str, float]:
+        """Return ADE and FDE [m] of the nearest of the fixed futures, and ADE of the single answer."""
+        numbers = self.numbers()
+        own, company, there, missed = batch_of(self.watched, np.arange(len(self.watched)), NONE, stream(0, "check"))
+        found = network_output(numbers, own, company, there)
+        K = self.config.count
+        bend = numbers["centres"] + found[:, : RANK * K].reshape(-1, K, RANK) * numbers["spread"]
+        lone = found[:, RANK * K + K : RANK * K + K + RANK] * numbers["spread"]
+        paths = np.concatenate([bend, lone[:, None]], axis=1) @ numbers["basis"]
+        away = np.linalg.norm(paths.reshape(len(missed), K + 1, AHEAD, 2) - missed[:, None], axis=3)
+        ade, fde = away.mean(axis=2), away[:, :, -1]
+        nearest = {"ade": ade[:, :K].min(axis=1), "fde": fde[:, :K].min(axis=1), "single": ade[:, K]}
+        return {name: float(values.mean()) for name, values in nearest.items()}
+
+    def numbers(self) -> Numbers:
+        """Return the averaged numbers, not calibrated."""
+        return self.shapes | _plain(self.mean)
+
+    def weights(self) -> Mapping[str, Any]:
+        """Return the averaged numbers, calibrated on who is watched."""
+        return calibrated(self.numbers(), self.watched)
+
+    def state(self) -> Mapping[str, Any]:
+        """Return layers, optimiser and average."""
+        return {
+            "layers": dict(self.layers.state_dict()), "optimiser": self.optimiser.state_dict(), "mean": self.mean,
+        }  # fmt: skip
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Go back to a state."""
+        kept = tensors(dict(state), self.device)
+        self.layers.load_state_dict(kept["layers"])
+        self.optimiser.load_state_dict(kept["optimiser"])
+        self.mean = kept["mean"]
 
 
-def _pace(update: int, how: AnchorTraining) -> float:
+def _pace(update: int, total: int, how: AnchorTraining) -> float:
     if update < how.warm:
         return (update + 1) / how.warm
-    done = (update - how.warm) / max(1, how.updates - how.warm)
+    done = (update - how.warm) / max(1, total - how.warm)
     return float(0.5 + 0.5 * np.cos(np.pi * done))
 
 
 def _loss(layers: Any, fixed: dict[str, Any], shown: Batch, how: AnchorTraining, early: float) -> Any:
     """Return the loss of one batch; ``early`` falls from 1 to 0 over the training."""
-    import torch
-
     K = how.count
-    own, company, missed = (torch.from_numpy(np.ascontiguousarray(v)).float()
+    device = fixed["basis"].device
+    own, company, missed = (torch.from_numpy(np.ascontiguousarray(v)).float().to(device)
                             for v in (shown.own, shown.company, shown.missed))  # fmt: skip
-    found = outputs(layers, own, company, torch.from_numpy(shown.there))
+    found = outputs(layers, own, company, torch.from_numpy(shown.there).to(device))
     N = len(found)
     bend = fixed["centres"] + found[:, : RANK * K].reshape(N, K, RANK) * fixed["spread"]
     score, single, wide = found[:, RANK * K :].split([K, RANK, RANK], dim=1)
@@ -232,34 +288,6 @@ def _plain(mean: dict[str, Any]) -> Numbers:
     """Return the layers as arrays; the weight of a layer is ``[inputs, outputs]``."""
     found = {}
     for name, value in mean.items():
-        array = value.numpy().astype(np.float64)
+        array = value.cpu().numpy().astype(np.float64)
         found[name.replace(".", "_")] = array.T.copy() if name.endswith(".weight") else array
     return found
-
-
-def _mark(material: Material, how: AnchorTraining) -> str:
-    return f"{len(material)} people, {float(material.ahead.sum()):.6f}, {how}"
-
-
-def _kept(state: dict[str, Any], mean: dict[str, Any], keep: Path, update: int, mark: str) -> None:
-    """Write the state so that a kill at any moment leaves a whole file."""
-    import torch
-
-    new = keep.with_suffix(".new")
-    torch.save({n: s.state_dict() for n, s in state.items()} | {"mean": mean, "update": update, "mark": mark}, new)
-    os.replace(new, keep)
-
-
-def _resumed(state: dict[str, Any], mean: dict[str, Any], keep: Path | None, mark: str) -> int:
-    """Load the state when there is one; return the update to go on with."""
-    import torch
-
-    if keep is None or not keep.exists():
-        return 0
-    found = torch.load(keep, weights_only=True)
-    if found["mark"] != mark:
-        raise InputError(f"{keep} holds a training of other people or settings; remove it, or name another file")
-    for name, part in state.items():
-        part.load_state_dict(found[name])
-    mean.update(found["mean"])
-    return int(found["update"])

@@ -15,12 +15,17 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 from crowdbot.data import Windows
 from crowdbot.data.motion import bridged
+from crowdbot.prediction.anchors import misfit
+from crowdbot.prediction.own_frame import STEP as ROW
+from crowdbot.prediction.places import ALL, AUTO, FOLDS, fold_of, shipped
 from crowdbot.prediction.predictor import Predictor
 
 __all__ = ["LearnedPredictor", "whole_tracks"]
 
 Floats = NDArray[np.float64]
 
+ELSEWHERE = "eth"
+"""Shipped weights for places that are none of the five: those that saw all but this one, the smallest."""
 STEP = 0.02
 """Windows whose time step is off by more than this share do not fit."""
 
@@ -30,7 +35,8 @@ class LearnedPredictor(Predictor):
     """A predictor whose weights come from a file that ``crowdbot train`` made.
 
     Fields:
-        checkpoint: the file.
+        checkpoint: the file; or a place (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``) for the shipped weights
+            that were learned without it; or ``auto``: without the place that the recording is named after.
         device: ``cpu``, ``cuda`` or ``cuda:N``.
         digest: hash of the file, so that results which are kept belong to its content.
 
@@ -38,16 +44,19 @@ class LearnedPredictor(Predictor):
         InputError: there is no such file.
     """
 
-    checkpoint: str
+    checkpoint: str = AUTO
     device: str = "cpu"
     digest: str = field(init=False, repr=False, default="")
 
     def __post_init__(self) -> None:
+        if self.checkpoint == AUTO:
+            return
         try:
-            content = Path(self.checkpoint).read_bytes()
+            content = self.file("").read_bytes()
         except OSError as error:
             raise InputError(
-                f"the checkpoint {self.checkpoint!r} cannot be read ({error.strerror}); crowdbot train makes one"
+                f"the checkpoint {self.checkpoint!r} cannot be read ({error.strerror}); crowdbot train makes one, and"
+                f" shipped are {', '.join(FOLDS)}"
             ) from None
         object.__setattr__(self, "digest", hashlib.blake2b(content, digest_size=4).hexdigest())
 
@@ -58,9 +67,43 @@ class LearnedPredictor(Predictor):
 
     @property
     def name(self) -> str:
-        """Name on the command line, followed by folder, file and hash of the weights."""
+        """Name on the command line, followed by what weights it has: folder, file and hash when they are own ones."""
+        if self.shipped:
+            return self.kind + (f"(checkpoint={self.checkpoint})" if self.checkpoint != AUTO else "")
         file = Path(self.checkpoint)
         return f"{self.kind}({file.parent.name}/{file.name} {self.digest})"
+
+    @property
+    def shipped(self) -> bool:
+        """Whether weights of the package are used."""
+        return self.checkpoint in (AUTO, *FOLDS)
+
+    def file(self, source: str) -> Path:
+        """Return the file of the weights for a recording of this name."""
+        if not self.shipped:
+            return Path(self.checkpoint)
+        fold = fold_of(source) if self.checkpoint == AUTO else self.checkpoint
+        return shipped(self.kind, ELSEWHERE if fold == ALL else fold)
+
+    def note(self, past: Windows) -> str:
+        """Return what a user should know of forecasts of such windows in one sentence, or nothing."""
+        why = self.misfit(past)
+        if why:
+            return f"{self.kind}: {why}; a baseline answers instead"
+        if self.checkpoint == AUTO and fold_of(past.source) == ALL:
+            return (
+                f"{self.kind}: {past.source} is none of the five places it knows, so the weights learned at all of them"
+                f" but {ELSEWHERE} are used"
+            )
+        return ""
+
+    def misfit(self, past: Windows) -> str:
+        """Return why shipped weights do not fit these windows, or nothing; own weights speak for themselves."""
+        if not self.shipped:
+            return ""
+        if past.units == "m" and abs(past.dt - ROW) > STEP * ROW:
+            return f"{past.source} has steps of {past.dt:.4g} s, it was learned at {ROW} s: bring it there with --step {ROW}"
+        return misfit(past)
 
     @staticmethod
     def fits(past: Windows, facts: Mapping[str, Any], what: str) -> None:

@@ -80,6 +80,8 @@ class Generator(nn.Module):
         hidden = (hidden[0].repeat(draws, 1), hidden[1].repeat(draws, 1))  # [K * B * A, H]
         seen = sight.drawn(draws)  # [K * B, ...]
         rows = noise.reshape(draws * scenes * people, -1)  # [K * B * A, M]
+        if self.config.noise_gain > 0.0:
+            rows = (rows - 0.5) * self.config.noise_gain
         spoken = (torch.zeros_like(hidden[0]), torch.zeros_like(hidden[0]))  # k: [K * B * A, H]
         place, velocity = seen.place, seen.velocity  # [K * B, A, 2]
         places, states = [], []
@@ -87,7 +89,7 @@ class Generator(nn.Module):
             pooled = self.pooled(hidden[0], place, velocity, seen)  # [K * B * A, P]
             spoken = self.decoder(torch.cat([hidden[0], pooled, rows], dim=1), spoken)
             said = self.say(spoken[0]).view(-1, people, 2) * self.scales[1]  # [K * B, A, 2] m/s
-            velocity = seen.velocity + said if self.config.residual else said
+            velocity = seen.velocity + said if self.config.residual else said.float()
             moved = place + self.dt * velocity
             if plan is not None:
                 known = plan[:, step].repeat(draws, 1, 1)
@@ -126,11 +128,11 @@ class Generator(nn.Module):
         with torch.no_grad():
             delta = social_features(sight.origin + _turned(place, sight.turn), _turned(velocity, sight.turn))
             delta = delta / delta.new_tensor([self.scales[2], 1.0, self.scales[2]])
-            delta = torch.where(pairs[..., None], delta, 0.0)  # [B, A, A, 3]
+            delta = torch.where(pairs[..., None], delta, 0.0).transpose(1, 2).contiguous()  # [B, j, i, 3]
         mapped = hidden.view(count, people, -1)
         keys, values = self.keys(mapped), self.values(mapped)  # [B, A, P]
-        score = torch.einsum("bijp,bjp->bij", self.features(delta), keys) / self.config.pooled**0.5
-        weight = torch.softmax(score.masked_fill(~pairs, -1e9), dim=-1) * pairs  # [B, A, A]
+        score = (self.features(delta) @ keys[..., None])[..., 0].transpose(1, 2) / self.config.pooled**0.5  # [B, i, j]
+        weight = torch.softmax(score.float().masked_fill(~pairs, -1e9), dim=-1) * pairs  # [B, A, A]
         return torch.bmm(weight, values).flatten(0, 1)
 
 

@@ -42,6 +42,14 @@ class SocialWaysConfig:
         average: weights for predicting are a moving average with this factor over updates; 0 takes the last ones.
         decay: learning rates fall to 0 along a cosine.
         clip: largest norm of a gradient; 0 does not clip.
+        mixed: matrices of the generator are multiplied in bfloat16 while it learns (about twice as fast on processors
+            that know it), all else and all forecasts in float32.
+        noise_gain: codes and noise reach the network from their middle and so many times as large; the root of 12 gives
+            them variance 1, 0 leaves them in 0..1 as in the report.
+        slope_penalty: weight of the squared slope of the discriminator at true and drawn futures (Mescheder et al.
+            2018, doi 10.48550/arXiv.1801.04406, R1 + R2, by a small step aside as in Lin et al. 2025, doi
+            10.48550/arXiv.2501.08316); 0 does without.
+        slope_penalty_left: the penalty falls to this share of its weight between 30 and 90 % of the updates.
 
     Raises:
         InputError: a value is not allowed.
@@ -77,6 +85,10 @@ class SocialWaysConfig:
     average: float = 0.0
     decay: bool = False
     clip: float = 0.0
+    mixed: bool = False
+    noise_gain: float = 0.0
+    slope_penalty: float = 0.0
+    slope_penalty_left: float = 1.0
 
     def __post_init__(self) -> None:
         for name, known in (("adversarial", ADVERSARIAL), ("frame", FRAMES)):
@@ -86,6 +98,7 @@ class SocialWaysConfig:
         least = {"unrolling_steps": 0, "latent_codes": 0, "noise": 0, "variety_draws": 1, "batch": 1, "observe": 2}
         least |= {"predict": 1, "hidden": 1, "pooled": 1, "info_weight": 0, "l2_weight": 0, "variety_weight": 0}
         least |= {"adversarial_weight": 0, "scale_sd": 0, "average": 0, "clip": 0, "momentum": 0, "slope": 0}
+        least |= {"noise_gain": 0, "slope_penalty": 0}
         for name, low in least.items():
             if not getattr(self, name) >= low:
                 raise InputError(f"social ways: {name} = {getattr(self, name)} must be at least {low}")
@@ -95,6 +108,10 @@ class SocialWaysConfig:
         for name in ("momentum", "average"):
             if not getattr(self, name) < 1.0:
                 raise InputError(f"social ways: {name} = {getattr(self, name)} must be below 1")
+        if not 0.0 < self.slope_penalty_left <= 1.0:
+            raise InputError(
+                f"social ways: slope_penalty_left = {self.slope_penalty_left} must be above 0 and at most 1"
+            )
         if self.use_info_loss and self.latent_codes == 0:
             raise InputError("social ways: the information loss needs latent codes; set latent_codes or no info loss")
 
@@ -109,6 +126,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     "variety": {
         "use_variety_loss": True, "variety_weight": 10.0, "variety_draws": 10, "adversarial_weight": 0.1,
         "mirror": True, "reverse": True, "scale_sd": 0.3, "average": 0.995, "decay": True, "clip": 1.0,
+        "mixed": True,
     },
 }  # fmt: skip
 """``report``: the defaults; ``variety``: what is trained for the tables of best-of-20 errors."""

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import functools
+import math
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -11,7 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, Paper
 from crowdbot.data import Forecast, Windows
-from crowdbot.prediction.predictor import window_streams
+from crowdbot.prediction.constant import ConstantVelocity, SampledConstantVelocity
+from crowdbot.prediction.joint import before_walls, kept_apart
+from crowdbot.prediction.predictor import Predictor, window_streams
 
 from .checkpoint import load_checkpoint
 from .extra import device_of, tensors, threads, torch_module
@@ -28,6 +32,8 @@ __all__ = ["SocialWays", "SocialWaysNetwork"]
 Floats = NDArray[np.float64]
 
 KIND = "social-ways"
+TRIES = 3
+"""Where there are walls, each draw is the best of so many."""
 AT_ONCE = 4096
 """So many tracks (people times draws) go through the network together."""
 
@@ -144,8 +150,17 @@ class SocialWays(LearnedPredictor):
     that were not seen are filled in; somebody seen once is taken to have stood. One window after the other is
     predicted, so that a window alone gives the same bytes as in a batch.
 
+    Robots with a plan walk along it, and people see them there. Where the map has walls, every draw is the one of three
+    in which the fewest people walk through a wall, and who still would ends before it. Where the shipped
+    weights do not fit (other steps than 0.4 s, pixels), a baseline answers and a warning says so; own weights raise.
+
+    Fields:
+        contact: people of one draw are moved aside to stay so far apart [m]; 0, as in the report, leaves them alone.
+
     Paper: Amirian, Hayet, Pettré (2019), doi 10.48550/arXiv.1904.09507.
     """
+
+    contact: float = 0.0
 
     paper: ClassVar[Paper] = Paper(
         "Amirian, Hayet, Pettré",
@@ -155,15 +170,24 @@ class SocialWays(LearnedPredictor):
         "10.48550/arXiv.1904.09507",
     )
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0.0 <= self.contact < math.inf:
+            raise InputError(f"{KIND}: contact = {self.contact} m must be finite and at least 0")
+
     @property
     def kind(self) -> str:
         """Name on the command line."""
         return KIND
 
     @property
-    def network(self) -> SocialWaysNetwork:
-        """The network with its weights; read once."""
-        return _network(self.checkpoint, self.digest, self.device)
+    def name(self) -> str:
+        """Name on the command line, with what differs from a plain Social Ways."""
+        return super().name + (f"(contact={self.contact:g})" if self.contact else "")
+
+    def network(self, source: str = "") -> SocialWaysNetwork:
+        """Return the network with the weights for a recording of this name; read once."""
+        return _network(str(self.file(source)), self.digest, self.device)
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
         """Return where people will be, see :meth:`Predictor.predict`.
@@ -172,16 +196,35 @@ class SocialWays(LearnedPredictor):
             InputError: windows have another time step or other units than what was learned.
         """
         self.check(past, steps, samples)
-        network = self.network
+        why = self.misfit(past)
+        if why:
+            one: Predictor = ConstantVelocity() if samples == 1 else SampledConstantVelocity()
+            warnings.warn(f"{self.kind}: {why}; {one.name} answers instead", stacklevel=2)
+            return one.predict(past, steps, samples, rng)
+        network = self.network(past.source)
         self.fits(past, network.facts, self.name)
         W, _, A, _ = past.position.shape
         place = np.zeros((W, samples, steps, A, 2))
         for window, own in enumerate(window_streams(rng, W)):
             people = np.flatnonzero(past.present[window, -1])
             if len(people):
-                noise = own.random((samples, len(people), network.config.inputs))
-                place[window][:, :, people] = network.scene(_only(past[window : window + 1], people), noise, steps)
-        return self.forecast(past, place)
+                only = _only(past[window : window + 1], people)
+                place[window][:, :, people] = _drawn(network, only, steps, samples, own)
+        return self.forecast(past, kept_apart(past, place, self.contact))
+
+
+def _drawn(network: SocialWaysNetwork, past: Windows, steps: int, samples: int, rng: np.random.Generator) -> Floats:
+    """Return draws ``[K, T, A, 2]`` [m] of one window, none through a wall of it."""
+    people = np.arange(past.present.shape[2])
+    tries = TRIES if past.walls else 1
+    noise = rng.random((samples * tries, len(people), network.config.inputs))
+    place = network.scene(past, noise, steps)
+    if not past.walls:
+        return place
+    now = past.position[0, -1]
+    path, hit = before_walls(past, np.moveaxis(place - now, 2, 0), np.zeros_like(people), people)
+    chosen = np.argmin(hit.sum(axis=0).reshape(samples, tries), axis=1) + tries * np.arange(samples)
+    return np.asarray(now + np.moveaxis(path[:, chosen], 0, 2))
 
 
 @functools.lru_cache(maxsize=4)

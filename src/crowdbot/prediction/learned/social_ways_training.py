@@ -26,22 +26,24 @@ __all__ = ["SocialWaysTraining", "adversarial_loss", "learner", "variety_loss"]
 
 DRAWS, CHECKED = 20, 60
 """Errors are watched as the best of so many draws on at most so many scenes."""
+ASIDE = 0.01
+"""The slope of the discriminator is felt so far from a track, in units of the scales."""
 
 
 def learner(
-    settings: str, values: Mapping[str, str], samples: Samples, watched: Samples, seed: int, device: str
+    settings: str | None, values: Mapping[str, str], samples: Samples, watched: Samples, seed: int, device: str
 ) -> SocialWaysTraining:
     """Return Social Ways ready to train, as the command line asks for it.
 
     Args:
-        settings: name of a preset.
+        settings: name of a preset; None is ``report``.
         values: settings that differ, as text.
         samples, watched, seed, device: as of :class:`SocialWaysTraining`.
     """
     rows = {"observe": samples.observe, "predict": samples.predict}
     read = plug.read(SocialWaysConfig, dict(values))
     changed = {name.replace("-", "_"): getattr(read, name.replace("-", "_")) for name in values}
-    return SocialWaysTraining(preset(settings, rows | changed), samples, watched, seed, device)
+    return SocialWaysTraining(preset(settings or "report", rows | changed), samples, watched, seed, device)
 
 
 class _Lesson(NamedTuple):
@@ -92,8 +94,10 @@ class SocialWaysTraining(Trainable):
         self.generator.to(self.device)
         self.discriminator.to(self.device)
         betas = (config.momentum, 0.999)
-        self.of_generator = torch.optim.Adam(self.generator.parameters(), config.generator_rate, betas)
-        self.of_discriminator = torch.optim.Adam(self.discriminator.parameters(), config.discriminator_rate, betas)
+        self.of_generator = torch.optim.Adam(self.generator.parameters(), config.generator_rate, betas, fused=True)
+        self.of_discriminator = torch.optim.Adam(
+            self.discriminator.parameters(), config.discriminator_rate, betas, fused=True
+        )
         self.mean = {name: value.detach().clone() for name, value in self.generator.state_dict().items()}
 
     def batches(self, rng: np.random.Generator) -> list[Any]:
@@ -109,12 +113,13 @@ class SocialWaysTraining(Trainable):
         codes = noise[0][lesson.scored][:, : c.latent_codes]
         _, made = self._made(lesson, noise)  # one drawing serves both networks
         told = made[0].detach()
-        losses = self._discriminator_step(lesson, told, codes)
+        penalty = self._penalty(number / total)
+        losses = self._discriminator_step(lesson, told, codes, rng, penalty)
         kept = None
         if c.unrolling_steps:
             kept = copy.deepcopy((self.discriminator.state_dict(), self.of_discriminator.state_dict()))
             for _ in range(c.unrolling_steps):
-                self._discriminator_step(lesson, told, codes)
+                self._discriminator_step(lesson, told, codes, rng, penalty)
         losses |= self._generator_step(lesson, made, codes)
         if kept is not None:  # every layer and everything that Adam knows
             self.discriminator.load_state_dict(kept[0])
@@ -129,7 +134,7 @@ class SocialWaysTraining(Trainable):
         rng = stream(0, "check")
         sums = np.zeros(3)
         observe = self.samples.observe
-        for part in self.watched.batches(stream(0, "parts"), 4 * self.config.batch):
+        for part in self.watched.batches(stream(0, "parts"), self.config.batch):
             scenes = self.watched.batch(part)
             lesson = self._lesson(scenes)
             with torch.no_grad():
@@ -186,19 +191,30 @@ class SocialWaysTraining(Trainable):
 
     def _made(self, lesson: _Lesson, noise: Tensor) -> tuple[Tensor, Tensor]:
         """Return drawn positions ``[K, N, T, 2]`` [m] and states ``[K, N, T, 4]`` of those who count."""
-        place, state = self._rolled(lesson.sight, noise)
+        with torch.autocast(self.device.type, torch.bfloat16, enabled=self.config.mixed):
+            place, state = self._rolled(lesson.sight, noise)
         return place.transpose(2, 3)[:, lesson.scored], state.transpose(2, 3)[:, lesson.scored]
 
-    def _discriminator_step(self, lesson: _Lesson, made: Tensor, codes: Tensor) -> dict[str, float]:
-        real, _ = self.discriminator(lesson.observed, lesson.future)
-        fake, read = self.discriminator(lesson.observed, made)
+    def _discriminator_step(
+        self, lesson: _Lesson, made: Tensor, codes: Tensor, rng: np.random.Generator, penalty: float
+    ) -> dict[str, float]:
+        both = torch.cat([lesson.future, made])  # [2 N, T, 4]: true ones, then drawn ones
+        asked = both
+        if penalty > 0.0:
+            aside = torch.as_tensor(rng.standard_normal(both.shape, dtype=np.float32), device=self.device)
+            asked = torch.cat([both, both + ASIDE * aside])
+        said, read = self.discriminator(lesson.observed.repeat(len(asked) // len(made), 1, 1), asked)
+        real, fake, *others = said.split(len(made))
         told = adversarial_loss(real, True, self.config) + adversarial_loss(fake, False, self.config)
-        loss = told + self._info(read, codes)
+        loss = told + self._info(read[len(made) : len(both)], codes)
+        for here, there in zip((real, fake), others, strict=False):
+            loss = loss + 0.5 * penalty * ((there - here) / ASIDE).square().mean()
         self._stepped(loss, self.of_discriminator, self.discriminator)
         return {"discriminator": float(told.detach())}
 
     def _generator_step(self, lesson: _Lesson, made: Tensor, codes: Tensor) -> dict[str, float]:
         c = self.config
+        self.discriminator.requires_grad_(False)  # it only passes on what the generator should change
         fake, read = self.discriminator(lesson.observed, made[0])
         parts = {"adversarial": c.adversarial_weight * adversarial_loss(fake, True, c)}
         if c.use_info_loss:
@@ -209,7 +225,13 @@ class SocialWaysTraining(Trainable):
         if c.use_variety_loss:
             parts["variety"] = c.variety_weight * variety_loss(made[..., :2], true)
         self._stepped(torch.stack(list(parts.values())).sum(), self.of_generator, self.generator)
+        self.discriminator.requires_grad_(True)
         return {name: float(value.detach()) for name, value in parts.items()}
+
+    def _penalty(self, done: float) -> float:
+        """Return the weight of the slope penalty when this share of the updates is done."""
+        fallen = min(1.0, max(0.0, (done - 0.3) / 0.6))
+        return float(self.config.slope_penalty * self.config.slope_penalty_left**fallen)
 
     def _info(self, read: Tensor, codes: Tensor) -> Tensor:
         """Return the loss of information: a normal density around what is read, so a squared distance."""

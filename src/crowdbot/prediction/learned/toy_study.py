@@ -19,6 +19,11 @@ from .toy import Toy
 
 __all__ = ["MEASURES", "METHODS", "Run", "ToyStudy", "with_values"]
 
+STEADY: dict[str, Any] = {
+    "slope_penalty": 0.002, "slope_penalty_left": 0.1, "noise_gain": 12.0**0.5, "momentum": 0.0, "decay": True,
+    "generator_rate": 2e-3, "discriminator_rate": 2e-3, "average": 0.99,
+}  # fmt: skip
+"""What keeps all modes on the toy set: a discriminator that learns as fast as the generator and is not steep."""
 METHODS: dict[str, dict[str, Any]] = {
     "vanilla": {},
     "l2": {"use_l2_loss": True},
@@ -27,8 +32,14 @@ METHODS: dict[str, dict[str, Any]] = {
     "info": {"use_info_loss": True},
     "info+unrolled5": {"use_info_loss": True, "unrolling_steps": 5},
     "unrolled10+l2": {"unrolling_steps": 10, "use_l2_loss": True},
-}
-"""What figures 17 and 18 of the report compare, and how each differs from a plain GAN."""
+    "info+rates-of-code": {
+        "use_info_loss": True, "generator_rate": 1e-4, "discriminator_rate": 1e-3, "adversarial": "least-squares"
+    },
+    "vanilla+slope-penalty": STEADY,
+    "info+slope-penalty": {"use_info_loss": True, **STEADY},
+}  # fmt: skip
+"""What figures 17 and 18 of the report compare (the first seven), what its published code sets instead, and what this
+code adds; each with how it differs from a plain GAN with the settings of the report."""
 MEASURES = ("nearest_neighbor", "emd", "modes", "coverage", "whole", "nearest_neighbor_20", "emd_20")
 """What is measured, see :func:`~crowdbot.prediction.learned.toy_training.compared`."""
 SHOWN = 128
@@ -83,11 +94,11 @@ class ToyStudy:
             raise InputError("a GAN study needs at least one method and one seed")
 
     def run(self, folder: Path | None = None, workers: int = 1) -> Iterator[Run]:
-        """Yield the runs as they are done; what the folder holds of them is not done again."""
+        """Yield the runs as they are done, seed by seed; what the folder holds of them is not done again."""
         jobs = [
             (self, method, seed, None if folder is None else folder / f"{method}-{seed}")
-            for method in self.methods
             for seed in self.seeds
+            for method in self.methods
         ]
         for _, run in each(_trained, jobs, workers):
             yield run
@@ -109,12 +120,13 @@ class ToyStudy:
         return real_paths(self.toy, stream(number, "ideal"))
 
     @staticmethod
-    def rows(runs: Sequence[Run], last: int = 5) -> list[dict[str, Any]]:
-        """Return a line for each method: its measures, means over the last measurements of each seed, and their sd."""
+    def rows(runs: Sequence[Run]) -> list[dict[str, Any]]:
+        """Return a line for each method: means over the last quarter of the measurements of each seed, and their sd."""
         found = []
         for method in dict.fromkeys(run.method for run in runs):
             own = [run for run in runs if run.method == method]
             row: dict[str, Any] = {"method": method, "seeds": len(own), "updates": int(own[0].update[-1])}
+            last = max(1, len(own[0].update) // 4)
             for name in MEASURES:
                 ends = [float(run.measures[name][-last:].mean()) for run in own]
                 row[name], row[f"{name}_sd"] = float(np.mean(ends)), float(np.std(ends))

@@ -30,11 +30,16 @@ class LensCamera(Protocol):
     """What a camera of :mod:`crowdbot.sensors` has: a lens, and the limits of what is drawn [m]."""
 
     @property
-    def lens(self) -> Lens: ...
+    def lens(self) -> Lens:
+        """Its intrinsics."""
+
     @property
-    def near(self) -> float: ...
+    def near(self) -> float:
+        """What is nearer is not drawn [m]."""
+
     @property
-    def far(self) -> float: ...
+    def far(self) -> float:
+        """What is farther is not drawn [m]."""
 
 
 class Studio:

@@ -1,0 +1,81 @@
+"""Seats: what people sit on, from a plain chair to the wheelchair that ships."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core.errors import InputError
+
+__all__ = ["CHAIR", "WHEELCHAIR", "Seat", "seat_rows"]
+
+Floats = NDArray[np.float64]
+Point = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Seat:
+    """A seat, in a frame that lies on the floor at the person's position, x to where the person looks.
+
+    Args:
+        height: of the seat [m].
+        ahead: how far the hips are ahead of the position [m].
+        recline: of the trunk [rad]; 0 sits upright.
+        feet: where the left heel rests [m]; the right one mirrors it; None puts the feet on the floor. Feet of who is
+            too short hang.
+        slope: of the foot rests, toes up [rad].
+        hands: where the left wrist lies [m]; the right one mirrors it; None lays the hands on the thighs.
+
+    Raises:
+        InputError: a number is not finite, or ``height`` is not 0.2 to 1.2 m.
+
+    >>> WHEELCHAIR.height, CHAIR.feet
+    (0.555, None)
+    """
+
+    height: float = 0.46
+    ahead: float = 0.0
+    recline: float = 0.0
+    feet: Point | None = None
+    slope: float = 0.0
+    hands: Point | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what is no seat."""
+        if not np.all(np.isfinite(self.row)):
+            raise InputError(f"Seat: {self} has a value that is not finite")
+        if not 0.2 <= self.height <= 1.2:
+            raise InputError(f"Seat: height = {self.height} m is not 0.2 to 1.2 m")
+
+    @property
+    def row(self) -> list[float]:
+        """The numbers for the kernels: height, ahead, recline, slope, feet there, x, y, z, hands there, x, y, z."""
+        feet, hands = self.feet or (0.0, 0.0, 0.0), self.hands or (0.0, 0.0, 0.0)
+        there = [float(self.feet is not None), float(self.hands is not None)]
+        return [self.height, self.ahead, self.recline, self.slope, there[0], *feet, there[1], *hands]
+
+
+CHAIR = Seat()
+"""A chair: seat at 0.46 m, feet on the floor, hips at the position."""
+WHEELCHAIR = Seat(
+    height=0.555, ahead=-0.075, recline=0.17, feet=(0.39, 0.1, 0.1446), slope=0.1, hands=(0.09, 0.262, 0.79)
+)
+"""The robot ``wheelchair`` that ships: the position is that of its ``base_link``, which the person rides along with."""
+
+
+def seat_rows(seat: Seat | Sequence[Seat], count: int) -> Floats:
+    """Return the numbers of one seat for all or of one for each, ``[N, 12]``.
+
+    Raises:
+        InputError: the number of seats is not ``count``.
+
+    >>> seat_rows(CHAIR, 2).shape
+    (2, 12)
+    """
+    seats = [seat] * count if isinstance(seat, Seat) else list(seat)
+    if len(seats) != count:
+        raise InputError(f"Gait: {len(seats)} seats are given for {count} people; give one, or one for each")
+    return np.array([one.row for one in seats], dtype=np.float64).reshape(count, 12)

@@ -1,0 +1,116 @@
+"""Draws the report's figure 19: Social Ways and a Vanilla GAN on two places of the Stanford Drone Dataset.
+
+    python tools/sdd_modes.py SDD TRAJNET OUT --updates 600
+
+SDD holds gates/video2/annotations.txt, TRAJNET holds Train/stanford/hyang_6.txt. Both networks see the coordinates of
+the place, as in the report, learn from the first four fifths in time and draw 128 futures of people of the last fifth.
+A mode is a place where at least a tenth of the draws end within 1 m; the next is looked for among the draws that are
+more than 2 m away from it.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core import stream
+from crowdbot.data import Trajectories, Windows, load
+from crowdbot.prediction.learned.extra import threads
+from crowdbot.prediction.learned.samples import Samples
+from crowdbot.prediction.learned.social_ways_predictor import SocialWays
+from crowdbot.prediction.learned.training import BEST, Schedule, train
+
+SCALE = 0.0373
+"""Metres of a pixel in gates/video2, as estimated_scales.yaml says."""
+DRAWS, SHOWN, ROWS = 128, 5, 12
+METHODS = {
+    "social ways": ("variety", {"frame": "world", "mirror": "false", "reverse": "false", "scale-sd": "0"}),
+    "vanilla": ("report", {"frame": "world", "use-info-loss": "false", "latent-codes": "0"}),
+}
+Windowed = tuple[Windows, Windows]
+
+
+def places(options: argparse.Namespace) -> dict[str, Trajectories]:
+    """Return both recordings in metres at 0.4 s."""
+    raw = load(options.sdd / "gates" / "video2" / "annotations.txt").resample(0.4)
+    gates = Trajectories(
+        raw.id, raw.frame, SCALE * raw.x, SCALE * raw.y, frame_rate=1.0 / raw.dt, frame_step=raw.frame_step,
+        name="gates-2",
+    )  # fmt: skip
+    return {"hyang-6": load(options.trajnet / "Train" / "stanford" / "hyang_6.txt", fps=2.5), "gates-2": gates}
+
+
+def drawn(options: argparse.Namespace, place: str, method: str, learned: Windowed, asked: Windowed) -> np.ndarray:
+    """Return futures ``[N, 128, T, 2]`` [m] of everyone scored."""
+    from crowdbot.prediction.learned.social_ways_training import learner
+
+    settings, values = METHODS[method]
+    samples, folder = Samples.cut(*learned, place), options.out / f"{place}-{method.replace(' ', '-')}"
+    model = learner(settings, values, samples, samples, 0, "cpu")
+    with threads():
+        train(model, Schedule(options.updates, check_every=options.updates, keep_every=100), folder, resume=True)
+    past, future = asked
+    window, person = np.nonzero(future.scored)
+    found = SocialWays(str(folder / BEST)).predict(past, ROWS, DRAWS, stream(0, "draws"))
+    return found.position[window, :, :, person]
+
+
+def modes(paths: np.ndarray) -> int:
+    """Return how many modes the ends of draws ``[K, T, 2]`` have."""
+    left, count = paths[:, -1], 0
+    while len(left):
+        near = np.linalg.norm(left[:, None] - left, axis=-1)
+        middle = int((near <= 1.0).sum(axis=1).argmax())
+        if (near[middle] <= 1.0).sum() < 0.1 * len(paths):
+            break
+        count, left = count + 1, left[near[middle] > 2.0]
+    return count
+
+
+def main() -> None:
+    """Train, count and draw."""
+    from matplotlib.figure import Figure
+
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("sdd", type=Path)
+    parser.add_argument("trajnet", type=Path)
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--updates", type=int, default=600)
+    options = parser.parse_args()
+    figure = Figure(figsize=(3.2 * SHOWN, 12.8), layout="constrained")
+    grid: Any = figure.subplots(4, SHOWN)
+    for number, (place, tracks) in enumerate(places(options).items()):
+        learned, asked = tracks.windows(protocol="timesplit-train"), tracks.windows(protocol="timesplit")
+        past, future = asked
+        window, person = np.nonzero(future.scored)
+        truth, seen = future.position[window, :, person], past.position[window, :, person]
+        walked = np.flatnonzero(np.linalg.norm(truth[:, -1] - seen[:, -1], axis=1) > 3.0)
+        chosen = walked[np.linspace(0, len(walked) - 1, SHOWN).round().astype(int)]
+        for row, method in enumerate(METHODS):
+            paths = drawn(options, place, method, learned, asked)
+            count = np.array([modes(one) for one in paths])
+            error = np.linalg.norm(paths[:, :20] - truth[:, None], axis=-1)
+            best = error.mean(axis=2).min(axis=1).mean(), error[:, :, -1].min(axis=1).mean()
+            spread = paths[:, :, -1].std(axis=1).mean()
+            print(f"{place}, {method}: {len(paths)} people, {count[walked].mean():.2f} modes of who walks over 3 m,"
+                  f" {np.mean(count[walked] > 1):.0%} of them with several; ends scatter {spread:.2f} m;"
+                  f" best of 20 {best[0]:.3f}/{best[1]:.3f} m", flush=True)  # fmt: skip
+            for axes, who in zip(grid[2 * number + row], chosen, strict=True):
+                axes.plot(*tracks.position.T, ",", color="0.8", zorder=0)
+                start = np.broadcast_to(seen[who, -1], (DRAWS, 1, 2))
+                axes.plot(*np.moveaxis(np.concatenate([start, paths[who]], axis=1), -1, 0).swapaxes(1, 2),
+                          color="#e69f00", lw=0.5, alpha=0.4)  # fmt: skip
+                axes.plot(*seen[who].T, "-o", color="#0072b2", ms=2.5)
+                axes.plot(*truth[who].T, "-", color="#009e73", lw=1.6)
+                middle = (seen[who, -1] + truth[who, -1]) / 2.0
+                axes.set(xlim=middle[0] + np.array([-9, 9]), ylim=middle[1] + np.array([-9, 9]), aspect="equal",
+                         xticks=[], yticks=[], title=f"{place}, {method}: {count[who]} modes")  # fmt: skip
+                axes.title.set_fontsize(9)
+    figure.savefig(options.out / "sdd.png", dpi=80, metadata={"Software": None})
+
+
+if __name__ == "__main__":
+    main()
