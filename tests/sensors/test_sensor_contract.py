@@ -209,7 +209,7 @@ def test_every_noise_composes_on_every_range_sensor(name):
 
 
 def test_the_room_shows_its_contracts():
-    expected = {"lidar2d", "lidar3d", "ultrasound", "infrared", "depth-camera", "bumper", "imu"}
+    expected = {"lidar2d", "lidar3d", "ultrasound", "infrared", "depth-camera", "rgbcamera", "bumper", "imu"}
     assert expected | {"wheel-odometry", "ground-truth-people"} == set(SENSORS)
     assert set(NOISES) == set(EXAMPLES)
     assert all(hasattr(sensors, name) for name in sensors.__all__)

@@ -54,7 +54,7 @@ def embodied(world):
 def test_rays_equal_mujocos_on_people_walls_and_props(world, height):
     """To 1e-9 on limbs, walls, floor and boxes; the engine gets the limbs of the walk, not those that lag behind."""
     scene = embodied(world)
-    assert scene.active[0].sum() > 6
+    assert scene.active[0].sum() > 5
     slots = np.flatnonzero(world._passers.agent >= 0)
     held = world._passers  # limbs of who was touched lag behind the walk, so the engine gets the walk
     place = scene.position[0, held.agent[slots]]

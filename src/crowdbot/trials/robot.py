@@ -97,8 +97,8 @@ class Robot:
 
     >>> from crowdbot.navigation import Straight
     >>> robot = Robot(type="turtlebot2", x=0, y=0, goal=Goal(5, 0), navigator=Straight())
-    >>> robot.drive.max_speed, round(robot.radius, 3), [mount.name for mount in robot.sensors]
-    (0.65, 0.232, ['laser'])
+    >>> robot.drive.max_speed, round(robot.radius, 3), robot.sensors[0].name
+    (0.65, 0.232, 'laser')
     """
 
     name: str = attribute("robot", about="first part of its topics", pattern=NAME)

@@ -102,7 +102,10 @@ class LearnedPredictor(Predictor):
         if not self.shipped:
             return ""
         if past.units == "m" and abs(past.dt - ROW) > STEP * ROW:
-            return f"{past.source} has steps of {past.dt:.4g} s, it was learned at {ROW} s: bring it there with --step {ROW}"
+            return (
+                f"{past.source} has steps of {past.dt:.4g} s, it was learned at {ROW} s:"
+                f" bring it there with --step {ROW}"
+            )
         return misfit(past)
 
     @staticmethod
