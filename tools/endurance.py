@@ -84,9 +84,8 @@ def run(minutes: float, people: int) -> None:
         some = [event for event in events if event.first.kind == kind]
         for name in ("impact_speed", "peak_force", "steady_force", "simulated_peak", "severity") if some else ():
             shares = np.percentile([getattr(event, name) for event in some], (50, 90, 100))
-            print(
-                f"{len(some)} with a {kind}: {name} median {shares[0]:.2f}, 90 % {shares[1]:.2f}, largest {shares[2]:.2f}"
-            )
+            middle, most, worst = shares.round(2)
+            print(f"{len(some)} with a {kind}: {name} median {middle}, 90 % {most}, largest {worst}")
 
 
 if __name__ == "__main__":
