@@ -89,8 +89,9 @@ class Mount:
 class Robot:
     """A robot: where it begins and has to go, what it is, what it sees with and who steers it.
 
-    With a type it has the drive, size and sensors of that robot, colour cameras only when asked; what is given here counts instead, and sensors come on
-    top (or, with the name of one of the type, in its place). Without one it is an upright cylinder with a drive.
+    With a type it has the drive, size and sensors of that robot, colour cameras only when asked; what is given here counts
+    instead, and sensors come on top (or, with the name of one of the type, in its place). Without one it is an upright
+    cylinder with a drive.
 
     Raises:
         InputError: a value is not allowed, there is no such type, or a sensor sits on no link.
@@ -150,8 +151,10 @@ class Robot:
         if self.type and (self.height, self.mass) != (usual["height"], usual["mass"]):
             raise InputError(f"has height or mass beside type={shown(self.type)}, which has its own; leave them out")
         if self.cameras and not any(_drawn(mount) for mount in usual["sensors"]):
-            raise InputError('has cameras="true" but none would come: it needs a type with colour cameras, such as pepper,'
-                             ' and its sensors')  # fmt: skip
+            raise InputError(
+                'has cameras="true" but none would come: it needs a type with colour cameras, such as pepper, and its'
+                " sensors; leave it out"
+            )
         for mount in self.sensors:
             links = self.body.model.links
             if mount.link and mount.link not in links:
