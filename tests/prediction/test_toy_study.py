@@ -57,6 +57,21 @@ def test_noise_is_centred_and_made_larger() -> None:
     assert many > 3.0 * few  # before anything is learned
 
 
+def test_codes_of_one_step_are_the_same_and_the_rest_of_the_noise_is_left() -> None:
+    model = trained(0, code_levels=3, noise_gain=10.0)
+    lesson = model._lesson(model.samples.batch(np.arange(1)))
+
+    def drawn(code: float, rest: float = 0.5) -> torch.Tensor:
+        noise = torch.full((1, 1, 1, model.config.inputs), rest)
+        noise[..., : model.config.latent_codes] = code
+        return torch.as_tensor(model.generator(lesson.sight, noise, 2)[0])
+
+    assert torch.equal(drawn(0.05), drawn(0.3))
+    assert torch.equal(drawn(0.7), drawn(1.0))  # noise of exactly 1 belongs to the last step
+    assert not torch.allclose(drawn(0.3), drawn(0.4))
+    assert not torch.allclose(drawn(0.3), drawn(0.3, rest=0.6))
+
+
 def test_the_penalty_is_the_squared_slope_and_makes_it_smaller() -> None:
     """The small step aside gives the derivative's square on average, and training with it keeps slopes low."""
     model = trained(0)
@@ -90,6 +105,8 @@ def test_wrong_settings_are_said() -> None:
         SocialWaysConfig(slope_penalty_left=0.0)
     with pytest.raises(InputError, match="slope_penalty = -1.0 must be at least 0"):
         SocialWaysConfig(slope_penalty=-1.0)
+    with pytest.raises(InputError, match="code_levels = -1 must be at least 0"):
+        SocialWaysConfig(code_levels=-1)
     with pytest.raises(InputError, match="noise_gain = -1.0 must be at least 0"):
         SocialWaysConfig(noise_gain=-1.0)
 

@@ -80,6 +80,10 @@ class Generator(nn.Module):
         hidden = (hidden[0].repeat(draws, 1), hidden[1].repeat(draws, 1))  # [K * B * A, H]
         seen = sight.drawn(draws)  # [K * B, ...]
         rows = noise.reshape(draws * scenes * people, -1)  # [K * B * A, M]
+        if self.config.code_levels > 0:
+            codes, rest = rows.split([self.config.latent_codes, self.config.noise], dim=1)
+            levels = self.config.code_levels  # noise of exactly 1 belongs to the last step
+            rows = torch.cat([((codes * levels).floor().clamp(max=levels - 1) + 0.5) / levels, rest], dim=1)
         if self.config.noise_gain > 0.0:
             rows = (rows - 0.5) * self.config.noise_gain
         spoken = (torch.zeros_like(hidden[0]), torch.zeros_like(hidden[0]))  # k: [K * B * A, H]

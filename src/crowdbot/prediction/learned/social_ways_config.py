@@ -46,6 +46,8 @@ class SocialWaysConfig:
             that know it), all else and all forecasts in float32.
         noise_gain: codes and noise reach the network from their middle and so many times as large; the root of 12 gives
             them variance 1, 0 leaves them in 0..1 as in the report.
+        code_levels: the network sees codes as the middles of so many equal steps of 0..1, so that it may jump from one
+            way to another; 0 leaves them continuous as in the report.
         slope_penalty: weight of the squared slope of the discriminator at true and drawn futures (Mescheder et al.
             2018, doi 10.48550/arXiv.1801.04406, R1 + R2, by a small step aside as in Lin et al. 2025, doi
             10.48550/arXiv.2501.08316); 0 does without.
@@ -87,6 +89,7 @@ class SocialWaysConfig:
     clip: float = 0.0
     mixed: bool = False
     noise_gain: float = 0.0
+    code_levels: int = 0
     slope_penalty: float = 0.0
     slope_penalty_left: float = 1.0
 
@@ -98,7 +101,7 @@ class SocialWaysConfig:
         least = {"unrolling_steps": 0, "latent_codes": 0, "noise": 0, "variety_draws": 1, "batch": 1, "observe": 2}
         least |= {"predict": 1, "hidden": 1, "pooled": 1, "info_weight": 0, "l2_weight": 0, "variety_weight": 0}
         least |= {"adversarial_weight": 0, "scale_sd": 0, "average": 0, "clip": 0, "momentum": 0, "slope": 0}
-        least |= {"noise_gain": 0, "slope_penalty": 0}
+        least |= {"noise_gain": 0, "code_levels": 0, "slope_penalty": 0}
         for name, low in least.items():
             if not getattr(self, name) >= low:
                 raise InputError(f"social ways: {name} = {getattr(self, name)} must be at least {low}")

@@ -76,7 +76,7 @@ def sight_of(
     velocity = np.diff(seen.local[:, -2:], axis=1)[:, 0] / scales.dt
 
     def tensor(values: NDArray[Any]) -> Tensor:
-        return torch.as_tensor(np.array(values, dtype=np.float32), device=device)
+        return torch.as_tensor(np.array(values, dtype=np.float32), device=device)  # a copy: some are views to read only
 
     mask = torch.as_tensor(here, device=device)
     state = tensor(states_of(seen.local, scales))
