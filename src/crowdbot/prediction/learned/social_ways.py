@@ -81,7 +81,7 @@ class Generator(nn.Module):
         seen = sight.drawn(draws)  # [K * B, ...]
         rows = noise.reshape(draws * scenes * people, -1)  # [K * B * A, M]
         if self.config.code_levels > 0:
-            codes, rest = rows.split([self.config.latent_codes, self.config.noise], dim=1)
+            codes, rest = rows[:, : self.config.latent_codes], rows[:, self.config.latent_codes :]
             levels = self.config.code_levels  # noise of exactly 1 belongs to the last step
             rows = torch.cat([((codes * levels).floor().clamp(max=levels - 1) + 0.5) / levels, rest], dim=1)
         if self.config.noise_gain > 0.0:
