@@ -89,9 +89,9 @@ class Mount:
 class Robot:
     """A robot: where it begins and has to go, what it is, what it sees with and who steers it.
 
-    With a type it has the drive, size and sensors of that robot, colour cameras only when asked; what is given here counts
-    instead, and sensors come on top (or, with the name of one of the type, in its place). Without one it is an upright
-    cylinder with a drive.
+    With a type it has the drive, size and sensors of that robot, colour cameras only when asked; what is given here
+    counts instead, and sensors come on top (or, with the name of one of the type, in its place). Without one it is an
+    upright cylinder with a drive.
 
     Raises:
         InputError: a value is not allowed, there is no such type, or a sensor sits on no link.
