@@ -221,7 +221,11 @@ MISTAKES = {
     "timing": ('"regular"', '"regulr"', r':23: <source> timing="regulr" must be poisson or regular, did you mean'),
     "end before begin": ('begin="2"', 'begin="20"', r":23: <source> begin 20 s must be before end 15 s"),
     "most": ('most="90"', 'most="-1"', r':22: <source> most="-1" must be at least 0'),
-    "radius of a body": ('radius="0.2"', 'radius="uniform(0, 1)"', r"must be above 0 m and at most 5 m, and it reaches from 0 to 1"),
+    "radius of a body": (
+        'radius="0.2"',
+        'radius="uniform(0, 1)"',
+        r"must be above 0 m and at most 5 m, and it reaches from 0 to 1",
+    ),
     "crowd of people": (
         'most="90"',
         'begin="1" speed="1" radius="2" most="9" arrival="leave"',

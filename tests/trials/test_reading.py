@@ -159,8 +159,16 @@ MISTAKES = {
         'rais="90"',
         r":14: <sensor> has no attribute 'rais', did you mean 'rays'\?; it takes .*heading",
     ),
-    "negative radius": ('radius="0.25"', 'radius="-0.25"', r':9: <spawner> radius="-0.25" must be above 0 m and at most 5 m$'),
-    "negative radius of a robot": ('radius="0.3"', 'radius="-1"', r':10: <robot> radius="-1" must be above 0 m and at most 10 m$'),
+    "negative radius": (
+        'radius="0.25"',
+        'radius="-0.25"',
+        r':9: <spawner> radius="-0.25" must be above 0 m and at most 5 m$',
+    ),
+    "negative radius of a robot": (
+        'radius="0.3"',
+        'radius="-1"',
+        r':10: <robot> radius="-1" must be above 0 m and at most 10 m$',
+    ),
     "radius that can be negative": (
         'radius="0.25"',
         'radius="normal(0.2, 0.1)"',

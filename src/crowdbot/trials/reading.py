@@ -44,7 +44,7 @@ def read_trial(text: str | bytes, *, place: str = "trial", folder: Path | None =
 
     >>> read_trial('<trial name="t" duration="-1"><crowd type="orca" time-horizn="2"/></trial>')
     Traceback (most recent call last):
-    crowdbot.core.errors.TrialError: trial:1: <trial> duration="-1" must be above 0 s
+    crowdbot.core.errors.TrialError: trial:1: <trial> duration="-1" must be above 0 s and at most 86400 s
     trial:1: <crowd> has no attribute 'time-horizn', did you mean 'time-horizon'?; it takes neighbor-distance, \
 max-neighbors, time-horizon, time-horizon-walls, max-speed, name
     """
@@ -270,7 +270,7 @@ def _made(cls: type, attributes: dict[str, str]) -> tuple[Any, list[str]]:
     """
     if plug.problems(cls, attributes):
         return None, []
-    said = []
+    said: list[str] = []
     while True:
         made, sentence = _tried(cls, attributes)
         if not sentence:
