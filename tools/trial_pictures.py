@@ -132,6 +132,15 @@ def page(file: Path) -> None:
         about = load_trial(name).about
         options = "" if preset is None else "<br>".join(f"`{key}` {option}" for key, option in preset.own.items())
         lines.append(f"| **{name}**<br>{about} | ![{name}]({name}.png) | {options} |")
+    lines += [
+        "",
+        "## A long one",
+        "",
+        "[thousand.xml](thousand.xml) is not built in: a thousand people walk both ways for ten minutes, with a robot",
+        "among them, in a corridor of 100 m by 20 m without ends.",
+        "`crowdbot run docs/trials/thousand.xml --out DIR` runs and records it with a progress bar;",
+        "`python tools/long_trial.py DIR` prints its speed against real time, and the memory at quarters of the run.",
+    ]
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 

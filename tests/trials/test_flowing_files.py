@@ -116,7 +116,7 @@ def test_any_flow_survives_the_way_through_xml(trial: Trial) -> None:
 
 
 MISTAKES = {
-    "radius of ways": ('radius="0.25"', 'radius="0"', r':7: <routing> radius="0" must be above 0 m$'),
+    "radius of ways": ('radius="0.25"', 'radius="0"', r':7: <routing> radius="0" must be above 0 m and at most 10 m$'),
     "unreachable": (
         '"nearest"/>',
         '"neerest"/>',
@@ -221,7 +221,11 @@ MISTAKES = {
     "timing": ('"regular"', '"regulr"', r':23: <source> timing="regulr" must be poisson or regular, did you mean'),
     "end before begin": ('begin="2"', 'begin="20"', r":23: <source> begin 20 s must be before end 15 s"),
     "most": ('most="90"', 'most="-1"', r':22: <source> most="-1" must be at least 0'),
-    "radius of a body": ('radius="0.2"', 'radius="uniform(0, 1)"', r"must be above 0 m, and it reaches from 0 to 1"),
+    "radius of a body": (
+        'radius="0.2"',
+        'radius="uniform(0, 1)"',
+        r"must be above 0 m and at most 5 m, and it reaches from 0 to 1",
+    ),
     "crowd of people": (
         'most="90"',
         'begin="1" speed="1" radius="2" most="9" arrival="leave"',

@@ -160,12 +160,20 @@ MISTAKES = {
         'rais="90"',
         r":14: <sensor> has no attribute 'rais', did you mean 'rays'\?; it takes .*heading",
     ),
-    "negative radius": ('radius="0.25"', 'radius="-0.25"', r':9: <spawner> radius="-0.25" must be above 0 m$'),
-    "negative radius of a robot": ('radius="0.3"', 'radius="-1"', r':10: <robot> radius="-1" must be above 0 m$'),
+    "negative radius": (
+        'radius="0.25"',
+        'radius="-0.25"',
+        r':9: <spawner> radius="-0.25" must be above 0 m and at most 5 m$',
+    ),
+    "negative radius of a robot": (
+        'radius="0.3"',
+        'radius="-1"',
+        r':10: <robot> radius="-1" must be above 0 m and at most 10 m$',
+    ),
     "radius that can be negative": (
         'radius="0.25"',
         'radius="normal(0.2, 0.1)"',
-        r"must be above 0 m, and it reaches from -0.1 to 0.5",
+        r"must be above 0 m and at most 5 m, and it reaches from -0.1 to 0.5",
     ),
     "nan": ('duration="4"', 'duration="nan"', r':2: <trial> duration="nan" is not finite'),
     "infinite": ('x="-2"', 'x="1e999"', r':10: <robot> x="1e999" is not finite'),
@@ -296,6 +304,61 @@ def test_all_mistakes_are_said_at_once_in_the_order_of_the_lines() -> None:
     assert lines == sorted(lines)
     assert {2, 7, 8, 9, 14, 16} <= set(lines)
     assert lines.count(14) == 2, found.value.problems
+
+
+HIDDEN = """<trial name="bad">
+  <stage area="no.wkt" map="no.yaml" wall-height="-1"/>
+  <crowd type="orca" time-horizon="-1" max-neighbors="-3" nosuch="1"/>
+  <agent x="1" y="1" body="womn man" activity="fone tlk" speed="-1"/>
+  <spawner count="-1" zone="0,0 1,0 1,1" goal="0,0 1,0 1,1" body="womn"/>
+  <recorded data="none.txt" mode="reactiv"/>
+  <robot type="peper" x="2" y="2" radius="-1">
+    <goal x="3" y="2"/>
+    <sensor type="lidar2d" rays="-4" range-max="-1" rate="x"/>
+  </robot>
+</trial>
+"""
+
+
+def test_no_mistake_hides_another_in_its_element(tmp_path: Path) -> None:
+    with pytest.raises(TrialError) as found:
+        Trial.parse(HIDDEN, place="t.xml", folder=tmp_path)
+    said = str(found.value)
+    for line, part in (
+        (1, "needs the attribute 'duration'"),
+        (2, 'wall-height="-1" must be above 0 m and at most 100 m'),
+        (2, 'area="no.wkt" there is no file'),
+        (2, 'map="no.yaml" there is no file'),
+        (3, "no attribute 'nosuch'"),
+        (3, "time_horizon = -1.0"),
+        (3, "max_neighbors = -3.0"),
+        (4, 'speed="-1" must be'),
+        (4, "has 'womn', did you mean 'woman'?"),
+        (4, "has 'fone', did you mean 'phone'?"),
+        (4, "has 'tlk', did you mean 'talk'?"),
+        (5, 'count="-1" must be at least 0'),
+        (5, "has 'womn'"),
+        (6, "did you mean 'reactive'?"),
+        (6, 'data="none.txt" there is no file'),
+        (7, 'radius="-1"'),
+        (7, "type=\"peper\" is no robot, did you mean 'pepper'?"),
+        (7, "needs the element <navigator>"),
+        (9, "rays = -4"),
+        (9, "range_max = -1.0"),
+        (9, "rate: 'x' is not a number"),
+    ):
+        assert re.search(rf"^t\.xml:{line}: <\w+> .*{re.escape(part)}", said, re.MULTILINE), (line, part, said)
+    assert len(found.value.problems) == 21, said
+
+
+def test_limits_of_both_sides_are_told() -> None:
+    for old, new, sentence in (
+        ('step="0.05"', 'step="3"', 'step="3" must be at most 1 s and at least 0.001 s'),
+        ('step="0.05"', 'step="0"', 'step="0" must be at least 0.001 s and at most 1 s'),
+        ('duration="4"', 'duration="1e7"', 'duration="1e7" must be at most 86400 s and above 0 s'),
+    ):
+        with pytest.raises(TrialError, match=sentence):
+            Trial.parse(changed(old, new))
 
 
 def test_two_robots_must_not_overlap_nor_share_a_name() -> None:

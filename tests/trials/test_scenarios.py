@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -97,6 +99,14 @@ def test_the_challenge_is_that_of_its_files() -> None:
     assert np.abs(episode.position[..., 1]).max() < 9.0
     down = episode.velocity[-1, episode.active[-1], 1]
     assert np.median(down) < -1.0
+
+
+def test_the_long_trial_of_the_documents_has_a_thousand_people_for_ten_minutes() -> None:
+    trial = load_trial(Path(__file__).parents[2] / "docs" / "trials" / "thousand.xml")
+    assert (trial.people, trial.duration, len(trial.robots), trial.world) == (1000, 600.0, 1, "planar")
+    episode = dataclasses.replace(trial, duration=0.8).run()
+    assert episode.active[-1].sum() == 1001
+    assert Trial.parse(trial.xml()) == trial
 
 
 @pytest.mark.parametrize(

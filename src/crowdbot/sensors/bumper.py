@@ -19,6 +19,7 @@ __all__ = ["Bumper", "Touch"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 TURN = 2.0 * math.pi
+MOST_SECTORS = 100_000
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,8 @@ class Bumper(Sensor):
             raise InputError(f"Bumper: radius = {self.radius} m must be finite and above 0")
         if self.sectors != int(self.sectors) or self.sectors < 1:
             raise InputError(f"Bumper: sectors = {self.sectors} must be a whole number of at least 1")
+        if self.sectors > MOST_SECTORS:
+            raise InputError(f"Bumper: sectors = {self.sectors} must be at most {MOST_SECTORS}")
         if not -TURN <= self.first <= TURN:
             raise InputError(f"Bumper: first = {self.first} rad must be within -2 pi to 2 pi")
         if not -math.inf < self.low <= self.high < math.inf:

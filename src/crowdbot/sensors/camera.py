@@ -17,6 +17,8 @@ from .noise import Randomness, normals
 __all__ = ["ImageSource", "Lens", "distorted", "pixel_directions", "stereo_depth"]
 
 Floats = NDArray[np.float64]
+MOST_PIXELS = 1 << 24
+"""Of an image: more would not fit into the memory of a usual machine, with a direction for each."""
 
 
 class ImageSource(Protocol):
@@ -59,6 +61,8 @@ class Lens:
             value = getattr(self, name)
             if value != int(value) or value < 1:
                 raise InputError(f"camera: {name} = {value} must be a whole number of at least 1")
+        if self.width * self.height > MOST_PIXELS:
+            raise InputError(f"camera: {self.width} x {self.height} pixels must be at most {MOST_PIXELS} together")
         for name in ("fx", "fy"):
             if not 0.0 < getattr(self, name) < math.inf:
                 raise InputError(f"camera: {name} = {getattr(self, name)} must be finite and above 0")

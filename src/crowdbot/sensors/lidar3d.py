@@ -15,7 +15,7 @@ from .beams import Beams, beams, fan
 from .cast import cast
 from .lidar import seen_agents
 from .noise import Randomness
-from .ranging import Ranging, ended, incidence_of, settled
+from .ranging import MOST_BEAMS, Ranging, ended, incidence_of, settled
 from .sensor import Reading, in_space
 
 __all__ = ["Cloud", "Lidar3D"]
@@ -100,6 +100,10 @@ class Lidar3D(Ranging):
         if not rings or not all(abs(value) <= math.pi / 2 for value in rings):
             raise InputError(f"Lidar3D: elevations = {rings} rad must be at least one, each within -pi / 2 to pi / 2")
         self.check_count("columns")
+        if len(rings) * self.columns > MOST_BEAMS:
+            raise InputError(
+                f"Lidar3D: columns = {self.columns} with {len(rings)} elevations must be at most {MOST_BEAMS} beams"
+            )
         if not 0.0 < self.azimuth_to - self.azimuth_from <= TURN + 1e-9 or not abs(self.azimuth_from) <= TURN:
             raise InputError(
                 f"Lidar3D: azimuth_from = {self.azimuth_from} and azimuth_to = {self.azimuth_to} rad must be"

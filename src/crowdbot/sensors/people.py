@@ -13,6 +13,7 @@ from crowdbot.core import InputError, Pose, Scene, SpatialPose
 
 from .lidar import Lidar2D
 from .noise import Randomness, disturbed
+from .ranging import MOST_BEAMS
 from .sensor import Reading, Sensor, in_plane
 
 __all__ = ["GroundTruthPeople", "Tracked"]
@@ -80,6 +81,8 @@ class GroundTruthPeople(Sensor):
             )
         if self.rays != int(self.rays) or self.rays < 1:
             raise InputError(f"GroundTruthPeople: rays = {self.rays} must be a whole number of at least 1")
+        if self.rays > MOST_BEAMS:
+            raise InputError(f"GroundTruthPeople: rays = {self.rays} must be at most {MOST_BEAMS}")
 
     def measure(self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None) -> Tracked:
         """Return who is around; ``rng`` is needed only when there is noise.

@@ -18,6 +18,8 @@ __all__ = ["Ranging", "ended", "incidence_of", "settled"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+MOST_BEAMS = 1_000_000
+"""Of a sensor: more would not fit into the memory of a usual machine."""
 
 
 class Ranging(Sensor):
@@ -49,10 +51,12 @@ class Ranging(Sensor):
             raise InputError(f"{name}: resolution = {self.resolution} m must be at least 0 and fit between the ranges")
 
     def check_count(self, name: str) -> None:
-        """Raise :class:`InputError` unless the field ``name`` is a whole number of at least 1."""
+        """Raise :class:`InputError` unless the field ``name`` is a whole number from 1 to ``MOST_BEAMS``."""
         value = getattr(self, name)
         if value != int(value) or value < 1:
             raise InputError(f"{type(self).__name__}: {name} = {value} must be a whole number of at least 1")
+        if value > MOST_BEAMS:
+            raise InputError(f"{type(self).__name__}: {name} = {value} must be at most {MOST_BEAMS}")
 
     @property
     def least_facing(self) -> float:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from .attribute import attribute, check, children
 from .notation import Points
-from .words import ABOUT_ACTIVITY, ABOUT_BODY, check_words
+from .words import ABOUT_ACTIVITY, ABOUT_BODY, check_words, word_problems
 
 __all__ = ["Agent", "Parameter"]
 
@@ -60,6 +62,11 @@ class Agent:
     def __post_init__(self) -> None:
         check(self)
         check_words(self.body, self.activity)
+
+    @staticmethod
+    def mistakes(values: Mapping[str, Any]) -> list[str]:
+        """Return what is wrong with the words of a file, whatever else is wrong in its element."""
+        return word_problems(values.get("body", ""), values.get("activity", ""))
 
     @property
     def count(self) -> int:

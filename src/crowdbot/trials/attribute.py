@@ -46,6 +46,8 @@ class Rule:
 
         >>> Rule("number of people", at_least=0).problem(-3)
         'must be at least 0'
+        >>> Rule("time step", unit="s", above=0.0, at_most=1.0).problem(2.5)
+        'must be at most 1 s and above 0 s'
         """
         if isinstance(value, str):
             return self._wrong_word(value)
@@ -56,13 +58,13 @@ class Rule:
         low, high = getattr(value, "extent", (value, value))
         if not (math.isfinite(low) and math.isfinite(high)):
             return "is not finite"
-        if self.above is not None and low <= self.above:
-            return f"must be above {self._amount(self.above)}{self._reach(low, high)}"
-        if self.at_least is not None and low < self.at_least:
-            return f"must be at least {self._amount(self.at_least)}{self._reach(low, high)}"
-        limit = LARGEST if self.at_most is None else self.at_most
-        if high > limit:
-            return f"must be at most {self._amount(limit)}{self._reach(low, high)}"
+        least = self._least
+        most = f"at most {self._amount(self.at_most)}" if self.at_most is not None else ""
+        if (self.above is not None and low <= self.above) or (self.at_least is not None and low < self.at_least):
+            return f"must be {' and '.join(filter(None, (least, most)))}{self._reach(low, high)}"
+        if high > (LARGEST if self.at_most is None else self.at_most):
+            most = most or f"at most {self._amount(LARGEST)}"
+            return f"must be {' and '.join(filter(None, (most, least)))}{self._reach(low, high)}"
         if self.above is None and self.at_least is None and low < -LARGEST:
             return f"must be at least {self._amount(-LARGEST)}"
         return ""
@@ -84,6 +86,12 @@ class Rule:
         if any(abs(number) > LARGEST for point in value for number in point):
             return f"must lie within {self._amount(LARGEST)} of the origin"
         return ""
+
+    @property
+    def _least(self) -> str:
+        if self.above is not None:
+            return f"above {self._amount(self.above)}"
+        return f"at least {self._amount(self.at_least)}" if self.at_least is not None else ""
 
     def _amount(self, value: float) -> str:
         return f"{value:g} {self.unit}".rstrip()

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from crowdbot import world
 
@@ -12,7 +13,7 @@ from .attribute import attribute, check, children
 from .distribution import Distribution
 from .journey import Journey
 from .notation import Points
-from .words import ABOUT_ACTIVITY, ABOUT_BODY, check_words
+from .words import ABOUT_ACTIVITY, ABOUT_BODY, check_words, word_problems
 
 __all__ = ["Group", "Source", "Spawner"]
 
@@ -70,6 +71,11 @@ class Spawner:
         check(self)
         check_words(self.body, self.activity)
 
+    @staticmethod
+    def mistakes(values: Mapping[str, Any]) -> list[str]:
+        """Return what is wrong with the words of a file, whatever else is wrong in its element."""
+        return word_problems(values.get("body", ""), values.get("activity", ""))
+
 
 @dataclass(frozen=True, kw_only=True)
 class Source:
@@ -101,6 +107,11 @@ class Source:
     def __post_init__(self) -> None:
         check(self)
         check_words(self.body, self.activity)
+
+    @staticmethod
+    def mistakes(values: Mapping[str, Any]) -> list[str]:
+        """Return what is wrong with the words of a file, whatever else is wrong in its element."""
+        return word_problems(values.get("body", ""), values.get("activity", ""))
 
     def expected(self, duration: float) -> float:
         """Return how many people come within a duration [s]: evenly the most, at random the mean."""

@@ -44,7 +44,7 @@ def read_trial(text: str | bytes, *, place: str = "trial", folder: Path | None =
 
     >>> read_trial('<trial name="t" duration="-1"><crowd type="orca" time-horizn="2"/></trial>')
     Traceback (most recent call last):
-    crowdbot.core.errors.TrialError: trial:1: <trial> duration="-1" must be above 0 s
+    crowdbot.core.errors.TrialError: trial:1: <trial> duration="-1" must be above 0 s and at most 86400 s
     trial:1: <crowd> has no attribute 'time-horizn', did you mean 'time-horizon'?; it takes neighbor-distance, \
 max-neighbors, time-horizon, time-horizon-walls, max-speed, name
     """
@@ -118,13 +118,20 @@ class Reader:
                 self.say(element.line, element.tag, f"needs {_kind(part)}")
             else:
                 values[part.name] = part.default
+        files = self._files(cls)
+        if hasattr(cls, "mistakes"):
+            for sentence in cls.mistakes(values | files):
+                self.say(element.line, element.tag, sentence)
         if len(self.found) > before:
             return None, values
-        return self._make(cls, element, values), values
+        return self._make(cls, element, values | files), values
+
+    def _files(self, cls: type) -> dict[str, Any]:
+        """Return where the files lie that an element names, as fields of it."""
+        named = any(field.name == "trust" for field in dataclasses.fields(cls))
+        return {"folder": self.folder, "trust": self.trust} if named else {}
 
     def _make(self, cls: type, element: Element, values: dict[str, Any]) -> Any:
-        if "trust" in (field.name for field in dataclasses.fields(cls)):
-            values = values | {"folder": self.folder, "trust": self.trust}
         try:
             made = cls(**values)
         except InputError as error:
@@ -240,15 +247,52 @@ class Reader:
         draws = {key: text for key, text in attributes.items() if what.drawn and is_drawn(text)}
         fixed = {key: text for key, text in attributes.items() if key not in draws}
         problems = plug.problems(cls, fixed, also)
-        if not problems:
-            try:
-                made = plug.read(cls, fixed)
-                made, problems = _drawn(made, draws) if draws else (made, [])
-            except InputError as error:
-                problems = [str(error)]
+        made, more = _made(cls, {key: text for key, text in fixed.items() if _fits(cls, key, text)})
+        problems += more
+        if made is not None and draws:
+            made, more = _drawn(made, draws)
+            problems += more
         for problem in problems:
             self.say(element.line, element.tag, problem)
         return None if problems else made
+
+
+def _fits(cls: type, key: str, text: str) -> bool:
+    """Whether a class has an attribute that takes this text."""
+    return all(sentence.startswith("needs the attribute") for sentence in plug.problems(cls, {key: text}))
+
+
+def _made(cls: type, attributes: dict[str, str]) -> tuple[Any, list[str]]:
+    """Return what the attributes make, None when it needs others; and what is wrong with each that has to be left out.
+
+    What a class says of its values it says one at a time. So an attribute without which the same is not said again
+    is the one that it is about; it is left out, and the others are judged.
+    """
+    if plug.problems(cls, attributes):
+        return None, []
+    said: list[str] = []
+    while True:
+        made, sentence = _tried(cls, attributes)
+        if not sentence:
+            return made, said
+        said.append(sentence)
+        needed = {name.replace("_", "-") for name in plug.needs(cls)}
+        fewer = [
+            {key: text for key, text in attributes.items() if key != left}
+            for left in attributes
+            if left.replace("_", "-") not in needed
+        ]
+        right = next((rest for rest in fewer if _tried(cls, rest)[1] != sentence), None)
+        if right is None:
+            return None, said
+        attributes = right
+
+
+def _tried(cls: type, attributes: dict[str, str]) -> tuple[Any, str]:
+    try:
+        return plug.read(cls, attributes), ""
+    except InputError as error:
+        return None, str(error)
 
 
 def _drawn(model: Any, draws: dict[str, str]) -> tuple[Any, list[str]]:

@@ -5,16 +5,17 @@ from __future__ import annotations
 import dataclasses
 import functools
 import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .attribute import attribute, check
+from .attribute import attribute, check, shown
 from .beside import beside
 from .distribution import Distribution
 from .people import BODY_RADIUS
@@ -73,6 +74,16 @@ class RecordedPeople:
     def __post_init__(self) -> None:
         check(self)
         self.left_out()
+
+    @staticmethod
+    def mistakes(values: Mapping[str, Any]) -> list[str]:
+        """Return what is wrong with the name of the file, whatever else is wrong in its element."""
+        try:
+            if "data" in values:
+                beside(values["data"], values["folder"], values["trust"])
+        except InputError as error:
+            return [f"data={shown(values['data'])} {error}"]
+        return []
 
     def left_out(self) -> frozenset[int]:
         """Return the ids that are left out."""

@@ -161,6 +161,16 @@ class Robot:
                 raise InputError(f"sensor {mount.name!r} sits on link={shown(mount.link)}, which it has not"
                                  f"{did_you_mean(mount.link, links)}")  # fmt: skip
 
+    @staticmethod
+    def mistakes(values: Mapping[str, Any]) -> list[str]:
+        """Return what is wrong with the type in a file, whatever else is wrong in its element."""
+        try:
+            if values.get("type"):
+                _kind(values["type"], values["folder"], values["trust"])
+        except InputError as error:
+            return [str(error)]
+        return []
+
     @property
     def usual(self) -> Mapping[str, Any]:
         """What fields are when they are not given."""
@@ -238,11 +248,7 @@ class Robot:
     def _kind(self) -> world.Robot:
         if not isinstance(self.type, str):
             raise InputError(f"Robot: type={shown(self.type)} is not a str")
-        place = _folder(self.type, self.folder, self.trust)
-        if place is None:
-            return _built_in(self.type)
-        stamp = (place / "robot.xml").stat().st_mtime_ns
-        return _loaded(place, self.trust, stamp)
+        return _kind(self.type, self.folder, self.trust)
 
 
 def _drawn(mount: Mount | world.SensorMount) -> bool:
@@ -279,6 +285,13 @@ def _folder(name: str, folder: Path | None, trust: bool) -> Path | None:
         f"type={shown(name)} is no robot{did_you_mean(name, known)}: no folder {name[:60]!r} with a robot.xml is in"
         f" {root}, and built in are {', '.join(known)}"
     )
+
+
+def _kind(name: str, folder: Path | None, trust: bool) -> world.Robot:
+    place = _folder(name, folder, trust)
+    if place is None:
+        return _built_in(name)
+    return _loaded(place, trust, (place / "robot.xml").stat().st_mtime_ns)
 
 
 @functools.cache

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -87,6 +87,22 @@ class Stage:
                 getattr(self, name)
             except InputError as error:
                 raise InputError(f"{word}={shown(getattr(self, word))} {error}") from None
+
+    @staticmethod
+    def mistakes(values: Mapping[str, Any]) -> list[str]:
+        """Return what is wrong with the files of a ground, whatever else is wrong in its element."""
+        said = []
+        folder, trust = values["folder"], values["trust"]
+        for word, read in (
+            ("area", area_of),
+            ("map", functools.partial(map_of, unknown=values.get("unknown", "free"))),
+        ):
+            try:
+                if values.get(word):
+                    read(values[word], folder=folder, trust=trust)
+            except InputError as error:
+                said.append(f"{word}={shown(values[word])} {error}")
+        return said
 
     @property
     def bounded(self) -> bool:

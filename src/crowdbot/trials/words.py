@@ -8,7 +8,7 @@ from crowdbot.core.errors import did_you_mean
 
 from .attribute import shown
 
-__all__ = ["ABOUT_ACTIVITY", "ABOUT_BODY", "KINDS", "check_words"]
+__all__ = ["ABOUT_ACTIVITY", "ABOUT_BODY", "KINDS", "check_words", "word_problems"]
 
 KINDS = {
     "man": ("man",),
@@ -37,16 +37,22 @@ def check_words(body: str, activity: str) -> None:
     crowdbot.core.errors.InputError: body="womn" has 'womn', did you mean 'woman'?; it takes man, woman, boy, girl, \
 adult, child, mannequin or a name from crowdbot list humans
     """
-    known = (*KINDS, *humans.names())
-    for word in body.split():
-        if word not in known:
-            raise InputError(
-                f"body={shown(body)} has {word[:40]!r}{did_you_mean(word, known)}; it takes {', '.join(KINDS)} or a"
-                " name from crowdbot list humans"
-            )
-    for word in activity.split():
-        if word not in humans.ACTIVITIES:
-            raise InputError(
-                f"activity={shown(activity)} has {word[:40]!r}{did_you_mean(word, humans.ACTIVITIES)}; it takes"
-                f" {', '.join(humans.ACTIVITIES)}"
-            )
+    for problem in word_problems(body, activity):
+        raise InputError(problem)
+
+
+def word_problems(body: str, activity: str) -> list[str]:
+    """Return a sentence for every word that is no body or no activity."""
+    bodies = (*KINDS, *humans.names())
+    takes = f"{', '.join(KINDS)} or a name from crowdbot list humans"
+    wrong = [(word, "body", body, bodies, takes) for word in body.split() if word not in bodies]
+    acts = ", ".join(humans.ACTIVITIES)
+    wrong += [
+        (word, "activity", activity, humans.ACTIVITIES, acts)
+        for word in activity.split()
+        if word not in humans.ACTIVITIES
+    ]
+    return [
+        f"{what}={shown(text)} has {word[:40]!r}{did_you_mean(word, known)}; it takes {takes}"
+        for word, what, text, known, takes in wrong
+    ]
