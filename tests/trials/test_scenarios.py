@@ -89,6 +89,7 @@ def test_people_of_a_corridor_without_ends_stay_as_many() -> None:
 def test_the_challenge_is_that_of_its_files() -> None:
     trial = load_trial("challenge-cross-both-350")
     assert (trial.people, trial.duration) == (350, 180.0)
+    assert (trial.end.goal, trial.end.collision) == (True, False)
     robot = trial.robots[0]
     assert (robot.position, robot.goal.position, robot.radius, robot.visible) == ((-20.0, 0.0), (20.0, 0.0), 0.5, True)
     assert {spawner.speed.extent for spawner in trial.spawners} == {(1.03, 1.63)}
