@@ -160,3 +160,10 @@ def test_output_may_end_early():
 def test_json_is_all_that_stands_on_stdout(tmp_path):
     done = _program("run", "crossing-flows", "--json", "--out", str(tmp_path / "a b"), check=True)
     assert json.loads(done.stdout)["episode"] == str(Path(tmp_path / "a b" / "episode.mcap"))
+
+
+def test_humans_are_told_in_words(capsys):
+    assert main(["list", "humans", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["humans"]
+    assert found["woman-36"].startswith("f, 36 years, 1.53 m")
+    assert found["mannequin"].startswith("a plain figure, 1.70 m")

@@ -165,6 +165,8 @@ def test_degradations_are_listed(capsys):
         (["--by", "gaussian-noise", "--protocol", "sgam"], ("did you mean 'sgan'?",)),
         (["--by", "gaussian-noise", "--observe", "40"], ("small.txt: no window of 40 observed",)),
         (["--by", "gaussian-noise", "--draws", "0"], ("draws = 0",)),
+        (["--by", "gaussian-noise", "--every", "0"], ("every = 0 must be at least 1",)),
+        (["--by", "gaussian-noise", "--late", "extrapolate"], ("--late extrapolate is not for degrade", "late-start")),
         (["--by", "gaussian-noise", "--out", "small.txt"], ("small.txt is a file; give a folder",)),
         (["--by", "gaussian-noise", "--write", "x.csv", "--predictor", "kalman"], ("scores nothing",)),
         (["--by", "gaussian-noise", "late-start", "--write", "x.csv"], ("one recording",)),

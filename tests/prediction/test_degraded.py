@@ -227,6 +227,15 @@ def test_two_recordings_count_together(recorded):
     assert both.score.source == "biwi_hotel.txt + crowds_zara01.txt"
 
 
+def test_only_every_such_window_is_predicted(recorded):
+    hotel = recorded("biwi_hotel")
+    ((some,),) = sweep([hotel], [MissingFrames()], [ConstantVelocity()], [0.0], Task(every=7))
+    past, future = hotel.windows()
+    alone = evaluate(ConstantVelocity(), past[::7], future[::7])
+    assert some.asked == some.score.persons == alone.persons < future.scored.sum() / 5
+    assert some.score.ade == alone.ade
+
+
 def test_nobody_to_predict_is_a_coverage_of_none(recorded):
     tracks = _line(rows=20)
     for degradation, level in ((MissingFrames(), 1.0), (Occlusion(eye=(500.0, 0.0)), 1.0), (LateStart(), 9)):

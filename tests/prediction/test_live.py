@@ -101,6 +101,8 @@ def test_wrong_use_is_said_in_a_sentence(windows: Maker) -> None:
         Live(ConstantVelocity(), dt=0.0)
     with pytest.raises(InputError, match="observe = 0 rows must be at least 1"):
         Live(ConstantVelocity(), dt=0.4, observe=0)
+    with pytest.raises(InputError, match="live: 'anchor-net' is no predictor; give an object, such as crowdbot.Anchor"):
+        Live("anchor-net", dt=0.4)  # type: ignore[arg-type]
     live = Live(ConstantVelocity(), dt=0.4)
     with pytest.raises(InputError, match="nothing was seen yet"):
         live.predict(3)

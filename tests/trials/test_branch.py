@@ -131,6 +131,9 @@ def test_what_cannot_be_branched_is_said_in_a_sentence(small: Path, flowing: Pat
         return str(found.value)
 
     assert refused(small, 1.23).endswith("has no instant at 1.23 s: it was recorded every 0.1 s; the nearest is 1.2 s")
+    assert "'ro bot/x' is no path" in refused(small, 2.0, changes={"ro bot/x": 1})
+    assert "'robot/x y' is no path" in refused(small, 2.0, changes={"robot/x y": 1})
+    assert "choose one: spawner[" in refused(small, 2.0, changes={"spawner/count": 1})
     assert "has no instant at 9 s; it lasts from 0 s to 4 s" in refused(small, 9.0)
     assert refused(small, 2.0, changes={"step": 0.1}).startswith("step cannot change in a branch")
     assert refused(small, 2.0, changes={"spawner[east].count": 1}).startswith("spawners cannot change in a branch")
@@ -164,4 +167,7 @@ def test_changes_name_things_as_the_xml_does() -> None:
     assert new.robots[0].sensors[0].sensor.rays == 30  # type: ignore[attr-defined]
     assert str(new.spawners[1].speed) == "uniform(1, 2)"
     assert changed(SMALL, {}) is SMALL
+    slashed = {"crowd/time_horizon": 1, "robot[1]/sensor/rays": 30, "spawner[west]/speed": "uniform(1, 2)"}
+    assert changed(SMALL, slashed) == new
+    assert changed(SMALL, {"spawner[2]/speed": 1}) == changed(SMALL, {"spawner[1].speed": 1})
     assert changed(SMALL, {"robot.sensor.x": 0.2}).robots[0].sensors[0].x == 0.2

@@ -14,6 +14,7 @@ from crowdbot.cli import main
 from crowdbot.core import InputError, MissingExtra
 from crowdbot.trials import Take, Trial, camera_names, load_trial, shots
 from crowdbot.trials.album import Album, painted_segmentation
+from crowdbot.trials.camera import overview
 from crowdbot.world.physics import drawing
 
 
@@ -36,6 +37,44 @@ def test_every_camera_sees_the_room(world: str) -> None:
         assert len(near)
         assert near.max() < 12.0
         assert shot.rgb.std() > 5.0
+
+
+@pytest.mark.parametrize("name", ["frontal", "intersection", "blind-corner", "bottleneck", "random-goals"])
+def test_the_overview_has_the_whole_stage_in_view_and_the_feet_of_people(name: str) -> None:
+    stage = load_trial(name).stage
+    camera = overview(stage, np.zeros((0, 2)))
+    points = np.concatenate(stage.rings)
+    ahead = np.array([0.0, np.cos(camera.pitch), -np.sin(camera.pitch)])
+    above = np.array([0.0, np.sin(camera.pitch), np.cos(camera.pitch)])
+    eye = np.array([camera.x, camera.y, camera.z])
+    for height in (0.0, stage.wall_height):
+        away = np.column_stack([points, np.full(len(points), height)]) - eye
+        edge = np.tan(0.5 * camera.field_of_view) * (away @ ahead)
+        assert np.all(np.abs(away[:, 0]) < edge)
+        assert np.all(np.abs(away @ above) < edge * camera.height / camera.width)
+    x, y = np.random.default_rng(3).uniform(points.min(axis=0), points.max(axis=0), (2000, 2)).T
+    floor = np.column_stack([x, y])[stage.clearance(np.column_stack([x, y])) > 0.3]
+    toward = (eye[:2] - floor) * stage.wall_height / eye[2]
+    seen = [
+        not any(crosses(a, a + b, wall) for wall in stage.as_walls().segments())
+        for a, b in zip(floor, toward, strict=True)
+    ]
+    assert np.mean(seen) > 0.85
+    assert np.degrees(camera.pitch) >= 60.0 - 1e-9
+
+
+def crosses(a: np.ndarray, b: np.ndarray, wall: np.ndarray) -> bool:
+    def side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> float:
+        return float((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))
+
+    c, d = wall[:2], wall[2:]
+    return side(a, b, c) * side(a, b, d) < 0.0 and side(c, d, a) * side(c, d, b) < 0.0
+
+
+def test_an_open_place_is_seen_from_near_by() -> None:
+    camera = overview(load_trial("circle-crossing").stage, np.array([[-5.0, 0.0], [5.0, 4.0]]))
+    assert (round(np.degrees(camera.pitch)), round(np.degrees(camera.field_of_view))) == (60, 60)
+    assert camera.x == 0.0
 
 
 def test_a_film_is_even_and_the_same_each_time() -> None:
@@ -103,12 +142,17 @@ def test_a_film_is_written(ending: str, tmp_path: Path) -> None:
 
 WRONG = {
     "camera": (["--camera", "dor"], r"room has no camera 'dor', did you mean 'door'\?; it has door, overview"),
-    "late": (["--at", "7"], r"begin = 7 s must be from 0 to the duration of the trial, 1 s"),
-    "backwards": (["--from", "0.6", "--to", "0.2"], r"end = 0.2 s is before the beginning, 0.6 s"),
+    "late": (["--at", "7"], r"there is no image at 7 s: room lasts from 0 to 1 s; give a time in between"),
+    "backwards": (
+        ["--from", "0.6", "--to", "0.2"],
+        r"the film ends at 0.2 s, before it begins at 0.6 s; give a later end",
+    ),
     "rate": (
         ["--to", "0.4", "--fps", "30"],
-        r"rate = 30 Hz: 0.0333333 s is not a whole number of time steps",
+        r"30 images a second: 0.0333333 s is not a whole number of time steps of 0.04 s; the nearest",
     ),
+    "negative rate": (["--to", "0.4", "--fps", "-5"], r"-5 images a second must be finite and above 0"),
+    "no world": (["--world", "physic"], r"--world physic must be planar or physics, did you mean 'physics'\?"),
     "both": (["--at", "0.4", "--to", "0.6"], r"--at is for one image and --to for a film"),
     "fps of an image": (["--at", "0.4", "--fps", "5"], r"--fps is for a film"),
     "ending": (["--out", "a.tiff"], r"a.tiff must end in .png, .jpg, .webp for an image, or be a folder"),

@@ -133,7 +133,11 @@ def _robots() -> dict[str, str]:
 def _humans() -> dict[str, str]:
     from crowdbot.humans import persons
 
-    return {one.name: f"{one.sex}, {one.years} years, {one.height:.2f} m, {one.mass:.0f} kg" for one in persons()}
+    found = {}
+    for one in persons():
+        who = [one.sex, f"{one.years} years"] if one.years else ["a plain figure"]
+        found[one.name] = ", ".join([*filter(None, who), f"{one.height:.2f} m", f"{one.mass:.0f} kg"])
+    return found
 
 
 def _protocols() -> dict[str, str]:

@@ -21,7 +21,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         default=[],
         metavar="PATH=VALUE",
-        help="as in the XML of the trial: duration=60, robot.navigator.type=orca, robot[NAME].goal.x=3",
+        help="as in the XML of the trial: duration=60, robot/navigator/type=orca, robot[NAME]/goal/x=3",
     )
     add("--seed", type=int, help="seed of new chance from then on (default: chance goes on)")
     add("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")

@@ -141,6 +141,10 @@ def _check_sweep(
         first = degradation.links[0] if isinstance(degradation, Chain) else degradation
         if first.level in _own(type(first), values):
             raise InputError(f"--set {first.level}: the sweep of {first.name} varies it; give --levels instead")
+    if options.late != "skip":
+        raise InputError(
+            f"--late {options.late} is not for degrade, where people come late by --by late-start; leave it out"
+        )
     if options.out is not None and options.out.exists() and not options.out.is_dir():
         raise InputError(f"--out {options.out} is a file; give a folder")
 
@@ -167,7 +171,7 @@ def _predictors(options: argparse.Namespace, found: Sequence[Recording]) -> list
 def _task(options: argparse.Namespace) -> Task:
     from crowdbot.prediction import Task
 
-    names = ("observe", "predict", "protocol", "near", "samples", "best_of", "seed", "carry", "draws")
+    names = ("observe", "predict", "protocol", "near", "samples", "best_of", "seed", "carry", "draws", "every")
     return Task(**{name: getattr(options, name) for name in names})
 
 

@@ -10,6 +10,8 @@ if TYPE_CHECKING:
 
 __all__ = ["add_settings", "add_world", "chosen", "settings"]
 
+WORLDS = ("planar", "physics")
+
 
 def add_settings(parser: argparse._ActionsContainer) -> None:
     """Add the option ``--set``."""
@@ -27,8 +29,8 @@ def add_world(parser: argparse._ActionsContainer) -> None:
     """Add the option ``--world``."""
     parser.add_argument(
         "--world",
-        choices=("planar", "physics"),
-        help="discs in the plane, or bodies with forces between them (default: the trial's own)",
+        metavar="NAME",
+        help="planar: discs in the plane, or physics: bodies with forces between them (default: the trial's own)",
     )
 
 
@@ -39,6 +41,7 @@ def settings(options: argparse.Namespace) -> dict[str, str]:
         InputError: one is not of the form NAME=VALUE, or is given twice.
     """
     from crowdbot.core import InputError
+    from crowdbot.core.errors import did_you_mean
 
     found: dict[str, str] = {}
     for text in options.settings:
@@ -54,6 +57,8 @@ def settings(options: argparse.Namespace) -> dict[str, str]:
     if world is not None:
         if "world" in found:
             raise InputError(f"--world {world} and --set world={found['world']} are both given; leave one out")
+        if world not in WORLDS:
+            raise InputError(f"--world {world} must be {' or '.join(WORLDS)}{did_you_mean(world, WORLDS)}")
         found["world"] = world
     return found
 

@@ -35,6 +35,7 @@ class Task:
         samples, best_of, seed: as :func:`evaluate` takes them; the seed is also that of the degradation.
         carry: rows for which somebody who is not seen any more is walked on, see :func:`seen_windows`.
         draws: how often the degradation is drawn anew; scores are means over all draws.
+        every: only every such window is predicted.
     """
 
     observe: int = 8
@@ -46,12 +47,15 @@ class Task:
     seed: int = 0
     carry: int = 0
     draws: int = 1
+    every: int = 1
 
     def __post_init__(self) -> None:
         if self.carry < 0:
             raise InputError(f"carry = {self.carry} must be a number of rows, at least 0")
         if self.draws < 1:
             raise InputError(f"draws = {self.draws} must be at least 1")
+        if self.every < 1:
+            raise InputError(f"every = {self.every} must be at least 1: each, every 2nd, every 3rd window")
 
 
 @dataclass(frozen=True)
@@ -276,7 +280,8 @@ def sweep(
             for _, one in ladder:
                 if not one.neutral:
                     one.check(tracks)
-    cuts = [tracks.windows(task.observe, task.predict, task.protocol, task.near) for tracks in recordings]
+    whole = [tracks.windows(task.observe, task.predict, task.protocol, task.near) for tracks in recordings]
+    cuts = [(past[:: task.every], future[:: task.every]) for past, future in whole]
     clean: list[DegradedScore] = []
     for degradation, ladder in steps:
         for done, (level, one) in enumerate(ladder):

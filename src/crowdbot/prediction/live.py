@@ -51,6 +51,8 @@ class Live:
             raise InputError(f"live: dt = {dt} s must be finite and above 0")
         if observe < 1:
             raise InputError(f"live: observe = {observe} rows must be at least 1")
+        if not isinstance(predictor, Predictor):
+            raise InputError(f"live: {predictor!r} is no predictor; give an object, such as crowdbot.AnchorNet()")
         goal = getattr(predictor, "goal", None)
         if getattr(goal, "knows_future", False):
             raise InputError(

@@ -98,7 +98,7 @@ def _run(
         new.xml()  # say at once when it cannot be recorded
     with stopping() as stop:
         comparison = Comparison(Digest(), dict(wanted))
-        simulation = _there(course, at, comparison, stop, progress, name)
+        simulation = _there(course, at, comparison, stop, progress, name, max(wanted, default=None))
         turn_to(simulation, new, seed)
         _check_period(simulation, new, at)
         part = Part(simulation.tick, new, last.seed if seed is None else int(seed))
@@ -107,11 +107,17 @@ def _run(
 
 
 def _there(
-    course: Course, at: float, comparison: Comparison, stop: Stop, progress: Progress | None, name: str
+    course: Course,
+    at: float,
+    comparison: Comparison,
+    stop: Stop,
+    progress: Progress | None,
+    name: str,
+    latest: int | None,
 ) -> Simulation:
     """Return the simulation at the instant to branch from."""
     last = course.parts[-1]
-    tick = _tick(last, at, name)
+    tick = _tick(last, at, name, latest)
     half = None if progress is None else lambda share: progress(0.5 * share)
     simulation = course.begun(comparison, stop, half, until=tick)
     if comparison.differs is not None:
@@ -122,10 +128,12 @@ def _there(
     return simulation
 
 
-def _tick(last: Part, at: float, name: str) -> int:
+def _tick(last: Part, at: float, name: str, latest: int | None) -> int:
+    """Return the tick of an instant; ``latest`` is the last one that was recorded [ns]."""
     period, step = round(last.trial.recording.period * 1e9), round(last.trial.step * 1e9)
     nanoseconds = round(at * 1e9)
     first, end = last.tick * step, last.trial.ticks * step
+    end = end if latest is None else max(first, min(end, latest))
     if not first <= nanoseconds <= end:
         raise EpisodeError(f"{name} has no instant at {at:g} s; it lasts from {first / 1e9:g} s to {end / 1e9:g} s")
     if nanoseconds % period:

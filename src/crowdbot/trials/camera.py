@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -20,6 +21,12 @@ __all__ = ["OVERVIEW", "Camera", "overview"]
 
 OVERVIEW = "overview"
 """Name of the camera that sees the whole stage, unless the trial has one of this name."""
+VIEWS, PITCHES = (60, 40, 25), range(60, 90, 4)
+"""Horizontal angles of view of that camera, and how steeply it may look down [degrees], the likest first."""
+FARTHEST = 150.0
+"""Narrower lenses are not taken where they would have to be higher [m]."""
+ENOUGH = 0.04
+"""Share of the floor that it may hide more than the best."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,18 +77,59 @@ class Camera:
 
 
 def overview(stage: Stage, places: np.ndarray) -> Camera:
-    """Return a camera that sees a whole stage, and all ``places`` ``[N, 2]`` [m], from the south and above."""
+    """Return a camera that sees a whole stage, and all ``places`` ``[N, 2]`` [m], from the south and above.
+
+    It looks down at 60 degrees from near by. Where walls would hide more of the floor than they must, it looks steeper,
+    and from farther away through a narrower lens.
+
+    >>> from crowdbot.trials import load_trial
+    >>> stage = load_trial("frontal").stage
+    >>> round(math.degrees(overview(stage, np.zeros((0, 2))).pitch))
+    88
+    """
     points = (
         np.concatenate([*stage.rings, places.reshape(-1, 2)]) if len(stage.rings) or len(places) else np.zeros((1, 2))
     )
     low, high = points.min(axis=0), points.max(axis=0)
-    middle, size = 0.5 * (low + high), np.maximum(high - low, 4.0)
-    pitch, view, wide, tall = math.radians(60.0), math.radians(60.0), 960, 600
-    across = 0.5 * size[0] / math.tan(0.5 * view)
-    upwards = 0.5 * size[1] * math.sin(pitch) / (math.tan(0.5 * view) * tall / wide)
-    away = 1.1 * float(max(across, upwards)) + 0.5 * float(size[1]) * math.cos(pitch)
-    x, y = middle[0], middle[1] - away * math.cos(pitch)
+    low, high = np.minimum(low, 0.5 * (low + high) - 2.0), np.maximum(high, 0.5 * (low + high) + 2.0)
+    every = [_looking(low, high, stage.wall_height, *np.radians(way)) for way in itertools.product(VIEWS, PITCHES)]
+    found = [one for k, one in enumerate(every) if k < len(PITCHES) or one.z < FARTHEST]
+    hidden = _hidden(stage, low, high, np.array([(one.x, one.y, one.z) for one in found]))
+    return found[int(np.argmax(hidden <= hidden.min() + ENOUGH))]
+
+
+def _looking(low: np.ndarray, high: np.ndarray, height: float, view: float, pitch: float) -> Camera:
+    """Return the nearest camera of this view and pitch that sees a whole box from ``low`` to ``high`` [m]."""
+    wide, tall = 960, 600
+    forward, up = (0.0, math.cos(pitch), -math.sin(pitch)), (0.0, math.sin(pitch), math.cos(pitch))
+    edges = math.tan(0.5 * view), math.tan(0.5 * view) * tall / wide
+    corners = np.array(list(itertools.product((low[0], high[0]), (low[1], high[1]), (0.0, height))))
+    ground = np.linspace(low[1], high[1], 41)[:, None]  # where its axis may meet the floor
+    off = corners - np.stack([np.broadcast_to(0.5 * (low[0] + high[0]), ground.shape), ground, 0.0 * ground], axis=-1)
+    tallest = (np.abs(off @ up) / edges[1] - off @ forward).max(axis=-1)
+    k = int(tallest.argmin())  # as far from the upper as from the lower edge of the image
+    away = 1.05 * max(tallest[k], (np.abs(off[k, :, 0]) / edges[0] - off[k] @ forward).max())
+    place = corners[0] - off[k, 0] - away * np.array(forward)
     return Camera(
-        name=OVERVIEW, x=float(x), y=float(y), z=away * math.sin(pitch), heading=math.pi / 2, pitch=pitch,
-        width=wide, height=tall, field_of_view=view,
+        name=OVERVIEW, x=float(place[0]), y=float(place[1]), z=float(place[2]), heading=math.pi / 2, pitch=float(pitch),
+        width=wide, height=tall, field_of_view=float(view),
     )  # fmt: skip
+
+
+def _hidden(stage: Stage, low: np.ndarray, high: np.ndarray, eyes: np.ndarray) -> np.ndarray:
+    """Return ``[N]`` which share of the floor that people can stand on walls hide from ``eyes`` ``[N, 3]``."""
+    import shapely
+
+    sides = [low[k] + (np.arange(24) + 0.5) / 24.0 * (high[k] - low[k]) for k in (0, 1)]
+    floor = np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 2)
+    floor = floor[stage.clearance(floor) > 0.25]
+    walls = stage.as_walls(props=False).segments()
+    if not len(floor) or not len(walls):
+        return np.zeros(len(eyes))
+    tree = shapely.STRtree(shapely.linestrings(walls.reshape(-1, 2, 2)))
+    shares = []
+    for eye in eyes:  # a ray to a point of the floor runs below the tops of walls on its last part only
+        below = floor + (eye[:2] - floor) * min(1.0, stage.wall_height / eye[2])
+        rays = shapely.linestrings(np.stack([floor, below], axis=1))
+        shares.append(len(np.unique(tree.query(rays, predicate="intersects")[0])) / len(floor))
+    return np.array(shares)

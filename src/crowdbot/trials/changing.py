@@ -36,6 +36,7 @@ def changed(trial: Trial, changes: Mapping[str, Any]) -> Trial:
         trial: the one to begin with.
         changes: by path: elements and at last an attribute, with dots between; of several elements with one name the
             one is chosen by its name or number (from 0) in brackets, such as ``robot[pepper].navigator.max-speed``.
+            With slashes it is a path as of a sweep, whose numbers count from 1: ``robot[1]/navigator/max-speed``.
 
     Raises:
         InputError: there is no such element.
@@ -56,10 +57,13 @@ def changed(trial: Trial, changes: Mapping[str, Any]) -> Trial:
 
 
 def _set(root: Element, path: str, text: str) -> None:
-    *steps, last = [word.replace("_", "-") for word in path.strip().split(".")]
+    first, dot = (1, "/") if "/" in path else (0, ".")
+    *steps, last = [word.replace("_", "-") for word in path.strip().strip("/").split(dot)]
     element = root
     for step in steps:
-        element = _inner(element, step, path)
+        element = _inner(element, step, path, first)
+    if re.fullmatch(r"[A-Za-z][A-Za-z0-9-]*", last) is None:
+        raise _no_path(path)
     other = last == "type" and element.tag != "robot" and element.attributes.get("type") != text
     if other:  # the values of another type mean nothing to this one
         own = ("name", "link", "x", "y", "z", "roll", "pitch", "heading") if element.tag == "sensor" else ("name",)
@@ -67,20 +71,26 @@ def _set(root: Element, path: str, text: str) -> None:
     element.attributes[last] = text
 
 
-def _inner(element: Element, step: str, path: str) -> Element:
+def _no_path(path: str) -> InputError:
+    return InputError(f"{path!r} is no path; write elements and an attribute, such as robot[NAME]/goal/x")
+
+
+def _inner(element: Element, step: str, path: str, first: int) -> Element:
     match = WORD.fullmatch(step)
     if match is None:
-        raise InputError(f"{path!r} is no path; write elements and an attribute, such as robot[NAME].goal.x")
+        raise _no_path(path)
     tag, which = match.groups()
     found = [inner for inner in element.children if inner.tag == tag]
     if which is not None:
         found = [
-            one for k, one in enumerate(found) if which in (str(k), one.attributes.get("name", "").replace("_", "-"))
+            one
+            for k, one in enumerate(found, first)
+            if which in (str(k), one.attributes.get("name", "").replace("_", "-"))
         ]
     if len(found) == 1:
         return found[0]
     if found:
-        names = ", ".join(f"{tag}[{one.attributes.get('name', k)}]" for k, one in enumerate(found))
+        names = ", ".join(f"{tag}[{one.attributes.get('name', k)}]" for k, one in enumerate(found, first))
         raise InputError(f"{path!r}: <{element.tag}> has {len(found)} <{tag}>; choose one: {names}")
     if (
         which is None

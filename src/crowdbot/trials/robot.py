@@ -275,7 +275,8 @@ def _folder(name: str, folder: Path | None, trust: bool) -> Path | None:
         there = False
     if there and not trust and not place.is_relative_to(root.resolve()):
         raise InputError(
-            f"type={shown(name)}: the robot lies outside {root}; move its folder there, or pass --trust to allow it"
+            f"type={shown(name)}: the robot lies outside {root.resolve()}; move its folder there, or pass --trust to"
+            " allow it"
         )
     if there:
         return place
@@ -283,7 +284,7 @@ def _folder(name: str, folder: Path | None, trust: bool) -> Path | None:
         return None
     raise InputError(
         f"type={shown(name)} is no robot{did_you_mean(name, known)}: no folder {name[:60]!r} with a robot.xml is in"
-        f" {root}, and built in are {', '.join(known)}"
+        f" {root.resolve()}, and built in are {', '.join(known)}"
     )
 
 

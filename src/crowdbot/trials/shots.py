@@ -125,27 +125,29 @@ def shots(
 
 
 def _ticks(simulation: Simulation, take: Take) -> tuple[int, int, int]:
-    clock = simulation.world.clock
-    for word, value in (("begin", take.begin), ("end", take.begin if take.end is None else take.end)):
-        if not 0.0 <= value <= simulation.trial.duration:
+    clock, lasts = simulation.world.clock, simulation.trial.duration
+    for value in (take.begin, take.begin if take.end is None else take.end):
+        if not 0.0 <= value <= lasts:
             raise InputError(
-                f"{word} = {value:g} s must be from 0 to the duration of the trial, {simulation.trial.duration:g} s"
+                f"there is no image at {value:g} s: {simulation.trial.name} lasts from 0 to {lasts:g} s; give a time"
+                " in between"
             )
     first = round(take.begin / clock.dt)
     if take.end is None:
         return first, first, 1
     if take.end < take.begin:
-        raise InputError(f"end = {take.end:g} s is before the beginning, {take.begin:g} s")
+        raise InputError(f"the film ends at {take.end:g} s, before it begins at {take.begin:g} s; give a later end")
     if take.rate is None:
         return first, round(take.end / clock.dt), max(1, math.ceil(SMOOTH / clock.dt - 1e-9))
     if not 0.0 < take.rate < math.inf:
-        raise InputError(f"rate = {take.rate:g} Hz must be finite and above 0")
+        raise InputError(f"{take.rate:g} images a second must be finite and above 0")
     try:
         return first, round(take.end / clock.dt), clock.every(1.0 / take.rate)
     except InputError:
+        steps = max(1, round(1.0 / (take.rate * clock.dt)))
         raise InputError(
-            f"rate = {take.rate:g} Hz: {1.0 / take.rate:g} s is not a whole number of time steps of {clock.dt:g} s;"
-            f" take {1.0 / clock.dt:g} or a whole fraction of it"
+            f"{take.rate:g} images a second: {1.0 / take.rate:g} s is not a whole number of time steps of"
+            f" {clock.dt:g} s; the nearest that is one is {1.0 / (steps * clock.dt):g} images a second"
         ) from None
 
 
