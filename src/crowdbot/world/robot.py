@@ -75,8 +75,8 @@ class Robot:
         about: one line for people.
 
     >>> robot = Robot.load("turtlebot2")
-    >>> robot.drive.max_speed, round(robot.radius, 3), [mount.name for mount in robot.mounts]
-    (0.65, 0.232, ['laser', 'kinect_depth', 'odometry', 'gyro', 'bumper', 'cliff_left', 'cliff_centre', 'cliff_right'])
+    >>> robot.drive.max_speed, round(robot.radius, 3), [mount.name for mount in robot.mounts][:3]
+    (0.65, 0.232, ['laser', 'kinect_depth', 'kinect_rgb'])
     """
 
     name: str
