@@ -129,3 +129,16 @@ def test_the_study_trains_measures_and_draws(tmp_path: Path, capsys: pytest.Capt
     assert again == found
     status, _, err = said(["study", "gan", "--methods", "infoo", "--out", str(tmp_path)], capsys)
     assert (status, "unknown method 'infoo', did you mean 'info'" in err) == (2, True)
+
+
+def test_without_torch_it_says_what_to_install(capsys, tmp_path, monkeypatch, recordings):
+    import sys
+
+    for name in [name for name in sys.modules if name.startswith("crowdbot.prediction.learned.")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "torch", None)
+    data = recordings / "eth_ucy_splits" / "all_data" / "crowds_zara01.txt"
+    for what in ("anchor-net", "social-ways"):
+        assert main(["train", what, "--data", str(data), "--updates", "2", "--out", str(tmp_path / "w")]) == 2
+        assert "needs the extra [learn]: pip install" in capsys.readouterr().err
+    assert not (tmp_path / "w").exists()

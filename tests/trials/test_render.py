@@ -63,6 +63,16 @@ def test_the_overview_has_the_whole_stage_in_view_and_the_feet_of_people(name: s
     assert np.degrees(camera.pitch) >= 60.0 - 1e-9
 
 
+def test_the_depth_camera_of_pepper_does_not_see_its_own_eye() -> None:
+    inside = '<goal x="9" y="0"/><navigator type="straight"/>'
+    robot = f'<robot name="pepper" type="pepper" x="0" y="0" rates="nearest">{inside}</robot>'
+    stage = '<stage walkable="-2,-4 10,-4 10,4 -2,4"/><crowd type="orca"/>'
+    trial = Trial.parse(f'<trial name="t" duration="1">{stage}{robot}</trial>')
+    (shot,) = shots(trial, "pepper/depth", Take(0.0), segmentation=True)
+    assert shot.segmentation is not None
+    assert set(np.unique(shot.segmentation)) <= {-3, -2, -1}
+
+
 def crosses(a: np.ndarray, b: np.ndarray, wall: np.ndarray) -> bool:
     def side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> float:
         return float((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))
@@ -193,7 +203,7 @@ def test_without_extras(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
     with pytest.raises(MissingExtra, match=r"a film as .mp4 needs the extra \[sim\]"):
         Album(tmp_path / "a.mp4", film=True)
     monkeypatch.setitem(sys.modules, "mujoco", None)
-    with pytest.raises(MissingExtra, match=r"needs the extra \[sim\]: pip install"):
+    with pytest.raises(MissingExtra, match=r"an image of a trial needs the extra \[sim\]: pip install"):
         list(shots(load_trial("frontal")))
 
 

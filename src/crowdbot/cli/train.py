@@ -53,12 +53,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Learn, and say where the weights are."""
     from crowdbot.core.errors import UnknownName
-    from crowdbot.prediction.learned.extra import threads
+    from crowdbot.prediction.learned.extra import threads, torch_module
     from crowdbot.prediction.learned.samples import short_recordings
     from crowdbot.prediction.learned.training import BEST, Schedule, train
 
     if options.what not in LEARNERS:
         raise UnknownName("learned predictor", options.what, LEARNERS)
+    torch_module()  # said before anything is read
     epochs = EPOCHS if options.updates is None and options.epochs is None else options.epochs
     schedule = Schedule(
         options.updates, epochs, options.check_every, options.check_every, ("ade", "fde"), options.patience,

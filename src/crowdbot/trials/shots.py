@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, stream
+from crowdbot.core import InputError, MissingExtra, stream
 from crowdbot.core.errors import did_you_mean
 from crowdbot.sensors import DepthCamera, RGBCamera
 from crowdbot.sensors.camera import distorted
@@ -104,6 +104,7 @@ def shots(
     if name not in camera_names(trial):
         known = camera_names(trial)
         raise InputError(f"{trial.name} has no camera {name!r}{did_you_mean(name, known)}; it has {', '.join(known)}")
+    _check_drawing()
     simulation = Simulation(trial, chosen, posed=True)
     first, last, every = _ticks(simulation, take)
     running = Running(simulation)
@@ -151,6 +152,16 @@ def _ticks(simulation: Simulation, take: Take) -> tuple[int, int, int]:
         ) from None
 
 
+def _check_drawing() -> None:
+    """Say at once, and not after the run, that nothing can be drawn."""
+    from crowdbot.world.physics.engine import engine
+
+    try:
+        engine()
+    except MissingExtra:
+        raise MissingExtra("an image of a trial", "sim") from None
+
+
 def _looks(mount: Mount) -> bool:
     return isinstance(mount.sensor, RGBCamera | DepthCamera)
 
@@ -194,7 +205,8 @@ class _Lens:
         probe = next(one for one in self.carrier.probes if one.mount.name == self.sensor)
         sensor: Any = probe.mount.sensor
         camera = sensor if isinstance(sensor, RGBCamera) else RGBCamera(
-            width=sensor.width, height=sensor.height, field_of_view=sensor.field_of_view, distortion=sensor.distortion
+            width=sensor.width, height=sensor.height, field_of_view=sensor.field_of_view, distortion=sensor.distortion,
+            near=max(0.05, 0.25 * sensor.range_min),  # without the shell of the head around the lens
         )  # fmt: skip
         pose, studio = probe.pose(self.carrier.agent, around), around.studio
         picture = camera.measure(around.flat, pose, self.rng, source=studio)
