@@ -5,25 +5,13 @@ import math
 import numpy as np
 import pytest
 from physics_worlds import alone
-from robot_texts import joint, link, robot
+from robot_texts import REAL, joint, link, robot
 
 from crowdbot.core import InputError, RobotError, Twist
 from crowdbot.world import AckermannDrive, DifferentialDrive, Omnidirectional, Robot, Wheel
 from crowdbot.world.urdf import read_urdf
 
 ROUND = 0.4 * np.stack([np.cos(np.arange(8) * math.pi / 4), np.sin(np.arange(8) * math.pi / 4)], axis=1)
-REAL = (
-    "urdf_tutorial/01-myfirst.urdf",
-    "urdf_tutorial/05-visual.urdf",
-    "urdf_tutorial/06-flexible.urdf",
-    "urdf_tutorial/07-physics.urdf",
-    "pepper/pepper.urdf",
-    "simple_humanoid/urdf/simple_humanoid.urdf",
-    "simple_humanoid/urdf/simple_humanoid_classical.urdf",
-    "double_pendulum/urdf/double_pendulum.urdf",
-    "double_pendulum/urdf/double_pendulum_continuous.urdf",
-    "double_pendulum/urdf/double_pendulum_simple.urdf",
-)
 
 
 def test_every_urdf_that_is_there_is_tried(urdf):

@@ -5,23 +5,12 @@ import logging
 import numpy as np
 import pytest
 import yourdfpy
+from robot_texts import REAL
 
 from crowdbot.core import RobotError
 from crowdbot.world.urdf import read_urdf
 from crowdbot.world.urdf.inertia import unphysical
 
-FILES = (
-    "urdf_tutorial/01-myfirst.urdf",
-    "urdf_tutorial/05-visual.urdf",
-    "urdf_tutorial/06-flexible.urdf",
-    "urdf_tutorial/07-physics.urdf",
-    "pepper/pepper.urdf",
-    "simple_humanoid/urdf/simple_humanoid.urdf",
-    "simple_humanoid/urdf/simple_humanoid_classical.urdf",
-    "double_pendulum/urdf/double_pendulum.urdf",
-    "double_pendulum/urdf/double_pendulum_continuous.urdf",
-    "double_pendulum/urdf/double_pendulum_simple.urdf",
-)
 models = {}
 
 
@@ -37,10 +26,10 @@ def theirs(urdf, name, graph=True):
 
 
 def test_every_urdf_that_is_there_is_tried(urdf):
-    assert {str(path.relative_to(urdf)) for path in urdf.rglob("*.urdf")} == set(FILES)
+    assert {str(path.relative_to(urdf)) for path in urdf.rglob("*.urdf")} == set(REAL)
 
 
-@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize("name", REAL)
 def test_links_joints_and_limits_agree(urdf, name):
     model, other = ours(urdf, name), theirs(urdf, name)
     assert set(model.links) == set(other.link_map)
@@ -65,7 +54,7 @@ def test_links_joints_and_limits_agree(urdf, name):
             assert (joint.mimic.joint, joint.mimic.multiplier, joint.mimic.offset) == said
 
 
-@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize("name", REAL)
 def test_masses_that_are_given_are_kept(urdf, name):
     model, other = ours(urdf, name), theirs(urdf, name)
     for key, twin in other.link_map.items():
@@ -94,7 +83,7 @@ def total_of(other):
     return mass, center, sum(i + m * ((d @ d) * np.eye(3) - np.outer(d, d)) for m, d, i in shifts)
 
 
-GIVEN = [name for name in FILES if "0" not in name.split("/")[1][:1] or "07" in name]
+GIVEN = [name for name in REAL if "0" not in name.split("/")[1][:1] or "07" in name]
 
 
 @pytest.mark.parametrize("name", GIVEN)
@@ -106,7 +95,7 @@ def test_total_mass_and_inertia_agree(urdf, name):
     np.testing.assert_allclose(whole.tensor, tensor, rtol=1e-6, atol=1e-9)
 
 
-@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize("name", REAL)
 def test_kinematics_agree_at_any_position(urdf, name):
     model, other = ours(urdf, name), theirs(urdf, name)
     rng = np.random.default_rng(3)
@@ -120,7 +109,7 @@ def test_kinematics_agree_at_any_position(urdf, name):
             np.testing.assert_allclose(poses[link], other.get_transform(link), atol=1e-9)
 
 
-@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize("name", REAL)
 @pytest.mark.parametrize("base", ["free", "planar", "fixed", "kinematic"])
 def test_they_live_in_mujoco(urdf, name, base):
     import mujoco
