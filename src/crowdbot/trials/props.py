@@ -17,6 +17,18 @@ if TYPE_CHECKING:
 __all__ = ["Cube", "Light", "Prop", "Table", "Tree"]
 
 
+class _Standing:
+    """What stands fast at its place."""
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def ring(self) -> NDArray[np.float64]:
+        """Outline ``[N, 2]`` [m], counter-clockwise; of a tree that of its trunk."""
+        return _outline(self)  # type: ignore[arg-type]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Cube:
     """A box on the floor; robots and people of the physics world can push it unless it is fixed.
@@ -49,7 +61,7 @@ class Cube:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Table:
+class Table(_Standing):
     """A table that stands fast."""
 
     x: float = attribute(about="middle", unit="m")
@@ -59,14 +71,6 @@ class Table:
     width: float = attribute(0.8, about="of its top", unit="m", above=0.05, at_most=100.0)
     height: float = attribute(0.74, about="above the floor", unit="m", above=0.05, at_most=100.0)
 
-    def __post_init__(self) -> None:
-        check(self)
-
-    @property
-    def ring(self) -> NDArray[np.float64]:
-        """Its outline ``[N, 2]`` [m], counter-clockwise."""
-        return _outline(self)
-
     def prop(self) -> physics.Prop:
         """Return it for a world with bodies."""
         from crowdbot.world import physics
@@ -75,7 +79,7 @@ class Table:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Tree:
+class Tree(_Standing):
     """A tree that stands fast."""
 
     x: float = attribute(about="middle", unit="m")
@@ -84,14 +88,6 @@ class Tree:
     height: float = attribute(5.0, about="to the top", unit="m", above=0.0, at_most=100.0)
     trunk: float = attribute(0.15, about="radius of the trunk", unit="m", above=0.0, at_most=10.0)
     crown: float = attribute(1.4, about="radius of the crown", unit="m", above=0.0, at_most=50.0)
-
-    def __post_init__(self) -> None:
-        check(self)
-
-    @property
-    def ring(self) -> NDArray[np.float64]:
-        """Outline ``[N, 2]`` [m] of the trunk, counter-clockwise."""
-        return _outline(self)
 
     def prop(self) -> physics.Prop:
         """Return it for a world with bodies."""
