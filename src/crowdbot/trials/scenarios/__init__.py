@@ -1,11 +1,13 @@
 """Scenarios: the built-in trials that are made from parameters."""
 
+from .arenas import ARENAS
 from .challenge import CHALLENGE, FLOWS, SIZES
 from .crowds import CROWDS, DENSITIES
 from .meetings import MEETINGS
 from .preset import Option, Preset
+from .shared_ways import SHARED_WAYS
 
 __all__ = ["DENSITIES", "FLOWS", "PRESETS", "SIZES", "Option", "Preset"]
 
-PRESETS = {preset.name: preset for preset in (*MEETINGS, *CROWDS, *CHALLENGE)}
+PRESETS = {preset.name: preset for preset in (*MEETINGS, *SHARED_WAYS, *CROWDS, *ARENAS, *CHALLENGE)}
 """Every preset by name."""

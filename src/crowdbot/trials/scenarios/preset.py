@@ -75,12 +75,14 @@ class Preset:
         about: one line for people.
         make: a function of the own parameters that returns the trial without what all have in common.
         own: its parameters, those in common apart.
+        also: what others call it, and with which parameters.
     """
 
     name: str
     about: str
     make: Callable[..., Trial]
     own: Mapping[str, Option] = field(default_factory=dict)
+    also: str = ""
 
     @property
     def options(self) -> dict[str, Option]:

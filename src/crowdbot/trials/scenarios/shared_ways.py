@@ -1,0 +1,151 @@
+"""Shared ways: base cases of one robot and a few people who use the same way, or wait for the robot.
+
+Names are those of Francis et al. 2025, Principles and guidelines for evaluating social robot navigation algorithms,
+doi:10.1145/3700599; geometry and numbers are ours. People cannot follow a robot or take anything from it: where a
+scenario asks for that, what its description says is what happens.
+"""
+
+from __future__ import annotations
+
+import math
+
+from crowdbot.trials.agent import Agent
+from crowdbot.trials.notation import Points
+from crowdbot.trials.stage import Stage
+from crowdbot.trials.trial import Trial
+
+from .parts import box, corridor, robot, scenario
+from .preset import Option, Preset
+
+__all__ = ["SHARED_WAYS"]
+
+WIDTH = Option(3.0, "width of the corridor", "m", 1.6, 20.0)
+ROBOT = Option(1.0, "speed of the robot", "m/s", 0.1, 3.0)
+BACK = math.pi
+"""The heading of who looks to where the robot comes from [rad]."""
+
+
+def leading(gap: float, speed: float, robot_speed: float) -> Trial:
+    """A robot goes ahead of a person to where the person wants to go."""
+    return scenario(
+        "leading",
+        60.0,
+        corridor(40.0, 2.5),
+        agents=[Agent(name="follower", x=-10.0 - gap, y=0.0, goal=Points.of([(18.0, 0.0)]), speed=speed)],
+        robots=[robot((-10.0, 0.0), (10.0, 0.0), robot_speed)],
+    )
+
+
+def pedestrian_obstruction(width: float, people: int) -> Trial:
+    """People stand in the way of the robot."""
+    across = [0.6 * (k - (people - 1) / 2.0) for k in range(people)]
+    return scenario(
+        "pedestrian-obstruction",
+        40.0,
+        corridor(16.0, width),
+        agents=[Agent(name=f"person{k + 1}", x=0.0, y=y, heading=BACK) for k, y in enumerate(across)],
+        robots=[robot((-6.0, 0.0), (6.0, 0.0))],
+    )
+
+
+def down_path(width: float, people: int, against: int, speed: float) -> Trial:
+    """People walk along the path of the robot, both ways."""
+    side = width / 2.0 - 0.6
+    agents = [
+        Agent(
+            name=f"ahead{k + 1}",
+            x=-6.0 + 2.5 * k,
+            y=side * (-1.0) ** (k + 1),
+            goal=Points.of([(16.0, side * (-1.0) ** (k + 1))]),
+            speed=speed,
+        )
+        for k in range(people)
+    ]
+    agents += [
+        Agent(
+            name=f"towards{k + 1}",
+            x=8.0 - 2.5 * k,
+            y=side * (-1.0) ** k,
+            goal=Points.of([(-16.0, side * (-1.0) ** k)]),
+            speed=speed,
+        )
+        for k in range(against)
+    ]
+    return scenario("down-path", 60.0, corridor(36.0, width), agents=agents, robots=[robot((-9.0, 0.0), (9.0, 0.0))])
+
+
+def parallel_walk(gap: float, speed: float, robot_speed: float) -> Trial:
+    """A robot and a person walk side by side."""
+    side = gap / 2.0
+    return scenario(
+        "parallel-walk",
+        60.0,
+        corridor(30.0, gap + 1.8),
+        agents=[Agent(name="person", x=-10.0, y=side, goal=Points.of([(14.0, side)]), speed=speed)],
+        robots=[robot((-10.0, -side), (10.0, -side), robot_speed)],
+    )
+
+
+def object_handover(reach: float, approach: float) -> Trial:
+    """A robot comes to a person who waits, and stops within reach."""
+    turn = math.radians(approach)
+    x, y = -6.0 * math.cos(turn), -6.0 * math.sin(turn)
+    return scenario(
+        "object-handover",
+        40.0,
+        Stage(walkable=box(-8, -7.5, 8, 7.5)),
+        agents=[Agent(name="taker", x=0.0, y=0.0, heading=BACK)],
+        robots=[robot((x, y), (-reach, 0.0), 0.6, tolerance=0.15)],
+    )
+
+
+SHARED_WAYS = (
+    Preset(
+        "leading",
+        "A robot goes ahead of a person to the same place; the person walks behind at the own pace and waits for nobody.",
+        leading,
+        {
+            "gap": Option(1.75, "distance between their centres at the beginning", "m", 0.6, 8.0),
+            "speed": Option(1.0, "speed of the person", "m/s", 0.1, 2.5),
+            "robot_speed": ROBOT,
+        },
+    ),
+    Preset(
+        "pedestrian-obstruction",
+        "People stand side by side in the middle of a corridor, and the robot has to pass.",
+        pedestrian_obstruction,
+        {"width": WIDTH, "people": Option(1, "people who stand in the way", "", 1, 20)},
+    ),
+    Preset(
+        "down-path",
+        "The robot goes down a corridor along which people walk, some the same way and some towards it.",
+        down_path,
+        {
+            "width": WIDTH,
+            "people": Option(2, "people who walk the same way", "", 0, 4),
+            "against": Option(1, "people who walk towards the robot", "", 0, 3),
+            "speed": Option(0.8, "speed of the people", "m/s", 0.1, 2.5),
+        },
+    ),
+    Preset(
+        "parallel-walk",
+        "A robot and a person walk side by side down a corridor.",
+        parallel_walk,
+        {
+            "gap": Option(1.2, "distance between their ways", "m", 0.6, 5.0),
+            "speed": Option(1.0, "speed of the person", "m/s", 0.1, 2.5),
+            "robot_speed": ROBOT,
+        },
+        "P&G: accompanying",
+    ),
+    Preset(
+        "object-handover",
+        "The robot comes to a person who stands and waits, and stops in front of them within reach; that is where it"
+        " ends: nothing is handed over, as robots have no hands here.",
+        object_handover,
+        {
+            "reach": Option(0.9, "distance between their centres at which the robot stops", "m", 0.6, 2.0),
+            "approach": Option(30.0, "between where the person looks and where the robot begins", "deg", -90.0, 90.0),
+        },
+    ),
+)
