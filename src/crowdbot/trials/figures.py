@@ -31,10 +31,16 @@ class Figure(NamedTuple):
 
 
 class Figures(NamedTuple):
-    """Everybody who has a place, robots apart: bodies and activities."""
+    """Everybody who has a place, robots apart, then who rides in a robot.
+
+    Fields:
+        people: bodies of them all; activity: of those who do not ride.
+        riders: the agents of the robots in which somebody sits.
+    """
 
     people: humans.People
     activity: tuple[str, ...]
+    riders: tuple[int, ...] = ()
 
 
 def pool(text: str) -> tuple[str, ...]:
@@ -67,7 +73,7 @@ def drawn(people: People, seed: int) -> list[Figure]:
 
 
 def cast_of(trial: Trial, people: People, agents: int, seed: int) -> Figures:
-    """Return bodies and activities of everybody of ``agents`` who is no robot.
+    """Return bodies and activities of everybody of ``agents`` who is no robot, and of riders.
 
     Who is not told of is an adult, drawn as a world draws people. People of sources take free places in any order, so
     what several sources say of bodies and activities is mixed.
@@ -83,7 +89,13 @@ def cast_of(trial: Trial, people: People, agents: int, seed: int) -> Figures:
     outfits = [
         figure.outfit if figure.outfit >= 0 else int(own) for figure, own in zip(said, default.variation, strict=True)
     ]
-    return Figures(humans.People.of(names, outfits), tuple(figure.activity or "walk" for figure in said))
+    carriers = [k for k, robot in enumerate(trial.robots) if robot.rider]
+    for k in carriers:
+        (figure,) = _some(trial.robots[k].rider, "", 1, (seed, "rider", k), None)
+        names.append(figure.body)
+        outfits.append(figure.outfit)
+    busy_with = tuple(figure.activity or "walk" for figure in said)
+    return Figures(humans.People.of(names, outfits), busy_with, tuple(len(people) + k for k in carriers))
 
 
 def _some(body: str, activity: str, count: int, keys: tuple[Any, ...], outfit: int | None) -> list[Figure]:

@@ -92,6 +92,7 @@ def _with_bodies(
         {agent: robot.body for agent, robot in robots.items()},
         stage=stage.physical(),
         people=figures.people,
+        riders=figures.riders,
         physics_dt=trial.physics_step,
         **whole,
     )

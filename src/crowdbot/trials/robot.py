@@ -24,6 +24,7 @@ from crowdbot.world.urdf.transforms import frame, roll_pitch_yaw
 
 from .attribute import attribute, check, child, children, mounted, plugged, shown
 from .notation import NAME
+from .words import ABOUT_RIDER, rider_problems
 
 __all__ = ["Goal", "Mount", "Robot"]
 
@@ -128,6 +129,7 @@ class Robot:
         about="whether sensors of its type must fit the time step, or measure as often as it allows",
         choices=("exact", "nearest"),
     )
+    rider: str = attribute("", about=ABOUT_RIDER)
     visible: bool = attribute(True, about="whether the crowd reacts to it")
     control_period: float = attribute(0.1, about="time between two commands", unit="s", above=0.0)
     goal: Goal = child(about="where it has to go")
@@ -155,6 +157,8 @@ class Robot:
                 'has cameras="true" but none would come: it needs a type with colour cameras, such as pepper, and its'
                 " sensors; leave it out"
             )
+        for problem in rider_problems(self.rider, self.type):
+            raise InputError(problem)
         for mount in self.sensors:
             links = self.body.model.links
             if mount.link and mount.link not in links:
@@ -163,13 +167,14 @@ class Robot:
 
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[str]:
-        """Return what is wrong with the type in a file, whatever else is wrong in its element."""
+        """Return what is wrong with the type and the rider in a file, whatever else is wrong in its element."""
+        said = rider_problems(values.get("rider", ""), values.get("type", ""))
         try:
             if values.get("type"):
                 _kind(values["type"], values["folder"], values["trust"])
         except InputError as error:
-            return [str(error)]
-        return []
+            return [str(error), *said]
+        return said
 
     @property
     def usual(self) -> Mapping[str, Any]:

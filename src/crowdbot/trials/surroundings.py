@@ -48,7 +48,7 @@ class Surroundings:
 
             robots = set(self.bodies)
             people = np.array([a for a in range(world.scene.shape[1]) if a not in robots], dtype=np.int64)
-            self._walkers = Walkers(world.scene, people, figures.people, seed)
+            self._walkers = Walkers(world.scene, people, figures.people, seed, figures.riders)
         if figures is not None and self._walkers is not None and set(figures.activity) - {"walk"}:
             self._walkers.begin(world.scene, figures.activity)
         self._props = [k for k, prop in enumerate(trial.stage.props) if prop.prop().movable]

@@ -8,7 +8,7 @@ from crowdbot.core.errors import did_you_mean
 
 from .attribute import shown
 
-__all__ = ["ABOUT_ACTIVITY", "ABOUT_BODY", "KINDS", "check_words", "word_problems"]
+__all__ = ["ABOUT_ACTIVITY", "ABOUT_BODY", "ABOUT_RIDER", "KINDS", "check_words", "rider_problems", "word_problems"]
 
 KINDS = {
     "man": ("man",),
@@ -22,6 +22,7 @@ KINDS = {
 ABOUT_BODY = (
     "name of a body (woman-36) or kind (man, woman, adult, boy, girl, child, mannequin); of several one is drawn"
 )
+ABOUT_RIDER = 'who sits in it, as body of a person; by default nobody, and only type="wheelchair" has a seat'
 ABOUT_ACTIVITY = "walk, talk, phone, bottle, text or sit; of several one is drawn"
 
 
@@ -56,3 +57,14 @@ def word_problems(body: str, activity: str) -> list[str]:
         f"{what}={shown(text)} has {word[:40]!r}{did_you_mean(word, known)}; it takes {takes}"
         for word, what, text, known, takes in wrong
     ]
+
+
+def rider_problems(rider: str, kind: str) -> list[str]:
+    """Return what is wrong with who sits in a robot of a type.
+
+    >>> rider_problems("woman-36", "wheelchair"), rider_problems("woman", "pepper")
+    ([], ['rider="woman" needs type="wheelchair": nothing else has a seat; leave it out'])
+    """
+    if rider and kind != "wheelchair":
+        return [f'rider={shown(rider)} needs type="wheelchair": nothing else has a seat; leave it out']
+    return [problem.replace("body=", "rider=", 1) for problem in word_problems(rider, "")]

@@ -77,7 +77,7 @@ def corner_traffic(people: int, width: float, length: float) -> Trial:
     turn, inside = box(-h + 0.3, -h + 0.3, h - 0.3, h - 0.3), h - 0.35
     return scenario(
         "corner-traffic",
-        60.0,
+        max(60.0, 5.0 * length),
         Stage(walkable=ground),
         routing=Routing(radius=0.3),
         contact=Contact(),
@@ -213,7 +213,7 @@ ARENAS = (
         circle_with_standing,
         {
             "people": Option(2, "people who walk", "", 1, 60),
-            "standing": Option(3, "people who stand", "", 0, 12),
+            "standing": Option(3, "people who stand", "", 0, 8),
             "radius": RADIUS,
             "size": Option(1.0, "radius of the room that standing people take, +- 20 %", "m", 0.2, 1.5),
         },

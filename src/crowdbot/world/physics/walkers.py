@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, stream
-from crowdbot.humans import LIMBS, Gait, Gaits, People
+from crowdbot.humans import CHAIR, LIMBS, WHEELCHAIR, Gait, Gaits, People
 
 __all__ = ["Limbs", "Walkers"]
 
@@ -50,18 +50,23 @@ class Walkers:
     Args:
         scene: E = 1.
         agents: which agents are people.
-        people: their bodies, one for each of ``agents``; None draws adults.
+        people: their bodies, one for each of ``agents``, then of ``riders``; None draws adults.
         seed: of bodies and of ways to walk.
+        riders: agents that are robots ``wheelchair`` in which somebody sits: a part of the robot for whoever sees it.
 
     Attributes:
+        agents: people, then the robots of those who ride; afoot: without these.
         people: their bodies; state: how they stand now.
 
     Raises:
         InputError: there are not as many people as agents.
     """
 
-    def __init__(self, scene: Scene, agents: Ints, people: People | None = None, seed: int = 0) -> None:
-        self.agents = agents
+    def __init__(
+        self, scene: Scene, agents: Ints, people: People | None = None, seed: int = 0, riders: Sequence[int] = ()
+    ) -> None:
+        self.afoot = agents
+        self.agents = agents = np.concatenate([agents, np.array(riders, dtype=np.int64)])
         self.people = People.drawn(len(agents), stream(seed, "people")) if people is None else people
         if len(self.people) != len(agents):
             raise InputError(
@@ -70,15 +75,23 @@ class Walkers:
             )
         self.row = np.full(scene.shape[1], -1, dtype=np.int64)
         self.row[agents] = np.arange(len(agents))
-        self.gait = Gait(self.people, seed)
+        seats = [CHAIR] * len(self.afoot) + [WHEELCHAIR] * len(riders)
+        self.gait = Gait(self.people, seed, seat=seats)
         place, velocity, heading = self._of(scene)
-        self.state: Gaits = self.gait.start(place, heading, velocity)
+        self.state: Gaits = self.gait.start(place, heading, velocity, self._busy("walk"))
         self.ends, self.radius = self._measured(self.state)
 
     def begin(self, scene: Scene, activity: str | Sequence[str]) -> None:
-        """Begin anew where everyone is in ``scene``, in one activity or each in the own, which they keep."""
+        """Begin anew where everyone is in ``scene``, in one activity or each in the own, which they keep.
+
+        Who rides sits: activities are those of ``afoot``.
+        """
         place, velocity, heading = self._of(scene)
-        self.take(self.gait.start(place, heading, velocity, activity))
+        self.take(self.gait.start(place, heading, velocity, self._busy(activity)))
+
+    def _busy(self, activity: str | Sequence[str]) -> list[str]:
+        own = [activity] * len(self.afoot) if isinstance(activity, str) else list(activity)
+        return [*own, *["sit"] * (len(self.agents) - len(self.afoot))]
 
     def walk(self, scene: Scene, dt: float) -> None:
         """Walk on for ``dt`` [s] to where everyone is in ``scene``: what a world in the plane does after each step."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -59,7 +59,9 @@ class PhysicsWorld(PlanarWorld):
         dt: time step [s], a whole number of ``physics_dt``.
         seed: of the crowd's randomness, of bodies and of ways to walk.
         stage: height of walls, floor, props and lights. The crowd walks around props that stand fast.
-        people: bodies of all agents that are no robots; None draws adults.
+        people: bodies of all agents that are no robots, then of riders; None draws adults.
+        riders: agents that are robots ``wheelchair`` in which somebody sits. Riders are seen; they weigh nothing, and
+            nothing touches them.
         physics_dt: step of the engine [s].
         slots: how many people can have a body at a time; None: 24, or as many as there are people.
         motors: how joints of robots are commanded, by agent and joint: ``position``, ``velocity``, ``effort``.
@@ -95,6 +97,7 @@ class PhysicsWorld(PlanarWorld):
         *,
         stage: PhysicsStage | None = None,
         people: People | None = None,
+        riders: Sequence[int] = (),
         physics_dt: float = 0.005,
         slots: int | None = None,
         motors: Mapping[int, Mapping[str, str]] | None = None,
@@ -107,7 +110,7 @@ class PhysicsWorld(PlanarWorld):
         super().__init__(scene, model, {agent: robot.drive for agent, robot in robots.items()}, dt, seed, **planar)
         persons = np.array([a for a in range(scene.shape[1]) if a not in robots], dtype=np.int64)
         self.stage, self.physics_dt = stage, physics_dt
-        self.walkers = Walkers(self.scene, persons, people, seed)
+        self.walkers = Walkers(self.scene, persons, people, seed, riders)
         self.left_out = 0
         self.forces: tuple[BodyForce, ...] = ()
         self._touched: dict[tuple[int, int], float] = {}
@@ -247,7 +250,7 @@ class PhysicsWorld(PlanarWorld):
             self._substep((k + 1) / self._steps, end - (self._steps - 1 - k) * self.physics_dt)
         self.forces = self._book.forces(self._steps)
         scene, moved = self._read(before, after)
-        if moved:
+        if moved or len(self.walkers.agents) > len(self.walkers.afoot):  # who rides is where the robot came to
             gait, ends = self.walkers.stepped(scene, self.dt), None
         self.walkers.take(gait, ends)
         return scene
@@ -268,7 +271,7 @@ class PhysicsWorld(PlanarWorld):
 
     def _embody(self, scene: Scene) -> None:
         """Give bodies to those who may touch something in this step, the nearest first."""
-        persons = self.walkers.agents
+        persons = self.walkers.afoot
         persons = persons[scene.active[0, persons]]
         nearest = np.full(len(persons), np.inf)
         mass = np.ones(len(persons))
