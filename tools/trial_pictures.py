@@ -122,17 +122,25 @@ def page(file: Path) -> None:
         "Made by `python tools/trial_pictures.py docs/trials`: people (blue) and the robot (red) at the beginning, the",
         "ways of the first 20 s, the goal of the robot (x). Shaded zones are portals: who goes in comes out at the",
         "other end. Run one with `crowdbot run NAME`, change its parameters with `--set NAME=VALUE`, see them all with",
-        "`crowdbot list trials NAME`.",
+        "`crowdbot list trials NAME`. The last column says what others call it, with parameters where ours differ from",
+        "what they mean: P&G are Francis et al. 2025 (doi:10.1145/3700599), CrowdNav, social-jym, UMANS, SEAN and RVO2",
+        "simulators.",
         "",
-        "| trial | | its own parameters |",
-        "|---|---|---|",
+        "| trial | | its own parameters | also known as |",
+        "|---|---|---|---|",
     ]
     for name in builtin_trials():
         preset = PRESETS.get(name)
         about = load_trial(name).about
         options = "" if preset is None else "<br>".join(f"`{key}` {option}" for key, option in preset.own.items())
-        lines.append(f"| **{name}**<br>{about} | ![{name}]({name}.png) | {options} |")
+        also = "" if preset is None else preset.also.replace("; ", "<br>")
+        lines.append(f"| **{name}**<br>{about} | ![{name}]({name}.png) | {options} | {also} |")
     lines += [
+        "",
+        "## What needs a recording",
+        "",
+        "Replayed people, with one of them replaced by the robot (as in SocNavBench and the evaluation of RDS), are",
+        'not built in: `<recorded data="..." without="...">` plays any recording of walking people.',
         "",
         "## A long one",
         "",

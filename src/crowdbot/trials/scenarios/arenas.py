@@ -1,11 +1,11 @@
 """Arenas: scenarios of other simulators, among them circles, corners and blocks.
 
-Sources: the names "delayed circular crossing", "circular crossing with static obstacles" and "corner traffic" with their
-sizes (a circle of 7 m; delays up to 5 s; three people of 1 m +- 0.2 m on a circle that is 3 m smaller; arms of 7 m that
-are 3 m wide; 5 people) are those of social-jym, https://github.com/TommasoVandermeer/social-jym; "1 to 10", "25 to 25",
-"block" and "four blocks" are names of examples of UMANS, van Toll et al. 2020, doi:10.1145/3384382.3384532. People in
-the corners of four blocks are an example of RVO2, van den Berg et al. 2011, doi:10.1007/978-3-642-19457-3_1. Other
-numbers are ours.
+Sources: the names "delayed circular crossing", "circular crossing with static obstacles" and "corner traffic" with
+their sizes (a circle of 7 m; delays up to 5 s; three people of 1 m +- 0.2 m on a circle that is 3 m smaller; arms of
+7 m that are 3 m wide; 5 people) are those of social-jym, https://github.com/TommasoVandermeer/social-jym; "1 to 10",
+"25 to 25", "block" and "four blocks" are names of examples of UMANS, van Toll et al. 2020,
+doi:10.1145/3384382.3384532, whose numbers we could not read. People in the corners of four blocks are an example of
+RVO2, van den Berg et al. 2011, doi:10.1007/978-3-642-19457-3_1. Other numbers are ours.
 """
 
 from __future__ import annotations

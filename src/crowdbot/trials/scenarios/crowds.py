@@ -262,18 +262,21 @@ CROWDS = (
         "People walk down a corridor without ends, the robot with them.",
         one_way_with,
         {"density": DENSITY, "width": WIDTH, "groups": GROUPS},
+        "UMANS: one-way flow; CrowdBot: 1-D, with the flow",
     ),
     Preset(
         "one-way-against",
         "People walk down a corridor without ends, the robot against them.",
         one_way_against,
         {"density": DENSITY, "width": WIDTH, "groups": GROUPS},
+        "P&G, social-jym: parallel traffic (14 m by 3 m: `width=3`); CrowdBot: 1-D, against the flow",
     ),
     Preset(
         "two-way",
         "People walk both ways down a corridor without ends.",
         two_way,
         {"density": DENSITY, "width": WIDTH, "groups": GROUPS},
+        "UMANS: corridor; CrowdBot: bi-directional",
     ),
     Preset(
         "density-ladder",
@@ -286,6 +289,7 @@ CROWDS = (
         "People without end cross the way of the robot, from one side or from both.",
         crossing,
         {"density": DENSITY, "both": Option(False, "whether people come from both sides")},
+        "P&G, social-jym: perpendicular traffic; CrowdBot: 2-D crossing",
     ),
     Preset(
         "circle-crossing",
@@ -298,30 +302,35 @@ CROWDS = (
             "limit": Option(25.0, "duration", "s", 5.0, 600.0),
             "horizon": Option(5.0, "time horizon of people", "s", 0.5, 10.0),
         },
+        "P&G, CrowdNav: circle crossing; social-jym: circular crossing (`radius=7`); UMANS: circle 5 to 50 (`people`)",
     ),
     Preset(
         "dense-circle",
         "Twenty people on a larger circle go to the other side, and so does a robot that they do not see.",
         dense_circle,
         {"people": Option(20, "people", "", 1, 60), "radius": Option(8.49, "of the circle", "m", 2.0, 30.0)},
+        "CrowdNav_Prediction_AttnGraph: 20 people",
     ),
     Preset(
         "square-crossing",
         "People on two sides of a square swap sides, the robot crosses their way.",
         square_crossing,
         {"people": Option(10, "people", "", 1, 60), "side": Option(10.0, "of the square", "m", 5.0, 40.0)},
+        "CrowdNav: square crossing",
     ),
     Preset(
         "static-crowd",
         "People stand about, alone or in groups; the robot goes through.",
         static_crowd,
         {"density": Option(0.25, "people", "1/m2", 0.0, 1.5), "groups": GROUPS},
+        "P&G, social-jym: robot crowding; CrowdBot: static crowd",
     ),
     Preset(
         "random-goals",
         "People go about a square, each to one random place after the other.",
         random_goals,
         {"people": Option(30, "people", "", 1, 400), "side": Option(20.0, "of the square", "m", 6.0, 100.0)},
+        "P&G, social-jym: crowd navigation; MengeROS, ir-sim: wandering",
     ),
     Preset(
         "bottleneck",
@@ -331,5 +340,6 @@ CROWDS = (
             "door": Option(1.4, "width of the door", "m", 0.7, 6.0),
             "rate": Option(0.7, "people who come in", "1/s", 0.01, 10.0),
         },
+        "Seyfried, Juelich: doors of 0.8 to 5 m (`door`)",
     ),
 )

@@ -245,6 +245,7 @@ MEETINGS = (
             "low": Option(1.0, "smallest speed of the person", "m/s", 0.1, 2.5),
             "high": Option(1.4, "largest speed of the person", "m/s", 0.1, 2.5),
         },
+        "P&G: frontal approach; UMANS: 1 to 1, 180 degrees",
     ),
     Preset(
         "intersection",
@@ -258,6 +259,7 @@ MEETINGS = (
             "speed": PERSON,
             "robot_speed": ROBOT,
         },
+        "P&G: intersection; SEAN: cross path; UMANS: 1 to 1, 90 and 135 degrees (`angle`)",
     ),
     Preset(
         "blind-corner",
@@ -268,18 +270,21 @@ MEETINGS = (
             "speed": PERSON,
             "distance": Option(7.0, "of the person from the corner", "m", 1.0, 7.5),
         },
+        "P&G: blind corner",
     ),
     Preset(
         "doorway",
         "A robot and a person want through a narrow door from both sides.",
         doorway,
         {"door": Option(0.95, "width of the door", "m", 0.7, 3.0), "speed": PERSON},
+        "P&G: narrow doorway",
     ),
     Preset(
         "elevator",
         "People leave a small room that the robot wants to enter.",
         elevator,
         {"door": Option(0.95, "width of the door", "m", 0.7, 2.0), "people": Option(1, "people who leave", "", 1, 4)},
+        "P&G: entering a room, entering an elevator",
     ),
     Preset(
         "overtaking",
@@ -290,6 +295,7 @@ MEETINGS = (
             "speed": Option(0.7, "speed of the person", "m/s", 0.1, 2.5),
             "robot_speed": Option(1.2, "speed of the robot", "m/s", 0.1, 3.0),
         },
+        "P&G: robot overtaking",
     ),
     Preset(
         "being-overtaken",
@@ -300,6 +306,7 @@ MEETINGS = (
             "speed": Option(1.4, "speed of the person", "m/s", 0.1, 2.5),
             "robot_speed": Option(0.6, "speed of the robot", "m/s", 0.1, 3.0),
         },
+        "P&G: pedestrian overtaking",
     ),
     Preset(
         "following",
@@ -310,18 +317,21 @@ MEETINGS = (
             "speed": Option(1.0, "speed of the person", "m/s", 0.1, 2.5),
             "robot_speed": Option(1.0, "speed of the robot", "m/s", 0.1, 3.0),
         },
+        "P&G: following",
     ),
     Preset(
         "joining-group",
         "A robot takes the free place in a group of people who stand and talk.",
         joining_group,
         {"people": PEOPLE, "radius": CIRCLE},
+        "P&G, SEAN: join group",
     ),
     Preset(
         "leaving-group",
         "A robot leaves a group of people who stand and talk.",
         leaving_group,
         {"people": PEOPLE, "radius": CIRCLE},
+        "P&G, SEAN: leave group",
     ),
     Preset(
         "passing-group",

@@ -102,19 +102,21 @@ def object_handover(reach: float, approach: float) -> Trial:
 SHARED_WAYS = (
     Preset(
         "leading",
-        "A robot goes ahead of a person to the same place; the person walks behind at the own pace and waits for nobody.",
+        "A robot goes ahead of a person who walks behind it at the own pace, and waits for nobody.",
         leading,
         {
             "gap": Option(1.75, "distance between their centres at the beginning", "m", 0.6, 8.0),
             "speed": Option(1.0, "speed of the person", "m/s", 0.1, 2.5),
             "robot_speed": ROBOT,
         },
+        "P&G: leading",
     ),
     Preset(
         "pedestrian-obstruction",
         "People stand side by side in the middle of a corridor, and the robot has to pass.",
         pedestrian_obstruction,
         {"width": WIDTH, "people": Option(1, "people who stand in the way", "", 1, 20)},
+        "P&G: pedestrian obstruction",
     ),
     Preset(
         "down-path",
@@ -126,6 +128,7 @@ SHARED_WAYS = (
             "against": Option(1, "people who walk towards the robot", "", 0, 3),
             "speed": Option(0.8, "speed of the people", "m/s", 0.1, 2.5),
         },
+        "P&G, SEAN: down path",
     ),
     Preset(
         "parallel-walk",
@@ -136,7 +139,7 @@ SHARED_WAYS = (
             "speed": Option(1.0, "speed of the person", "m/s", 0.1, 2.5),
             "robot_speed": ROBOT,
         },
-        "P&G: accompanying",
+        "P&G: parallel walk, accompanying",
     ),
     Preset(
         "object-handover",
@@ -147,5 +150,6 @@ SHARED_WAYS = (
             "reach": Option(0.9, "distance between their centres at which the robot stops", "m", 0.6, 2.0),
             "approach": Option(30.0, "between where the person looks and where the robot begins", "deg", -90.0, 90.0),
         },
+        "P&G: object handover",
     ),
 )
