@@ -22,7 +22,7 @@ from crowdbot.trials.stage import Obstacle, Stage
 from crowdbot.trials.trial import Robot, Trial
 
 from .crowds import circle_crossing
-from .parts import box, number, robot, scenario, uniform
+from .parts import STILL, box, number, robot, scenario, uniform
 from .preset import Option, Preset
 
 __all__ = ["ARENAS"]
@@ -66,7 +66,9 @@ def circle_with_standing(people: int, standing: int, radius: float, size: float)
         x, y = inner * math.cos(angle), inner * math.sin(angle)
         zone = box(x - 0.1, y - 0.1, x + 0.1, y + 0.1)
         broad = uniform(0.8 * size, 1.2 * size)
-        spawners.append(Spawner(name=f"standing{k + 1}", count=1, zone=zone, stands=True, radius=broad))
+        spawners.append(
+            Spawner(name=f"standing{k + 1}", count=1, zone=zone, stands=True, radius=broad, speed=number(STILL))
+        )
     return dataclasses.replace(plain, spawners=(*spawners, *plain.spawners), robots=_seen(plain.robots))
 
 

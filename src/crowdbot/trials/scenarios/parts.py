@@ -21,9 +21,12 @@ from crowdbot.world import DifferentialDrive, Drive
 if TYPE_CHECKING:
     from .preset import Preset
 
-__all__ = ["CROWD", "box", "corridor", "finished", "flow", "number", "pairs", "robot", "scenario", "uniform"]
+__all__ = ["CROWD", "STILL", "box", "corridor", "finished", "flow", "number", "pairs", "robot", "scenario", "uniform"]
 
 CROWD = ORCA(neighbor_distance=5.0, max_neighbors=10.0, time_horizon=2.0, time_horizon_walls=1.0)
+
+STILL = 0.01
+"""The speed of who stands and does not step aside for anybody [m/s]; people have to have some."""
 
 
 def box(left: float, low: float, right: float, high: float) -> Points:

@@ -14,7 +14,7 @@ from crowdbot.trials.notation import Points
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
 
-from .parts import box, corridor, robot, scenario
+from .parts import STILL, box, corridor, robot, scenario
 from .preset import Option, Preset
 
 __all__ = ["SHARED_WAYS"]
@@ -36,14 +36,15 @@ def leading(gap: float, speed: float, robot_speed: float) -> Trial:
     )
 
 
-def pedestrian_obstruction(width: float, people: int) -> Trial:
+def pedestrian_obstruction(width: float, people: int, gives_way: bool) -> Trial:
     """People stand in the way of the robot."""
+    speed = 1.34 if gives_way else STILL
     across = [0.6 * (k - (people - 1) / 2.0) for k in range(people)]
     return scenario(
         "pedestrian-obstruction",
         40.0,
         corridor(16.0, width),
-        agents=[Agent(name=f"person{k + 1}", x=0.0, y=y, heading=BACK) for k, y in enumerate(across)],
+        agents=[Agent(name=f"person{k + 1}", x=0.0, y=y, heading=BACK, speed=speed) for k, y in enumerate(across)],
         robots=[robot((-6.0, 0.0), (6.0, 0.0))],
     )
 
@@ -115,7 +116,11 @@ SHARED_WAYS = (
         "pedestrian-obstruction",
         "People stand side by side in the middle of a corridor, and the robot has to pass.",
         pedestrian_obstruction,
-        {"width": WIDTH, "people": Option(1, "people who stand in the way", "", 1, 20)},
+        {
+            "width": WIDTH,
+            "people": Option(1, "people who stand in the way", "", 1, 20),
+            "gives_way": Option(False, "whether they step aside"),
+        },
         "P&G: pedestrian obstruction",
     ),
     Preset(
