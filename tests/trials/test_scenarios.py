@@ -14,11 +14,14 @@ from crowdbot.models import SocialForce
 from crowdbot.navigation import Straight
 from crowdbot.trials import Trial, builtin_trials, load_trial
 from crowdbot.trials.scenarios import DENSITIES, FLOWS, PRESETS, SIZES
+from crowdbot.trials.simulation import Simulation
 
 LISTED = """
     frontal intersection blind-corner doorway elevator overtaking being-overtaken following joining-group leaving-group
     passing-group circle-crossing dense-circle square-crossing one-way-with one-way-against two-way perpendicular-flow
-    crossing-flows bottleneck static-crowd random-goals density-ladder
+    crossing-flows bottleneck static-crowd random-goals density-ladder leading pedestrian-obstruction down-path
+    parallel-walk object-handover delayed-circle circle-with-standing corner-traffic block four-blocks one-against-ten
+    crowd-against-crowd
 """
 QUICK = [
     name for name in LISTED.split() if name not in ("one-way-with", "one-way-against", "two-way", "density-ladder")
@@ -79,6 +82,58 @@ def test_every_rung_of_the_ladder_has_its_density(density: float) -> None:
     trial.check()
 
 
+def test_the_robot_stops_in_front_of_who_takes_something_within_reach() -> None:
+    for approach in (-60.0, 0.0, 60.0):
+        episode = load_trial("object-handover", reach=0.8, approach=approach).run()
+        assert episode.outcome == "success"
+        person, robot = episode.position[-1]
+        assert np.hypot(*(robot - person)) == pytest.approx(0.8, abs=0.2)
+        ahead = np.array([np.cos(episode.heading[-1, 0]), np.sin(episode.heading[-1, 0])])
+        assert (robot - person) @ ahead > 0.6
+
+
+@pytest.mark.parametrize(("name", "people"), [("pedestrian-obstruction", 1), ("circle-with-standing", 3)])
+def test_who_stands_in_the_way_stays_there(name: str, people: int) -> None:
+    episode = load_trial(name).run()
+    standing = episode.position[:, :people]
+    assert np.hypot(*(standing - standing[0]).transpose(2, 0, 1)).max() < 0.1
+    if name == "pedestrian-obstruction":
+        aside = load_trial(name, gives_way=True).run().position[:, 0]
+        assert np.hypot(*(aside - aside[0]).T).max() > 0.2
+
+
+def test_people_come_into_a_delayed_circle_one_after_the_other() -> None:
+    episode = load_trial("delayed-circle", delay=4.0).run()
+    people = [a for a in range(len(episode.ids)) if a not in episode.robots]
+    begins = sorted(float(episode.times[np.argmax(episode.active[:, a])]) for a in people)
+    assert len(begins) == 5
+    assert begins[0] <= 0.1
+    assert 2.0 < begins[-1] <= 4.1
+    assert len(set(begins)) == 5
+    far = [np.hypot(*episode.position[np.argmax(episode.active[:, a]), a]) for a in people]
+    assert np.allclose(far, 7.0, atol=0.6)
+
+
+@pytest.mark.parametrize("angle", [45.0, 90.0, 180.0])
+def test_ten_people_cross_at_the_angle_and_when_the_robot_does(angle: float) -> None:
+    trial = load_trial("one-against-ten", angle=angle, robot=False)
+    episode = dataclasses.replace(trial, duration=6.5).run()
+    start, later = episode.position[0].mean(axis=0), episode.position[60].mean(axis=0)
+    assert math.degrees(math.atan2(*(later - start)[::-1])) % 360.0 == pytest.approx(angle, abs=3.0)
+    middle = np.hypot(*episode.position.mean(axis=1).T)
+    assert episode.times[int(np.argmin(middle))] == pytest.approx(6.0, abs=0.6)
+
+
+@pytest.mark.parametrize("people", [25, 100])
+def test_ranks_are_a_metre_apart_and_everyone_has_an_own_goal(people: int) -> None:
+    trial = load_trial("crowd-against-crowd", people=people, formation=True, angle=90.0)
+    place = np.array([agent.position for agent in trial.agents])
+    assert len(place) == 2 * people
+    gap = np.hypot(*(place[:, None] - place[None]).transpose(2, 0, 1))
+    assert gap[gap > 0.0].min() == pytest.approx(1.0, abs=1e-5)
+    assert len({agent.goal for agent in trial.agents}) == 2 * people
+
+
 def test_people_of_a_corridor_without_ends_stay_as_many() -> None:
     trial = load_trial("two-way", density=0.2, groups=0.5, robot=False)
     episode = Trial.parse(trial.xml().replace('duration="90"', 'duration="20"')).run()
@@ -92,6 +147,7 @@ def test_the_challenge_is_that_of_its_files() -> None:
     assert (trial.end.goal, trial.end.collision) == (True, False)
     robot = trial.robots[0]
     assert (robot.position, robot.goal.position, robot.radius, robot.visible) == ((-20.0, 0.0), (20.0, 0.0), 0.5, True)
+    assert (robot.type, robot.latency, round(robot.body.radius, 2)) == ("turtlebot2", 0.0, 0.23)
     assert {spawner.speed.extent for spawner in trial.spawners} == {(1.03, 1.63)}
     assert {spawner.radius.extent for spawner in trial.spawners} == {(0.33, 0.33)}
     assert not load_trial("challenge-with-50", reactive=False).robots[0].visible
@@ -100,6 +156,16 @@ def test_the_challenge_is_that_of_its_files() -> None:
     assert np.abs(episode.position[..., 1]).max() < 9.0
     down = episode.velocity[-1, episode.active[-1], 1]
     assert np.median(down) < -1.0
+
+
+def test_nobody_begins_in_the_robot_of_the_challenge() -> None:
+    for name in ("challenge-cross-350", "challenge-against-350", "challenge-both-350"):
+        trial = load_trial(name)
+        people = Simulation(trial, trial.seed).people
+        gap = np.hypot(*(people.position - trial.robots[0].position).T) - people.radius - trial.robots[0].radius
+        assert gap.min() > 0.0
+        touched = dataclasses.replace(trial, world="physics", duration=3.0).run()
+        assert touched.outcome == "timeout"
 
 
 def test_the_long_trial_of_the_documents_has_a_thousand_people_for_ten_minutes() -> None:

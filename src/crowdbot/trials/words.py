@@ -22,7 +22,7 @@ KINDS = {
 ABOUT_BODY = (
     "name of a body (woman-36) or kind (man, woman, adult, boy, girl, child, mannequin); of several one is drawn"
 )
-ABOUT_RIDER = 'who sits in it, as body of a person; by default nobody, and only type="wheelchair" has a seat'
+ABOUT_RIDER = "who sits in it, as body of a person; by default nobody, and only the type wheelchair has a seat"
 ABOUT_ACTIVITY = "walk, talk, phone, bottle, text or sit; of several one is drawn"
 
 

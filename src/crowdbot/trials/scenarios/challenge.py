@@ -2,8 +2,9 @@
 
 A corridor of 50 m by 10 m; nobody, or one of five flows of 50, 100, 200 or 350 people (0.1 to 0.7 people/m2), each of
 whom comes in at one end, or side, after leaving at the other. The robot goes 40 m along the middle. Parameters are
-those of the public scenario files: preferred speeds of 1.33 +- 0.30 m/s, bodies of 0.33 m, a robot of 0.5 m. As in the
-challenge a contact does not end the run: it does after 180 s or at the goal.
+those of the public scenario files: preferred speeds of 1.33 +- 0.30 m/s, bodies of 0.33 m, a Turtlebot that the crowd
+takes for a disc of 0.5 m: in the plane it is that disc, in the physics world it has the body of a TurtleBot 2. As in
+the challenge a contact does not end the run: it does after 180 s or at the goal.
 Accelerations are limited to 5 m/s2 by default, as in the examples of UMANS; the files have 0.8 m/s2.
 """
 
@@ -16,7 +17,7 @@ from crowdbot.trials.crowd import Contact, Limits
 from crowdbot.trials.journey import Journey, Portal, Zone
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.stage import Stage
-from crowdbot.trials.trial import End, Trial
+from crowdbot.trials.trial import End, Robot, Trial
 
 from .crowds import DEEP, ends
 from .parts import box, corridor, number, robot, scenario, uniform
@@ -45,6 +46,23 @@ JOURNEYS = {
 """Goals lie beyond the portals, where nobody arrives."""
 
 
+def turtlebot() -> Robot:
+    """Return the robot: it moves at once as commanded, as in the challenge, and carries the laser of all presets."""
+    plain = robot((-20.0, 0.0), (20.0, 0.0), 0.65, radius=0.5)
+    return Robot(
+        type="turtlebot2",
+        x=plain.x,
+        y=plain.y,
+        radius=plain.radius,
+        latency=0.0,
+        equipped=False,
+        goal=plain.goal,
+        drive=plain.drive,
+        navigator=plain.navigator,
+        sensors=plain.sensors,
+    )
+
+
 def challenge(kind: str, people: int, acceleration: float) -> Trial:
     """Return one scenario."""
     ways = FLOWS[kind][2] if kind else ()
@@ -69,7 +87,7 @@ def challenge(kind: str, people: int, acceleration: float) -> Trial:
             if count
         ],
         portals=() if not ways else sides if crossing else ends(LENGTH, WIDTH),
-        robots=[robot((-20.0, 0.0), (20.0, 0.0), 0.65, radius=0.5)],
+        robots=[turtlebot()],
         end=End(collision=False),
     )
 

@@ -95,7 +95,7 @@ def object_handover(reach: float, approach: float) -> Trial:
         "object-handover",
         40.0,
         Stage(walkable=box(-8, -7.5, 8, 7.5)),
-        agents=[Agent(name="taker", x=0.0, y=0.0, heading=BACK)],
+        agents=[Agent(name="taker", x=0.0, y=0.0, heading=BACK, speed=STILL)],
         robots=[robot((x, y), (-reach, 0.0), 0.6, tolerance=0.15)],
     )
 
