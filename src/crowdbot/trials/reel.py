@@ -22,6 +22,8 @@ __all__ = ["Reel", "av_module", "reel"]
 Image = NDArray[np.uint8]
 Box = tuple[int, int, int, int]
 """Left, top, right and bottom of a part of an image, in pixels."""
+CLEAR = 255
+"""Number of the colour of a GIF through which the image before is seen: what is the same packs well."""
 
 
 class Reel(ABC):
@@ -103,19 +105,20 @@ class _Parts(Reel):
         self.file: BinaryIO | None = None
         self.count = self.begin = 0
         self.last: Image = np.zeros((0, 0, 3), dtype=np.uint8)
-        self.waiting: tuple[Image, Box] | None = None
+        self.waiting: tuple[Image, NDArray[np.bool_], Box] | None = None
 
     def add(self, image: Image) -> None:
         if self.file is None:
             self.file = self.part.open("wb")
             self.head(*image.shape[1::-1])
-            box: Box | None = (0, 0, image.shape[1], image.shape[0])
+            same = np.zeros(image.shape[:2], dtype=np.bool_)
         else:
-            box = _changed(self.last, image, self.grid)
+            same = np.all(self.last == image, axis=-1)
+        box = _changed(same, self.grid)
         if box is not None:
             self._write()
-            left, top, right, bottom = box
-            self.waiting = image[top:bottom, left:right].copy(), box
+            part = np.s_[box[1] : box[3], box[0] : box[2]]
+            self.waiting = image[part].copy(), same[part], box
         self.last = image
         self.count += 1
 
@@ -143,8 +146,8 @@ class _Parts(Reel):
         """Begin a film of this size."""
 
     @abstractmethod
-    def put(self, image: Image, box: Box, lasts: int) -> None:
-        """Write a part that is shown for so many units of time."""
+    def put(self, image: Image, same: NDArray[np.bool_], box: Box, lasts: int) -> None:
+        """Write a part, of which some pixels are the ``same`` as before, that is shown for so many units of time."""
 
     @abstractmethod
     def foot(self) -> None:
@@ -158,15 +161,18 @@ class _Gif(_Parts):
         self.write(b"GIF89a" + _little(2, width, height) + b"\x70\0\0")
         self.write(b"\x21\xff\x0bNETSCAPE2.0\x03\x01\0\0\0")  # again and again
 
-    def put(self, image: Image, box: Box, lasts: int) -> None:
+    def put(self, image: Image, same: NDArray[np.bool_], box: Box, lasts: int) -> None:
         from PIL import Image as Pictures
 
         alone = io.BytesIO()
-        few = Pictures.fromarray(image).convert("P", palette=Pictures.Palette.ADAPTIVE)
-        few.save(alone, format="GIF", interlace=False)
+        few = Pictures.fromarray(image).convert("P", palette=Pictures.Palette.ADAPTIVE, colors=CLEAR)
+        number = np.where(same, CLEAR, np.asarray(few)).astype(np.uint8)
+        clear = Pictures.fromarray(number)
+        clear.putpalette([*(few.getpalette() or []), *bytes(768)][:768])
+        clear.save(alone, format="GIF", interlace=False, optimize=False)
         palette, data = _gif_parts(alone.getvalue())
         bits = (len(palette) // 3).bit_length() - 2
-        self.write(b"\x21\xf9\x04\x04" + _little(2, min(lasts, 65_535)) + b"\0\0")  # stays until the next one
+        self.write(b"\x21\xf9\x04\x05" + _little(2, min(lasts, 65_535)) + bytes([CLEAR, 0]))  # stays until the next one
         self.write(b"\x2c" + _little(2, *box[:2], box[2] - box[0], box[3] - box[1]) + bytes([0x80 | bits]))
         self.write(palette + data)
 
@@ -183,7 +189,7 @@ class _WebP(_Parts):
         self._chunk(b"VP8X", b"\x02\0\0\0" + _little(3, width - 1, height - 1))
         self._chunk(b"ANIM", bytes(6))
 
-    def put(self, image: Image, box: Box, lasts: int) -> None:
+    def put(self, image: Image, same: NDArray[np.bool_], box: Box, lasts: int) -> None:
         from PIL import Image as Pictures
 
         alone = io.BytesIO()
@@ -201,21 +207,19 @@ class _WebP(_Parts):
         self.write(name + _little(4, len(data)) + data + bytes(len(data) % 2))
 
 
-def _changed(before: Image, after: Image, grid: int) -> Box | None:
-    """Return the smallest box with everything that is different, None when nothing is.
+def _changed(same: NDArray[np.bool_], grid: int) -> Box | None:
+    """Return the smallest box with everything that is not the same, None when nothing is.
 
-    >>> one, other = np.zeros((2, 5, 8, 3), dtype=np.uint8)
-    >>> other[2:4, 3] = 9
-    >>> _changed(one, other, 1), _changed(one, other, 2), _changed(one, one, 1)
+    >>> same = np.ones((5, 8), dtype=np.bool_)
+    >>> same[2:4, 3] = False
+    >>> _changed(same, 1), _changed(same, 2), _changed(same | True, 1)
     ((3, 2, 4, 4), (2, 2, 4, 4), None)
     """
-    other = np.any(before != after, axis=-1)
-    rows, columns = np.flatnonzero(np.any(other, axis=1)), np.flatnonzero(np.any(other, axis=0))
+    rows, columns = np.flatnonzero(~np.all(same, axis=1)), np.flatnonzero(~np.all(same, axis=0))
     if not len(rows):
         return None
-    return (
-        int(columns[0]) // grid * grid, int(rows[0]) // grid * grid, int(columns[-1]) + 1, int(rows[-1]) + 1,
-    )  # fmt: skip
+    left, top = int(columns[0]) // grid * grid, int(rows[0]) // grid * grid
+    return left, top, int(columns[-1]) + 1, int(rows[-1]) + 1
 
 
 def _gif_parts(data: bytes) -> tuple[bytes, bytes]:
