@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from space_trials import LEAN, room
 from trial_texts import FLOW, GOOD
 
 from crowdbot.core import EpisodeError, InputError, TrialError
@@ -60,6 +61,21 @@ def test_people_who_come_ways_journeys_and_chance_go_on_as_they_were(
     done = branch(flowing, tick / 10, out=out)
     assert done.digest == read_episode(flowing).digest
     assert messages(out / "episode.mcap") == messages(flowing, tick / 10)
+
+
+def test_a_branch_in_the_physics_world_is_the_rest_of_the_original(tmp_path: Path) -> None:
+    stands = LEAN.replace('x="6" y="4" goal="1,4" body="woman-36" outfit="3"', 'x="3" y="2.2"')
+    trial = Trial.parse(room("physics", stands).replace('duration="1"', 'duration="2"'))
+    first = record(trial, out=tmp_path / "whole")
+    whole = messages(tmp_path / "whole" / "episode.mcap")
+    assert {"/crowdbot/forces", "/crowdbot/contacts"} <= {topic for topic, *_ in whole}, "somebody is run into"
+    for at in (0.52, 1.6):
+        done = branch(tmp_path / "whole" / "episode.mcap", at, out=tmp_path / f"{at}")
+        assert done.digest == first.digest
+        wanted = messages(tmp_path / "whole" / "episode.mcap", at)
+        assert messages(tmp_path / f"{at}" / "episode.mcap") == wanted
+        assert 6 < len(wanted) < len(whole)
+    assert replay(tmp_path / "1.6" / "episode.mcap").equal
 
 
 def test_a_branch_with_changes_differs_from_then_on_and_replays(flowing: Path, tmp_path: Path) -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import json
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -15,7 +17,7 @@ from trial_texts import GOOD, SHY
 from crowdbot.cli import main
 from crowdbot.core import EpisodeError
 from crowdbot.trials import Trial, branch, carried, load_trial, read_episode, record, repair, replay
-from crowdbot.trials.carried import Carried, named_files
+from crowdbot.trials.carried import Carried, LeftOut, named_files
 from crowdbot.trials.recording import Recorder
 from crowdbot.trials.run import opened
 
@@ -90,11 +92,30 @@ def test_an_episode_replays_alone_when_its_code_is_trusted(moved: Path, capsys: 
     assert [path.name for path in moved.parent.iterdir()] == ["episode.mcap"]
 
 
-def test_code_beside_the_episode_is_used_without_trust(moved: Path) -> None:
+def test_code_beside_the_episode_runs_without_trust_only_as_it_was_recorded(
+    moved: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (moved.parent / "shy.py").write_text(SHY)
     assert replay(moved).equal
     (moved.parent / "shy.py").write_text(SHY.replace("0.8", "0.7"))
-    assert not replay(moved).equal
+    for again in (lambda: replay(moved), lambda: branch(moved, 1.0)):
+        with pytest.raises(EpisodeError, match=r"the code 'shy.py', and the one in .* has other bytes .* --trust"):
+            again()
+    assert main(["replay", str(moved)]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    done = replay(moved, trust=True)
+    assert (done.equal, done.changed) == (False, ("shy.py",))
+    assert str(done).endswith("; shy.py has other bytes than the recorded code")
+
+
+def test_everything_beside_the_episode_but_other_code_is_refused_too(made: Path, tmp_path: Path) -> None:
+    shutil.copytree(made, tmp_path / "all")
+    path = Path(shutil.copy(made / "out" / "episode.mcap", tmp_path / "all" / "episode.mcap"))
+    assert replay(path).equal
+    with (tmp_path / "all" / "shy.py").open("a") as file:
+        file.write("raise SystemExit('ran')\n")
+    with pytest.raises(EpisodeError, match="other bytes than the recorded one"):
+        replay(path)
 
 
 def test_code_in_an_episode_is_not_run_untrusted(made: Path, tmp_path: Path) -> None:
@@ -146,7 +167,10 @@ def test_a_killed_run_has_its_files_too(made: Path, tmp_path: Path) -> None:
 
 def test_large_files_are_named_and_not_kept(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(carried, "MOST", 200)
-    record(load_trial(made / "hall.xml"), out=tmp_path)
+    with pytest.warns(
+        LeftOut, match=r"leaves out 'maps/pictures/hall.pgm', .* \(too large, at most 200 bytes are kept"
+    ):
+        record(load_trial(made / "hall.xml"), out=tmp_path)
     path = tmp_path / "episode.mcap"
     kept = {row["name"]: row["kept"] for row in json.loads(read_episode(path).metadata["files"])}
     assert (kept["maps/hall.yaml"], kept["maps/pictures/hall.pgm"]) == (True, False)
@@ -211,6 +235,164 @@ def test_elements_may_tell_of_their_files(made: Path, tmp_path: Path, monkeypatc
     assert set(named_files(trial)) == {"people.txt"}
     assert Carried("people.txt", "data", 0, "", True).lies_in(made) is False
     assert Recorder(tmp_path / "x.mcap", _tally(trial)).files[0][0].name == "people.txt"
+
+
+TRAP = "import pathlib\npathlib.Path({mark!r}).touch()\n" + SHY
+
+
+def retold(source: Path, target: Path, change: Callable[[dict[str, str]], None], attached: dict[str, bytes]) -> Path:
+    """Copy an episode with other metadata and other files in it, as somebody hostile may."""
+    with source.open("rb") as old, target.open("wb") as new:
+        reader, writer = make_reader(old), Writer(new)
+        writer.start(profile="ros2")
+        held = {one.name: one.data for one in reader.iter_attachments()} | attached
+        for name, data in held.items():
+            writer.add_attachment(0, 0, name, "", data)
+        for record_ in list(reader.iter_metadata()):
+            values = dict(record_.metadata)
+            if "trial" in values:
+                change(values)
+            writer.add_metadata(record_.name, values)
+        channels: dict[int, int] = {}
+        for schema, channel, message in reader.iter_messages(log_time_order=False):
+            assert schema is not None
+            if channel.id not in channels:
+                number = writer.register_schema(schema.name, schema.encoding, schema.data)
+                channels[channel.id] = writer.register_channel(channel.topic, "cdr", number)
+            writer.add_message(channels[channel.id], message.log_time, message.data, message.publish_time)
+        writer.finish()
+    return target
+
+
+def row_of(name: str, data: bytes, **more: object) -> dict[str, object]:
+    digest = hashlib.blake2b(data, digest_size=16).hexdigest()
+    return {"name": name, "kind": "data", "size": len(data), "digest": digest, "kept": True} | more
+
+
+@pytest.mark.parametrize("name", ["shy.py", "__pycache__/shy.cpython-312.pyc", "SHY.PY", "shy.py."])
+def test_an_episode_cannot_pass_code_off_as_data(moved: Path, tmp_path: Path, name: str) -> None:
+    trap = TRAP.format(mark=str(tmp_path / "ran")).encode()
+
+    def change(values: dict[str, str]) -> None:
+        rows = [row for row in json.loads(values["files"]) if row["kind"] == "data"]
+        values["files"] = json.dumps([*rows, row_of(name, trap)])
+
+    target = retold(moved, tmp_path / "other.mcap", change, {name: trap})
+    with pytest.raises(EpisodeError, match="needs the code '.*', which does not lie in .*--trust"):
+        replay(target)
+    assert not (tmp_path / "ran").exists()
+
+
+@pytest.mark.parametrize("how", ["trial", "origin", "robot", "sweep"])
+def test_code_of_which_the_episode_does_not_tell_is_not_run(tmp_path: Path, how: str) -> None:
+    record(Trial.parse(GOOD), out=tmp_path / "out")
+    (tmp_path / "trap.py").write_text(TRAP.format(mark=str(tmp_path / "ran")))
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "trap.py").write_text(TRAP.format(mark=str(tmp_path / "ran")))
+    (tmp_path / "mine" / "robot.xml").write_text('<robot><drive type="trap.py:Shy"/></robot>')
+    trap = GOOD.replace('type="straight"', 'type="trap.py:Shy"')
+    if how == "robot":
+        trap = GOOD.replace('<robot name="robot"', '<robot name="robot" type="mine"')
+    if how == "sweep":
+        trap = GOOD.replace("<stage", '<sweep path="robot/navigator/type" values="straight trap.py:Shy"/><stage', 1)
+
+    def change(values: dict[str, str]) -> None:
+        if how == "origin":
+            values["origin"] = json.dumps([{"tick": 0, "trial": trap, "seed": 3}])
+        else:
+            values["trial"] = trap
+
+    target = retold(tmp_path / "out" / "episode.mcap", tmp_path / "episode.mcap", change, {})
+    with pytest.raises(EpisodeError, match=r"needs the code '(mine/)?trap.py' and does not say .* --trust"):
+        replay(target)
+    with pytest.raises(EpisodeError, match="--trust"):
+        branch(target, 1.0)
+    assert not (tmp_path / "ran").exists()
+
+
+def outside(folder: Path) -> Path:
+    """Write the trial one folder deeper than what it names."""
+    trial = hall(folder)
+    (folder / "deep").mkdir()
+    text = HALL.replace("maps/hall", "../maps/hall").replace("people.txt", "../people.txt")
+    (folder / "deep" / "hall.xml").write_text(text.replace("shy.py", "../shy.py"))
+    trial.unlink()
+    return folder / "deep" / "hall.xml"
+
+
+def test_files_outside_are_named_in_a_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    trial = outside(tmp_path)
+    out = tmp_path / "deep" / "out"
+    assert main(["run", str(trial), "--trust", "--out", str(out), "--json"]) == 0
+    told = capsys.readouterr().err.splitlines()
+    assert len(told) == 1
+    assert told[0].startswith(
+        "crowdbot: warning: the recording leaves out '../maps/hall.yaml', '../maps/pictures/hall.pgm', '../people.txt'"
+        " and 1 more (outside the folder of the trial): it replays only where files with the same bytes lie"
+    )
+    assert told[0].endswith("move what lies outside into the folder of the trial, or take the files along")
+    with pytest.warns(LeftOut, match="leaves out"):
+        record(load_trial(trial, trust=True), out=tmp_path / "again")
+    assert main(["run", str(trial), "--trust"]) == 0
+    assert "warning" not in capsys.readouterr().err
+    rows = {row["name"]: row for row in json.loads(read_episode(out / "episode.mcap").metadata["files"])}
+    assert set(rows) == {f"../{name}" for name in NAMES}
+    assert not any(row["kept"] for row in rows.values())
+    assert rows["../people.txt"] == row_of("../people.txt", (tmp_path / "people.txt").read_bytes(), kept=False)
+
+
+def test_files_outside_must_be_there_with_the_recorded_bytes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    trial = outside(tmp_path)
+    with pytest.warns(LeftOut):
+        record(load_trial(trial, trust=True), out=tmp_path / "deep" / "out")
+    path = str(tmp_path / "deep" / "out" / "episode.mcap")
+
+    def refused(*words: str) -> str:
+        assert main(["replay", path, *words]) == 2
+        told = capsys.readouterr().err
+        assert told.count("\n") == 1
+        return told
+
+    assert "outside the folder of its trial; pass --trust to allow it" in refused()
+    assert "there is none, seen from" in refused("--trust")
+    where = ["--trust", "--folder", str(tmp_path / "deep")]
+    assert main(["replay", path, *where]) == 0
+    assert main(["branch", path, "--at", "1", *where]) == 0
+    capsys.readouterr()
+    (tmp_path / "people.txt").write_text((tmp_path / "people.txt").read_text().replace("2.5", "2.6"))
+    assert "'../people.txt', which lies outside the folder of its trial" in (told := refused(*where))
+    assert "has other bytes than the recorded one; bring that back" in told
+
+
+def test_files_outside_and_inside_meet_in_a_folder_for_the_time(tmp_path: Path) -> None:
+    trial = outside(tmp_path)
+    (tmp_path / "people.txt").rename(tmp_path / "deep" / "people.txt")
+    trial.write_text(trial.read_text().replace("../people.txt", "people.txt"))
+    with pytest.warns(LeftOut):
+        first = record(load_trial(trial, trust=True), out=tmp_path / "deep")
+    (tmp_path / "deep" / "people.txt").unlink()
+    done = replay(tmp_path / "deep" / "episode.mcap", trust=True)
+    assert (done.equal, done.replayed) == (True, first.digest)
+
+
+def test_a_robot_folder_keeps_its_code_as_code_and_no_caches(tmp_path: Path) -> None:
+    from shutil import copytree
+
+    from crowdbot.trials.robot import _assets
+
+    copytree(_assets("turtlebot2"), tmp_path / "mine")
+    (tmp_path / "mine" / "more.py").write_text("")
+    (tmp_path / "mine" / "__pycache__").mkdir()
+    (tmp_path / "mine" / "__pycache__" / "more.pyc").write_text("")
+    robot = '<robot type="mine" equipped="false" x="0" y="0"><goal x="9" y="0"/>'
+    text = f'<trial name="t" duration="1"><crowd type="orca"/>{robot}'
+    (tmp_path / "t.xml").write_text(f'{text}<navigator type="straight"/></robot></trial>')
+    found = named_files(load_trial(tmp_path / "t.xml"))
+    assert {name for name, (kind, _) in found.items() if kind == "code"} == {"mine/more.py"}
+    assert "mine/robot.xml" in found
+    assert not any("__pycache__" in name for name in found)
 
 
 def _tally(trial: Trial):  # type: ignore[no-untyped-def]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import weakref
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +17,7 @@ from crowdbot.core import InputError, MissingExtra
 from crowdbot.trials import Take, Trial, camera_names, load_trial, shots
 from crowdbot.trials.album import Album, painted_segmentation
 from crowdbot.trials.camera import overview
+from crowdbot.trials.shots import Shot
 from crowdbot.world.physics import drawing
 
 
@@ -148,6 +151,65 @@ def test_a_film_is_written(ending: str, tmp_path: Path) -> None:
             assert film.n_frames == 6
             assert film.size == (64, 48)
     assert not list(tmp_path.rglob("*.part"))
+
+
+def moving(count: int) -> Iterator[Shot]:
+    """A bright square that wanders over a dark ground, and rests from image 3 to 5."""
+    for k in range(count):
+        image = np.full((40, 61, 3), (20, 40, 60), dtype=np.uint8)
+        at = 3 * min(k, 3) if k < 6 else 3 * (k - 2) % 40
+        image[5 + at // 2 : 15 + at // 2, at : at + 11] = (220, 180, 90)
+        yield Shot(k / 30.0, image)
+
+
+@pytest.mark.parametrize("ending", [".gif", ".webp"])
+def test_films_show_what_was_seen_as_long_as_it_was_seen(ending: str, tmp_path: Path) -> None:
+    path = tmp_path / f"film{ending}"
+    _, count = Album(path, film=True, rate=30.0).write(moving(31))
+    assert count == 31
+    wanted = [shot.rgb for shot in moving(31)]
+    time, times = 0.0, []
+    with Image.open(path) as film:
+        assert film.info["loop"] == 0
+        assert film.n_frames == 31 - 2, "what rests is one image"
+        for number in range(film.n_frames):
+            film.seek(number)
+            seen = np.asarray(film.convert("RGB")).astype(int)
+            times.append(time)
+            assert np.abs(seen - wanted[round(time * 30.0)]).mean() < (1e-9 if ending == ".gif" else 4.0), number
+            time += film.info["duration"] / 1000.0
+    assert time == pytest.approx(31 / 30.0, abs=0.006), "times are rounded, but do not add up"
+    assert times[4] - times[3] == pytest.approx(0.1, abs=0.011)
+    assert path.stat().st_size < 31 * 2500
+
+
+@pytest.mark.parametrize("ending", [".gif", ".webp", ".mp4"])
+def test_a_film_is_written_image_by_image(ending: str, tmp_path: Path) -> None:
+    alive: weakref.WeakSet[Shot] = weakref.WeakSet()
+    sizes = []
+
+    def watched() -> Iterator[Shot]:
+        for shot in moving(200):
+            alive.add(shot)
+            assert len(alive) <= 3
+            sizes.append(sum(part.stat().st_size for part in tmp_path.glob(".*.part")))
+            yield Shot(shot.time, shot.rgb)
+
+    Album(tmp_path / f"film{ending}", film=True).write(watched())
+    if ending != ".mp4":
+        assert sizes[-1] > sizes[0] == 0
+    assert [path.name for path in tmp_path.iterdir()] == [f"film{ending}"]
+
+
+@pytest.mark.parametrize("ending", [".gif", ".webp", ".mp4"])
+def test_a_film_that_fails_leaves_nothing(ending: str, tmp_path: Path) -> None:
+    def broken() -> Iterator[Shot]:
+        yield from moving(3)
+        raise InputError("the run is over")
+
+    with pytest.raises(InputError, match="the run is over"):
+        Album(tmp_path / f"film{ending}", film=True).write(broken())
+    assert not list(tmp_path.iterdir())
 
 
 WRONG = {

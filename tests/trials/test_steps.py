@@ -77,47 +77,102 @@ class Book:
         assert frame.commands.tolist() == [[0.25, 0.0, 0.0]]
 
 
-def test_the_order_of_a_step(monkeypatch: pytest.MonkeyPatch) -> None:
+def watched(monkeypatch: pytest.MonkeyPatch, world: str) -> Simulation:
+    """Return a simulation whose parts tell when they are at work, each with the time of the scene that it sees."""
     EVENTS.clear()
     robot = dataclasses.replace(
         TRIAL.robots[0],
-        drive=Wheels(),
+        drive=Wheels() if world == "planar" else DifferentialDrive(),
         navigator=Pilot(),
         control_period=0.05,
         sensors=[dataclasses.replace(TRIAL.robots[0].sensors[0], sensor=Eye(rays=4, rate=20.0))],
     )
     trial = dataclasses.replace(
-        TRIAL, crowd=Crowd(), robots=[robot], recording=dataclasses.replace(TRIAL.recording, period=0.05)
+        TRIAL, crowd=Crowd(), robots=[robot], recording=dataclasses.replace(TRIAL.recording, period=0.05), world=world
     )
     simulation = Simulation(trial, 3, Watched(0.05))
-    physics, bodies = simulation.world._settled, simulation._let_leave
-
-    def settled(earlier: Scene, after: Scene) -> Scene:
-        EVENTS.append(("physics", earlier.time))
-        return physics(earlier, after)
+    bodies = simulation._let_leave
 
     def leave() -> None:
         EVENTS.append(("people's bodies", simulation.world.scene.time))
         bodies()
 
-    monkeypatch.setattr(simulation.world, "_settled", settled)
     monkeypatch.setattr(simulation, "_let_leave", leave)
+    return simulation
+
+
+BEGIN = [("sensors", 0.0), ("navigators", 0.0), ("bridges", 0.0), ("recorder", 0.0)]
+OLD, NEW = 0.0, 0.05
+
+
+def test_the_order_of_a_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    simulation = watched(monkeypatch, "planar")
+    physics = simulation.world._settled
+
+    def settled(earlier: Scene, after: Scene) -> Scene:
+        EVENTS.append(("physics", earlier.time))
+        return physics(earlier, after)
+
+    monkeypatch.setattr(simulation.world, "_settled", settled)
     running = Running(simulation, [Book()], [Wire()])
-    assert EVENTS == [("sensors", 0.0), ("navigators", 0.0), ("bridges", 0.0), ("recorder", 0.0)]
+    assert BEGIN == EVENTS
     EVENTS.clear()
     running.step()
-    old, new = 0.0, 0.05
     assert [
-        ("time", old),
-        ("crowd", old),
+        ("time", OLD),
+        ("crowd", OLD),
         ("robots", 0.0),
-        ("physics", old),
-        ("people's bodies", new),
-        ("sensors", new),
-        ("navigators", new),
-        ("bridges", new),
-        ("recorder", new),
+        ("physics", OLD),
+        ("people's bodies", NEW),
+        ("sensors", NEW),
+        ("navigators", NEW),
+        ("bridges", NEW),
+        ("recorder", NEW),
     ] == EVENTS
+
+
+def test_the_order_of_a_step_in_the_physics_world(monkeypatch: pytest.MonkeyPatch) -> None:
+    simulation = watched(monkeypatch, "physics")
+    world: Any = simulation.world
+    (agent,) = world.chassis
+    ask, substep, limbs = world.chassis[agent].ask, world._substep, world.walkers.take
+    asked: list[float] = []
+
+    def robots(command: Any) -> None:
+        EVENTS.append(("robots", world.scene.time))
+        asked.append(float(command.forward[0]))
+        ask(command)
+
+    def engine(share: float, time: float) -> None:
+        EVENTS.append(("physics", round(time, 9)))
+        substep(share, time)
+
+    def taken(gait: Any, ends: Any) -> None:
+        EVENTS.append(("limbs", 0.0))
+        limbs(gait, ends)
+
+    monkeypatch.setattr(world.chassis[agent], "ask", robots)
+    monkeypatch.setattr(world, "_substep", engine)
+    monkeypatch.setattr(world.walkers, "take", taken)
+    running = Running(simulation, [Book()], [Wire()])
+    assert BEGIN == EVENTS
+    for old in (0.0, 0.05, 0.1):
+        EVENTS.clear()
+        running.step()
+        new = round(old + 0.05, 9)
+        assert [
+            ("time", old),
+            ("crowd", old),
+            ("robots", old),
+            *(("physics", round(old + 0.005 * k, 9)) for k in range(1, 11)),
+            ("limbs", 0.0),
+            ("people's bodies", new),
+            ("sensors", new),
+            ("navigators", new),
+            ("bridges", new),
+            ("recorder", new),
+        ] == [(what, round(time, 9)) for what, time in EVENTS]
+    assert asked == [0.25, 0.25, 0.25], "the bridge spoke after the navigator, and was obeyed in the next step"
 
 
 def driven(trial: Trial, clock: Clock | None, times: list[int] | None, out: Path | None = None) -> str:

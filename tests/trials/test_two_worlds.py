@@ -18,7 +18,7 @@ from crowdbot.trials.figures import cast_of
 from crowdbot.trials.run import Running, drive
 from crowdbot.trials.simulation import Simulation
 
-STEPS = 4
+STEPS = {"planar": 40, "physics": 20}
 
 
 def short(name: str, world: str) -> Trial:
@@ -26,7 +26,7 @@ def short(name: str, world: str) -> Trial:
     trial = load_trial(name, world=world)
     first = trial.variants()[0] if trial.sweeps else trial
     period = first.recording.period
-    return dataclasses.replace(first, duration=max(period, math.ceil(STEPS * first.step / period) * period))
+    return dataclasses.replace(first, duration=max(period, math.ceil(STEPS[world] * first.step / period) * period))
 
 
 @pytest.mark.parametrize("name", builtin_trials())

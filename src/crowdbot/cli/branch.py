@@ -6,7 +6,8 @@ import argparse
 import time
 from pathlib import Path
 
-from .output import add_json, progress
+from .output import add_json, progress, spoken_warnings
+from .replay import add_places
 from .run import tell
 from .schemes import assignments
 
@@ -25,7 +26,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     add("--seed", type=int, help="seed of new chance from then on (default: chance goes on)")
     add("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
-    add("--trust", action="store_true", help="run code that the episode brings, or that lies outside its folder")
+    add_places(parser)
     add_json(parser)
 
 
@@ -34,13 +35,14 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.trials import branch
 
     begin = time.perf_counter()
-    with progress(options.json) as report:
+    with spoken_warnings(), progress(options.json) as report:
         done = branch(
             options.episode,
             options.at,
             seed=options.seed,
             changes=assignments(options.set),
             out=None if options.out is None else options.out / "episode.mcap",
+            folder=options.folder,
             trust=options.trust,
             progress=lambda share: report("branch", share),
         )

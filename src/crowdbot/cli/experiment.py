@@ -10,7 +10,7 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .output import add_json, note, number, print_json, print_table
+from .output import add_json, note, number, print_json, print_table, spoken_warnings
 
 if TYPE_CHECKING:
     from crowdbot.trials.experiment import Experiment, Person, Sitting
@@ -90,7 +90,8 @@ def _run(options: argparse.Namespace) -> int:
         experiment, options.participant, options.out, time.time, resume=options.resume, trust=options.trust
     )
     try:
-        Console(sitting, person, write, _tell).run()
+        with spoken_warnings():
+            Console(sitting, person, write, _tell).run()
     except Left as left:
         note(f"crowdbot: the session waits in {sitting.folder}{f' ({left})' if str(left) else ''}; go on with --resume")
         return 130

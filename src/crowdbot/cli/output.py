@@ -6,9 +6,10 @@ import argparse
 import json
 import math
 import sys
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TextIO
 
 __all__ = [
     "Progress",
@@ -20,6 +21,7 @@ __all__ = [
     "print_metrics",
     "print_table",
     "progress",
+    "spoken_warnings",
 ]
 
 Progress = Callable[[str, float], None]
@@ -95,6 +97,22 @@ def number(value: Any, digits: int = 3) -> str:
 def note(sentence: str) -> None:
     """Say something on stderr."""
     print(sentence, file=sys.stderr, flush=True)
+
+
+@contextmanager
+def spoken_warnings() -> Iterator[None]:
+    """Say warnings of crowdbot as plain sentences on stderr."""
+
+    def say(
+        message: Warning | str, category: type[Warning], filename: str, lineno: int,
+        file: TextIO | None = None, line: str | None = None,
+    ) -> None:  # fmt: skip
+        note(f"crowdbot: warning: {message}")
+
+    with warnings.catch_warnings():
+        warnings.filterwarnings("always", category=UserWarning, module="crowdbot")
+        warnings.showwarning = say
+        yield
 
 
 @contextmanager

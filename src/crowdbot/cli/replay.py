@@ -11,10 +11,20 @@ from .output import add_json, print_json, progress
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument("episode", metavar="EPISODE.mcap", type=Path)
-    parser.add_argument(
-        "--trust", action="store_true", help="run code that the episode brings, or that lies outside its folder"
-    )
+    add_places(parser)
     add_json(parser)
+
+
+def add_places(parser: argparse.ArgumentParser) -> None:
+    """Add the options of where files of the trial may come from."""
+    parser.add_argument(
+        "--folder", type=Path, metavar="DIR", help="where files of the trial lie (default: the folder of the episode)"
+    )
+    parser.add_argument(
+        "--trust",
+        action="store_true",
+        help="run code that the episode brings or that is not the recorded one; use files outside the folder",
+    )
 
 
 def main(options: argparse.Namespace) -> int:
@@ -22,7 +32,9 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.trials import replay
 
     with progress(options.json) as report:
-        done = replay(options.episode, trust=options.trust, progress=lambda share: report("replay", share))
+        done = replay(
+            options.episode, folder=options.folder, trust=options.trust, progress=lambda share: report("replay", share)
+        )
     if options.json:
         print_json(done.as_dict())
     else:

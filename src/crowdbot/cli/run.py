@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .output import add_json, number, print_json, print_metrics, print_table, progress
+from .output import add_json, number, print_json, print_metrics, print_table, progress, spoken_warnings
 from .settings import add_settings, add_world, chosen, settings
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def main(options: argparse.Namespace) -> int:
     file = None if options.out is None else options.out / "episode.mcap"
     clock = None if options.pace is None else PacedClock(trial.step, rate=options.pace)
     begin = time.perf_counter()
-    with progress(options.json) as report:
+    with spoken_warnings(), progress(options.json) as report:
         done = record(trial, options.seed, file, progress=lambda share: report(f"run {trial.name}", share), clock=clock)
     tell(done, options.json, time.perf_counter() - begin)
     return 0

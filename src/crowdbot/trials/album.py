@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator
-from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, MissingExtra
+from crowdbot.core import InputError
 
+from .reel import av_module, reel
 from .shots import Shot
 
 __all__ = ["FILMS", "IMAGES", "Album", "painted_depth", "painted_segmentation"]
@@ -51,7 +50,7 @@ class Album:
         if self.folder and path.is_file():
             raise InputError(f"{path} is a file without an ending that is known; give {', '.join(known)}, or a folder")
         if path.suffix.lower() == ".mp4":
-            _av()
+            av_module()
 
     def write(self, shots: Iterable[Shot]) -> tuple[list[Path], int]:
         """Write the shots, and return the files and how many shots there were.
@@ -87,58 +86,17 @@ class Album:
         return files, count
 
     def _films(self, shots: Iterator[Shot], kinds: list[str]) -> tuple[list[Path], int]:
-        reels = [_Reel(self._named(kind), self.rate) for kind in kinds]
+        reels = [reel(self._named(kind), self.rate) for kind in kinds]
         count = 0
         try:
             for shot in shots:
                 count += 1
-                for kind, reel in zip(kinds, reels, strict=True):
-                    reel.add(_painted(shot, kind))
-            return [reel.finished() for reel in reels], count
+                for kind, one in zip(kinds, reels, strict=True):
+                    one.add(_painted(shot, kind))
+            return [one.finished() for one in reels], count
         finally:
-            for reel in reels:
-                reel.part.unlink(missing_ok=True)
-
-
-class _Reel:
-    """A film that is being written."""
-
-    def __init__(self, path: Path, rate: float) -> None:
-        self.path, self.rate = path, rate
-        self.part = path.with_name(f".{path.name}.part")
-        self.images: list[Any] = []
-        self.file: Any = None
-        self.track: Any = None
-
-    def add(self, image: NDArray[np.uint8]) -> None:
-        if self.path.suffix.lower() != ".mp4":
-            from PIL import Image
-
-            self.images.append(Image.fromarray(image))
-            return
-        av = _av()
-        even = np.ascontiguousarray(image[: len(image) // 2 * 2, : image.shape[1] // 2 * 2])  # as the format wants it
-        if self.file is None:
-            self.file = av.open(str(self.part), "w", format="mp4")
-            self.track = self.file.add_stream("libx264", rate=Fraction(self.rate).limit_denominator(10_000))
-            self.track.height, self.track.width = even.shape[:2]
-            self.track.pix_fmt = "yuv420p"
-            self.track.options = {"crf": "18", "threads": "1"}
-        for packet in self.track.encode(av.VideoFrame.from_ndarray(even, format="rgb24")):
-            self.file.mux(packet)
-
-    def finished(self) -> Path:
-        if self.file is not None:
-            for packet in self.track.encode():
-                self.file.mux(packet)
-            self.file.close()
-        else:
-            first, *others = self.images
-            kind = {".gif": "GIF", ".webp": "WEBP"}[self.path.suffix.lower()]
-            each = max(1, round(1000.0 / self.rate))
-            first.save(self.part, format=kind, save_all=True, append_images=others, duration=each, loop=0)
-        self.part.replace(self.path)
-        return self.path
+            for one in reels:
+                one.abandoned()
 
 
 def _saved(shot: Shot, kind: str, path: Path) -> Path:
@@ -208,11 +166,3 @@ def _palette() -> NDArray[np.uint8]:
     bright = np.clip(np.abs(turn - 3.0) - 1.0, 0.0, 1.0)
     people = np.round(255.0 * (0.25 + 0.75 * bright))
     return np.concatenate([[[0, 0, 0], [150, 150, 150], [90, 90, 90], [200, 170, 120]], people]).astype(np.uint8)
-
-
-def _av() -> Any:
-    try:
-        import av
-    except ImportError:
-        raise MissingExtra("a film as .mp4", "sim") from None
-    return av

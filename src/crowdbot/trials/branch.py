@@ -60,7 +60,7 @@ def branch(
     if out is not None and target(out).exists() and target(out).resolve() == source.resolve():
         raise InputError(f"{source} is the episode to branch from; record the branch to another place")
     with unpacked(source, read_metadata(source), folder, trust) as place:
-        course = Course.of(source, place, trust)
+        course = Course.of(source, place.folder, trust)
         wanted = digests(source)
         tally, outcome, steps = _run(course, at, wanted, seed, changes, trial, out, progress, Tally, str(source))
     summary: Summary = tally.summary(outcome, steps, None if out is None else target(out))

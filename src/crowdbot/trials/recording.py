@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import errno
 import os
+import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -12,7 +13,7 @@ from typing import Any
 
 from crowdbot.core import EpisodeError
 
-from .carried import carried
+from .carried import LeftOut, carried, left_out
 from .contact_messages import pushes
 from .episode_file import CONTACTS, DIGEST, ENDING, FORMAT, MAP, METADATA, as_json, versions
 from .markers import KIND as MARKERS
@@ -61,6 +62,9 @@ class Recorder:
     Raises:
         InputError: the trial cannot be written as XML.
         EpisodeError: the file cannot be written.
+
+    Warns:
+        LeftOut: files that the trial names are not kept.
     """
 
     def __init__(
@@ -75,6 +79,8 @@ class Recorder:
         self.trial, self.seed = tally.trial, tally.seed
         self.xml = self.trial.xml()
         self.files = carried([self.trial, *earlier])
+        if sentence := left_out(file for file, _ in self.files):
+            warnings.warn(sentence, LeftOut, stacklevel=2)
         self.messages = Messages()
         self.channels: dict[str, int] = {}
         self.made: list[Path] = []

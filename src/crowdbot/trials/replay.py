@@ -31,6 +31,7 @@ class Replay:
         recorded_versions, versions: of crowdbot, Python, numpy and numba, then and now.
         differs: the first recorded instant [s] at which they differ; None when it is not known or there is none.
         complete: whether the recording came to its end; one that was killed is compared as far as it goes.
+        changed: files of code that have other bytes than the recorded ones, and were trusted.
     """
 
     path: Path
@@ -43,6 +44,7 @@ class Replay:
     versions: dict[str, str]
     differs: float | None = None
     complete: bool = True
+    changed: tuple[str, ...] = ()
 
     @property
     def equal(self) -> bool:
@@ -64,6 +66,7 @@ class Replay:
             "versions": self.versions,
             "differs": self.differs,
             "complete": self.complete,
+            "changed": list(self.changed),
         }
 
     def __str__(self) -> str:
@@ -71,13 +74,14 @@ class Replay:
         what = f"{self.path}: {self.trial} with seed {self.seed}"
         if not self.complete:
             what += ", killed before its end,"
+        told = f"; {', '.join(self.changed)} has other bytes than the recorded code" if self.changed else ""
         if self.equal:
-            return f"{what} replays to the same bytes, digest {self.recorded}"
+            return f"{what} replays to the same bytes, digest {self.recorded}{told}"
         other = [f"{n} {v} then, {self.versions[n]} now" for n, v in self.recorded_versions.items()
                  if v != self.versions[n]]  # fmt: skip
         why = f"it was written with other versions: {'; '.join(other)}" if other else "the versions are the same"
         since = "" if self.differs is None else f" from {self.differs:g} s on"
-        return f"{what} does NOT replay{since}: recorded digest {self.recorded}, replayed {self.replayed}; {why}"
+        return f"{what} does NOT replay{since}: recorded digest {self.recorded}, replayed {self.replayed}; {why}{told}"
 
 
 def replay(
@@ -93,13 +97,14 @@ def replay(
 
     Args:
         path: of the episode.
-        folder: where code that the trial names lies (default: the folder of the episode). Data that it names are
-            those that were recorded, which the episode holds.
-        trust: whether code from outside that folder may be loaded, the code that the episode holds included.
+        folder: where files that the trial names lie (default: the folder of the episode). Code runs from there when
+            it has the recorded bytes. Data are those that were recorded, which the episode holds.
+        trust: whether other code may run, that which the episode holds included, and whether files may lie outside
+            that folder, where they must have the recorded bytes.
         progress: called with the share that is done, 0 to 1.
 
     Raises:
-        EpisodeError: the file cannot be read.
+        EpisodeError: the file cannot be read, or a file of its trial is missing, other than recorded, or not trusted.
         TrialError: the trial in it cannot be read by this version.
     """
     path = Path(path)
@@ -110,7 +115,7 @@ def replay(
     recorded = known if complete else known | _ended(known, wanted)
     comparison = Comparison(Digest(), wanted)
     with unpacked(path, known, folder, trust) as place, stopping() as stop:
-        course = Course.of(path, place, trust)
+        course = Course.of(path, place.folder, trust)
         simulation = course.begun(comparison, stop)
         ticks = int(recorded["steps"]) if recorded["outcome"] == "interrupted" else None
         outcome = drive(simulation, [comparison], stop, progress, ticks)
@@ -128,6 +133,7 @@ def replay(
         now,
         comparison.differs,
         complete,
+        place.changed,
     )
 
 
