@@ -28,6 +28,7 @@ __all__ = [
     "TrialError",
     "UnknownName",
     "did_you_mean",
+    "nearest",
 ]
 
 
@@ -85,8 +86,16 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     >>> did_you_mean("kalmann", ["kalman", "orca"])
     ", did you mean 'kalman'?"
     """
+    near = nearest(word, known)
+    return f", did you mean {near!r}?" if near else ""
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """Return the known word that is near, empty when none is.
+
+    >>> nearest("Kalmann", ["kalman", "orca"]), nearest("x", ["kalman"])
+    ('kalman', '')
+    """
+    known = list(known)
     near = difflib.get_close_matches(word.lower(), [k.lower() for k in known], n=1, cutoff=0.6)
-    if not near:
-        return ""
-    original = next(k for k in known if k.lower() == near[0])
-    return f", did you mean {original!r}?"
+    return next(k for k in known if k.lower() == near[0]) if near else ""

@@ -22,7 +22,7 @@ import numpy as np
 
 from .errors import InputError, UnknownName, did_you_mean
 
-__all__ = ["built_in", "find", "kebab", "needs", "problems", "read"]
+__all__ = ["built_in", "find", "kebab", "needs", "problems", "read", "words"]
 
 
 def kebab(name: str) -> str:
@@ -106,7 +106,7 @@ def read(cls: type, attributes: Mapping[str, str], where: str = "") -> Any:
         raise type(error)(f"{prefix}{error}") from None
 
 
-def problems(cls: type, attributes: Mapping[str, str], also: Iterable[str] = ()) -> list[str]:
+def problems(cls: type, attributes: Mapping[str, str], also: Iterable[str] = ()) -> dict[str, str]:
     """Return a sentence for every attribute that is unknown, missing or cannot be converted, not only the first.
 
     Args:
@@ -115,26 +115,36 @@ def problems(cls: type, attributes: Mapping[str, str], also: Iterable[str] = ())
         also: attributes that belong to somebody else and may be what was meant.
 
     >>> from crowdbot.core import Paper
-    >>> problems(Paper, {"yeer": "1995", "year": "x", "authors": "a", "title": "t", "venue": "v"})[0]
+    >>> problems(Paper, {"yeer": "1995", "year": "x", "authors": "a", "title": "t", "venue": "v"})["yeer"]
     "has no attribute 'yeer', did you mean 'year'?; it takes authors, year, title, venue, doi"
     """
     hints = typing.get_type_hints(cls)
     fields = {f.name: f for f in dataclasses.fields(cls) if f.init}
-    known = [*(name.replace("_", "-") for name in fields), *also]
-    found = []
+    known = [*words(cls), *also]
+    found = {}
     for key, text in attributes.items():
         name = key.replace("-", "_")
         if name not in fields:
             takes = ", ".join(known) or "none"
-            found.append(f"has no attribute {key[:40]!r}{did_you_mean(key, known)}; it takes {takes}")
+            found[key] = f"has no attribute {key[:40]!r}{did_you_mean(key, known)}; it takes {takes}"
             continue
         try:
             _convert(text, hints[name], key)
         except InputError as error:
-            found.append(str(error))
+            found[key] = str(error)
     given = {key.replace("-", "_") for key in attributes}
-    found += [f"needs the attribute {name.replace('_', '-')!r}" for name in needs(cls) if name not in given]
-    return found
+    missing = [name.replace("_", "-") for name in needs(cls) if name not in given]
+    return found | {word: f"needs the attribute {word!r}" for word in missing}
+
+
+def words(cls: Any) -> list[str]:
+    """Return the attributes that a dataclass takes.
+
+    >>> from crowdbot.core import Paper
+    >>> words(Paper)
+    ['authors', 'year', 'title', 'venue', 'doi']
+    """
+    return [field.name.replace("_", "-") for field in dataclasses.fields(cls) if field.init]
 
 
 def needs(cls: Any) -> list[str]:

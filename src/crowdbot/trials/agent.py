@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .attribute import attribute, check, children
+from .attribute import Mistake, attribute, check, children
 from .notation import Points
 from .words import ABOUT_ACTIVITY, ABOUT_BODY, check_words, word_problems
 
@@ -64,9 +64,10 @@ class Agent:
         check_words(self.body, self.activity)
 
     @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[str]:
+    def mistakes(values: Mapping[str, Any]) -> list[Mistake]:
         """Return what is wrong with the words of a file, whatever else is wrong in its element."""
-        return word_problems(values.get("body", ""), values.get("activity", ""))
+        found = word_problems(values.get("body", ""), values.get("activity", ""))
+        return [((), sentence) for sentence in found]
 
     @property
     def count(self) -> int:

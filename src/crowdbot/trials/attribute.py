@@ -13,15 +13,32 @@ import math
 import re
 import types
 import typing
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from crowdbot.core import InputError
 from crowdbot.core.errors import did_you_mean
 
-__all__ = ["Part", "Plug", "Rule", "attribute", "check", "child", "children", "mounted", "outline", "plugged", "shown"]
+from .torn import is_torn
 
+__all__ = [
+    "Mistake",
+    "Part",
+    "Plug",
+    "Rule",
+    "attribute",
+    "check",
+    "child",
+    "children",
+    "mounted",
+    "outline",
+    "plugged",
+    "shown",
+]
+
+Mistake = tuple[Collection[str], str]
+"""What ``mistakes(values)`` of an element finds, whatever else is wrong in it: fields that nobody can use, and why."""
 LARGEST = 1e6
 """No number in a trial may be larger than this, whatever its unit."""
 
@@ -133,6 +150,7 @@ class Part:
         at_most: largest number of child elements.
         elements: the child elements that it takes, by word.
         into: what makes one value of all children and the reverse, see :func:`children`.
+        optional: whether the value may be None.
     """
 
     name: str
@@ -147,6 +165,7 @@ class Part:
     at_most: int = 1
     elements: Mapping[str, Any] = field(default_factory=dict)
     into: Any = None
+    optional: bool = False
 
     @property
     def words(self) -> tuple[str, ...]:
@@ -239,6 +258,7 @@ def _part(field: dataclasses.Field[Any], hint: Any) -> Part:
         row.get("at_most", 1),
         elements if row["role"] in ("child", "children") else {},
         row.get("into"),
+        type(None) in typing.get_args(hint),
     )
 
 
@@ -251,9 +271,12 @@ def _without_none(hint: Any) -> Any:
 def check(element: Any) -> None:
     """Bring the fields of an element to their types and raise :class:`InputError` when a value is not allowed.
 
-    To be called in ``__post_init__``. Lists become tuples, and a number becomes a distribution where one is due.
+    To be called in ``__post_init__``. Lists become tuples, and a number becomes a distribution where one is due. Of a
+    torn element everything that could be read was judged already.
     """
     cls: type = type(element)
+    if is_torn(element):
+        return
     for part in outline(cls):
         value = getattr(element, part.name)
         if part.role == "attribute":

@@ -2,68 +2,121 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass, fields
-from typing import Any
+import dataclasses
+import functools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
-from crowdbot.models import CrowdModel
+from crowdbot.core import InputError
+from crowdbot.core.errors import nearest
+from crowdbot.world import Router
 
 from .agent import Agent
-from .camera import Camera
-from .crowd import Routing
-from .journey import Exit, Journey, Portal
+from .attribute import outline
+from .crowd import Crowd
 from .people import Source, Spawner
-from .recorded_people import RecordedPeople
 from .stage import Stage
-from .trial import Recording, Robot, Trial
+from .torn import Unread, kind_of, readable, rest, torn
+from .trial import Trial
 
-__all__ = ["Checked", "Problems"]
+__all__ = ["Checked", "Names", "Problems"]
 
 Problems = Iterator[tuple[Any, str]]
 """Elements that have a problem, each with the end of a sentence about it."""
 
 
+class Names(NamedTuple):
+    """The names of all elements of a kind, readable or not; doubtful when one has none, or two have the same."""
+
+    known: list[str]
+    doubtful: bool
+
+    @classmethod
+    def of(cls, things: Sequence[Any], doubtful: bool = False) -> Names:
+        """Return the names of elements."""
+        known = [name for _, name in readable(things, "name")]
+        return cls(known, doubtful or len({*known}) < len(things))
+
+    def lack(self, name: str) -> bool:
+        """Whether nothing has a name: not even what is doubtful can have it, for another is what was meant."""
+        return name not in self.known and (not self.doubtful or bool(nearest(name, self.known)))
+
+
 @dataclass(frozen=True)
 class Checked:
-    """The parts of a trial that are there; None for those that could not be read.
+    """A trial, torn where something of it could not be read, and its crowds as they stand in its file."""
 
-    ``broken`` are the elements of which one could not be read, so that others may well have named it.
-    """
+    trial: Trial
+    crowds: Sequence[Crowd]
+    given_seed: int | None = None
 
-    stage: Stage | None
-    crowd: CrowdModel | None
-    routing: Routing | None
-    journeys: Sequence[Journey]
-    agents: Sequence[Agent]
-    spawners: Sequence[Spawner]
-    sources: Sequence[Source]
-    recorded: Sequence[RecordedPeople]
-    exits: Sequence[Exit]
-    portals: Sequence[Portal]
-    robots: Sequence[Robot]
-    cameras: Sequence[Camera]
-    capacity: int | None
-    step: float | None
-    seed: int
-    duration: float | None
-    recording: Recording | None
-    broken: Collection[str] = ()
+    @property
+    def seed(self) -> int:
+        """Seed of what is drawn, 0 for one that could not be read."""
+        if self.given_seed is not None:
+            return self.given_seed
+        return next((seed for _, seed in readable([self.trial], "seed")), 0)
 
     @property
     def people(self) -> tuple[Agent | Spawner | Source, ...]:
         """Where people come from."""
-        return (*self.agents, *self.spawners, *self.sources)
+        return (*self.trial.agents, *self.trial.spawners, *self.trial.sources)
 
-    @classmethod
-    def of(cls, values: dict[str, Any], broken: Collection[str] = ()) -> Checked:
-        """Take the parts from the fields of a trial that could be read."""
-        lists = ("journeys", "agents", "spawners", "sources", "recorded", "exits", "portals", "robots", "cameras")
-        empty: dict[str, Any] = dict.fromkeys(lists, ()) | {"seed": 0}
-        names = [field.name for field in fields(cls) if field.name != "broken"]
-        parts: dict[str, Any] = {name: values.get(name, empty.get(name)) for name in names}
-        return cls(**parts, broken=broken)
+    @property
+    def crowd_names(self) -> Names:
+        """Names of the crowds; a single one needs none."""
+        doubtful = not self.crowds or (len(self.crowds) > 1 and not all(crowd.name for crowd in self.crowds))
+        return Names.of([crowd for crowd in self.crowds if crowd.name], doubtful)
 
-    @classmethod
-    def all_of(cls, trial: Trial) -> Checked:
-        """Take the parts of a whole trial."""
-        return cls.of({field.name: getattr(trial, field.name) for field in fields(cls) if field.name != "broken"})
+    @functools.cached_property
+    def stage(self) -> Stage:
+        """The stage without what could not be read of it: whatever is wrong there is wrong on the whole one, too."""
+        return rest(self.trial.stage)
+
+    @property
+    def router(self) -> Router | None:
+        """Who leads people around the walls of the stage, None without routing.
+
+        Raises:
+            Unread: nobody can.
+        """
+        if self.trial.routing is None:
+            return None
+        if isinstance(self._routing, str):
+            raise Unread(self._routing)
+        return self._routing
+
+    @property
+    def no_routing(self) -> str:
+        """Why nobody can lead people around the walls of the stage, empty when somebody can."""
+        return self._routing if self.trial.routing is not None and isinstance(self._routing, str) else ""
+
+    @functools.cached_property
+    def _routing(self) -> Router | str:
+        assert self.trial.routing is not None
+        try:
+            return self.trial.routing.router(self.stage.as_walls())
+        except InputError as error:
+            return str(error).removeprefix("Router: ")
+
+    def without(self, wrong: Mapping[int, set[str]]) -> Checked:
+        """Return what is left when fields of elements, given by their ``id``, turn out wrong."""
+        return dataclasses.replace(self, trial=_without(self.trial, wrong)) if wrong else self
+
+
+def _without(thing: Any, wrong: Mapping[int, set[str]]) -> Any:
+    """Return an element, or a torn copy of it when something in it is wrong."""
+    if isinstance(thing, tuple):
+        new = tuple(_without(one, wrong) for one in thing)
+        return thing if all(a is b for a, b in zip(thing, new, strict=True)) else new
+    if thing is None:
+        return None
+    cls, lost = kind_of(thing), wrong.get(id(thing), set())
+    nested = [part.name for part in outline(cls) if part.role in ("child", "children") and part.into is None]
+    values = {f.name: value for f in dataclasses.fields(cls) for _, value in readable([thing], f.name)}
+    inner = {name: _without(values[name], wrong) for name in nested if name in values}
+    if not lost and all(values[name] is value for name, value in inner.items()):
+        return thing
+    kept = {name: value for name, value in (values | inner).items() if name not in lost}
+    return torn(cls, kept, {field.name for field in dataclasses.fields(cls)} - {*kept}, origin=thing)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import dataclasses
+import contextlib
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,13 +14,19 @@ from crowdbot.core import FreeClock, InputError, TrialError
 from crowdbot.core.errors import did_you_mean
 
 from .attribute import shown
-from .checked import Checked, Problems
-from .flow_checks import expected, flows, names
-from .recorded_people import RecordedPeople, Walk
+from .camera import Camera
+from .checked import Checked, Names, Problems
+from .crowd import Crowd, Crowds
+from .flow_checks import expected, flows, names, taken
+from .notation import Points
+from .people import Spawner
+from .recorded_people import RecordedPeople
 from .spawn import place
 from .stage import Obstacle, Stage
 from .sweep import sweep_problems
-from .trial import Robot, Trial
+from .torn import Unread, origin, readable, rest, told
+from .trial import Goal, Mount, Robot, Trial
+from .writing import element_of
 from .zones import areas, crooked
 
 __all__ = ["check_trial", "problems_of"]
@@ -27,6 +34,8 @@ __all__ = ["check_trial", "problems_of"]
 MOST_VALUES = 100_000_000
 """An episode is held in memory: recorded scenes times agents must not exceed this."""
 MOST_ARRIVALS = 100_000
+NOBODY = Spawner(count=0, zone=Points.parse("0,0 1,0 0,1"))
+"""Stands in for a spawner whose people cannot be placed, so that those of others are drawn as ever."""
 WALKING = 1.6
 """About how fast [m/s] people go from portal to portal."""
 
@@ -38,80 +47,117 @@ def check_trial(trial: Trial, seed: int | None = None) -> None:
         trial: made in Python or read.
         seed: places people with it; None is the trial's own.
     """
-    whole = Checked.all_of(trial)
-    checked = whole if seed is None else dataclasses.replace(whole, seed=seed)
-    found = [f"trial {trial.name!r}: {_called(thing)} {sentence}" for thing, sentence in problems_of(checked)]
-    if trial.sweeps and not found:
-        found = sweep_problems(trial, seed)
-    if found:
-        raise TrialError(*found)
+    found = problems_of(trial, Crowds.spread(trial.crowd), seed)
+    sentences = [f"trial {trial.name!r}: {_called(thing)} {sentence}" for thing, sentence in found]
+    if trial.sweeps and not sentences:
+        from .reading import Reader
+
+        reader = Reader(trial.name, trial.folder or Path.cwd(), True, seed)
+        sentences = [sentence for _, sentence in sweep_problems(element_of(trial), trial.sweeps, reader.others)]
+    if sentences:
+        raise TrialError(*sentences)
 
 
-def problems_of(checked: Checked) -> list[tuple[Any, str]]:
-    """Return every problem: the element that has it, and the end of a sentence about it."""
-    too_large = [*_size(checked)]
-    found = [*_periods(checked), *_names(checked), *names(checked), *too_large]
-    if checked.stage is None:
-        return found
-    zones = areas(checked)
-    shapes = [*_stage_shapes(checked.stage), *(problem for zone in zones for problem in zone.crooked())]
-    found += shapes
-    if any(thing is checked.stage or isinstance(thing, Obstacle) for thing, _ in shapes):
-        return found
-    bad = {id(thing) for thing, _ in shapes}
-    lost = [p for zone in zones if id(zone.element) not in bad for p in zone.misplaced(checked.stage)]
-    found += lost + [*_robots(checked.stage, checked.robots)]
-    bad |= {id(thing) for thing, _ in lost}
-    if not bad:
-        found += [*flows(checked)]
-    if too_large:
-        return found
-    walks, unread = _recordings(checked)
-    spawners = [spawner for spawner in checked.spawners if id(spawner) not in bad]
-    agents = [agent for agent in checked.agents if id(agent) not in bad]
-    return found + unread + place(checked.stage, spawners, checked.robots, checked.seed, agents, walks)[1]
+def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) -> list[tuple[Any, str]]:
+    """Return every problem: the element that has it, and the end of a sentence about it.
+
+    Args:
+        trial: torn where something of it could not be read.
+        crowds: as they stand in its file.
+        seed: places people with it; None is the trial's own.
+    """
+    checked = Checked(trial, crowds, seed)
+    too_large = [*told(*_size(checked))]
+    found = [*told(_periods(checked), *_names(checked), *names(checked)), *too_large]
+    shapes = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.crooked())]
+    shapes += _stage_shapes(trial.stage)
+    checked = checked.without(_by_thing(shapes))
+    lost = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.misplaced(checked.stage))]
+    checked = checked.without(_by_thing(lost))
+    found += [(thing, sentence) for thing, _, sentence in (*shapes, *lost)]
+    found += [*told(*_robots(checked.stage, checked.trial.robots), *flows(checked))]
+    found += [*told(*(_recording(checked, one) for one in trial.recorded))]
+    if not too_large:
+        found += _places(checked)
+    return [(origin(thing), sentence) for thing, sentence in found]
 
 
-def _recordings(checked: Checked) -> tuple[list[tuple[RecordedPeople, Sequence[Walk]]], list[tuple[Any, str]]]:
-    """Return the recordings that can be read, and why others cannot."""
-    read: list[tuple[RecordedPeople, Sequence[Walk]]] = []
-    problems: list[tuple[Any, str]] = []
-    for one in checked.recorded:
-        try:
-            walks = one.walks(checked.duration or 0.0)
-        except InputError as error:
-            problems.append((one, f"data={shown(one.data)} {error}"))
-            continue
-        if not walks:
-            problems.append((one, f"data={shown(one.data)} has nobody from {one.begin:g} s on; take an earlier begin"))
-        read.append((one, walks))
-    return read, problems
+def _by_thing(rows: Sequence[tuple[Any, str, str]]) -> dict[int, set[str]]:
+    """Return the fields of elements that have a problem, by the ``id`` of the element."""
+    found: dict[int, set[str]] = {}
+    for thing, name, _ in rows:
+        found.setdefault(id(thing), set()).add(name)
+    return found
+
+
+def _places(checked: Checked) -> list[tuple[Any, str]]:
+    """Return who finds no place; who could not be read takes none."""
+    trial = checked.trial
+    spawners = [_or(spawner, NOBODY, "zone", "count", "radius", "groups") for spawner in trial.spawners]
+    agents = [_or(agent, None, "x", "y", "radius") for agent in trial.agents]
+    robots = [robot for robot in trial.robots if all(readable([robot], name) for name in ("x", "y", "radius"))]
+    walks = []
+    for one in trial.recorded:
+        with contextlib.suppress(Unread, InputError):
+            walks.append((rest(one, "data"), one.walks(trial.duration)))
+    there = [agent for agent in agents if agent is not None]
+    return place(checked.stage, spawners, robots, checked.seed, there, walks)[1]
+
+
+def _or(thing: Any, instead: Any, *needs: str) -> Any:
+    """Return an element without what could not be read, something instead of it when that is needed."""
+    try:
+        return rest(thing, *needs)
+    except Unread:
+        return instead
+
+
+def _recording(checked: Checked, one: RecordedPeople) -> Problems:
+    """Yield why a recording cannot be replayed."""
+    try:
+        durations = [duration for _, duration in readable([checked.trial], "duration")]
+        walks = one.walks(*durations) if durations else one.walks(0.0) or ("unknown",)
+    except InputError as error:
+        yield one, f"data={shown(one.data)} {error}"
+        return
+    if not walks:
+        yield one, f"data={shown(one.data)} has nobody from {one.begin:g} s on; take an earlier begin"
 
 
 def _periods(checked: Checked) -> Problems:
-    if checked.step is None:
-        return
-    clock = FreeClock(checked.step)
-    periods: list[tuple[Any, str, float]] = []
-    if checked.recording:
-        periods += [(checked.recording, f"recording {n}", getattr(checked.recording, n)) for n in ("period", "markers")]
-    for robot in checked.robots:
-        periods.append((robot, "control-period", robot.control_period))
-        carried = robot.usual["sensors"]
-        for mount in robot.sensors:
-            if robot.rates == "nearest" and mount in carried:
-                continue
-            thing = robot if mount in carried else mount
-            whose = f'sensor {mount.name!r} of its type (rates="nearest" lets it fit): ' if mount in carried else ""
-            periods.append((thing, f"{whose}rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate))
-            if mount.sensor.delay > 0.0:
-                periods.append((thing, f"{whose}delay", mount.sensor.delay))
+    trial = checked.trial
+    clock = FreeClock(trial.step)
+    periods = [*told(*_due(trial))]
     fits = _fitting([period for _, _, period in periods])
     for thing, name, period in periods:
         try:
             clock.every(period)
         except InputError:
-            yield thing, f"{name} {period:g} s is not a whole number of time steps of {checked.step:g} s{fits}"
+            yield thing, f"{name} {period:g} s is not a whole number of time steps of {trial.step:g} s{fits}"
+
+
+def _due(trial: Trial) -> Iterator[Iterator[tuple[Any, str, float]]]:
+    """Yield what happens again and again: whose it is, what it is called, and after how long [s]."""
+    yield _period(trial.recording, "period", "recording period")
+    yield _period(trial.recording, "markers", "recording markers")
+    for robot in trial.robots:
+        yield _period(robot, "control_period", "control-period")
+        yield from (_measuring(robot, mount) for _, mounts in readable([robot], "sensors") for mount in mounts)
+
+
+def _period(thing: Any, name: str, called: str) -> Iterator[tuple[Any, str, float]]:
+    yield thing, called, getattr(thing, name)
+
+
+def _measuring(robot: Robot, mount: Mount) -> Iterator[tuple[Any, str, float]]:
+    carried = robot.usual["sensors"]
+    if robot.rates == "nearest" and mount in carried:
+        return
+    thing = robot if mount in carried else mount
+    whose = f'sensor {mount.name!r} of its type (rates="nearest" lets it fit): ' if mount in carried else ""
+    yield thing, f"{whose}rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate
+    if mount.sensor.delay > 0.0:
+        yield thing, f"{whose}delay", mount.sensor.delay
 
 
 def _fitting(periods: Sequence[float]) -> str:
@@ -124,101 +170,113 @@ def _fitting(periods: Sequence[float]) -> str:
     return f'; with step="{step:g}" all are'
 
 
-def _names(checked: Checked) -> Problems:
-    robots = [robot.name for robot in checked.robots]
-    for k, robot in enumerate(checked.robots):
-        if robot.name in robots[:k]:
-            yield robot, f"name {robot.name!r} is taken by another robot; give each its own"
-        mounts = [mount.name for mount in robot.sensors]
-        for n, mount in enumerate(robot.sensors):
-            if mount.name in mounts[:n]:
-                yield mount, f"name {mount.name!r} is taken by another sensor of this robot; give each its own"
-    yield from _cameras(checked)
+def _names(checked: Checked) -> Iterator[Problems]:
+    yield taken(checked.trial.robots, "robot")
+    for _, mounts in readable(checked.trial.robots, "sensors"):
+        yield taken(mounts, "sensor of this robot")
+    yield taken(checked.trial.cameras, "camera")
+    yield from (_camera(checked.trial.robots, camera) for camera in checked.trial.cameras)
 
 
-def _cameras(checked: Checked) -> Problems:
-    bodies = {robot.name: robot for robot in checked.robots}
-    for k, camera in enumerate(checked.cameras):
-        if camera.name in [other.name for other in checked.cameras[:k]]:
-            yield camera, f"name {camera.name!r} is taken by another camera; give each its own"
-        if not camera.robot:
-            if camera.link:
-                yield camera, f"link={shown(camera.link)} needs robot: the name of the robot whose link it is"
-        elif camera.robot not in bodies:
-            if "robot" not in checked.broken:
-                near = did_you_mean(camera.robot, bodies)
-                yield camera, f"robot={shown(camera.robot)} is no robot{near}; there are {', '.join(bodies) or 'none'}"
-        elif camera.link and camera.link not in (links := bodies[camera.robot].body.model.links):
-            near = did_you_mean(camera.link, links)
-            yield camera, f"link={shown(camera.link)} is no link of robot {camera.robot!r}{near}"
-
-
-def _size(checked: Checked) -> Problems:
-    if checked.duration is None or checked.recording is None:
+def _camera(robots: Sequence[Robot], camera: Camera) -> Problems:
+    if not camera.robot:
+        if camera.link:
+            yield camera, f"link={shown(camera.link)} needs robot: the name of the robot whose link it is"
         return
-    if checked.recording.period > checked.duration:
+    names = Names.of(robots)
+    bodies = {name: robots[k] for k, name in readable(robots, "name")}
+    if names.lack(camera.robot):
+        near = did_you_mean(camera.robot, bodies)
+        yield camera, f"robot={shown(camera.robot)} is no robot{near}; there are {', '.join(bodies) or 'none'}"
+    elif camera.robot not in bodies:
+        return
+    elif camera.link and camera.link not in (links := bodies[camera.robot].body.model.links):
+        near = did_you_mean(camera.link, links)
+        yield camera, f"link={shown(camera.link)} is no link of robot {camera.robot!r}{near}"
+
+
+def _size(checked: Checked) -> Iterator[Problems]:
+    yield _too_long(checked.trial)
+    yield _too_many(checked)
+    yield _too_large(checked)
+
+
+def _too_long(trial: Trial) -> Problems:
+    if trial.recording.period > trial.duration:
         yield (
-            checked.recording,
-            f"recording period {checked.recording.period:g} s is longer than the duration of {checked.duration:g} s",
+            trial.recording,
+            f"recording period {trial.recording.period:g} s is longer than the duration of {trial.duration:g} s",
         )
-    coming = expected(checked)
+
+
+def _too_many(checked: Checked) -> Problems:
+    coming = expected(checked.trial)
     if coming > MOST_ARRIVALS:
         yield (
-            checked.sources[0],
+            checked.trial.sources[0],
             f"lets people in, about {coming} together with other sources, more than {MOST_ARRIVALS}; take a lower rate,"
             " an earlier end or fewer at most",
         )
-    first = len(checked.agents) + sum(spawner.count for spawner in checked.spawners)
-    agents = first + coming + len(checked.robots) + _through(checked, first + coming)
-    scenes = checked.duration / checked.recording.period
+
+
+def _too_large(checked: Checked) -> Problems:
+    trial = checked.trial
+    first = len(trial.agents) + sum(spawner.count for spawner in trial.spawners)
+    coming = expected(trial)
+    agents = first + coming + len(trial.robots) + _through(trial, first + coming)
+    scenes = trial.duration / trial.recording.period
     if scenes * agents > MOST_VALUES:
         yield (
-            checked.recording,
-            f"recording period {checked.recording.period:g} s makes {scenes:.0f} scenes of {agents} agents, more than"
+            trial.recording,
+            f"recording period {trial.recording.period:g} s makes {scenes:.0f} scenes of {agents} agents, more than"
             f" {MOST_VALUES} places together; take a longer period, a shorter duration or fewer people",
         )
 
 
-def _through(checked: Checked, people: int) -> int:
+def _through(trial: Trial, people: int) -> int:
     """Return about how many people at most come out of portals as new ones."""
-    if not checked.portals or checked.duration is None:
+    if not trial.portals:
         return 0
-    shortest = min(math.hypot(portal.dx, portal.dy) for portal in checked.portals)
-    return round(people * checked.duration * WALKING / max(shortest, 0.1))
+    shortest = min(math.hypot(portal.dx, portal.dy) for portal in trial.portals)
+    return round(people * trial.duration * WALKING / max(shortest, 0.1))
 
 
-def _stage_shapes(stage: Stage) -> Problems:
-    for obstacle in stage.obstacles:
-        if wrong := crooked(obstacle.points):
-            yield obstacle, f"points {wrong}"
-    if stage.walkable and (wrong := crooked(stage.walkable)):
-        yield stage, f"walkable {wrong}"
+def _stage_shapes(stage: Stage) -> list[tuple[Any, str, str]]:
+    """Return what of a stage has no shape: the element, the field, and why as the end of a sentence."""
+    obstacles = [(stage.obstacles[k], "points", crooked(points)) for k, points in readable(stage.obstacles, "points")]
+    ground = [(stage, "walkable", crooked(points)) for _, points in readable([stage], "walkable") if points]
+    return [(thing, name, f"{name} {wrong}") for thing, name, wrong in (*obstacles, *ground) if wrong]
 
 
-def _robots(stage: Stage, robots: Sequence[Robot]) -> Problems:
+def _robots(stage: Stage, robots: Sequence[Robot]) -> Iterator[Problems]:
+    for k, robot in enumerate(robots):
+        yield _standing(stage, robot, "starts", robot)
+        yield from (_standing(stage, robot, "has its goal", goal) for _, goal in readable([robot], "goal"))
+        yield from (_apart(robot, other) for other in robots[:k])
+
+
+def _standing(stage: Stage, robot: Robot, word: str, there: Robot | Goal) -> Problems:
     import shapely
 
-    for k, robot in enumerate(robots):
-        for name, spot, reach in (
-            ("starts", robot.position, 0.0),
-            ("has its goal", robot.goal.position, robot.goal.tolerance),
-        ):
-            room = float(stage.clearance([spot])[0])
-            block = stage.block_around(shapely.Point(spot))
-            if not stage.holds(shapely.Point(spot)):
-                yield robot, f"{name} at {spot[0]:g},{spot[1]:g} outside the walkable area"
-            elif block:
-                yield robot, f"{name} at {spot[0]:g},{spot[1]:g} inside {block}"
-            elif room + reach < robot.radius:
-                yield robot, f"{name} {room:.2f} m from a wall, and its radius is {robot.radius:g} m"
-        for other in robots[:k]:
-            away = float(np.hypot(robot.x - other.x, robot.y - other.y))
-            if away < robot.radius + other.radius:
-                yield (
-                    robot,
-                    f"starts {away:.2f} m from robot {other.name!r}, and their radii add up to"
-                    f" {robot.radius + other.radius:g} m",
-                )
+    spot, reach = there.position, there.tolerance if isinstance(there, Goal) else 0.0
+    room = float(stage.clearance([spot])[0])
+    block = stage.block_around(shapely.Point(spot))
+    if not stage.holds(shapely.Point(spot)):
+        yield robot, f"{word} at {spot[0]:g},{spot[1]:g} outside the walkable area"
+    elif block:
+        yield robot, f"{word} at {spot[0]:g},{spot[1]:g} inside {block}"
+    elif room + reach < robot.radius:
+        yield robot, f"{word} {room:.2f} m from a wall, and its radius is {robot.radius:g} m"
+
+
+def _apart(robot: Robot, other: Robot) -> Problems:
+    away = float(np.hypot(robot.x - other.x, robot.y - other.y))
+    if away < robot.radius + other.radius:
+        yield (
+            robot,
+            f"starts {away:.2f} m from robot {other.name!r}, and their radii add up to"
+            f" {robot.radius + other.radius:g} m",
+        )
 
 
 def _called(thing: Any) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,19 +13,20 @@ from crowdbot.core import InputError, stream
 from crowdbot.core.errors import did_you_mean
 from crowdbot.world import Router
 
-from .agent import Agent
+from .agent import Agent, Parameter
 from .attribute import shown
-from .checked import Checked, Problems
+from .checked import Checked, Names, Problems
 from .company import points_in
-from .crowd import Crowds, crowd_names
 from .distribution import Distribution
 from .drawn import Drawn
-from .journey import Direction, Journey, Point, Zone
+from .journey import Direction, Exit, Point, Zone
 from .notation import Points
 from .people import Source, Spawner
 from .stage import Stage, area
+from .torn import readable, whole
+from .trial import Trial
 
-__all__ = ["expected", "flows", "names"]
+__all__ = ["expected", "flows", "names", "taken"]
 
 Floats = NDArray[np.float64]
 
@@ -37,65 +38,62 @@ OVERLAP = 1e-9
 """Zones that share less than this [m2] touch only."""
 
 
-def expected(checked: Checked) -> int:
+def expected(trial: Trial) -> int:
     """Return about how many people come in."""
-    if checked.duration is None:
-        return 0
-    return round(sum(source.expected(checked.duration) for source in checked.sources))
+    return round(sum(source.expected(trial.duration) for source in trial.sources))
 
 
-def names(checked: Checked) -> Problems:
-    """Yield names that are taken or that nothing has, and people who have no way to go or two."""
-    known = [journey.name for journey in checked.journeys]
-    for k, journey in enumerate(checked.journeys):
-        if journey.name in known[:k]:
-            yield journey, f"name {journey.name!r} is taken by another journey; give each its own"
-        yield from _endless(journey)
-    crowds = crowd_names(checked.crowd)
-    first = len(checked.agents) + sum(spawner.count for spawner in checked.spawners)
-    if checked.capacity is not None and first > checked.capacity:
-        last = (*checked.agents, *checked.spawners)[-1]
-        yield last, f"makes {first} people at the beginning, more than the capacity {checked.capacity}"
+def names(checked: Checked) -> Iterator[Problems]:
+    """Yield checks of names that are taken or that nothing has, and of people who have no way to go or two."""
+    trial = checked.trial
+    yield taken(trial.journeys, "journey")
+    yield from (_endless(stops) for _, stops in readable(trial.journeys, "stops"))
+    yield _more_than_fit(trial)
     for one in checked.people:
-        yield from _goals(one)
-        if one.journey and "journey" not in checked.broken:
-            yield from _named(one, "journey", known)
-        if one.crowd and checked.crowd is not None and "crowd" not in checked.broken:
-            yield from _named(one, "crowd", crowds)
-        if isinstance(one, Source) and one.begin >= one.end:
-            yield one, f"begin {one.begin:g} s must be before end {one.end:g} s"
-        if isinstance(one, Agent) and one.parameters:
-            yield from _own(checked, one, crowds)
-    for recorded in checked.recorded:
-        if recorded.crowd and checked.crowd is not None and "crowd" not in checked.broken:
-            yield from _named(recorded, "crowd", crowds)
+        yield _goals(one)
+        yield _arrival(one)
+        yield _named(one, "journey", Names.of(trial.journeys))
+        yield _named(one, "crowd", checked.crowd_names)
+        if isinstance(one, Source):
+            yield _begins(one)
+        if isinstance(one, Agent):
+            yield from (_own(checked, one, parameter) for parameter in one.parameters)
+    yield from (_named(one, "crowd", checked.crowd_names) for one in trial.recorded)
 
 
-def flows(checked: Checked) -> Problems:
-    """Yield zones without room and ways that lead nowhere; every shape is right and in its place."""
-    assert checked.stage is not None
-    router = None
-    if checked.routing is not None:
-        try:
-            router = checked.routing.router(checked.stage.as_walls())
-        except InputError as error:
-            yield checked.routing, f"is impossible on this stage: {str(error).removeprefix('Router: ')}"
-            return
-    for source in checked.sources:
-        yield from _entrance(checked.stage, source)
-    for journey in checked.journeys:
-        for stop in journey.stops:
-            yield from _stop(checked.stage, stop, router)
-    yield from _straight_out(checked)
-    if router is not None and router.unreachable == "error":
-        yield from _legs(checked, router)
+def taken(things: Sequence[Any], others: str) -> Problems:
+    """Yield everything whose name an earlier one has."""
+    known: set[str] = set()
+    for k, name in readable(things, "name"):
+        if name in known:
+            yield things[k], f"name {name!r} is taken by another {others}; give each its own"
+        known.add(name)
 
 
-def _named(one: Any, word: str, known: Collection[str]) -> Problems:
-    name = getattr(one, word)
-    if name not in known:
-        there = f"there are {', '.join(known)}" if known else f"no {word} has a name here"
-        yield one, f"{word}={shown(name)} is not the name of a {word}{did_you_mean(name, known)}; {there}"
+def flows(checked: Checked) -> Iterator[Problems]:
+    """Yield checks of zones without room and of ways that lead nowhere."""
+    trial = checked.trial
+    yield _routed(checked)
+    yield from (_entrance(checked.stage, source) for source in trial.sources)
+    for _, stops in readable(trial.journeys, "stops"):
+        yield from (_stop(checked, stop) for stop in stops)
+    coming: tuple[Spawner | Source, ...] = (*trial.spawners, *trial.sources)
+    yield from (_straight_out(one, k, way) for one in coming for k, way in enumerate(trial.exits, 1))
+    yield from (_first_leg(checked, one) for one in checked.people)
+    for _, stops in readable(trial.journeys, "stops"):
+        yield from (_leg(checked, k, *pair) for k, pair in enumerate(itertools.pairwise(stops), 2))
+
+
+def _routed(checked: Checked) -> Problems:
+    if why := checked.no_routing:
+        yield checked.trial.routing, f"is impossible on this stage: {why}"
+
+
+def _named(one: Any, word: str, names: Names) -> Problems:
+    """Yield a name that nothing has."""
+    if (name := getattr(one, word)) and names.lack(name):
+        there = f"there are {', '.join(names.known)}" if names.known else f"no {word} has a name here"
+        yield one, f"{word}={shown(name)} is not the name of a {word}{did_you_mean(name, names.known)}; {there}"
 
 
 def _goals(one: Agent | Spawner | Source) -> Problems:
@@ -106,36 +104,50 @@ def _goals(one: Agent | Spawner | Source) -> Problems:
         yield one, 'has people who stand, and a goal or a journey; leave out stands="true", or where they go'
     elif not (one.goal or one.journey or stands):
         yield one, 'needs a goal zone or a journey: goal="x,y x,y x,y" or journey="name"'
-    elif one.journey and one.arrival != "leave":
+
+
+def _arrival(one: Agent | Spawner | Source) -> Problems:
+    if one.journey and one.arrival != "leave" and not one.goal and not getattr(one, "stands", False):
         yield one, f'arrival="{one.arrival}" goes with a goal zone; for a journey say then="{one.arrival}" in it'
 
 
-def _own(checked: Checked, agent: Agent, crowds: Sequence[str]) -> Problems:
-    """Yield parameters that the model of a person does not have, or cannot take."""
-    if checked.crowd is None:
+def _begins(source: Source) -> Problems:
+    if source.begin >= source.end:
+        yield source, f"begin {source.begin:g} s must be before end {source.end:g} s"
+
+
+def _more_than_fit(trial: Trial) -> Problems:
+    if trial.capacity is None:
         return
-    several = isinstance(checked.crowd, Crowds)
-    models = checked.crowd.models if isinstance(checked.crowd, Crowds) else (checked.crowd,)
-    model = models[crowds.index(agent.crowd) if several and agent.crowd in crowds else 0]
-    draws = {one.name.replace("-", "_"): Distribution.of(one.value) for one in agent.parameters}
+    first = len(trial.agents) + sum(spawner.count for spawner in trial.spawners)
+    if first > trial.capacity:
+        last = (*trial.agents, *trial.spawners)[-1]
+        yield last, f"makes {first} people at the beginning, more than the capacity {trial.capacity}"
+
+
+def _own(checked: Checked, agent: Agent, parameter: Parameter) -> Problems:
+    """Yield a parameter that the model of a person does not have, or cannot take."""
+    crowds = [crowd for crowd in checked.crowds if crowd.name == agent.crowd or not agent.crowd]
+    if not crowds:
+        return
+    model = whole(crowds[0].model)
+    draws = {parameter.name.replace("-", "_"): Distribution.of(parameter.value)}
     for sentence in Drawn.problems(model.model if isinstance(model, Drawn) else model, draws):
         yield agent, f"parameter {sentence.replace('drawn', 'given', 1)}"
 
 
-def _endless(journey: Journey) -> Problems:
-    for k, stop in enumerate(journey.stops[:-1]):
+def _endless(stops: Sequence[Any]) -> Problems:
+    for k, stop in enumerate(stops[:-1]):
         if isinstance(stop, Direction):
-            yield stop, f"is stop {k + 1} of {len(journey.stops)} and has no end; a direction must be the last stop"
+            yield stop, f"is stop {k + 1} of {len(stops)} and has no end; a direction must be the last stop"
 
 
 def _entrance(stage: Stage, source: Source) -> Problems:
-    for label, points in (("zone", source.zone), ("goal zone", source.goal)):
-        if points and (block := stage.block_in(area(points), OVERLAP)):
-            yield (
-                source,
-                f"{label} reaches into {block}; move it, or cut it there",
-            )
-            return
+    for label, zones in (("zone", readable([source], "zone")), ("goal zone", readable([source], "goal"))):
+        for _, points in zones:
+            if points and (block := stage.block_in(area(points), OVERLAP)):
+                yield source, f"{label} reaches into {block}; move it, or cut it there"
+                return
     radius = source.radius.extent[1]
     batches = itertools.islice(points_in(source.zone, stream(0, "check", "source")), BATCHES)
     if not any(np.any(stage.clearance(points) >= radius) for points in batches):
@@ -146,30 +158,30 @@ def _entrance(stage: Stage, source: Source) -> Problems:
         )
 
 
-def _stop(stage: Stage, stop: Point | Direction | Zone, router: Router | None) -> Problems:
+def _stop(checked: Checked, stop: Point | Direction | Zone) -> Problems:
     import shapely
 
+    stage = checked.stage
     if isinstance(stop, Point):
         block = stage.block_around(shapely.Point(stop.x, stop.y))
         if not stage.holds(shapely.Point(stop.x, stop.y)):
             yield stop, f"at {stop.x:g},{stop.y:g} lies outside the walkable area"
         elif block:
             yield stop, f"at {stop.x:g},{stop.y:g} lies inside {block}"
-    elif isinstance(stop, Zone) and (router is None or stop.aim == "nearest"):
-        if block := stage.block_in(area(stop.points), OVERLAP):
-            yield stop, f"zone reaches into {block}; move it, or cut it there"
-    elif isinstance(stop, Zone) and router is not None and not len(_spots(router, stop.points)):
-        yield stop, f"zone leaves no room for a body of radius {router.radius:g} m, which routing asks for"
+    elif isinstance(stop, Zone):
+        if stop.aim == "nearest" or checked.router is None:
+            if block := stage.block_in(area(stop.points), OVERLAP):
+                yield stop, f"zone reaches into {block}; move it, or cut it there"
+        elif not len(_spots(checked.router, stop.points)):
+            radius = checked.router.radius
+            yield stop, f"zone leaves no room for a body of radius {radius:g} m, which routing asks for"
 
 
-def _straight_out(checked: Checked) -> Problems:
+def _straight_out(one: Spawner | Source, number: int, way: Exit) -> Problems:
     """Yield those who would leave where they come in."""
-    coming: tuple[Spawner | Source, ...] = (*checked.spawners, *checked.sources)
-    for one in coming:
-        for number, way in enumerate(checked.exits, 1):
-            if area(one.zone).intersection(area(way.zone)).area > OVERLAP:
-                called = repr(way.name) if way.name else str(number)
-                yield one, f"zone overlaps exit {called}, where people would leave at once; move one of them"
+    if area(one.zone).intersection(area(way.zone)).area > OVERLAP:
+        called = repr(way.name) if way.name else str(number)
+        yield one, f"zone overlaps exit {called}, where people would leave at once; move one of them"
 
 
 class _Place(NamedTuple):
@@ -186,26 +198,31 @@ class _Place(NamedTuple):
         return cls(stop.points, stop.aim == "random") if isinstance(stop, Zone) else None
 
 
-def _legs(checked: Checked, router: Router) -> Problems:
-    """Yield ways around walls that lead nowhere, each once: into a journey or to a goal, and from stop to stop."""
-    for one in checked.people:
-        if isinstance(one, Agent) and not (one.goal or one.journey):
-            continue
-        journey = next((journey for journey in checked.journeys if journey.name == one.journey), None)
-        first = _Place(one.goal) if one.goal else journey and _Place.of(journey.stops[0])
-        what = (
-            ("the goal" if isinstance(one, Agent) else "the goal zone")
-            if one.goal
-            else f"the first stop of journey {one.journey!r}"
-        )
-        start, word = (one.zone, "zone") if not isinstance(one, Agent) else (Points.of([one.position]), "place")
-        if first and not _leads(router, _Place(start), first):
-            yield one, f"no way leads from its {word} to {what} for a body of radius {router.radius:g} m"
-    for journey in checked.journeys:
-        for k, (here, there) in enumerate(itertools.pairwise(journey.stops), 2):
-            begin, end = _Place.of(here), _Place.of(there)
-            if begin and end and not _leads(router, begin, end):
-                yield there, f"no way leads to stop {k} from the one before for a body of radius {router.radius:g} m"
+def _first_leg(checked: Checked, one: Agent | Spawner | Source) -> Problems:
+    """Yield who finds no way around walls into the own journey or to the own goal."""
+    router = checked.router
+    if router is None or router.unreachable != "error" or not (one.goal or one.journey):
+        return
+    journey = next((journey for journey in checked.trial.journeys if journey.name == one.journey), None)
+    first = _Place(one.goal) if one.goal else journey and _Place.of(journey.stops[0])
+    what = (
+        ("the goal" if isinstance(one, Agent) else "the goal zone")
+        if one.goal
+        else f"the first stop of journey {one.journey!r}"
+    )
+    start, word = (one.zone, "zone") if not isinstance(one, Agent) else (Points.of([one.position]), "place")
+    if first and not _leads(router, _Place(start), first):
+        yield one, f"no way leads from its {word} to {what} for a body of radius {router.radius:g} m"
+
+
+def _leg(checked: Checked, number: int, here: Any, there: Any) -> Problems:
+    """Yield a stop to which no way around walls leads from the one before."""
+    router = checked.router
+    if router is None or router.unreachable != "error":
+        return
+    begin, end = _Place.of(here), _Place.of(there)
+    if begin and end and not _leads(router, begin, end):
+        yield there, f"no way leads to stop {number} from the one before for a body of radius {router.radius:g} m"
 
 
 def _leads(router: Router, begin: _Place, end: _Place) -> bool:

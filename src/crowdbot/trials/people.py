@@ -9,7 +9,7 @@ from typing import Any
 
 from crowdbot import world
 
-from .attribute import attribute, check, children
+from .attribute import Mistake, attribute, check, children
 from .distribution import Distribution
 from .journey import Journey
 from .notation import Points
@@ -72,9 +72,10 @@ class Spawner:
         check_words(self.body, self.activity)
 
     @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[str]:
+    def mistakes(values: Mapping[str, Any]) -> list[Mistake]:
         """Return what is wrong with the words of a file, whatever else is wrong in its element."""
-        return word_problems(values.get("body", ""), values.get("activity", ""))
+        found = word_problems(values.get("body", ""), values.get("activity", ""))
+        return [((), sentence) for sentence in found]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,9 +110,10 @@ class Source:
         check_words(self.body, self.activity)
 
     @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[str]:
+    def mistakes(values: Mapping[str, Any]) -> list[Mistake]:
         """Return what is wrong with the words of a file, whatever else is wrong in its element."""
-        return word_problems(values.get("body", ""), values.get("activity", ""))
+        found = word_problems(values.get("body", ""), values.get("activity", ""))
+        return [((), sentence) for sentence in found]
 
     def expected(self, duration: float) -> float:
         """Return how many people come within a duration [s]: evenly the most, at random the mean."""

@@ -12,16 +12,17 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core import InputError, TrialError, plug
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core.errors import did_you_mean, nearest
 
 from .attribute import Part, Plug, outline, shown
-from .checked import Checked
 from .checks import problems_of
+from .crowd import Crowd
 from .distribution import Distribution
 from .drawn import Drawn, is_drawn
 from .markup import Element, parse
 from .notation import number
 from .sweep import sweep_problems
+from .torn import EVERYTHING, begun, is_torn, readable, torn
 from .trial import Trial
 
 __all__ = ["Reader", "read_trial"]
@@ -53,90 +54,113 @@ max-neighbors, time-horizon, time-horizon-walls, max-speed, name
     except UnicodeEncodeError:
         raise TrialError(f"{place}: this is not well-formed XML: it holds half a character") from None
     root = parse(data, place, "utf-8" if isinstance(text, str) else None)
-    reader = Reader(place, folder or Path.cwd(), trust)
     if root.tag != ROOT:
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
-    trial, values = reader.element(Trial, root)
-    for thing, sentence in problems_of(Checked.of(values, reader.broken)):
-        reader.say(reader.lines.get(id(thing), root.line), reader.words.get(id(thing), ROOT), sentence)
+    reader = Reader(place, folder or Path.cwd(), trust)
+    trial = reader.checked(root)
+    for sweep, sentence in sweep_problems(root, trial.sweeps, reader.others):
+        reader.say(reader.lines[id(sweep)], "sweep", sentence)
     reader.finish()
     assert isinstance(trial, Trial)
-    trial = dataclasses.replace(trial, folder=folder)
-    for sentence in sweep_problems(trial, None, trust) if trial.sweeps else ():
-        line = next(inner.line for inner in root.children if inner.tag == "sweep")
-        reader.say(line, "sweep", sentence)
-    reader.finish()
-    return trial
+    return dataclasses.replace(trial, folder=folder)
 
 
 class Reader:
     """Makes a tree of frozen dataclasses of XML elements, and collects every problem meanwhile.
 
+    What is misspelt is read as what it means most likely, and an element with a mistake becomes a torn one: so nothing
+    that is wrong elsewhere is hidden, and nobody misses what is there.
+
     Args:
         place: name of the file for messages.
         folder: where code and files that the tree names lie.
         trust: whether they may lie elsewhere.
+        seed: places people with it; None is that of the trial.
 
     Attributes:
-        made: everything that could be made.
+        made: everything that could be made, torn elements among it.
         lines, words: line and tag of it, by its ``id``.
-        broken: tags of elements that could not be read.
     """
 
-    def __init__(self, place: str, folder: Path, trust: bool) -> None:
-        self.place, self.folder, self.trust = place, folder, trust
-        self.found: list[tuple[int, str]] = []
+    def __init__(self, place: str, folder: Path, trust: bool, seed: int | None = None) -> None:
+        self.place, self.folder, self.trust, self.seed = place, folder, trust, seed
+        self.found: list[tuple[int, str, str]] = []
         self.lines: dict[int, int] = {}
         self.words: dict[int, str] = {}
         self.made: list[Any] = []
-        self.broken: set[str] = set()
-        """Elements of which one could not be read, so that others may well have named it."""
 
     def say(self, line: int, tag: str, sentence: str) -> None:
         """Add a problem of an element."""
-        self.found.append((line, f"{self.place}:{line}: <{tag[:40]}> {sentence}"))
+        self.found.append((line, tag[:40], sentence))
 
     def finish(self) -> None:
         """Raise when anything was said."""
-        sentences = [sentence for _, sentence in sorted(self.found, key=lambda row: row[0])]
+        rows = sorted(self.found, key=lambda row: row[0])
+        sentences = [f"{self.place}:{line}: <{tag}> {sentence}" for line, tag, sentence in rows]
         if len(sentences) > MOST_PROBLEMS:
             more = len(sentences) - MOST_PROBLEMS
             sentences = [*sentences[:MOST_PROBLEMS], f"{self.place}: and {more} more problems"]
         if sentences:
             raise TrialError(*sentences)
 
-    def element(self, cls: type, element: Element) -> tuple[Any, dict[str, Any]]:
-        """Return what the element means, None when it has a problem; and the fields that are right or left out."""
+    def checked(self, root: Element) -> Any:
+        """Return the trial that an element means, torn when it has a problem, after looking for all of them."""
+        trial = self.element(Trial, root)
+        crowds = [one for one in self.made if isinstance(one, Crowd)]
+        for thing, sentence in problems_of(trial, crowds, self.seed):
+            self.say(self.lines.get(id(thing), root.line), self.words.get(id(thing), ROOT), sentence)
+        return trial
+
+    def others(self, root: Element) -> list[str]:
+        """Return what is wrong with a variant of the trial that was read, and not with that trial itself."""
+        reader = Reader(self.place, self.folder, self.trust, self.seed)
+        reader.checked(root)
+        return [
+            f"<{tag}> {sentence}" for line, tag, sentence in reader.found if (line, tag, sentence) not in self.found
+        ]
+
+    def element(self, cls: type, element: Element) -> Any:
+        """Return what the element means, torn when it has a problem or one in it has."""
         before = len(self.found)
         parts = outline(cls)
-        values = self._attributes(element, parts)
+        kind = self._names(element, parts)
+        values = self._attributes(element, parts, kind)
         values |= self._children(element, parts)
+        lost = set()
         for part in parts:
-            if part.name in values or self._tried(element, part):
+            if part.name in values:
                 continue
-            if part.required:
-                self.say(element.line, element.tag, f"needs {_kind(part)}")
-            else:
+            if not self._tried(element, part) and not part.required:
                 values[part.name] = part.default
-        files = self._files(cls)
+                continue
+            lost.add(part.name)
+            if not self._tried(element, part):
+                self.say(element.line, element.tag, f"needs {_kind(part)}")
+        values |= self._files(cls)
         if hasattr(cls, "mistakes"):
-            for sentence in cls.mistakes(values | files):
+            for names, sentence in cls.mistakes(values):
                 self.say(element.line, element.tag, sentence)
-        if len(self.found) > before:
-            return None, values
-        return self._make(cls, element, values | files), values
+                lost |= set(names)
+        return self._made(cls, element, values, lost, self.found[before:])
 
     def _files(self, cls: type) -> dict[str, Any]:
         """Return where the files lie that an element names, as fields of it."""
         named = any(field.name == "trust" for field in dataclasses.fields(cls))
         return {"folder": self.folder, "trust": self.trust} if named else {}
 
-    def _make(self, cls: type, element: Element, values: dict[str, Any]) -> Any:
-        try:
-            made = cls(**values)
-        except InputError as error:
-            self.say(element.line, element.tag, str(error))
-            return None
+    def _made(self, cls: type, element: Element, values: dict[str, Any], lost: set[str], said: list[Any]) -> Any:
+        made = None
+        if not said:
+            try:
+                made = cls(**values)
+            except InputError as error:
+                self.say(element.line, element.tag, str(error))
+        if made is None:
+            made = torn(cls, values, lost)
+            sentence = begun(made)
+            if said and sentence and all(sentence != known for _, _, known in said):
+                self.say(element.line, element.tag, sentence)
+            lost |= {p.name for p in outline(cls) if not p.optional and (0, None) in readable([made], p.name)}
         self.lines[id(made)] = element.line
         self.words[id(made)] = element.tag
         self.made.append(made)  # keeps it alive, so that its id stays its own
@@ -150,9 +174,29 @@ class Reader:
             return True
         return any(inner.tag in part.words for inner in element.children)
 
-    def _attributes(self, element: Element, parts: tuple[Part, ...]) -> dict[str, Any]:
+    def _names(self, element: Element, parts: tuple[Part, ...]) -> type | None:
+        """Bring misspelt attributes to what they mean; return the class of what the element mounts, if it is known."""
+        own = [part.word for part in parts if part.role == "attribute"]
+        mount = next((part.plug for part in parts if part.role == "mounted"), None)
+        kind = self._type(mount, element) if mount else None
+        if not mount or kind:
+            self._meant(element, [*(plug.words(kind) if kind else ()), *own], ["type"] if mount else [])
+        return kind
+
+    def _meant(self, element: Element, known: list[str], also: list[str]) -> None:
+        """Say which attributes are unknown, and read them as those that were meant."""
+        given = {key.replace("_", "-") for key in element.attributes}
+        for key in [key for key in element.attributes if key.replace("_", "-") not in (*known, *also)]:
+            takes = ", ".join(known) or "none"
+            meant = did_you_mean(key, known)
+            self.say(element.line, element.tag, f"has no attribute {key[:40]!r}{meant}; it takes {takes}")
+            text = element.attributes.pop(key)
+            if meant and nearest(key, known) not in given:
+                element.attributes[nearest(key, known)] = text
+                given.add(nearest(key, known))
+
+    def _attributes(self, element: Element, parts: tuple[Part, ...], kind: type | None) -> dict[str, Any]:
         own = {part.word: part for part in parts if part.role == "attribute"}
-        mount = next((part for part in parts if part.role == "mounted"), None)
         values: dict[str, Any] = {}
         rest: dict[str, str] = {}
         for key, text in element.attributes.items():
@@ -162,6 +206,7 @@ class Reader:
                 continue
             if part.name in values:
                 self.say(element.line, element.tag, f"has the attribute {part.word} twice")
+            value = None
             try:
                 value = _converted(text, part.kind)
                 wrong = part.wrong(value)
@@ -169,50 +214,46 @@ class Reader:
                 wrong = str(error)
             if wrong:
                 self.say(element.line, element.tag, f"{part.word}={shown(text)} {wrong}")
-            else:
+            if not wrong or (part.word == "name" and value is not None):  # a wrong name is still what others say
                 values[part.name] = value
+        mount = next((part for part in parts if part.role == "mounted"), None)
         if mount is not None and mount.plug is not None:
-            made = self._plug(mount.plug, element, rest, list(own))
-            if made is not None:
-                values[mount.name] = made
-            return values
-        for key in rest:
-            known = ", ".join(own) or "none"
-            self.say(
-                element.line, element.tag, f"has no attribute {key[:40]!r}{did_you_mean(key, own)}; it takes {known}"
-            )
+            values[mount.name] = self._plug(mount.plug, kind, element, rest)
         return values
 
     def _children(self, element: Element, parts: tuple[Part, ...]) -> dict[str, Any]:
         known = {word: part for part in parts for word in part.words}
         found: dict[str, list[Any]] = {part.name: [] for part in known.values()}
-        if element.stray:
-            self.say(
-                element.line, element.tag, f"holds the text {element.stray[:40]!r}; values are written as attributes"
-            )
+        self._stray(element)
         count: Counter[str] = Counter()
         for inner in element.children:
-            part = known.get(inner.tag)
-            if part is None:
+            if inner.tag not in known:
                 words = ", ".join(f"<{word}>" for word in known) or "none"
                 meant = did_you_mean(inner.tag, known)
                 self.say(inner.line, inner.tag, f"is no element of <{element.tag}>{meant}; it takes {words}")
-                continue
+                if not meant:
+                    continue
+                inner.tag = nearest(inner.tag, known)
+                if not (inner.attributes or inner.children):
+                    continue
+            part = known[inner.tag]
             count[part.name] += 1
             if count[part.name] > part.at_most:
                 often = "twice; one is allowed" if part.at_most == 1 else f"more than {part.at_most} times"
                 self.say(inner.line, inner.tag, f"stands in <{element.tag}> {often}")
                 continue
-            made = self._child(part, inner)
-            if made is None:
-                self.broken.add(inner.tag)
-            else:
-                found[part.name].append(made)
+            found[part.name].append(self._child(part, inner))
         gathered = {part.name: self._gathered(part, found[part.name]) for part in known.values()}
         return {name: value for name, value in gathered.items() if value is not None}
 
+    def _stray(self, element: Element) -> None:
+        if element.stray:
+            self.say(
+                element.line, element.tag, f"holds the text {element.stray[:40]!r}; values are written as attributes"
+            )
+
     def _gathered(self, part: Part, made: list[Any]) -> Any:
-        """Return the value of a field of which these child elements could be read, None when there is none."""
+        """Return the value of a field of which these are the child elements, None when there is none."""
         if part.role != "children":
             return made[0] if made else None
         if part.into is None:
@@ -220,72 +261,79 @@ class Reader:
         problems = list(part.into.problems(made))
         for k, sentence in problems:
             self.say(self.lines[id(made[k])], self.words[id(made[k])], sentence)
-        return part.into.gathered(made) if made and not problems else None
+        right = made and not problems and not any(is_torn(one) for one in made)
+        return part.into.gathered(made) if right else None
 
     def _child(self, part: Part, inner: Element) -> Any:
         if part.plug is None:
-            return self.element(part.elements[inner.tag], inner)[0]
+            return self.element(part.elements[inner.tag], inner)
         for deeper in inner.children:
             self.say(deeper.line, deeper.tag, f"is no element of <{inner.tag}>; it takes none")
-        if inner.stray:
-            self.say(inner.line, inner.tag, f"holds the text {inner.stray[:40]!r}; values are written as attributes")
-        return self._plug(part.plug, inner, dict(inner.attributes), [])
+        self._stray(inner)
+        kind = self._type(part.plug, inner)
+        if kind is not None:
+            self._meant(inner, plug.words(kind), ["type"])
+        return self._plug(part.plug, kind, inner, dict(inner.attributes))
 
-    def _plug(self, what: Plug, element: Element, attributes: dict[str, str], also: list[str]) -> Any:
-        """Return the part that ``type`` names, made of the attributes; None when that is impossible."""
+    def _type(self, what: Plug, element: Element) -> type | None:
+        """Return the class that ``type`` names, or means most likely; None when nobody knows."""
         room, contract = what.places()
-        name = attributes.pop("type", None)
+        known = plug.built_in(room, contract)
+        name = element.attributes.get("type")
         if name is None:
-            known = ", ".join(plug.built_in(room, contract))
-            self.say(element.line, element.tag, f"needs the attribute 'type': {known} or an address")
+            self.say(element.line, element.tag, f"needs the attribute 'type': {', '.join(known)} or an address")
             return None
         try:
-            cls = plug.find(name, room, contract, folder=self.folder, trust=self.trust)
+            return plug.find(name, room, contract, folder=self.folder, trust=self.trust)
         except InputError as error:
             self.say(element.line, element.tag, str(error))
-            return None
-        draws = {key: text for key, text in attributes.items() if what.drawn and is_drawn(text)}
-        fixed = {key: text for key, text in attributes.items() if key not in draws}
-        problems = plug.problems(cls, fixed, also)
-        made, more = _made(cls, {key: text for key, text in fixed.items() if _fits(cls, key, text)})
-        problems += more
+            return known.get(nearest(name, known))
+
+    def _plug(self, what: Plug, cls: type | None, element: Element, attributes: dict[str, str]) -> Any:
+        """Return the part of this class that the attributes make; a torn one where that is impossible."""
+        if cls is None:
+            return torn(what.places()[1], {}, EVERYTHING)
+        texts = {key: text for key, text in attributes.items() if key != "type"}
+        draws = {key: text for key, text in texts.items() if what.drawn and is_drawn(text)}
+        fixed = {key: text for key, text in texts.items() if key not in draws}
+        wrong = plug.problems(cls, fixed)
+        made, more = _made(cls, {key: text for key, text in fixed.items() if key not in wrong})
+        wrong |= more
         if made is not None and draws:
-            made, more = _drawn(made, draws)
-            problems += more
-        for problem in problems:
-            self.say(element.line, element.tag, problem)
-        return None if problems else made
+            drawn, more = _drawn(made, draws)
+            wrong |= more
+            made = made if wrong else drawn
+        for sentence in wrong.values():
+            self.say(element.line, element.tag, sentence)
+        if not wrong and made is not None:
+            return made
+        lost = {key.replace("-", "_") for key in wrong}
+        values = {} if made is None else {field.name: getattr(made, field.name) for field in dataclasses.fields(cls)}
+        lost |= {field.name for field in dataclasses.fields(cls) if field.name not in values}
+        return torn(cls, values, lost, whole=made)
 
 
-def _fits(cls: type, key: str, text: str) -> bool:
-    """Whether a class has an attribute that takes this text."""
-    return all(sentence.startswith("needs the attribute") for sentence in plug.problems(cls, {key: text}))
-
-
-def _made(cls: type, attributes: dict[str, str]) -> tuple[Any, list[str]]:
+def _made(cls: type, attributes: dict[str, str]) -> tuple[Any, dict[str, str]]:
     """Return what the attributes make, None when it needs others; and what is wrong with each that has to be left out.
 
     What a class says of its values it says one at a time. So an attribute without which the same is not said again
     is the one that it is about; it is left out, and the others are judged.
     """
     if plug.problems(cls, attributes):
-        return None, []
-    said: list[str] = []
+        return None, {}
+    said: dict[str, str] = {}
     while True:
         made, sentence = _tried(cls, attributes)
         if not sentence:
             return made, said
-        said.append(sentence)
         needed = {name.replace("_", "-") for name in plug.needs(cls)}
-        fewer = [
-            {key: text for key, text in attributes.items() if key != left}
-            for left in attributes
-            if left.replace("_", "-") not in needed
-        ]
-        right = next((rest for rest in fewer if _tried(cls, rest)[1] != sentence), None)
-        if right is None:
-            return None, said
-        attributes = right
+        for left in attributes:
+            fewer = {key: text for key, text in attributes.items() if key != left}
+            if left.replace("_", "-") not in needed and _tried(cls, fewer)[1] != sentence:
+                break
+        else:
+            return None, said | {"": sentence}
+        said[left], attributes = sentence, fewer
 
 
 def _tried(cls: type, attributes: dict[str, str]) -> tuple[Any, str]:
@@ -295,16 +343,18 @@ def _tried(cls: type, attributes: dict[str, str]) -> tuple[Any, str]:
         return None, str(error)
 
 
-def _drawn(model: Any, draws: dict[str, str]) -> tuple[Any, list[str]]:
+def _drawn(model: Any, draws: dict[str, str]) -> tuple[Any, dict[str, str]]:
     """Return a model some of whose parameters are distributions, or why they cannot be."""
-    found, problems = {}, []
+    found, wrong = {}, {}
     for key, text in draws.items():
         try:
-            found[key.replace("-", "_")] = Distribution.parse(text)
+            one = Distribution.parse(text)
+            found[key.replace("-", "_")] = one
+            if sentences := [*Drawn.problems(model, {key.replace("-", "_"): one})]:
+                wrong[key] = sentences[0]
         except InputError as error:
-            problems.append(f"{key[:40]}={shown(text)} {error}")
-    problems += Drawn.problems(model, found)
-    return (None, problems) if problems else (Drawn(model, tuple(found.items())), [])
+            wrong[key] = f"{key[:40]}={shown(text)} {error}"
+    return (None, wrong) if wrong else (Drawn(model, tuple(found.items())), {})
 
 
 def _converted(text: str, kind: Any) -> Any:

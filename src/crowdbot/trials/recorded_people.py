@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .attribute import attribute, check, shown
+from .attribute import Mistake, attribute, check, shown
 from .beside import beside
 from .distribution import Distribution
 from .people import BODY_RADIUS
@@ -76,21 +76,23 @@ class RecordedPeople:
         self.left_out()
 
     @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[str]:
-        """Return what is wrong with the name of the file, whatever else is wrong in its element."""
+    def mistakes(values: Mapping[str, Any]) -> list[Mistake]:
+        """Return what is wrong with the name of the file and with ids, whatever else is wrong in its element."""
+        found: list[Mistake] = []
+        try:
+            _ids(values.get("without", ""))
+        except InputError as error:
+            found.append((("without",), str(error)))
         try:
             if "data" in values:
                 beside(values["data"], values["folder"], values["trust"])
         except InputError as error:
-            return [f"data={shown(values['data'])} {error}"]
-        return []
+            found.append((("data",), f"data={shown(values['data'])} {error}"))
+        return found
 
     def left_out(self) -> frozenset[int]:
         """Return the ids that are left out."""
-        words = self.without.replace(",", " ").split()
-        if any(not word.lstrip("-").isdecimal() or len(word) > 18 for word in words):
-            raise InputError(f'without="{self.without[:60]}" must be whole numbers, such as 3 17')
-        return frozenset(int(word) for word in words)
+        return _ids(self.without)
 
     def tracks(self) -> Trajectories:
         """Return the recording in metres, read once.
@@ -126,6 +128,13 @@ class RecordedPeople:
             if int(ids[a]) not in away
         ]
         return tuple(walk for walk in walks if walk.time[-1] >= 0.0 and walk.time[0] <= duration)
+
+
+def _ids(without: str) -> frozenset[int]:
+    words = without.replace(",", " ").split()
+    if any(not word.lstrip("-").isdecimal() or len(word) > 18 for word in words):
+        raise InputError(f'without="{without[:60]}" must be whole numbers, such as 3 17')
+    return frozenset(int(word) for word in words)
 
 
 @functools.lru_cache(maxsize=4)

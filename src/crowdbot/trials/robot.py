@@ -22,8 +22,9 @@ from crowdbot.sensors import Schedule, Sensor
 from crowdbot.world import Drive, builtin_robots
 from crowdbot.world.urdf.transforms import frame, roll_pitch_yaw
 
-from .attribute import attribute, check, child, children, mounted, plugged, shown
+from .attribute import Mistake, attribute, check, child, children, mounted, plugged, shown
 from .notation import NAME
+from .torn import readable
 from .words import ABOUT_RIDER, rider_problems
 
 __all__ = ["Goal", "Mount", "Robot"]
@@ -143,7 +144,7 @@ class Robot:
     def __post_init__(self) -> None:
         usual = self.usual
         for name in ("radius", "height", "mass", "latency", "drive"):
-            if getattr(self, name) is None:
+            if (0, None) in readable([self], name):
                 object.__setattr__(self, name, usual.get(name))
         if self.drive is None:
             raise InputError(f"needs the element <drive>: how it moves; or a type, such as {builtin_robots()[0]}")
@@ -166,14 +167,14 @@ class Robot:
                                  f"{did_you_mean(mount.link, links)}")  # fmt: skip
 
     @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[str]:
+    def mistakes(values: Mapping[str, Any]) -> list[Mistake]:
         """Return what is wrong with the type and the rider in a file, whatever else is wrong in its element."""
-        said = rider_problems(values.get("rider", ""), values.get("type", ""))
+        said: list[Mistake] = [((), one) for one in rider_problems(values.get("rider", ""), values.get("type", ""))]
         try:
             if values.get("type"):
                 _kind(values["type"], values["folder"], values["trust"])
         except InputError as error:
-            return [str(error), *said]
+            return [(("type",), str(error)), *said]
         return said
 
     @property

@@ -14,15 +14,18 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Walls
 
-from .attribute import attribute, check, children, shown
+from .attribute import Mistake, attribute, check, children, shown
 from .ground import area_of, map_of
 from .notation import Points
 from .props import Cube, Light, Prop, Table, Tree
+from .torn import readable
 
 if TYPE_CHECKING:
     from crowdbot.world.physics import PhysicsStage
 
 __all__ = ["Obstacle", "Stage", "Wall", "area"]
+
+TWO_GROUNDS = "has both walkable and area; give one of them"
 
 
 @dataclass(frozen=True)
@@ -81,7 +84,7 @@ class Stage:
     def __post_init__(self) -> None:
         check(self)
         if self.walkable and self.area:
-            raise InputError("has both walkable and area; give one of them")
+            raise InputError(TWO_GROUNDS)
         for word, name in (("area", "_ground"), ("map", "_map")):
             try:
                 getattr(self, name)
@@ -89,9 +92,11 @@ class Stage:
                 raise InputError(f"{word}={shown(getattr(self, word))} {error}") from None
 
     @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[str]:
-        """Return what is wrong with the files of a ground, whatever else is wrong in its element."""
-        said = []
+    def mistakes(values: Mapping[str, Any]) -> list[Mistake]:
+        """Return what is wrong with the ground, whatever else is wrong in its element."""
+        said: list[Mistake] = []
+        if values.get("walkable") and values.get("area"):
+            said.append((("walkable", "area"), TWO_GROUNDS))
         folder, trust = values["folder"], values["trust"]
         for word, read in (
             ("area", area_of),
@@ -101,7 +106,7 @@ class Stage:
                 if values.get(word):
                     read(values[word], folder=folder, trust=trust)
             except InputError as error:
-                said.append(f"{word}={shown(values[word])} {error}")
+                said.append(((word,), f"{word}={shown(values[word])} {error}"))
         return said
 
     @property
@@ -112,15 +117,16 @@ class Stage:
     @property
     def rings(self) -> tuple[NDArray[np.float64], ...]:
         """Rings ``[N, 2]`` [m] as :meth:`crowdbot.core.Walls.of` takes them: solid on the left of each edge."""
-        lines = [np.array(w.points[k : k + 2]) for w in self.walls for k in range(len(w.points) - 1)]
-        solids = [_turned(o.points, counter_clockwise=True) for o in self.obstacles]
+        walls = [points for _, points in readable(self.walls, "points")]
+        lines = [np.array(points[k : k + 2]) for points in walls for k in range(len(points) - 1)]
+        solids = [_turned(points, counter_clockwise=True) for _, points in readable(self.obstacles, "points")]
         around = [_turned(self.walkable, counter_clockwise=False)] if self.walkable else []
         fixed = (*lines, *solids, *around, *_rings(self._ground, solid=False), *_rings(self._map, solid=True))
-        return (*fixed, *(prop.ring for prop in self.props))
+        return (*fixed, *(ring for _, ring in readable(self.props, "ring")))
 
     def as_walls(self, props: bool = True) -> Walls:
         """Return the walls of a scene on this stage, with the outlines of props or without."""
-        return Walls.of(self.rings if props else self.rings[: len(self.rings) - len(self.props)])
+        return Walls.of(self.rings if props else self.rings[: len(self.rings) - len(readable(self.props, "ring"))])
 
     def physical(self) -> PhysicsStage:
         """Return what a world with bodies has beside walls."""
@@ -153,19 +159,13 @@ class Stage:
     def block_around(self, shape: Any) -> str:
         """Return what solid a shapely geometry lies in, empty when there is none."""
         found = self._blocks.query(shape, predicate="covered_by")
-        return self._called(int(found.min())) if len(found) else ""
+        return self._blocks_called[int(found.min())] if len(found) else ""
 
     def block_in(self, shape: Any, smallest: float) -> str:
         """Return a solid of which more than ``smallest`` [m2] lie in a shapely geometry, empty when there is none."""
         near = sorted(self._blocks.query(shape, predicate="intersects").tolist())
         blocks = self._blocks.geometries
-        return next((self._called(k) for k in near if shape.intersection(blocks[k]).area > smallest), "")
-
-    def _called(self, block: int) -> str:
-        if block < len(self.obstacles):
-            return f"obstacle {block + 1} of the stage"
-        prop = block - len(self.obstacles) - len(self._map)
-        return f"prop {prop + 1} of the stage" if prop >= 0 else "a solid of the map"
+        return next((self._blocks_called[k] for k in near if shape.intersection(blocks[k]).area > smallest), "")
 
     @functools.cached_property
     def _ground(self) -> tuple[Any, ...]:
@@ -190,15 +190,23 @@ class Stage:
     def _blocks(self) -> Any:
         import shapely
 
-        props = [shapely.Polygon(prop.ring) for prop in self.props]
-        return shapely.STRtree([*(area(obstacle.points) for obstacle in self.obstacles), *self._map, *props])
+        solids = [area(points) for _, points in readable(self.obstacles, "points")]
+        props = [shapely.Polygon(ring) for _, ring in readable(self.props, "ring")]
+        return shapely.STRtree([*solids, *self._map, *props])
+
+    @functools.cached_property
+    def _blocks_called(self) -> list[str]:
+        """What the blocks are called."""
+        solids = [f"obstacle {k + 1} of the stage" for k, _ in readable(self.obstacles, "points")]
+        props = [f"prop {k + 1} of the stage" for k, _ in readable(self.props, "ring")]
+        return [*solids, *("a solid of the map" for _ in self._map), *props]
 
     @functools.cached_property
     def _solids(self) -> Any:
         """The edges of walls and of the walkable area, and the obstacles, for the search of the nearest."""
         import shapely
 
-        lines = [np.array(wall.points) for wall in self.walls]
+        lines = [np.array(points) for _, points in readable(self.walls, "points")]
         lines += [np.array([*self.walkable, self.walkable[0]])] if self.walkable else []
         lines += [np.array(ring.coords) for part in self._ground for ring in (part.exterior, *part.interiors)]
         edges = [np.stack([line[:-1], line[1:]], axis=1) for line in lines]

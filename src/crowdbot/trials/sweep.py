@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import itertools
+import math
 import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.core import InputError, TrialError
 from crowdbot.core.errors import did_you_mean
 
-from .attribute import Part, attribute, check, outline, shown
+from .attribute import Mistake, Part, attribute, check, outline, shown
 from .markup import Element, written
+from .torn import readable
 
 if TYPE_CHECKING:
     from .trial import Trial
@@ -47,24 +51,36 @@ class Sweep:
 
     def __post_init__(self) -> None:
         check(self)
-        if not self.each:
-            raise InputError("needs the attribute 'values' with at least one value, such as 10 20 50")
+        _each(self.values)
+
+    @staticmethod
+    def mistakes(values: Mapping[str, Any]) -> list[Mistake]:
+        """Return what is wrong with the values, whatever else is wrong in its element."""
+        try:
+            _each(values.get("values", "1"))
+        except InputError as error:
+            return [(("values",), str(error))]
+        return []
 
     @property
     def each(self) -> tuple[str, ...]:
         """The values."""
-        if ";" in self.values:
-            return tuple(part.strip() for part in self.values.split(";") if part.strip())
-        found: list[str] = []
-        for word in re.findall(r"[^\s(]+\([^()]*\)|\S+", self.values):
-            span = re.fullmatch(r"(-?\d{1,9}):(-?\d{1,9})", word)
-            if span is None:
-                found.append(word)
-            elif int(span[2]) - int(span[1]) <= MOST_VARIANTS:
-                found += [str(k) for k in range(int(span[1]), int(span[2]))]
-            else:
-                raise InputError(f"has {shown(word)}, more than {MOST_VARIANTS} values")
-        return tuple(found)
+        return _each(self.values)
+
+
+def _each(values: str) -> tuple[str, ...]:
+    found: list[str] = []
+    for word in values.split(";") if ";" in values else re.findall(r"[^\s(]+\([^()]*\)|\S+", values):
+        span = None if ";" in values else re.fullmatch(r"(-?\d{1,9}):(-?\d{1,9})", word)
+        if span is None:
+            found += [word.strip()] if word.strip() else []
+        elif int(span[2]) - int(span[1]) <= MOST_VARIANTS:
+            found += [str(k) for k in range(int(span[1]), int(span[2]))]
+        else:
+            raise InputError(f"has {shown(word)}, more than {MOST_VARIANTS} values")
+    if not found:
+        raise InputError("needs the attribute 'values' with at least one value, such as 10 20 50")
+    return tuple(found)
 
 
 def variants(trial: Trial, trust: bool = True) -> tuple[Trial, ...]:
@@ -88,35 +104,61 @@ def variants(trial: Trial, trust: bool = True) -> tuple[Trial, ...]:
     return tuple(_variant(trial, row, trust) for row in rows)
 
 
-def sweep_problems(trial: Trial, seed: int | None = None, trust: bool = True) -> list[str]:
-    """Return what is wrong with the first variants of a trial, each sentence once."""
-    found: dict[str, None] = {}
-    try:
-        rows = _combined(trial)
-    except TrialError as error:
-        return list(error.problems)
-    for row in rows[:CHECKED]:
-        try:
-            one = _variant(trial, row, trust)
-            if seed is not None:
-                one.check(seed)
-        except TrialError as error:
-            where = ", ".join(f"{sweep.path}={value}" for sweep, value in zip(trial.sweeps, row, strict=True))
-            found |= dict.fromkeys(_bare(sentence, trial.name, where) for sentence in error.problems[:3])
-    return list(found)
+def sweep_problems(
+    root: Element, sweeps: Sequence[Sweep], others: Callable[[Element], list[str]]
+) -> list[tuple[Sweep, str]]:
+    """Return what is wrong with sweeps and with the first variants of a trial, each sentence once, with its sweep.
+
+    Args:
+        root: the trial as its file has it.
+        sweeps: torn where something of them could not be read.
+        others: says of a variant what is wrong with it and not with the trial.
+    """
+    found: list[tuple[Sweep, str]] = []
+    there = []
+    for sweep in sweeps:
+        for _, path in readable([sweep], "path"):
+            try:
+                _put(copy.deepcopy(root), path, "")
+            except InputError as error:
+                found.append((sweep, f"{shown(path)} {error}"))
+                continue
+            there += [sweep for _ in readable([sweep], "each")]
+    count = math.prod(len(sweep.each) for sweep in there)
+    if count > MOST_VARIANTS:
+        return [*found, (there[-1], f"makes {count} variants together with other sweeps, at most {MOST_VARIANTS}")]
+    told: dict[str, None] = {}
+    for row in itertools.islice(itertools.product(*(sweep.each for sweep in there)), CHECKED if there else 0):
+        pairs = [*zip(there, row, strict=True)]
+        for sentence in others(_with(root, pairs))[:3]:
+            if sentence not in told:
+                told[sentence] = None
+                found.append(_blamed(root, pairs, sentence, others))
+    return found
 
 
-def _bare(sentence: str, name: str, where: str) -> str:
-    """Return a sentence without the file and the line, which are those of no file; a path that leads nowhere once."""
-    if sentence.startswith(f"{name}: '"):
-        return sentence.removeprefix(f"{name}: ")
-    return f"with {where}: " + re.sub(r"^variant:\d+: ", "", sentence)
+def _blamed(
+    root: Element, pairs: Sequence[tuple[Sweep, str]], sentence: str, others: Callable[[Element], list[str]]
+) -> tuple[Sweep, str]:
+    """Return the sweep without which a variant is right, and the sentence with its value; with all if it is not one."""
+    for k, (sweep, value) in enumerate(pairs):
+        if len(pairs) > 1 and sentence not in others(_with(root, [*pairs[:k], *pairs[k + 1 :]])):
+            return sweep, f"with {sweep.path}={value}: {sentence}"
+    where = ", ".join(f"{sweep.path}={value}" for sweep, value in pairs)
+    return pairs[0][0], f"with {where}: {sentence}"
+
+
+def _with(root: Element, pairs: Sequence[tuple[Sweep, str]]) -> Element:
+    """Return the tree of a variant."""
+    variant = copy.deepcopy(root)
+    variant.children = [inner for inner in variant.children if inner.tag != "sweep"]
+    for sweep, value in pairs:
+        _put(variant, sweep.path, value)
+    return variant
 
 
 def _combined(trial: Trial) -> list[tuple[str, ...]]:
-    count = 1
-    for sweep in trial.sweeps:
-        count *= len(sweep.each)
+    count = math.prod(len(sweep.each) for sweep in trial.sweeps)
     if count > MOST_VARIANTS:
         raise TrialError(f"trial {trial.name!r}: its sweeps make {count} variants, at most {MOST_VARIANTS}")
     return list(itertools.product(*(sweep.each for sweep in trial.sweeps)))
@@ -147,16 +189,19 @@ def changed(trial: Trial, values: dict[str, str], *, place: str = "variant", tru
     root = element_of(trial)
     for path, value in values.items():
         try:
-            _put(root, type(trial), path, value)
+            _put(root, path, value)
         except InputError as error:
             raise TrialError(f"{trial.name}: {path[:60]!r} {error}") from None
     return read_trial(written(root), place=place, folder=trial.folder, trust=trust)
 
 
-def _put(root: Element, cls: type, path: str, value: str) -> None:
-    """Set the attribute at a path of the tree."""
+def _put(root: Element, path: str, value: str) -> None:
+    """Set the attribute at a path of the tree of a trial."""
+    from .trial import Trial
+
     *steps, last = path.strip("/").split("/")
-    here, kind = root, cls
+    here: Element = root
+    kind: Any = Trial
     for step in steps:
         here, kind = _inside(here, kind, step)
     if kind is not None:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from .checked import Checked, Problems
+from .checked import Checked
 from .journey import Zone
 from .notation import Points
 from .stage import Stage, area
+from .torn import readable
 
 __all__ = ["Area", "areas", "crooked"]
 
@@ -22,7 +24,7 @@ class Area:
 
     Fields:
         element: whose it is.
-        word: its attribute.
+        name: of its field.
         label: what it is called.
         points: its corners.
         smallest: area that it must have [m2].
@@ -30,45 +32,42 @@ class Area:
     """
 
     element: Any
-    word: str
+    name: str
     label: str
     points: Points
     smallest: float = 0.0
     border: bool = False
 
-    def crooked(self) -> Problems:
-        """Yield what is wrong with the shape."""
-        if wrong := crooked(self.points, self.smallest):
-            yield self.element, f"{self.word} {wrong}"
+    def crooked(self) -> str:
+        """Return what is wrong with the shape as the end of a sentence, empty when it is right."""
+        wrong = crooked(self.points, self.smallest)
+        return wrong and f"{self.name.replace('_', '-')} {wrong}"
 
-    def misplaced(self, stage: Stage) -> Problems:
-        """Yield why nobody can be there."""
+    def misplaced(self, stage: Stage) -> str:
+        """Return why nobody can be there as the end of a sentence, empty when somebody can."""
         zone = area(self.points)
-        block = stage.block_around(zone)
         if not (stage.meets(zone) if self.border else stage.holds(zone)):
             where = "lies" if self.border else "reaches"
-            yield self.element, f"{self.label} {where} outside the walkable area; move it, or make the area larger"
-        elif block:
-            yield self.element, f"{self.label} lies inside {block}; nobody can be there, move it"
+            return f"{self.label} {where} outside the walkable area; move it, or make the area larger"
+        block = stage.block_around(zone)
+        return block and f"{self.label} lies inside {block}; nobody can be there, move it"
 
 
 def areas(checked: Checked) -> list[Area]:
-    """Return every zone of a trial."""
-    found = []
-    for group, label, smallest in ((checked.spawners, "spawn zone", 0.0), (checked.sources, "zone", SMALLEST)):
-        for one in group:
-            found.append(Area(one, "zone", label, one.zone, smallest))
-            if one.goal:
-                found.append(Area(one, "goal", "goal zone", one.goal, smallest))
-    for journey in checked.journeys:
-        zones = (stop for stop in journey.stops if isinstance(stop, Zone))
-        found += [Area(stop, "points", "zone", stop.points, SMALLEST) for stop in zones]
-    for portal in checked.portals:
-        found.append(Area(portal, "zone", "zone", portal.zone, SMALLEST, border=True))
-    for agent in checked.agents:
-        if agent.goal_zone:
-            found.append(Area(agent, "goal-zone", "goal zone", agent.goal_zone))
-    return found + [Area(way, "zone", "zone", way.zone, SMALLEST, border=True) for way in checked.exits]
+    """Return every zone of a trial that could be read."""
+    trial, found = checked.trial, list[Area]()
+    for group, label, smallest in ((trial.spawners, "spawn zone", 0.0), (trial.sources, "zone", SMALLEST)):
+        found += _zones(group, "zone", label, smallest)
+        found += _zones(group, "goal", "goal zone", smallest)
+    for _, stops in readable(trial.journeys, "stops"):
+        found += _zones([stop for stop in stops if isinstance(stop, Zone)], "points", "zone", SMALLEST)
+    found += _zones(trial.portals, "zone", "zone", SMALLEST, border=True)
+    found += _zones(trial.agents, "goal_zone", "goal zone", 0.0)
+    return found + _zones(trial.exits, "zone", "zone", SMALLEST, border=True)
+
+
+def _zones(things: Sequence[Any], name: str, label: str, smallest: float, border: bool = False) -> list[Area]:
+    return [Area(things[k], name, label, points, smallest, border) for k, points in readable(things, name) if points]
 
 
 def crooked(points: Points, smallest: float = 0.0) -> str:

@@ -229,7 +229,7 @@ class _Reader:
             self.say(element, str(error))
             return None
         problems = plug.problems(type(made), rest, ("preset", *also))
-        for problem in problems:
+        for problem in problems.values():
             self.say(element, problem)
         if problems:
             return None
@@ -255,7 +255,7 @@ class _Reader:
         except InputError as error:
             self.say(element, str(error))
             return None
-        problems = plug.problems(cls, rest, also)
+        problems = list(plug.problems(cls, rest, also).values())
         if not problems:
             try:
                 return plug.read(cls, rest)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from crowdbot.core import InputError, TrialError
+from crowdbot.trials.torn import readable, told
 
 from .experiment import Block, Experiment, Screen, TrialEntry
 from .loading import trial_of
@@ -41,50 +42,59 @@ def problems_of(things: Iterable[Any], folder: Path | None, trust: bool) -> list
         trust: whether trials may lie, and load code from, elsewhere.
     """
     things = list(things)
-    found = [row for thing in things for row in _problems(thing)]
-    found += [row for thing in things if isinstance(thing, Screen) for row in _shown(thing, folder)]
-    read: dict[str, list[str]] = {}
-    for entry in things:
-        if isinstance(entry, TrialEntry):
-            if entry.source not in read:
-                read[entry.source] = _trial(entry.source, folder, trust)
-            found += [(entry, sentence) for sentence in read[entry.source]]
-    return found
+    found = [*told(*(check for thing in things for check in _problems(thing)))]
+    found += told(*(_shown(thing, folder) for thing in things if isinstance(thing, Screen)))
+    entries = [thing for thing in things if isinstance(thing, TrialEntry)]
+    sources = readable(entries, "source")
+    read = {source: _trial(source, folder, trust) for source in dict.fromkeys(source for _, source in sources)}
+    return found + [(entries[k], sentence) for k, source in sources for sentence in read[source]]
 
 
-def _problems(thing: Any) -> Found:
-    if isinstance(thing, Question) and (wrong := thing.problem()):
-        yield thing, wrong
+def _problems(thing: Any) -> Iterator[Found]:
+    if isinstance(thing, Question):
+        yield _asked(thing)
     if isinstance(thing, Screen):
-        yield from _twice(thing.questions, "question of this screen")
+        yield _twice(thing.questions, "question of this screen")
     if isinstance(thing, Block):
-        yield from _twice(thing.trials, "trial of this block")
-        for entry in thing.trials:
-            yield from _twice((*entry.before, *entry.after), "screen of this trial")
+        for _, entries in readable([thing], "trials"):
+            yield _twice(entries, "trial of this block")
+            yield from (_twice((*entry.before, *entry.after), "screen of this trial") for entry in entries)
     if isinstance(thing, Experiment):
         yield from _whole(thing)
 
 
-def _whole(experiment: Experiment) -> Found:
-    yield from _twice(experiment.blocks, "block")
-    outer = [*experiment.instructions, *experiment.endings, *(s for block in experiment.blocks for s in block.screens)]
-    yield from _twice(outer, "screen")
-    taken = {screen.name for screen in outer}
-    for entry in (entry for block in experiment.blocks for entry in block.trials):
-        for screen in (*entry.before, *entry.after):
-            if screen.name in taken:
-                yield screen, f"name {screen.name!r} is taken by a screen outside of this trial; give it its own"
+def _asked(question: Question) -> Found:
+    if wrong := question.problem():
+        yield question, wrong
+
+
+def _whole(experiment: Experiment) -> Iterator[Found]:
+    blocks = [block for _, there in readable([experiment], "blocks") for block in there]
+    yield _twice(blocks, "block")
+    outer = [*experiment.instructions, *experiment.endings, *(s for block in blocks for s in block.screens)]
+    yield _twice(outer, "screen")
+    entries = [entry for _, there in readable(blocks, "trials") for entry in there]
+    yield from (_taken(screen, outer) for entry in entries for screen in (*entry.before, *entry.after))
+    yield _too_many(experiment)
+
+
+def _taken(screen: Screen, outer: Sequence[Screen]) -> Found:
+    if screen.name in [name for _, name in readable(outer, "name")]:
+        yield screen, f"name {screen.name!r} is taken by a screen outside of this trial; give it its own"
+
+
+def _too_many(experiment: Experiment) -> Found:
     count = sum(len(block.trials) * block.repetitions for block in experiment.blocks)
     if count > MOST_TRIALS:
         yield experiment, f"has {count} trials for a participant, at most {MOST_TRIALS}; take fewer repetitions"
 
 
-def _twice(things: Iterable[Any], what: str) -> Found:
+def _twice(things: Sequence[Any], what: str) -> Found:
     count: Counter[str] = Counter()
-    for thing in things:
-        count[thing.name] += 1
-        if count[thing.name] > 1:
-            yield thing, f"name {thing.name!r} is taken by another {what}; give each its own"
+    for k, name in readable(things, "name"):
+        count[name] += 1
+        if count[name] > 1:
+            yield things[k], f"name {name!r} is taken by another {what}; give each its own"
 
 
 def _shown(screen: Screen, folder: Path | None) -> Found:

@@ -47,7 +47,7 @@ name, order, repetitions, seeds
     reader = Reader(place, folder or Path.cwd(), trust)
     if root.tag != ROOT:
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
-    experiment, _ = reader.element(Experiment, root)
+    experiment = reader.element(Experiment, root)
     for thing, sentence in problems_of(reader.made, folder, trust) if whole else []:
         reader.say(reader.lines[id(thing)], reader.words[id(thing)], sentence)
     reader.finish()

@@ -1,0 +1,162 @@
+"""What could be read of an element with a mistake: it stands in for the element, so that others can still be judged.
+
+A torn element is of the class of its element and has every field that could be read. Whoever looks at another one gets
+:class:`Unread`, and a check that does ends there (:func:`told`): what is wrong was said already, and what depends on it
+has to wait until it is mended.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from collections.abc import Container, Iterable, Iterator, Mapping
+from typing import Any, TypeVar
+
+from crowdbot.core import InputError
+
+__all__ = ["EVERYTHING", "Unread", "begun", "is_torn", "kind_of", "origin", "readable", "rest", "told", "torn", "whole"]
+
+T = TypeVar("T")
+LOST, ORIGIN, WHOLE = "_lost_of_it", "_origin_of_it", "_whole_of_it"
+
+
+class Unread(Exception):
+    """What is looked at could not be read, and that was said already."""
+
+
+class _Everything:
+    """All fields of something of which not even the class is known, and which fields there are."""
+
+    def __contains__(self, name: object) -> bool:
+        return not str(name).startswith("__") or name == "__dataclass_fields__"
+
+
+EVERYTHING = _Everything()
+
+
+@functools.cache
+def _torn_class(cls: type) -> type:
+    def look(self: Any, name: str) -> Any:
+        if name in object.__getattribute__(self, "__dict__").get(LOST, ()):
+            raise Unread(name)
+        return object.__getattribute__(self, name)
+
+    def unknown(self: Any, *args: Any, **more: Any) -> Any:
+        raise Unread
+
+    methods = dict.fromkeys(getattr(cls, "__abstractmethods__", ()), unknown)
+    return type(cls)(cls.__name__, (cls,), methods | {"__getattribute__": look, "__module__": cls.__module__})
+
+
+def torn(cls: type, values: Mapping[str, Any], lost: Container[str], *, origin: Any = None, whole: Any = None) -> Any:
+    """Return an element of which only some fields could be read.
+
+    Args:
+        cls: class of the element.
+        values: of the fields that could be read.
+        lost: names of the others.
+        origin: the element that it is a copy of, if it is one.
+        whole: the element as it would be with defaults for what is lost, if that can be made.
+
+    >>> from crowdbot.trials import Spawner
+    >>> spawner = torn(Spawner, {"name": "hall"}, {"zone", "count"})
+    >>> spawner.name, isinstance(spawner, Spawner), list(told(iter([1]), (spawner.count for _ in [0]), iter([2])))
+    ('hall', True, [1, 2])
+    """
+    made: Any = object.__new__(_torn_class(cls))
+    own = object.__getattribute__(made, "__dict__")
+    own.update(values)
+    own.update({LOST: lost, ORIGIN: origin, WHOLE: whole})
+    return made
+
+
+def begun(made: Any) -> str:
+    """Begin a torn element as others do, as far as that goes, and return what is wrong with its fields together."""
+    try:
+        made.__post_init__()
+    except Unread:
+        return ""
+    except InputError as error:
+        return str(error)
+    return ""
+
+
+def is_torn(thing: Any) -> bool:
+    """Whether something of an element could not be read."""
+    return LOST in _own(thing)
+
+
+def kind_of(thing: Any) -> type:
+    """Return the class of an element, also when it is torn."""
+    return type(thing).__mro__[1] if is_torn(thing) else type(thing)
+
+
+def origin(thing: Any) -> Any:
+    """Return the element that a copy was made of."""
+    found = _own(thing).get(ORIGIN)
+    return thing if found is None else origin(found)
+
+
+def whole(thing: Any) -> Any:
+    """Return a part as it would be with defaults for what could not be read.
+
+    Raises:
+        Unread: nobody knows what it would be.
+    """
+    if not is_torn(thing):
+        return thing
+    if (found := _own(thing)[WHOLE]) is None:
+        raise Unread
+    return found
+
+
+def rest(thing: T, *needs: str) -> T:
+    """Return an element with defaults for what could not be read of it, none of which is among ``needs``.
+
+    Raises:
+        Unread: something that is needed, or has no default, could not be read.
+    """
+    if not is_torn(thing):
+        return thing
+    values = {}
+    for field in dataclasses.fields(thing):  # type: ignore[arg-type]
+        try:
+            value = getattr(thing, field.name)
+        except Unread:
+            missing = field.default is None and "None" not in str(field.type)
+            if field.name in needs or field.default is dataclasses.MISSING or missing:
+                raise
+            value = field.default
+        if field.name in needs and isinstance(value, tuple) and any(is_torn(one) for one in value):
+            raise Unread(field.name)
+        values[field.name] = value
+    made: Any = object.__new__(kind_of(thing))
+    _own(made).update(values | {ORIGIN: thing})
+    return made  # type: ignore[no-any-return]
+
+
+def readable(things: Iterable[Any], name: str) -> list[tuple[int, Any]]:
+    """Return the values of a field of elements, with their index, where they could be read."""
+    found = []
+    for k, thing in enumerate(things):
+        try:
+            found.append((k, getattr(thing, name)))
+        except Unread:
+            continue
+    return found
+
+
+def told(*checks: Iterator[T]) -> Iterator[T]:
+    """Go through checks one after the other; each ends where it looks at something that could not be read."""
+    for check in checks:
+        try:
+            yield from check
+        except Unread:
+            continue
+
+
+def _own(thing: Any) -> dict[str, Any]:
+    try:
+        return object.__getattribute__(thing, "__dict__")  # type: ignore[no-any-return]
+    except AttributeError:
+        return {}
