@@ -73,6 +73,7 @@ def extent(trial: Trial, episode: Episode) -> tuple[Any, Any]:
     points = [episode.position[0, episode.active[0]]]
     points += [np.array([robot.goal.position]) for robot in trial.robots]
     points += [np.asarray(ring) for ring in trial.stage.rings]
+    points += [np.asarray(source.zone) for source in trial.sources]
     whole = np.concatenate([np.asarray(one).reshape(-1, 2) for one in points])
     low, high = whole.min(axis=0) - 0.6, whole.max(axis=0) + 0.6
     middle, size = (low + high) / 2.0, np.maximum(high - low, (high - low).max() / 3.5)
@@ -88,6 +89,8 @@ def ground(axes: Any, trial: Trial) -> None:
         axes.fill(*np.array(obstacle.points).T, color=WALL)
     for portal in trial.portals:
         axes.fill(*np.array(portal.zone).T, color="#e3dfd2", zorder=0)
+    for source in trial.sources:
+        axes.fill(*np.array(source.zone).T, color="#d3dfec", zorder=0)
 
 
 def ways(axes: Any, episode: Episode) -> None:
@@ -121,10 +124,10 @@ def page(file: Path) -> None:
         "",
         "Made by `python tools/trial_pictures.py docs/trials`: people (blue) and the robot (red) at the beginning, the",
         "ways of the first 20 s, the goal of the robot (x). Shaded zones are portals: who goes in comes out at the",
-        "other end. Run one with `crowdbot run NAME`, change its parameters with `--set NAME=VALUE`, see them all with",
-        "`crowdbot list trials NAME`. The last column says what others call it, with parameters where ours differ from",
-        "what they mean: P&G are Francis et al. 2025 (doi:10.1145/3700599), CrowdNav, social-jym, UMANS, SEAN and RVO2",
-        "simulators.",
+        "other end; where people come in later, the floor is blue. Run one with `crowdbot run NAME`, change its",
+        "parameters with `--set NAME=VALUE`, see them all with `crowdbot list trials NAME`. The last column says what",
+        "others call it, and with which parameters ours is theirs: P&G are Francis et al. 2025 (doi:10.1145/3700599);",
+        "CrowdNav, social-jym, UMANS, SEAN, RVO2 and others are simulators.",
         "",
         "| trial | | its own parameters | also known as |",
         "|---|---|---|---|",

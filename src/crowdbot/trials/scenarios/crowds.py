@@ -269,7 +269,7 @@ CROWDS = (
         "People walk down a corridor without ends, the robot against them.",
         one_way_against,
         {"density": DENSITY, "width": WIDTH, "groups": GROUPS},
-        "P&G, social-jym: parallel traffic (14 m by 3 m: `width=3`); CrowdBot: 1-D, against the flow",
+        "social-jym: parallel traffic (14 m by 3 m: `width=3`); CrowdBot: 1-D, against the flow",
     ),
     Preset(
         "two-way",
@@ -289,7 +289,7 @@ CROWDS = (
         "People without end cross the way of the robot, from one side or from both.",
         crossing,
         {"density": DENSITY, "both": Option(False, "whether people come from both sides")},
-        "P&G, social-jym: perpendicular traffic; CrowdBot: 2-D crossing",
+        "social-jym: perpendicular traffic; CrowdBot: 2-D crossing",
     ),
     Preset(
         "circle-crossing",
@@ -302,7 +302,7 @@ CROWDS = (
             "limit": Option(25.0, "duration", "s", 5.0, 600.0),
             "horizon": Option(5.0, "time horizon of people", "s", 0.5, 10.0),
         },
-        "P&G, CrowdNav: circle crossing; social-jym: circular crossing (`radius=7`); UMANS: circle 5 to 50 (`people`)",
+        "CrowdNav: circle crossing; social-jym: circular crossing (`radius=7`); UMANS: circle 5 to 50 (`people`)",
     ),
     Preset(
         "dense-circle",
@@ -323,14 +323,14 @@ CROWDS = (
         "People stand about, alone or in groups; the robot goes through.",
         static_crowd,
         {"density": Option(0.25, "people", "1/m2", 0.0, 1.5), "groups": GROUPS},
-        "P&G, social-jym: robot crowding; CrowdBot: static crowd",
+        "social-jym: robot crowding; CrowdBot: static crowd",
     ),
     Preset(
         "random-goals",
         "People go about a square, each to one random place after the other.",
         random_goals,
         {"people": Option(30, "people", "", 1, 400), "side": Option(20.0, "of the square", "m", 6.0, 100.0)},
-        "P&G, social-jym: crowd navigation; MengeROS, ir-sim: wandering",
+        "social-jym: crowd navigation; MengeROS, ir-sim: wandering",
     ),
     Preset(
         "bottleneck",

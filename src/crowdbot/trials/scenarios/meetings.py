@@ -295,7 +295,7 @@ MEETINGS = (
             "speed": Option(0.7, "speed of the person", "m/s", 0.1, 2.5),
             "robot_speed": Option(1.2, "speed of the robot", "m/s", 0.1, 3.0),
         },
-        "P&G: robot overtaking",
+        "P&G: overtaking",
     ),
     Preset(
         "being-overtaken",
@@ -306,7 +306,7 @@ MEETINGS = (
             "speed": Option(1.4, "speed of the person", "m/s", 0.1, 2.5),
             "robot_speed": Option(0.6, "speed of the robot", "m/s", 0.1, 3.0),
         },
-        "P&G: pedestrian overtaking",
+        "P&G: being overtaken",
     ),
     Preset(
         "following",

@@ -144,7 +144,7 @@ SHARED_WAYS = (
             "speed": Option(1.0, "speed of the person", "m/s", 0.1, 2.5),
             "robot_speed": ROBOT,
         },
-        "P&G: parallel walk, accompanying",
+        "P&G: parallel walk",
     ),
     Preset(
         "object-handover",
