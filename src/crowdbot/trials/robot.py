@@ -125,9 +125,9 @@ class Robot:
         False, about="whether it also carries the colour cameras of its type, which are drawn and slow"
     )
     rates: str = attribute(
-        "exact",
-        about="whether sensors of its type must fit the time step, or measure as often as it allows",
-        choices=("exact", "nearest"),
+        "nearest",
+        about="whether sensors of its type measure as often as the time step allows, or must fit it",
+        choices=("nearest", "exact"),
     )
     visible: bool = attribute(True, about="whether the crowd reacts to it")
     control_period: float = attribute(0.1, about="time between two commands", unit="s", above=0.0)
