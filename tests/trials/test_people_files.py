@@ -135,7 +135,8 @@ def test_parameters_differ_from_person_to_person() -> None:
 def test_wrong_distributions_of_parameters_are_told(value: str, sentence: str) -> None:
     assert sentence in refused(changed('time-horizon="2"', f'time-horizon="{value}"'))
     unknown = refused(changed('time-horizon="2"', 'max-sped="normal(2, 0.1)"'))
-    assert "max-sped cannot be drawn" in unknown
+    assert "has no attribute 'max-sped', did you mean 'max-speed'?" in unknown
+    assert "max-speed cannot be drawn" in unknown
 
 
 @pytest.mark.parametrize("text", [GOOD, FLOW], ids=["good", "flow"])

@@ -241,8 +241,8 @@ WRONG = {
     "a camera twice": ('camera name="head"', 'camera name="door"', r"name 'door' is taken by another camera"),
     "a rate of a type": (
         'rates="nearest" ',
-        "",
-        r"sensor 'base_laser_front' of its type \(rates=\"nearest\" lets it fit\): rate 6.66667 Hz",
+        'rates="exact" ',
+        r"sensors of its type that do not measure after whole time steps of 0.04 s: base_laser_front 6.66667 Hz, .*",
     ),
     "a delay": ('delay="0.08"', 'delay="0.07"', r"delay 0.07 s is not a whole number of time steps"),
     "a prop": ('size="0.3"', 'size="0"', r"<cube> size=\"0\" must be above 0 m"),

@@ -81,7 +81,8 @@ def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
         return {"problems": list(error.problems)}
     except InputError as error:
         return {"problems": [str(error)]}
-    return {"problems": [], "variants": [one.name for one in trial.variants()] if trial.sweeps else []}
+    variants = [one.name for one in trial.variants()] if trial.sweeps else []
+    return {"problems": [], "remarks": trial.remarks(), "variants": variants}
 
 
 def _robot(name: str, trust: bool, packages: dict[str, Path]) -> dict[str, Any]:
@@ -113,6 +114,8 @@ def _print(name: str, row: dict[str, Any]) -> None:
         _print_robot(row["robot"])
     verdict = "right" if row["right"] else f"{len(row['problems'])} to mend"
     print(f"{Path(name).name}: {verdict}")
+    for remark in row.get("remarks", ()):
+        print(f"  note: {remark}")
     for k, variant in enumerate(row.get("variants", ()), 1):
         print(f"  {k:4d}  {variant}")
 

@@ -59,3 +59,5 @@ def tell(done: Summary, as_json: bool, wall: float) -> None:
         return
     print_table(f"{done.trial.name}, seed {done.seed}", ("", ""), [(key, number(v)) for key, v in summary.items()])
     print_metrics("navigation", done.metrics)
+    for remark in done.trial.remarks():
+        print(f"note: {remark}")

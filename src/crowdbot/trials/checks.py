@@ -20,6 +20,7 @@ from .crowd import Crowd, Crowds
 from .flow_checks import expected, flows, names, taken
 from .notation import Points
 from .people import Spawner
+from .rates import fitting, misfits
 from .recorded_people import RecordedPeople
 from .spawn import place
 from .stage import Obstacle, Stage
@@ -68,7 +69,10 @@ def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) ->
     """
     checked = Checked(trial, crowds, seed)
     too_large = [*told(*_size(checked))]
-    found = [*told(_periods(checked), *_names(checked), *names(checked)), *too_large]
+    found = [
+        *told(_periods(checked), *(_exact(trial, robot) for robot in trial.robots), *_names(checked), *names(checked)),
+        *too_large,
+    ]
     shapes = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.crooked())]
     shapes += _stage_shapes(trial.stage)
     checked = checked.without(_by_thing(shapes))
@@ -128,7 +132,8 @@ def _periods(checked: Checked) -> Problems:
     trial = checked.trial
     clock = FreeClock(trial.step)
     periods = [*told(*_due(trial))]
-    fits = _fitting([period for _, _, period in periods])
+    step = fitting([period for _, _, period in periods])
+    fits = f'; with step="{step:g}" all are' if step else ""
     for thing, name, period in periods:
         try:
             clock.every(period)
@@ -150,24 +155,24 @@ def _period(thing: Any, name: str, called: str) -> Iterator[tuple[Any, str, floa
 
 
 def _measuring(robot: Robot, mount: Mount) -> Iterator[tuple[Any, str, float]]:
-    carried = robot.usual["sensors"]
-    if robot.rates == "nearest" and mount in carried:
+    if mount in robot.usual["sensors"]:
         return
-    thing = robot if mount in carried else mount
-    whose = f'sensor {mount.name!r} of its type (rates="nearest" lets it fit): ' if mount in carried else ""
-    yield thing, f"{whose}rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate
+    yield mount, f"rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate
     if mount.sensor.delay > 0.0:
-        yield thing, f"{whose}delay", mount.sensor.delay
+        yield mount, "delay", mount.sensor.delay
 
 
-def _fitting(periods: Sequence[float]) -> str:
-    """Return which step all periods are whole numbers of, as the end of a sentence."""
-    step = math.gcd(*(round(period * 1e9) for period in periods)) / 1e9
-    if step < 0.005:
-        return ""
-    while step > 0.1:
-        step /= 2.0
-    return f'; with step="{step:g}" all are'
+def _exact(trial: Trial, robot: Robot) -> Problems:
+    """Yield a robot with sensors of its type that do not fit the time step although they must."""
+    if robot.rates == "exact" and (others := misfits(robot, trial.step)):
+        rates = ", ".join(f"{mount.name} {mount.sensor.rate:g} Hz" for mount in others)
+        step = fitting([trial.recording.period, robot.control_period, *(1.0 / mount.sensor.rate for mount in others)])
+        take = f'take step="{step:g}", or leave out' if step else "leave out"
+        yield (
+            robot,
+            f"has sensors of its type that do not measure after whole time steps of {trial.step:g} s: {rates}; {take}"
+            ' rates="exact" to let them measure as often as the step allows',
+        )
 
 
 def _names(checked: Checked) -> Iterator[Problems]:

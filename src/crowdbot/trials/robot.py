@@ -126,9 +126,9 @@ class Robot:
         False, about="whether it also carries the colour cameras of its type, which are drawn and slow"
     )
     rates: str = attribute(
-        "exact",
-        about="whether sensors of its type must fit the time step, or measure as often as it allows",
-        choices=("exact", "nearest"),
+        "nearest",
+        about="whether sensors of its type measure as often as the time step allows, or must fit it",
+        choices=("nearest", "exact"),
     )
     rider: str = attribute("", about=ABOUT_RIDER)
     visible: bool = attribute(True, about="whether the crowd reacts to it")

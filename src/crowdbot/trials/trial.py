@@ -182,6 +182,12 @@ class Trial:
 
         check_trial(self, seed)
 
+    def remarks(self) -> list[str]:
+        """Return what is not wrong but should be known; see :func:`crowdbot.trials.rates.remarks`."""
+        from .rates import remarks
+
+        return remarks(self)
+
     def run(
         self,
         seed: int | None = None,
