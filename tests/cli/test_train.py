@@ -34,6 +34,22 @@ def said(words: list[str], capsys: pytest.CaptureFixture[str]) -> tuple[int, str
     return status, out, err
 
 
+@pytest.mark.parametrize("there", [False, True])
+def test_a_training_that_never_began_is_not_resumed(
+    walks: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], there: bool
+) -> None:
+    out = tmp_path / "weights"
+    if there:
+        out.mkdir()
+    status, _, err = said(["train", "social-ways", "--data", *walks, "--out", str(out), "--resume"], capsys)
+    assert status == 2
+    assert err == (
+        f"crowdbot: --out {out} holds no training to go on with (there is no last.npz in it); give the folder of one,"
+        " or begin one without --resume\n"
+    )
+    assert list(tmp_path.iterdir()) == ([out] if there else [])
+
+
 def test_weights_are_learned_resumed_and_scored(
     walks: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -8,9 +8,13 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from PIL import Image
+from space_trials import ROOM, room
 from trial_texts import FLOW
 
+from crowdbot.cli import main
 from crowdbot.core import EpisodeError, InputError
+from crowdbot.sensors import Picture
 from crowdbot.trials import Recorded, Trial, export, read_episode, record
 
 
@@ -55,6 +59,47 @@ def test_robots_scans_and_contacts(recorded: tuple[Path, Recorded], tmp_path: Pa
     contacts = table(path, tmp_path / "contacts.csv", "contacts")
     assert len(contacts) == len(read.contacts) > 0
     assert contacts["clearance"].max() < 0.0
+
+
+@pytest.fixture(scope="module")
+def seen(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("seen")
+    record(Trial.parse(room(text=ROOM)), out=folder)
+    return folder / "episode.mcap"
+
+
+@pytest.mark.parametrize("ending", ["parquet", "csv"])
+def test_pictures_are_rows_and_files(seen: Path, tmp_path: Path, ending: str) -> None:
+    found = table(seen, tmp_path / f"eyes.{ending}", "pictures")
+    pictures = read_episode(seen).readings["pepper/eyes"]
+    assert np.array_equal(found["time"], [picture.time for picture in pictures])
+    assert len(found) == 6
+    assert set(found["sensor"]) == {"pepper/eyes"}
+    assert (set(found["width"]), set(found["height"]), set(found["cx"])) == ({32}, {24}, {15.5})
+    for row, picture in zip(found.itertuples(), pictures, strict=True):
+        assert isinstance(picture, Picture)
+        assert picture.hit is not None
+        assert np.array_equal(np.asarray(Image.open(tmp_path / str(row.file))), picture.rgb[0])
+        assert set(str(row.seen).split()) == {str(who) for who in np.unique(picture.hit) if who >= 0}
+        assert row.z == pytest.approx(picture.pose.position[0, 2])
+    assert found["file"][1] == "eyes-images/pepper-eyes-0000200000000.png"
+    assert sorted(os.listdir(tmp_path)) == ["eyes-images", f"eyes.{ending}"]
+    assert len(list((tmp_path / "eyes-images").iterdir())) == 6
+
+
+def test_the_program_says_where_the_images_are(
+    seen: Path, recorded: tuple[Path, Recorded], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["export", str(seen), "--to", str(tmp_path / "p.csv"), "--table", "pictures"]) == 0
+    assert capsys.readouterr().out == f"{tmp_path}/p.csv: 6 rows, their images in {tmp_path}/p-images\n"
+    assert main(["export", str(recorded[0]), "--to", str(tmp_path / "none.csv"), "--table", "pictures"]) == 0
+    assert capsys.readouterr().out == f"{tmp_path}/none.csv: 0 rows\n"
+    assert sorted(os.listdir(tmp_path)) == ["none.csv", "p-images", "p.csv"]
+    whole = seen.read_bytes()
+    (tmp_path / "hole.mcap").write_bytes(whole[: len(whole) // 2] + bytes(2000) + whole[len(whole) // 2 + 2000 :])
+    with pytest.raises(EpisodeError, match="is damaged"):
+        export(tmp_path / "hole.mcap", tmp_path / "hole" / "p.csv", "pictures")
+    assert not list(tmp_path.glob("hole/*"))
 
 
 def test_what_cannot_be_exported_is_said(recorded: tuple[Path, Recorded], tmp_path: Path) -> None:

@@ -16,8 +16,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--table",
         default="people",
         metavar="NAME",
-        help="people (robots too), robots, contacts, forces, collisions; of sensors: scans, points, ranges, images,"
-        " inertial, odometry, bumpers, tracked",
+        help="people (robots too), robots, contacts, forces, collisions; of sensors: scans, points, ranges, images"
+        " (of depth), pictures (in colour, with a folder of PNG files), inertial, odometry, bumpers, tracked",
     )
     add_json(parser)
 
@@ -25,10 +25,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Write the table."""
     from crowdbot.trials import export
+    from crowdbot.trials.exported_pictures import folder_of
 
     rows = export(options.episode, options.to, options.table)
+    drawn = rows > 0 and options.table == "pictures"
+    images = {"images": str(folder_of(options.to))} if drawn else {}
     if options.json:
-        print_json({"episode": str(options.episode), "table": options.table, "file": str(options.to), "rows": rows})
+        told = {"episode": str(options.episode), "table": options.table, "file": str(options.to), "rows": rows}
+        print_json(told | images)
     else:
-        print(f"{options.to}: {rows} rows")
+        more = f", their images in {images['images']}" if images else ""
+        print(f"{options.to}: {rows} rows{more}")
     return 0

@@ -52,13 +52,18 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Learn, and say where the weights are."""
-    from crowdbot.core.errors import UnknownName
+    from crowdbot.core.errors import InputError, UnknownName
     from crowdbot.prediction.learned.extra import threads, torch_module
     from crowdbot.prediction.learned.samples import short_recordings
-    from crowdbot.prediction.learned.training import BEST, Schedule, train
+    from crowdbot.prediction.learned.training import BEST, LAST, Schedule, train
 
     if options.what not in LEARNERS:
         raise UnknownName("learned predictor", options.what, LEARNERS)
+    if options.resume and not (options.out / LAST).is_file():
+        raise InputError(
+            f"--out {options.out} holds no training to go on with (there is no {LAST} in it); give the folder of one, or"
+            " begin one without --resume"
+        )
     torch_module()  # said before anything is read
     epochs = EPOCHS if options.updates is None and options.epochs is None else options.epochs
     schedule = Schedule(

@@ -13,6 +13,7 @@ from crowdbot.core import EpisodeError, InputError
 from crowdbot.core.errors import did_you_mean
 
 from .contact_messages import Collided, Pushed
+from .exported_pictures import ExportedPictures
 from .moments import Moment
 from .reading_tables import READING_TABLES
 from .recorded import moments, read_metadata
@@ -39,8 +40,11 @@ def export(path: Path | str, to: Path | str, table: str = "people") -> int:
     * ``forces`` and ``collisions``, of the physics world: who with whom, where on the body, force [N], ...;
     * what other sensors measured, with the sensor and its x, y, z [m] and heading [rad] in the world: ``points`` of
       clouds (where each beam ended in the world, range, intensity, ring, hit), ``ranges`` of ultrasound and infrared,
-      ``inertial``, ``odometry``, ``bumpers`` (each pressed sector), ``tracked`` (each person told of), and ``images``:
-      size, the nearest depth [m] and the ids that are seen; the pixels are in the episode file itself.
+      ``inertial``, ``odometry``, ``bumpers`` (each pressed sector), ``tracked`` (each person told of);
+    * ``pictures`` of colour cameras: size, fx, fy, cx, cy of the lens [pixels], the ids that are seen when the camera
+      tells, and the file of the image, a PNG in the folder ``NAME-images`` next to the table ``NAME``;
+    * ``images`` of depth cameras: size, the nearest depth [m] and the ids that are seen; the pixels of depth and of
+      labels are in the episode file itself.
 
     Returns:
         The number of rows.
@@ -55,15 +59,19 @@ def export(path: Path | str, to: Path | str, table: str = "people") -> int:
     if to.suffix not in (".parquet", ".csv"):
         raise InputError(f"{to} ends in {to.suffix or 'nothing'}; give a name that ends in .parquet or .csv")
     bodies = _bodies(path)
-    batches = (TABLES[table](moment, bodies) for moment in moments(path))
+    pictures = ExportedPictures(to)
+    make = pictures.columns if table == "pictures" else TABLES[table]
+    batches = (make(moment, bodies) for moment in moments(path))
     draft = to.with_name(f".{to.name}.{os.getpid()}.part")
     try:
         to.parent.mkdir(parents=True, exist_ok=True)
         try:
             count = _write(batches, draft, to.suffix)
+            pictures.finish()
             os.replace(draft, to)
         finally:
             draft.unlink(missing_ok=True)
+            pictures.drop()
     except OSError as error:
         raise EpisodeError(f"{to} cannot be written: {error.strerror}") from None
     return count

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.sensors import Cloud, DepthImage, Echo, Inertial, Odometry, Reading, Touch, Tracked
+from crowdbot.sensors import Cloud, DepthImage, Echo, Inertial, Odometry, Picture, Reading, Touch, Tracked
 from crowdbot.sensors.sensor import in_space
 
 from .moments import Moment
@@ -44,6 +44,12 @@ def _images(reading: Any) -> Columns:
         "nearest": np.array([near]),
         "seen": np.array([" ".join(map(str, seen.tolist()))], dtype=object),
     }
+
+
+def _pictures(reading: Any) -> Columns:
+    seen = np.zeros(0, np.int64) if reading.hit is None else np.unique(reading.hit[0][reading.hit[0] >= 0])
+    lens = {name: np.array([getattr(reading.lens, name)]) for name in ("width", "height", "fx", "fy", "cx", "cy")}
+    return lens | {"seen": np.array([" ".join(map(str, seen.tolist()))], dtype=object)}
 
 
 def _inertial(reading: Any) -> Columns:
@@ -85,6 +91,7 @@ TABLES: dict[str, tuple[type[Reading], Callable[[Any], Columns], tuple[str, ...]
     "points": (Cloud, _points, ("point_x", "point_y", "point_z", "range", "intensity", "ring", "hit")),
     "ranges": (Echo, _ranges, ("range", "hit")),
     "images": (DepthImage, _images, ("width", "height", "nearest", "seen")),
+    "pictures": (Picture, _pictures, ("width", "height", "fx", "fy", "cx", "cy", "seen")),
     "inertial": (
         Inertial,
         _inertial,
