@@ -5,7 +5,8 @@
 SDD holds gates/video2/annotations.txt, TRAJNET holds Train/stanford/hyang_6.txt. Both networks see the coordinates of
 the place, as in the report, learn from the first four fifths in time and draw 128 futures of people of the last fifth.
 A mode is a place where at least a tenth of the draws end within 1 m; the next is looked for among the draws that are
-more than 2 m away from it.
+more than 2 m away from it. People are at a fork when those who came by before them went on in several modes: at least
+eight people who were within 2 m, headed the same way within 30 degrees, and about as fast.
 """
 
 from __future__ import annotations
@@ -26,8 +27,10 @@ from crowdbot.prediction.learned.training import BEST, Schedule, train
 SCALE = 0.0373
 """Metres of a pixel in gates/video2, as estimated_scales.yaml says."""
 DRAWS, SHOWN, ROWS = 128, 5, 12
+PLACE = {"frame": "world", "mirror": "false", "reverse": "false", "scale-sd": "0"}
 METHODS = {
-    "social ways": ("variety", {"frame": "world", "mirror": "false", "reverse": "false", "scale-sd": "0"}),
+    "social ways": ("variety", PLACE),
+    "discrete codes": ("variety", PLACE | {"code-levels": "3", "noise": "4", "noise-gain": "3.46"}),
     "vanilla": ("report", {"frame": "world", "use-info-loss": "false", "latent-codes": "0"}),
 }
 Windowed = tuple[Windows, Windows]
@@ -70,6 +73,31 @@ def modes(paths: np.ndarray) -> int:
     return count
 
 
+def ways(past: np.ndarray, seen: np.ndarray, went: np.ndarray) -> np.ndarray:
+    """Return in how many modes those went on who came by like each of ``past [N, T, 2]``; 0 when they are too few.
+
+    Args:
+        past: tracks that are asked about.
+        seen, went: ``[M, T, 2]`` tracks of others and how they went on.
+    """
+    found, heading = [], seen[:, -1] - seen[:, -4]
+    for one in past:
+        own = one[-1] - one[-4]
+        ratio = np.linalg.norm(heading, axis=1) / max(float(np.linalg.norm(own)), 1e-9)
+        angle = np.abs(np.angle((heading @ [1, 1j]) * np.conj(own @ [1, 1j])))
+        like = (
+            (np.linalg.norm(seen[:, -1] - one[-1], axis=1) < 2.0)
+            & (angle < np.pi / 6)
+            & (abs(np.log(ratio + 1e-9)) < 0.35)
+        )
+        found.append(modes(went[like] - seen[like, -1:]) if like.sum() >= 8 else 0)
+    return np.array(found)
+
+
+def _mean(counts: np.ndarray) -> str:
+    return f"{counts.mean():.2f} modes of {len(counts)}" if len(counts) else "nobody"
+
+
 def main() -> None:
     """Train, count and draw."""
     from matplotlib.figure import Figure
@@ -80,15 +108,22 @@ def main() -> None:
     parser.add_argument("out", type=Path)
     parser.add_argument("--updates", type=int, default=600)
     options = parser.parse_args()
-    figure = Figure(figsize=(3.2 * SHOWN, 12.8), layout="constrained")
-    grid: Any = figure.subplots(4, SHOWN)
+    rows = 2 * len(METHODS)
+    figure = Figure(figsize=(3.2 * SHOWN, 3.2 * rows), layout="constrained")
+    grid: Any = figure.subplots(rows, SHOWN)
     for number, (place, tracks) in enumerate(places(options).items()):
         learned, asked = tracks.windows(protocol="timesplit-train"), tracks.windows(protocol="timesplit")
         past, future = asked
         window, person = np.nonzero(future.scored)
         truth, seen = future.position[window, :, person], past.position[window, :, person]
         walked = np.flatnonzero(np.linalg.norm(truth[:, -1] - seen[:, -1], axis=1) > 3.0)
-        chosen = walked[np.linspace(0, len(walked) - 1, SHOWN).round().astype(int)]
+        before, who_before = np.nonzero(learned[1].scored)
+        went = ways(
+            seen[walked], learned[0].position[before, :, who_before], learned[1].position[before, :, who_before]
+        )
+        forks, plain = walked[went > 1], walked[went == 1]
+        some = walked if len(forks) < SHOWN else forks
+        chosen = some[np.linspace(0, len(some) - 1, SHOWN).round().astype(int)]
         for row, method in enumerate(METHODS):
             paths = drawn(options, place, method, learned, asked)
             count = np.array([modes(one) for one in paths])
@@ -96,9 +131,10 @@ def main() -> None:
             best = error.mean(axis=2).min(axis=1).mean(), error[:, :, -1].min(axis=1).mean()
             spread = paths[:, :, -1].std(axis=1).mean()
             print(f"{place}, {method}: {len(paths)} people, {count[walked].mean():.2f} modes of who walks over 3 m,"
-                  f" {np.mean(count[walked] > 1):.0%} of them with several; ends scatter {spread:.2f} m;"
+                  f" {np.mean(count[walked] > 1):.0%} of them with several; {_mean(count[forks])} at forks,"
+                  f" {_mean(count[plain])} where all went one way; ends scatter {spread:.2f} m;"
                   f" best of 20 {best[0]:.3f}/{best[1]:.3f} m", flush=True)  # fmt: skip
-            for axes, who in zip(grid[2 * number + row], chosen, strict=True):
+            for axes, who in zip(grid[len(METHODS) * number + row], chosen, strict=True):
                 axes.plot(*tracks.position.T, ",", color="0.8", zorder=0)
                 start = np.broadcast_to(seen[who, -1], (DRAWS, 1, 2))
                 axes.plot(*np.moveaxis(np.concatenate([start, paths[who]], axis=1), -1, 0).swapaxes(1, 2),
