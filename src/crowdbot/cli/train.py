@@ -61,8 +61,8 @@ def main(options: argparse.Namespace) -> int:
         raise UnknownName("learned predictor", options.what, LEARNERS)
     if options.resume and not (options.out / LAST).is_file():
         raise InputError(
-            f"--out {options.out} holds no training to go on with (there is no {LAST} in it); give the folder of one, or"
-            " begin one without --resume"
+            f"--out {options.out} holds no training to go on with (there is no {LAST} in it); give the folder of one,"
+            " or begin one without --resume"
         )
     torch_module()  # said before anything is read
     epochs = EPOCHS if options.updates is None and options.epochs is None else options.epochs
