@@ -6,7 +6,7 @@ import argparse
 import time
 from pathlib import Path
 
-from .output import add_json, note, print_json, print_metrics, print_table, progress
+from .output import add_json, print_json, print_metrics, print_table, progress
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -21,10 +21,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Run a trial, predict its people, write the report."""
     from crowdbot.benchmark import run_demo
-    from crowdbot.core.kernels import cache_folder, is_cold
 
-    if is_cold() and not options.json:
-        note(f"first run: compiling the kernels (ORCA, social force, LiDAR) into {cache_folder()}, up to a minute")
     begin = time.perf_counter()
     with progress(options.json) as report:
         done = run_demo(options.out, seed=options.seed, progress=report)

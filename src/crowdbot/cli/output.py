@@ -117,14 +117,31 @@ def spoken_warnings() -> Iterator[None]:
 
 @contextmanager
 def progress(quiet: bool = False) -> Iterator[Progress]:
-    """Show bars on stderr, one for each thing that is being done; plain lines when stderr is no terminal."""
+    """Show bars on stderr, one for each thing that is being done; plain lines when stderr is no terminal.
+
+    Says why nothing moves, too, when kernels have to be compiled first.
+    """
     if quiet:
         yield lambda what, share: None
     elif sys.stderr.isatty():
         with _bars() as report:
             yield report
     else:
-        yield _lines()
+        with _compiling_told(note):
+            yield _lines()
+
+
+@contextmanager
+def _compiling_told(say: Callable[[str], None]) -> Iterator[None]:
+    from crowdbot.core.compiling import on_compiling
+    from crowdbot.core.kernels import cache_folder, is_cold
+
+    def tell() -> None:
+        first = "first run: " if is_cold() else ""
+        say(f"{first}compiling kernels once, into {cache_folder()}; that takes up to a minute or two")
+
+    with on_compiling(tell):
+        yield
 
 
 @contextmanager
@@ -142,7 +159,8 @@ def _bars() -> Iterator[Progress]:
                 known[what] = bars.add_task(what, total=1.0)
             bars.update(known[what], completed=share)
 
-        yield report
+        with _compiling_told(lambda sentence: bars.console.print(sentence, highlight=False, markup=False)):
+            yield report
 
 
 def _lines() -> Progress:

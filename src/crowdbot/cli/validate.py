@@ -22,10 +22,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Run the checks, write the page and print the table."""
     from crowdbot.benchmark.validation import CHECKS, chosen, validate, write_page
-    from crowdbot.core.kernels import cache_folder, is_cold
 
-    if is_cold() and not options.json:
-        note(f"first run: compiling the kernels of all models into {cache_folder()}, a minute or two")
     models, skipped = chosen([name for name in (options.models or "").split(",") if name])
     kept = options.out / "validation"
     try:
