@@ -185,5 +185,5 @@ def test_people_at_one_place_take_a_bounded_step():
 
 
 def test_a_bad_range_is_named():
-    with pytest.raises(InputError, match=r"range = 0.0 \[m\] is not allowed, it must be finite and at least 0.001"):
+    with pytest.raises(InputError, match=r"range = 0.0 \[m\] is not allowed, it must be at least 0.001"):
         AnticipationVelocity(range=0.0)

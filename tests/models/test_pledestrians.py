@@ -106,7 +106,5 @@ def test_walkers_stop_before_a_wall():
 
 
 def test_a_bad_planning_time_is_named():
-    with pytest.raises(
-        InputError, match=r"planning_time = 0.0 \[s\] is not allowed, it must be finite and at least 0.001"
-    ):
+    with pytest.raises(InputError, match=r"planning_time = 0.0 \[s\] is not allowed, it must be at least 0.001"):
         PLEdestrians(planning_time=0.0)

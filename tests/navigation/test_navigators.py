@@ -114,7 +114,7 @@ def test_far_people_change_nothing():
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"time_horizon": 0.0}, "time_horizon = 0.0 must be finite and above 0"),
+        ({"time_horizon": 0.0}, "time_horizon = 0.0 s must be finite and above 0"),
         ({"time_horizon_walls": -1.0}, "time_horizon_walls = -1.0"),
         ({"neighbor_distance": math.nan}, "neighbor_distance = nan"),
         ({"max_neighbors": 0}, "max_neighbors = 0"),

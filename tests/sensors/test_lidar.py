@@ -242,7 +242,7 @@ def test_seen_counts_who_returned_a_beam():
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"rays": 10**9}, "rays = 1000000000 must be at most 1000000"),
+        ({"rays": 10**9}, "rays = 1000000000 must be a whole number of at least 1 and at most 1000000"),
         ({"rays": 0}, "rays = 0 must be a whole number of at least 1"),
         ({"rays": -5}, "rays = -5"),
         ({"rays": 2.5}, "rays = 2.5"),

@@ -108,7 +108,7 @@ def test_text_is_read_as_trial_files_write_it():
         ("peak(0.1)", "has 1 values, it takes peak\\(probability, height, sd\\)"),
         ("gaussian(-1)", "sd = -1.0 must be finite and at least 0"),
         ("gaussian(nan)", "sd = nan"),
-        ("peak(1.5, 2)", "probability = 1.5 must be between 0 and 1"),
+        ("peak(1.5, 2)", "probability = 1.5 must be at least 0 and at most 1"),
         ("peak(0.5, inf)", "height = inf must be finite"),
         ("offset(nan)", "value = nan must be finite"),
         ("peak(0.5, 1, -1)", "sd = -1.0 must be finite"),

@@ -183,7 +183,10 @@ def test_range_sensors_check_their_limits(name):
         ({"max_incidence": 0.0}, "max_incidence = 0.0 rad"),
         ({"resolution": 100.0}, "resolution = 100.0 m"),
         ({"columns" if name == "lidar3d" else "rays": 0}, "whole number of at least 1"),
-        ({"columns" if name == "lidar3d" else "rays": 10**7}, "must be at most 1000000"),
+        (
+            {"columns" if name == "lidar3d" else "rays": 10**7},
+            "at least 1 and at most 1000000",
+        ),
     ):
         with pytest.raises(InputError, match=message):
             kind(**values)

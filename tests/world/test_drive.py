@@ -133,7 +133,7 @@ def test_the_input_is_left_alone():
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"max_speed": -1.0}, "max_speed = -1.0 must be finite and above 0"),
+        ({"max_speed": -1.0}, "max_speed = -1.0 m/s must be finite and above 0"),
         ({"max_turn_rate": 0.0}, "max_turn_rate = 0.0"),
         ({"max_acceleration": math.nan}, "max_acceleration = nan"),
         ({"max_turn_acceleration": math.inf}, "max_turn_acceleration = inf"),

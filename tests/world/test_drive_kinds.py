@@ -128,8 +128,8 @@ def test_a_batch_gives_the_bytes_of_each_alone(drive):
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: AckermannDrive(wheelbase=0.0), "AckermannDrive: wheelbase = 0.0 must be finite and above 0"),
-        (lambda: AckermannDrive(max_steering=1.6), "max_steering = 1.6 rad must be below pi / 2"),
+        (lambda: AckermannDrive(wheelbase=0.0), "AckermannDrive: wheelbase = 0.0 m must be finite and above 0"),
+        (lambda: AckermannDrive(max_steering=1.6), "max_steering = 1.6 rad must be above 0 and below pi / 2"),
         (lambda: AckermannDrive(max_speed=math.nan), "max_speed = nan"),
         (lambda: VelocityServo(time_constant=0.0), "VelocityServo: time_constant = 0.0 s must be finite and above 0"),
         (lambda: VelocityServo(max_speed=-1.0), "VelocityServo: max_speed = -1.0"),

@@ -72,7 +72,10 @@ def test_without_a_footprint_the_colliders_give_it(tmp_path):
             ('<drive type="differential-drive" max-sped="1"/>',),
             "has no attribute 'max-sped', did you mean 'max-speed'?",
         ),
-        (('<drive type="differential-drive" max-speed="-1"/>',), "max_speed = -1.0 must be finite and above 0"),
+        (
+            ('<drive type="differential-drive" max-speed="-1"/>',),
+            "max_speed = -1.0 m/s must be finite and above 0 m/s",
+        ),
         (('<drive type="differential-drive" latency="-1"/>',), 'latency="-1" must be at least 0 s'),
         ((DRIVE, "<lidar/>"), "robot.xml:3: <lidar> is no element of <robot>; it takes drive, footprint, sensor"),
         ((DRIVE, '<sensor type="lidar-2d"/>'), "robot.xml:3: <sensor> needs the attribute 'name'"),

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .bounds import Bounds
 from .errors import InputError
 
 __all__ = ["Parameter", "PerAgent", "check_parameters", "parameter", "parameters", "per_agent"]
@@ -23,7 +24,7 @@ PerAgent = float | NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Parameter:
-    """One row of a parameter table: ``low`` and ``high`` are the calibration box, ``minimum`` what is allowed."""
+    """One row of a parameter table: ``low`` and ``high`` are the calibration box, ``bounds`` what is allowed."""
 
     name: str
     unit: str
@@ -32,9 +33,24 @@ class Parameter:
     high: float
     source: str
     minimum: float = 0.0
+    maximum: float | None = None
+
+    def bounds(self, largest: float | None = None) -> Bounds:
+        """Return what is allowed; ``largest`` is the highest number when the parameter has none of its own."""
+        highest = largest if self.maximum is None else self.maximum
+        return Bounds("" if self.unit == "1" else self.unit, at_least=self.minimum, at_most=highest)
 
 
-def parameter(default: float, *, unit: str, low: float, high: float, source: str, minimum: float = 0.0) -> Any:
+def parameter(
+    default: float,
+    *,
+    unit: str,
+    low: float,
+    high: float,
+    source: str,
+    minimum: float = 0.0,
+    maximum: float | None = None,
+) -> Any:
     """Make the dataclass field of one parameter.
 
     Args:
@@ -43,8 +59,9 @@ def parameter(default: float, *, unit: str, low: float, high: float, source: str
         low, high: calibration box.
         source: where the default comes from.
         minimum: smallest allowed value.
+        maximum: largest allowed value, None when it has none of its own.
     """
-    row = Parameter("", unit, default, low, high, source, minimum)
+    row = Parameter("", unit, default, low, high, source, minimum, maximum)
     return dataclasses.field(default=default, metadata={"parameter": row})
 
 
@@ -57,15 +74,19 @@ def parameters(model: Any) -> tuple[Parameter, ...]:
     )
 
 
-def check_parameters(model: Any) -> None:
-    """Raise :class:`InputError` unless every parameter is finite and not below its minimum."""
+def check_parameters(model: Any, largest: float | None = None) -> None:
+    """Raise :class:`InputError` unless every parameter is allowed.
+
+    Args:
+        model: with parameters.
+        largest: highest number of a parameter that has none of its own; None: there is no limit.
+    """
     for row in parameters(model):
-        value = np.asarray(getattr(model, row.name), dtype=float)
-        if not np.all(np.isfinite(value)) or np.any(value < row.minimum):
-            worst = value.flat[int(np.argmin(np.where(np.isfinite(value), value, -np.inf)))]
+        value, bounds = getattr(model, row.name), row.bounds(largest)
+        if not bounds.holds(value):
             raise InputError(
-                f"{type(model).__name__}: {row.name} = {worst} [{row.unit}] is not allowed,"
-                f" it must be finite and at least {row.minimum}"
+                f"{type(model).__name__}: {row.name} = {bounds.worst(value)} [{row.unit}] is not allowed,"
+                f" it must be {bounds.allowed()}"
             )
 
 

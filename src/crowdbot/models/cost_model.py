@@ -117,8 +117,8 @@ class CostModel(CrowdModel):
                 )
         if self.max_acceleration is not None and not np.all(np.asarray(self.max_acceleration) >= 0.0):
             raise InputError(
-                f"CostModel: max_acceleration = {self.max_acceleration} [m/s^2] is not allowed, it must be at least 0,"
-                " or left out to have no limit"
+                f"CostModel: max_acceleration = {self.max_acceleration} [m/s^2] is not allowed, it must be at least 0"
+                " m/s^2 without an upper limit, or left out to have no limit"
             )
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:

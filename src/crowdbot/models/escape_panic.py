@@ -10,6 +10,7 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
+from crowdbot.core.bounds import check_number
 from crowdbot.core.errors import InputError, did_you_mean
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.kernels import kernel
@@ -248,11 +249,7 @@ class EscapePanic(CrowdModel):
     def __post_init__(self) -> None:
         super().__post_init__()
         check_limit(self, self.max_speed)
-        if not 1e-6 <= self.longest_step < math.inf:
-            raise InputError(
-                f"EscapePanic: longest_step = {self.longest_step} [s] is not allowed,"
-                " it must be finite and at least 1e-6"
-            )
+        check_number("EscapePanic", "longest_step", self.longest_step, "s", at_least=1e-6)
         if self.variant not in VARIANTS:
             near = did_you_mean(self.variant, VARIANTS)
             raise InputError(f"EscapePanic: variant {self.variant!r} is unknown{near}; choose {' or '.join(VARIANTS)}")

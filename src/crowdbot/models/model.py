@@ -11,10 +11,11 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core.bounds import Bounds
 from crowdbot.core.errors import InputError
 from crowdbot.core.neighbors import SMALL, Neighbors, nearest
 from crowdbot.core.paper import Paper
-from crowdbot.core.parameter import PerAgent, check_parameters, parameters, per_agent
+from crowdbot.core.parameter import PerAgent, check_parameters, per_agent
 from crowdbot.core.scene import Scene
 
 __all__ = ["CrowdModel", "check_limit", "kept", "neighbors_of", "rows", "speed_limit", "spread", "walkers", "wishes"]
@@ -49,14 +50,7 @@ class CrowdModel(abc.ABC):
     paper: ClassVar[Paper]
 
     def __post_init__(self) -> None:
-        check_parameters(self)
-        for row in parameters(self):
-            largest = np.max(np.asarray(getattr(self, row.name), dtype=float), initial=0.0)
-            if largest > LARGEST:
-                raise InputError(
-                    f"{type(self).__name__}: {row.name} = {largest} [{row.unit}] is not allowed,"
-                    f" it must be at most {LARGEST:g}"
-                )
+        check_parameters(self, LARGEST)
 
     @abc.abstractmethod
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
@@ -109,12 +103,11 @@ def check_limit(model: CrowdModel, max_speed: PerAgent | None) -> None:
     """Raise :class:`InputError` unless a model's own maximum speed is None, or finite and not below 0."""
     if max_speed is None:
         return
-    value = np.asarray(max_speed, dtype=float)
-    wrong = value[~((value >= 0.0) & (value <= LARGEST))]
-    if wrong.size:
+    bounds = Bounds("m/s", at_least=0.0, at_most=LARGEST)
+    if not bounds.holds(max_speed):
         raise InputError(
-            f"{type(model).__name__}: max_speed = {wrong.flat[0]} [m/s] is not allowed, it must be from 0 to"
-            f" {LARGEST:g}, or left out to take the maximum speed of the scene"
+            f"{type(model).__name__}: max_speed = {bounds.worst(max_speed)} [m/s] is not allowed, it must be"
+            f" {bounds.allowed()}, or left out to take the maximum speed of the scene"
         )
 
 

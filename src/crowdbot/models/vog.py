@@ -11,7 +11,6 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import InputError
 from crowdbot.core.kernels import kernel
 from crowdbot.core.neighbors import CHUNK, Neighbors, nearest
 from crowdbot.core.paper import Paper
@@ -328,7 +327,9 @@ class VOG(CrowdModel):
     wall_horizon: PerAgent = parameter(1.0, unit="s", low=0.2, high=4.0, source="CrowdBot simulator", minimum=SHORTEST)
     preference_weight: PerAgent = parameter(0.15, unit="1", low=0.02, high=0.6, source="CrowdBot simulator")
     group_weight: PerAgent = parameter(0.2, unit="1", low=0.0, high=0.8, source="CrowdBot simulator")
-    group_neighbors: PerAgent = parameter(2.0, unit="1", low=1.0, high=4.0, source="CrowdBot simulator")
+    group_neighbors: PerAgent = parameter(
+        2.0, unit="1", low=1.0, high=4.0, source="CrowdBot simulator", maximum=MOST_FELLOWS
+    )
     group_radius: PerAgent = parameter(1.0, unit="m", low=0.5, high=3.0, source="CrowdBot simulator")
     group_distance: PerAgent = parameter(80.0, unit="m", low=5.0, high=80.0, source="CrowdBot simulator")
     group_horizon: PerAgent = parameter(2.0, unit="s", low=0.5, high=4.0, source="CrowdBot simulator", minimum=SHORTEST)
@@ -339,9 +340,6 @@ class VOG(CrowdModel):
     def __post_init__(self) -> None:
         super().__post_init__()
         check_limit(self, self.max_speed)
-        most = np.max(self.group_neighbors)
-        if most > MOST_FELLOWS:
-            raise InputError(f"VOG: group_neighbors = {most} is not allowed, it must be at most {MOST_FELLOWS}")
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -11,11 +10,22 @@ from numpy.typing import NDArray
 
 from crowdbot import models
 from crowdbot.core import InputError, Paper, Scene, Twist
+from crowdbot.core.bounds import check_number
 
 from .navigator import SLOWING_TIME, Navigator, Observation
 from .reachable import reachable
 
 __all__ = ["ORCA"]
+
+UNITS = {
+    "speed": "m/s",
+    "time_horizon": "s",
+    "time_horizon_walls": "s",
+    "neighbor_distance": "m",
+    "max_neighbors": "",
+    "reaction": "s",
+}
+"""Fields that must be above 0."""
 
 
 @dataclass(frozen=True)
@@ -63,12 +73,9 @@ class ORCA(Navigator):
     reaction: float = 0.3
 
     def __post_init__(self) -> None:
-        for name in ("speed", "time_horizon", "time_horizon_walls", "neighbor_distance", "max_neighbors", "reaction"):
-            value = getattr(self, name)
-            if not 0.0 < value < math.inf:
-                raise InputError(f"navigator ORCA: {name} = {value} must be finite and above 0")
-        if not 0.0 <= self.safety < math.inf:
-            raise InputError(f"navigator ORCA: safety = {self.safety} m must be finite and at least 0")
+        for name, unit in UNITS.items():
+            check_number("navigator ORCA", name, getattr(self, name), unit, above=0.0)
+        check_number("navigator ORCA", "safety", self.safety, "m", at_least=0.0)
         if self.share not in (0.5, 1.0):
             raise InputError(f"navigator ORCA: share = {self.share} must be 0.5 or 1")
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
-from crowdbot.core import InputError, Twist
+from crowdbot.core import Twist
+from crowdbot.core.bounds import check_number
 
 from .navigator import Navigator, Observation
 
@@ -33,8 +33,7 @@ class Straight(Navigator):
     speed: float = 1.0
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.speed < math.inf:
-            raise InputError(f"Straight: speed = {self.speed} m/s must be finite and above 0")
+        check_number("Straight", "speed", self.speed, "m/s", above=0.0)
 
     def act(self, observation: Observation) -> Twist:
         """Return the twist towards the goal."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose
+from crowdbot.core.bounds import check_number
 
 from .noise import Randomness, disturbed
 from .sensor import Reading, Sensor, finite_or_nan, in_plane, in_space
@@ -66,12 +67,8 @@ class Bumper(Sensor):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not 0.0 < self.radius < math.inf:
-            raise InputError(f"Bumper: radius = {self.radius} m must be finite and above 0")
-        if self.sectors != int(self.sectors) or self.sectors < 1:
-            raise InputError(f"Bumper: sectors = {self.sectors} must be a whole number of at least 1")
-        if self.sectors > MOST_SECTORS:
-            raise InputError(f"Bumper: sectors = {self.sectors} must be at most {MOST_SECTORS}")
+        check_number("Bumper", "radius", self.radius, "m", above=0.0)
+        check_number("Bumper", "sectors", self.sectors, at_least=1, at_most=MOST_SECTORS, whole=True)
         if not -TURN <= self.first <= TURN:
             raise InputError(f"Bumper: first = {self.first} rad must be within -2 pi to 2 pi")
         if not -math.inf < self.low <= self.high < math.inf:

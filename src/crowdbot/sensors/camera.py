@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, SpatialPose
+from crowdbot.core.bounds import check_number
 
 from .noise import Randomness, normals
 
@@ -58,14 +59,11 @@ class Lens:
 
     def __post_init__(self) -> None:
         for name in ("width", "height"):
-            value = getattr(self, name)
-            if value != int(value) or value < 1:
-                raise InputError(f"camera: {name} = {value} must be a whole number of at least 1")
+            check_number("camera", name, getattr(self, name), at_least=1, at_most=MOST_PIXELS, whole=True)
         if self.width * self.height > MOST_PIXELS:
             raise InputError(f"camera: {self.width} x {self.height} pixels must be at most {MOST_PIXELS} together")
         for name in ("fx", "fy"):
-            if not 0.0 < getattr(self, name) < math.inf:
-                raise InputError(f"camera: {name} = {getattr(self, name)} must be finite and above 0")
+            check_number("camera", name, getattr(self, name), above=0.0)
         if len(self.distortion) != 5 or not all(math.isfinite(k) for k in (*self.distortion, self.cx, self.cy)):
             raise InputError(f"camera: distortion = {self.distortion} must be five finite numbers k1, k2, p1, p2, k3")
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose
+from crowdbot.core.bounds import check_number
 
 from .beams import Beams, beams
 from .camera import ImageSource, Lens, pixel_directions, stereo_depth
@@ -107,8 +108,8 @@ class DepthCamera(Sensor):
                 f"DepthCamera: max_incidence = {self.max_incidence} rad must be above 0 and at most pi / 2"
             )
         for name in ("baseline", "disparity_noise", "disparity_step", "resolution"):
-            if not 0.0 <= getattr(self, name) < math.inf:
-                raise InputError(f"DepthCamera: {name} = {getattr(self, name)} must be finite and at least 0")
+            unit = "m" if name in ("baseline", "resolution") else "pixels"
+            check_number("DepthCamera", name, getattr(self, name), unit, at_least=0.0)
         if self.baseline == 0.0 and (self.disparity_noise or self.disparity_step):
             raise InputError("DepthCamera: disparity noise and steps need a baseline above 0")
         _ = self.lens

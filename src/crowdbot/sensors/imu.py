@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose
+from crowdbot.core.bounds import check_number
 from crowdbot.core.pose import product
 
 from .noise import Randomness, disturbed, normals
@@ -76,8 +77,7 @@ class IMU(Sensor):
     def __post_init__(self) -> None:
         super().__post_init__()
         for name in FIELDS:
-            if not 0.0 <= getattr(self, name) < math.inf:
-                raise InputError(f"IMU: {name} = {getattr(self, name)} must be finite and at least 0")
+            check_number("IMU", name, getattr(self, name), at_least=0.0)
 
     def measure(
         self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None, last: Inertial | None = None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -13,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.core.bounds import check_number
 from crowdbot.core.errors import did_you_mean
 from crowdbot.core.plug import kebab
 
@@ -79,8 +79,7 @@ class Gaussian(Noise):
     sd: float
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.sd < math.inf:
-            raise InputError(f"gaussian noise: sd = {self.sd} must be finite and at least 0")
+        check_number("gaussian noise", "sd", self.sd, at_least=0.0)
 
     def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
         """Return independent normal draws."""
@@ -98,8 +97,7 @@ class Offset(Noise):
     value: float
 
     def __post_init__(self) -> None:
-        if not math.isfinite(self.value):
-            raise InputError(f"offset noise: value = {self.value} must be finite")
+        check_number("offset noise", "value", self.value)
 
     def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
         """Return the constant; draws nothing."""
@@ -120,10 +118,8 @@ class Peak(Noise):
 
     def __post_init__(self) -> None:
         _check_probability("peak", self.probability)
-        if not math.isfinite(self.height):
-            raise InputError(f"peak noise: height = {self.height} must be finite")
-        if not 0.0 <= self.sd < math.inf:
-            raise InputError(f"peak noise: sd = {self.sd} must be finite and at least 0")
+        check_number("peak noise", "height", self.height)
+        check_number("peak noise", "sd", self.sd, at_least=0.0)
 
     def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
         """Return ``height`` where a uniform draw falls below the probability; with ``sd`` normal around it."""
@@ -162,8 +158,7 @@ class Quantised(Noise):
     step: float
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.step < math.inf:
-            raise InputError(f"quantised: step = {self.step} must be finite and above 0")
+        check_number("quantised", "step", self.step, above=0.0)
 
     @classmethod
     def bits(cls, bits: int, low: float, high: float) -> Quantised:
@@ -211,8 +206,7 @@ def disturbed(values: Floats, noise: tuple[Noise, ...], rng: Randomness | None) 
 
 
 def _check_probability(name: str, probability: float) -> None:
-    if not 0.0 <= probability <= 1.0:
-        raise InputError(f"{name} noise: probability = {probability} must be between 0 and 1")
+    check_number(f"{name} noise", "probability", probability, at_least=0.0, at_most=1.0)
 
 
 def normals(shape: tuple[int, ...], rng: Randomness | None) -> Floats:

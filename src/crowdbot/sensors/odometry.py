@@ -9,7 +9,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose
+from crowdbot.core import Pose, Scene, SpatialPose
+from crowdbot.core.bounds import check_number
 
 from .imu import elapsed
 from .noise import Randomness, disturbed, normals
@@ -76,12 +77,10 @@ class WheelOdometry(Sensor):
     def __post_init__(self) -> None:
         super().__post_init__()
         for name in ("track", "wheel_radius", "left_scale", "right_scale", "track_scale"):
-            if not 0.0 < getattr(self, name) < math.inf:
-                raise InputError(f"WheelOdometry: {name} = {getattr(self, name)} must be finite and above 0")
-        if not 0.0 <= self.slip < math.inf:
-            raise InputError(f"WheelOdometry: slip = {self.slip} m must be finite and at least 0")
-        if self.ticks_per_turn != int(self.ticks_per_turn) or self.ticks_per_turn < 0:
-            raise InputError(f"WheelOdometry: ticks_per_turn = {self.ticks_per_turn} must be a whole number from 0")
+            unit = "m" if name in ("track", "wheel_radius") else ""
+            check_number("WheelOdometry", name, getattr(self, name), unit, above=0.0)
+        check_number("WheelOdometry", "slip", self.slip, "m", at_least=0.0)
+        check_number("WheelOdometry", "ticks_per_turn", self.ticks_per_turn, at_least=0, whole=True)
 
     @property
     def tick(self) -> float:

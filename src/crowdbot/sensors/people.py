@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose
+from crowdbot.core.bounds import check_number
 
 from .lidar import Lidar2D
 from .noise import Randomness, disturbed
@@ -73,16 +74,12 @@ class GroundTruthPeople(Sensor):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not 0.0 < self.range_max < math.inf:
-            raise InputError(f"GroundTruthPeople: range_max = {self.range_max} m must be finite and above 0")
+        check_number("GroundTruthPeople", "range_max", self.range_max, "m", above=0.0)
         if not 0.0 < self.field_of_view <= 2.0 * math.pi + 1e-9:
             raise InputError(
                 f"GroundTruthPeople: field_of_view = {self.field_of_view} rad must be above 0 and at most 2 pi"
             )
-        if self.rays != int(self.rays) or self.rays < 1:
-            raise InputError(f"GroundTruthPeople: rays = {self.rays} must be a whole number of at least 1")
-        if self.rays > MOST_BEAMS:
-            raise InputError(f"GroundTruthPeople: rays = {self.rays} must be at most {MOST_BEAMS}")
+        check_number("GroundTruthPeople", "rays", self.rays, at_least=1, at_most=MOST_BEAMS, whole=True)
 
     def measure(self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None) -> Tracked:
         """Return who is around; ``rng`` is needed only when there is noise.

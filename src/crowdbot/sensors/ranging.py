@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, SpatialPose
+from crowdbot.core.bounds import check_number
 from crowdbot.core.kernels import kernel
 
 from .noise import Randomness, disturbed
@@ -52,11 +53,8 @@ class Ranging(Sensor):
 
     def check_count(self, name: str) -> None:
         """Raise :class:`InputError` unless the field ``name`` is a whole number from 1 to ``MOST_BEAMS``."""
-        value = getattr(self, name)
-        if value != int(value) or value < 1:
-            raise InputError(f"{type(self).__name__}: {name} = {value} must be a whole number of at least 1")
-        if value > MOST_BEAMS:
-            raise InputError(f"{type(self).__name__}: {name} = {value} must be at most {MOST_BEAMS}")
+        owner = type(self).__name__
+        check_number(owner, name, getattr(self, name), at_least=1, at_most=MOST_BEAMS, whole=True)
 
     @property
     def least_facing(self) -> float:

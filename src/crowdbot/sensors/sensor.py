@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar
@@ -11,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose
+from crowdbot.core.bounds import check_number
 
 from .noise import Noise, Randomness
 
@@ -49,10 +49,8 @@ class Sensor(ABC):
     remembers: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.rate < math.inf:
-            raise InputError(f"{type(self).__name__}: rate = {self.rate} Hz must be finite and above 0")
-        if not 0.0 <= self.delay < math.inf:
-            raise InputError(f"{type(self).__name__}: delay = {self.delay} s must be finite and at least 0")
+        check_number(type(self).__name__, "rate", self.rate, "Hz", above=0.0)
+        check_number(type(self).__name__, "delay", self.delay, "s", at_least=0.0)
         parts = (self.noise,) if isinstance(self.noise, Noise) else tuple(self.noise)
         for part in parts:
             if not isinstance(part, Noise):

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose
+from crowdbot.core import Pose, Scene, SpatialPose
+from crowdbot.core.bounds import check_number
 
 from .beams import Beams, beams, cone
 from .echo import Echo, nearest
@@ -70,8 +71,7 @@ class Ultrasound(Ranging):
     def __post_init__(self) -> None:
         super().__post_init__()
         self.check_count("rays")
-        if not 0.0 < self.radius < math.inf:
-            raise InputError(f"Ultrasound: radius = {self.radius} m must be finite and above 0")
+        check_number("Ultrasound", "radius", self.radius, "m", above=0.0)
         self.check_ranges()
 
     @property

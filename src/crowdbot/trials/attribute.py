@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from crowdbot.core import InputError
+from crowdbot.core.bounds import Bounds
 from crowdbot.core.errors import did_you_mean
 
 from .torn import is_torn
@@ -62,7 +63,7 @@ class Rule:
         """Return what is wrong with a value as the end of a sentence, empty when it is right.
 
         >>> Rule("number of people", at_least=0).problem(-3)
-        'must be at least 0'
+        'must be at least 0 and at most 1000000'
         >>> Rule("time step", unit="s", above=0.0, at_most=1.0).problem(2.5)
         'must be at most 1 s and above 0 s'
         """
@@ -75,16 +76,16 @@ class Rule:
         low, high = getattr(value, "extent", (value, value))
         if not (math.isfinite(low) and math.isfinite(high)):
             return "is not finite"
-        least = self._least
-        most = f"at most {self._amount(self.at_most)}" if self.at_most is not None else ""
-        if (self.above is not None and low <= self.above) or (self.at_least is not None and low < self.at_least):
-            return f"must be {' and '.join(filter(None, (least, most)))}{self._reach(low, high)}"
-        if high > (LARGEST if self.at_most is None else self.at_most):
-            most = most or f"at most {self._amount(LARGEST)}"
-            return f"must be {' and '.join(filter(None, (most, least)))}{self._reach(low, high)}"
-        if self.above is None and self.at_least is None and low < -LARGEST:
-            return f"must be at least {self._amount(-LARGEST)}"
-        return ""
+        if self.bounds.holds(low) and self.bounds.holds(high):
+            return ""
+        too_high = dataclasses.replace(self.bounds, at_most=None).holds(low)
+        return f"must be {self.bounds.allowed(too_high)}{self._reach(low, high)}"
+
+    @functools.cached_property
+    def bounds(self) -> Bounds:
+        """What a number may be."""
+        lowest = -LARGEST if self.at_least is None and self.above is None else self.at_least
+        return Bounds(self.unit, lowest, self.above, LARGEST if self.at_most is None else self.at_most)
 
     def _wrong_word(self, value: str) -> str:
         if UNWRITABLE.search(value):
@@ -101,17 +102,8 @@ class Rule:
         if not all(math.isfinite(number) for point in value for number in point):
             return "is not finite"
         if any(abs(number) > LARGEST for point in value for number in point):
-            return f"must lie within {self._amount(LARGEST)} of the origin"
+            return f"must lie within {LARGEST:.7g} {self.unit} of the origin"
         return ""
-
-    @property
-    def _least(self) -> str:
-        if self.above is not None:
-            return f"above {self._amount(self.above)}"
-        return f"at least {self._amount(self.at_least)}" if self.at_least is not None else ""
-
-    def _amount(self, value: float) -> str:
-        return f"{value:g} {self.unit}".rstrip()
 
     def _reach(self, low: float, high: float) -> str:
         return "" if low == high else f", and it reaches from {low:g} to {high:g}"

@@ -27,20 +27,32 @@ Problems = Iterator[tuple[Any, str]]
 
 
 class Names(NamedTuple):
-    """The names of all elements of a kind, readable or not; doubtful when one has none, or two have the same."""
+    """The names of all elements of a kind, readable or not.
+
+    Fields:
+        known: as they stand there.
+        doubtful: those that have to change, and None for each that is missing.
+    """
 
     known: list[str]
-    doubtful: bool
+    doubtful: list[str | None]
 
     @classmethod
-    def of(cls, things: Sequence[Any], doubtful: bool = False) -> Names:
+    def of(cls, things: Sequence[Any]) -> Names:
         """Return the names of elements."""
-        known = [name for _, name in readable(things, "name")]
-        return cls(known, doubtful or len({*known}) < len(things))
+        known, doubtful = list[str](), list[str | None]()
+        for thing in things:
+            part = next(part for part in outline(kind_of(thing)) if part.name == "name")
+            name = next((name for _, name in readable([thing], "name") if name), None)
+            if name is None or name in known or part.wrong(name):
+                doubtful.append(name)
+            known += [name] if name else []
+        return cls(known, doubtful)
 
     def lack(self, name: str) -> bool:
-        """Whether nothing has a name: not even what is doubtful can have it, for another is what was meant."""
-        return name not in self.known and (not self.doubtful or bool(nearest(name, self.known)))
+        """Whether nothing has a name, and nothing that has to change its own can be what it means."""
+        sure = [one for one in self.known if one not in self.doubtful]
+        return name not in self.known and (not self.doubtful or bool(nearest(name, sure)))
 
 
 @dataclass(frozen=True)
@@ -66,8 +78,9 @@ class Checked:
     @property
     def crowd_names(self) -> Names:
         """Names of the crowds; a single one needs none."""
-        doubtful = not self.crowds or (len(self.crowds) > 1 and not all(crowd.name for crowd in self.crowds))
-        return Names.of([crowd for crowd in self.crowds if crowd.name], doubtful)
+        if len(self.crowds) == 1 and not self.crowds[0].name:
+            return Names([], [])
+        return Names.of(self.crowds) if self.crowds else Names([], [None])
 
     @functools.cached_property
     def stage(self) -> Stage:

@@ -47,9 +47,8 @@ def remarks(trial: Trial) -> list[str]:
     >>> from crowdbot.navigation import Straight
     >>> from crowdbot.trials import Goal
     >>> pepper = Robot(type="pepper", x=0, y=0, goal=Goal(5, 0), navigator=Straight())
-    >>> for sentence in remarks(Trial(name="t", duration=1, crowd=ORCA(), robots=[pepper])):
-    ...     print(sentence[:42])
-    robot 'robot' of type 'pepper' measures as
+    >>> [sentence[-36:] for sentence in remarks(Trial(name="t", duration=1, crowd=ORCA(), robots=[pepper]))]
+    ['step="0.01" all would be as they are']
     """
     found = []
     clock = FreeClock(trial.step)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crowdbot.core import InputError, Pose, Twist
+from crowdbot.core.bounds import check_number
 
 from .drive import Drive, Floats, Twists, check_step, moved
 
@@ -53,12 +54,11 @@ class AckermannDrive(Drive):
     wheelbase: float = 0.6
 
     def __post_init__(self) -> None:
-        for name in ("max_speed", "max_acceleration", "max_steering", "max_steering_rate", "wheelbase"):
-            value = getattr(self, name)
-            if not 0.0 < value < math.inf:
-                raise InputError(f"AckermannDrive: {name} = {value} must be finite and above 0")
-        if self.max_steering >= math.pi / 2:
-            raise InputError(f"AckermannDrive: max_steering = {self.max_steering} rad must be below pi / 2")
+        units = {"max_speed": "m/s", "max_acceleration": "m/s2", "max_steering_rate": "rad/s", "wheelbase": "m"}
+        for name, unit in units.items():
+            check_number("AckermannDrive", name, getattr(self, name), unit, above=0.0)
+        if not 0.0 < self.max_steering < math.pi / 2:
+            raise InputError(f"AckermannDrive: max_steering = {self.max_steering} rad must be above 0 and below pi / 2")
 
     @property
     def turning_radius(self) -> float:

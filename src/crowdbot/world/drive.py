@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, Pose, Twist
+from crowdbot.core.bounds import check_number
 from crowdbot.core.kernels import kernel
 
 __all__ = ["DifferentialDrive", "Drive", "Omnidirectional", "Twists", "check_limits", "check_step", "moved"]
@@ -197,9 +198,8 @@ def _shortened(x: Floats, y: Floats, limit: float) -> tuple[Floats, Floats]:
 def check_limits(drive: Drive) -> None:
     """Raise :class:`InputError` unless a drive's speeds and accelerations are finite and above 0."""
     for name in ("max_speed", "max_turn_rate", "max_acceleration", "max_turn_acceleration"):
-        value = getattr(drive, name)
-        if not 0.0 < value < math.inf:
-            raise InputError(f"{type(drive).__name__}: {name} = {value} must be finite and above 0")
+        unit = ("rad" if "turn" in name else "m") + ("/s2" if "acceleration" in name else "/s")
+        check_number(type(drive).__name__, name, getattr(drive, name), unit, above=0.0)
 
 
 def check_step(dt: float) -> None:

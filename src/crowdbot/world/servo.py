@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crowdbot.core import InputError, Pose, Twist
+from crowdbot.core.bounds import check_number
 
 from .drive import Drive, Twists, check_limits, check_step, moved
 
@@ -48,8 +49,7 @@ class VelocityServo(Drive):
 
     def __post_init__(self) -> None:
         check_limits(self)
-        if not 0.0 < self.time_constant < math.inf:
-            raise InputError(f"VelocityServo: time_constant = {self.time_constant} s must be finite and above 0")
+        check_number("VelocityServo", "time_constant", self.time_constant, "s", above=0.0)
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
         """Return pose and twist ``dt`` [s] later; see :class:`VelocityServo`."""
