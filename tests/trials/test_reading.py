@@ -210,7 +210,7 @@ MISTAKES = {
     "value of a model": (
         'time-horizon="2"',
         'time-horizon="-2"',
-        r":7: <crowd> .*-2.* must be at least 0.01 s and at most 1e\+09 s",
+        r":7: <crowd> .*-2.* must be at least 0.001 s and at most 1e\+09 s",
     ),
     "value of a drive": (
         'max-speed="1"',
