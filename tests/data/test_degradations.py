@@ -314,7 +314,7 @@ def test_turns_are_the_rows_of_every_track_in_order():
         (lambda: GaussianNoise(float("nan")), ("sd = nan",)),
         (lambda: GaussianNoise(np.array([0.1, 0.2])), ("gaussian-noise: sd must be one number",)),
         (lambda: MissingFrames(1.5), ("missing-frames: probability = 1.5 must be at most 1",)),
-        (lambda: MissingFrames(burst=0.5), ("burst = 0.5", "at least 1.0")),
+        (lambda: MissingFrames(burst=0.5), ("burst = 0.5", "at least 1,")),
         (lambda: MissingFrames(of="persons"), ("of 'persons' is unknown, did you mean 'person'?",)),
         (lambda: LateStart(2.5), ("late-start: rows = 2.5 must be a whole number",)),
         (lambda: FalseTracks(rate=-1.0), ("rate = -1.0 [1/s]",)),
