@@ -71,8 +71,8 @@ def test_an_agent_without_goal_stands_and_looks_where_it_is_told() -> None:
         ('<agent x="1" y="0" group="-2"/>', 'group="-2" must be at least -1'),
         ('<agent x="1" y="0" goal="2"/>', "has '2' where a point x,y should be"),
         ('<agent x="1" y="0"><parameter name="time-horizn" value="1"/></agent>',
-         "parameter time-horizn cannot be given, did you mean 'time-horizon'?"),
-        ('<agent x="1" y="0"><parameter name="time-horizon" value="-1"/></agent>', 'parameter time-horizon="-1"'),
+         "<parameter> time-horizn cannot be given, did you mean 'time-horizon'?"),
+        ('<agent x="1" y="0"><parameter name="time-horizon" value="-1"/></agent>', '<parameter> time-horizon="-1"'),
     ],
 )  # fmt: skip
 def test_wrong_agents_are_told(agent: str, sentence: str) -> None:

@@ -82,12 +82,24 @@ def test_without_a_footprint_the_colliders_give_it(tmp_path):
         ((DRIVE, '<sensor name="s" type="sonar"/>'), "robot.xml:3: <sensor> unknown sensor 'sonar'"),
         ((DRIVE, '<sensor name="s" type="lidar-2d" x="near"/>'), 'x="near" is not a number'),
         ((DRIVE, '<sensor name="s" type="lidar-2d" rays="0"/>'), "rays = 0 must be a whole number of at least 1"),
-        ((DRIVE, '<sensor name="s" type="lidar-2d" link="hed"/>'), "'hed', which is no link, did you mean 'head'?"),
-        ((DRIVE, *['<sensor name="s" type="lidar-2d"/>'] * 2), "two sensors of mine have the name 's'"),
-        ((DRIVE, '<wheel joint="axel" radius="0.1"/>'), "'axel' is no joint that turns, did you mean 'axle'?"),
+        (
+            (DRIVE, '<sensor name="s" type="lidar-2d" link="hed"/>'),
+            "<sensor> link='hed' is no link of the robot, did you mean 'head'?",
+        ),
+        (
+            (DRIVE, *['<sensor name="s" type="lidar-2d"/>'] * 2),
+            "robot.xml:4: <sensor> name 's' is taken by another sensor",
+        ),
+        (
+            (DRIVE, '<wheel joint="axel" radius="0.1"/>'),
+            "robot.xml:3: <wheel> joint='axel' is no joint that turns, did you mean 'axle'?",
+        ),
         ((DRIVE, '<wheel joint="axle" radius="0"/>'), 'radius="0" must be above 0'),
         ((DRIVE, '<wheel joint="axle"/>'), "<wheel> needs the attribute 'radius', a number"),
-        ((DRIVE, '<posture joint="nek" position="1"/>'), "has no joint 'nek', did you mean 'neck'?"),
+        (
+            (DRIVE, '<posture joint="nek" position="1"/>'),
+            "robot.xml:3: <posture> joint='nek' is no joint of the robot, did you mean 'neck'?",
+        ),
         ((DRIVE, *['<posture joint="neck" position="1"/>'] * 2), "gives the posture of a joint twice"),
         ((DRIVE, "<footprint/>"), "<footprint> needs either points or radius"),
         ((DRIVE, '<footprint points="0,0 1,1"/>'), "must be at least 3 points x,y"),
@@ -125,6 +137,20 @@ def test_problems_of_both_files_come_together(tmp_path):
         Robot.load(place)
     assert len(caught.value.problems) == 2
     assert "mine.urdf:2: <mass>" in str(caught.value)
+
+
+def test_no_mistake_hides_another(tmp_path):
+    parts = (
+        '<drve type="differential-drive" max-speed="-1"/>',
+        '<sensor name="s" type="lidar-2d" link="hed" rays="0"/>',
+        '<sensor name="s" type="lidar-2d"/>',
+        '<wheel joint="axel" raduis="0.1"/>',
+        '<posture joint="nek" position="up"/>',
+    )
+    with pytest.raises(RobotError) as caught:
+        Robot.load(folder(tmp_path, *parts, head='urdf="mine.urdf" base="legs"'))
+    lines = [int(one.split("robot.xml:")[1].split(":")[0]) for one in caught.value.problems]
+    assert lines == [1, 2, 2, 3, 3, 4, 5, 5, 6, 6], caught.value.problems
 
 
 def test_an_entity_bomb_is_refused(tmp_path):
@@ -234,7 +260,7 @@ def test_a_preset_names_a_product_and_attributes_change_it(tmp_path):
         ('<sensor name="a" preset="velodyne-vlp-16" columns="-9"/>', "columns"),
         ('<wheel joint="axle" radius="0.1" driven="perhaps"/>', 'driven="perhaps" must be true or false'),
         ('<wheel joint="axle" radius="0.1" driven="false"/>', "'axle' neither drives nor steers"),
-        ('<wheel joint="axle" radius="0.1" steering="nek"/>', "the steering joint 'nek' is no joint that turns"),
+        ('<wheel joint="axle" radius="0.1" steering="nek"/>', "steering='nek' is no joint that turns"),
     ],
 )
 def test_wrong_presets_and_wheels_are_refused_in_one_sentence(tmp_path, text, match):

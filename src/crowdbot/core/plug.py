@@ -7,6 +7,7 @@ Built-in names are the classes in a room's ``__all__``, written in kebab-case. A
 from __future__ import annotations
 
 import dataclasses
+import functools
 import importlib
 import importlib.util
 import inspect
@@ -85,7 +86,7 @@ def read(cls: type, attributes: Mapping[str, str], where: str = "") -> Any:
         InputError: an attribute is unknown, missing or has a value that its field cannot take.
     """
     prefix = f"{where}: " if where else ""
-    hints = typing.get_type_hints(cls)
+    hints = _hints(cls)
     fields = {f.name: f for f in dataclasses.fields(cls) if f.init}
     values: dict[str, Any] = {}
     for key, text in attributes.items():
@@ -118,7 +119,7 @@ def problems(cls: type, attributes: Mapping[str, str], also: Iterable[str] = ())
     >>> problems(Paper, {"yeer": "1995", "year": "x", "authors": "a", "title": "t", "venue": "v"})["yeer"]
     "has no attribute 'yeer', did you mean 'year'?; it takes authors, year, title, venue, doi"
     """
-    hints = typing.get_type_hints(cls)
+    hints = _hints(cls)
     fields = {f.name: f for f in dataclasses.fields(cls) if f.init}
     known = [*words(cls), *also]
     found = {}
@@ -154,6 +155,11 @@ def needs(cls: Any) -> list[str]:
         for field in dataclasses.fields(cls)
         if field.init and field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
     ]
+
+
+@functools.cache
+def _hints(cls: type) -> dict[str, Any]:
+    return typing.get_type_hints(cls)
 
 
 def _convert(text: str, kind: Any, what: str) -> Any:

@@ -17,7 +17,7 @@ from .attribute import shown
 from .camera import Camera
 from .checked import Checked, Names, Problems
 from .crowd import Crowd, Crowds
-from .flow_checks import expected, flows, names, taken
+from .flow_checks import astray, expected, flows, names, taken
 from .notation import Points
 from .people import Spawner
 from .rates import fitting, misfits
@@ -77,6 +77,9 @@ def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) ->
     shapes += _stage_shapes(trial.stage)
     checked = checked.without(_by_thing(shapes))
     lost = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.misplaced(checked.stage))]
+    lost += [
+        row for _, stops in readable(trial.journeys, "stops") for row in told(*(astray(checked, s) for s in stops))
+    ]
     checked = checked.without(_by_thing(lost))
     found += [(thing, sentence) for thing, _, sentence in (*shapes, *lost)]
     found += [*told(*_robots(checked.stage, checked.trial.robots), *flows(checked))]
@@ -95,9 +98,9 @@ def _by_thing(rows: Sequence[tuple[Any, str, str]]) -> dict[int, set[str]]:
 
 
 def _places(checked: Checked) -> list[tuple[Any, str]]:
-    """Return who finds no place; who could not be read takes none."""
+    """Return who finds no place: without those who could not be read, and without groups, there is only more room."""
     trial = checked.trial
-    spawners = [_or(spawner, NOBODY, "zone", "count", "radius", "groups") for spawner in trial.spawners]
+    spawners = [_or(spawner, NOBODY, "zone", "count", "radius", groups=()) for spawner in trial.spawners]
     agents = [_or(agent, None, "x", "y", "radius") for agent in trial.agents]
     robots = [robot for robot in trial.robots if all(readable([robot], name) for name in ("x", "y", "radius"))]
     walks = []
@@ -108,12 +111,12 @@ def _places(checked: Checked) -> list[tuple[Any, str]]:
     return place(checked.stage, spawners, robots, checked.seed, there, walks)[1]
 
 
-def _or(thing: Any, instead: Any, *needs: str) -> Any:
-    """Return an element without what could not be read, something instead of it when that is needed."""
+def _or(thing: Any, other: Any, *needs: str, **instead: Any) -> Any:
+    """Return what :func:`rest` does, something other when what is needed could not be read."""
     try:
-        return rest(thing, *needs)
+        return rest(thing, *needs, **instead)
     except Unread:
-        return instead
+        return other
 
 
 def _recording(checked: Checked, one: RecordedPeople) -> Problems:
@@ -155,7 +158,7 @@ def _period(thing: Any, name: str, called: str) -> Iterator[tuple[Any, str, floa
 
 
 def _measuring(robot: Robot, mount: Mount) -> Iterator[tuple[Any, str, float]]:
-    if mount in robot.usual["sensors"]:
+    if mount in robot.carried:
         return
     yield mount, f"rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate
     if mount.sensor.delay > 0.0:

@@ -26,7 +26,7 @@ from .stage import Stage, area
 from .torn import readable, whole
 from .trial import Trial
 
-__all__ = ["expected", "flows", "names", "taken"]
+__all__ = ["astray", "expected", "flows", "names", "taken"]
 
 Floats = NDArray[np.float64]
 
@@ -133,7 +133,7 @@ def _own(checked: Checked, agent: Agent, parameter: Parameter) -> Problems:
     model = whole(crowds[0].model)
     draws = {parameter.name.replace("-", "_"): Distribution.of(parameter.value)}
     for sentence in Drawn.problems(model.model if isinstance(model, Drawn) else model, draws):
-        yield agent, f"parameter {sentence.replace('drawn', 'given', 1)}"
+        yield parameter, sentence.replace("drawn", "given", 1)
 
 
 def _endless(stops: Sequence[Any]) -> Problems:
@@ -158,17 +158,21 @@ def _entrance(stage: Stage, source: Source) -> Problems:
         )
 
 
-def _stop(checked: Checked, stop: Point | Direction | Zone) -> Problems:
+def astray(checked: Checked, stop: Point | Direction | Zone) -> Iterator[tuple[Any, str, str]]:
+    """Yield a stop at a point where nobody can be: the stop, its field, and the end of a sentence."""
     import shapely
 
-    stage = checked.stage
     if isinstance(stop, Point):
-        block = stage.block_around(shapely.Point(stop.x, stop.y))
-        if not stage.holds(shapely.Point(stop.x, stop.y)):
-            yield stop, f"at {stop.x:g},{stop.y:g} lies outside the walkable area"
-        elif block:
-            yield stop, f"at {stop.x:g},{stop.y:g} lies inside {block}"
-    elif isinstance(stop, Zone):
+        point = shapely.Point(stop.x, stop.y)
+        if not checked.stage.holds(point):
+            yield stop, "x", f"at {stop.x:g},{stop.y:g} lies outside the walkable area"
+        elif block := checked.stage.block_around(point):
+            yield stop, "x", f"at {stop.x:g},{stop.y:g} lies inside {block}"
+
+
+def _stop(checked: Checked, stop: Point | Direction | Zone) -> Problems:
+    stage = checked.stage
+    if isinstance(stop, Zone):
         if stop.aim == "nearest" or checked.router is None:
             if block := stage.block_in(area(stop.points), OVERLAP):
                 yield stop, f"zone reaches into {block}; move it, or cut it there"

@@ -30,8 +30,9 @@ def fitting(periods: Sequence[float]) -> float:
 def misfits(robot: Robot, step: float) -> list[Mount]:
     """Return the sensors of a robot's type whose period or delay is not a whole number of time steps [s]."""
     clock, found = FreeClock(step), []
+    carried = robot.carried
     for mount in robot.sensors:
-        if mount in robot.usual["sensors"]:
+        if mount in carried:
             try:
                 for period in _periods(mount):
                     clock.every(period)

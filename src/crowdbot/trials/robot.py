@@ -149,11 +149,11 @@ class Robot:
         if self.drive is None:
             raise InputError(f"needs the element <drive>: how it moves; or a type, such as {builtin_robots()[0]}")
         if isinstance(self.sensors, list | tuple):
-            object.__setattr__(self, "sensors", _merged(usual["sensors"], self.sensors))
+            object.__setattr__(self, "sensors", _merged(self.carried, self.sensors))
         check(self)
         if self.type and (self.height, self.mass) != (usual["height"], usual["mass"]):
             raise InputError(f"has height or mass beside type={shown(self.type)}, which has its own; leave them out")
-        if self.cameras and not any(_drawn(mount) for mount in usual["sensors"]):
+        if self.cameras and not any(_drawn(mount) for mount in self.carried):
             raise InputError(
                 'has cameras="true" but none would come: it needs a type with colour cameras, such as pepper, and its'
                 " sensors; leave it out"
@@ -183,20 +183,26 @@ class Robot:
         if not self.type:
             return {"radius": RADIUS, "height": HEIGHT, "mass": MASS, "latency": 0.0, "sensors": ()}
         kind = self._kind
-        mounts = tuple(
-            Mount(name=m.name, sensor=m.sensor, link=m.link, x=m.x, y=m.y, z=m.z, roll=m.roll, pitch=m.pitch,
-                  heading=m.yaw)
-            for m in kind.mounts
-            if self.cameras or not _drawn(m)
-        )  # fmt: skip
         return {
             "radius": round(kind.radius, 9),
             "height": round(kind.height, 9),
             "mass": round(kind.model.mass, 9),
             "latency": kind.latency,
             "drive": kind.drive,
-            "sensors": mounts if self.equipped else (),
+            "sensors": self.carried,
         }
+
+    @property
+    def carried(self) -> tuple[Mount, ...]:
+        """The sensors of its type that it carries."""
+        if not (self.type and self.equipped):
+            return ()
+        return tuple(
+            Mount(name=m.name, sensor=m.sensor, link=m.link, x=m.x, y=m.y, z=m.z, roll=m.roll, pitch=m.pitch,
+                  heading=m.yaw)
+            for m in self._kind.mounts
+            if self.cameras or not _drawn(m)
+        )  # fmt: skip
 
     @functools.cached_property
     def body(self) -> world.Robot:
@@ -233,7 +239,7 @@ class Robot:
         Raises:
             InputError: its period or its delay is not a whole number of time steps.
         """
-        if self.rates == "exact" or mount not in self.usual["sensors"]:
+        if self.rates == "exact" or mount not in self.carried:
             return Schedule.of(mount.sensor, clock)
         period, delay = 1.0 / mount.sensor.rate, mount.sensor.delay
         return Schedule(max(1, round(period / clock.dt)), round(delay / clock.dt))

@@ -110,8 +110,13 @@ def whole(thing: Any) -> Any:
     return found
 
 
-def rest(thing: T, *needs: str) -> T:
-    """Return an element with defaults for what could not be read of it, none of which is among ``needs``.
+def rest(thing: T, *needs: str, **instead: Any) -> T:
+    """Return an element with defaults for what could not be read of it.
+
+    Args:
+        thing: the element, torn or not.
+        needs: fields without which it is of no use.
+        instead: fields that are something else when anything in them could not be read.
 
     Raises:
         Unread: something that is needed, or has no default, could not be read.
@@ -127,9 +132,8 @@ def rest(thing: T, *needs: str) -> T:
             if field.name in needs or field.default is dataclasses.MISSING or missing:
                 raise
             value = field.default
-        if field.name in needs and isinstance(value, tuple) and any(is_torn(one) for one in value):
-            raise Unread(field.name)
         values[field.name] = value
+    values |= {name: other for name, other in instead.items() if any(is_torn(one) for one in values[name])}
     made: Any = object.__new__(kind_of(thing))
     _own(made).update(values | {ORIGIN: thing})
     return made  # type: ignore[no-any-return]

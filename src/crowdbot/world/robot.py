@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import importlib.resources
 import math
 from collections.abc import Mapping
@@ -165,7 +166,7 @@ class Robot:
         """Radius [m] of the disc about its origin that holds the footprint."""
         return float(np.hypot(self.footprint[:, 0], self.footprint[:, 1]).max())
 
-    @property
+    @functools.cached_property
     def height(self) -> float:
         """Height [m] of its highest collider above its root, in its posture."""
         points = self.model.points(self.posture)

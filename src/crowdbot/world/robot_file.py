@@ -13,12 +13,13 @@ import numpy as np
 
 import crowdbot.sensors
 from crowdbot.core import InputError, RobotError, plug
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core.errors import did_you_mean, nearest
 from crowdbot.core.markup import Element, number, parse, read_bytes
 from crowdbot.sensors import Sensor, preset
 
 from .drive import Drive
 from .robot import FILE, Robot, SensorMount
+from .urdf.model import RobotModel
 from .urdf.reading import read_urdf
 from .wheel import Wheel
 
@@ -58,14 +59,14 @@ class _Reader:
 
     def __init__(self, place: str, folder: Path, trust: bool) -> None:
         self.place, self.folder, self.trust = place, folder, trust
-        self.found: list[str] = []
+        self.found: list[tuple[float, str]] = []
 
     def say(self, element: Element, sentence: str) -> None:
-        self.found.append(f"{self.place}:{element.line}: <{element.tag[:40]}> {sentence}")
+        self.found.append((element.line, f"{self.place}:{element.line}: <{element.tag[:40]}> {sentence}"))
 
     def finish(self) -> None:
         if self.found:
-            raise RobotError(*self.found[:100])
+            raise RobotError(*[sentence for _, sentence in sorted(self.found, key=lambda row: row[0])][:100])
 
     def robot(self, root: Element) -> dict[str, Any]:
         """Return the fields of the robot."""
@@ -75,6 +76,7 @@ class _Reader:
         parts: dict[str, list[Any]] = {"sensor": [], "wheel": [], "posture": []}
         once: set[str] = set()
         for inner in root.children:
+            self.tag(inner, ("drive", "footprint", *parts))
             if inner.tag in ("drive", "footprint"):
                 if inner.tag in once:
                     self.say(inner, "stands in <robot> twice; one is allowed")
@@ -83,14 +85,11 @@ class _Reader:
             elif inner.tag in parts:
                 made = getattr(self, inner.tag)(inner)
                 parts[inner.tag] += [made] if made is not None else []
-            else:
-                known = ("drive", "footprint", *parts)
-                self.say(
-                    inner, f"is no element of <robot>{did_you_mean(inner.tag, known)}; it takes {', '.join(known)}"
-                )
         if "drive" not in once:
             self.say(root, "needs the element <drive type=...>: how it moves")
         model = self.model(root, row.get("urdf", ""))
+        if model is not None:
+            self.joined(root, model)
         posture = dict(parts["posture"])
         if len(posture) < len(parts["posture"]):
             self.say(root, "gives the posture of a joint twice")
@@ -101,6 +100,36 @@ class _Reader:
             "wheels": tuple(parts["wheel"]),
             "posture": posture,
         }
+
+    def tag(self, element: Element, known: tuple[str, ...]) -> None:
+        """Say that an element is unknown, and read it as the one that was meant."""
+        if element.tag not in known:
+            meant = did_you_mean(element.tag, known)
+            self.say(element, f"is no element of <robot>{meant}; it takes {', '.join(known)}")
+            element.tag = nearest(element.tag, known) or element.tag
+
+    def joined(self, root: Element, model: RobotModel) -> None:
+        """Say which names of links and joints the model does not have, and which names of sensors come twice."""
+        turning = [joint.name for joint in model.movable if joint.size == 1]
+        names = [inner.attributes.get("name", "") for inner in root.each("sensor")]
+        base = root.attributes.get("base", "wheels")
+        if base not in ("wheels", "planar"):
+            self.say(root, f"base = {base[:40]!r} must be wheels or planar")
+        for k, inner in enumerate(root.each("sensor")):
+            link = inner.attributes.get("link", "")
+            if link and link not in model.links:
+                self.say(inner, f"link={link[:60]!r} is no link of the robot{did_you_mean(link, model.links)}")
+            if names[k] and names[k] in names[:k]:
+                self.say(inner, f"name {names[k][:60]!r} is taken by another sensor; give each its own")
+        for inner in root.each("wheel"):
+            for key in ("joint", "steering"):
+                name = inner.attributes.get(key, "")
+                if name and name not in turning:
+                    self.say(inner, f"{key}={name[:60]!r} is no joint that turns{did_you_mean(name, model.joints)}")
+        for inner in root.each("posture"):
+            name = inner.attributes.get("joint", "")
+            if name and name not in model.joints:
+                self.say(inner, f"joint={name[:60]!r} is no joint of the robot{did_you_mean(name, model.joints)}")
 
     def model(self, root: Element, name: str) -> Any:
         if not name:
@@ -117,16 +146,18 @@ class _Reader:
         try:
             return read_urdf(path, folder=self.folder)
         except RobotError as error:
-            self.found += error.problems
+            self.found += [(math.inf, sentence) for sentence in error.problems]
             return None
 
     def words(self, element: Element) -> dict[str, str]:
-        """Return the attributes, after saying which are unknown."""
+        """Return the attributes, after saying which are unknown and reading them as those that were meant."""
         known = KNOWN[element.tag]
-        for key in element.attributes:
-            if key not in known:
-                meant = did_you_mean(key, known)
-                self.say(element, f"has no attribute {key[:40]!r}{meant}; it takes {', '.join(known)}")
+        for key in [key for key in element.attributes if key not in known]:
+            meant = did_you_mean(key, known)
+            self.say(element, f"has no attribute {key[:40]!r}{meant}; it takes {', '.join(known)}")
+            text = element.attributes.pop(key)
+            if meant:
+                element.attributes.setdefault(nearest(key, known), text)
         return element.attributes
 
     def number(self, element: Element, key: str) -> float:
