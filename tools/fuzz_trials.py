@@ -3,7 +3,8 @@
     python tools/fuzz_trials.py --count 5000 --seed 0
 
 A file that can be read is also written, read again, and run for a few steps with a recording. With ``--new`` all files
-begin as one with bodies, props, links and cameras, half of them in the physics world.
+begin as one with bodies, props, links and cameras, half of them in the physics world. With ``--ends`` every number in a
+few files is in turn next to nothing and huge.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import tempfile
 import time
 import traceback
 from collections import Counter
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from types import FrameType
 
@@ -37,6 +39,7 @@ nan inf -inf 1e999 1e308 -1e308 1e-320 0 -0 -1 1 2 1e6 1e7 99999 100000 100001 2
 true false 1,0 0,0 1e6,1e6 0,0,0 normal(1,1) uniform(2,1) normal(1) x(1) () ( , ; : / .. ../x /etc/passwd ~ - é
 ${HOME} %s {0} \\ ' &amp; &lt; &#0; &#x41; <!--x--> ]]> POLYGON
 """
+ENDS = ("-1e300", "-1e-320", "1e-320", "1e-40", "1e-12", "1e-6", "1e-3", "1e3", "1e6", "1e9", "1e40", "1e300")
 FACTORS = (-1.0, 0.1, 0.5, 0.9, 1.1, 2.0, 3.0, 100.0)
 NUMBER = re.compile(r'(?<=[ ",])-?[0-9]+(?:\.[0-9]+)?(?=[ ",])')
 WORDS = re.compile(r'(?<=")[^"<>]*(?=")')
@@ -103,6 +106,21 @@ def texts(new: bool = False) -> list[str]:
         return bodies
     small = [name for name in builtin_trials() if not name.startswith("challenge") and load_trial(name).people < 80]
     return [EXTRA, *bodies, *(load_trial(name).xml() for name in small), load_trial("frontal").explicit().xml()]
+
+
+def ends() -> Iterator[str]:
+    """Yield files in which one number is an end of what a number can be."""
+    for text in (EXTRA, *texts(new=True)):
+        for found in NUMBER.finditer(text):
+            yield from (text[: found.start()] + end + text[found.end() :] for end in ENDS)
+
+
+def drawn(count: int, seed: int, new: bool = False) -> Iterator[str]:
+    """Yield so many mutated files."""
+    chance = random.Random(seed)  # noqa: S311
+    good = texts(new)
+    for _ in range(count):
+        yield mutated(chance.choice(good), chance)
 
 
 def mutated(text: str, chance: random.Random) -> str:
@@ -174,18 +192,16 @@ def _late(number: int, frame: FrameType | None) -> None:
     raise TooSlow(f"more than {LIMIT} s")
 
 
-def fuzz(count: int, seed: int, folder: Path, say=print, new: bool = False) -> Counter[str]:
-    """Judge so many mutated files and return how many were refused, read, run, and wrong."""
-    chance = random.Random(seed)  # noqa: S311
-    good, done = texts(new), Counter()
+def fuzz(files: Iterable[str], folder: Path, say=print) -> Counter[str]:
+    """Judge files and return how many were refused, read, run, and wrong."""
+    done: Counter[str] = Counter()
     for text in texts(new=True):  # kernels are compiled once, and that takes longer than any file may
         assert judged(text, folder).startswith("run")
         shutil.rmtree(folder / OUT)
     before = signal.signal(signal.SIGALRM, _late)
     slowest = 0.0
     try:
-        for k in range(count):
-            text = mutated(chance.choice(good), chance)
+        for k, text in enumerate(files):
             begin = time.perf_counter()
             signal.alarm(LIMIT)
             try:
@@ -211,9 +227,11 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=2000)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--new", action="store_true", help="only files with bodies, props, links and cameras")
+    parser.add_argument("--ends", action="store_true", help="every number in turn next to nothing and huge")
     options = parser.parse_args()
+    files = ends() if options.ends else drawn(options.count, options.seed, options.new)
     with tempfile.TemporaryDirectory() as folder:
-        done = fuzz(options.count, options.seed, Path(folder), new=options.new)
+        done = fuzz(files, Path(folder))
     print(dict(done))
     return 1 if done["wrong"] else 0
 

@@ -57,7 +57,7 @@ def drawn(options: argparse.Namespace, place: str, method: str, learned: Windowe
         train(model, Schedule(options.updates, check_every=options.updates, keep_every=100), folder, resume=True)
     past, future = asked
     window, person = np.nonzero(future.scored)
-    found = SocialWays(str(folder / BEST)).predict(past, ROWS, DRAWS, stream(0, "draws"))
+    found = SocialWays(str(folder / BEST), contact=0.0).predict(past, ROWS, DRAWS, stream(0, "draws"))
     return found.position[window, :, :, person]
 
 

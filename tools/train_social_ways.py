@@ -14,6 +14,7 @@ weights are scored on the last fifth. Each run is the loop that ``crowdbot train
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -34,6 +35,7 @@ SHOWN = ("ade", "fde", "nll", "energy", "collisions")
 OBSMAT = {"eth": "eth_biwi/seq_eth", "hotel": "eth_biwi/seq_hotel", "univ": "ucy/students03", "zara1": "ucy/zara01",
           "zara2": "ucy/zara02"}  # fmt: skip
 KIND = "social-ways"
+ALONE = "20 draws without contact"
 
 
 def samples_of(recordings: list[Trajectories], protocol: str = "all") -> Samples:
@@ -86,12 +88,13 @@ def trained(
 
 
 def scored(options: argparse.Namespace, folder: Path, recordings: list[Trajectories], protocol: str, seed: int) -> None:
-    """Write the scores of the checkpoint: best of 20 draws, one draw, and with a longer look at all windows."""
+    """Write the scores of the checkpoint: best of 20 draws, one draw, and 20 draws as the report has them."""
     predictor = SocialWays(checkpoint=str(folder / BEST))
+    alone = dataclasses.replace(predictor, contact=0.0)
     rows = {}
     cut = [one.windows(protocol=protocol) for one in recordings]
-    for name, count in (("20 draws", 20), ("one draw", 1)):
-        parts = [evaluate(predictor, past[:: options.every], future[:: options.every], count, seed=seed)
+    for name, count, chosen in (("20 draws", 20, predictor), ("one draw", 1, predictor), (ALONE, 20, alone)):
+        parts = [evaluate(chosen, past[:: options.every], future[:: options.every], count, seed=seed)
                  for past, future in cut]  # fmt: skip
         found = Score.total(parts)
         rows[name] = {key: float(getattr(found, key)) for key in (*SHOWN, "persons", "miss_rate")}
@@ -102,11 +105,12 @@ def scored(options: argparse.Namespace, folder: Path, recordings: list[Trajector
 def table(options: argparse.Namespace) -> None:
     """Print the scores of all that is done, a line a seed, and means and spread over seeds."""
     for kind in ("", "split-"):
-        for name in ("20 draws", "one draw"):
+        for name in ("20 draws", "one draw", ALONE):
             means = []
             for seed in options.seed:
                 files = {fold: options.data / f"{kind}{fold}-seed{seed}" / "scores.json" for fold in FOLDS}
-                rows = {fold: json.loads(file.read_text())[name] for fold, file in files.items() if file.exists()}
+                scores = {fold: json.loads(file.read_text()) for fold, file in files.items() if file.exists()}
+                rows = {fold: score[name] for fold, score in scores.items() if name in score}
                 if rows:
                     said = " ".join(f"{fold} {row['ade']:.3f}/{row['fde']:.3f}" for fold, row in rows.items())
                     mean = [np.mean([row[key] for row in rows.values()]) for key in ("ade", "fde")]

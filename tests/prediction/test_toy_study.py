@@ -94,6 +94,18 @@ def test_the_penalty_falls_between_30_and_90_percent() -> None:
     assert trained(0)._penalty(0.5) == 0.0
 
 
+def test_variety_grows_between_30_and_80_percent() -> None:
+    model = trained(0, use_variety_loss=True, variety_weight=10.0, variety_growth=100.0)
+    weights = [model._variety_weight(done) for done in (0.0, 0.3, 0.55, 0.8, 1.0)]
+    assert weights == pytest.approx([10.0, 10.0, 100.0, 1000.0, 1000.0])
+    first, last = model._lesson(model.samples.batch(np.arange(4))), {}
+    for weight in (weights[0], weights[-1]):
+        noise = model._noise(first, stream(1, "noise"), 20)
+        losses = model._generator_step(first, model._made(first, noise)[1], noise[0][first.scored][:, :2], weight)
+        last[weight] = losses["variety"]
+    assert 50.0 < last[weights[-1]] / last[weights[0]] < 150.0
+
+
 def test_without_them_nothing_random_is_drawn_for_them() -> None:
     """Rows of the report draw the same numbers as before these settings were there."""
     one, other = trained(3), trained(3, slope_penalty_left=0.5)
@@ -103,6 +115,8 @@ def test_without_them_nothing_random_is_drawn_for_them() -> None:
 def test_wrong_settings_are_said() -> None:
     with pytest.raises(InputError, match="slope_penalty_left = 0.0 must be above 0 and at most 1"):
         SocialWaysConfig(slope_penalty_left=0.0)
+    with pytest.raises(InputError, match="variety_growth = 0.0 must be above 0 and at most 1000000"):
+        SocialWaysConfig(variety_growth=0.0)
     with pytest.raises(InputError, match="slope_penalty = -1.0 must be at least 0"):
         SocialWaysConfig(slope_penalty=-1.0)
     with pytest.raises(InputError, match="code_levels = -1 must be at least 0"):

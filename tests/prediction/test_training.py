@@ -147,6 +147,19 @@ def test_folders_of_other_trainings_are_left_alone(tmp_path: Path) -> None:
         train(Mean(), Schedule(updates=23), tmp_path, resume=True)
 
 
+def test_a_training_that_began_before_a_setting_was_known_goes_on(tmp_path: Path) -> None:
+    once = train(Mean(), PLAN, tmp_path / "once")
+    with pytest.raises(KeyboardInterrupt):
+        train(Mean(die_at=14), PLAN, tmp_path / "old")
+    kept = load_checkpoint(tmp_path / "old" / LAST)
+    del kept["config"]["widths"]
+    save_checkpoint(tmp_path / "old" / LAST, f"{Mean.kind} training", kept)
+    assert train(Mean(), PLAN, tmp_path / "old", resume=True).rows[-1]["ade"] == once.rows[-1]["ade"]
+    save_checkpoint(tmp_path / "old" / LAST, f"{Mean.kind} training", kept)
+    with pytest.raises(InputError, match="other settings"):
+        train(Mean(Settings(widths=(3,))), PLAN, tmp_path / "old", resume=True)
+
+
 def test_wrong_schedules_and_losses_are_said() -> None:
     with pytest.raises(InputError, match="either a number of updates or"):
         Schedule()

@@ -255,7 +255,7 @@ def test_seen_counts_who_returned_a_beam():
         ({"field_of_view": math.nan}, "field_of_view = nan"),
         ({"max_incidence": 2.0}, "max_incidence = 2.0 rad"),
         ({"resolution": -0.01}, "resolution = -0.01 m"),
-        ({"rate": 0.0}, "rate = 0.0 Hz must be finite and above 0"),
+        ({"rate": 0.0}, "rate = 0.0 Hz must be finite and at least 1e-06"),
         ({"rate": math.nan}, "rate = nan"),
         ({"noise": (0.01,)}, "noise holds 0.01, which is not a Noise"),
     ],

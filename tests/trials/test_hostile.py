@@ -129,7 +129,7 @@ def test_mutated_trials_of_all_kinds_are_read_or_refused_and_leave_no_file(tmp_p
     tool = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(tool)
     said: list[str] = []
-    done = tool.fuzz(300, 42, tmp_path, said.append)
+    done = tool.fuzz(tool.drawn(300, 42), tmp_path, said.append)
     assert done["wrong"] == 0, "\n".join(said)
     assert done["refused"] > 100
     assert done["run in the planar world"] > 30

@@ -168,7 +168,7 @@ MISTAKES = {
     "negative radius of a robot": (
         'radius="0.3"',
         'radius="-1"',
-        r':10: <robot> radius="-1" must be above 0 m and at most 10 m$',
+        r':10: <robot> radius="-1" must be at least 0.001 m and at most 10 m$',
     ),
     "radius that can be negative": (
         'radius="0.25"',
@@ -330,7 +330,7 @@ def test_no_mistake_hides_another_in_its_element(tmp_path: Path) -> None:
     said = str(found.value)
     for line, part in (
         (1, "needs the attribute 'duration'"),
-        (2, 'wall-height="-1" must be above 0 m and at most 100 m'),
+        (2, 'wall-height="-1" must be at least 0.001 m and at most 100 m'),
         (2, 'area="no.wkt" there is no file'),
         (2, 'map="no.yaml" there is no file'),
         (3, "no attribute 'nosuch'"),

@@ -40,8 +40,8 @@ class Cube:
     x: float = attribute(about="middle", unit="m")
     y: float = attribute(about="middle", unit="m")
     heading: float = attribute(0.0, about="counter-clockwise from +x", unit="rad")
-    size: float = attribute(0.5, about="of its sides", unit="m", above=0.0, at_most=100.0)
-    mass: float = attribute(10.0, about="of the whole", unit="kg", above=0.0, at_most=1e5)
+    size: float = attribute(0.5, about="of its sides", unit="m", at_least=0.001, at_most=100.0)
+    mass: float = attribute(10.0, about="of the whole", unit="kg", at_least=0.001, at_most=1e5)
     friction: float = attribute(0.5, about="coefficient on the floor", above=0.0, at_most=10.0)
     fixed: bool = attribute(False, about="whether nothing moves it")
 
@@ -85,9 +85,9 @@ class Tree(_Standing):
     x: float = attribute(about="middle", unit="m")
     y: float = attribute(about="middle", unit="m")
     heading: float = attribute(0.0, about="counter-clockwise from +x", unit="rad")
-    height: float = attribute(5.0, about="to the top", unit="m", above=0.0, at_most=100.0)
-    trunk: float = attribute(0.15, about="radius of the trunk", unit="m", above=0.0, at_most=10.0)
-    crown: float = attribute(1.4, about="radius of the crown", unit="m", above=0.0, at_most=50.0)
+    height: float = attribute(5.0, about="to the top", unit="m", at_least=0.001, at_most=100.0)
+    trunk: float = attribute(0.15, about="radius of the trunk", unit="m", at_least=0.001, at_most=10.0)
+    crown: float = attribute(1.4, about="radius of the crown", unit="m", at_least=0.001, at_most=50.0)
 
     def prop(self) -> physics.Prop:
         """Return it for a world with bodies."""

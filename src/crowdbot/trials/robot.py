@@ -110,13 +110,13 @@ class Robot:
     y: float = attribute(about="start", unit="m")
     heading: float = attribute(0.0, about="start, counter-clockwise from +x", unit="rad")
     radius: float = attribute(
-        None, about="radius of the disc that holds it, by default that of its type, or 0.3", unit="m", above=0.0,
+        None, about="radius of the disc that holds it, by default that of its type, or 0.3", unit="m", at_least=0.001,
         at_most=10.0,
     )  # fmt: skip
     height: float = attribute(
-        None, about="without a type: how tall it is, by default 1", unit="m", above=0.0, at_most=10.0
+        None, about="without a type: how tall it is, by default 1", unit="m", at_least=0.001, at_most=10.0
     )
-    mass: float = attribute(None, about="without a type: by default 40", unit="kg", above=0.0, at_most=1e5)
+    mass: float = attribute(None, about="without a type: by default 40", unit="kg", at_least=0.001, at_most=1e5)
     latency: float = attribute(
         None, about="between a command and the wheels, by default that of its type, or 0", unit="s", at_least=0.0,
         at_most=10.0,

@@ -71,7 +71,7 @@ class Stage:
     )
     map: str = attribute("", about="name of the .yaml of a map of ROS: occupied cells are solid")
     unknown: str = attribute("occupied", about="what unknown cells of the map are", choices=("occupied", "free"))
-    wall_height: float = attribute(2.5, about="of all walls and obstacles", unit="m", above=0.0, at_most=100.0)
+    wall_height: float = attribute(2.5, about="of all walls and obstacles", unit="m", at_least=0.001, at_most=100.0)
     friction: float = attribute(1.0, about="coefficient of the floor in the physics world", above=0.0, at_most=10.0)
     walls: tuple[Wall, ...] = children("wall", about="thin walls")
     obstacles: tuple[Obstacle, ...] = children("obstacle", about="solid polygons")

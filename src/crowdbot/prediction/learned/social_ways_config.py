@@ -52,6 +52,8 @@ class SocialWaysConfig:
             2018, doi 10.48550/arXiv.1801.04406, R1 + R2, by a small step aside as in Lin et al. 2025, doi
             10.48550/arXiv.2501.08316); 0 does without.
         slope_penalty_left: the penalty falls to this share of its weight between 30 and 90 % of the updates.
+        variety_growth: the weight of the variety loss grows to so many times between 30 and 80 % of the updates: early
+            it would fill the space between modes, late it brings the draws of a mode to where the truth lies.
 
     Raises:
         InputError: a value is not allowed.
@@ -92,6 +94,7 @@ class SocialWaysConfig:
     code_levels: int = 0
     slope_penalty: float = 0.0
     slope_penalty_left: float = 1.0
+    variety_growth: float = 1.0
 
     def __post_init__(self) -> None:
         for name, known in (("adversarial", ADVERSARIAL), ("frame", FRAMES)):
@@ -115,6 +118,8 @@ class SocialWaysConfig:
             raise InputError(
                 f"social ways: slope_penalty_left = {self.slope_penalty_left} must be above 0 and at most 1"
             )
+        if not 0.0 < self.variety_growth <= 1e6:
+            raise InputError(f"social ways: variety_growth = {self.variety_growth} must be above 0 and at most 1000000")
         if self.use_info_loss and self.latent_codes == 0:
             raise InputError("social ways: the information loss needs latent codes; set latent_codes or no info loss")
 

@@ -34,6 +34,8 @@ Floats = NDArray[np.float64]
 KIND = "social-ways"
 TRIES = 3
 """Where there are walls, each draw is the best of so many."""
+CONTACT = 0.25
+"""People of one draw keep so far apart [m]: attention alone lets more of them collide than constant velocity does."""
 AT_ONCE = 4096
 """So many tracks (people times draws) go through the network together."""
 
@@ -155,12 +157,12 @@ class SocialWays(LearnedPredictor):
     weights do not fit (other steps than 0.4 s, pixels), a baseline answers and a warning says so; own weights raise.
 
     Fields:
-        contact: people of one draw are moved aside to stay so far apart [m]; 0, as in the report, leaves them alone.
+        contact: people of one draw are moved aside to stay so far apart [m]; 0, as in the report, lets them collide.
 
     Paper: Amirian, Hayet, Pettré (2019), doi 10.48550/arXiv.1904.09507.
     """
 
-    contact: float = 0.0
+    contact: float = CONTACT
 
     paper: ClassVar[Paper] = Paper(
         "Amirian, Hayet, Pettré",
@@ -183,7 +185,7 @@ class SocialWays(LearnedPredictor):
     @property
     def name(self) -> str:
         """Name on the command line, with what differs from a plain Social Ways."""
-        return super().name + (f"(contact={self.contact:g})" if self.contact else "")
+        return super().name + (f"(contact={self.contact:g})" if self.contact != CONTACT else "")
 
     def network(self, source: str = "") -> SocialWaysNetwork:
         """Return the network with the weights for a recording of this name; read once."""

@@ -120,7 +120,7 @@ class SocialWaysTraining(Trainable):
             kept = copy.deepcopy((self.discriminator.state_dict(), self.of_discriminator.state_dict()))
             for _ in range(c.unrolling_steps):
                 self._discriminator_step(lesson, told, codes, rng, penalty)
-        losses |= self._generator_step(lesson, made, codes)
+        losses |= self._generator_step(lesson, made, codes, self._variety_weight(number / total))
         if kept is not None:  # every layer and everything that Adam knows
             self.discriminator.load_state_dict(kept[0])
             self.of_discriminator.load_state_dict(kept[1])
@@ -212,7 +212,9 @@ class SocialWaysTraining(Trainable):
         self._stepped(loss, self.of_discriminator, self.discriminator)
         return {"discriminator": float(told.detach())}
 
-    def _generator_step(self, lesson: _Lesson, made: Tensor, codes: Tensor) -> dict[str, float]:
+    def _generator_step(
+        self, lesson: _Lesson, made: Tensor, codes: Tensor, variety_weight: float
+    ) -> dict[str, float]:
         c = self.config
         self.discriminator.requires_grad_(False)  # it only passes on what the generator should change
         fake, read = self.discriminator(lesson.observed, made[0])
@@ -223,7 +225,7 @@ class SocialWaysTraining(Trainable):
         if c.use_l2_loss:
             parts["l2"] = c.l2_weight * (made[0, ..., :2] - true).square().sum(-1).mean()
         if c.use_variety_loss:
-            parts["variety"] = c.variety_weight * variety_loss(made[..., :2], true)
+            parts["variety"] = variety_weight * variety_loss(made[..., :2], true)
         self._stepped(torch.stack(list(parts.values())).sum(), self.of_generator, self.generator)
         self.discriminator.requires_grad_(True)
         return {name: float(value.detach()) for name, value in parts.items()}
@@ -232,6 +234,11 @@ class SocialWaysTraining(Trainable):
         """Return the weight of the slope penalty when this share of the updates is done."""
         fallen = min(1.0, max(0.0, (done - 0.3) / 0.6))
         return float(self.config.slope_penalty * self.config.slope_penalty_left**fallen)
+
+    def _variety_weight(self, done: float) -> float:
+        """Return the weight of the variety loss when this share of the updates is done."""
+        grown = min(1.0, max(0.0, (done - 0.3) / 0.5))
+        return float(self.config.variety_weight * self.config.variety_growth**grown)
 
     def _info(self, read: Tensor, codes: Tensor) -> Tensor:
         """Return the loss of information: a normal density around what is read, so a squared distance."""

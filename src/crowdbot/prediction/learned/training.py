@@ -207,8 +207,7 @@ def train(
 
 
 def _about(model: Trainable) -> dict[str, Any]:
-    config = json.loads(json.dumps(dataclasses.asdict(model.config)))  # as it comes back from a file
-    return {"config": config, "data": model.data, "facts": dict(model.facts)}
+    return {"config": _plain(dataclasses.asdict(model.config)), "data": model.data, "facts": dict(model.facts)}
 
 
 def _begun(model: Trainable, schedule: Schedule, folder: Path | None, resume: bool) -> _Course:
@@ -218,6 +217,7 @@ def _begun(model: Trainable, schedule: Schedule, folder: Path | None, resume: bo
         raise InputError(f"{folder} holds a training already: go on with --resume, or choose another folder")
     kept = load_checkpoint(folder / LAST, f"{model.kind} training")
     now = _about(model)
+    kept["config"] = _defaults(model.config) | kept["config"]  # a setting that came later began as what was done before
     for word, what in (("config", "settings"), ("data", "data")):
         if kept[word] != now[word]:
             was = _difference(kept[word], now[word])
@@ -228,6 +228,16 @@ def _begun(model: Trainable, schedule: Schedule, folder: Path | None, resume: bo
     course = _Course(**kept["course"])
     _logged(course, folder)
     return course
+
+
+def _defaults(config: Any) -> Any:
+    fields = dataclasses.fields(config)
+    return _plain({field.name: field.default for field in fields if field.default is not dataclasses.MISSING})
+
+
+def _plain(values: dict[str, Any]) -> Any:
+    """Return settings as they come back from a file."""
+    return json.loads(json.dumps(values))
 
 
 def _difference(was: Any, now: Any) -> str:

@@ -23,15 +23,18 @@ MOST_FACES = 150_000
 """MuJoCo reads at most 200 000 triangles from one STL file."""
 MOST_CORNERS = 64
 """Corners of a convex body in contacts; finer ones are slower and no more exact on a floor."""
+NOTHING = 1e-30
+"""Smaller numbers are 0: MuJoCo refuses those that a number of its kind cannot hold in full."""
 
 
 def row(values: Iterable[float]) -> str:
     """Return numbers as they stand in MJCF.
 
-    >>> row((1.0, -0.5, 1e-9))
-    '1 -0.5 1e-09'
+    >>> row((1.0, -0.5, 1e-9, 1e-320))
+    '1 -0.5 1e-09 0'
     """
-    return " ".join(repr(float(value)).removesuffix(".0") for value in values)
+    exact = (float(value) for value in values)
+    return " ".join(repr(value if abs(value) >= NOTHING else 0.0).removesuffix(".0") for value in exact)
 
 
 class Geoms:
