@@ -108,7 +108,9 @@ KINDS = (
     Kind('most="9"', 'most="-9"', "<source> most=.-9. must be at least 0"),
     Kind('begin="2" end="15"', 'begin="16" end="15"', "<source> begin 16 s must be before end 15 s"),
     Kind('dx="-20"', 'dx="0"', "<portal> needs dx or dy"),
-    Kind('y="-3" radius="0.3"', 'y="-3" radius="-0.3"', "<robot> radius=.-0.3. must be at least 0.001 m and at most 10 m"),
+    Kind(
+        'y="-3" radius="0.3"', 'y="-3" radius="-0.3"', "<robot> radius=.-0.3. must be at least 0.001 m and at most 10 m"
+    ),
     Kind('y="2" tolerance="0.3"', 'y="2" tolerence="0.3"', "<goal> has no attribute 'tolerence', did you mean 'toler"),
     Kind('width="64"', 'width="6"', "<camera> width=.6. must be at least 16 and at most 1920"),
     Kind('height="48"', 'hieght="48"', "<camera> has no attribute 'hieght', did you mean 'height'"),

@@ -212,9 +212,7 @@ class SocialWaysTraining(Trainable):
         self._stepped(loss, self.of_discriminator, self.discriminator)
         return {"discriminator": float(told.detach())}
 
-    def _generator_step(
-        self, lesson: _Lesson, made: Tensor, codes: Tensor, variety_weight: float
-    ) -> dict[str, float]:
+    def _generator_step(self, lesson: _Lesson, made: Tensor, codes: Tensor, variety_weight: float) -> dict[str, float]:
         c = self.config
         self.discriminator.requires_grad_(False)  # it only passes on what the generator should change
         fake, read = self.discriminator(lesson.observed, made[0])
