@@ -19,7 +19,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     add = parser.add_argument
     add("what", metavar="NAME", help=f"which study: {', '.join(STUDIES)}")
-    add("--methods", nargs="+", metavar="NAME", help="of the study (default: the seven of the report and four more)")
+    add("--methods", nargs="+", metavar="NAME", help="of the study (default: the seven of the report, and ours)")
     add("--seeds", type=int, default=3, metavar="N", help="trainings of each method (default 3)")
     add("--updates", type=int, default=20_000, metavar="N", help="of each training (default 20000)")
     add("--check-every", type=int, default=500, metavar="N", help="updates between measurements (default 500)")

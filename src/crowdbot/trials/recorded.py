@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,7 @@ from .travel import Instant
 __all__ = ["Recorded", "moments", "read_episode", "read_metadata"]
 
 Floats = NDArray[np.float64]
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,6 +214,14 @@ def _known(path: Path, records: Mapping[str, dict[str, str]]) -> dict[str, str]:
     return known
 
 
+def _by_topic(found: Iterable[Mapping[str, T]]) -> dict[str, list[T]]:
+    rows: dict[str, list[T]] = {}
+    for one in found:
+        for topic, row in one.items():
+            rows.setdefault(topic, []).append(row)
+    return rows
+
+
 def _assembled(path: Path, known: dict[str, str], found: Sequence[Moment]) -> Recorded:
     due = [(moment, moment.people) for moment in found if moment.people is not None]
     complete = all(key in known for key in END_KEYS)
@@ -231,13 +240,8 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[Moment]) -> Re
         for r, robot in enumerate(robots):
             arrays.put_robot(k, places[r], float(robot["radius"]), moment.robots[robot["name"]])
             commands[k, r] = moment.commands[robot["name"]]
-    scans: dict[str, list[ScanRow]] = {}
-    readings: dict[str, list[Reading]] = {}
-    for moment in found:
-        for topic, scan in moment.scans.items():
-            scans.setdefault(topic, []).append(scan)
-        for topic, reading in moment.readings.items():
-            readings.setdefault(topic, []).append(reading)
+    scans: dict[str, list[ScanRow]] = _by_topic(moment.scans for moment in found)
+    readings: dict[str, list[Reading]] = _by_topic(moment.readings for moment in found)
     times = np.array([moment.time for moment, _ in due])
     if not complete:
         ending = Ending(known)

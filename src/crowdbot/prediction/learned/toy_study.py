@@ -38,6 +38,10 @@ METHODS: dict[str, dict[str, Any]] = {
     "vanilla+slope-penalty": STEADY,
     "info+slope-penalty": {"use_info_loss": True, **STEADY},
     "info+discrete-codes": {"use_info_loss": True, **STEADY, "code_levels": 3, "noise": 4},
+    "info+discrete-codes+variety": {
+        "use_info_loss": True, **STEADY, "code_levels": 3, "noise": 4, "use_variety_loss": True, "variety_weight": 10.0,
+        "variety_growth": 100.0,
+    },
 }  # fmt: skip
 """What figures 17 and 18 of the report compare (the first seven), what its published code sets instead, and what this
 code adds; each with how it differs from a plain GAN with the settings of the report."""
