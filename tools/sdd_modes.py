@@ -31,6 +31,7 @@ PLACE = {"frame": "world", "mirror": "false", "reverse": "false", "scale-sd": "0
 METHODS = {
     "social ways": ("variety", PLACE),
     "discrete codes": ("variety", PLACE | {"code-levels": "3", "noise": "4", "noise-gain": "3.46"}),
+    "modes": ("modes", PLACE | {"hidden": "64"}),
     "vanilla": ("report", {"frame": "world", "use-info-loss": "false", "latent-codes": "0"}),
 }
 Windowed = tuple[Windows, Windows]

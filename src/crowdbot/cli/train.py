@@ -41,7 +41,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add("--updates", type=int, metavar="N", help="in place of epochs")
     add("--check-every", type=int, default=200, metavar="N", help="updates between checks (default 200)")
     add("--patience", type=int, metavar="N", help="stop after so many checks without a better one")
-    add("--settings", metavar="NAME", help="named settings (social-ways: report, variety; default report)")
+    add("--settings", metavar="NAME", help="named settings (social-ways: report, variety, modes; default report)")
     add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="single settings")
     add("--device", default="cpu", metavar="NAME", help="cpu, cuda or cuda:N (default cpu)")
     add("--threads", type=int, default=1, metavar="N", help="of torch; the bytes depend on it (default 1)")

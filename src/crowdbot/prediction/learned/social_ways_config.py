@@ -9,7 +9,7 @@ from typing import Any
 
 from crowdbot.core.errors import InputError, did_you_mean
 
-__all__ = ["ADVERSARIAL", "FRAMES", "PRESETS", "SocialWaysConfig", "config_of", "preset"]
+__all__ = ["ADVERSARIAL", "FRAMES", "PRESETS", "STEADY", "SocialWaysConfig", "config_of", "preset"]
 
 ADVERSARIAL = ("cross-entropy", "least-squares")
 FRAMES = ("person", "world")
@@ -129,6 +129,11 @@ class SocialWaysConfig:
         return self.latent_codes + self.noise
 
 
+STEADY: dict[str, Any] = {
+    "slope_penalty": 0.002, "slope_penalty_left": 0.1, "noise_gain": 12.0**0.5, "momentum": 0.0, "decay": True,
+    "generator_rate": 2e-3, "discriminator_rate": 2e-3, "average": 0.99,
+}  # fmt: skip
+"""What keeps all modes: a discriminator that learns as fast as the generator and is not steep."""
 PRESETS: dict[str, dict[str, Any]] = {
     "report": {},
     "variety": {
@@ -136,8 +141,13 @@ PRESETS: dict[str, dict[str, Any]] = {
         "mirror": True, "reverse": True, "scale_sd": 0.3, "average": 0.995, "decay": True, "clip": 1.0,
         "mixed": True,
     },
+    "modes": {
+        **STEADY, "average": 0.995, "latent_codes": 1, "code_levels": 3, "noise": 5, "use_variety_loss": True,
+        "variety_weight": 10.0, "variety_draws": 10, "variety_growth": 30.0,
+    },
 }  # fmt: skip
-"""``report``: the defaults; ``variety``: what is trained for the tables of best-of-20 errors."""
+"""``report``: the defaults; ``variety``: what is trained for the tables of best-of-20 errors; ``modes``: one code of
+three steps tells apart the ways that people take."""
 
 
 def preset(name: str, values: Mapping[str, Any] | None = None) -> SocialWaysConfig:

@@ -15,15 +15,11 @@ from crowdbot.core import InputError, stream
 from crowdbot.core.workers import each
 
 from .extra import threads
+from .social_ways_config import PRESETS, STEADY
 from .toy import Toy
 
 __all__ = ["MEASURES", "METHODS", "Run", "ToyStudy", "with_values"]
 
-STEADY: dict[str, Any] = {
-    "slope_penalty": 0.002, "slope_penalty_left": 0.1, "noise_gain": 12.0**0.5, "momentum": 0.0, "decay": True,
-    "generator_rate": 2e-3, "discriminator_rate": 2e-3, "average": 0.99,
-}  # fmt: skip
-"""What keeps all modes on the toy set: a discriminator that learns as fast as the generator and is not steep."""
 METHODS: dict[str, dict[str, Any]] = {
     "vanilla": {},
     "l2": {"use_l2_loss": True},
@@ -38,9 +34,8 @@ METHODS: dict[str, dict[str, Any]] = {
     "vanilla+slope-penalty": STEADY,
     "info+slope-penalty": {"use_info_loss": True, **STEADY},
     "info+discrete-codes": {"use_info_loss": True, **STEADY, "code_levels": 3, "noise": 4},
-    "info+discrete-codes+variety": {
-        "use_info_loss": True, **STEADY, "code_levels": 3, "noise": 4, "use_variety_loss": True, "variety_weight": 10.0,
-        "variety_growth": 100.0,
+    "info+discrete-code+variety": {
+        "use_info_loss": True, **PRESETS["modes"], "variety_draws": 20, "variety_growth": 100.0
     },
 }  # fmt: skip
 """What figures 17 and 18 of the report compare (the first seven), what its published code sets instead, and what this
