@@ -1,6 +1,7 @@
 """Draws the report's figure 19: Social Ways and a Vanilla GAN on two places of the Stanford Drone Dataset.
 
-    python tools/sdd_modes.py SDD TRAJNET OUT --updates 600
+    python tools/sdd_modes.py SDD TRAJNET OUT --updates 500
+    python tools/sdd_modes.py SDD TRAJNET OUT --updates 1000 --place gates-2 --method social-ways modes vanilla
 
 SDD holds gates/video2/annotations.txt, TRAJNET holds Train/stanford/hyang_6.txt. Both networks see the coordinates of
 the place, as in the report, learn from the first four fifths in time and draw 128 futures of people of the last fifth.
@@ -29,8 +30,8 @@ SCALE = 0.0373
 DRAWS, SHOWN, ROWS = 128, 5, 12
 PLACE = {"frame": "world", "mirror": "false", "reverse": "false", "scale-sd": "0"}
 METHODS = {
-    "social ways": ("variety", PLACE),
-    "discrete codes": ("variety", PLACE | {"code-levels": "3", "noise": "4", "noise-gain": "3.46"}),
+    "social-ways": ("variety", PLACE),
+    "discrete-codes": ("variety", PLACE | {"code-levels": "3", "noise": "4", "noise-gain": "3.46"}),
     "modes": ("modes", PLACE | {"hidden": "64"}),
     "vanilla": ("report", {"frame": "world", "use-info-loss": "false", "latent-codes": "0"}),
 }
@@ -52,7 +53,7 @@ def drawn(options: argparse.Namespace, place: str, method: str, learned: Windowe
     from crowdbot.prediction.learned.social_ways_training import learner
 
     settings, values = METHODS[method]
-    samples, folder = Samples.cut(*learned, place), options.out / f"{place}-{method.replace(' ', '-')}"
+    samples, folder = Samples.cut(*learned, place), options.out / f"{place}-{method}"
     model = learner(settings, values, samples, samples, 0, "cpu")
     with threads():
         train(model, Schedule(options.updates, check_every=options.updates, keep_every=100), folder, resume=True)
@@ -107,12 +108,16 @@ def main() -> None:
     parser.add_argument("sdd", type=Path)
     parser.add_argument("trajnet", type=Path)
     parser.add_argument("out", type=Path)
-    parser.add_argument("--updates", type=int, default=600)
+    parser.add_argument("--updates", type=int, default=500)
+    parser.add_argument("--place", nargs="+", default=["hyang-6", "gates-2"], choices=("hyang-6", "gates-2"))
+    parser.add_argument("--method", nargs="+", default=[*METHODS], choices=METHODS)
     options = parser.parse_args()
-    rows = 2 * len(METHODS)
+    rows = len(options.place) * len(options.method)
     figure = Figure(figsize=(3.2 * SHOWN, 3.2 * rows), layout="constrained")
     grid: Any = figure.subplots(rows, SHOWN)
-    for number, (place, tracks) in enumerate(places(options).items()):
+    known = places(options)
+    for number, place in enumerate(options.place):
+        tracks = known[place]
         learned, asked = tracks.windows(protocol="timesplit-train"), tracks.windows(protocol="timesplit")
         past, future = asked
         window, person = np.nonzero(future.scored)
@@ -125,7 +130,7 @@ def main() -> None:
         forks, plain = walked[went > 1], walked[went == 1]
         some = walked if len(forks) < SHOWN else forks
         chosen = some[np.linspace(0, len(some) - 1, SHOWN).round().astype(int)]
-        for row, method in enumerate(METHODS):
+        for row, method in enumerate(options.method):
             paths = drawn(options, place, method, learned, asked)
             count = np.array([modes(one) for one in paths])
             error = np.linalg.norm(paths[:, :20] - truth[:, None], axis=-1)
@@ -135,7 +140,7 @@ def main() -> None:
                   f" {np.mean(count[walked] > 1):.0%} of them with several; {_mean(count[forks])} at forks,"
                   f" {_mean(count[plain])} where all went one way; ends scatter {spread:.2f} m;"
                   f" best of 20 {best[0]:.3f}/{best[1]:.3f} m", flush=True)  # fmt: skip
-            for axes, who in zip(grid[len(METHODS) * number + row], chosen, strict=True):
+            for axes, who in zip(grid[len(options.method) * number + row], chosen, strict=True):
                 axes.plot(*tracks.position.T, ",", color="0.8", zorder=0)
                 start = np.broadcast_to(seen[who, -1], (DRAWS, 1, 2))
                 axes.plot(*np.moveaxis(np.concatenate([start, paths[who]], axis=1), -1, 0).swapaxes(1, 2),
