@@ -11,6 +11,7 @@ import pytest
 from crowdbot.core import InputError, stream
 from crowdbot.data import Windows
 from crowdbot.prediction import SocialWays
+from crowdbot.prediction.joint import kept_apart
 from crowdbot.prediction.places import FOLDS
 
 Maker = Callable[..., Windows]
@@ -59,6 +60,16 @@ def test_people_of_one_draw_keep_apart(windows: Maker) -> None:
     assert alone.name == "social-ways(checkpoint=eth)(contact=0)"
     with pytest.raises(InputError, match="contact = -1 m must be finite and at least 0"):
         SocialWays("eth", contact=-1)
+
+
+def test_nobody_is_moved_aside_through_a_wall(windows: Maker) -> None:
+    past = walking(windows, (0.0, 0.0, 1.2, 0.0), (9.6, 0.02, -1.2, 0.0))
+    place = np.stack([np.array([[1.2 * 0.4 * t, 0.0], [9.6 - 1.2 * 0.4 * t, 0.02]]) for t in range(1, 13)])[None, None]
+    wall = np.array([[-1.0, -0.05], [12.0, -0.05], [12.0, -0.3], [-1.0, -0.3]])
+    free, walled = kept_apart(past, place, 0.25), kept_apart(dataclasses.replace(past, walls=(wall,)), place, 0.25)
+    assert free[0, 0, :, 0, 1].min() < -0.05
+    assert np.array_equal(walled[..., 0, :], place[..., 0, :])
+    assert np.array_equal(walled[..., 1, :], free[..., 1, :])
 
 
 @pytest.mark.parametrize("fold", FOLDS)

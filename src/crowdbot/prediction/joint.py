@@ -58,7 +58,10 @@ def drawn_together(past: Windows, place: Floats, contact: float, block: int) -> 
 
 
 def kept_apart(past: Windows, place: Floats, contact: float) -> Floats:
-    """Return joint futures ``[W, K, T, A, 2]`` [m] in which who comes nearer than ``contact`` [m] is moved aside."""
+    """Return joint futures ``[W, K, T, A, 2]`` [m] in which who comes nearer than ``contact`` [m] is moved aside.
+
+    Nobody is moved through a wall: who would be stays on the own path.
+    """
     if contact <= 0.0:
         return place
     found = place.copy()
@@ -70,6 +73,12 @@ def kept_apart(past: Windows, place: Floats, contact: float) -> Floats:
             path = _with_plans(past, np.ascontiguousarray(np.moveaxis(place[window, k][:, who], 1, 0)), window, who)
             moved = part_ways(path, fixed, contact, ROUNDS)
             found[window, k][:, who] = np.moveaxis(moved, 0, 1)
+    windows, slots = np.nonzero(past.present[:, -1])
+    if past.walls and len(windows):
+        now = past.position[windows, -1, slots][:, None, None]
+        _, hit = before_walls(past, found[windows, :, :, slots] - now, windows, slots)
+        who, draw = np.nonzero(hit)
+        found[windows[who], draw, :, slots[who]] = place[windows[who], draw, :, slots[who]]
     return found
 
 
