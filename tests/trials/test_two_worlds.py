@@ -245,7 +245,7 @@ WRONG = {
         r"sensors of its type that do not measure after whole time steps of 0.04 s: base_laser_front 6.66667 Hz, .*",
     ),
     "a delay": ('delay="0.08"', 'delay="0.07"', r"delay 0.07 s is not a whole number of time steps"),
-    "a prop": ('size="0.3"', 'size="0"', r"<cube> size=\"0\" must be above 0 m"),
+    "a prop": ('size="0.3"', 'size="0"', r"<cube> size=\"0\" must be at least 0.001 m"),
     "in a prop": ('x="7" y="2.2"', 'x="9" y="6.5"', r"<agent> stands at 9,6.5, 0.00 m from a wall"),
 }
 
