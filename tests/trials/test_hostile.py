@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import importlib.util
+import itertools
 import random
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 from space_trials import LEAN
@@ -120,16 +122,28 @@ def test_mutated_files_are_read_or_refused_in_a_sentence(good: str, count: int) 
     assert all("\n" not in problem and len(problem) < 600 for problem in problems)
 
 
-def test_mutated_trials_of_all_kinds_are_read_or_refused_and_leave_no_file(tmp_path: Path) -> None:
-    """A few hundred files of ``tools/fuzz_trials.py``, which makes thousands when it is run by hand."""
+@pytest.fixture(scope="module")
+def fuzzing() -> Any:
+    """Return ``tools/fuzz_trials.py``, which makes thousands of files when it is run by hand."""
     path = Path(__file__).parents[2] / "tools" / "fuzz_trials.py"
     spec = importlib.util.spec_from_file_location("fuzz_trials", path)
     assert spec is not None
     assert spec.loader is not None
     tool = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(tool)
+    return tool
+
+
+def test_numbers_next_to_nothing_and_huge_ones_are_read_or_refused(fuzzing: Any, tmp_path: Path) -> None:
     said: list[str] = []
-    done = tool.fuzz(tool.drawn(300, 42), tmp_path, said.append)
+    done = fuzzing.fuzz(itertools.islice(fuzzing.ends(), 0, None, 31), tmp_path, said.append)
+    assert done["wrong"] == 0, "\n".join(said)
+    assert min(done["refused"], done["run in the planar world"], done["run in the physics world"]) > 5
+
+
+def test_mutated_trials_of_all_kinds_are_read_or_refused_and_leave_no_file(fuzzing: Any, tmp_path: Path) -> None:
+    said: list[str] = []
+    done = fuzzing.fuzz(fuzzing.drawn(300, 42), tmp_path, said.append)
     assert done["wrong"] == 0, "\n".join(said)
     assert done["refused"] > 100
     assert done["run in the planar world"] > 30

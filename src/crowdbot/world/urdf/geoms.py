@@ -34,7 +34,7 @@ def row(values: Iterable[float]) -> str:
     '1 -0.5 1e-09 0'
     """
     exact = (float(value) for value in values)
-    return " ".join(repr(value if abs(value) >= NOTHING else 0.0).removesuffix(".0") for value in exact)
+    return " ".join(repr(0.0 if abs(value) < NOTHING else value).removesuffix(".0") for value in exact)
 
 
 class Geoms:
