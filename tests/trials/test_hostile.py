@@ -138,7 +138,7 @@ def test_numbers_next_to_nothing_and_huge_ones_are_read_or_refused(fuzzing: Any,
     said: list[str] = []
     done = fuzzing.fuzz(itertools.islice(fuzzing.ends(), 0, None, 61), tmp_path, said.append)
     assert done["wrong"] == 0, "\n".join(said)
-    assert min(done["refused"], done["run in the planar world"], done["run in the physics world"]) > 5
+    assert min(done["refused"], done["run in the planar world"], done["run in the physics world"]) > 0
 
 
 def test_mutated_trials_of_all_kinds_are_read_or_refused_and_leave_no_file(fuzzing: Any, tmp_path: Path) -> None:
