@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core import Bodies, MissingExtra, Scene, SpatialPose, stream
+from crowdbot.core import Bodies, Scene, SpatialPose, stream
+from crowdbot.core.optional import optional
 from crowdbot.sensors.beams import fan
 
 __all__ = ["mujoco_rays", "people_with_limbs"]
@@ -37,10 +38,7 @@ def mujoco_rays(scene: Scene, sensor: Any, pose: SpatialPose) -> Callable[[], An
     Raises:
         MissingExtra: MuJoCo is not installed.
     """
-    try:
-        import mujoco
-    except ImportError:
-        raise MissingExtra("MuJoCo", "sim") from None
+    mujoco = optional("mujoco", "the comparison with MuJoCo", "sim")
     spec = mujoco.MjSpec()
     spec.memory = 64 * 2**20
     world, shapes = spec.worldbody, mujoco.mjtGeom

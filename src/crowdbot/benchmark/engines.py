@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import MissingExtra, Scene
+from crowdbot.core import Scene
+from crowdbot.core.optional import optional
 
 __all__ = ["JUPEDSIM", "jupedsim_step", "power_law_in_numpy"]
 
@@ -27,10 +26,7 @@ def jupedsim_step(model: str, scene: Scene) -> Callable[[], object]:
     Raises:
         MissingExtra: jupedsim is not installed.
     """
-    try:
-        jps: Any = importlib.import_module("jupedsim")
-    except ImportError:
-        raise MissingExtra("the comparison with JuPedSim", "bench") from None
+    jps = optional("jupedsim", "the comparison with JuPedSim", "bench")
     place = scene.position[0]
     low, high = place.min() - 200.0, place.max() + 200.0
     square = [(low, low), (high, low), (high, high), (low, high)]

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from .errors import CrowdbotError, InputError
+from .optional import optional
 
 __all__ = ["Job", "Result", "each", "each_kept"]
 
@@ -37,7 +38,8 @@ def each(
             many jobs run at once. It needs ``pip install crowdbot[cluster]``.
 
     Raises:
-        InputError: there is no worker, or Ray is not installed.
+        InputError: there is no worker.
+        MissingExtra: Ray is not installed.
         CrowdbotError: a job killed its process again and again.
 
     >>> sorted(each(abs, [-3, 4]))
@@ -121,10 +123,7 @@ def _threads_shared(workers: int) -> Iterator[None]:
 def _on_ray(
     function: Callable[[Job], Result], jobs: Sequence[Job], workers: int, cluster: str
 ) -> Iterator[tuple[int, Result]]:
-    try:
-        import ray
-    except ImportError:
-        raise InputError("a cluster needs Ray, which is not installed: pip install 'crowdbot[cluster]'") from None
+    ray = optional("ray", "a cluster", "cluster")
     ray.init(address=cluster, ignore_reinit_error=True, log_to_driver=False)
     remote: Any = ray.remote(max_retries=ATTEMPTS - 1)(function)
     waiting = list(enumerate(jobs))[::-1]

@@ -15,7 +15,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import MissingExtra
+from crowdbot.core.optional import optional
 
 __all__ = ["Reel", "av_module", "reel"]
 
@@ -248,8 +248,4 @@ def av_module() -> Any:
     Raises:
         MissingExtra: it is not installed.
     """
-    try:
-        import av
-    except ImportError:
-        raise MissingExtra("a film as .mp4", "sim") from None
-    return av
+    return optional("av", "a film as .mp4", "sim")

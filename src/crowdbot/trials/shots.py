@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, MissingExtra, stream
+from crowdbot.core import InputError, stream
 from crowdbot.core.errors import did_you_mean
+from crowdbot.core.optional import optional
 from crowdbot.sensors import DepthCamera, RGBCamera
 from crowdbot.sensors.camera import distorted
 from crowdbot.sensors.sensor import in_space
@@ -154,12 +155,7 @@ def _ticks(simulation: Simulation, take: Take) -> tuple[int, int, int]:
 
 def _check_drawing() -> None:
     """Say at once, and not after the run, that nothing can be drawn."""
-    from crowdbot.world.physics.engine import engine
-
-    try:
-        engine()
-    except MissingExtra:
-        raise MissingExtra("an image of a trial", "sim") from None
+    optional("mujoco", "an image of a trial", "sim")
 
 
 def _looks(mount: Mount) -> bool:

@@ -6,7 +6,8 @@ import contextlib
 from collections.abc import Iterator
 from typing import Any
 
-from crowdbot.core.errors import InputError, MissingExtra
+from crowdbot.core.errors import InputError
+from crowdbot.core.optional import optional
 
 __all__ = ["device_of", "tensors", "threads", "torch_module"]
 
@@ -17,11 +18,7 @@ def torch_module() -> Any:
     Raises:
         MissingExtra: it is not installed.
     """
-    try:
-        import torch
-    except ImportError:
-        raise MissingExtra("learned prediction", "learn") from None
-    return torch
+    return optional("torch", "learned prediction", "learn")
 
 
 def device_of(name: str) -> Any:

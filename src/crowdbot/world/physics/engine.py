@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from crowdbot.core import MissingExtra
+from crowdbot.core.optional import optional
 
 __all__ = ["engine"]
 
@@ -18,8 +18,4 @@ def engine() -> Any:
     >>> engine().__name__
     'mujoco'
     """
-    try:
-        import mujoco
-    except ImportError:
-        raise MissingExtra("the physics world", "sim") from None
-    return mujoco
+    return optional("mujoco", "the physics world", "sim")

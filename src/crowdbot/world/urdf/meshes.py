@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core import InputError, MissingExtra
+from crowdbot.core import InputError
 from crowdbot.core.markup import refuse_entities
+from crowdbot.core.optional import optional
 
 from .shapes import Mesh, Piece
 
@@ -86,11 +87,7 @@ def with_pieces(mesh: Mesh, method: str = "auto") -> tuple[Mesh, str]:
 
 
 def _trimesh() -> Any:
-    try:
-        import trimesh
-    except ImportError:
-        raise MissingExtra("reading meshes of robots", "sim") from None
-    return trimesh
+    return optional("trimesh", "reading meshes of robots", "sim")
 
 
 def _loaded(data: bytes, kind: str) -> Any:

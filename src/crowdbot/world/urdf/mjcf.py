@@ -15,9 +15,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, MissingExtra
+from crowdbot.core import InputError
 from crowdbot.core.errors import did_you_mean
 from crowdbot.core.markup import Element, written
+from crowdbot.core.optional import optional
 
 from .geoms import Geoms, row
 from .inertia import unphysical
@@ -52,10 +53,7 @@ class Mjcf(NamedTuple):
         Raises:
             MissingExtra: mujoco is not installed.
         """
-        try:
-            import mujoco
-        except ImportError:
-            raise MissingExtra("the physics of robots", "sim") from None
+        mujoco = optional("mujoco", "the physics of robots", "sim")
         return mujoco.MjModel.from_xml_string(self.xml, self.assets)
 
 
