@@ -23,7 +23,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from types import FrameType
 
-from crowdbot.core.errors import CrowdbotError
+from crowdbot.core import CrowdbotError
 from crowdbot.trials import Trial, builtin_trials, load_trial, opened
 
 LIMIT = 60

@@ -5,8 +5,7 @@ from __future__ import annotations
 import inspect
 
 from crowdbot import models
-from crowdbot.core import parameters
-from crowdbot.core.plug import built_in
+from crowdbot.core import builtin_classes, parameters
 
 HEAD = """# Crowd models
 
@@ -18,7 +17,7 @@ engines stands in [measured.md](measured.md); how they behave, in [validation.md
 def main() -> None:
     """Print the page."""
     print(HEAD)
-    for name, kind in built_in(models, models.CrowdModel).items():
+    for name, kind in builtin_classes(models, models.CrowdModel).items():
         text = (inspect.getdoc(kind) or "").replace("``", "`")
         print(f"\n## {name}\n\n{text.split(chr(10) * 2)[0]}\n\n{kind.paper}")
         rows = parameters(kind)

@@ -8,8 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from crowdbot.calibration import Rehearsal, Rollout, Walked
-from crowdbot.core import Paper, PerAgent, Scene, per_agent, stream
-from crowdbot.core.parameter import parameter
+from crowdbot.core import Paper, PerAgent, Scene, parameter, per_agent, stream
 from crowdbot.data import Windows
 from crowdbot.models import CrowdModel, CurrentDirection
 

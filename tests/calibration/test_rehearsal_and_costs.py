@@ -8,8 +8,7 @@ from made_crowds import Drifting, walked, windows
 
 from crowdbot.calibration import Absolute, Cost, InterPedestrian, Progressive, Rehearsal, Rollout, WeightedSum
 from crowdbot.core import InputError, Scene
-from crowdbot.data import Windows
-from crowdbot.data.motion import cut
+from crowdbot.data import Windows, slice_rows
 from crowdbot.models import CrowdModel, CurrentDirection
 
 MODEL = Drifting(share=0.8, push=1.5)
@@ -77,7 +76,7 @@ def test_people_simulated_row_by_row_equal_their_slow_twin() -> None:
     assert fast.shape == (1, 3, 4, 5, 2)
     for w in range(3):
         for row in range(1, 5):
-            known = cut(past, 0, row + 1)  # what is seen later decides nothing
+            known = slice_rows(past, 0, row + 1)  # what is seen later decides nothing
             for a, path in slow_again(_longer(known), MODEL, w, 2, 0.4, start=row).items():
                 if past.present[w, row, a] and past.present[w, : row + 1, a].all():
                     np.testing.assert_allclose(fast[0, w, row - 1, a], path[0], atol=1e-10)

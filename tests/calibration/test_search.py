@@ -14,10 +14,9 @@ from hypothesis import strategies as st
 
 from crowdbot import calibration
 from crowdbot.calibration import CMAES, Annealing, Genetic, Geometric, Greedy, RandomSearch, Search
-from crowdbot.core import InputError, UnknownName, stream
-from crowdbot.core.plug import built_in, find
+from crowdbot.core import InputError, UnknownName, builtin_classes, find_class, stream
 
-KINDS = built_in(calibration, Search)
+KINDS = builtin_classes(calibration, Search)
 every = pytest.mark.parametrize("name", KINDS)
 LOW, HIGH = np.array([-2.0, 0.1, 1.0]), np.array([2.0, 1.0, 5.1])
 TARGET = np.array([0.5, 0.25, 2.0])
@@ -54,9 +53,9 @@ class Watched:
 
 def test_searches_are_found_by_their_names() -> None:
     assert set(KINDS) == {"annealing", "cmaes", "genetic", "greedy", "random-search"}
-    assert find("cma-es", calibration, Search) is find("CMAES", calibration, Search) is CMAES
+    assert find_class("cma-es", calibration, Search) is find_class("CMAES", calibration, Search) is CMAES
     with pytest.raises(UnknownName, match="did you mean"):
-        find("genetics", calibration, Search)
+        find_class("genetics", calibration, Search)
 
 
 @every

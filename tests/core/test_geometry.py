@@ -9,13 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core.geometry import (
-    nearest_on_segment,
-    ray_to_disc,
-    ray_to_segment,
-    time_to_contact,
-    time_to_segment,
-)
+from crowdbot.core.geometry import nearest_on_segment, ray_to_disc, ray_to_segment, time_to_contact, time_to_segment
 
 number = st.floats(-8.0, 8.0).map(lambda value: round(value, 3))
 radius = st.floats(0.05, 3.0).map(lambda value: round(value, 3))

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core import InputError
-from crowdbot.core.neighbors import CROWD, SMALL, Neighbors, nearest
+from crowdbot.core import SMALL, InputError, Neighbors
+from crowdbot.core.neighbors import CROWD, nearest
 
 
 def twin(position, reach, most, seen, asking):

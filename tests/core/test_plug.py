@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from crowdbot.core import InputError, UnknownName
-from crowdbot.core.plug import built_in, find, kebab, read
+from crowdbot.core import InputError, UnknownName, builtin_classes, find_class, from_attributes, kebab
 
 
 class Walker(ABC):
@@ -59,43 +58,43 @@ def test_kebab(name, spoken):
 
 
 def test_built_in_lists_concrete_classes_only():
-    assert built_in(room, Walker) == {"fast-walker": FastWalker, "slow-walker": SlowWalker}
+    assert builtin_classes(room, Walker) == {"fast-walker": FastWalker, "slow-walker": SlowWalker}
 
 
 @pytest.mark.parametrize("name", ["fast-walker", "FastWalker", "fast_walker", "FASTWALKER", " fast-walker "])
 def test_find_takes_every_spelling(name):
-    assert find(name, room, Walker) is FastWalker
+    assert find_class(name, room, Walker) is FastWalker
 
 
 def test_unknown_name_says_what_may_be_meant():
     with pytest.raises(UnknownName, match="unknown walker 'fast-walkr', did you mean 'fast-walker'"):
-        find("fast-walkr", room, Walker)
+        find_class("fast-walkr", room, Walker)
 
 
 def test_find_by_file_and_trust(tmp_path):
     (tmp_path / "mine.py").write_text("from crowdbot.core import Scene\nclass Mine(Scene): pass\nOther = 3\n")
     from crowdbot.core import Scene
 
-    assert find("mine.py:Mine", room, Scene, folder=tmp_path).__name__ == "Mine"
-    assert find("mine.py:Mine", room, Scene, folder=tmp_path, trust=False).__name__ == "Mine"
+    assert find_class("mine.py:Mine", room, Scene, folder=tmp_path).__name__ == "Mine"
+    assert find_class("mine.py:Mine", room, Scene, folder=tmp_path, trust=False).__name__ == "Mine"
     with pytest.raises(InputError, match="mine.py:Other is not a concrete Scene; mine.py holds"):
-        find("mine.py:Other", room, Scene, folder=tmp_path)
+        find_class("mine.py:Other", room, Scene, folder=tmp_path)
     with pytest.raises(InputError, match="lies outside"):
-        find("../mine.py:Mine", room, Scene, folder=tmp_path / "inner", trust=False)
+        find_class("../mine.py:Mine", room, Scene, folder=tmp_path / "inner", trust=False)
     with pytest.raises(InputError, match="pass --trust"):
-        find("os:getcwd", room, Scene, trust=False)
+        find_class("os:getcwd", room, Scene, trust=False)
 
 
 def test_a_file_that_fails_is_named(tmp_path):
     (tmp_path / "broken.py").write_text("1 / 0\n")
     with pytest.raises(InputError, match=r"broken\.py cannot be loaded: ZeroDivisionError"):
-        find("broken.py:X", room, Walker, folder=tmp_path)
+        find_class("broken.py:X", room, Walker, folder=tmp_path)
     with pytest.raises(InputError, match="there is no file"):
-        find("absent.py:X", room, Walker, folder=tmp_path)
+        find_class("absent.py:X", room, Walker, folder=tmp_path)
 
 
 def test_read_converts_by_field():
-    made = read(FastWalker, {"speed": "2.5", "count": "4", "label": "a b", "brave": "true", "box": "1 2,3"})
+    made = from_attributes(FastWalker, {"speed": "2.5", "count": "4", "label": "a b", "brave": "true", "box": "1 2,3"})
     assert made == FastWalker(2.5, 4, "a b", True, (1.0, 2.0, 3.0))
 
 
@@ -113,4 +112,4 @@ def test_read_converts_by_field():
 )
 def test_read_names_what_is_wrong(kind, attributes, words):
     with pytest.raises(InputError, match=words):
-        read(kind, attributes, "trial.xml:7")
+        from_attributes(kind, attributes, "trial.xml:7")

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from crowdbot.core import CrowdbotError, InputError
-from crowdbot.core.workers import each
+from crowdbot.core import CrowdbotError, InputError, each
 
 
 def square(number: int) -> int:

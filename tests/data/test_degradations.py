@@ -6,8 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from crowdbot.core import DataError, InputError, parameters, stream
-from crowdbot.core.plug import built_in
+from crowdbot.core import DataError, InputError, builtin_classes, parameters, stream
 from crowdbot.data import Trajectories, degrade, load
 from crowdbot.data.degrade import (
     GHOST,
@@ -26,7 +25,7 @@ from crowdbot.data.degrade import (
 from crowdbot.data.degrade.identity_switches import encounters
 from crowdbot.data.degrade.turns import rank, turns
 
-KINDS = list(built_in(degrade, degrade.Degradation).values())
+KINDS = list(builtin_classes(degrade, degrade.Degradation).values())
 DETERMINISTIC = (LateStart,)
 
 

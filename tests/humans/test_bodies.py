@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from walks import walk
 
-from crowdbot.core.errors import InputError, UnknownName
+from crowdbot.core import InputError, UnknownName
 from crowdbot.humans import (
     LIMBS,
     REGIONS,

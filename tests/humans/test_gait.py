@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from walks import WALKERS, soles, walk
 
-from crowdbot.core.errors import InputError, UnknownName
+from crowdbot.core import InputError, UnknownName
 from crowdbot.humans import ACTIVITIES, Gait, People
 from crowdbot.humans import feet as feet_kernels
 from crowdbot.humans import posture as posture_kernels

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from walks import bone
 
-from crowdbot.core.errors import InputError
+from crowdbot.core import InputError
 from crowdbot.humans import CHAIR, WHEELCHAIR, Gait, People, Seat, names
 from crowdbot.humans.asset import shapes
 

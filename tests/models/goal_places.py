@@ -8,8 +8,7 @@ import math
 import numpy as np
 
 from crowdbot.core import stream
-from crowdbot.data import Trajectories
-from crowdbot.data.windows import Windows
+from crowdbot.data import Trajectories, Windows
 from crowdbot.models.goals import EnvironmentLayout, GroundTruth, LearnedDestinations
 
 STEP = 0.4

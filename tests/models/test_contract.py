@@ -11,11 +11,21 @@ import pytest
 from model_crowds import PILLAR, ROOM, crowd, renumbered
 
 import crowdbot.models as room
-from crowdbot.core import InputError, Paper, Scene, parameters, stream
-from crowdbot.core.neighbors import CROWD, SMALL
-from crowdbot.core.plug import built_in, find, kebab, read
+from crowdbot.core import (
+    SMALL,
+    InputError,
+    Paper,
+    Scene,
+    builtin_classes,
+    find_class,
+    from_attributes,
+    kebab,
+    parameters,
+    stream,
+)
+from crowdbot.core.neighbors import CROWD
 
-MODELS = [kind for kind in built_in(room, room.CrowdModel).values() if kind is not room.Mixture]
+MODELS = [kind for kind in builtin_classes(room, room.CrowdModel).values() if kind is not room.Mixture]
 """All but the mixture: it is made of others, has no parameters of its own, and is held to this in test_mixture."""
 every_model = pytest.mark.parametrize("kind", MODELS, ids=lambda kind: kebab(kind.__name__))
 
@@ -25,8 +35,8 @@ def velocity(model, scene, dt=0.1):
 
 
 def test_the_room_lists_models_and_goals():
-    assert {"orca", "social-force"} <= set(built_in(room, room.CrowdModel))
-    assert {"current-direction", "ground-truth"} <= set(built_in(room, room.Goal))
+    assert {"orca", "social-force"} <= set(builtin_classes(room, room.CrowdModel))
+    assert {"current-direction", "ground-truth"} <= set(builtin_classes(room, room.Goal))
     assert sorted(room.__all__) == sorted(set(room.__all__))
 
 
@@ -48,9 +58,9 @@ def test_parameters_are_a_table(kind):
 @every_model
 def test_parameters_come_from_text(kind):
     for row in parameters(kind):
-        model = read(kind, {row.name.replace("_", "-"): repr(row.default)})
+        model = from_attributes(kind, {row.name.replace("_", "-"): repr(row.default)})
         assert getattr(model, row.name) == row.default
-    assert find(kebab(kind.__name__), room, room.CrowdModel) is kind
+    assert find_class(kebab(kind.__name__), room, room.CrowdModel) is kind
 
 
 @every_model

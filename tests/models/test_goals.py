@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 
 from crowdbot import models
-from crowdbot.core import InputError
-from crowdbot.core.plug import find, read
-from crowdbot.data.motion import cut
-from crowdbot.data.windows import Windows
+from crowdbot.core import InputError, find_class, from_attributes
+from crowdbot.data import Windows, slice_rows
 from crowdbot.models import CurrentDirection, Goal, GroundTruth
 
 
@@ -93,7 +91,7 @@ def test_the_ground_truth_of_some_windows_and_of_their_first_rows():
     truth = GroundTruth(past, future)
     for window in (0, 1):
         for row in (2, 4):
-            some = cut(past[window : window + 1], 0, row)
+            some = slice_rows(past[window : window + 1], 0, row)
             assert np.array_equal(truth.resolve(some)[0], future.position[window, -1])
 
 
@@ -120,8 +118,8 @@ def test_bad_horizon(horizon):
 
 
 def test_goals_come_from_text():
-    kind = find("current-direction", models, Goal)
-    assert read(kind, {"steps": "3", "horizon": "8"}) == CurrentDirection(steps=3, horizon=8.0)
+    kind = find_class("current-direction", models, Goal)
+    assert from_attributes(kind, {"steps": "3", "horizon": "8"}) == CurrentDirection(steps=3, horizon=8.0)
 
 
 def test_nothing_given_is_changed():

@@ -10,13 +10,12 @@ from goal_places import crowd, made, moved, street, windows
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core import InputError
-from crowdbot.core.plug import built_in, find, kebab
-from crowdbot.data.motion import observed_velocity, steady_velocity
+from crowdbot.core import InputError, builtin_classes, find_class, kebab
+from crowdbot.data import observed_velocity, steady_velocity
 from crowdbot.models import goals
 from crowdbot.models.goals import Choices, CurrentDirection, Goal
 
-KINDS = list(built_in(goals, Goal).values())
+KINDS = list(builtin_classes(goals, Goal).values())
 every_goal = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kebab(kind.__name__))
 
 
@@ -27,9 +26,9 @@ def answers(goal, past):
 
 def test_the_goals_are_these():
     names = {"current-direction", "environment-layout", "ground-truth", "learned-destinations"}
-    assert set(built_in(goals, Goal)) == names
-    assert find("learned-destinations", goals, Goal).learns
-    assert find("environment-layout", goals, Goal).learns
+    assert set(builtin_classes(goals, Goal)) == names
+    assert find_class("learned-destinations", goals, Goal).learns
+    assert find_class("environment-layout", goals, Goal).learns
     assert not CurrentDirection.learns
 
 

@@ -9,8 +9,7 @@ import pytest
 import shapely
 from goal_places import crowd, street, windows
 
-from crowdbot.core import InputError, Walls
-from crowdbot.core.plug import read
+from crowdbot.core import InputError, Walls, from_attributes
 from crowdbot.models.goals import EnvironmentLayout
 from crowdbot.models.goals.routes import Routes, sees
 
@@ -120,7 +119,7 @@ def test_a_recorded_place_has_its_openings_and_how_many_left_there():
 
 
 def test_exits_come_from_text():
-    layout = read(EnvironmentLayout, {"exits": "10 0, 0 10", "straight": "0.2"})
+    layout = from_attributes(EnvironmentLayout, {"exits": "10 0, 0 10", "straight": "0.2"})
     assert layout.exits[:, 0].tolist() == [[10.0, 0.0], [0.0, 10.0]]
     assert layout.straight == 0.2
 

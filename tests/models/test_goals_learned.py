@@ -11,8 +11,7 @@ from goal_places import crowd, street, windows
 from scipy.optimize import minimize
 
 from crowdbot.core import InputError
-from crowdbot.data import Trajectories, load
-from crowdbot.data.motion import bridged, observed_velocity, steady_velocity
+from crowdbot.data import Trajectories, bridged, load, observed_velocity, steady_velocity
 from crowdbot.models.goals import CurrentDirection, LearnedDestinations
 from crowdbot.models.goals.exits import clusters, track_ends
 from crowdbot.models.goals.learned_velocity import LearnedVelocity, mean_velocity

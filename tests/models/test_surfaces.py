@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from model_crowds import PILLAR, ROOM
 
-from crowdbot.core.walls import Walls
+from crowdbot.core import Walls
 from crowdbot.models.surfaces import feel, surfaces_of
 
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from crowdbot import models, navigation
-from crowdbot.core import InputError, Twist, Walls, plug
+from crowdbot.core import InputError, Twist, Walls, builtin_classes, from_attributes
 from crowdbot.navigation import ORCA, Limits, Observation, People, Straight
 
-NAVIGATORS = plug.built_in(navigation, navigation.Navigator)
+NAVIGATORS = builtin_classes(navigation, navigation.Navigator)
 LIMITS = Limits(1.0, 1.5, 1.0, 3.0)
 
 
@@ -30,7 +30,7 @@ def test_the_room_shows_its_contracts():
 @pytest.mark.parametrize("kind", NAVIGATORS.values(), ids=list(NAVIGATORS))
 class TestEveryNavigator:
     def test_is_a_frozen_spec_that_text_makes(self, kind):
-        navigator = plug.read(kind, {"speed": "0.7"})
+        navigator = from_attributes(kind, {"speed": "0.7"})
         assert navigator == kind(speed=0.7)
         with pytest.raises(dataclasses.FrozenInstanceError):
             navigator.speed = 1.0

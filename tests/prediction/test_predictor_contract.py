@@ -12,8 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot import prediction
-from crowdbot.core import InputError, stream
-from crowdbot.core.plug import built_in
+from crowdbot.core import InputError, builtin_classes, stream
 from crowdbot.data import Forecast, Trajectories, Windows
 from crowdbot.prediction import Predictor
 from crowdbot.prediction.learned.predictor import LearnedPredictor
@@ -22,7 +21,7 @@ Maker = Callable[..., Windows]
 
 KINDS = {
     name: kind
-    for name, kind in built_in(prediction, Predictor).items()
+    for name, kind in builtin_classes(prediction, Predictor).items()
     if not issubclass(kind, LearnedPredictor)  # those need weights, and have a contract test of their own
 }
 every = pytest.mark.parametrize("name", KINDS)

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crowdbot.core import InputError, stream
-from crowdbot.core.errors import DataError
+from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Recording
 from crowdbot.prediction.learned.samples import Samples, leave_out, short_recordings, split_in_time
 

@@ -11,8 +11,7 @@ import pytest
 
 from crowdbot import calibration
 from crowdbot.calibration import Cost, Search
-from crowdbot.core import InputError, stream
-from crowdbot.core.plug import built_in
+from crowdbot.core import InputError, builtin_classes, stream
 from crowdbot.data import Forecast, Trajectories, Windows
 from crowdbot.models import CurrentDirection
 from crowdbot.models.goals import EnvironmentLayout, Goal, GroundTruth, LearnedDestinations
@@ -20,8 +19,8 @@ from crowdbot.prediction import Simulated
 
 Maker = Callable[..., Windows]
 
-COSTS = [name for name in built_in(calibration, Cost) if name != "weighted-sum"]
-SEARCHES = list(built_in(calibration, Search))
+COSTS = [name for name in builtin_classes(calibration, Cost) if name != "weighted-sum"]
+SEARCHES = list(builtin_classes(calibration, Search))
 MODELS = ("orca", "social-force", "power-law", "boids")
 SCHEMES = [*itertools.product(("orca",), COSTS, SEARCHES), *((model, COSTS[0], "genetic") for model in MODELS[1:])]
 every = pytest.mark.parametrize("scheme", SCHEMES, ids=" ".join)

@@ -387,7 +387,7 @@ def test_what_does_not_fit_is_said(social: SocialWays, checkpoint: str, crowd: M
 def test_without_torch_it_says_what_to_install(checkpoint: str, crowd: Maker, monkeypatch: pytest.MonkeyPatch) -> None:
     import sys
 
-    from crowdbot.core.errors import MissingExtra
+    from crowdbot.core import MissingExtra
     from crowdbot.prediction.learned import social_ways_predictor
 
     social_ways_predictor._network.cache_clear()

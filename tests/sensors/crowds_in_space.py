@@ -5,8 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from crowdbot.core import Bodies, Scene, SpatialPose, stream
-from crowdbot.core.pose import product
+from crowdbot.core import Bodies, Scene, SpatialPose, product, stream
 
 ROOM = [(-6.0, -5.0), (-6.0, 5.0), (6.0, 5.0), (6.0, -5.0)]
 PARTS = ("head", "torso", "arm", "leg")

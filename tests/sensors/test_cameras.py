@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from crowdbot.core import FreeClock, InputError, Pose, Scene, SpatialPose, UnknownName, plug, stream
+from crowdbot.core import FreeClock, InputError, Pose, Scene, SpatialPose, UnknownName, from_attributes, stream
 from crowdbot.sensors import (
     PRESETS,
     DepthCamera,
@@ -184,6 +184,8 @@ def test_known_numbers_of_products():
 
 
 def test_sensors_are_read_from_text():
-    assert plug.read(Lidar3D, {"elevations": "-0.1 0.1", "columns": "8"}).elevations == (-0.1, 0.1)
-    assert plug.read(DepthCamera, {"distortion": "0.1 0 0 0 0"}).lens.distortion[0] == 0.1
-    assert plug.read(Lidar2D, {"noise": "quantised(0.1)", "delay": "0.1"}) == Lidar2D(noise=Quantised(0.1), delay=0.1)
+    assert from_attributes(Lidar3D, {"elevations": "-0.1 0.1", "columns": "8"}).elevations == (-0.1, 0.1)
+    assert from_attributes(DepthCamera, {"distortion": "0.1 0 0 0 0"}).lens.distortion[0] == 0.1
+    assert from_attributes(Lidar2D, {"noise": "quantised(0.1)", "delay": "0.1"}) == Lidar2D(
+        noise=Quantised(0.1), delay=0.1
+    )

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from crowdbot.core import InputError, plug, stream
+from crowdbot.core import InputError, from_attributes, stream
 from crowdbot.sensors import Dropout, Gaussian, Lidar2D, Noise, Offset, Peak, Quantised, disturbed
 
 
@@ -95,7 +95,7 @@ def test_text_goes_both_ways(noise):
 def test_text_is_read_as_trial_files_write_it():
     assert Noise.parse("gaussian(0.01) peak(0.001, 1.0)") == (Gaussian(0.01), Peak(0.001, 1.0))
     assert Noise.parse(" Offset( -2 ), gaussian(.5)+peak(1,2)") == (Offset(-2.0), Gaussian(0.5), Peak(1.0, 2.0))
-    assert plug.read(Lidar2D, {"noise": "gaussian(0.02)", "rays": "90"}) == Lidar2D(rays=90, noise=Gaussian(0.02))
+    assert from_attributes(Lidar2D, {"noise": "gaussian(0.02)", "rays": "90"}) == Lidar2D(rays=90, noise=Gaussian(0.02))
 
 
 @pytest.mark.parametrize(

@@ -10,10 +10,10 @@ import pytest
 from crowds_in_space import carried_away, crowd, somewhere
 
 from crowdbot import sensors
-from crowdbot.core import InputError, Pose, Scene, plug, stream
+from crowdbot.core import InputError, Pose, Scene, builtin_classes, from_attributes, stream
 
-SENSORS = plug.built_in(sensors, sensors.Sensor)
-NOISES = plug.built_in(sensors, sensors.Noise)
+SENSORS = builtin_classes(sensors, sensors.Sensor)
+NOISES = builtin_classes(sensors, sensors.Noise)
 EXAMPLES = {
     "gaussian": "gaussian(0.1)",
     "offset": "offset(0.2)",
@@ -101,7 +101,7 @@ def test_every_field_is_explained_and_read_from_text(kind):
         value = getattr(made, field.name)
         words = " ".join(map(str, value)) if isinstance(value, tuple) else str(value).lower()
         if words:
-            assert getattr(plug.read(kind, {field.name.replace("_", "-"): words}), field.name) == value
+            assert getattr(from_attributes(kind, {field.name.replace("_", "-"): words}), field.name) == value
 
 
 @every_sensor

@@ -14,7 +14,7 @@ from space_trials import LEAN, room
 from trial_texts import FLOW, GOOD
 
 from crowdbot.core import EpisodeError, InputError, TrialError
-from crowdbot.data.tape import Tape
+from crowdbot.data import Tape
 from crowdbot.trials import Trial, branch, read_episode, record, replay
 from crowdbot.trials.changing import changed
 

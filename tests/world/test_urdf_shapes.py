@@ -5,8 +5,7 @@ import pytest
 import trimesh
 from robot_texts import BALL, joint, link, mesh, robot
 
-from crowdbot.core import RobotError
-from crowdbot.core.errors import MissingExtra
+from crowdbot.core import MissingExtra, RobotError
 from crowdbot.world.urdf import Box, Capsule, Cylinder, Mesh, Sphere, meshes, read_urdf, with_pieces
 from crowdbot.world.urdf.inertia import unphysical
 

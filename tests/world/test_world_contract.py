@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 
 from crowdbot import world as room
-from crowdbot.core import Pose, Scene, Twist, plug
+from crowdbot.core import Pose, Scene, Twist, builtin_classes, from_attributes
 from crowdbot.models import ORCA
 
-DRIVES = plug.built_in(room, room.Drive)
-WORLDS = plug.built_in(room, room.World)
+DRIVES = builtin_classes(room, room.Drive)
+WORLDS = builtin_classes(room, room.World)
 
 
 @pytest.mark.parametrize("kind", DRIVES.values(), ids=list(DRIVES))
 def test_drives(kind):
-    drive = plug.read(kind, {"max-speed": "0.8"})
+    drive = from_attributes(kind, {"max-speed": "0.8"})
     assert (drive.max_speed, kind.__dataclass_params__.frozen) == (0.8, True)
     pose, twist = Pose.of(np.zeros((3, 2)), 0.2), room.Twists.of(Twist(), 3)
     after, changed = drive.step(pose, twist, Twist(0.5, 0.5), 0.1)

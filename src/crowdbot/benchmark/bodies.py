@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core import Bodies, Scene, SpatialPose, stream
-from crowdbot.core.optional import optional
+from crowdbot.core import Bodies, Scene, SpatialPose, optional, stream
 from crowdbot.sensors.beams import fan
 
 __all__ = ["mujoco_rays", "people_with_limbs"]

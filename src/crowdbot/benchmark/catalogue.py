@@ -6,8 +6,7 @@ import importlib
 import inspect
 from typing import Any
 
-from crowdbot.core import InputError, Paper, UnknownName
-from crowdbot.core.plug import built_in
+from crowdbot.core import InputError, Paper, UnknownName, builtin_classes
 
 __all__ = ["catalogue", "cite", "papers"]
 
@@ -105,7 +104,7 @@ def _papers_of(thing: Any) -> list[Paper]:
 def _classes(kind: str) -> dict[str, type]:
     room_name, contract = KINDS[kind]
     room = importlib.import_module(f"crowdbot.{room_name}")
-    return built_in(room, getattr(room, contract))
+    return builtin_classes(room, getattr(room, contract))
 
 
 def _first_line(thing: Any) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from crowdbot.core.plug import kebab
+from crowdbot.core import kebab
 
 from .report import Predicted, write_report
 

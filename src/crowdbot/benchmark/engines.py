@@ -7,8 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Scene
-from crowdbot.core.optional import optional
+from crowdbot.core import Scene, optional
 
 __all__ = ["JUPEDSIM", "jupedsim_step", "power_law_in_numpy"]
 

@@ -65,9 +65,9 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
     True
     """
     from crowdbot import models
-    from crowdbot.core.plug import built_in, kebab
+    from crowdbot.core import builtin_classes, kebab
 
-    kinds = built_in(models, models.CrowdModel)
+    kinds = builtin_classes(models, models.CrowdModel)
     found: dict[str, Callable[[], Measurement | Gauge]] = {}
     del kinds["mixture"]  # costs what its models cost
     for name, kind in kinds.items():

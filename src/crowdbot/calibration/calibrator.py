@@ -11,9 +11,8 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, stream
-from crowdbot.core.plug import kebab
-from crowdbot.data.windows import Windows
+from crowdbot.core import InputError, Scene, kebab, stream
+from crowdbot.data import Windows
 from crowdbot.models import CrowdModel
 from crowdbot.models.goals import Goal
 

@@ -13,9 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import stream
-from crowdbot.core.version import code_digest
-from crowdbot.core.workers import each_kept
+from crowdbot.core import code_digest, each_kept, stream
 from crowdbot.data import Recording, Windows
 
 from .calibrator import Calibrator

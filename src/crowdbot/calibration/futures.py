@@ -8,9 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Scene
-from crowdbot.core.parameter import parameters
-from crowdbot.data.windows import Windows
+from crowdbot.core import Scene, parameters
+from crowdbot.data import Windows
 
 from .rollout import Rollout
 

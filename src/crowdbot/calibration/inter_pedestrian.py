@@ -8,7 +8,7 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from crowdbot.core.kernels import kernel
+from crowdbot.core import kernel
 
 from .cost import Cost
 from .rehearsal import Walked

@@ -7,8 +7,7 @@ from types import ModuleType
 from typing import cast
 
 from crowdbot import models
-from crowdbot.core import InputError
-from crowdbot.core.plug import find, kebab
+from crowdbot.core import InputError, find_class, kebab
 from crowdbot.data import Recording
 from crowdbot.models import CrowdModel, goals
 from crowdbot.models.goals import Goal, GroundTruth
@@ -31,7 +30,7 @@ def named_goal(value: Goal | str) -> Goal:
 
 def kind_of_goal(name: str) -> type[Goal]:
     """Return the class of a goal by its name or address."""
-    return cast(type[Goal], find(name, goals, Goal))
+    return cast(type[Goal], find_class(name, goals, Goal))
 
 
 def goal_for(name: str, recording: Recording) -> Goal:
@@ -65,7 +64,7 @@ def _named(value: object, room: ModuleType, contract: type) -> object:
         InputError: no class has this name, it cannot be made without arguments, or the value is not of the contract.
     """
     if isinstance(value, str):
-        kind = find(value, room, contract)
+        kind = find_class(value, room, contract)
         try:
             return kind()
         except TypeError:

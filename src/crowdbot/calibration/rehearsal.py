@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Scene
-from crowdbot.data.motion import bridged, cut
-from crowdbot.data.windows import Windows
+from crowdbot.data import Windows, bridged, slice_rows
 
 from .rollout import Rollout
 
@@ -75,7 +74,7 @@ class Rehearsal:
     def _each(self) -> Scene:
         """The scenes at rows 1 to T - 2, window by window along E: ``E = W * (T - 2)``."""
         rows = range(1, self.past.position.shape[1] - 1)
-        scenes = [self.rollout.scene(cut(self.past, 0, row + 1), row) for row in rows]
+        scenes = [self.rollout.scene(slice_rows(self.past, 0, row + 1), row) for row in rows]
         order = np.arange(len(rows) * len(self.past)).reshape(len(rows), -1).T.ravel()
         return _joined(scenes).environments(order)
 

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, Walls
-from crowdbot.data.motion import bridged, cut
-from crowdbot.data.windows import Windows
+from crowdbot.data import Windows, bridged, slice_rows
 from crowdbot.models import CrowdModel
 from crowdbot.models.goals import Goal
 
@@ -66,7 +65,7 @@ class Rollout:
                 f"{past.source} is in {past.units}: crowd models walk in metres, give the recording a scale"
             )
         whole = bridged(past)
-        known = cut(whole, 0, max(row, 1) + 1)
+        known = slice_rows(whole, 0, max(row, 1) + 1)
         velocity = self.goal.velocity(known)
         here = whole.present[:, row]
         place = whole.position[:, row]

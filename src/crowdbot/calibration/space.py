@@ -9,11 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Parameter, Scene, parameters
-from crowdbot.core.errors import did_you_mean
-from crowdbot.core.plug import kebab
-from crowdbot.data.motion import bridged, observed_velocity
-from crowdbot.data.windows import Windows
+from crowdbot.core import InputError, Parameter, Scene, did_you_mean, kebab, parameters
+from crowdbot.data import Windows, bridged, observed_velocity
 from crowdbot.models import CrowdModel
 
 from .rollout import Rollout, with_speed

@@ -37,7 +37,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return the exit status: 0 done, 1 the check failed, 2 wrong input, 130 interrupted."""
     words = [*(sys.argv[1:] if arguments is None else arguments)]
     options = _parser(words).parse_args(words)
-    from crowdbot.core.errors import CrowdbotError
+    from crowdbot.core import CrowdbotError
 
     try:
         status: int = options.main(options)

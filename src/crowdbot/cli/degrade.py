@@ -83,17 +83,17 @@ def read_degradations(words: Sequence[str], values: Mapping[str, str]) -> list[D
 
     A parameter goes to everything that has it; ``occlusion.eye`` goes to the one.
     """
-    from crowdbot.core import plug
+    from crowdbot.core import builtin_classes, find_class, from_attributes
     from crowdbot.data import degrade
 
     names = list(dict.fromkeys(words))
     if ALL in names:
-        names = [*plug.built_in(degrade, degrade.Degradation)]
-    kinds = [[plug.find(part, degrade, degrade.Degradation) for part in name.split("+")] for name in names]
+        names = [*builtin_classes(degrade, degrade.Degradation)]
+    kinds = [[find_class(part, degrade, degrade.Degradation) for part in name.split("+")] for name in names]
     _check_names(values, {kind for parts in kinds for kind in parts})
     found: list[Degradation | Chain] = []
     for parts in kinds:
-        links = tuple(plug.read(kind, _own(kind, values)) for kind in parts)
+        links = tuple(from_attributes(kind, _own(kind, values)) for kind in parts)
         found.append(links[0] if len(links) == 1 else degrade.Chain(links))
     return found
 
@@ -106,22 +106,21 @@ def _fields(kind: type) -> list[str]:
 
 def _own(kind: type, values: Mapping[str, str]) -> dict[str, str]:
     """Return those values that are meant for this degradation."""
-    from crowdbot.core import plug
+    from crowdbot.core import kebab
 
     split = {key: key.replace("_", "-").rpartition(".") for key in values}
     return {
         field: values[key]
         for key, (name, _, field) in split.items()
-        if field in _fields(kind) and name in ("", plug.kebab(kind.__name__))
+        if field in _fields(kind) and name in ("", kebab(kind.__name__))
     }
 
 
 def _check_names(values: Mapping[str, str], kinds: set[type]) -> None:
-    from crowdbot.core import InputError, plug
-    from crowdbot.core.errors import did_you_mean
+    from crowdbot.core import InputError, did_you_mean, kebab
 
     known = sorted({field for kind in kinds for field in _fields(kind)})
-    full = sorted(f"{plug.kebab(kind.__name__)}.{field}" for kind in kinds for field in _fields(kind))
+    full = sorted(f"{kebab(kind.__name__)}.{field}" for kind in kinds for field in _fields(kind))
     for key in values:
         word = key.replace("_", "-")
         if word not in known and word not in full:
@@ -152,11 +151,13 @@ def _check_sweep(
 def _predictors(options: argparse.Namespace, found: Sequence[Recording]) -> list[Predictor]:
     """Return what is scored; a goal that learns does so from the clean begin of the one recording."""
     from crowdbot import prediction
-    from crowdbot.core import InputError, plug
+    from crowdbot.core import InputError, builtin_classes, required_fields
     from crowdbot.prediction.learned.predictor import LearnedPredictor
 
-    known = plug.built_in(prediction, prediction.Predictor)
-    plain = (name for name in known if not issubclass(known[name], LearnedPredictor) and not plug.needs(known[name]))
+    known = builtin_classes(prediction, prediction.Predictor)
+    plain = (
+        name for name in known if not issubclass(known[name], LearnedPredictor) and not required_fields(known[name])
+    )
     options.predictor = [*dict.fromkeys(options.predictor or plain)]
     options.set = []  # they are parameters of the degradation here
     made = recipes(options)

@@ -133,8 +133,7 @@ def progress(quiet: bool = False) -> Iterator[Progress]:
 
 @contextmanager
 def _compiling_told(say: Callable[[str], None]) -> Iterator[None]:
-    from crowdbot.core.compiling import on_compiling
-    from crowdbot.core.kernels import cache_folder, is_cold
+    from crowdbot.core import cache_folder, is_cold, on_compiling
 
     def tell() -> None:
         first = "first run: " if is_cold() else ""

@@ -44,13 +44,13 @@ def recipes(options: argparse.Namespace) -> tuple[Recipe, ...]:
         InputError: a name is unknown, or parts of a scheme are given and no predictor simulates a crowd.
     """
     from crowdbot import prediction
-    from crowdbot.core import InputError, plug
+    from crowdbot.core import InputError, find_class
 
     values = assignments(options.set)
     found: list[Recipe] = []
     used = False
     for name in options.predictor:
-        kind = plug.find(name, prediction, prediction.Predictor)
+        kind = find_class(name, prediction, prediction.Predictor)
         if issubclass(kind, prediction.Simulated):
             used = True
             found += _schemes(options, values)
@@ -130,23 +130,23 @@ def chosen(
     import dataclasses
 
     from crowdbot import prediction
-    from crowdbot.core import InputError, plug
+    from crowdbot.core import InputError, find_class, from_attributes, kebab
 
-    kind = plug.find(name, prediction, prediction.Predictor)
+    kind = find_class(name, prediction, prediction.Predictor)
     known = {field.name for field in dataclasses.fields(kind)}
     if "model" not in known:
         if model is not None:
-            raise InputError(f"--model is for predictors that simulate a crowd; {plug.kebab(kind.__name__)} does not")
-        return plug.read(kind, values)  # type: ignore[no-any-return]
+            raise InputError(f"--model is for predictors that simulate a crowd; {kebab(kind.__name__)} does not")
+        return from_attributes(kind, values)  # type: ignore[no-any-return]
     own = {key: value for key, value in values.items() if key.replace("-", "_") in known}
     rest = {key: value for key, value in values.items() if key not in own}
     crowd = crowd_model(model or "orca", rest)
-    return dataclasses.replace(plug.read(kind, own), model=crowd, **(fields or {}))  # type: ignore[no-any-return]
+    return dataclasses.replace(from_attributes(kind, own), model=crowd, **(fields or {}))  # type: ignore[no-any-return]
 
 
 def crowd_model(name: str, values: Mapping[str, str]) -> CrowdModel:
     """Return a crowd model by name with its parameters."""
     from crowdbot import models
-    from crowdbot.core import plug
+    from crowdbot.core import find_class, from_attributes
 
-    return plug.read(plug.find(name, models, models.CrowdModel), values)  # type: ignore[no-any-return]
+    return from_attributes(find_class(name, models, models.CrowdModel), values)  # type: ignore[no-any-return]

@@ -40,8 +40,7 @@ def settings(options: argparse.Namespace) -> dict[str, str]:
     Raises:
         InputError: one is not of the form NAME=VALUE, or is given twice.
     """
-    from crowdbot.core import InputError
-    from crowdbot.core.errors import did_you_mean
+    from crowdbot.core import InputError, did_you_mean
 
     found: dict[str, str] = {}
     for text in options.settings:

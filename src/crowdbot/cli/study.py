@@ -32,7 +32,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Train every method with every seed, measure, and draw."""
-    from crowdbot.core.errors import UnknownName
+    from crowdbot.core import UnknownName
     from crowdbot.prediction.learned.extra import device_of
     from crowdbot.prediction.learned.toy_study import METHODS, ToyStudy, with_values
 

@@ -52,7 +52,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Learn, and say where the weights are."""
-    from crowdbot.core.errors import InputError, UnknownName
+    from crowdbot.core import InputError, UnknownName
     from crowdbot.prediction.learned.extra import threads, torch_module
     from crowdbot.prediction.learned.samples import short_recordings
     from crowdbot.prediction.learned.training import BEST, LAST, Schedule, train

@@ -28,7 +28,7 @@ __all__ = [
     "TrialError",
     "UnknownName",
     "did_you_mean",
-    "nearest",
+    "nearest_name",
 ]
 
 
@@ -86,14 +86,14 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     >>> did_you_mean("kalmann", ["kalman", "orca"])
     ", did you mean 'kalman'?"
     """
-    near = nearest(word, known)
+    near = nearest_name(word, known)
     return f", did you mean {near!r}?" if near else ""
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
+def nearest_name(word: str, known: Iterable[str]) -> str:
     """Return the known word that is near, empty when none is.
 
-    >>> nearest("Kalmann", ["kalman", "orca"]), nearest("x", ["kalman"])
+    >>> nearest_name("Kalmann", ["kalman", "orca"]), nearest_name("x", ["kalman"])
     ('kalman', '')
     """
     known = list(known)

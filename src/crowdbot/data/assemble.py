@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core.errors import DataError, did_you_mean
+from crowdbot.core import DataError, did_you_mean
 
 from .rows import check_rows, floats, frame_step, integers
 from .source import MAX_ROWS, Given, Source

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import DataError
+from crowdbot.core import DataError
 
 from .rows import frame_step, integers, where
 

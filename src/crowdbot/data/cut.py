@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import DataError, InputError, did_you_mean
+from crowdbot.core import DataError, InputError, did_you_mean
 
 from .rows import Runs, runs
 from .windows import Windows

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import DataError
+from crowdbot.core import DataError
 
 from .assemble import assemble
 from .source import Given, Reader, Source, parsing

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import DataError
+from crowdbot.core import DataError
 
 from .assemble import assemble
 from .source import Given, Reader, Source

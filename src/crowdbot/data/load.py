@@ -5,7 +5,7 @@ from __future__ import annotations
 from os import PathLike
 from pathlib import Path
 
-from crowdbot.core.errors import DataError, InputError, did_you_mean
+from crowdbot.core import DataError, InputError, did_you_mean
 
 from . import episode, eth, juelich, petrack, sdd, sgan, socialways, tables, trajnetpp, ucy
 from .assemble import check_fps, check_units

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from .windows import Windows
 
-__all__ = ["bridged", "cut", "observed_velocity", "steady_velocity"]
+__all__ = ["bridged", "observed_velocity", "slice_rows", "steady_velocity"]
 
 COMPANY = 8.0
 """So many people of the window count beside a person's own rows: few rows of one track say little of its noise."""
@@ -19,7 +19,7 @@ CHUNK_NUMBERS = 2_000_000
 """About so many numbers are compared at once."""
 
 
-def cut(windows: Windows, first: int, last: int) -> Windows:
+def slice_rows(windows: Windows, first: int, last: int) -> Windows:
     """Return the rows ``first`` to ``last`` (not included) of every window."""
     rows = slice(first, last)
     return dataclasses.replace(

@@ -7,7 +7,7 @@ import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
-from crowdbot.core.errors import DataError, InputError
+from crowdbot.core import DataError, InputError
 
 from .load import load
 from .trajectories import Trajectories

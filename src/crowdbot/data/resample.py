@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import DataError, InputError
+from crowdbot.core import DataError, InputError
 
 from .source import MAX_ROWS
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core.errors import DataError
+from crowdbot.core import DataError
 
 __all__ = ["Runs", "check_rows", "floats", "frame_step", "integers", "runs", "where"]
 

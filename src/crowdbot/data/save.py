@@ -11,7 +11,7 @@ from typing import IO, Any
 
 import numpy as np
 
-from crowdbot.core.errors import DataError, InputError, did_you_mean
+from crowdbot.core import DataError, InputError, did_you_mean
 
 from .rows import runs
 from .tables import ROBOT

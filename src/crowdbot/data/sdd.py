@@ -9,7 +9,7 @@ import re
 
 import numpy as np
 
-from crowdbot.core.errors import DataError
+from crowdbot.core import DataError
 
 from .assemble import assemble
 from .source import Given, Reader, Source

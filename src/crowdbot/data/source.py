@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import DataError, InputError
+from crowdbot.core import DataError, InputError
 
 if TYPE_CHECKING:
     from .trajectories import Trajectories

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core.errors import DataError
+from crowdbot.core import DataError
 
 from .assemble import assemble
 from .columns import (

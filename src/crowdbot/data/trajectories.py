@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core.errors import DataError, InputError, did_you_mean
+from crowdbot.core import DataError, InputError, did_you_mean
 
 from .cut import past_at, windows_of
 from .resample import resampled

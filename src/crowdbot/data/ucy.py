@@ -13,7 +13,7 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import DataError
+from crowdbot.core import DataError
 
 from .assemble import assemble
 from .source import MAX_ROWS, Given, Reader, Source

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core.errors import InputError
+from crowdbot.core import InputError
 
 __all__ = ["Windows"]
 

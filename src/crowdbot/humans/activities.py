@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import InputError, UnknownName
+from crowdbot.core import InputError, UnknownName
 
 __all__ = ["ACTIVITIES", "activity_index"]
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.kernels import kernel
+from crowdbot.core import kernel
 
 from .stride import LANDED, STRIKE, TIPPING, ankle_over, cycle, foot_pose, smooth, wrapped
 

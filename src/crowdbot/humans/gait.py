@@ -9,9 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core.errors import InputError
-from crowdbot.core.paper import Paper
-from crowdbot.core.random import stream
+from crowdbot.core import InputError, Paper, stream
 
 from .activities import ACTIVITIES, activity_index
 from .feet import Gaits, advance

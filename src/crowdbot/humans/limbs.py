@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.paper import Paper
+from crowdbot.core import Paper
 
 from .asset import Shapes, shapes
 from .person import persons

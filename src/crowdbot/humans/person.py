@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core.errors import UnknownName
+from crowdbot.core import UnknownName
 
 from .asset import shapes
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import InputError
+from crowdbot.core import InputError
 
 __all__ = ["CHAIR", "WHEELCHAIR", "Seat", "seat_rows"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.kernels import kernel
+from crowdbot.core import kernel
 
 from .asset import Level
 

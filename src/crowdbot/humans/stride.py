@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.kernels import kernel
+from crowdbot.core import kernel
 
 __all__ = ["LANDED", "STRIKE", "ankle_over", "cycle", "foot_pose", "lowest", "smooth", "wrapped"]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.random import stream
+from crowdbot.core import stream
 
 from .asset import shapes
 from .person import Person

@@ -5,10 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError
-from crowdbot.core.errors import did_you_mean
-from crowdbot.data.forecast import Forecast
-from crowdbot.data.windows import Windows
+from crowdbot.core import InputError, did_you_mean
+from crowdbot.data import Forecast, Windows
 
 from .displacement import check
 

@@ -7,11 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError
-from crowdbot.core.errors import did_you_mean
-from crowdbot.core.kernels import kernel
-from crowdbot.data.forecast import Forecast
-from crowdbot.data.windows import Windows
+from crowdbot.core import InputError, did_you_mean, kernel
+from crowdbot.data import Forecast, Windows
 
 from .displacement import ade, check
 

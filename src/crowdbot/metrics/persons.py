@@ -7,8 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.data.forecast import Forecast
-from crowdbot.data.windows import Windows
+from crowdbot.data import Forecast, Windows
 
 from .collisions import accompanied, collided, mean_over_samples
 from .displacement import best_of, chosen_sample, distances, mean_and_final

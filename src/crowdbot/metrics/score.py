@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
-from crowdbot.data.forecast import Forecast
-from crowdbot.data.windows import Windows
+from crowdbot.data import Forecast, Windows
 
 from .displacement import MISS, miss_rate
 from .interval import Interval, Intervals, People

@@ -10,12 +10,9 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
+from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
 from crowdbot.core.geometry import nearest_on_segment
-from crowdbot.core.kernels import kernel
-from crowdbot.core.neighbors import CHUNK, Neighbors, nearest
-from crowdbot.core.paper import Paper
-from crowdbot.core.parameter import PerAgent, parameter, per_agent
-from crowdbot.core.scene import Scene
+from crowdbot.core.neighbors import nearest
 
 from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
 

@@ -9,12 +9,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import InputError, did_you_mean
+from crowdbot.core import InputError, Paper, PerAgent, Scene, did_you_mean, parameter, per_agent, stream
 from crowdbot.core.neighbors import nearest
-from crowdbot.core.paper import Paper
-from crowdbot.core.parameter import PerAgent, parameter, per_agent
-from crowdbot.core.random import stream
-from crowdbot.core.scene import Scene
 
 from .costs import HalfPlanes, VelocityCost
 from .model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.parameter import PerAgent, parameter
+from crowdbot.core import PerAgent, parameter
 
 from .linear_program import best_velocity
 from .model import CrowdModel, rows

@@ -10,14 +10,22 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from crowdbot.core.bounds import check_number
-from crowdbot.core.errors import InputError, did_you_mean
+from crowdbot.core import (
+    CHUNK,
+    SMALL,
+    InputError,
+    Neighbors,
+    Paper,
+    PerAgent,
+    Scene,
+    check_number,
+    did_you_mean,
+    kernel,
+    parameter,
+    per_agent,
+)
 from crowdbot.core.geometry import nearest_on_segment
-from crowdbot.core.kernels import kernel
-from crowdbot.core.neighbors import CHUNK, SMALL, Neighbors, nearest
-from crowdbot.core.paper import Paper
-from crowdbot.core.parameter import PerAgent, parameter, per_agent
-from crowdbot.core.scene import Scene
+from crowdbot.core.neighbors import nearest
 
 from .laws import law_of, shortened
 from .model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes

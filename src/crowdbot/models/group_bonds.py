@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.kernels import kernel
-from crowdbot.core.scene import Scene
+from crowdbot.core import Scene, kernel
 
 __all__ = ["Groups", "bond", "bond_as_package", "groups_of"]
 

@@ -10,12 +10,19 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import InputError, did_you_mean
-from crowdbot.core.kernels import kernel
-from crowdbot.core.neighbors import CHUNK, Neighbors, nearest
-from crowdbot.core.paper import Paper
-from crowdbot.core.parameter import PerAgent, parameter, per_agent
-from crowdbot.core.scene import Scene
+from crowdbot.core import (
+    CHUNK,
+    InputError,
+    Neighbors,
+    Paper,
+    PerAgent,
+    Scene,
+    did_you_mean,
+    kernel,
+    parameter,
+    per_agent,
+)
+from crowdbot.core.neighbors import nearest
 
 from .group_bonds import Groups, bond, bond_as_package, groups_of
 from .laws import law_of, shortened

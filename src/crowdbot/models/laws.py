@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.kernels import kernel
-from crowdbot.core.parameter import per_agent
+from crowdbot.core import kernel, per_agent
 
 __all__ = ["law_of", "shortened"]
 

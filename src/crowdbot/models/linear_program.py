@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.kernels import kernel
+from crowdbot.core import kernel
 
 __all__ = ["best_velocity"]
 

@@ -9,9 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import InputError
-from crowdbot.core.paper import Paper
-from crowdbot.core.scene import Scene
+from crowdbot.core import InputError, Paper, Scene
 
 from .model import CrowdModel, kept
 

@@ -11,12 +11,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.bounds import Bounds
-from crowdbot.core.errors import InputError
-from crowdbot.core.neighbors import SMALL, Neighbors, nearest
-from crowdbot.core.paper import Paper
-from crowdbot.core.parameter import PerAgent, check_parameters, per_agent
-from crowdbot.core.scene import Scene
+from crowdbot.core import SMALL, Bounds, InputError, Neighbors, Paper, PerAgent, Scene, check_parameters, per_agent
+from crowdbot.core.neighbors import nearest
 
 __all__ = ["CrowdModel", "check_limit", "kept", "neighbors_of", "rows", "speed_limit", "spread", "walkers", "wishes"]
 

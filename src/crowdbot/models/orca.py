@@ -9,11 +9,7 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from crowdbot.core.kernels import kernel
-from crowdbot.core.neighbors import CHUNK, Neighbors
-from crowdbot.core.paper import Paper
-from crowdbot.core.parameter import PerAgent, parameter, per_agent
-from crowdbot.core.scene import Scene
+from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
 
 from .linear_program import best_velocity
 from .model import CrowdModel, check_limit, kept, neighbors_of, rows, speed_limit, spread, walkers, wishes

@@ -11,9 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import Walls, kernel
 from crowdbot.core.geometry import nearest_on_segment
-from crowdbot.core.kernels import kernel
-from crowdbot.core.walls import Walls
 
 __all__ = ["Edges", "avoid_agent", "avoid_edge", "edges_in_reach", "edges_of"]
 

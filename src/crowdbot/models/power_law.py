@@ -10,11 +10,7 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from crowdbot.core.kernels import kernel
-from crowdbot.core.neighbors import CHUNK, Neighbors
-from crowdbot.core.paper import Paper
-from crowdbot.core.parameter import PerAgent, parameter
-from crowdbot.core.scene import Scene
+from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter
 
 from .laws import law_of, shortened
 from .model import CrowdModel, check_limit, kept, neighbors_of, rows, speed_limit, spread, walkers, wishes

@@ -10,13 +10,19 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import InputError, did_you_mean
+from crowdbot.core import (
+    CHUNK,
+    InputError,
+    Neighbors,
+    Paper,
+    PerAgent,
+    Scene,
+    did_you_mean,
+    kernel,
+    parameter,
+    per_agent,
+)
 from crowdbot.core.geometry import nearest_on_segment
-from crowdbot.core.kernels import kernel
-from crowdbot.core.neighbors import CHUNK, Neighbors
-from crowdbot.core.paper import Paper
-from crowdbot.core.parameter import PerAgent, parameter, per_agent
-from crowdbot.core.scene import Scene
 
 from .model import CrowdModel, check_limit, kept, neighbors_of, rows, speed_limit, spread, walkers, wishes
 

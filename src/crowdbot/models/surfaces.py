@@ -12,8 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.kernels import kernel
-from crowdbot.core.walls import Walls
+from crowdbot.core import Walls, kernel
 
 __all__ = ["Surfaces", "at_corner", "feel", "surfaces_of"]
 

@@ -10,9 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.neighbors import Neighbors
-from crowdbot.core.parameter import PerAgent, per_agent
-from crowdbot.core.scene import Scene
+from crowdbot.core import Neighbors, PerAgent, Scene, per_agent
 
 from .model import rows
 

@@ -14,8 +14,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import InputError
-from crowdbot.core.parameter import check_parameters
+from crowdbot.core import InputError, check_parameters
 
 from .surroundings import Surroundings
 

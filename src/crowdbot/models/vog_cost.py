@@ -11,8 +11,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import kernel
 from crowdbot.core.geometry import nearest_on_segment, time_to_segment
-from crowdbot.core.kernels import kernel
 
 __all__ = ["CONE", "FELLOW", "collision", "companion", "cone", "fellowship", "own_way", "walls_near"]
 

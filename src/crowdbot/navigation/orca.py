@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot import models
-from crowdbot.core import InputError, Paper, Scene, Twist
-from crowdbot.core.bounds import check_number
+from crowdbot.core import InputError, Paper, Scene, Twist, check_number
 
 from .navigator import SLOWING_TIME, Navigator, Observation
 from .reachable import reachable

@@ -14,9 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Twist
+from crowdbot.core import Twist, kernel
 from crowdbot.core.geometry import nearest_on_segment
-from crowdbot.core.kernels import kernel
 
 from .navigator import Observation
 

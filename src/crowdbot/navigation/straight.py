@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from crowdbot.core import Twist
-from crowdbot.core.bounds import check_number
+from crowdbot.core import Twist, check_number
 
 from .navigator import Navigator, Observation
 

@@ -12,10 +12,8 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import DataError, InputError, Paper
-from crowdbot.core.errors import did_you_mean
-from crowdbot.data.forecast import Forecast
-from crowdbot.data.windows import Windows
+from crowdbot.core import DataError, InputError, Paper, did_you_mean
+from crowdbot.data import Forecast, Windows
 
 from .anchor_kernels import attend, dense
 from .anchors import CHAI, misfit, scattered, spread_over_time

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, stream
-from crowdbot.data.forecast import Forecast
-from crowdbot.data.windows import Windows
+from crowdbot.data import Forecast, Windows
 
 from .constant import SampledConstantVelocity
 from .own_frame import AHEAD, STEP, forward, people_of, turned

@@ -10,9 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper
-from crowdbot.data.forecast import Forecast
-from crowdbot.data.motion import observed_velocity
-from crowdbot.data.windows import Windows
+from crowdbot.data import Forecast, Windows, observed_velocity
 
 from .predictor import Predictor, window_streams
 

@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, stream
+from crowdbot.data import Trajectories, Windows
 from crowdbot.data.degrade import GHOST, Chain, Degradation, Degraded, NobodySeen
-from crowdbot.data.trajectories import Trajectories
-from crowdbot.data.windows import Windows
 from crowdbot.metrics import Score
 
 from .evaluate import evaluate

@@ -7,8 +7,7 @@ import time
 from collections.abc import Callable
 
 from crowdbot.core import InputError, stream
-from crowdbot.data.forecast import Forecast
-from crowdbot.data.windows import Windows
+from crowdbot.data import Forecast, Windows
 from crowdbot.metrics import PersonErrors, Score, person_errors
 
 from .predictor import Predictor

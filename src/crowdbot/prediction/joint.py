@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.data.windows import Windows
+from crowdbot.data import Windows
 
 from .anchor_kernels import arrange, crossing, part_ways
 

@@ -12,8 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.data.motion import bridged
-from crowdbot.data.windows import Windows
+from crowdbot.data import Windows, bridged
 
 __all__ = ["AHEAD", "COMPANY", "GAITS", "INPUTS", "MOMENTS", "NEAR", "ROWS", "STEP", "People", "completed", "features",
            "forward", "gait", "people_of", "turned"]  # fmt: skip

@@ -12,8 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import DataError, InputError
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import DataError, InputError, did_you_mean
 
 __all__ = ["ALL", "AUTO", "FOLDS", "Numbers", "check_fold", "fold_of", "kept_out", "learned", "read_numbers", "shipped"]
 

@@ -10,10 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, stream
-from crowdbot.core.plug import kebab
-from crowdbot.data.forecast import Forecast
-from crowdbot.data.windows import Windows
+from crowdbot.core import InputError, kebab, stream
+from crowdbot.data import Forecast, Windows
 
 __all__ = ["Predictor", "window_streams"]
 

@@ -10,8 +10,7 @@ from typing import cast
 import numpy as np
 
 from crowdbot.calibration import Calibrator, PopulationPrior, goal_for, kind_of_goal
-from crowdbot.core import InputError, stream
-from crowdbot.core.plug import kebab
+from crowdbot.core import InputError, kebab, stream
 from crowdbot.data import Recording, Windows
 from crowdbot.models.goals import Goal
 

@@ -22,8 +22,7 @@ from crowdbot.calibration import (
     named_model,
     named_search,
 )
-from crowdbot.data.forecast import Forecast
-from crowdbot.data.windows import Windows
+from crowdbot.data import Forecast, Windows
 from crowdbot.models import ORCA, CrowdModel
 from crowdbot.models.goals import CurrentDirection, Goal
 

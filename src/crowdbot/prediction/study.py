@@ -16,9 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.calibration import Fit
-from crowdbot.core import InputError, stream
-from crowdbot.core.version import code_digest
-from crowdbot.core.workers import each_kept
+from crowdbot.core import InputError, code_digest, each_kept, stream
 from crowdbot.data import Recording
 from crowdbot.metrics import PersonErrors, Score, person_errors
 

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose
-from crowdbot.core.bounds import check_number
+from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number
 
 from .noise import Randomness, disturbed
 from .sensor import Reading, Sensor, finite_or_nan, in_plane, in_space

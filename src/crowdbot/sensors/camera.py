@@ -10,8 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, SpatialPose
-from crowdbot.core.bounds import check_number
+from crowdbot.core import InputError, SpatialPose, check_number
 
 from .noise import Randomness, normals
 

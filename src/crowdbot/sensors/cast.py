@@ -14,8 +14,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Scene, SpatialPose
-from crowdbot.core.kernels import kernel
+from crowdbot.core import Scene, SpatialPose, kernel
 from crowdbot.core.rays import (
     BOX,
     CAPSULE,

@@ -9,9 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose
-from crowdbot.core.bounds import check_number
-from crowdbot.core.pose import product
+from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number, product
 
 from .noise import Randomness, disturbed, normals
 from .sensor import Reading, Sensor, finite_or_nan, in_space

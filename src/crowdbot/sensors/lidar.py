@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose
+from crowdbot.core import InputError, Pose, Scene, SpatialPose, kernel
 from crowdbot.core.geometry import nearest_on_segment, ray_to_disc, ray_to_segment
-from crowdbot.core.kernels import kernel
 
 from .beams import Beams, beams, fan
 from .cast import cast

@@ -11,10 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError
-from crowdbot.core.bounds import check_number
-from crowdbot.core.errors import did_you_mean
-from crowdbot.core.plug import kebab
+from crowdbot.core import InputError, check_number, did_you_mean, kebab
 
 __all__ = ["Dropout", "Gaussian", "Noise", "Offset", "Peak", "Quantised", "Randomness", "disturbed", "normals"]
 

@@ -9,8 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Pose, Scene, SpatialPose
-from crowdbot.core.bounds import check_number
+from crowdbot.core import Pose, Scene, SpatialPose, check_number
 
 from .imu import elapsed
 from .noise import Randomness, disturbed, normals

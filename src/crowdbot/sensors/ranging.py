@@ -7,9 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, SpatialPose
-from crowdbot.core.bounds import check_number
-from crowdbot.core.kernels import kernel
+from crowdbot.core import InputError, SpatialPose, check_number, kernel
 
 from .noise import Randomness, disturbed
 from .sensor import Sensor

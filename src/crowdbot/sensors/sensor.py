@@ -9,8 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose
-from crowdbot.core.bounds import check_number
+from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number
 
 from .noise import Noise, Randomness
 

@@ -8,10 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import STAGE, Bodies, InputError, Scene, Skins, SpatialPose
-from crowdbot.core.kernels import kernel
+from crowdbot.core import PERSON_HEIGHT, STAGE, Bodies, InputError, Scene, Skins, SpatialPose, kernel
 from crowdbot.core.rays import BOX, CAPSULE, CYLINDER, TRIANGLE, WALL, WIDTH
-from crowdbot.core.scene import PERSON_HEIGHT
 
 __all__ = ["FLOOR", "NOTHING", "PROP", "WALLS", "Shapes", "gathered", "lengthened"]
 

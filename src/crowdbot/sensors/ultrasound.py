@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Pose, Scene, SpatialPose
-from crowdbot.core.bounds import check_number
+from crowdbot.core import Pose, Scene, SpatialPose, check_number
 
 from .beams import Beams, beams, cone
 from .echo import Echo, nearest

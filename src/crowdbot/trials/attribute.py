@@ -17,9 +17,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from crowdbot.core import InputError
-from crowdbot.core.bounds import Bounds
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import Bounds, InputError, did_you_mean
 
 from .torn import is_torn
 

@@ -6,11 +6,10 @@ import importlib.resources
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import TrialError
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import TrialError, did_you_mean
 
 from .attribute import outline
-from .markup import read_bytes
+from .markup import read_trial_bytes
 from .scenarios import PRESETS
 from .sweep import changed
 from .trial import Trial
@@ -59,7 +58,7 @@ def load_trial(source: str | Path, *, trust: bool = False, **values: Any) -> Tri
             f"there is no trial {str(source)!r}{did_you_mean(str(source), known)}: no file has this name,"
             f" and built in are {', '.join(known)}"
         )
-    trial = Trial.parse(read_bytes(path), place=str(path), folder=path.parent, trust=trust)
+    trial = Trial.parse(read_trial_bytes(path), place=str(path), folder=path.parent, trust=trust)
     return _with(trial, values, trust)
 
 

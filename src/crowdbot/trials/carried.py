@@ -21,7 +21,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
 from crowdbot.core import EpisodeError
-from crowdbot.data.tape import Kind, Tape, TapeError, attachment
+from crowdbot.data import Kind, Tape, TapeError, attachment
 
 from .attribute import outline
 from .beside import beside

@@ -9,12 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core import InputError
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import Element, InputError, did_you_mean, format_xml
 from crowdbot.models.mixture import Mixture
 
 from .crowd import Crowds, crowd_names
-from .markup import Element, parse, written
+from .markup import parse_trial_xml
 from .opening import limits_of
 from .sensing import probes_of
 from .simulation import Carrier, Simulation
@@ -50,10 +49,10 @@ def changed(trial: Trial, changes: Mapping[str, Any]) -> Trial:
     """
     if not changes:
         return trial
-    root = parse(trial.xml().encode(), "trial")
+    root = parse_trial_xml(trial.xml().encode(), "trial")
     for path, value in changes.items():
         _set(root, path, _text(value))
-    return Trial.parse(written(root), place=f"trial {trial.name!r} with changes", folder=trial.folder, trust=True)
+    return Trial.parse(format_xml(root), place=f"trial {trial.name!r} with changes", folder=trial.folder, trust=True)
 
 
 def _set(root: Element, path: str, text: str) -> None:

@@ -8,8 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from crowdbot.core import InputError
-from crowdbot.core.errors import nearest
+from crowdbot.core import InputError, nearest_name
 from crowdbot.world import Router
 
 from .agent import Agent
@@ -52,7 +51,7 @@ class Names(NamedTuple):
     def lack(self, name: str) -> bool:
         """Whether nothing has a name, and nothing that has to change its own can be what it means."""
         sure = [one for one in self.known if one not in self.doubtful]
-        return name not in self.known and (not self.doubtful or bool(nearest(name, sure)))
+        return name not in self.known and (not self.doubtful or bool(nearest_name(name, sure)))
 
 
 @dataclass(frozen=True)

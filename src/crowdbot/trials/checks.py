@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core import FreeClock, InputError, TrialError
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import FreeClock, InputError, TrialError, did_you_mean
 
 from .attribute import shown
 from .camera import Camera

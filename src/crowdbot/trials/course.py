@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core import EpisodeError
-from crowdbot.data.tape import Tape
+from crowdbot.data import Tape
 
 from .changing import turn_to
 from .episode_file import DIGEST

@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import InputError, did_you_mean, parse_number
 
-from .notation import number, plain
+from .notation import plain
 
 __all__ = ["Distribution"]
 
@@ -61,8 +60,8 @@ class Distribution:
         """Read ``1.3``, ``uniform(0.2, 0.3)``, ``normal(1.34, 0.26)`` or ``normal(1.34, 0.26, 0.8, 2.0)``."""
         match = re.fullmatch(r"\s*([A-Za-z][A-Za-z-]*)\s*\(([^()]*)\)\s*", text)
         if not match:
-            return cls("number", (number(text, f"is not {FORMS}"),))
-        return cls(match[1].lower(), tuple(number(part) for part in match[2].split(",")))
+            return cls("number", (parse_number(text, f"is not {FORMS}"),))
+        return cls(match[1].lower(), tuple(parse_number(part) for part in match[2].split(",")))
 
     @classmethod
     def of(cls, value: Any) -> Distribution:

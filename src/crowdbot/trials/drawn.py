@@ -11,8 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Paper, Scene, parameters, stream
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import InputError, Paper, Scene, did_you_mean, parameters, stream
 from crowdbot.models import CrowdModel
 
 from .distribution import Distribution

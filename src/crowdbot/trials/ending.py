@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from crowdbot.core import EpisodeError, Walls
-from crowdbot.data.tape import MAGIC, Tape, TapeError, is_whole
+from crowdbot.data import MAGIC, Tape, TapeError, is_whole
 
 from .episode_file import END_KEYS, ENDING, METADATA, as_json
 from .moments import Moment, read_moments

@@ -9,8 +9,7 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
-from crowdbot.core import EpisodeError, InputError
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import EpisodeError, InputError, did_you_mean
 
 from .contact_messages import Collided, Pushed
 from .exported_pictures import ExportedPictures

@@ -9,8 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, stream
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import InputError, did_you_mean, stream
 from crowdbot.world import Router
 
 from .agent import Agent, Parameter

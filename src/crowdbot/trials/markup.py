@@ -1,31 +1,30 @@
-"""The XML of trials: :mod:`crowdbot.core.markup` with the words and the error of trials."""
+"""The XML of trials: :mod:`crowdbot.core.xml_tree` with the words and the error of trials."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from crowdbot.core import TrialError, markup
-from crowdbot.core.markup import Element, written
+from crowdbot.core import Element, TrialError, parse_xml, read_bytes
 
-__all__ = ["Element", "parse", "read_bytes", "written"]
+__all__ = ["parse_trial_xml", "read_trial_bytes"]
 
 
-def read_bytes(path: Path) -> bytes:
+def read_trial_bytes(path: Path) -> bytes:
     """Return what a trial file holds.
 
     Raises:
         TrialError: the file is missing, no file, unreadable or too large.
     """
-    return markup.read_bytes(path, "trial", TrialError)
+    return read_bytes(path, "trial", TrialError)
 
 
-def parse(data: bytes, place: str, encoding: str | None = None) -> Element:
-    """Return the root element of a trial; see :func:`crowdbot.core.markup.parse`.
+def parse_trial_xml(data: bytes, place: str, encoding: str | None = None) -> Element:
+    """Return the root element of a trial; see :func:`crowdbot.core.parse_xml`.
 
     Raises:
         TrialError: the text is not XML, or uses what a trial has no need of (DOCTYPE, entities, great depth or size).
 
-    >>> parse(b"<trial><robot name='r'/></trial>", "t.xml").children[0].attributes
+    >>> parse_trial_xml(b"<trial><robot name='r'/></trial>", "t.xml").children[0].attributes
     {'name': 'r'}
     """
-    return markup.parse(data, place, encoding, what="trial", root="trial", refusal=TrialError)
+    return parse_xml(data, place, encoding, what="trial", root="trial", refusal=TrialError)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Pose
-from crowdbot.data.tape import Tape
+from crowdbot.data import Tape
 from crowdbot.sensors import Reading, Scan
 
 from .contact_messages import COLLISIONS, FORCES, Collided, Pushed, collided, pushed

@@ -7,9 +7,9 @@ import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
-from crowdbot.core import InputError, markup
+from crowdbot.core import Element, InputError, parse_xml, read_bytes
 
-from .markup import Element, parse, read_bytes
+from .markup import parse_trial_xml
 
 __all__ = ["is_code", "named_code"]
 
@@ -37,12 +37,12 @@ def named_code(known: Mapping[str, str], folder: Path) -> list[str]:
     found: list[str] = []
     for text in _trials(known):
         try:
-            root = parse(text.encode("utf-8", "replace"), "trial", "utf-8")
+            root = parse_trial_xml(text.encode("utf-8", "replace"), "trial", "utf-8")
             for element in _all(root):
                 found += _files(element)
                 robot = folder / element.attributes.get("type", "") / "robot.xml"
                 if element.tag == "robot" and robot.is_file():
-                    parts = _all(markup.parse(read_bytes(robot), str(robot)))
+                    parts = _all(parse_xml(read_bytes(robot), str(robot)))
                     found += [f"{element.attributes['type']}/{name}" for part in parts for name in _files(part)]
         except (InputError, OSError, ValueError):
             continue  # so nothing of it runs, and who reads it next says why

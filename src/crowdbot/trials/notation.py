@@ -6,10 +6,9 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
-from crowdbot.core import InputError
-from crowdbot.core.markup import number
+from crowdbot.core import InputError, parse_number
 
-__all__ = ["NAME", "Points", "number", "plain"]
+__all__ = ["NAME", "Points", "plain"]
 
 NAME = "[A-Za-z][A-Za-z0-9_]*"
 """Names that other parts refer to; those of robots and sensors become names of ROS topics and frames."""
@@ -42,7 +41,7 @@ class Points(tuple[tuple[float, float], ...]):
             if len(pair) != 2:
                 raise InputError(f"has {place[:40]!r} where a point x,y should be, such as 0,0 4,0 4,2")
             try:
-                points.append((number(pair[0]), number(pair[1])))
+                points.append((parse_number(pair[0]), parse_number(pair[1])))
             except InputError as error:
                 raise InputError(f"has the point {place[:40]!r}, which {error}") from None
         return cls(points)

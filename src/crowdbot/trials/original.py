@@ -11,13 +11,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from crowdbot.core import InputError, TrialError
+from crowdbot.core import Element, InputError, TrialError, parse_number
 
 from .agent import Agent
 from .crowd import Crowds, Routing
 from .journey import Direction, Journey, Point
-from .markup import Element, parse, read_bytes
-from .notation import Points, number
+from .markup import parse_trial_xml, read_trial_bytes
+from .notation import Points
 from .original_crowd import Walker, crowds_of
 from .original_order import DEFAULT, Plan
 from .stage import Obstacle, Stage, Wall
@@ -55,9 +55,9 @@ def import_original(path: str | Path, *, participant: int | None = None) -> Impo
         TrialError: the file is missing, hostile, or none of these.
     """
     path = Path(path)
-    data = read_bytes(path)
+    data = read_trial_bytes(path)
     if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<":
-        root = parse(data, str(path))
+        root = parse_trial_xml(data, str(path))
         if root.tag == "Trial":
             return _one(root, path)
     plan = plan_of(path)
@@ -72,10 +72,10 @@ def plan_of(path: str | Path) -> Plan:
         TrialError: the file is missing, hostile, or neither.
     """
     path = Path(path)
-    data = read_bytes(path)
+    data = read_trial_bytes(path)
     if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] != b"<":
         return Plan(path, path.parent, pattern=path.name.replace("{", "").replace("}", ""))
-    root = parse(data, str(path))
+    root = parse_trial_xml(data, str(path))
     if root.tag != "Config":
         raise TrialError(
             f"{path}:{root.line}: the root element is <{root.tag[:40]}>, an original file has {' or '.join(ROOTS)}"
@@ -109,7 +109,7 @@ def trials_of(plan: Plan, user: int) -> tuple[list[tuple[str, Trial]], tuple[str
     for entry in plan.entries(user):
         try:
             place = plan.place(entry)
-            inner = _one(parse(read_bytes(place), str(place)), place)
+            inner = _one(parse_trial_xml(read_trial_bytes(place), str(place)), place)
         except (InputError, TrialError) as error:
             notes[f"trial {entry[:80]!r} and all after it: {error}"] = None
             break
@@ -345,7 +345,7 @@ def _number(element: Element, key: str, otherwise: float) -> float:
     if not text:
         return otherwise
     try:
-        value = number(text)
+        value = parse_number(text)
     except InputError as error:
         raise TrialError(f"line {element.line}: <{element.tag[:40]}> {key}={text[:40]!r} {error}") from None
     if abs(value) > 1e6:

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from crowdbot import models
-from crowdbot.core import InputError, TrialError, parameters
+from crowdbot.core import Element, InputError, TrialError, parameters, parse_number
 from crowdbot.models import CrowdModel
 
 from .agent import Parameter
 from .crowd import Crowds
-from .markup import Element
-from .notation import number
 
 __all__ = ["Walker", "crowds_of"]
 
@@ -169,7 +167,7 @@ def _value(element: Element | None, key: str) -> float | None:
     if not text:
         return None
     try:
-        value = number(text.replace(",", "."))
+        value = parse_number(text.replace(",", "."))
     except InputError as error:
         raise TrialError(f"line {element.line}: <{element.tag[:40]}> {key}={text[:40]!r} {error}") from None
     return min(max(value, -1e6), 1e6)

@@ -11,16 +11,27 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import InputError, TrialError, plug
-from crowdbot.core.errors import did_you_mean, nearest
+from crowdbot.core import (
+    Element,
+    InputError,
+    TrialError,
+    attribute_names,
+    attribute_problems,
+    builtin_classes,
+    did_you_mean,
+    find_class,
+    from_attributes,
+    nearest_name,
+    parse_number,
+    required_fields,
+)
 
 from .attribute import Part, Plug, outline, shown
 from .checks import problems_of
 from .crowd import Crowd
 from .distribution import Distribution
 from .drawn import Drawn, is_drawn
-from .markup import Element, parse
-from .notation import number
+from .markup import parse_trial_xml
 from .sweep import sweep_problems
 from .torn import EVERYTHING, begun, is_torn, readable, torn
 from .trial import Trial
@@ -53,7 +64,7 @@ max-neighbors, time-horizon, time-horizon-walls, max-speed, name
         data = text.encode() if isinstance(text, str) else text
     except UnicodeEncodeError:
         raise TrialError(f"{place}: this is not well-formed XML: it holds half a character") from None
-    root = parse(data, place, "utf-8" if isinstance(text, str) else None)
+    root = parse_trial_xml(data, place, "utf-8" if isinstance(text, str) else None)
     if root.tag != ROOT:
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
     reader = Reader(place, folder or Path.cwd(), trust)
@@ -180,7 +191,7 @@ class Reader:
         mount = next((part.plug for part in parts if part.role == "mounted"), None)
         kind = self._type(mount, element) if mount else None
         if not mount or kind:
-            self._meant(element, [*(plug.words(kind) if kind else ()), *own], ["type"] if mount else [])
+            self._meant(element, [*(attribute_names(kind) if kind else ()), *own], ["type"] if mount else [])
         return kind
 
     def _meant(self, element: Element, known: list[str], also: list[str]) -> None:
@@ -191,9 +202,9 @@ class Reader:
             meant = did_you_mean(key, known)
             self.say(element.line, element.tag, f"has no attribute {key[:40]!r}{meant}; it takes {takes}")
             text = element.attributes.pop(key)
-            if meant and nearest(key, known) not in given:
-                element.attributes[nearest(key, known)] = text
-                given.add(nearest(key, known))
+            if meant and nearest_name(key, known) not in given:
+                element.attributes[nearest_name(key, known)] = text
+                given.add(nearest_name(key, known))
 
     def _attributes(self, element: Element, parts: tuple[Part, ...], kind: type | None) -> dict[str, Any]:
         own = {part.word: part for part in parts if part.role == "attribute"}
@@ -233,7 +244,7 @@ class Reader:
                 self.say(inner.line, inner.tag, f"is no element of <{element.tag}>{meant}; it takes {words}")
                 if not meant:
                     continue
-                inner.tag = nearest(inner.tag, known)
+                inner.tag = nearest_name(inner.tag, known)
                 if not (inner.attributes or inner.children):
                     continue
             part = known[inner.tag]
@@ -272,22 +283,22 @@ class Reader:
         self._stray(inner)
         kind = self._type(part.plug, inner)
         if kind is not None:
-            self._meant(inner, plug.words(kind), ["type"])
+            self._meant(inner, attribute_names(kind), ["type"])
         return self._plug(part.plug, kind, inner, dict(inner.attributes))
 
     def _type(self, what: Plug, element: Element) -> type | None:
         """Return the class that ``type`` names, or means most likely; None when nobody knows."""
         room, contract = what.places()
-        known = plug.built_in(room, contract)
+        known = builtin_classes(room, contract)
         name = element.attributes.get("type")
         if name is None:
             self.say(element.line, element.tag, f"needs the attribute 'type': {', '.join(known)} or an address")
             return None
         try:
-            return plug.find(name, room, contract, folder=self.folder, trust=self.trust)
+            return find_class(name, room, contract, folder=self.folder, trust=self.trust)
         except InputError as error:
             self.say(element.line, element.tag, str(error))
-            return known.get(nearest(name, known))
+            return known.get(nearest_name(name, known))
 
     def _plug(self, what: Plug, cls: type | None, element: Element, attributes: dict[str, str]) -> Any:
         """Return the part of this class that the attributes make; a torn one where that is impossible."""
@@ -296,7 +307,7 @@ class Reader:
         texts = {key: text for key, text in attributes.items() if key != "type"}
         draws = {key: text for key, text in texts.items() if what.drawn and is_drawn(text)}
         fixed = {key: text for key, text in texts.items() if key not in draws}
-        wrong = plug.problems(cls, fixed)
+        wrong = attribute_problems(cls, fixed)
         made, more = _made(cls, {key: text for key, text in fixed.items() if key not in wrong})
         wrong |= more
         if made is not None and draws:
@@ -319,14 +330,14 @@ def _made(cls: type, attributes: dict[str, str]) -> tuple[Any, dict[str, str]]:
     What a class says of its values it says one at a time. So an attribute without which the same is not said again
     is the one that it is about; it is left out, and the others are judged.
     """
-    if plug.problems(cls, attributes):
+    if attribute_problems(cls, attributes):
         return None, {}
     said: dict[str, str] = {}
     while True:
         made, sentence = _tried(cls, attributes)
         if not sentence:
             return made, said
-        needed = {name.replace("_", "-") for name in plug.needs(cls)}
+        needed = {name.replace("_", "-") for name in required_fields(cls)}
         for left in attributes:
             fewer = {key: text for key, text in attributes.items() if key != left}
             if left.replace("_", "-") not in needed and _tried(cls, fewer)[1] != sentence:
@@ -338,7 +349,7 @@ def _made(cls: type, attributes: dict[str, str]) -> tuple[Any, dict[str, str]]:
 
 def _tried(cls: type, attributes: dict[str, str]) -> tuple[Any, str]:
     try:
-        return plug.read(cls, attributes), ""
+        return from_attributes(cls, attributes), ""
     except InputError as error:
         return None, str(error)
 
@@ -366,7 +377,7 @@ def _converted(text: str, kind: Any) -> Any:
         if text.strip() in ("true", "false"):
             return text.strip() == "true"
         raise InputError("must be true or false")
-    value = number(text)
+    value = parse_number(text)
     if kind is int:
         if value != int(value) or abs(value) > 2**53:
             raise InputError("must be a whole number")

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import EpisodeError
-from crowdbot.data import Trajectories
-from crowdbot.data.tape import MAGIC, Tape
+from crowdbot.data import MAGIC, Tape, Trajectories
 from crowdbot.sensors import Reading
 
 from .contact_messages import Collided, Pushed

@@ -15,7 +15,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.optional import optional
+from crowdbot.core import optional
 
 __all__ = ["Reel", "av_module", "reel"]
 

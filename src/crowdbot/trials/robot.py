@@ -14,9 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot import world
-from crowdbot.core import Clock, InputError, RobotError
-from crowdbot.core.errors import did_you_mean
-from crowdbot.core.pose import MOUNT_HEIGHT
+from crowdbot.core import MOUNT_HEIGHT, Clock, InputError, RobotError, did_you_mean
 from crowdbot.navigation import Navigator
 from crowdbot.sensors import Schedule, Sensor
 from crowdbot.world import Drive, builtin_robots

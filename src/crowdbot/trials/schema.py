@@ -10,11 +10,10 @@ import dataclasses
 import re
 from typing import Any
 
-from crowdbot.core import plug
+from crowdbot.core import Element, builtin_classes, format_xml
 
 from .attribute import LARGEST, Part, Plug, Rule, outline
 from .distribution import Distribution
-from .markup import Element, written
 from .notation import Points
 from .trial import Trial
 
@@ -45,7 +44,7 @@ def schema() -> str:
     known: dict[str, Element] = {}
     _add_type(Trial, known)
     root.children += known.values()
-    return re.sub(r'<xs:documentation source="(.*)"/>', r"<xs:documentation>\1</xs:documentation>", written(root))
+    return re.sub(r'<xs:documentation source="(.*)"/>', r"<xs:documentation>\1</xs:documentation>", format_xml(root))
 
 
 def _add_type(cls: type, known: dict[str, Element]) -> str:
@@ -83,7 +82,7 @@ def _elements(part: Part, known: dict[str, Element]) -> list[Element]:
 def _plug_attributes(what: Plug, taken: set[str]) -> list[Element]:
     """Return the attributes of everything that may be plugged in; those of a user's own part have no limits."""
     room, contract = what.places()
-    classes = plug.built_in(room, contract)
+    classes = builtin_classes(room, contract)
     words = [("enumeration", name) for name in classes]
     kinds = [_simple({}, "xs:string", words), _simple({}, "address", [])]
     union = Element("xs:simpleType", children=[Element("xs:union", children=kinds)])

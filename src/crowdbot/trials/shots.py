@@ -10,9 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, stream
-from crowdbot.core.errors import did_you_mean
-from crowdbot.core.optional import optional
+from crowdbot.core import InputError, did_you_mean, optional, stream
 from crowdbot.sensors import DepthCamera, RGBCamera
 from crowdbot.sensors.camera import distorted
 from crowdbot.sensors.sensor import in_space

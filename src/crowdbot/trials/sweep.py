@@ -11,11 +11,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from crowdbot.core import InputError, TrialError
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import Element, InputError, TrialError, did_you_mean, format_xml
 
 from .attribute import Mistake, Part, attribute, check, outline, shown
-from .markup import Element, written
 from .torn import readable
 
 if TYPE_CHECKING:
@@ -192,7 +190,7 @@ def changed(trial: Trial, values: dict[str, str], *, place: str = "variant", tru
             _put(root, path, value)
         except InputError as error:
             raise TrialError(f"{trial.name}: {path[:60]!r} {error}") from None
-    return read_trial(written(root), place=place, folder=trial.folder, trust=trust)
+    return read_trial(format_xml(root), place=place, folder=trial.folder, trust=trust)
 
 
 def _put(root: Element, path: str, value: str) -> None:

@@ -33,7 +33,7 @@ from mcap.records import (
     SummaryOffset,
 )
 
-from crowdbot.data.tape import MAGIC, Kind, Tape, attachment
+from crowdbot.data import MAGIC, Kind, Tape, attachment
 
 __all__ = ["TapeWriter", "finish"]
 

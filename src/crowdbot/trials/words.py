@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from crowdbot import humans
-from crowdbot.core import InputError
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import InputError, did_you_mean
 
 from .attribute import shown
 

@@ -8,12 +8,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import InputError
-from crowdbot.core.plug import built_in, kebab
+from crowdbot.core import Element, InputError, builtin_classes, format_xml, kebab
 
 from .attribute import Part, outline
 from .drawn import Drawn
-from .markup import Element, written
 from .notation import plain
 
 __all__ = ["element_from", "element_of", "xml"]
@@ -33,7 +31,7 @@ def xml(trial: Any) -> str:
       <crowd type="orca" time-horizon="3"/>
     </trial>
     """
-    return written(element_of(trial))
+    return format_xml(element_of(trial))
 
 
 def element_of(trial: Any) -> Element:
@@ -90,7 +88,7 @@ def _type(part: Part, value: Any, folder: Path | None) -> str:
     assert part.plug is not None
     cls = type(value)
     room, contract = part.plug.places()
-    if built_in(room, contract).get(kebab(cls.__name__)) is cls:
+    if builtin_classes(room, contract).get(kebab(cls.__name__)) is cls:
         return kebab(cls.__name__)
     module = sys.modules[cls.__module__]
     if cls.__module__.startswith("crowdbot_plug_") and module.__file__:

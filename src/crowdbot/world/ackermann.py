@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crowdbot.core import InputError, Pose, Twist
-from crowdbot.core.bounds import check_number
+from crowdbot.core import InputError, Pose, Twist, check_number
 
 from .drive import Drive, Floats, Twists, check_step, moved
 

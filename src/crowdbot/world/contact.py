@@ -10,11 +10,9 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, Walls
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import CHUNK, InputError, Neighbors, Scene, Walls, did_you_mean, kernel
 from crowdbot.core.geometry import nearest_on_segment
-from crowdbot.core.kernels import kernel
-from crowdbot.core.neighbors import CHUNK, Neighbors, nearest
+from crowdbot.core.neighbors import nearest
 
 from .wall_cells import WallCells, wall_cells
 

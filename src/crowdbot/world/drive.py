@@ -9,9 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import InputError, Pose, Twist
-from crowdbot.core.bounds import check_number
-from crowdbot.core.kernels import kernel
+from crowdbot.core import InputError, Pose, Twist, check_number, kernel
 
 __all__ = ["DifferentialDrive", "Drive", "Omnidirectional", "Twists", "check_limits", "check_step", "moved"]
 

@@ -11,8 +11,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, stream
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import InputError, Scene, did_you_mean, stream
 from crowdbot.models.mixture import MODEL
 
 from .journey import JOURNEY, Journey

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import InputError, Scene, did_you_mean
 
 from .stop import Luck, Stop
 

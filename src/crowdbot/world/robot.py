@@ -12,8 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, RobotError, SpatialPose, Twist
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import InputError, Pose, RobotError, SpatialPose, Twist, did_you_mean
 from crowdbot.sensors import Sensor
 
 from .drive import Drive

@@ -12,9 +12,20 @@ from typing import Any
 import numpy as np
 
 import crowdbot.sensors
-from crowdbot.core import InputError, RobotError, plug
-from crowdbot.core.errors import did_you_mean, nearest
-from crowdbot.core.markup import Element, number, parse, read_bytes
+from crowdbot.core import (
+    Element,
+    InputError,
+    RobotError,
+    attribute_problems,
+    builtin_classes,
+    did_you_mean,
+    find_class,
+    from_attributes,
+    nearest_name,
+    parse_number,
+    parse_xml,
+    read_bytes,
+)
 from crowdbot.sensors import Sensor, preset
 
 from .drive import Drive
@@ -42,7 +53,7 @@ def read_robot(folder: Path, *, trust: bool = False) -> Robot:
         RobotError: with everything that is wrong, one sentence each.
     """
     path = folder / FILE
-    root = parse(read_bytes(path, "robot", RobotError), str(path), what="robot", root="robot", refusal=RobotError)
+    root = parse_xml(read_bytes(path, "robot", RobotError), str(path), what="robot", root="robot", refusal=RobotError)
     reader = _Reader(str(path), folder, trust)
     if root.tag != "robot":
         raise RobotError(f"{path}:{root.line}: the root element is <{root.tag[:40]}>, it must be <robot>")
@@ -106,7 +117,7 @@ class _Reader:
         if element.tag not in known:
             meant = did_you_mean(element.tag, known)
             self.say(element, f"is no element of <robot>{meant}; it takes {', '.join(known)}")
-            element.tag = nearest(element.tag, known) or element.tag
+            element.tag = nearest_name(element.tag, known) or element.tag
 
     def joined(self, root: Element, model: RobotModel) -> None:
         """Say which names of links and joints the model does not have, and which names of sensors come twice."""
@@ -157,7 +168,7 @@ class _Reader:
             self.say(element, f"has no attribute {key[:40]!r}{meant}; it takes {', '.join(known)}")
             text = element.attributes.pop(key)
             if meant:
-                element.attributes.setdefault(nearest(key, known), text)
+                element.attributes.setdefault(nearest_name(key, known), text)
         return element.attributes
 
     def number(self, element: Element, key: str) -> float:
@@ -167,7 +178,7 @@ class _Reader:
             self.say(element, f"needs the attribute {key!r}, a number")
             return 1.0
         try:
-            return number(text)
+            return parse_number(text)
         except InputError as error:
             self.say(element, f'{key}="{text[:40]}" {error}')
             return 1.0
@@ -205,7 +216,7 @@ class _Reader:
                 self.say(element, f'radius="{row["radius"][:40]}" must be above 0')
             return {"footprint": radius * np.stack([np.cos(CIRCLE), np.sin(CIRCLE)], axis=1)}
         try:
-            points = [[number(part) for part in word.split(",")] for word in row["points"].split()]
+            points = [[parse_number(part) for part in word.split(",")] for word in row["points"].split()]
         except InputError as error:
             self.say(element, f'points="{row["points"][:40]}" {error}')
             return {}
@@ -259,13 +270,13 @@ class _Reader:
         except InputError as error:
             self.say(element, str(error))
             return None
-        problems = plug.problems(type(made), rest, ("preset", *also))
+        problems = attribute_problems(type(made), rest, ("preset", *also))
         for problem in problems.values():
             self.say(element, problem)
         if problems:
             return None
         try:
-            other = plug.read(type(made), rest)
+            other = from_attributes(type(made), rest)
             names = [key.replace("-", "_") for key in rest]
             return dataclasses.replace(made, **{key: getattr(other, key) for key in names})
         except InputError as error:
@@ -279,17 +290,17 @@ class _Reader:
         rest = dict(row)
         name = rest.pop("type", None)
         if name is None:
-            self.say(element, f"needs the attribute 'type': {', '.join(plug.built_in(room, contract))} or an address")
+            self.say(element, f"needs the attribute 'type': {', '.join(builtin_classes(room, contract))} or an address")
             return None
         try:
-            cls = plug.find(name, room, contract, folder=self.folder, trust=self.trust)
+            cls = find_class(name, room, contract, folder=self.folder, trust=self.trust)
         except InputError as error:
             self.say(element, str(error))
             return None
-        problems = list(plug.problems(cls, rest, also).values())
+        problems = list(attribute_problems(cls, rest, also).values())
         if not problems:
             try:
-                return plug.read(cls, rest)
+                return from_attributes(cls, rest)
             except InputError as error:
                 problems = [str(error)]
         for problem in problems:

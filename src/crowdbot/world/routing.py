@@ -10,10 +10,7 @@ import numpy as np
 from numba import prange
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import InputError, Scene, Walls
-from crowdbot.core.errors import did_you_mean
-from crowdbot.core.kernels import kernel
-from crowdbot.core.neighbors import CHUNK
+from crowdbot.core import CHUNK, InputError, Scene, Walls, did_you_mean, kernel
 
 from .free_space import corners, room_for
 from .wall_cells import WallCells, distance2, sees, wall_cells

@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crowdbot.core import InputError, Pose, Twist
-from crowdbot.core.bounds import check_number
+from crowdbot.core import InputError, Pose, Twist, check_number
 
 from .drive import Drive, Twists, check_limits, check_step, moved
 

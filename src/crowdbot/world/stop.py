@@ -11,8 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import InputError, did_you_mean
 
 from .chance import uniform
 

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.core import kernel
 from crowdbot.core.geometry import nearest_on_segment
-from crowdbot.core.kernels import kernel
 
 __all__ = ["WallCells", "distance2", "sees", "wall_cells"]
 

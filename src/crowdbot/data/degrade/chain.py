@@ -9,8 +9,7 @@ from typing import Self
 
 import numpy as np
 
-from crowdbot.core.errors import InputError
-from crowdbot.core.random import stream
+from crowdbot.core import InputError, stream
 from crowdbot.data.trajectories import Trajectories
 
 from .degradation import Degradation, Degraded

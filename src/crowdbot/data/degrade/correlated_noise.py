@@ -7,8 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from crowdbot.core.paper import Paper
-from crowdbot.core.parameter import parameter
+from crowdbot.core import Paper, parameter
 
 from .degradation import Degradation, Degraded
 from .turns import turns

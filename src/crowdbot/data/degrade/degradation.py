@@ -10,10 +10,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core.errors import DataError, InputError
-from crowdbot.core.parameter import check_parameters, parameters
-from crowdbot.core.plug import kebab
-from crowdbot.core.random import stream
+from crowdbot.core import DataError, InputError, check_parameters, kebab, parameters, stream
 from crowdbot.data.trajectories import Trajectories
 
 __all__ = ["GHOST", "Degradation", "Degraded", "NobodySeen"]

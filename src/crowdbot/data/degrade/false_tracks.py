@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.parameter import parameter
+from crowdbot.core import parameter
 
 from .degradation import Degradation, Degraded
 

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from crowdbot.core.parameter import parameter
+from crowdbot.core import parameter
 
 from .degradation import Degradation, Degraded
 

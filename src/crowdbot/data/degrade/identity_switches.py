@@ -8,7 +8,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.parameter import parameter
+from crowdbot.core import parameter
 from crowdbot.data.trajectories import Trajectories
 
 from .degradation import Degradation, Degraded

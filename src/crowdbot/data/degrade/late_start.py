@@ -7,8 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from crowdbot.core.errors import InputError
-from crowdbot.core.parameter import parameter
+from crowdbot.core import InputError, parameter
 
 from .degradation import Degradation, Degraded
 from .turns import rank

@@ -8,9 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import InputError, did_you_mean
-from crowdbot.core.paper import Paper
-from crowdbot.core.parameter import parameter
+from crowdbot.core import InputError, Paper, did_you_mean, parameter
 
 from .degradation import Degradation, Degraded
 from .turns import turns

@@ -9,9 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import DataError, InputError
-from crowdbot.core.parameter import parameter
-from crowdbot.core.walls import Walls
+from crowdbot.core import DataError, InputError, Walls, parameter
 from crowdbot.data.trajectories import Trajectories
 
 from .degradation import GHOST, Degradation, Degraded

@@ -7,10 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import InputError
-from crowdbot.core.parameter import check_parameters, parameter
-from crowdbot.data.motion import steady_velocity
-from crowdbot.data.windows import Windows
+from crowdbot.core import InputError, check_parameters, parameter
+from crowdbot.data import Windows, steady_velocity
 
 from .goal import Goal
 from .headings import ahead

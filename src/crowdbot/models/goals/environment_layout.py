@@ -8,13 +8,8 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import InputError
-from crowdbot.core.paper import Paper
-from crowdbot.core.parameter import check_parameters, parameter
-from crowdbot.core.walls import Walls
-from crowdbot.data.motion import bridged, steady_velocity
-from crowdbot.data.trajectories import Trajectories
-from crowdbot.data.windows import Windows
+from crowdbot.core import InputError, Paper, Walls, check_parameters, parameter
+from crowdbot.data import Trajectories, Windows, bridged, steady_velocity
 
 from .exits import hull, openings, track_ends
 from .goal import Choices, Goal

@@ -7,8 +7,8 @@ import itertools
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.walls import Walls
-from crowdbot.data.trajectories import Trajectories
+from crowdbot.core import Walls
+from crowdbot.data import Trajectories
 
 from .headings import length
 

@@ -9,11 +9,8 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import InputError
-from crowdbot.core.plug import kebab
-from crowdbot.data.motion import steady_velocity
-from crowdbot.data.trajectories import Trajectories
-from crowdbot.data.windows import Windows
+from crowdbot.core import InputError, kebab
+from crowdbot.data import Trajectories, Windows, steady_velocity
 
 __all__ = ["Choices", "Goal"]
 

@@ -9,9 +9,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import InputError
-from crowdbot.data.motion import observed_velocity
-from crowdbot.data.windows import Windows
+from crowdbot.core import InputError
+from crowdbot.data import Windows, observed_velocity
 
 from .goal import Goal
 

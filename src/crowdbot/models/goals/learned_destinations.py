@@ -8,11 +8,8 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import InputError
-from crowdbot.core.paper import Paper
-from crowdbot.core.parameter import check_parameters, parameter
-from crowdbot.data.trajectories import Trajectories
-from crowdbot.data.windows import Windows
+from crowdbot.core import InputError, Paper, check_parameters, parameter
+from crowdbot.data import Trajectories, Windows
 
 from .exits import clusters, track_ends
 from .goal import Choices, Goal

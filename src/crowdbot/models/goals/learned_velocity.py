@@ -8,10 +8,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import InputError
-from crowdbot.data.motion import bridged, cut, steady_velocity
-from crowdbot.data.trajectories import Trajectories
-from crowdbot.data.windows import Windows
+from crowdbot.core import InputError
+from crowdbot.data import Trajectories, Windows, bridged, slice_rows, steady_velocity
 
 __all__ = ["LearnedVelocity", "mean_velocity", "pairs_of"]
 
@@ -82,7 +80,7 @@ class LearnedVelocity:
                 f" {self.dt:.4g} s; resample one of them"
             )
         most = len(self.weight)
-        known = cut(bridged(past), max(0, past.position.shape[1] - 1 - most), past.position.shape[1])
+        known = slice_rows(bridged(past), max(0, past.position.shape[1] - 1 - most), past.position.shape[1])
         steady = steady_velocity(known)
         offs, both = _offs(known, steady)
         count = np.minimum(np.sum(both, axis=1), most)
@@ -123,7 +121,7 @@ def _offs(known: Windows, steady: Floats) -> tuple[Floats, NDArray[np.bool_]]:
 def _sample(past: Windows, future: Windows, count: int) -> tuple[Floats, Floats]:
     """Return differences ``[P, count, 2]`` and what the steady velocity missed ``[P, 2]`` [m/s] of scored people."""
     rows = past.position.shape[1]
-    known = cut(past, rows - 1 - count, rows)
+    known = slice_rows(past, rows - 1 - count, rows)
     steady = steady_velocity(known)
     counted = future.scored
     off = np.moveaxis(_offs(bridged(known), steady)[0], 1, 2)[counted]

@@ -8,8 +8,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.kernels import kernel
-from crowdbot.core.walls import Walls
+from crowdbot.core import Walls, kernel
 
 from .headings import length, unit
 

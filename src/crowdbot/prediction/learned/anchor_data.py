@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
-from crowdbot.data.trajectories import Trajectories
-from crowdbot.data.windows import Windows
+from crowdbot.data import Trajectories, Windows
 from crowdbot.prediction.own_frame import AHEAD, ROWS, STEP, People, completed, features, forward, people_of, turned
 
 from .samples import Samples

@@ -13,8 +13,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, plug, stream
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import InputError, did_you_mean, from_attributes, stream
 from crowdbot.prediction.anchor_net import network_output
 from crowdbot.prediction.anchors import centres
 from crowdbot.prediction.own_frame import AHEAD, COMPANY, INPUTS, STEP, forward, turned
@@ -89,8 +88,8 @@ def learner(
                          " is shipped")  # fmt: skip
     varied = {field.name for field in dataclasses.fields(Variation)}
     plain = {name.replace("-", "_"): value for name, value in values.items()}
-    variation = plug.read(Variation, {name: value for name, value in plain.items() if name in varied})
-    how = plug.read(AnchorTraining, {name: value for name, value in plain.items() if name not in varied})
+    variation = from_attributes(Variation, {name: value for name, value in plain.items() if name in varied})
+    how = from_attributes(AnchorTraining, {name: value for name, value in plain.items() if name not in varied})
     how = dataclasses.replace(how, seed=seed, variation=variation)
     return AnchorNetTraining(how, material_of(samples), material_of(watched, reverse=False), samples.names, device)
 

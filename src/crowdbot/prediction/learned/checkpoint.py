@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import InputError
+from crowdbot.core import InputError
 
 __all__ = ["load_checkpoint", "save_checkpoint"]
 

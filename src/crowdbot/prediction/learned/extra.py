@@ -6,8 +6,7 @@ import contextlib
 from collections.abc import Iterator
 from typing import Any
 
-from crowdbot.core.errors import InputError
-from crowdbot.core.optional import optional
+from crowdbot.core import InputError, optional
 
 __all__ = ["device_of", "tensors", "threads", "torch_module"]
 

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
-from crowdbot.data import Windows
-from crowdbot.data.motion import bridged
+from crowdbot.data import Windows, bridged
 from crowdbot.prediction.anchors import misfit
 from crowdbot.prediction.own_frame import STEP as ROW
 from crowdbot.prediction.places import ALL, AUTO, FOLDS, fold_of, shipped

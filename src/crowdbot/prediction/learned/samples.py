@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.errors import DataError, InputError, did_you_mean
+from crowdbot.core import DataError, InputError, did_you_mean
 from crowdbot.data import Recording, Windows
 
 __all__ = ["FOLDS", "Samples", "Scenes", "leave_out", "short_recordings", "split_in_time"]

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from crowdbot.core.errors import InputError, did_you_mean
+from crowdbot.core import InputError, did_you_mean
 
 __all__ = ["ADVERSARIAL", "FRAMES", "PRESETS", "STEADY", "SocialWaysConfig", "config_of", "preset"]
 

@@ -13,7 +13,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-from crowdbot.core import InputError, plug, stream
+from crowdbot.core import InputError, from_attributes, stream
 
 from .extra import device_of, tensors
 from .samples import Samples, Scenes
@@ -41,7 +41,7 @@ def learner(
         samples, watched, seed, device: as of :class:`SocialWaysTraining`.
     """
     rows = {"observe": samples.observe, "predict": samples.predict}
-    read = plug.read(SocialWaysConfig, dict(values))
+    read = from_attributes(SocialWaysConfig, dict(values))
     changed = {name.replace("-", "_"): getattr(read, name.replace("-", "_")) for name in values}
     return SocialWaysTraining(preset(settings or "report", rows | changed), samples, watched, seed, device)
 

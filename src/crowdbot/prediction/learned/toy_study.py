@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, stream
-from crowdbot.core.workers import each
+from crowdbot.core import InputError, each, stream
 
 from .extra import threads
 from .social_ways_config import PRESETS, STEADY
@@ -151,10 +150,10 @@ def _trained(job: tuple[ToyStudy, str, int, Path | None]) -> Run:
 
 def with_values(study: ToyStudy, values: Mapping[str, str]) -> ToyStudy:
     """Return the study with settings for all methods, given as text."""
-    from crowdbot.core import plug
+    from crowdbot.core import from_attributes
 
     from .social_ways_config import SocialWaysConfig
 
-    read = plug.read(SocialWaysConfig, dict(values))
+    read = from_attributes(SocialWaysConfig, dict(values))
     names = [name.replace("-", "_") for name in values]
     return dataclasses.replace(study, values={name: getattr(read, name) for name in names})

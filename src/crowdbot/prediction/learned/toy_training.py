@@ -10,8 +10,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, stream
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import InputError, did_you_mean, stream
 from crowdbot.metrics import earth_mover_distance, mode_count, mode_coverage, nearest_neighbor_accuracy
 
 from .social_ways_config import SocialWaysConfig

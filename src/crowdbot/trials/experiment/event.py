@@ -8,8 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from crowdbot.core import InputError
-from crowdbot.core.plug import kebab
+from crowdbot.core import InputError, kebab
 
 __all__ = [
     "EVENTS", "Abort", "Answered", "Begin", "Event", "Fail", "Finish", "Next", "Pause", "Repeat", "Resume", "Start",

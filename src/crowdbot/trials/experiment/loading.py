@@ -7,10 +7,9 @@ import importlib.resources
 from pathlib import Path
 from xml.parsers import expat
 
-from crowdbot.core import InputError, TrialError
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import InputError, TrialError, did_you_mean
 from crowdbot.trials.builtin import builtin_trials, load_trial
-from crowdbot.trials.markup import read_bytes
+from crowdbot.trials.markup import read_trial_bytes
 from crowdbot.trials.trial import Trial
 
 from .experiment import Experiment
@@ -53,7 +52,7 @@ def load_experiment(source: str | Path, *, trust: bool = False) -> Experiment:
             f"there is no experiment {str(source)!r}{did_you_mean(str(source), known)}: no file has this name,"
             f" and built in are {', '.join(known)}"
         )
-    data = read_bytes(path)
+    data = read_trial_bytes(path)
     if not data.strip():
         raise TrialError(f"{path} is empty; an experiment is an XML file with the root element <experiment>")
     return Experiment.parse(data, place=str(path), folder=path.parent, trust=trust)
@@ -68,7 +67,7 @@ def is_experiment(source: str | Path) -> bool:
     path = _file(source)
     if path is None:
         return False
-    return _root(read_bytes(path)) == "experiment"
+    return _root(read_trial_bytes(path)) == "experiment"
 
 
 def _root(data: bytes) -> str:
@@ -109,7 +108,7 @@ def trial_of(source: str, folder: Path | None, trust: bool = False) -> Trial:
             raise InputError(
                 f"the trial {source!r} lies outside the folder of the experiment; pass --trust to allow it"
             )
-        return Trial.parse(read_bytes(path), place=source, folder=path.parent, trust=trust)
+        return Trial.parse(read_trial_bytes(path), place=source, folder=path.parent, trust=trust)
     if source in builtin_trials():
         return load_trial(source)
     raise TrialError(

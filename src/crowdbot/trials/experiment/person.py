@@ -8,8 +8,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TextIO
 
-from crowdbot.core import InputError
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import InputError, did_you_mean
 
 from .experiment import Experiment
 from .plan import plan

@@ -7,10 +7,9 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
-from crowdbot.core import InputError
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import InputError, did_you_mean, parse_number
 from crowdbot.trials.attribute import UNWRITABLE, attribute, check, children, shown
-from crowdbot.trials.notation import number, plain
+from crowdbot.trials.notation import plain
 
 __all__ = ["QUESTIONS", "SHORT", "Answer", "Choice", "FreeText", "Number", "Option", "Question", "Scale"]
 
@@ -199,7 +198,7 @@ class Number(Question):
 
     def _typed(self, text: str) -> Any:
         try:
-            return number(text)
+            return parse_number(text)
         except InputError:
             return text
 

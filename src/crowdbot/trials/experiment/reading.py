@@ -5,8 +5,8 @@ from __future__ import annotations
 import dataclasses
 from pathlib import Path
 
-from crowdbot.core import TrialError
-from crowdbot.trials.markup import parse, written
+from crowdbot.core import TrialError, format_xml
+from crowdbot.trials.markup import parse_trial_xml
 from crowdbot.trials.reading import Reader
 from crowdbot.trials.writing import element_from
 
@@ -43,7 +43,7 @@ name, order, repetitions, seeds
         data = text.encode() if isinstance(text, str) else text
     except UnicodeEncodeError:
         raise TrialError(f"{place}: this is not well-formed XML: it holds half a character") from None
-    root = parse(data, place, "utf-8" if isinstance(text, str) else None)
+    root = parse_trial_xml(data, place, "utf-8" if isinstance(text, str) else None)
     reader = Reader(place, folder or Path.cwd(), trust)
     if root.tag != ROOT:
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
@@ -57,4 +57,4 @@ name, order, repetitions, seeds
 
 def experiment_xml(experiment: Experiment) -> str:
     """Return the XML text of an experiment."""
-    return written(element_from(ROOT, experiment, None))
+    return format_xml(element_from(ROOT, experiment, None))

@@ -20,8 +20,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from crowdbot.core import InputError
-from crowdbot.core.plug import kebab
+from crowdbot.core import InputError, kebab
 
 from .event import Abort, Answered, Begin, Event, Fail, Finish, Next, Pause, Repeat, Resume, Start
 from .experiment import Experiment

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core import EpisodeError, InputError
-from crowdbot.trials.markup import read_bytes
+from crowdbot.trials.markup import read_trial_bytes
 
 from .event import event_of
 from .log import read_log
@@ -30,7 +30,7 @@ def session_of(folder: Path) -> tuple[int, Session]:
     """
     path = folder / LOG
     records = read_log(path)
-    experiment = read_experiment(read_bytes(folder / COPY), place=str(folder / COPY), folder=folder, whole=False)
+    experiment = read_experiment(read_trial_bytes(folder / COPY), place=str(folder / COPY), folder=folder, whole=False)
     participant = records[0].get("participant")
     try:
         session = Session.of(experiment, participant if isinstance(participant, int) else 0)

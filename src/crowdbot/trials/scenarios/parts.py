@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from crowdbot import models, navigation
-from crowdbot.core import plug
+from crowdbot.core import find_class
 from crowdbot.models import ORCA
 from crowdbot.sensors import Gaussian, Lidar2D
 from crowdbot.trials.distribution import Distribution
@@ -92,9 +92,9 @@ def finished(trial: Trial, preset: Preset, values: Mapping[str, Any]) -> Trial:
     """Return a trial with what all presets have in common: model, navigator, robot, seed."""
     changes: dict[str, Any] = {"name": preset.name, "about": preset.about, "seed": values["seed"]}
     if values["model"] != "orca":
-        changes["crowd"] = plug.find(values["model"], models, models.CrowdModel, trust=False)()
+        changes["crowd"] = find_class(values["model"], models, models.CrowdModel, trust=False)()
     robots: Iterable[Robot] = trial.robots if values["robot"] else ()
-    found = plug.find(values["navigator"], navigation, navigation.Navigator, trust=False)
+    found = find_class(values["navigator"], navigation, navigation.Navigator, trust=False)
     robots = [
         one if isinstance(one.navigator, found) else dataclasses.replace(one, navigator=found()) for one in robots
     ]

@@ -7,9 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from crowdbot.core import InputError, TrialError
-from crowdbot.core.errors import did_you_mean
-from crowdbot.trials.notation import number
+from crowdbot.core import InputError, TrialError, did_you_mean, parse_number
 from crowdbot.trials.trial import Trial
 
 __all__ = ["Option", "Preset"]
@@ -41,7 +39,7 @@ class Option:
             if str(given).lower() not in ("true", "false"):
                 raise InputError("must be true or false")
             return str(given).lower() == "true"
-        value = number(str(given))
+        value = parse_number(str(given))
         if isinstance(self.default, int) and value != int(value):
             raise InputError("must be a whole number")
         if not self.low <= value <= self.high:

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, SpatialPose, Twist
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import InputError, Pose, SpatialPose, Twist, did_you_mean
 from crowdbot.world.ackermann import AckermannDrive, SteeredTwists
 from crowdbot.world.drive import Twists
 from crowdbot.world.robot import Robot, spatial

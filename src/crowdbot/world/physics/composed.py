@@ -7,8 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from crowdbot.core import InputError, Scene
-from crowdbot.core.markup import Element, written
+from crowdbot.core import Element, InputError, Scene, format_xml
 from crowdbot.humans import LIMBS
 from crowdbot.world.ackermann import AckermannDrive
 from crowdbot.world.robot import Robot
@@ -46,7 +45,7 @@ class Built(NamedTuple):
 
     def load(self, timestep: float) -> Any:
         """Return the ``mujoco.MjModel``."""
-        model = engine().MjModel.from_xml_string(written(self.root), self.files)
+        model = engine().MjModel.from_xml_string(format_xml(self.root), self.files)
         model.opt.timestep = timestep
         _steadied(model, self.wheels)
         return model

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from crowdbot.core.optional import optional
+from crowdbot.core import optional
 
 __all__ = ["engine"]
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.markup import written
+from crowdbot.core import format_xml
 from crowdbot.humans.asset import shapes
 from crowdbot.humans.wardrobe import region_colors
 
@@ -92,7 +92,7 @@ class Looks:
     def _painted(self, built: Built) -> Any:
         """Return the model of the world with a skin, and its colours, for every person."""
         mj, walkers = self._mj, self._walkers
-        spec = mj.MjSpec.from_string(written(built.root), assets=built.files)
+        spec = mj.MjSpec.from_string(format_xml(built.root), assets=built.files)
         names = shapes().regions
         region = shapes().levels[self.detail].face_region
         around = np.stack([(np.arange(len(names)) + 0.5) / len(names), np.full(len(names), 0.5)], axis=1)

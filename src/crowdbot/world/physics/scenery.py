@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Walls
-from crowdbot.core.markup import Element
+from crowdbot.core import Element, Walls
 from crowdbot.world.urdf.geoms import row
 
 from .layers import GROUND, STANDING

@@ -10,8 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import STAGE, Bodies, InputError, Scene, Skins
-from crowdbot.core.markup import Element
+from crowdbot.core import STAGE, Bodies, Element, InputError, Scene, Skins
 from crowdbot.world.robot import Robot
 from crowdbot.world.urdf.shapes import Box, Capsule, Cylinder, Mesh, Sphere
 from crowdbot.world.urdf.transforms import frame, quaternion, turning

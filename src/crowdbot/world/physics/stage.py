@@ -9,8 +9,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError
-from crowdbot.core.markup import Element
+from crowdbot.core import Element, InputError
 from crowdbot.world.urdf.geoms import row
 
 from .layers import DYNAMIC, STANDING

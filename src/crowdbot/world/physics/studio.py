@@ -9,8 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, SpatialPose
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import InputError, Scene, SpatialPose, did_you_mean
 from crowdbot.sensors import Lens
 from crowdbot.world.robot import Robot
 

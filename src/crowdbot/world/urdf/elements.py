@@ -8,9 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, RobotError
-from crowdbot.core.errors import did_you_mean
-from crowdbot.core.markup import Element, number
+from crowdbot.core import Element, InputError, RobotError, did_you_mean, parse_number
 
 from .folders import Folders
 from .meshes import read_mesh, with_pieces
@@ -93,7 +91,7 @@ class Reader:
         if text is None:
             return default
         try:
-            found = number(text)
+            found = parse_number(text)
         except InputError as error:
             self.say(element, f'{key}="{text[:40]}" {error}')
             return default
@@ -118,7 +116,7 @@ class Reader:
             self.say(element, f'{key}="{text[:40]}" must be {count} numbers')
             return None
         try:
-            values = np.array([number(word) for word in words])
+            values = np.array([parse_number(word) for word in words])
         except InputError as error:
             self.say(element, f'{key}="{text[:60]}" {error}')
             return None
@@ -210,7 +208,7 @@ class Reader:
         """Return the number between the tags; these are extensions, so that a wrong one is only remarked."""
         text = element.stray or element.attributes.get("value", "")
         try:
-            return max(0.0, number(text)) if element.tag != "springReference" else number(text)
+            return max(0.0, parse_number(text)) if element.tag != "springReference" else parse_number(text)
         except InputError:
             self.remark("ignored", element, f"holds {text[:40]!r}, which is no number; it is ignored")
             return default

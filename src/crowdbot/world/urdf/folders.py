@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from urllib.parse import unquote
 
-from crowdbot.core import InputError
-from crowdbot.core.markup import parse
+from crowdbot.core import InputError, parse_xml
 
 __all__ = ["Folders", "robot_folder"]
 
@@ -104,7 +103,7 @@ def _package_name(folder: Path) -> str:
     file = folder / "package.xml"
     try:
         if file.is_file() and file.stat().st_size < MOST_PACKAGE_BYTES:
-            names = parse(file.read_bytes(), file.name).each("name")
+            names = parse_xml(file.read_bytes(), file.name).each("name")
             return names[0].stray if names else folder.name
     except (OSError, InputError):
         return folder.name

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core.markup import Element
+from crowdbot.core import Element
 
 from .model import Link, Part, RobotModel
 from .shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere

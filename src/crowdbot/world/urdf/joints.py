@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core.markup import Element
+from crowdbot.core import Element
 
 from .elements import Reader
 from .model import JOINT_KINDS, Joint, Mimic, Motor

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crowdbot.core.markup import Element
+from crowdbot.core import Element
 
 from .elements import Floats, Reader
 from .inertia import doubtful, mended, stand_in

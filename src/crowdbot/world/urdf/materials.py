@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from crowdbot.core.markup import Element
+from crowdbot.core import Element
 
 from .elements import Color, Reader
 

@@ -9,9 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core import InputError
-from crowdbot.core.markup import refuse_entities
-from crowdbot.core.optional import optional
+from crowdbot.core import InputError, optional, reject_entities
 
 from .shapes import Mesh, Piece
 
@@ -47,7 +45,7 @@ def read_mesh(path: Path, source: str, scale: tuple[float, float, float]) -> Mes
         raise InputError(f"it is larger than {MOST_BYTES} bytes; simplify the mesh")
     data = path.read_bytes()
     if kind == "dae":
-        refuse_entities(data, path.name)
+        reject_entities(data, path.name)
     loaded = _loaded(data, kind)
     loaded.apply_transform(np.diag([*scale, 1.0]))
     vertices, faces = np.asarray(loaded.vertices, dtype=np.float64), np.asarray(loaded.faces, dtype=np.int64)

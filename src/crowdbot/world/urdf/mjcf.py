@@ -15,10 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError
-from crowdbot.core.errors import did_you_mean
-from crowdbot.core.markup import Element, written
-from crowdbot.core.optional import optional
+from crowdbot.core import Element, InputError, did_you_mean, format_xml, optional
 
 from .geoms import Geoms, row
 from .inertia import unphysical
@@ -146,7 +143,7 @@ def mjcf(
         Element("actuator", {}, [*_servo(build, servo), *_motors(build, kinds)]),
     )
     root.children += [section for section in sections if section.children]
-    return Mjcf(written(root), build.geoms.files, root)
+    return Mjcf(format_xml(root), build.geoms.files, root)
 
 
 def _motor_kinds(model: RobotModel, given: Mapping[str, str]) -> dict[str, str]:

@@ -11,8 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import InputError
-from crowdbot.core.errors import did_you_mean
+from crowdbot.core import InputError, did_you_mean
 
 from .shapes import Shape
 from .transforms import across, frame, from_quaternion, turned, turning

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from crowdbot.core import InputError, RobotError
-from crowdbot.core.markup import Element, parse, read_bytes
+from crowdbot.core import Element, InputError, RobotError, parse_xml, read_bytes
 
 from .elements import Reader
 from .folders import Folders, robot_folder
@@ -62,7 +61,7 @@ child; exactly one link must be
         path = Path(source)
         data, place = read_bytes(path, "URDF", RobotError), str(path)
         home, beside = folder or robot_folder(path), path.resolve().parent
-    root = parse(data, place, what="URDF", root="robot", refusal=RobotError)
+    root = parse_xml(data, place, what="URDF", root="robot", refusal=RobotError)
     reader = Reader(place, Folders(home, packages, beside), colliders)
     _check_kind(reader, root)
     return _robot(reader, root)

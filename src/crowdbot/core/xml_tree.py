@@ -17,7 +17,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 from .errors import InputError
 
-__all__ = ["Element", "number", "parse", "read_bytes", "refuse_entities", "written"]
+__all__ = ["Element", "format_xml", "parse_number", "parse_xml", "read_bytes", "reject_entities"]
 
 MOST_BYTES = 4_000_000
 MOST_DEPTH = 20
@@ -43,14 +43,14 @@ class Element:
     def each(self, tag: str) -> list[Element]:
         """Return the child elements of this name.
 
-        >>> [inner.line for inner in parse(b"<a><b/><c/>\\n<b/></a>", "t.xml").each("b")]
+        >>> [inner.line for inner in parse_xml(b"<a><b/><c/>\\n<b/></a>", "t.xml").each("b")]
         [1, 2]
         """
         return [inner for inner in self.children if inner.tag == tag]
 
 
 def read_bytes(path: Path, what: str = "file", refusal: Refusal = InputError) -> bytes:
-    """Return what a small file holds, one byte more than :func:`parse` takes at the most.
+    """Return what a small file holds, one byte more than :func:`parse_xml` takes at the most.
 
     Args:
         path: the file.
@@ -71,7 +71,7 @@ def read_bytes(path: Path, what: str = "file", refusal: Refusal = InputError) ->
         raise refusal(f"{path} cannot be read: {error.strerror}") from None
 
 
-def parse(
+def parse_xml(
     data: bytes,
     place: str,
     encoding: str | None = None,
@@ -94,7 +94,7 @@ def parse(
         InputError: the text is not XML, or uses what no such file has a need of (DOCTYPE, entities, great depth or
             size).
 
-    >>> parse(b"<trial><robot name='r'/></trial>", "t.xml").children[0].attributes
+    >>> parse_xml(b"<trial><robot name='r'/></trial>", "t.xml").children[0].attributes
     {'name': 'r'}
     """
     if len(data) > MOST_BYTES:
@@ -107,7 +107,7 @@ def parse(
     return growth.root
 
 
-def refuse_entities(data: bytes, place: str, refusal: Refusal = InputError) -> None:
+def reject_entities(data: bytes, place: str, refusal: Refusal = InputError) -> None:
     """Raise unless the bytes are well-formed XML without DOCTYPE and entities, of any size.
 
     For files that a library will read afterwards, such as COLLADA meshes.
@@ -177,13 +177,13 @@ class _Growth:
             self.open[-1].stray = text.strip()[:MOST_TEXT]
 
 
-def number(text: str, otherwise: str = "is not a number") -> float:
+def parse_number(text: str, otherwise: str = "is not a number") -> float:
     """Return the finite number that a text is, in the plain notation ``-1.5e-3``.
 
     Raises:
         InputError: it is none.
 
-    >>> number(" -1.5e-3 ")
+    >>> parse_number(" -1.5e-3 ")
     -0.0015
     """
     text = text.strip()
@@ -197,10 +197,10 @@ def number(text: str, otherwise: str = "is not a number") -> float:
     raise InputError(otherwise)
 
 
-def written(root: Element) -> str:
+def format_xml(root: Element) -> str:
     """Return the tree as an XML text, one element a line.
 
-    >>> print(written(Element("trial", {"name": "a & b"}, [Element("stage")])), end="")
+    >>> print(format_xml(Element("trial", {"name": "a & b"}, [Element("stage")])), end="")
     <?xml version="1.0" encoding="UTF-8"?>
     <trial name="a &amp; b">
       <stage/>

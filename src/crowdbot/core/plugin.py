@@ -23,7 +23,15 @@ import numpy as np
 
 from .errors import InputError, UnknownName, did_you_mean
 
-__all__ = ["built_in", "find", "kebab", "needs", "problems", "read", "words"]
+__all__ = [
+    "attribute_names",
+    "attribute_problems",
+    "builtin_classes",
+    "find_class",
+    "from_attributes",
+    "kebab",
+    "required_fields",
+]
 
 
 def kebab(name: str) -> str:
@@ -35,7 +43,7 @@ def kebab(name: str) -> str:
     return re.sub(r"(?<=[a-z])(?=[A-Z])", "-", name).lower()
 
 
-def built_in(room: types.ModuleType, contract: type) -> dict[str, type]:
+def builtin_classes(room: types.ModuleType, contract: type) -> dict[str, type]:
     """Return the concrete classes of ``contract`` in ``room.__all__`` by their kebab-case names, sorted."""
     classes = (getattr(room, name) for name in room.__all__)
     found = {
@@ -49,7 +57,9 @@ def built_in(room: types.ModuleType, contract: type) -> dict[str, type]:
     return dict(sorted(found.items()))
 
 
-def find(name: str, room: types.ModuleType, contract: type, *, folder: Path | None = None, trust: bool = True) -> type:
+def find_class(
+    name: str, room: types.ModuleType, contract: type, *, folder: Path | None = None, trust: bool = True
+) -> type:
     """Return the class that ``name`` means: a built-in name or an address.
 
     Args:
@@ -63,7 +73,7 @@ def find(name: str, room: types.ModuleType, contract: type, *, folder: Path | No
         UnknownName: no built-in has this name.
         InputError: the address cannot be loaded, is not of the contract, or is not trusted.
     """
-    known = built_in(room, contract)
+    known = builtin_classes(room, contract)
     plain = {key.replace("-", ""): value for key, value in known.items()}
     short = name.strip().replace("-", "").replace("_", "").lower()
     if short in plain:
@@ -79,7 +89,7 @@ def find(name: str, room: types.ModuleType, contract: type, *, folder: Path | No
     return value
 
 
-def read(cls: type, attributes: Mapping[str, str], where: str = "") -> Any:
+def from_attributes(cls: type, attributes: Mapping[str, str], where: str = "") -> Any:
     """Make an instance of a dataclass from text attributes (kebab-case names allowed).
 
     Raises:
@@ -98,7 +108,7 @@ def read(cls: type, attributes: Mapping[str, str], where: str = "") -> Any:
                 f" it takes {', '.join(known) or 'none'}"
             )
         values[name] = _convert(text, hints[name], f"{prefix}{kebab(cls.__name__)} {key}")
-    missing = [name for name in needs(cls) if name not in values]
+    missing = [name for name in required_fields(cls) if name not in values]
     if missing:
         raise InputError(f"{prefix}{kebab(cls.__name__)} needs the attribute {missing[0].replace('_', '-')!r}")
     try:
@@ -107,21 +117,21 @@ def read(cls: type, attributes: Mapping[str, str], where: str = "") -> Any:
         raise type(error)(f"{prefix}{error}") from None
 
 
-def problems(cls: type, attributes: Mapping[str, str], also: Iterable[str] = ()) -> dict[str, str]:
+def attribute_problems(cls: type, attributes: Mapping[str, str], also: Iterable[str] = ()) -> dict[str, str]:
     """Return a sentence for every attribute that is unknown, missing or cannot be converted, not only the first.
 
     Args:
         cls: a dataclass.
-        attributes: as :func:`read` takes them.
+        attributes: as :func:`from_attributes` takes them.
         also: attributes that belong to somebody else and may be what was meant.
 
     >>> from crowdbot.core import Paper
-    >>> problems(Paper, {"yeer": "1995", "year": "x", "authors": "a", "title": "t", "venue": "v"})["yeer"]
+    >>> attribute_problems(Paper, {"yeer": "1995", "year": "x", "authors": "a", "title": "t", "venue": "v"})["yeer"]
     "has no attribute 'yeer', did you mean 'year'?; it takes authors, year, title, venue, doi"
     """
     hints = _hints(cls)
     fields = {f.name: f for f in dataclasses.fields(cls) if f.init}
-    known = [*words(cls), *also]
+    known = [*attribute_names(cls), *also]
     found = {}
     for key, text in attributes.items():
         name = key.replace("-", "_")
@@ -134,21 +144,21 @@ def problems(cls: type, attributes: Mapping[str, str], also: Iterable[str] = ())
         except InputError as error:
             found[key] = str(error)
     given = {key.replace("-", "_") for key in attributes}
-    missing = [name.replace("_", "-") for name in needs(cls) if name not in given]
+    missing = [name.replace("_", "-") for name in required_fields(cls) if name not in given]
     return found | {word: f"needs the attribute {word!r}" for word in missing}
 
 
-def words(cls: Any) -> list[str]:
+def attribute_names(cls: Any) -> list[str]:
     """Return the attributes that a dataclass takes.
 
     >>> from crowdbot.core import Paper
-    >>> words(Paper)
+    >>> attribute_names(Paper)
     ['authors', 'year', 'title', 'venue', 'doi']
     """
     return [field.name.replace("_", "-") for field in dataclasses.fields(cls) if field.init]
 
 
-def needs(cls: Any) -> list[str]:
+def required_fields(cls: Any) -> list[str]:
     """Return the fields of a dataclass that have no default."""
     return [
         field.name
