@@ -14,7 +14,7 @@ from crowdbot.models import ORCA, CrowdModel, SocialForce
 from crowdbot.models.mixture import Mixture
 from crowdbot.simulation import run_batch
 from crowdbot.trials import Trial, load_trial
-from crowdbot.world.walk import Walk, alone, together
+from crowdbot.world import Walk, alone, together
 
 SEEDS = range(8)
 
