@@ -15,7 +15,7 @@ from crowdbot.models.mixture import Mixture
 from crowdbot.recording import run
 from crowdbot.simulation import run_batch
 from crowdbot.trials import Trial, expand_sweeps, load_trial, parse_trial
-from crowdbot.world.walk import Walk, alone, together
+from crowdbot.world import Walk, alone, together
 
 SEEDS = range(8)
 

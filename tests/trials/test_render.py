@@ -18,7 +18,7 @@ from crowdbot.recording import run
 from crowdbot.rendering import Album, Shot, Take, camera_names, painted_segmentation, shots
 from crowdbot.trials import load_trial, parse_trial
 from crowdbot.trials.camera import overview
-from crowdbot.world.physics import drawing
+from crowdbot.world.rendering import gl_context
 
 
 def test_cameras_have_names() -> None:
@@ -250,12 +250,12 @@ def test_a_mistake_is_said_in_a_sentence(mistake: str, tmp_path: Path, capsys: p
 
 def test_without_a_way_to_draw_nothing_is_written(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("MUJOCO_GL", "disabled")
-    drawing.backend.cache_clear()
+    gl_context.backend.cache_clear()
     try:
         with pytest.raises(InputError, match="MUJOCO_GL = 'disabled' must be one of egl, osmesa"):
             list(shots(load_trial("frontal")))
     finally:
-        drawing.backend.cache_clear()
+        gl_context.backend.cache_clear()
 
 
 def test_without_extras(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

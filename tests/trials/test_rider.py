@@ -11,7 +11,7 @@ from crowdbot.humans import LIMBS
 from crowdbot.rendering import Take, shots
 from crowdbot.simulation import Running, Simulation
 from crowdbot.trials import parse_trial, trial_xml
-from crowdbot.world.physics import Walkers
+from crowdbot.world import Walkers
 
 ROOM = """<trial name="ride" duration="4" seed="3" step="0.05">
   <stage walkable="-6,-4 6,-4 6,4 -6,4"/>

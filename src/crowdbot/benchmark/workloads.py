@@ -252,7 +252,7 @@ def _physics(people: int) -> Measurement:
 
 def _camera() -> Measurement:
     """Time images of 640 x 480 with depth."""
-    from crowdbot.world.physics import Camera
+    from crowdbot.world import Camera
 
     world, _ = _bodies(50)
     camera = Camera((-2.0, -2.0, 3.0), (5.0, 5.0, 0.8), detail=2)
@@ -262,8 +262,7 @@ def _camera() -> Measurement:
 def _bodies(people: int) -> tuple[Any, int]:
     """Return a physics world with a robot in the middle of a crowd, and the agent that it is."""
     from crowdbot.models import ORCA
-    from crowdbot.world import Robot
-    from crowdbot.world.physics import PhysicsWorld
+    from crowdbot.world import PhysicsWorld, Robot
 
     robot, some = Robot.load("differential"), crowd(people)
     middle = some.position[0].mean(axis=0)

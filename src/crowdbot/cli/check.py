@@ -89,8 +89,7 @@ def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
 
 def _robot(name: str, trust: bool, packages: dict[str, Path]) -> dict[str, Any]:
     from crowdbot.core import InputError, RobotError
-    from crowdbot.world import Robot
-    from crowdbot.world.urdf import described, read_urdf
+    from crowdbot.world import Robot, described, read_urdf
 
     try:
         if Path(name).suffix in (".urdf", ".xacro"):

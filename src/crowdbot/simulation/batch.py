@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from crowdbot.core import InputError, Scene
 from crowdbot.trials import Trial, check_trial
-from crowdbot.world.walk import Stepping, Walk, together
+from crowdbot.world import Stepping, Walk, together
 
 from .episode import Episode, Log
 from .runner import Running, stopping

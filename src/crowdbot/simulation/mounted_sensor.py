@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from crowdbot.core import Clock, Pose, SpatialPose, stream
 from crowdbot.sensors import DepthCamera, Infrared, Lidar3D, Reading, RGBCamera, Schedule, Sensor, Tracked, Ultrasound
 from crowdbot.trials import Mount, Robot
-from crowdbot.world.urdf.transforms import quaternion
+from crowdbot.world import quaternion
 
 from .sensor_view import Surroundings
 

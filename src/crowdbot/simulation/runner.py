@@ -13,7 +13,7 @@ from typing import Protocol, TypeVar
 from crowdbot.core import Clock, ExternalClock, InputError
 from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, Robot, Trial, check_trial
-from crowdbot.world.walk import Stepping, alone
+from crowdbot.world import Stepping, alone
 
 from .episode import Episode, Log
 from .simulation import Frame, Simulation

@@ -11,7 +11,7 @@ from crowdbot.world import PlanarWorld
 
 if TYPE_CHECKING:
     from crowdbot.trials import Figures, Trial
-    from crowdbot.world.physics import Chassis, PhysicsWorld, Studio, Walkers
+    from crowdbot.world import Chassis, PhysicsWorld, Studio, Walkers
 
 __all__ = ["Surroundings"]
 
@@ -42,7 +42,7 @@ class Surroundings:
             physical: Any = world
             self._physics, self._walkers = physical, physical.walkers
         elif figures is not None:
-            from crowdbot.world.physics import Walkers
+            from crowdbot.world import Walkers
 
             robots = set(self.bodies)
             people = np.array([a for a in range(world.scene.shape[1]) if a not in robots], dtype=np.int64)
@@ -96,7 +96,7 @@ class Surroundings:
         """
         if self._physics is not None:
             return self._physics.studio
-        from crowdbot.world.physics import Studio
+        from crowdbot.world import Studio
 
         scene = self.world.scene.replace(walls=self.trial.stage.as_walls(props=False))
         if self._studio is None:
@@ -107,7 +107,7 @@ class Surroundings:
     def _posed(self, now: Scene) -> Scene:
         if self._physics is not None:
             return self._physics.seen(self._skins)
-        from crowdbot.world.physics import bodies
+        from crowdbot.world import bodies
 
         stage = self.trial.stage
         walls = stage.as_walls(props=False) if stage.props else now.walls

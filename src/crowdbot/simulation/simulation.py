@@ -30,9 +30,7 @@ from crowdbot.metrics.contacts import HOLD
 from crowdbot.navigation import Limits, Observation
 from crowdbot.sensors import Reading, Scan
 from crowdbot.trials import Mount, Robot, Trial, cast_of, place
-from crowdbot.world import CommandDelay, Twists
-from crowdbot.world.servo import Pending
-from crowdbot.world.walk import Stepping, alone
+from crowdbot.world import CommandDelay, Pending, Stepping, Twists, alone
 
 from .mounted_sensor import Probe, probes_of
 from .sensor_view import Surroundings
@@ -40,7 +38,7 @@ from .termination import ended, ways_out
 from .world_builder import limits_of, start_scene, world_of
 
 if TYPE_CHECKING:
-    from crowdbot.world.physics import BodyForce, Collision, Party
+    from crowdbot.world import BodyForce, Collision, Party
 
 __all__ = ["Carrier", "Frame", "Simulation", "Touch", "start_scene"]
 

@@ -88,7 +88,7 @@ def _embodied(trial: Trial) -> bool:
 def _with_bodies(
     trial: Trial, scene: Scene, model: CrowdModel, robots: Mapping[int, Robot], figures: Any, whole: dict[str, Any]
 ) -> PlanarWorld:
-    from crowdbot.world.physics import PhysicsWorld
+    from crowdbot.world import PhysicsWorld
 
     stage = trial.stage
     return PhysicsWorld(

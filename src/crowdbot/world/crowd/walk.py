@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Scene
-from crowdbot.models import CrowdModel
-from crowdbot.models.mixture import Mixture
+from crowdbot.models import CrowdModel, Mixture
 
 __all__ = ["Stepping", "Walk", "alone", "together"]
 

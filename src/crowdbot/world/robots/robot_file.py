@@ -27,14 +27,15 @@ from crowdbot.core import (
     read_bytes,
 )
 from crowdbot.sensors import Sensor, preset
+from crowdbot.world.urdf import RobotModel, read_urdf
 
 from .drive import Drive
-from .robot import FILE, Robot, SensorMount
-from .urdf.model import RobotModel
-from .urdf.reading import read_urdf
+from .mount import SensorMount
 from .wheel import Wheel
 
-__all__ = ["read_robot"]
+__all__ = ["FILE", "read_robot_file"]
+
+FILE = "robot.xml"
 
 KNOWN: dict[str, tuple[str, ...]] = {
     "robot": ("name", "urdf", "about", "base"),
@@ -46,11 +47,11 @@ PLACES = ("x", "y", "z", "roll", "pitch", "yaw")
 CIRCLE = np.linspace(0.0, 2.0 * math.pi, 32, endpoint=False)
 
 
-def read_robot(folder: Path, *, trust: bool = False) -> Robot:
-    """Read the robot in a folder: its ``robot.xml`` and the URDF that this names.
+def read_robot_file(folder: Path, *, trust: bool = False) -> dict[str, Any]:
+    """Read ``robot.xml`` in a folder and the URDF file that it names; return the fields of a robot by name.
 
     Raises:
-        RobotError: with everything that is wrong, one sentence each.
+        RobotError: the file has errors; the exception lists all of them, one sentence each.
     """
     path = folder / FILE
     root = parse_xml(read_bytes(path, "robot", RobotError), str(path), what="robot", root="robot", refusal=RobotError)
@@ -59,10 +60,7 @@ def read_robot(folder: Path, *, trust: bool = False) -> Robot:
         raise RobotError(f"{path}:{root.line}: the root element is <{root.tag[:40]}>, it must be <robot>")
     values = reader.robot(root)
     reader.finish()
-    try:
-        return Robot(**values)
-    except InputError as error:
-        raise RobotError(f"{path}: {error}") from None
+    return values
 
 
 class _Reader:

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene
-from crowdbot.models import CrowdModel
-from crowdbot.models.mixture import MODEL, Mixture
+from crowdbot.models import CrowdModel, Mixture
+from crowdbot.models.mixture import MODEL
 
-from .chance import uniform
-from .flow import Arrivals, Source
 from .journey import Journeys
+from .person_random import uniform
 from .routing import WAY, Router, fresh
+from .source import Arrivals, Source
 
 __all__ = ["Traffic"]
 

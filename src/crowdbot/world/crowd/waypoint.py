@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean
 
-from .chance import uniform
+from .person_random import uniform
 
 __all__ = ["Direction", "Luck", "Point", "Stop", "Zone"]
 

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, SpatialPose, Twist, did_you_mean
-from crowdbot.world.ackermann import AckermannDrive, SteeredTwists
-from crowdbot.world.drive import Twists
-from crowdbot.world.robot import Robot, spatial
-from crowdbot.world.servo import CommandDelay, Pending
+from crowdbot.world.robots.ackermann import AckermannDrive, SteeredTwists
+from crowdbot.world.robots.drive import Twists
+from crowdbot.world.robots.robot import Robot, spatial
+from crowdbot.world.robots.servo import CommandDelay, Pending
 
 from .engine import engine
 

@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.humans import LIMBS
-from crowdbot.metrics.contacts import HOLD, cause_of
+from crowdbot.metrics import cause_of
+from crowdbot.metrics.contacts import HOLD
 
-from .tissue import TISSUES, region_of, two_body_force
-from .touches import Party, Touch
+from .body_region_limits import TISSUES, region_of, two_body_force
+from .contacts import Party, Touch
 
 __all__ = ["BodyForce", "Collision", "CollisionBook"]
 

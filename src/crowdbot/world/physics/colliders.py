@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import STAGE, Bodies, Element, InputError, Scene, Skins
-from crowdbot.world.robot import Robot
-from crowdbot.world.urdf.shapes import Box, Capsule, Cylinder, Mesh, Sphere
+from crowdbot.world.robots.robot import Robot
+from crowdbot.world.urdf import Box, Capsule, Cylinder, Mesh, Sphere
 from crowdbot.world.urdf.transforms import frame, quaternion, turning
 
+from .people_motion import Walkers
 from .stage import PhysicsStage, Prop
-from .walkers import Walkers
 
 __all__ = ["bodies"]
 

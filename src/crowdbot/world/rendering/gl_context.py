@@ -11,8 +11,7 @@ import sys
 from typing import Any
 
 from crowdbot.core import InputError
-
-from .engine import engine
+from crowdbot.world.physics.engine import engine
 
 __all__ = ["backend", "canvas", "closed"]
 

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .composed import LIMB_COUNT, LIMB_NAMES, PARKED
-from .tissue import region_of, softness
-from .touches import Touch
+from .body_region_limits import region_of, softness
+from .contacts import Touch
+from .mjcf_model import LIMB_COUNT, LIMB_NAMES, PARKED
 
 __all__ = ["BRACE", "REACTION", "Passers"]
 

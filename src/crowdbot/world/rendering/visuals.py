@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from crowdbot.core import format_xml
 from crowdbot.humans.asset import shapes
 from crowdbot.humans.wardrobe import region_colors
+from crowdbot.world.physics.engine import engine
+from crowdbot.world.physics.mjcf_model import Built
+from crowdbot.world.physics.people_motion import Walkers
+from crowdbot.world.physics.stage import PhysicsStage
 
 from .camera import LARGEST, Images, View
-from .composed import Built
-from .drawing import canvas, closed
-from .engine import engine
-from .stage import PhysicsStage
-from .walkers import Walkers
+from .gl_context import canvas, closed
 
 __all__ = ["Looks"]
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from crowdbot.core import Element, InputError, Scene, format_xml
 from crowdbot.humans import LIMBS
-from crowdbot.world.ackermann import AckermannDrive
-from crowdbot.world.robot import Robot
+from crowdbot.world.robots.ackermann import AckermannDrive
+from crowdbot.world.robots.robot import Robot
+from crowdbot.world.urdf import BaseServo, mjcf
 from crowdbot.world.urdf.geoms import row
-from crowdbot.world.urdf.mjcf import BaseServo, mjcf
 
 from .engine import engine
 from .layers import LIMB, PULLED, ROBOT, TRUNK

@@ -15,7 +15,7 @@ from crowdbot.core import InputError, Scene, did_you_mean, stream
 from crowdbot.models.mixture import MODEL
 
 from .journey import JOURNEY, Journey
-from .stop import Zone
+from .waypoint import Zone
 
 __all__ = ["Arrivals", "Draw", "Source"]
 

@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, SpatialPose, did_you_mean
 from crowdbot.sensors import Lens
-from crowdbot.world.robot import Robot
+from crowdbot.world.physics.engine import engine
+from crowdbot.world.physics.mjcf_model import Built, built
+from crowdbot.world.physics.people_motion import Walkers
+from crowdbot.world.physics.stage import PhysicsStage
+from crowdbot.world.robots.robot import Robot
 
 from .camera import Camera, Images, View
-from .composed import Built, built
-from .engine import engine
-from .looks import Looks
-from .stage import PhysicsStage
-from .walkers import Walkers
+from .visuals import Looks
 
 __all__ = ["Studio"]
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene
 
-from .stop import Zone
+from .waypoint import Zone
 
 __all__ = ["Portal", "ported"]
 

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .composed import LIMB_NAMES
 from .engine import engine
+from .mjcf_model import LIMB_NAMES
 
 __all__ = ["KINDS", "Party", "Touch", "Touches"]
 

@@ -13,48 +13,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, RobotError, SpatialPose, Twist, did_you_mean
-from crowdbot.sensors import Sensor
+from crowdbot.world.urdf import Cylinder, Inertial, Link, Part, RobotModel
+from crowdbot.world.urdf.transforms import frame, quaternion, turning
 
 from .drive import Drive
+from .mount import SensorMount
+from .robot_file import FILE, read_robot_file
 from .servo import CommandDelay
-from .urdf.model import Inertial, Link, Part, RobotModel
-from .urdf.shapes import Cylinder
-from .urdf.transforms import frame, quaternion, roll_pitch_yaw, turning
 from .wheel import Wheel
 
-__all__ = ["Robot", "SensorMount", "Wheel", "builtin_robots", "spatial"]
+__all__ = ["Robot", "builtin_robots", "spatial"]
 
 Floats = NDArray[np.float64]
-FILE = "robot.xml"
 SUNK = 2e-3
 """Robots that reach deeper [m] below their root than this do not have it on the ground."""
 CLEAR = 0.01
 """Height [m] above the floor of a robot of which only the size is known: it does not rub."""
-
-
-@dataclass(frozen=True)
-class SensorMount:
-    """A sensor and where it sits in the frame of a link: x, y, z [m]; roll, pitch, yaw [rad] as in URDF."""
-
-    name: str
-    sensor: Sensor
-    link: str
-    x: float = 0.0
-    y: float = 0.0
-    z: float = 0.0
-    roll: float = 0.0
-    pitch: float = 0.0
-    yaw: float = 0.0
-
-    def __post_init__(self) -> None:
-        for name in ("x", "y", "z", "roll", "pitch", "yaw"):
-            if not math.isfinite(getattr(self, name)):
-                raise InputError(f"SensorMount: {name} = {getattr(self, name)} must be finite")
-
-    @property
-    def origin(self) -> Floats:
-        """Its frame ``[4, 4]`` in the link's frame."""
-        return frame((self.x, self.y, self.z), roll_pitch_yaw(self.roll, self.pitch, self.yaw))
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,9 +104,12 @@ class Robot:
         Raises:
             RobotError: there is no such robot, or with everything that is wrong with it, a sentence each.
         """
-        from .robot_file import read_robot
-
-        return read_robot(_folder(source), trust=trust)
+        folder = _folder(source)
+        values = read_robot_file(folder, trust=trust)
+        try:
+            return cls(**values)
+        except InputError as error:
+            raise RobotError(f"{folder / FILE}: {error}") from None
 
     @classmethod
     def disc(cls, name: str, drive: Drive, radius: float, *, height: float = 1.0, mass: float = 50.0) -> Robot:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, did_you_mean
 
-from .stop import Luck, Stop
+from .waypoint import Luck, Stop
 
 __all__ = ["JOURNEY", "STOP", "Journey", "Journeys"]
 
