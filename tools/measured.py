@@ -18,8 +18,8 @@ import numpy as np
 import crowdbot as cb
 from crowdbot import navigation
 from crowdbot.benchmark import measure
+from crowdbot.benchmark.prediction.evaluate import evaluate
 from crowdbot.metrics import Score
-from crowdbot.prediction import evaluate
 
 FOLDS = {
     "eth": ("biwi_eth",),

@@ -55,6 +55,10 @@ def __dir__() -> list[str]:
 
 
 if TYPE_CHECKING:
+    from crowdbot.prediction import AnchorNet as AnchorNet
+    from crowdbot.prediction import Anchors as Anchors
+    from crowdbot.prediction import SocialWays as SocialWays
+
     from .benchmark import cite as cite
     from .calibration import Calibrator as Calibrator
     from .core import CrowdbotError as CrowdbotError
@@ -76,8 +80,6 @@ if TYPE_CHECKING:
     from .models import SocialForce as SocialForce
     from .navigation import Navigator as Navigator
     from .navigation import Observation as Observation
-    from .prediction import AnchorNet as AnchorNet
-    from .prediction import Anchors as Anchors
     from .prediction import ConstantAcceleration as ConstantAcceleration
     from .prediction import ConstantVelocity as ConstantVelocity
     from .prediction import Kalman as Kalman
@@ -87,7 +89,6 @@ if TYPE_CHECKING:
     from .prediction import Predictor as Predictor
     from .prediction import SampledConstantVelocity as SampledConstantVelocity
     from .prediction import Simulated as Simulated
-    from .prediction import SocialWays as SocialWays
     from .sensors import Lidar2D as Lidar2D
     from .sensors import Sensor as Sensor
     from .trials import Episode as Episode

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crowdbot.benchmark.degraded_plot import _figure, draw_degraded
+from crowdbot.benchmark.prediction.degraded_plot import _figure, draw_degraded
 from crowdbot.data import Trajectories
 from crowdbot.data.degrade import GaussianNoise, MissingFrames
 from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, Kalman, Task, sweep

@@ -9,15 +9,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.benchmark.validation import CHECKS, chosen, validate, write_page
-from crowdbot.benchmark.validation.bottleneck import BOTTLENECK, _flow, crossings
-from crowdbot.benchmark.validation.corridor import CORRIDOR, corridor_crowd
-from crowdbot.benchmark.validation.lanes import LANES, NARROW, lane_order
-from crowdbot.benchmark.validation.literature import BOTTLENECK_FLOWS, line_speed, weidmann_speed
-from crowdbot.benchmark.validation.recording import measured
-from crowdbot.benchmark.validation.rimea import CORRIDOR_TIME
-from crowdbot.benchmark.validation.run import _read
-from crowdbot.benchmark.validation.scenario import (
+from crowdbot.cli import validate as command
+from crowdbot.core import DataError, InputError, Scene, UnknownName, stream
+from crowdbot.models import ORCA, CollisionFreeSpeed, CrowdModel
+from crowdbot.validation import CHECKS, chosen, validate, write_page
+from crowdbot.validation.bottleneck import BOTTLENECK, _flow, crossings
+from crowdbot.validation.corridor import CORRIDOR, corridor_crowd
+from crowdbot.validation.lanes import LANES, NARROW, lane_order
+from crowdbot.validation.literature import BOTTLENECK_FLOWS, line_speed, weidmann_speed
+from crowdbot.validation.recording import measured
+from crowdbot.validation.rimea import CORRIDOR_TIME
+from crowdbot.validation.run import _read
+from crowdbot.validation.scenario import (
     RADIUS,
     STEP,
     Walk,
@@ -30,10 +33,7 @@ from crowdbot.benchmark.validation.scenario import (
     starts,
     walk_round,
 )
-from crowdbot.benchmark.validation.single_file import SINGLE_FILE, _overtakings
-from crowdbot.cli import validate as command
-from crowdbot.core import DataError, InputError, Scene, UnknownName, stream
-from crowdbot.models import ORCA, CollisionFreeSpeed, CrowdModel
+from crowdbot.validation.single_file import SINGLE_FILE, _overtakings
 
 
 def _quiet(share):

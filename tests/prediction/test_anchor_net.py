@@ -8,16 +8,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from crowdbot.prediction.anchor_net.predictor.agent_frame import GAITS
+from crowdbot.prediction.anchor_net.predictor.layers import arrange, attend, crossing, dense, part_ways
+from crowdbot.prediction.anchor_net.predictor.predictor import NEEDED
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from crowdbot.benchmark.prediction.evaluate import evaluate
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Trajectories, Windows
-from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, SampledConstantVelocity, evaluate
-from crowdbot.prediction.anchor_kernels import arrange, attend, crossing, dense, part_ways
-from crowdbot.prediction.anchor_net import NEEDED
-from crowdbot.prediction.own_frame import GAITS
-from crowdbot.prediction.places import FOLDS, learned
+from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, SampledConstantVelocity
+from crowdbot.prediction.pretrained_weights import FOLDS, learned
 
 Maker = Callable[..., Windows]
 KINDS = (AnchorNet(), AnchorNet(sample="draws"))

@@ -9,12 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-
-from crowdbot.core import InputError, stream
-from crowdbot.data import Trajectories
-from crowdbot.prediction.anchor_net import NEEDED, network_output
-from crowdbot.prediction.learned.anchor_data import NONE, Material, Variation, backwards, batch, gathered, material_of
-from crowdbot.prediction.learned.anchor_training import (
+from crowdbot.prediction.anchor_net.predictor.agent_frame import AHEAD, COMPANY, INPUTS, NEAR
+from crowdbot.prediction.anchor_net.predictor.predictor import NEEDED, network_output
+from crowdbot.prediction.anchor_net.predictor.training import (
     AnchorNetTraining,
     AnchorTraining,
     learner,
@@ -22,10 +19,21 @@ from crowdbot.prediction.learned.anchor_training import (
     outputs,
     shapes_of,
 )
-from crowdbot.prediction.learned.extra import threads
-from crowdbot.prediction.learned.samples import Samples
-from crowdbot.prediction.learned.training import Schedule, train
-from crowdbot.prediction.own_frame import AHEAD, COMPANY, INPUTS, NEAR
+from crowdbot.prediction.anchor_net.predictor.training_data import (
+    NONE,
+    Material,
+    Variation,
+    backwards,
+    batch,
+    gathered,
+    material_of,
+)
+
+from crowdbot.core import InputError, stream
+from crowdbot.data import Trajectories
+from crowdbot.prediction.training.loop import Schedule, train
+from crowdbot.prediction.training.samples import Samples
+from crowdbot.prediction.training.torch_backend import threads
 
 TINY = AnchorTraining(people=32, width=16, social=8, warm=5)
 

@@ -10,17 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from crowdbot.benchmark.prediction.evaluate import evaluate
 from crowdbot.core import InputError, stream
 from crowdbot.data import Forecast, Trajectories, Windows, load
 from crowdbot.metrics import Score, bootstrap_interval, collision_share, energy_score, person_errors
-from crowdbot.prediction import (
-    ConstantAcceleration,
-    ConstantVelocity,
-    LeastSquares,
-    Predictor,
-    SampledConstantVelocity,
-    evaluate,
-)
+from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, LeastSquares, Predictor, SampledConstantVelocity
 
 Recorded = Callable[[str], Trajectories]
 Maker = Callable[..., Windows]

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from crowdbot.benchmark.toy_gan.toy_data import Toy
+from crowdbot.benchmark.toy_gan.training import toy_config
 from crowdbot.core import InputError, stream
-from crowdbot.prediction.learned.toy import Toy
-from crowdbot.prediction.learned.toy_training import toy_config
 
 
 def test_tracks_lie_on_circles_and_turn_off_to_three_sides() -> None:

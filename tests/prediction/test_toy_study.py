@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 import torch
 
+from crowdbot.benchmark.toy_gan.study import MEASURES, METHODS, Run, ToyStudy, with_values
+from crowdbot.benchmark.toy_gan.toy_data import Toy
+from crowdbot.benchmark.toy_gan.training import ToyTraining, drawn_from, toy_config
 from crowdbot.core import InputError, stream
-from crowdbot.prediction.learned.extra import threads
-from crowdbot.prediction.learned.social_ways_config import SocialWaysConfig
-from crowdbot.prediction.learned.toy import Toy
-from crowdbot.prediction.learned.toy_study import MEASURES, METHODS, Run, ToyStudy, with_values
-from crowdbot.prediction.learned.toy_training import ToyTraining, drawn_from, toy_config
+from crowdbot.prediction.social_ways.config import SocialWaysConfig
+from crowdbot.prediction.training.torch_backend import threads
 
 SMALL = {"hidden": 8, "pooled": 4, "noise": 6, "batch": 32}
 TOY = Toy(tracks=6)

@@ -3,8 +3,8 @@
 from .catalogue import catalogue, cite, papers
 from .demo import Demo, run_demo
 from .report import Predicted, write_report
-from .speed import Row, measure
-from .workloads import measurements
+from .speed.timing import Row, measure
+from .speed.workloads import measurements
 
 __all__ = [
     "Demo",

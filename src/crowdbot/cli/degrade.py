@@ -152,7 +152,7 @@ def _predictors(options: argparse.Namespace, found: Sequence[Recording]) -> list
     """Return what is scored; a goal that learns does so from the clean begin of the one recording."""
     from crowdbot import prediction
     from crowdbot.core import InputError, builtin_classes, required_fields
-    from crowdbot.prediction.learned.predictor import LearnedPredictor
+    from crowdbot.prediction.learned_predictor import LearnedPredictor
 
     known = builtin_classes(prediction, prediction.Predictor)
     plain = (
@@ -209,7 +209,7 @@ def _keep(
         os.replace(draft, file)
         if not plot:
             return [file]
-        from crowdbot.benchmark.degraded_plot import draw_degraded
+        from crowdbot.benchmark.prediction.degraded_plot import draw_degraded
 
         return [file, *draw_degraded(list(done.values()), options.out, _title(options, task))]
     except OSError as error:

@@ -14,12 +14,12 @@ from .schemes import assignments
 
 if TYPE_CHECKING:
     from crowdbot.data import Recording
-    from crowdbot.prediction.learned.samples import Samples
-    from crowdbot.prediction.learned.training import Row, Trained
+    from crowdbot.prediction.training.loop import Row, Trained
+    from crowdbot.prediction.training.samples import Samples
 
 LEARNERS = {
-    "anchor-net": ("crowdbot.prediction.learned.anchor_training", "file"),
-    "social-ways": ("crowdbot.prediction.learned.social_ways_training", "checkpoint"),
+    "anchor-net": ("crowdbot.prediction.anchor_net.training", "file"),
+    "social-ways": ("crowdbot.prediction.social_ways.training", "checkpoint"),
 }
 """Modules with a function ``learner(settings, values, samples, watched, seed, device)`` that makes a Trainable, and
 the parameter of the predictor that takes its weights."""
@@ -53,9 +53,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Learn, and say where the weights are."""
     from crowdbot.core import InputError, UnknownName
-    from crowdbot.prediction.learned.extra import threads, torch_module
-    from crowdbot.prediction.learned.samples import short_recordings
-    from crowdbot.prediction.learned.training import BEST, LAST, Schedule, train
+    from crowdbot.prediction.training.loop import BEST, LAST, Schedule, train
+    from crowdbot.prediction.training.samples import short_recordings
+    from crowdbot.prediction.training.torch_backend import threads, torch_module
 
     if options.what not in LEARNERS:
         raise UnknownName("learned predictor", options.what, LEARNERS)
@@ -88,7 +88,7 @@ def main(options: argparse.Namespace) -> int:
 
 def _samples(options: argparse.Namespace) -> tuple[tuple[Recording, ...], tuple[Samples, Samples], list[str]]:
     """Return what is learned from, the samples to learn from and to watch, and the files that are left out."""
-    from crowdbot.prediction.learned.samples import Samples, leave_out, split_in_time
+    from crowdbot.prediction.training.samples import Samples, leave_out, split_in_time
 
     found, left = list(recordings(options)), list[Any]()
     if options.leave_out is not None:

@@ -1,17 +1,18 @@
 """Floor 4: where people will be in the next seconds; predictors, and their scores on recordings."""
 
-from .anchor_net import AnchorNet, Modes
-from .anchors import Anchors
+from crowdbot.benchmark.prediction.evaluate import evaluate
+from crowdbot.benchmark.prediction.evaluation import Frames, Part, Piece, Result, Study
+
+from .anchor_net.anchors import Anchors
+from .anchor_net.predictor import AnchorNet, Modes
 from .constant import ConstantAcceleration, ConstantVelocity, LeastSquares, SampledConstantVelocity
 from .degraded import DegradedScore, Seen, Task, seen_windows, sweep
-from .evaluate import evaluate
 from .kalman import Kalman, KalmanAcceleration
-from .learned.social_ways_predictor import SocialWays
 from .live import Live
 from .predictor import Predictor, window_streams
-from .recipe import Recipe
+from .predictor_spec import Recipe
 from .simulated import Simulated
-from .study import Frames, Part, Piece, Result, Study
+from .social_ways.predictor import SocialWays
 
 __all__ = [
     "AnchorNet",

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.benchmark.prediction.evaluate import evaluate
 from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories, Windows
 from crowdbot.data.degrade import GHOST, Chain, Degradation, Degraded, NobodySeen
 from crowdbot.metrics import Score
 
-from .evaluate import evaluate
 from .predictor import Predictor
 
 __all__ = ["DegradedScore", "Seen", "Task", "seen_windows", "sweep"]

@@ -4,7 +4,7 @@ The extra is installed with ``pip install 'crowdbot[learn]'``. Files named ``*_n
 at their top and are imported inside functions only; everything else here works without it.
 """
 
-from .checkpoint import load_checkpoint, save_checkpoint
-from .samples import Samples, leave_out
+from ..training.checkpoint import load_checkpoint, save_checkpoint
+from ..training.samples import Samples, leave_out
 
 __all__ = ["Samples", "leave_out", "load_checkpoint", "save_checkpoint"]

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
-
-from .samples import Samples
+from crowdbot.prediction.training.samples import Samples
 
 __all__ = ["Toy"]
 

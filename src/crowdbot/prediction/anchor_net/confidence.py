@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import stream
-from crowdbot.prediction.anchor_net import network_output
-from crowdbot.prediction.own_frame import AHEAD, GAITS, gait
 
-from .anchor_data import NONE, Material, batch
+from .agent_frame import AHEAD, GAITS, gait
+from .predictor import network_output
+from .training_data import NONE, Material, batch
 
 __all__ = ["calibrated"]
 

@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.data import Windows, bridged
-from crowdbot.prediction.anchors import misfit
-from crowdbot.prediction.own_frame import STEP as ROW
-from crowdbot.prediction.places import ALL, AUTO, FOLDS, fold_of, shipped
-from crowdbot.prediction.predictor import Predictor
+
+from .anchor_net.agent_frame import STEP as ROW
+from .anchor_net.anchors import misfit
+from .predictor import Predictor
+from .pretrained_weights import ALL, AUTO, FOLDS, fold_of, shipped
 
 __all__ = ["LearnedPredictor", "whole_tracks"]
 

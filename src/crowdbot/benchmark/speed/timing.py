@@ -20,7 +20,7 @@ import numpy as np
 
 from crowdbot.core import InputError, MissingExtra, UnknownName
 
-from .frames import scheme_frames
+from .calibrated_frames import scheme_frames
 from .learning import learning
 from .workloads import Gauge, Measurement, measurements
 

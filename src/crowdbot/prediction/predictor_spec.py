@@ -12,7 +12,7 @@ import numpy as np
 from crowdbot.calibration import Calibrator, PopulationPrior, goal_for, kind_of_goal
 from crowdbot.core import InputError, kebab, stream
 from crowdbot.data import Recording, Windows
-from crowdbot.models.goals import Goal
+from crowdbot.models import Goal
 
 from .predictor import Predictor
 from .simulated import Simulated

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.data import Trajectories, Windows
-from crowdbot.prediction.own_frame import AHEAD, ROWS, STEP, People, completed, features, forward, people_of, turned
 
-from .samples import Samples
+from ..training.samples import Samples
+from .agent_frame import AHEAD, ROWS, STEP, People, completed, features, forward, people_of, turned
 
 __all__ = ["Batch", "Material", "Variation", "backwards", "batch", "gathered", "material_of"]
 

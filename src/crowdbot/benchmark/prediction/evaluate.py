@@ -9,8 +9,7 @@ from collections.abc import Callable
 from crowdbot.core import InputError, stream
 from crowdbot.data import Forecast, Windows
 from crowdbot.metrics import PersonErrors, Score, person_errors
-
-from .predictor import Predictor
+from crowdbot.prediction import Predictor
 
 __all__ = ["evaluate"]
 

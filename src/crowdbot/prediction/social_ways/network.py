@@ -18,7 +18,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor, nn
 
-from .social_ways_config import SocialWaysConfig
+from .config import SocialWaysConfig
 
 __all__ = ["Discriminator", "Generator", "Sight", "social_features"]
 

@@ -16,8 +16,8 @@ from crowdbot.data import Windows
 from .workloads import Gauge, Measurement
 
 if TYPE_CHECKING:
-    from crowdbot.prediction.learned.samples import Samples
-    from crowdbot.prediction.learned.training import Trainable
+    from crowdbot.prediction.training.loop import Trainable
+    from crowdbot.prediction.training.samples import Samples
 
 __all__ = ["learning"]
 
@@ -47,8 +47,8 @@ def learning() -> dict[str, Callable[[], Measurement | Gauge]]:
 
 def made_samples(scenes: int = 440) -> Samples:
     """Return windows of 8 + 12 rows with people who turn a little, as many as in usual recordings."""
-    from crowdbot.prediction.learned.extra import torch_module
-    from crowdbot.prediction.learned.samples import Samples
+    from crowdbot.prediction.training.samples import Samples
+    from crowdbot.prediction.training.torch_backend import torch_module
 
     torch_module()  # says how to install it, when it is missing
     rng = stream(0, "learning")
@@ -65,10 +65,7 @@ def trained(name: str, samples: Samples) -> Trainable:
     """Return a network ready to learn with the settings of the shipped weights."""
     watched = samples.thinned(20)
     if name == "anchor-net":
-        from crowdbot.prediction.learned import anchor_training
-
         return anchor_training.learner(None, {}, samples, watched, 0, "cpu")
-    from crowdbot.prediction.learned import social_ways_training
 
     return social_ways_training.learner("variety", {"variety-draws": "6"}, samples, watched, 0, "cpu")
 
@@ -95,7 +92,7 @@ def _epoch(name: str) -> Gauge:
 
 
 def _updates(model: Trainable, count: int) -> None:
-    from crowdbot.prediction.learned.extra import threads
+    from crowdbot.prediction.training.torch_backend import threads
 
     with threads():
         batches = model.batches(stream(0, "order"))
@@ -110,7 +107,7 @@ def _live(name: str) -> Measurement:
     kinds: dict[str, Any] = {"anchor-net": prediction.AnchorNet, "social-ways": prediction.SocialWays}
     past, predictor = _square(), kinds[name]()
     if name == "social-ways":
-        from crowdbot.prediction.learned.extra import torch_module
+        from crowdbot.prediction.training.torch_backend import torch_module
 
         torch_module()
     words = f"20 ms for a window of {PEOPLE} people with 20 futures of 12 rows"
@@ -132,7 +129,7 @@ def _memory() -> Gauge:
     made_samples(1)
     program = (
         "import re, resource, sys; from pathlib import Path;"
-        "from crowdbot.benchmark.learning import made_samples, trained, _updates\n"
+        "from crowdbot.benchmark.speed.learning import made_samples, trained, _updates\n"
         "_updates(trained('social-ways', made_samples()), 12)\n"
         "status = Path('/proc/self/status')\n"  # getrusage would count the parent's memory at the fork
         "if status.exists(): print(int(re.search(r'VmHWM:\\s+(\\d+)', status.read_text())[1]) / 2**10)\n"

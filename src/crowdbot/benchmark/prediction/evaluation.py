@@ -19,8 +19,7 @@ from crowdbot.calibration import Fit
 from crowdbot.core import InputError, code_digest, each_kept, stream
 from crowdbot.data import Recording
 from crowdbot.metrics import PersonErrors, Score, person_errors
-
-from .recipe import Recipe
+from crowdbot.prediction import Recipe
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from crowdbot.prediction.degraded import DegradedScore
+from crowdbot.prediction import DegradedScore
 
 __all__ = ["draw_degraded"]
 

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, stream
 from crowdbot.metrics import earth_mover_distance, mode_count, mode_coverage, nearest_neighbor_accuracy
+from crowdbot.prediction.social_ways.config import SocialWaysConfig
+from crowdbot.prediction.social_ways.inputs import sight_of
+from crowdbot.prediction.social_ways.training import SocialWaysTraining
 
-from .social_ways_config import SocialWaysConfig
-from .social_ways_sight import sight_of
-from .social_ways_training import SocialWaysTraining
-from .toy import Toy
-from .toy_study import METHODS
+from .study import METHODS
+from .toy_data import Toy
 
 __all__ = ["ToyTraining", "compared", "drawn_from", "real_paths", "toy_config"]
 

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Recording, Windows
-from crowdbot.prediction import Recipe, Result, Study
+from crowdbot.prediction import Recipe
+
+from .evaluation import Result, Study
 
 __all__ = ["animate", "plot_errors", "plot_frames"]
 

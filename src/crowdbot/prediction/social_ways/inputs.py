@@ -11,10 +11,10 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from .frames import Framed, framed
-from .samples import Samples
-from .social_ways import Sight
-from .social_ways_config import SocialWaysConfig
+from ..training.samples import Samples
+from .agent_frames import Framed, framed
+from .config import SocialWaysConfig
+from .network import Sight
 
 __all__ = ["Scales", "sight_of", "states_of"]
 

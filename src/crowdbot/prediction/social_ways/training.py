@@ -15,12 +15,12 @@ from torch import Tensor, nn
 
 from crowdbot.core import InputError, from_attributes, stream
 
-from .extra import device_of, tensors
-from .samples import Samples, Scenes
-from .social_ways import Discriminator, Generator, Sight
-from .social_ways_config import SocialWaysConfig, preset
-from .social_ways_sight import Scales, sight_of, states_of
-from .training import Trainable
+from ..training.loop import Trainable
+from ..training.samples import Samples, Scenes
+from ..training.torch_backend import device_of, tensors
+from .config import SocialWaysConfig, preset
+from .inputs import Scales, sight_of, states_of
+from .network import Discriminator, Generator, Sight
 
 __all__ = ["SocialWaysTraining", "adversarial_loss", "learner", "variety_loss"]
 
@@ -56,7 +56,7 @@ class _Lesson(NamedTuple):
 
 
 class SocialWaysTraining(Trainable):
-    """Social Ways with its data; see :class:`~crowdbot.prediction.learned.training.Trainable`.
+    """Social Ways with its data; see :class:`~crowdbot.prediction.training.loop.Trainable`.
 
     Args:
         config: what is trained.

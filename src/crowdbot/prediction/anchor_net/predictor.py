@@ -15,14 +15,14 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError, InputError, Paper, did_you_mean
 from crowdbot.data import Forecast, Windows
 
-from .anchor_kernels import attend, dense
+from ..constant import ConstantVelocity, SampledConstantVelocity
+from ..joint_futures import before_walls, drawn_together, kept_apart, set_together
+from ..predictor import Predictor, window_streams
+from ..pretrained_weights import ALL, AUTO, Numbers, check_fold, fold_of, learned, read_numbers
+from ..training.checkpoint import load_checkpoint
+from .agent_frame import AHEAD, COMPANY, GAITS, INPUTS, STEP, features, forward, gait, people_of, turned
 from .anchors import CHAI, misfit, scattered, spread_over_time
-from .constant import ConstantVelocity, SampledConstantVelocity
-from .joint import before_walls, drawn_together, kept_apart, set_together
-from .learned.checkpoint import load_checkpoint
-from .own_frame import AHEAD, COMPANY, GAITS, INPUTS, STEP, features, forward, gait, people_of, turned
-from .places import ALL, AUTO, Numbers, check_fold, fold_of, learned, read_numbers
-from .predictor import Predictor, window_streams
+from .layers import attend, dense
 
 __all__ = ["AnchorNet", "Modes", "network_output"]
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.prediction.learned.toy_study import Run, ToyStudy
+from .study import Run, ToyStudy
 
 __all__ = ["plot_measures", "plot_samples"]
 

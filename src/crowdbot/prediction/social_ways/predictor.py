@@ -13,19 +13,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, Paper
 from crowdbot.data import Forecast, Windows
-from crowdbot.prediction.constant import ConstantVelocity, SampledConstantVelocity
-from crowdbot.prediction.joint import before_walls, kept_apart
-from crowdbot.prediction.predictor import Predictor, window_streams
 
-from .checkpoint import load_checkpoint
-from .extra import device_of, tensors, threads, torch_module
-from .predictor import LearnedPredictor, whole_tracks
-from .social_ways_config import config_of
+from ..constant import ConstantVelocity, SampledConstantVelocity
+from ..joint_futures import before_walls, kept_apart
+from ..learned_predictor import LearnedPredictor, whole_tracks
+from ..predictor import Predictor, window_streams
+from ..training.checkpoint import load_checkpoint
+from ..training.torch_backend import device_of, tensors, threads, torch_module
+from .config import config_of
 
 if TYPE_CHECKING:
-    from .social_ways import Generator
-    from .social_ways_config import SocialWaysConfig
-    from .social_ways_sight import Scales
+    from .config import SocialWaysConfig
+    from .inputs import Scales
+    from .network import Generator
 
 __all__ = ["SocialWays", "SocialWaysNetwork"]
 
@@ -69,8 +69,8 @@ class SocialWaysNetwork:
         """
         place = device_of(device)
         content = load_checkpoint(checkpoint, KIND)
-        from .social_ways import Generator
-        from .social_ways_sight import Scales
+        from .inputs import Scales
+        from .network import Generator
 
         try:
             config, scales = config_of(content["config"]), Scales.read(content["facts"])
@@ -125,7 +125,7 @@ class SocialWaysNetwork:
             steps: rows ahead; robots with a plan walk along it.
         """
         torch = torch_module()
-        from .social_ways_sight import sight_of
+        from .inputs import sight_of
 
         here = past.present[:, -1]
         sight, seen = sight_of(whole_tracks(past, self.config.observe), here, self.config, self.scales, self.device)

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Paper, stream
 from crowdbot.data import Forecast, Windows
 
-from .constant import SampledConstantVelocity
-from .own_frame import AHEAD, STEP, forward, people_of, turned
-from .places import ALL, AUTO, check_fold, fold_of, learned
-from .predictor import Predictor
+from ..constant import SampledConstantVelocity
+from ..predictor import Predictor
+from ..pretrained_weights import ALL, AUTO, check_fold, fold_of, learned
+from .agent_frame import AHEAD, STEP, forward, people_of, turned
 
 __all__ = ["LONGEST_STEP", "Anchors", "centres", "misfit", "residuals", "scattered", "spread_over_time"]
 

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, each, stream
+from crowdbot.prediction.social_ways.config import PRESETS, STEADY
+from crowdbot.prediction.training.torch_backend import threads
 
-from .extra import threads
-from .social_ways_config import PRESETS, STEADY
-from .toy import Toy
+from .toy_data import Toy
 
 __all__ = ["MEASURES", "METHODS", "Run", "ToyStudy", "with_values"]
 
@@ -40,7 +40,7 @@ METHODS: dict[str, dict[str, Any]] = {
 """What figures 17 and 18 of the report compare (the first seven), what its published code sets instead, and what this
 code adds; each with how it differs from a plain GAN with the settings of the report."""
 MEASURES = ("nearest_neighbor", "emd", "modes", "coverage", "whole", "nearest_neighbor_20", "emd_20")
-"""What is measured, see :func:`~crowdbot.prediction.learned.toy_training.compared`."""
+"""What is measured, see :func:`~crowdbot.benchmark.toy_gan.training.compared`."""
 SHOWN = 128
 """Paths of each group that are kept for pictures."""
 
@@ -108,13 +108,13 @@ class ToyStudy:
 
     def ideal(self, repeats: int = 20) -> dict[str, float]:
         """Return the measures of fresh real paths against real paths: what nothing can beat but by chance."""
-        from .toy_training import compared
+        from .training import compared
 
         found = [compared(self.toy, self._real(2 * n), self._real(2 * n + 1)) for n in range(repeats)]
         return {name: float(np.mean([one[name] for one in found])) for name in MEASURES}
 
     def _real(self, number: int) -> NDArray[np.float64]:
-        from .toy_training import real_paths
+        from .training import real_paths
 
         return real_paths(self.toy, stream(number, "ideal"))
 
@@ -135,8 +135,9 @@ class ToyStudy:
 
 def _trained(job: tuple[ToyStudy, str, int, Path | None]) -> Run:
     """Train one method with one seed, or go on where it stopped."""
-    from .toy_training import ToyTraining, drawn_from, toy_config
-    from .training import Schedule, train
+    from crowdbot.prediction.training.loop import Schedule, train
+
+    from .training import ToyTraining, drawn_from, toy_config
 
     study, method, seed, folder = job
     with threads(1):
@@ -151,8 +152,7 @@ def _trained(job: tuple[ToyStudy, str, int, Path | None]) -> Run:
 def with_values(study: ToyStudy, values: Mapping[str, str]) -> ToyStudy:
     """Return the study with settings for all methods, given as text."""
     from crowdbot.core import from_attributes
-
-    from .social_ways_config import SocialWaysConfig
+    from crowdbot.prediction.social_ways.config import SocialWaysConfig
 
     read = from_attributes(SocialWaysConfig, dict(values))
     names = [name.replace("-", "_") for name in values]

@@ -14,16 +14,16 @@ import torch
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, from_attributes, stream
-from crowdbot.prediction.anchor_net import network_output
-from crowdbot.prediction.anchors import centres
-from crowdbot.prediction.own_frame import AHEAD, COMPANY, INPUTS, STEP, forward, turned
 
-from .anchor_calibration import calibrated
-from .anchor_data import NONE, Batch, Material, Variation, material_of
-from .anchor_data import batch as batch_of
-from .extra import device_of, tensors
-from .samples import Samples
-from .training import Trainable
+from ..training.loop import Trainable
+from ..training.samples import Samples
+from ..training.torch_backend import device_of, tensors
+from .agent_frame import AHEAD, COMPANY, INPUTS, STEP, forward, turned
+from .anchors import centres
+from .confidence import calibrated
+from .predictor import network_output
+from .training_data import NONE, Batch, Material, Variation, material_of
+from .training_data import batch as batch_of
 
 __all__ = ["UPDATES", "AnchorNetTraining", "AnchorTraining", "learner", "network", "outputs", "shapes_of"]
 
@@ -152,7 +152,7 @@ def outputs(layers: Any, own: Any, company: Any, there: Any) -> Any:
 
 
 class AnchorNetTraining(Trainable):
-    """The anchor network with its people; see :class:`~crowdbot.prediction.learned.training.Trainable`.
+    """The anchor network with its people; see :class:`~crowdbot.prediction.training.loop.Trainable`.
 
     The last weights, averaged, are as good as any: with ``check_every`` as large as the number of updates none is
     picked. Probabilities and spreads are calibrated on who is watched, whenever weights are given out.

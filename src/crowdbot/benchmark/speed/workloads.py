@@ -14,9 +14,8 @@ import numpy as np
 
 from crowdbot.core import Scene, parameters, stream
 
-from . import skins
-from .bodies import mujoco_rays, people_with_limbs
-from .engines import JUPEDSIM, jupedsim_step, power_law_in_numpy
+from .ray_casting import mujoco_rays, people_with_limbs
+from .reference_engines import JUPEDSIM, jupedsim_step, power_law_in_numpy
 
 __all__ = ["Gauge", "Measurement", "crowd", "measurements"]
 
@@ -181,7 +180,7 @@ def _memory() -> Gauge:
     """Read the peak memory of a process of its own that steps 100 000 people three times."""
     program = (
         "import re, resource, sys; from pathlib import Path;"
-        "from crowdbot.benchmark.workloads import crowd; from crowdbot.models import ORCA;"
+        "from crowdbot.benchmark.speed.workloads import crowd; from crowdbot.models import ORCA;"
         "scene = crowd(100_000)\nfor _ in range(3): scene = ORCA().step(scene, 0.1)\n"
         "status = Path('/proc/self/status')\n"  # getrusage would count the parent's memory at the fork
         "if status.exists(): print(int(re.search(r'VmHWM:\\s+(\\d+)', status.read_text())[1]) / 2**10)\n"
