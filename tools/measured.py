@@ -17,8 +17,7 @@ import numpy as np
 
 import crowdbot as cb
 from crowdbot import navigation
-from crowdbot.benchmark import measure
-from crowdbot.benchmark.prediction.evaluate import evaluate
+from crowdbot.benchmark import evaluate, measure
 from crowdbot.metrics import Score
 
 FOLDS = {

@@ -10,8 +10,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from crowdbot.benchmark.prediction.evaluation import Result, Study
-from crowdbot.benchmark.prediction.plots import plot_errors
+from crowdbot.benchmark import Result, Study, plot_errors
 from crowdbot.data import Recording
 from crowdbot.models.goals import CurrentDirection
 from crowdbot.prediction import ConstantVelocity, Kalman, Recipe, Simulated

@@ -20,14 +20,14 @@ import time
 from pathlib import Path
 
 import numpy as np
-from crowdbot.prediction.anchor_net.predictor.confidence import calibrated
-from crowdbot.prediction.anchor_net.predictor.training import UPDATES, AnchorNetTraining, AnchorTraining
-from crowdbot.prediction.anchor_net.predictor.training_data import Variation, gathered
 
-from crowdbot.benchmark.prediction.evaluate import evaluate
+from crowdbot.benchmark import evaluate
 from crowdbot.data import Trajectories, Windows, load
 from crowdbot.metrics import Score
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity
+from crowdbot.prediction.anchor_net.confidence import calibrated
+from crowdbot.prediction.anchor_net.training import UPDATES, AnchorNetTraining, AnchorTraining
+from crowdbot.prediction.anchor_net.training_data import Variation, gathered
 from crowdbot.prediction.pretrained_weights import ALL, FOLDS, kept_out
 from crowdbot.prediction.training.loop import Schedule, train
 from crowdbot.prediction.training.torch_backend import threads

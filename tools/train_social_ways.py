@@ -21,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
-from crowdbot.benchmark.prediction.evaluate import evaluate
+from crowdbot.benchmark import evaluate
 from crowdbot.data import Trajectories, load
 from crowdbot.metrics import Score
 from crowdbot.prediction import SocialWays

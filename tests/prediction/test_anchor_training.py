@@ -9,9 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from crowdbot.prediction.anchor_net.predictor.agent_frame import AHEAD, COMPANY, INPUTS, NEAR
-from crowdbot.prediction.anchor_net.predictor.predictor import NEEDED, network_output
-from crowdbot.prediction.anchor_net.predictor.training import (
+
+from crowdbot.core import InputError, stream
+from crowdbot.data import Trajectories
+from crowdbot.prediction.anchor_net.agent_frame import AHEAD, COMPANY, INPUTS, NEAR
+from crowdbot.prediction.anchor_net.predictor import NEEDED, network_output
+from crowdbot.prediction.anchor_net.training import (
     AnchorNetTraining,
     AnchorTraining,
     learner,
@@ -19,7 +22,7 @@ from crowdbot.prediction.anchor_net.predictor.training import (
     outputs,
     shapes_of,
 )
-from crowdbot.prediction.anchor_net.predictor.training_data import (
+from crowdbot.prediction.anchor_net.training_data import (
     NONE,
     Material,
     Variation,
@@ -28,9 +31,6 @@ from crowdbot.prediction.anchor_net.predictor.training_data import (
     gathered,
     material_of,
 )
-
-from crowdbot.core import InputError, stream
-from crowdbot.data import Trajectories
 from crowdbot.prediction.training.loop import Schedule, train
 from crowdbot.prediction.training.samples import Samples
 from crowdbot.prediction.training.torch_backend import threads

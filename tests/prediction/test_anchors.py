@@ -8,12 +8,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from crowdbot.prediction.anchor_net.predictor.anchors import centres, residuals, spread_over_time
 
-from crowdbot.benchmark.prediction.evaluate import evaluate
+from crowdbot.benchmark import evaluate
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Trajectories, Windows
 from crowdbot.prediction import Anchors, ConstantVelocity, SampledConstantVelocity
+from crowdbot.prediction.anchor_net.anchors import centres, residuals, spread_over_time
 from crowdbot.prediction.pretrained_weights import FOLDS, fold_of, kept_out, read_numbers
 
 Maker = Callable[..., Windows]

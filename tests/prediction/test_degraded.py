@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from crowdbot.benchmark.prediction.evaluate import evaluate
+from crowdbot.benchmark import Task, evaluate, sweep
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Trajectories
 from crowdbot.data.degrade import (
@@ -20,7 +20,7 @@ from crowdbot.data.degrade import (
     MissingFrames,
     Occlusion,
 )
-from crowdbot.prediction import ConstantVelocity, Kalman, SampledConstantVelocity, Simulated, Task, seen_windows, sweep
+from crowdbot.prediction import ConstantVelocity, Kalman, SampledConstantVelocity, Simulated, seen_windows
 
 FIELDS = ("position", "present", "scored", "robot", "id", "frame")
 

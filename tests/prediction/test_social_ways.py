@@ -15,6 +15,7 @@ import torch
 from crowdbot.core import InputError, stream
 from crowdbot.data import Windows
 from crowdbot.prediction import SocialWays
+from crowdbot.prediction.social_ways import predictor as module
 from crowdbot.prediction.social_ways.config import SocialWaysConfig, config_of, preset
 from crowdbot.prediction.social_ways.inputs import sight_of
 from crowdbot.prediction.social_ways.network import Discriminator, Generator, Sight, social_features
@@ -390,7 +391,7 @@ def test_without_torch_it_says_what_to_install(checkpoint: str, crowd: Maker, mo
 
     from crowdbot.core import MissingExtra
 
-    social_ways_predictor._network.cache_clear()
+    module._network.cache_clear()
     monkeypatch.setitem(sys.modules, "torch", None)
     with pytest.raises(MissingExtra, match=r"pip install 'crowdbot\[learn\]'"):
         SocialWays(checkpoint).predict(crowd(), 3)

@@ -140,8 +140,7 @@ def test_scans_name_whom_they_hit(recorded: tuple[Path, Episode]) -> None:
 
 
 def test_the_report_shows_everybody(recorded: tuple[Path, Episode], tmp_path: Path) -> None:
-    from crowdbot.benchmark.prediction.evaluate import evaluate
-    from crowdbot.benchmark.report import Predicted, write_report
+    from crowdbot.benchmark import Predicted, evaluate, write_report
     from crowdbot.prediction import ConstantVelocity
 
     _, episode = recorded

@@ -98,7 +98,7 @@ def _predicted(
     from crowdbot.core import stream
     from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, Kalman, Simulated
 
-    from .prediction.evaluate import evaluate
+    from .prediction import evaluate
 
     found = []
     predictors = (ConstantVelocity(), ConstantAcceleration(), Kalman(), Simulated.of(fit))

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from crowdbot.data import Windows
 
-from .anchor_net.layers import arrange, crossing, part_ways
+from .joint_kernels import arrange, crossing, part_ways
 
 __all__ = ["before_walls", "drawn_together", "kept_apart", "set_together"]
 

@@ -15,10 +15,8 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 from crowdbot.data import Windows, bridged
 
-from .anchor_net.agent_frame import STEP as ROW
-from .anchor_net.anchors import misfit
 from .predictor import Predictor
-from .pretrained_weights import ALL, AUTO, FOLDS, fold_of, shipped
+from .pretrained_weights import ALL, AUTO, FOLDS, STEP, fold_of, misfit, shipped
 
 __all__ = ["LearnedPredictor", "whole_tracks"]
 
@@ -26,7 +24,7 @@ Floats = NDArray[np.float64]
 
 ELSEWHERE = "eth"
 """Shipped weights for places that are none of the five: those that saw all but this one, the smallest."""
-STEP = 0.02
+TOLERANCE = 0.02
 """Windows whose time step is off by more than this share do not fit."""
 
 
@@ -101,17 +99,17 @@ class LearnedPredictor(Predictor):
         """Return why shipped weights do not fit these windows, or nothing; own weights speak for themselves."""
         if not self.shipped:
             return ""
-        if past.units == "m" and abs(past.dt - ROW) > STEP * ROW:
+        if past.units == "m" and abs(past.dt - STEP) > TOLERANCE * STEP:
             return (
-                f"{past.source} has steps of {past.dt:.4g} s, it was learned at {ROW} s:"
-                f" bring it there with --step {ROW}"
+                f"{past.source} has steps of {past.dt:.4g} s, it was learned at {STEP} s:"
+                f" bring it there with --step {STEP}"
             )
         return misfit(past)
 
     @staticmethod
     def fits(past: Windows, facts: Mapping[str, Any], what: str) -> None:
         """Raise :class:`InputError` unless windows have the time step and units that were learned."""
-        if abs(past.dt - facts["dt"]) > STEP * facts["dt"]:
+        if abs(past.dt - facts["dt"]) > TOLERANCE * facts["dt"]:
             raise InputError(
                 f"{what} has learned steps of {facts['dt']:.4g} s, {past.source} has steps of {past.dt:.4g} s;"
                 f" bring it there with --step {facts['dt']:.4g} or Trajectories.resample"

@@ -13,11 +13,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError, did_you_mean
+from crowdbot.data import Windows
 
-__all__ = ["ALL", "AUTO", "FOLDS", "Numbers", "check_fold", "fold_of", "kept_out", "learned", "read_numbers", "shipped"]
+__all__ = [
+    "ALL",
+    "AUTO",
+    "FOLDS",
+    "LONGEST_STEP",
+    "STEP",
+    "Numbers",
+    "check_fold",
+    "fold_of",
+    "kept_out",
+    "learned",
+    "misfit",
+    "read_numbers",
+    "shipped",
+]
 
 Numbers = dict[str, NDArray[np.float64]]
 
+STEP = 0.4
+"""Time step of the training data [s]."""
+LONGEST_STEP = 0.7
+"""Largest time step [s] at which tracks can be interpolated to 0.4 s."""
 ALL = "all"
 AUTO = "auto"
 FOLDS = {
@@ -86,3 +105,14 @@ def read_numbers(path: Path) -> Numbers:
     for values in found.values():
         values.setflags(write=False)
     return found
+
+
+def misfit(past: Windows) -> str:
+    """Return why what was learned at 0.4 s in metres does not fit these windows, or nothing."""
+    if past.units != "m":
+        return f"{past.source} is in {past.units}, not in metres"
+    if past.dt > LONGEST_STEP:
+        return (
+            f"{past.source} has steps of {past.dt:.4g} s, it was learned at {STEP} s and takes up to {LONGEST_STEP} s"
+        )
+    return ""

@@ -262,11 +262,11 @@ def _foot(done: Validation) -> list[str]:
 
 
 def _environment() -> str:
-    import numba
+    from importlib.metadata import version
 
-    from crowdbot import __version__
+    import numba
 
     return (
         f"{os.cpu_count()} cores, Python {platform.python_version()}, numpy {np.__version__},"
-        f" numba {numba.__version__}, crowdbot {__version__}"
+        f" numba {numba.__version__}, crowdbot {version('crowdbot')}"
     )

@@ -197,7 +197,7 @@ def _judged(check: Check, result: dict[str, Any]) -> Verdict:
 def _key(quick: bool) -> str:
     """Return a hash of all code that decides about results: the core, the models and the checks."""
     sum_ = hashlib.blake2b(b"quick" if quick else b"full", digest_size=8)
-    package = Path(__file__).parents[2]
+    package = Path(__file__).parents[1]
     telling = ("__init__", "page", "plots", "recording", "run")
     here = [path for path in Path(__file__).parent.glob("*.py") if path.stem not in telling]
     for path in sorted([*package.glob("core/*.py"), *package.glob("models/*.py"), *here]):

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from crowdbot.prediction import DegradedScore
+from .degraded import DegradedScore
 
 __all__ = ["draw_degraded"]
 

@@ -13,7 +13,7 @@ from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories, Windows, load
 from crowdbot.prediction import Simulated
 
-from .workloads import Gauge
+from .measurement import Gauge
 
 __all__ = ["scheme_frames"]
 

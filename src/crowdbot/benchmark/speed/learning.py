@@ -6,18 +6,23 @@ import functools
 import subprocess
 import sys
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Windows
+from crowdbot.prediction import (
+    AnchorNet,
+    Predictor,
+    Samples,
+    SocialWays,
+    Trainable,
+    make_learner,
+    threads,
+    torch_module,
+)
 
-from .workloads import Gauge, Measurement
-
-if TYPE_CHECKING:
-    from crowdbot.prediction.training.loop import Trainable
-    from crowdbot.prediction.training.samples import Samples
+from .measurement import Gauge, Measurement
 
 __all__ = ["learning"]
 
@@ -47,9 +52,6 @@ def learning() -> dict[str, Callable[[], Measurement | Gauge]]:
 
 def made_samples(scenes: int = 440) -> Samples:
     """Return windows of 8 + 12 rows with people who turn a little, as many as in usual recordings."""
-    from crowdbot.prediction.training.samples import Samples
-    from crowdbot.prediction.training.torch_backend import torch_module
-
     torch_module()  # says how to install it, when it is missing
     rng = stream(0, "learning")
     count = np.tile(SIZES, -(-scenes // len(SIZES)))[:scenes]
@@ -61,18 +63,17 @@ def made_samples(scenes: int = 440) -> Samples:
     return Samples(place, yes, yes[:, 0], first, np.zeros(scenes, dtype=np.int64), ("made",), 8, 0.4)
 
 
-def trained(name: str, samples: Samples) -> Trainable:
-    """Return a network ready to learn with the settings of the shipped weights."""
-    watched = samples.thinned(20)
-    if name == "anchor-net":
-        return anchor_training.learner(None, {}, samples, watched, 0, "cpu")
-
-    return social_ways_training.learner("variety", {"variety-draws": "6"}, samples, watched, 0, "cpu")
+def untrained(name: str, samples: Samples) -> Trainable:
+    """Return a network ready to train with the settings of the shipped weights."""
+    settings: tuple[str | None, dict[str, str]] = (None, {})
+    if name == "social-ways":
+        settings = "variety", {"variety-draws": "6"}
+    return make_learner(name, *settings, samples, samples.thinned(20))
 
 
 def _learning(name: str) -> Measurement:
     samples = made_samples()
-    model = trained(name, samples)
+    model = untrained(name, samples)
     share = UPDATES / len(model.batches(stream(0, "order")))
     words = f"an epoch of 3000 windows a minute; one torch thread, {len(samples)} windows of 1 to {max(SIZES)} people"
     return Measurement("windows/s", share * len(samples), functools.partial(_updates, model, UPDATES), words, 50.0)
@@ -83,7 +84,7 @@ def _epoch(name: str) -> Gauge:
     import time
 
     samples = made_samples()
-    model = trained(name, samples)
+    model = untrained(name, samples)
     _updates(model, 1)
     begin = time.perf_counter()
     _updates(model, len(model.batches(stream(0, "order"))))
@@ -92,8 +93,6 @@ def _epoch(name: str) -> Gauge:
 
 
 def _updates(model: Trainable, count: int) -> None:
-    from crowdbot.prediction.training.torch_backend import threads
-
     with threads():
         batches = model.batches(stream(0, "order"))
         for number in range(count):
@@ -102,13 +101,9 @@ def _updates(model: Trainable, count: int) -> None:
 
 def _live(name: str) -> Measurement:
     """Predict one window of fifty people, 20 futures each."""
-    from crowdbot import prediction
-
-    kinds: dict[str, Any] = {"anchor-net": prediction.AnchorNet, "social-ways": prediction.SocialWays}
-    past, predictor = _square(), kinds[name]()
+    past = _square()
+    predictor: Predictor = AnchorNet() if name == "anchor-net" else SocialWays()
     if name == "social-ways":
-        from crowdbot.prediction.training.torch_backend import torch_module
-
         torch_module()
     words = f"20 ms for a window of {PEOPLE} people with 20 futures of 12 rows"
     return Measurement("windows/s", 1.0, lambda: predictor.predict(past, 12, 20), words, 50.0)
@@ -129,8 +124,8 @@ def _memory() -> Gauge:
     made_samples(1)
     program = (
         "import re, resource, sys; from pathlib import Path;"
-        "from crowdbot.benchmark.speed.learning import made_samples, trained, _updates\n"
-        "_updates(trained('social-ways', made_samples()), 12)\n"
+        "from crowdbot.benchmark.speed.learning import made_samples, untrained, _updates\n"
+        "_updates(untrained('social-ways', made_samples()), 12)\n"
         "status = Path('/proc/self/status')\n"  # getrusage would count the parent's memory at the fork
         "if status.exists(): print(int(re.search(r'VmHWM:\\s+(\\d+)', status.read_text())[1]) / 2**10)\n"
         "peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"

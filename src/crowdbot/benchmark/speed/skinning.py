@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from .workloads import Measurement
+from .measurement import Measurement
 
 __all__ = ["posing_and_skinning"]
 
@@ -20,8 +17,6 @@ def posing_and_skinning() -> Measurement:
     10000.0
     """
     from crowdbot import humans
-
-    from .workloads import Measurement
 
     work = humans.posing_and_skinning(PEOPLE, level=2)
     words = f"{PEOPLE} people in {1000 * ALLOWED:.0f} ms"

@@ -22,13 +22,14 @@ from crowdbot.core import InputError, MissingExtra, UnknownName
 
 from .calibrated_frames import scheme_frames
 from .learning import learning
-from .workloads import Gauge, Measurement, measurements
+from .measurement import Gauge, Measurement
+from .workloads import measurements
 
-__all__ = ["Row", "environment", "measure"]
+__all__ = ["SpeedRow", "environment", "measure"]
 
 
 @dataclass(frozen=True)
-class Row:
+class SpeedRow:
     """One measured speed and its ratio to something measured or known in the same run."""
 
     name: str
@@ -48,7 +49,7 @@ def measure(
     repeats: int = 7,
     progress: Callable[[str, float], None] | None = None,
     recording: Path | None = None,
-) -> list[Row]:
+) -> list[SpeedRow]:
     """Time the named measurements (all when none is named); calibrated frames are taken from ``recording``, if given.
 
     Raises:
@@ -81,10 +82,10 @@ def measure(
     return rows
 
 
-def _row(name: str, task: Measurement | Gauge, repeats: int, report: Callable[[str, float], None]) -> Row:
+def _row(name: str, task: Measurement | Gauge, repeats: int, report: Callable[[str, float], None]) -> SpeedRow:
     if isinstance(task, Gauge):
         report(name, 1.0)
-        return Row(name, task.value, task.unit, task.against, task.value / task.reference, environment())
+        return SpeedRow(name, task.value, task.unit, task.against, task.value / task.reference, environment())
     task.work()
     if task.other is not None:
         task.other()
@@ -97,7 +98,7 @@ def _row(name: str, task: Measurement | Gauge, repeats: int, report: Callable[[s
         report(name, (repeat + 1) / repeats)
     speed = task.amount / statistics.median(mine)
     reference = task.other_amount / statistics.median(theirs) if theirs else task.reference
-    return Row(name, speed, task.unit, task.against, speed / reference, environment())
+    return SpeedRow(name, speed, task.unit, task.against, speed / reference, environment())
 
 
 def _seconds(work: Callable[[], object]) -> float:

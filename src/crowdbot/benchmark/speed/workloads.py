@@ -7,17 +7,18 @@ import functools
 import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from crowdbot.core import Scene, parameters, stream
 
+from .measurement import Gauge, Measurement
 from .ray_casting import mujoco_rays, people_with_limbs
 from .reference_engines import JUPEDSIM, jupedsim_step, power_law_in_numpy
+from .skinning import posing_and_skinning
 
-__all__ = ["Gauge", "Measurement", "crowd", "measurements"]
+__all__ = ["crowd", "measurements"]
 
 DENSITY = 0.5
 """People per square metre in the crowds that are timed."""
@@ -29,32 +30,6 @@ LARGE = ("orca", "power-law", "social-force")
 COMPARED = ("collision-free-speed", "social-force", "power-law", "orca")
 """Models that are timed against JuPedSim."""
 JUPEDSIM_DT = 0.01
-
-
-@dataclass(frozen=True)
-class Measurement:
-    """A piece of work to time: ``work()`` does ``amount`` units; the ratio is to ``reference`` units a second.
-
-    When ``other`` is given, it does ``other_amount`` of the same units in another way, and its speed is the reference.
-    """
-
-    unit: str
-    amount: float
-    work: Callable[[], object]
-    against: str
-    reference: float = 0.0
-    other: Callable[[], object] | None = None
-    other_amount: float = 0.0
-
-
-@dataclass(frozen=True)
-class Gauge:
-    """Something that is read once and not timed; the ratio is ``value / reference``."""
-
-    unit: str
-    value: float
-    against: str
-    reference: float
 
 
 def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
@@ -93,7 +68,7 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
     found["camera-50"] = _camera
     found["lidar2d-1080-limbs"] = _rays_of_limbs
     found["lidar3d-16x1800-limbs"] = functools.partial(_rays_of_limbs, rings=16)
-    found["posing-and-skinning"] = skins.posing_and_skinning
+    found["posing-and-skinning"] = posing_and_skinning
     for predictor in ("ConstantVelocity", "Kalman", "Simulated"):
         found[f"predict-{kebab(predictor)}"] = functools.partial(_predictor, predictor)
     return found

@@ -12,33 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, each, stream
-from crowdbot.prediction.social_ways.config import PRESETS, STEADY
-from crowdbot.prediction.training.torch_backend import threads
+from crowdbot.prediction import Schedule, SocialWaysConfig, threads, train
 
+from .methods import METHODS
 from .toy_data import Toy
 
-__all__ = ["MEASURES", "METHODS", "Run", "ToyStudy", "with_values"]
+__all__ = ["MEASURES", "Run", "ToyStudy", "with_values"]
 
-METHODS: dict[str, dict[str, Any]] = {
-    "vanilla": {},
-    "l2": {"use_l2_loss": True},
-    "s-gan-v20": {"use_variety_loss": True, "variety_draws": 20},
-    "unrolled10": {"unrolling_steps": 10},
-    "info": {"use_info_loss": True},
-    "info+unrolled5": {"use_info_loss": True, "unrolling_steps": 5},
-    "unrolled10+l2": {"unrolling_steps": 10, "use_l2_loss": True},
-    "info+rates-of-code": {
-        "use_info_loss": True, "generator_rate": 1e-4, "discriminator_rate": 1e-3, "adversarial": "least-squares"
-    },
-    "vanilla+slope-penalty": STEADY,
-    "info+slope-penalty": {"use_info_loss": True, **STEADY},
-    "info+discrete-codes": {"use_info_loss": True, **STEADY, "code_levels": 3, "noise": 4},
-    "info+discrete-code+variety": {
-        "use_info_loss": True, **PRESETS["modes"], "variety_draws": 20, "variety_growth": 100.0
-    },
-}  # fmt: skip
-"""What figures 17 and 18 of the report compare (the first seven), what its published code sets instead, and what this
-code adds; each with how it differs from a plain GAN with the settings of the report."""
 MEASURES = ("nearest_neighbor", "emd", "modes", "coverage", "whole", "nearest_neighbor_20", "emd_20")
 """What is measured, see :func:`~crowdbot.benchmark.toy_gan.training.compared`."""
 SHOWN = 128
@@ -135,16 +115,15 @@ class ToyStudy:
 
 def _trained(job: tuple[ToyStudy, str, int, Path | None]) -> Run:
     """Train one method with one seed, or go on where it stopped."""
-    from crowdbot.prediction.training.loop import Schedule, train
 
-    from .training import ToyTraining, drawn_from, toy_config
+    from .training import ToyTraining, sample_futures, toy_config
 
     study, method, seed, folder = job
     with threads(1):
         model = ToyTraining(study.toy, toy_config(method, study.toy, study.values), seed, study.device)
         schedule = Schedule(study.updates, None, study.check_every, study.check_every, ("emd",), None, seed)
         done = train(model, schedule, folder, resume=True)
-        drawn = drawn_from(model, SHOWN, stream(seed, "shown"))
+        drawn = sample_futures(model, SHOWN, stream(seed, "shown"))
     update = np.array([row["update"] for row in done.rows], dtype=np.int64)
     return Run(method, seed, update, {n: np.array([row[n] for row in done.rows]) for n in MEASURES}, drawn)
 
@@ -152,7 +131,6 @@ def _trained(job: tuple[ToyStudy, str, int, Path | None]) -> Run:
 def with_values(study: ToyStudy, values: Mapping[str, str]) -> ToyStudy:
     """Return the study with settings for all methods, given as text."""
     from crowdbot.core import from_attributes
-    from crowdbot.prediction.social_ways.config import SocialWaysConfig
 
     read = from_attributes(SocialWaysConfig, dict(values))
     names = [name.replace("-", "_") for name in values]

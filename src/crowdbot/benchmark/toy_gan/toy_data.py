@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
-from crowdbot.prediction.training.samples import Samples
+from crowdbot.prediction import Samples
 
 __all__ = ["Toy"]
 

@@ -7,19 +7,16 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
-import torch
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, stream
 from crowdbot.metrics import earth_mover_distance, mode_count, mode_coverage, nearest_neighbor_accuracy
-from crowdbot.prediction.social_ways.config import SocialWaysConfig
-from crowdbot.prediction.social_ways.inputs import sight_of
-from crowdbot.prediction.social_ways.training import SocialWaysTraining
+from crowdbot.prediction import SocialWaysConfig, SocialWaysTraining
 
-from .study import METHODS
+from .methods import METHODS
 from .toy_data import Toy
 
-__all__ = ["ToyTraining", "compared", "drawn_from", "real_paths", "toy_config"]
+__all__ = ["ToyTraining", "compared", "real_paths", "sample_futures", "toy_config"]
 
 COMPARED, REPEATS = 20, 10
 """So many real and drawn paths of each group are compared, so many times."""
@@ -54,7 +51,7 @@ class ToyTraining(SocialWaysTraining):
     def check(self) -> Mapping[str, float]:
         """Return 1-NN accuracy, EMD [m], modes found and their coverage, means over groups and repeats."""
         real = real_paths(self.toy, stream(self.seed, "real"))
-        return compared(self.toy, real, drawn_from(self, COMPARED * REPEATS, stream(self.seed, "drawn")))
+        return compared(self.toy, real, sample_futures(self, COMPARED * REPEATS, stream(self.seed, "drawn")))
 
 
 def real_paths(toy: Toy, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -87,16 +84,8 @@ def compared(toy: Toy, real: NDArray[np.float64], drawn: NDArray[np.float64]) ->
     return {name: float(np.mean(values)) for name, values in measures.items()}
 
 
-def drawn_from(model: ToyTraining, draws: int, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Return future paths ``[groups, draws, T, 2]`` [m] that the averaged generator draws for every group."""
-    toy = model.toy
-    past = toy.middles()[:, 0, : toy.observe, None]  # [groups, T, 1, 2]
-    sight, seen = sight_of(past, np.ones((toy.groups, 1), dtype=bool), model.config, model.scales, model.device)
-    noise = torch.as_tensor(rng.random((draws, toy.groups, 1, model.config.inputs), dtype=np.float32))
-    kept = {name: value.detach().clone() for name, value in model.generator.state_dict().items()}
-    model.generator.load_state_dict(model.mean)
-    with torch.no_grad():
-        place, _ = model.generator(sight, noise.to(model.device), toy.predict)
-    model.generator.load_state_dict(kept)
-    world = seen.world(place.double().cpu().numpy())  # [K, groups, T, 1, 2]
-    return np.ascontiguousarray(world[:, :, :, 0].swapaxes(0, 1))
+def sample_futures(model: ToyTraining, draws: int, rng: np.random.Generator) -> NDArray[np.float64]:
+    """Return future paths ``[groups, draws, T, 2]`` [m] that the averaged generator draws for each group."""
+    past = model.toy.middles()[:, 0, : model.toy.observe, None]  # [groups, T, 1, 2]
+    futures = model.sample_futures(past, draws, rng)  # [K, groups, T, 1, 2]
+    return np.ascontiguousarray(futures[:, :, :, 0].swapaxes(0, 1))

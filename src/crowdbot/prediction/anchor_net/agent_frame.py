@@ -13,15 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.data import Windows, bridged
+from crowdbot.prediction.pretrained_weights import STEP
 
-__all__ = ["AHEAD", "COMPANY", "GAITS", "INPUTS", "MOMENTS", "NEAR", "ROWS", "STEP", "People", "completed", "features",
+__all__ = ["AHEAD", "COMPANY", "GAITS", "INPUTS", "MOMENTS", "NEAR", "ROWS", "People", "completed", "features",
            "forward", "gait", "people_of", "turned"]  # fmt: skip
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-STEP = 0.4
-"""Time between the rows that predictors learn from [s]."""
 ROWS = 8
 """Observed rows."""
 AHEAD = 12

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, stream
 from crowdbot.data import Forecast, Windows
+from crowdbot.prediction.constant import SampledConstantVelocity
+from crowdbot.prediction.predictor import Predictor
+from crowdbot.prediction.pretrained_weights import ALL, AUTO, STEP, check_fold, fold_of, learned, misfit
 
-from ..constant import SampledConstantVelocity
-from ..predictor import Predictor
-from ..pretrained_weights import ALL, AUTO, check_fold, fold_of, learned
-from .agent_frame import AHEAD, STEP, forward, people_of, turned
+from .agent_frame import AHEAD, forward, people_of, turned
 
-__all__ = ["LONGEST_STEP", "Anchors", "centres", "misfit", "residuals", "scattered", "spread_over_time"]
+__all__ = ["Anchors", "centres", "residuals", "scattered", "spread_over_time"]
 
 Floats = NDArray[np.float64]
 
@@ -26,8 +26,6 @@ CHAI = Paper(
     "MultiPath", 2019, "MultiPath: multiple probabilistic anchor trajectory hypotheses for behavior prediction",
     "CoRL", "10.48550/arXiv.1910.05449",
 )  # fmt: skip
-LONGEST_STEP = 0.7
-"""Rows further apart [s] than this do not show how people walk at 0.4 s."""
 POINTS = 8000
 """The centres are looked for among so many residuals at most."""
 
@@ -115,17 +113,6 @@ class Anchors(Predictor):
         both = np.concatenate([missed, missed * np.array([1.0, -1.0])])
         found, share = centres(both.reshape(len(both), -1), count, seed)
         return cls(shapes=found.reshape(count, AHEAD, 2), share=share)
-
-
-def misfit(past: Windows) -> str:
-    """Return why what was learned at 0.4 s in metres does not fit these windows, or nothing."""
-    if past.units != "m":
-        return f"{past.source} is in {past.units}, not in metres"
-    if past.dt > LONGEST_STEP:
-        return (
-            f"{past.source} has steps of {past.dt:.4g} s, it was learned at {STEP} s and takes up to {LONGEST_STEP} s"
-        )
-    return ""
 
 
 def residuals(past: Windows, future: Windows) -> Floats:

@@ -14,14 +14,24 @@ from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError, Paper, did_you_mean
 from crowdbot.data import Forecast, Windows
+from crowdbot.prediction.constant import ConstantVelocity, SampledConstantVelocity
+from crowdbot.prediction.joint_futures import before_walls, drawn_together, kept_apart, set_together
+from crowdbot.prediction.predictor import Predictor, window_streams
+from crowdbot.prediction.pretrained_weights import (
+    ALL,
+    AUTO,
+    STEP,
+    Numbers,
+    check_fold,
+    fold_of,
+    learned,
+    misfit,
+    read_numbers,
+)
+from crowdbot.prediction.training.checkpoint import load_checkpoint
 
-from ..constant import ConstantVelocity, SampledConstantVelocity
-from ..joint_futures import before_walls, drawn_together, kept_apart, set_together
-from ..predictor import Predictor, window_streams
-from ..pretrained_weights import ALL, AUTO, Numbers, check_fold, fold_of, learned, read_numbers
-from ..training.checkpoint import load_checkpoint
-from .agent_frame import AHEAD, COMPANY, GAITS, INPUTS, STEP, features, forward, gait, people_of, turned
-from .anchors import CHAI, misfit, scattered, spread_over_time
+from .agent_frame import AHEAD, COMPANY, GAITS, INPUTS, features, forward, gait, people_of, turned
+from .anchors import CHAI, scattered, spread_over_time
 from .layers import attend, dense
 
 __all__ = ["AnchorNet", "Modes", "network_output"]

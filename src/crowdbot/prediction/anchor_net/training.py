@@ -14,11 +14,12 @@ import torch
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, from_attributes, stream
+from crowdbot.prediction.pretrained_weights import STEP
+from crowdbot.prediction.training.loop import Trainable
+from crowdbot.prediction.training.samples import Samples
+from crowdbot.prediction.training.torch_backend import device_of, tensors
 
-from ..training.loop import Trainable
-from ..training.samples import Samples
-from ..training.torch_backend import device_of, tensors
-from .agent_frame import AHEAD, COMPANY, INPUTS, STEP, forward, turned
+from .agent_frame import AHEAD, COMPANY, INPUTS, forward, turned
 from .anchors import centres
 from .confidence import calibrated
 from .predictor import network_output
@@ -152,7 +153,7 @@ def outputs(layers: Any, own: Any, company: Any, there: Any) -> Any:
 
 
 class AnchorNetTraining(Trainable):
-    """The anchor network with its people; see :class:`~crowdbot.prediction.training.loop.Trainable`.
+    """The anchor network with its people; see :class:`~crowdbot.prediction.Trainable`.
 
     The last weights, averaged, are as good as any: with ``check_every`` as large as the number of updates none is
     picked. Probabilities and spreads are calibrated on who is watched, whenever weights are given out.

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.data import Trajectories, Windows
+from crowdbot.prediction.pretrained_weights import STEP
+from crowdbot.prediction.training.samples import Samples
 
-from ..training.samples import Samples
-from .agent_frame import AHEAD, ROWS, STEP, People, completed, features, forward, people_of, turned
+from .agent_frame import AHEAD, ROWS, People, completed, features, forward, people_of, turned
 
 __all__ = ["Batch", "Material", "Variation", "backwards", "batch", "gathered", "material_of"]
 

@@ -11,7 +11,8 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from ..training.samples import Samples
+from crowdbot.prediction.training.samples import Samples
+
 from .agent_frames import Framed, framed
 from .config import SocialWaysConfig
 from .network import Sight

@@ -13,13 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, Paper
 from crowdbot.data import Forecast, Windows
+from crowdbot.prediction.constant import ConstantVelocity, SampledConstantVelocity
+from crowdbot.prediction.joint_futures import before_walls, kept_apart
+from crowdbot.prediction.learned_predictor import LearnedPredictor, whole_tracks
+from crowdbot.prediction.predictor import Predictor, window_streams
+from crowdbot.prediction.training.checkpoint import load_checkpoint
+from crowdbot.prediction.training.torch_backend import device_of, tensors, threads, torch_module
 
-from ..constant import ConstantVelocity, SampledConstantVelocity
-from ..joint_futures import before_walls, kept_apart
-from ..learned_predictor import LearnedPredictor, whole_tracks
-from ..predictor import Predictor, window_streams
-from ..training.checkpoint import load_checkpoint
-from ..training.torch_backend import device_of, tensors, threads, torch_module
 from .config import config_of
 
 if TYPE_CHECKING:

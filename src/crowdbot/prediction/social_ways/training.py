@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from crowdbot.core import InputError, from_attributes, stream
+from crowdbot.prediction.training.loop import Trainable
+from crowdbot.prediction.training.samples import Samples, Scenes
+from crowdbot.prediction.training.torch_backend import device_of, tensors
 
-from ..training.loop import Trainable
-from ..training.samples import Samples, Scenes
-from ..training.torch_backend import device_of, tensors
 from .config import SocialWaysConfig, preset
 from .inputs import Scales, sight_of, states_of
 from .network import Discriminator, Generator, Sight
@@ -56,7 +56,7 @@ class _Lesson(NamedTuple):
 
 
 class SocialWaysTraining(Trainable):
-    """Social Ways with its data; see :class:`~crowdbot.prediction.training.loop.Trainable`.
+    """Social Ways with its data; see :class:`~crowdbot.prediction.Trainable`.
 
     Args:
         config: what is trained.
@@ -146,6 +146,24 @@ class SocialWaysTraining(Trainable):
         self.generator.load_state_dict(kept)
         count = max(1.0, sums[0])
         return {"ade": float(sums[1] / count), "fde": float(sums[2] / count)}
+
+    def sample_futures(self, past: NDArray[np.float64], draws: int, rng: np.random.Generator) -> NDArray[np.float64]:
+        """Return futures ``[K, S, T, A, 2]`` [m] that the averaged generator draws for observed tracks.
+
+        Args:
+            past: ``[S, T, A, 2]`` [m] complete tracks.
+            draws: K, the number of futures.
+            rng: source of the noise.
+        """
+        here = np.ones((len(past), past.shape[2]), dtype=bool)
+        sight, seen = sight_of(past, here, self.config, self.scales, self.device)
+        noise = torch.as_tensor(rng.random((draws, *here.shape, self.config.inputs), dtype=np.float32))
+        kept = {name: value.detach().clone() for name, value in self.generator.state_dict().items()}
+        self.generator.load_state_dict(self.mean)
+        with torch.no_grad():
+            place, _ = self._rolled(sight, noise.to(self.device))
+        self.generator.load_state_dict(kept)
+        return seen.world(place.double().cpu().numpy())
 
     def weights(self) -> Mapping[str, Any]:
         """Return the (averaged) generator."""

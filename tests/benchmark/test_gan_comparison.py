@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 import torch
 
-from crowdbot.benchmark.toy_gan.study import MEASURES, METHODS, Run, ToyStudy, with_values
+from crowdbot.benchmark.toy_gan.methods import METHODS
+from crowdbot.benchmark.toy_gan.study import MEASURES, Run, ToyStudy, with_values
 from crowdbot.benchmark.toy_gan.toy_data import Toy
-from crowdbot.benchmark.toy_gan.training import ToyTraining, drawn_from, toy_config
+from crowdbot.benchmark.toy_gan.training import ToyTraining, sample_futures, toy_config
 from crowdbot.core import InputError, stream
 from crowdbot.prediction.social_ways.config import SocialWaysConfig
 from crowdbot.prediction.training.torch_backend import threads
@@ -53,7 +54,7 @@ def test_noise_is_centred_and_made_larger() -> None:
     there, _ = centred.generator(lesson.sight, noise, 2)
     same, _ = plain.generator(lesson.sight, 0.25 * math.sqrt(12.0) * torch.ones_like(noise), 2)
     torch.testing.assert_close(there, same)
-    few, many = (drawn_from(one, 200, stream(0, "drawn")).std(axis=1).mean() for one in (plain, centred))
+    few, many = (sample_futures(one, 200, stream(0, "drawn")).std(axis=1).mean() for one in (plain, centred))
     assert many > 3.0 * few  # before anything is learned
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crowdbot.benchmark.prediction.evaluate import evaluate
+from crowdbot.benchmark import evaluate
 from crowdbot.core import InputError, stream
 from crowdbot.data import Forecast, Trajectories, Windows, load
 from crowdbot.metrics import Score, bootstrap_interval, collision_share, energy_score, person_errors
