@@ -19,7 +19,7 @@ LIMIT = 60.0
 CROWD = np.random.default_rng(0).uniform(0.0, 40.0, (1, 2000, 2))
 
 
-def work(times=10):
+def work(times=3):
     digest = hashlib.blake2b(digest_size=8)
     for _ in range(times):
         found = nearest(CROWD, 3.0, 10)
@@ -65,7 +65,7 @@ def fork_during():
 
     other = threading.Thread(target=go_on)
     other.start()
-    found = {in_child(in_threads) for _ in range(5)}
+    found = {in_child(in_threads) for _ in range(3)}
     stop.set()
     other.join()
     return " ".join(sorted(found))

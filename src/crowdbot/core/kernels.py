@@ -24,8 +24,8 @@ from .threading_layer import ParallelKernel, prefer_safe_layers
 
 __all__ = ["cache_folder", "is_cold", "kernel"]
 
-# GNU OpenMP lets idle threads spin: beside another busy process a step of 1 ms then takes 50 ms (measured). It reads
-# this when the first parallel kernel starts; what the user has set stays.
+# For users who choose GNU OpenMP, whose idle threads spin: beside another busy process a step of 1 ms then takes 50 ms
+# (measured). It reads this when the first parallel kernel starts; a value set by the user stays.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 prefer_safe_layers()
 

@@ -18,8 +18,8 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from numba import threading_layer
 from numba.core import compiler_lock, config
+from numba.np.ufunc.parallel import threading_layer
 
 __all__ = ["ParallelKernel", "prefer_safe_layers"]
 
@@ -110,6 +110,4 @@ def _after_fork_in_child() -> None:
 
 
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(
-        before=_before_fork, after_in_parent=_after_fork_in_parent, after_in_child=_after_fork_in_child
-    )
+    os.register_at_fork(before=_before_fork, after_in_parent=_after_fork_in_parent, after_in_child=_after_fork_in_child)
