@@ -10,8 +10,7 @@ from physics_worlds import facing
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, Twist
 from crowdbot.models import ORCA
 from crowdbot.sensors import Lens, RGBCamera
-from crowdbot.world import DifferentialDrive, PlanarWorld, Robot
-from crowdbot.world.physics import Camera, Cube, PhysicsStage, Studio, Walkers
+from crowdbot.world import Camera, Cube, DifferentialDrive, PhysicsStage, PlanarWorld, Robot, Studio, Walkers
 
 
 def plain(name="turtlebot2"):

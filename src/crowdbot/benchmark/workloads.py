@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import Scene, parameters, stream
+from crowdbot.recording import run
 
 from . import skins
 from .bodies import mujoco_rays, people_with_limbs
@@ -225,7 +226,7 @@ def _predictor(name: str) -> Measurement:
     from crowdbot.trials import load_trial
 
     predictor = getattr(prediction, name)()
-    past, _ = load_trial("crossing-flows").run().tracks(0.4).windows(8, 12)
+    past, _ = run(load_trial("crossing-flows")).tracks(0.4).windows(8, 12)
     live = "2.5 windows/s of a live stream"
     return Measurement("windows/s", len(past), lambda: predictor.predict(past, 12), live, 2.5)
 
@@ -251,7 +252,7 @@ def _physics(people: int) -> Measurement:
 
 def _camera() -> Measurement:
     """Time images of 640 x 480 with depth."""
-    from crowdbot.world.physics import Camera
+    from crowdbot.world import Camera
 
     world, _ = _bodies(50)
     camera = Camera((-2.0, -2.0, 3.0), (5.0, 5.0, 0.8), detail=2)
@@ -261,8 +262,7 @@ def _camera() -> Measurement:
 def _bodies(people: int) -> tuple[Any, int]:
     """Return a physics world with a robot in the middle of a crowd, and the agent that it is."""
     from crowdbot.models import ORCA
-    from crowdbot.world import Robot
-    from crowdbot.world.physics import PhysicsWorld
+    from crowdbot.world import PhysicsWorld, Robot
 
     robot, some = Robot.load("differential"), crowd(people)
     middle = some.position[0].mean(axis=0)
@@ -279,5 +279,5 @@ def _trial() -> Measurement:
 
     trial = load_trial("crossing-flows")
     trial = dataclasses.replace(trial, duration=10.0)
-    seconds = float(trial.run().times[-1])
-    return Measurement("simulated s/s", seconds, trial.run, "real time", 1.0)
+    seconds = float(run(trial).times[-1])
+    return Measurement("simulated s/s", seconds, lambda: run(trial), "real time", 1.0)
