@@ -43,7 +43,7 @@ def test_a_trial_is_written_from_a_recording_and_from_an_original_file(tmp_path,
     data.write_text("".join(f"{10 * k}\t{p}\t{0.5 * k}\t{2 * p}\n" for k in range(20) for p in (1, 2)))
     (tmp_path / "out").mkdir()
     file = tmp_path / "out" / "two.xml"
-    words = ["new", "trial", str(file), "--recorded", str(data), "--fps", "2.5", "--reactive", "--replace", "2"]
+    words = ["new", "trial", str(file), "--recorded", str(data), "--fps", "25", "--reactive", "--replace", "2"]
     assert main(words) == 0
     assert "copied two.txt beside it" in capsys.readouterr().err
     assert load_trial(file).recorded[0].mode == "reactive"

@@ -34,7 +34,7 @@ from crowdbot.trials import Trial, load_trial, parse_trial
 HALL = """<trial name="hall" duration="3" seed="1">
   <stage map="maps/hall.yaml" unknown="occupied"/>
   <crowd type="orca"/>
-  <recorded data="people.txt" fps="2.5" mode="reactive" radius="0.2"/>
+  <recorded data="people.txt" fps="25" mode="reactive" radius="0.2"/>
   <agent x="3" y="3" goal="6,3"/>
   <robot name="robot" x="2" y="2" radius="0.3">
     <goal x="7" y="2"/>

@@ -33,7 +33,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--explicit", action="store_true", help="write everybody at the beginning as an agent to edit")
     group.add_argument("--seed", type=int, help="seed by which people are placed (default: the trial's own)")
     group = parser.add_argument_group("a trial of recorded people")
-    group.add_argument("--fps", type=float, help="rows a second, when the recording does not say")
+    group.add_argument("--fps", type=float, help="frames per second of the recording (default: from the file)")
     group.add_argument("--reactive", action="store_true", help="people near the robot walk by a model")
     group.add_argument("--replace", type=int, metavar="ID", help="the robot goes in the place of this person")
 

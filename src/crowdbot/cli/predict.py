@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, note, print_json, print_table, progress
-from .recordings import add_recordings, recordings, tell_notes
+from .recordings import add_recordings, horizon, recordings, tell_notes
 from .schemes import add_scheme, frame_line, recipes
 
 if TYPE_CHECKING:
@@ -104,18 +104,19 @@ def _tables(options: argparse.Namespace, study: Study, results: list[Result]) ->
 
     best = f", best of {options.samples} per {options.best_of}" if options.samples > 1 else ""
     caption = f"protocol {study.recordings[0].protocol}{best}; means over persons, 95 % by drawing persons"
-    reach = f"{options.observe} observed + {options.predict} predicted rows"
     if len(study.recipes) == 1:
         scores = [result.score for result in results]
         rows = [result.recording.name for result in results]
         if len(scores) > 1:
             scores.append(Score.total(scores))
             rows.append("together")
+        steps = [one.tracks.dt for one in study.recordings]
+        reach = horizon(steps, options.observe, options.predict)
         _table(f"{study.recipes[0].name}, {reach}", "recording", rows, scores, caption)
         return
     for recording in study.recordings:
         own = [result for result in results if result.recording is recording]
-        title = f"{recording.name}, {reach}"
+        title = f"{recording.name}, {horizon([recording.tracks.dt], options.observe, options.predict)}"
         _table(title, "predictor", [result.label for result in own], [r.score for r in own], caption)
 
 

@@ -123,7 +123,7 @@ def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
         frame,
         place[:, 0],
         place[:, 1],
-        frame_rate=1.0 / dt,
+        row_rate=1.0 / dt,
         frame_step=1,
         name=name,
         note="simulated",

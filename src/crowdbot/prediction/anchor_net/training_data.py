@@ -103,7 +103,7 @@ def gathered(recordings: Sequence[Trajectories], reverse: bool = True) -> Materi
         if tracks.units != "m" or abs(tracks.dt - STEP) > 1e-6:
             raise InputError(
                 f"{tracks.name} has steps of {tracks.dt:.4g} s in {tracks.units}; learning needs 0.4 s in metres:"
-                " give fps=2.5, or resample"
+                " give fps (0.4 s are 10 frames at fps=25), or resample"
             )
         for one in (tracks, backwards(tracks)) if reverse else (tracks,):
             parts.append(_people(*one.windows()))
@@ -151,7 +151,7 @@ def backwards(tracks: Trajectories) -> Trajectories:
     """Return the tracks as if time ran backwards; people walk alike."""
     last = tracks.frame.max() + tracks.frame.min()
     return Trajectories(
-        tracks.id, last - tracks.frame, tracks.x, tracks.y, frame_rate=1.0 / tracks.dt, frame_step=tracks.frame_step,
+        tracks.id, last - tracks.frame, tracks.x, tracks.y, row_rate=1.0 / tracks.dt, frame_step=tracks.frame_step,
         name=tracks.name,
     )  # fmt: skip
 

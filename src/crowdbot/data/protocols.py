@@ -7,7 +7,7 @@ there at every row that the protocol asks for. Numbers of different protocols ca
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +15,10 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError, InputError, did_you_mean
 
 from .rows import Runs, runs
+from .track_table import TrackTable
 from .windows import Windows
 
-if TYPE_CHECKING:
-    from .trajectories import Trajectories
-
-__all__ = ["LATE", "PROTOCOLS", "past_at", "windows_of"]
+__all__ = ["LATE", "PROTOCOLS", "cut_past", "cut_windows"]
 
 PROTOCOLS = {
     "all": "every window with a person at all rows; holes where nobody is present are stepped over",
@@ -54,14 +52,14 @@ class _Rows:
     robot: Bools
 
     @classmethod
-    def of(cls, tracks: Trajectories, step: int | None) -> _Rows:
+    def of(cls, tracks: TrackTable, step: int | None) -> _Rows:
         found = runs(tracks.id, tracks.frame, step)
         id = tracks.id[found.order]
         return cls(found, id, tracks.position[found.order], np.isin(id, np.asarray(sorted(tracks.robots), np.int64)))
 
 
-def windows_of(
-    tracks: Trajectories, observe: int, predict: int, protocol: str, near: float | None, late: str
+def cut_windows(
+    tracks: TrackTable, observe: int, predict: int, protocol: str, near: float | None, late: str
 ) -> tuple[Windows, Windows]:
     """Return the past and the future of every window; see :meth:`Trajectories.windows`."""
     _check(tracks, observe, predict, protocol, near, late)
@@ -78,7 +76,7 @@ def windows_of(
     return _filled(tracks, rows, chosen, scored, observe, predict, protocol, late)
 
 
-def past_at(tracks: Trajectories, observe: int, frame: int | None, late: str) -> Windows:
+def cut_past(tracks: TrackTable, observe: int, frame: int | None, late: str) -> Windows:
     """Return one window of everyone at ``frame``; see :meth:`Trajectories.past`."""
     _check(tracks, observe, 1, "all", None, late)
     rows = _Rows.of(tracks, None)
@@ -97,7 +95,7 @@ def past_at(tracks: Trajectories, observe: int, frame: int | None, late: str) ->
     return _filled(tracks, rows, chosen, np.zeros(len(here), np.bool_), observe, 1, "none", late)[0]
 
 
-def _check(tracks: Trajectories, observe: int, predict: int, protocol: str, near: float | None, late: str) -> None:
+def _check(tracks: TrackTable, observe: int, predict: int, protocol: str, near: float | None, late: str) -> None:
     for name, value in (("observe", observe), ("predict", predict)):
         if not isinstance(value, int | np.integer) or value < 1:
             raise InputError(f"windows: {name} is {value!r}, it is a number of rows: a whole number of at least 1")
@@ -114,7 +112,7 @@ def _check(tracks: Trajectories, observe: int, predict: int, protocol: str, near
         raise DataError(f"{tracks.name} is in pixels, near is in metres; turn it into metres first")
 
 
-def _admitted(tracks: Trajectories, rows: _Rows, scored: Bools, protocol: str) -> Bools:
+def _admitted(tracks: TrackTable, rows: _Rows, scored: Bools, protocol: str) -> Bools:
     """Return who is scored after the protocol has chosen among the windows."""
     instants = rows.runs.instant
     if protocol == "sgan":
@@ -134,7 +132,7 @@ def _admitted(tracks: Trajectories, rows: _Rows, scored: Bools, protocol: str) -
     return scored
 
 
-def _near_robot(tracks: Trajectories, rows: _Rows, scored: Bools, near: float) -> Bools:
+def _near_robot(tracks: TrackTable, rows: _Rows, scored: Bools, near: float) -> Bools:
     """Return who is scored and within ``near`` [m] of a robot at the last observed step."""
     distance = np.full(len(rows.id), np.inf)
     for robot in sorted(tracks.robots):
@@ -156,7 +154,7 @@ def _shortest(observe: int, late: str) -> int:
 
 
 def _filled(
-    tracks: Trajectories,
+    tracks: TrackTable,
     rows: _Rows,
     chosen: Integers,
     scored: Bools,
@@ -241,7 +239,7 @@ def _places(rows: _Rows, members: NDArray[np.intp], offset: int) -> tuple[Bools,
     return np.ones(len(members), np.bool_), place
 
 
-def _frames(tracks: Trajectories, rows: _Rows, chosen: Integers, observe: int, predict: int, protocol: str) -> Integers:
+def _frames(tracks: TrackTable, rows: _Rows, chosen: Integers, observe: int, predict: int, protocol: str) -> Integers:
     """Return the frames [W, observe + predict]; after the end of the file they go on in steps."""
     offsets = np.arange(1 - observe, predict + 1)
     frames, step = rows.runs.frames, tracks.frame_step
@@ -252,7 +250,7 @@ def _frames(tracks: Trajectories, rows: _Rows, chosen: Integers, observe: int, p
     return np.asarray(frames[np.minimum(index, len(frames) - 1)] + beyond * step)
 
 
-def _why_none(tracks: Trajectories, rows: _Rows, observe: int, need: int, protocol: str) -> str:
+def _why_none(tracks: TrackTable, rows: _Rows, observe: int, need: int, protocol: str) -> str:
     """Return why no person can be scored, with the numbers that tell the user what to change."""
     people = ~rows.robot
     if not np.any(people):
