@@ -24,7 +24,8 @@ from pathlib import Path
 from types import FrameType
 
 from crowdbot.core import CrowdbotError
-from crowdbot.trials import Trial, builtin_trials, load_trial, opened
+from crowdbot.simulation import opened
+from crowdbot.trials import Trial, builtin_trials, load_trial
 
 LIMIT = 60
 """No file may take longer than this [s]."""

@@ -16,7 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.trials import Episode, Trial, builtin_trials, load_trial
+from crowdbot.simulation import Episode
+from crowdbot.trials import Trial, builtin_trials, load_trial
 from crowdbot.trials.scenarios import PRESETS
 
 SECONDS = 20.0

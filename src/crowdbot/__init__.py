@@ -55,6 +55,9 @@ def __dir__() -> list[str]:
 
 
 if TYPE_CHECKING:
+    from crowdbot.recording import replay as replay
+    from crowdbot.simulation import Episode as Episode
+
     from .benchmark import cite as cite
     from .calibration import Calibrator as Calibrator
     from .core import CrowdbotError as CrowdbotError
@@ -90,8 +93,6 @@ if TYPE_CHECKING:
     from .prediction import SocialWays as SocialWays
     from .sensors import Lidar2D as Lidar2D
     from .sensors import Sensor as Sensor
-    from .trials import Episode as Episode
     from .trials import Trial as Trial
     from .trials import load_trial as load_trial
-    from .trials.replay import replay as replay
     from .world import Robot as Robot

@@ -9,7 +9,7 @@ import pytest
 
 from crowdbot.benchmark import run_demo
 from crowdbot.cli import main
-from crowdbot.trials import replay
+from crowdbot.recording import replay
 
 
 @pytest.fixture(scope="module")

@@ -13,8 +13,9 @@ import pandas as pd
 import pytest
 
 from crowdbot.cli import main
-from crowdbot.trials import load_trial, read_episode
-from crowdbot.trials.experiment import builtin_experiments
+from crowdbot.experiments import builtin_experiments
+from crowdbot.recording import read_episode
+from crowdbot.trials import load_trial
 
 ROOT = Path(__file__).parents[2]
 ANSWERS = {"age": 30, "robots": "never", "comfort": 5, "remarks": '=1+1, "quoted"\nand ünïcode'}

@@ -12,7 +12,8 @@ from trial_texts import FLOW
 from crowdbot.core import InputError, Scene
 from crowdbot.models import ORCA, CrowdModel, SocialForce
 from crowdbot.models.mixture import Mixture
-from crowdbot.trials import Trial, load_trial, run_batch
+from crowdbot.simulation import run_batch
+from crowdbot.trials import Trial, load_trial
 from crowdbot.world.walk import Walk, alone, together
 
 SEEDS = range(8)

@@ -15,8 +15,9 @@ from trial_texts import FLOW, GOOD
 
 from crowdbot.core import EpisodeError, InputError, TrialError
 from crowdbot.data import Tape
-from crowdbot.trials import Trial, branch, read_episode, record, replay
-from crowdbot.trials.changing import changed
+from crowdbot.recording import branch, read_episode, replay
+from crowdbot.simulation import changed, record
+from crowdbot.trials import Trial
 
 SMALL, FLOWING = Trial.parse(GOOD), Trial.parse(FLOW)
 

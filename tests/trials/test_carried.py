@@ -16,10 +16,19 @@ from trial_texts import GOOD, SHY
 
 from crowdbot.cli import main
 from crowdbot.core import EpisodeError
-from crowdbot.trials import Trial, branch, carried, load_trial, read_episode, record, repair, replay
-from crowdbot.trials.carried import Carried, LeftOut, named_files
-from crowdbot.trials.recording import Recorder
-from crowdbot.trials.run import opened
+from crowdbot.recording import (
+    Carried,
+    LeftOut,
+    Recorder,
+    attachments,
+    branch,
+    named_files,
+    read_episode,
+    repair,
+    replay,
+)
+from crowdbot.simulation import opened, record
+from crowdbot.trials import Trial, load_trial
 
 HALL = """<trial name="hall" duration="3" seed="1">
   <stage map="maps/hall.yaml" unknown="occupied"/>
@@ -166,7 +175,7 @@ def test_a_killed_run_has_its_files_too(made: Path, tmp_path: Path) -> None:
 
 
 def test_large_files_are_named_and_not_kept(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(carried, "MOST", 200)
+    monkeypatch.setattr(attachments, "MOST", 200)
     with pytest.warns(
         LeftOut, match=r"leaves out 'maps/pictures/hall.pgm', .* \(too large, at most 200 bytes are kept"
     ):
@@ -396,6 +405,6 @@ def test_a_robot_folder_keeps_its_code_as_code_and_no_caches(tmp_path: Path) -> 
 
 
 def _tally(trial: Trial):  # type: ignore[no-untyped-def]
-    from crowdbot.trials.tally import Tally
+    from crowdbot.simulation import Tally
 
     return Tally(trial, 0)

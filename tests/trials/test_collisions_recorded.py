@@ -12,10 +12,9 @@ import pytest
 from rosbags.highlevel import AnyReader
 from trial_texts import GOOD
 
-from crowdbot.trials import Simulation, Trial, export, read_episode
-from crowdbot.trials.recording import Recorder
-from crowdbot.trials.simulation import Frame
-from crowdbot.trials.tally import Digest, Tally
+from crowdbot.recording import Recorder, export, read_episode
+from crowdbot.simulation import Digest, Frame, Simulation, Tally
+from crowdbot.trials import Trial
 
 
 class Party(NamedTuple):

@@ -11,8 +11,8 @@ from planted import KINDS, RICH, Kind, planted, told_apart
 from trial_texts import FLOW, GOOD
 
 from crowdbot.core import TrialError
+from crowdbot.experiments import Experiment
 from crowdbot.trials import Trial, load_trial
-from crowdbot.trials.experiment import Experiment
 
 
 def problems(text: str) -> list[str]:

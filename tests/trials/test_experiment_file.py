@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import InputError, TrialError
-from crowdbot.trials.experiment import (
+from crowdbot.experiments import (
     Block,
     Choice,
     Experiment,
@@ -30,12 +30,12 @@ from crowdbot.trials.experiment import (
     orders,
     page_of,
     plan,
+    read_experiment,
     rows_of,
+    sanitised,
     seed_of,
     williams,
-)  # fmt: skip
-from crowdbot.trials.experiment.page import sanitised
-from crowdbot.trials.experiment.reading import read_experiment
+)
 
 SHIPPED = builtin_experiments()["robot-speed"]
 

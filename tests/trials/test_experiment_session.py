@@ -12,8 +12,7 @@ from typing import Any
 import pytest
 
 from crowdbot.core import EpisodeError, InputError, TrialError
-from crowdbot.trials import read_episode
-from crowdbot.trials.experiment import (
+from crowdbot.experiments import (
     Abort,
     Answered,
     Begin,
@@ -27,6 +26,7 @@ from crowdbot.trials.experiment import (
     FreeText,
     Given,
     Left,
+    Log,
     Next,
     Number,
     Option,
@@ -39,12 +39,14 @@ from crowdbot.trials.experiment import (
     Start,
     TrialEntry,
     Typed,
+    event_of,
     load_experiment,
+    read_log,
+    record_of,
     save_summary,
     summary,
 )
-from crowdbot.trials.experiment.event import event_of, record_of
-from crowdbot.trials.experiment.log import Log, read_log
+from crowdbot.recording import read_episode
 
 AGE = Number(name="age", text="How old are you?", at_least=18, whole=True)
 LIKED = Choice(name="liked", text="What?", several=True, options=[Option(value="speed"), Option(value="distance")])

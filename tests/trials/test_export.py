@@ -14,8 +14,10 @@ from trial_texts import FLOW
 
 from crowdbot.cli import main
 from crowdbot.core import EpisodeError, InputError
+from crowdbot.recording import Recorded, export, read_episode
 from crowdbot.sensors import Picture
-from crowdbot.trials import Recorded, Trial, export, read_episode, record
+from crowdbot.simulation import record
+from crowdbot.trials import Trial
 
 
 @pytest.fixture(scope="module")

@@ -18,12 +18,13 @@ from crowdbot.metrics import NAVIGATION_METRICS
 from crowdbot.models import ORCA, SocialForce
 from crowdbot.models.mixture import Mixture
 from crowdbot.navigation import Navigator, Observation, Straight
+from crowdbot.recording import read_episode, replay
 from crowdbot.sensors import Lidar2D
+from crowdbot.simulation import Episode, Simulation
 from crowdbot.trials import (
     Crowds,
     Direction,
     End,
-    Episode,
     Exit,
     Goal,
     Journey,
@@ -31,7 +32,6 @@ from crowdbot.trials import (
     Point,
     Robot,
     Routing,
-    Simulation,
     Source,
     Spawner,
     Stage,
@@ -39,8 +39,6 @@ from crowdbot.trials import (
     Wall,
     Zone,
     load_trial,
-    read_episode,
-    replay,
 )
 from crowdbot.world import DifferentialDrive, PlanarWorld
 

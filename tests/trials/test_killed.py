@@ -19,11 +19,13 @@ from trial_texts import FLOW, GOOD, changed, written
 
 from crowdbot import data
 from crowdbot.core import EpisodeError
-from crowdbot.trials import Trial, moments, read_episode, repair, replay
+from crowdbot.recording import moments, read_episode, repair, replay
+from crowdbot.trials import Trial
 
 LONG = changed('duration="4"', 'duration="4000"').replace("<end ", '<end goal="false" ')
 RUN = """import sys
-from crowdbot.trials import Trial, opened
+from crowdbot.trials import Trial
+from crowdbot.simulation import opened
 with opened(Trial.parse(sys.stdin.read()), out=sys.argv[1]) as running:
     while running.step() is None:
         print(running.simulation.world.clock.time, flush=True)

@@ -24,8 +24,8 @@ from crowdbot.trials import (
     Trial,
     When,
     load_trial,
+    place,
 )
-from crowdbot.trials.spawn import place
 from crowdbot.trials.sweep import changed as with_values
 
 HALL = [(0, 0), (12, 0), (12, 10), (0, 10)]

@@ -10,7 +10,8 @@ import pytest
 from trial_texts import written
 
 from crowdbot.core import InputError, TrialError
-from crowdbot.trials import Goal, RecordedPeople, Robot, Simulation, Trial, load_trial, recorded_trial
+from crowdbot.simulation import Simulation
+from crowdbot.trials import Goal, RecordedPeople, Robot, Trial, load_trial, recorded_trial
 
 RECORDINGS = {
     "eth": ("eth_biwi/seq_eth/obsmat.txt", None, 60.0),

@@ -21,8 +21,10 @@ from trial_texts import GOOD, changed
 import crowdbot
 from crowdbot import data
 from crowdbot.core import EpisodeError, InputError, Pose, Scene
+from crowdbot.recording import Recorded, read_episode
 from crowdbot.sensors import Reading, Sensor
-from crowdbot.trials import Episode, Mount, Recorded, Trial, read_episode
+from crowdbot.simulation import Episode
+from crowdbot.trials import Mount, Trial
 
 TRIAL = Trial.parse(GOOD)
 

@@ -14,10 +14,9 @@ from space_trials import LEAN, ROOM, room
 
 from crowdbot.cli import main
 from crowdbot.core import InputError, MissingExtra
-from crowdbot.trials import Take, Trial, camera_names, load_trial, shots
-from crowdbot.trials.album import Album, painted_segmentation
+from crowdbot.rendering import Album, Shot, Take, camera_names, painted_segmentation, shots
+from crowdbot.trials import Trial, load_trial
 from crowdbot.trials.camera import overview
-from crowdbot.trials.shots import Shot
 from crowdbot.world.physics import drawing
 
 

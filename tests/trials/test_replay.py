@@ -13,7 +13,8 @@ from trial_texts import GOOD, SHY, changed, written
 import crowdbot
 from crowdbot import data
 from crowdbot.core import EpisodeError, TrialError
-from crowdbot.trials import Trial, load_trial, read_episode, replay
+from crowdbot.recording import read_episode, replay
+from crowdbot.trials import Trial, load_trial
 
 
 def rewritten(source: Path, target: Path, **changes: str) -> Path:

@@ -8,9 +8,9 @@ from test_schema import valid
 
 from crowdbot.core import Scene, TrialError
 from crowdbot.humans import LIMBS
-from crowdbot.trials import Take, Trial, shots
-from crowdbot.trials.run import Running
-from crowdbot.trials.simulation import Simulation
+from crowdbot.rendering import Take, shots
+from crowdbot.simulation import Running, Simulation
+from crowdbot.trials import Trial
 from crowdbot.world.physics import Walkers
 
 ROOM = """<trial name="ride" duration="4" seed="3" step="0.05">

@@ -9,7 +9,8 @@ import pytest
 from crowdbot.core import InputError
 from crowdbot.navigation import Straight
 from crowdbot.sensors import RGBCamera
-from crowdbot.trials import Goal, Robot, Trial, run
+from crowdbot.simulation import run
+from crowdbot.trials import Goal, Robot, Trial
 
 CAMERAS = {
     "cuybot": ["camera"],

@@ -18,24 +18,10 @@ from crowdbot.core import InputError, Scene, TrialError, Twist
 from crowdbot.metrics import NAVIGATION_METRICS
 from crowdbot.models import ORCA
 from crowdbot.navigation import Navigator, Observation, Straight
+from crowdbot.recording import read_episode
 from crowdbot.sensors import Gaussian, Lidar2D
-from crowdbot.trials import (
-    Episode,
-    Goal,
-    Mount,
-    Robot,
-    Simulation,
-    Spawner,
-    Stage,
-    Trial,
-    Wall,
-    load_trial,
-    read_episode,
-)
-from crowdbot.trials.episode import Log
-from crowdbot.trials.run import Stop, drive
-from crowdbot.trials.simulation import start_scene
-from crowdbot.trials.spawn import place
+from crowdbot.simulation import Episode, Log, Simulation, Stop, drive, start_scene
+from crowdbot.trials import Goal, Mount, Robot, Spawner, Stage, Trial, Wall, load_trial, place
 from crowdbot.world import DifferentialDrive
 
 TINY = Trial.parse(GOOD)

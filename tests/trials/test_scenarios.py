@@ -12,9 +12,9 @@ import pytest
 from crowdbot.core import TrialError
 from crowdbot.models import SocialForce
 from crowdbot.navigation import Straight
+from crowdbot.simulation import Simulation
 from crowdbot.trials import Trial, builtin_trials, load_trial
 from crowdbot.trials.scenarios import DENSITIES, FLOWS, PRESETS, SIZES
-from crowdbot.trials.simulation import Simulation
 
 LISTED = """
     frontal intersection blind-corner doorway elevator overtaking being-overtaken following joining-group leaving-group

@@ -17,10 +17,10 @@ from trial_texts import FLOW, GOOD
 from crowdbot.core import Clock, ExternalClock, FreeClock, InputError, PacedClock, Pose, Scene, Twist
 from crowdbot.models import ORCA
 from crowdbot.navigation import Navigator, Observation
+from crowdbot.recording import read_episode
 from crowdbot.sensors import Lidar2D, Scan
-from crowdbot.trials import Running, Simulation, Trial, opened, read_episode, record
-from crowdbot.trials.simulation import Frame
-from crowdbot.trials.tally import Tally
+from crowdbot.simulation import Frame, Running, Simulation, Tally, opened, record
+from crowdbot.trials import Trial
 from crowdbot.world import DifferentialDrive
 
 TRIAL = Trial.parse(GOOD)

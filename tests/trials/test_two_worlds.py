@@ -12,11 +12,10 @@ from space_trials import LEAN, ROOM, WORLDS, room
 from test_schema import valid
 
 from crowdbot.core import ExternalClock, InputError, MissingExtra, TrialError
+from crowdbot.recording import branch, read_episode, replay
 from crowdbot.sensors import Picture, Tracked
-from crowdbot.trials import Trial, branch, builtin_trials, load_trial, opened, read_episode, record, replay, run
-from crowdbot.trials.figures import cast_of
-from crowdbot.trials.run import Running, drive
-from crowdbot.trials.simulation import Simulation
+from crowdbot.simulation import Running, Simulation, drive, opened, record, run
+from crowdbot.trials import Trial, builtin_trials, cast_of, load_trial
 
 STEPS = {"planar": 40, "physics": 20}
 
@@ -188,7 +187,7 @@ def test_collisions_and_forces_are_told_once() -> None:
         def take(self, frame: object) -> None:
             frames.append(frame)
 
-    from crowdbot.trials.run import Stop
+    from crowdbot.simulation import Stop
 
     drive(simulation, [Keeper()], Stop())
     told = [one for frame in frames for one in frame.collisions]

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from crowdbot.calibration import Fit
     from crowdbot.data import Windows
     from crowdbot.metrics import Score
-    from crowdbot.trials import Episode, Trial
+    from crowdbot.simulation import Episode
+    from crowdbot.trials import Trial
 
 __all__ = ["Demo", "run_demo"]
 

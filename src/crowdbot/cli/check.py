@@ -69,8 +69,8 @@ def _is_robot(name: str) -> bool:
 
 def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
     from crowdbot.core import InputError, TrialError
+    from crowdbot.experiments import is_experiment, load_experiment
     from crowdbot.trials import load_trial
-    from crowdbot.trials.experiment import is_experiment, load_experiment
 
     try:
         if is_experiment(name):

@@ -11,7 +11,7 @@ from .output import add_json, number, print_json, print_metrics, print_table, pr
 from .settings import add_settings, add_world, chosen, settings
 
 if TYPE_CHECKING:
-    from crowdbot.trials import Summary
+    from crowdbot.simulation import Summary
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -30,7 +30,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Run the trial."""
     from crowdbot.core import PacedClock
-    from crowdbot.trials import load_trial, record
+    from crowdbot.simulation import record
+    from crowdbot.trials import load_trial
 
     trial = chosen(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
     file = None if options.out is None else options.out / "episode.mcap"

@@ -8,11 +8,11 @@ from typing import Any
 
 from crowdbot.core import TrialError, did_you_mean
 
-from .attribute import outline
-from .markup import read_trial_bytes
+from .fields import outline
 from .scenarios import PRESETS
 from .sweep import changed
 from .trial import Trial
+from .xml.document import read_trial_bytes
 
 __all__ = ["builtin_trials", "load_trial"]
 

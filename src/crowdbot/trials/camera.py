@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .attribute import attribute, check
+from .fields import attribute, check
 from .notation import NAME
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .attribute import attribute, check
+from .fields import attribute, check
 
 if TYPE_CHECKING:
     from crowdbot.world import physics

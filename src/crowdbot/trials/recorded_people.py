@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .attribute import Mistake, attribute, check, shown
-from .beside import beside
 from .distribution import Distribution
+from .fields import Mistake, attribute, check, shown
 from .people import BODY_RADIUS
+from .trial_files import beside
 
 if TYPE_CHECKING:
     from crowdbot.data import Trajectories

@@ -20,10 +20,10 @@ from crowdbot.sensors import Schedule, Sensor
 from crowdbot.world import Drive, builtin_robots
 from crowdbot.world.urdf.transforms import frame, roll_pitch_yaw
 
-from .attribute import Mistake, attribute, check, child, children, mounted, plugged, shown
+from .fields import Mistake, attribute, check, child, children, mounted, plugged, shown
+from .human_kinds import ABOUT_RIDER, rider_problems
 from .notation import NAME
-from .torn import readable
-from .words import ABOUT_RIDER, rider_problems
+from .partial import readable
 
 __all__ = ["Goal", "Mount", "Robot"]
 

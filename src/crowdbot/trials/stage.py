@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Walls
 
-from .attribute import Mistake, attribute, check, children, shown
-from .ground import area_of, map_of
+from .fields import Mistake, attribute, check, children, shown
+from .map_files import area_of, map_of
 from .notation import Points
+from .partial import readable
 from .props import Cube, Light, Prop, Table, Tree
-from .torn import readable
 
 if TYPE_CHECKING:
     from crowdbot.world.physics import PhysicsStage

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from crowdbot.core import Element, InputError, TrialError, did_you_mean, format_xml
 
-from .attribute import Mistake, Part, attribute, check, outline, shown
-from .torn import readable
+from .fields import Mistake, Part, attribute, check, outline, shown
+from .partial import readable
 
 if TYPE_CHECKING:
     from .trial import Trial
@@ -181,8 +181,8 @@ def changed(trial: Trial, values: dict[str, str], *, place: str = "variant", tru
     >>> changed(Trial(name="t", duration=2.0, crowd=ORCA()), {"crowd/time-horizon": "3"}).crowd.time_horizon
     3.0
     """
-    from .reading import read_trial
-    from .writing import element_of
+    from .xml.reader import read_trial
+    from .xml.writer import element_of
 
     root = element_of(trial)
     for path, value in values.items():

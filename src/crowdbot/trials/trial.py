@@ -13,9 +13,9 @@ from crowdbot.core import InputError
 from crowdbot.models import CrowdModel
 
 from .agent import Agent
-from .attribute import attribute, check, child, children
 from .camera import Camera
 from .crowd import Contact, Crowd, Crowds, Limits, Routing
+from .fields import attribute, check, child, children
 from .journey import Exit, Journey, Portal
 from .people import Source, Spawner
 from .recorded_people import RecordedPeople
@@ -24,7 +24,7 @@ from .stage import Stage
 from .sweep import Sweep
 
 if TYPE_CHECKING:
-    from .episode import Episode
+    from crowdbot.simulation import Episode
 
 __all__ = ["End", "Goal", "Mount", "Recording", "Robot", "Trial", "When"]
 
@@ -165,26 +165,26 @@ class Trial:
     def parse(
         cls, text: str | bytes, *, place: str = "trial", folder: Path | None = None, trust: bool = False
     ) -> Trial:
-        """Read a trial from an XML text; see :func:`crowdbot.trials.reading.read_trial`."""
-        from .reading import read_trial
+        """Read a trial from an XML text; see :func:`crowdbot.trials.xml.reader.read_trial`."""
+        from .xml.reader import read_trial
 
         return read_trial(text, place=place, folder=folder, trust=trust)
 
     def xml(self) -> str:
         """Return the XML text of this trial; reading it gives an equal trial."""
-        from .writing import xml
+        from .xml.writer import xml
 
         return xml(self)
 
     def check(self, seed: int | None = None) -> None:
         """Raise :class:`TrialError` with everything that is wrong: places, overlaps, people who do not fit, periods."""
-        from .checks import check_trial
+        from .validation.trial_checks import check_trial
 
         check_trial(self, seed)
 
     def remarks(self) -> list[str]:
-        """Return what is not wrong but should be known; see :func:`crowdbot.trials.rates.remarks`."""
-        from .rates import remarks
+        """Return what is not wrong but should be known; see :func:`crowdbot.trials.validation.rates.remarks`."""
+        from .validation.rates import remarks
 
         return remarks(self)
 
@@ -194,14 +194,14 @@ class Trial:
         out: Path | str | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> Episode:
-        """Run the trial; see :func:`crowdbot.trials.run`."""
-        from .run import run
+        """Run the trial; see :func:`crowdbot.simulation.runner`."""
+        from crowdbot.simulation import run
 
         return run(self, seed=seed, out=out, progress=progress)
 
     def explicit(self, seed: int | None = None) -> Trial:
-        """Return the trial with everybody of its spawners as an agent; see :func:`crowdbot.trials.explicit`."""
-        from .explicit import explicit
+        """Return the trial with everybody of its spawners as an agent; see :func:`crowdbot.trials.placement.expansion`."""
+        from .placement.expansion import explicit
 
         return explicit(self, seed)
 

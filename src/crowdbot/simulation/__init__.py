@@ -1,0 +1,43 @@
+"""Simulation: a trial and a seed become an episode. Contract :class:`Simulation`, verb ``run``."""
+
+from .batch import run_batch
+from .episode import Episode, Log, ScanRow, scan_row, tracks_of
+from .overrides import changed, turn_to
+from .runner import Bridge, Running, Sink, Stop, drive, opened, record, run, stopping, target
+from .simulation import WALL, Carrier, Frame, Simulation, Touch
+from .statistics import Digest, Summary, Tally, robot_metrics
+from .travel import Instant, Travel
+from .world_builder import start_scene
+
+__all__ = [
+    "WALL",
+    "Bridge",
+    "Carrier",
+    "Digest",
+    "Episode",
+    "Frame",
+    "Instant",
+    "Log",
+    "Running",
+    "ScanRow",
+    "Simulation",
+    "Sink",
+    "Stop",
+    "Summary",
+    "Tally",
+    "Touch",
+    "Travel",
+    "changed",
+    "drive",
+    "opened",
+    "record",
+    "robot_metrics",
+    "run",
+    "run_batch",
+    "scan_row",
+    "start_scene",
+    "stopping",
+    "target",
+    "tracks_of",
+    "turn_to",
+]
