@@ -1,7 +1,7 @@
 """Fixtures for inputs that are not part of the repository, and what happens to a test when its input is missing.
 
-A test names its inputs as fixtures: ``recordings``, ``urdf``, ``chromium``, ``drawing``. Where an input is missing, the
-tests that need it are deselected and one line at the end of the run gives their number, the reason and the remedy. Where
+A test names its inputs as fixtures: ``recordings``, ``urdf``, ``chromium``, ``drawing``. If an input is missing, the
+tests that need it are deselected, and one line at the end of the run gives their number, the reason and the remedy. If
 the variable ``CI`` is set (and ``ALONE`` is not), nothing is deselected: a missing input is a failure.
 
 Property tests draw the same examples in every run; ``HUNT=1`` draws new ones.
@@ -111,7 +111,7 @@ def drawing() -> str:
 
 @pytest.fixture(scope="session")
 def reference() -> Path:
-    """Folder of one-step answers of other crowd engines; all frames where they are at hand, otherwise those that ship."""
+    """Folder of one-step answers of other crowd engines: all frames if available, otherwise those that ship."""
     return _folder("reference") or ROOT / "tests" / "reference"
 
 
