@@ -39,6 +39,7 @@ def test_every_builtin_trial_runs_in_both_worlds_and_is_recorded(name: str, tmp_
         assert read.digest == done.digest
 
 
+@pytest.mark.usefixtures("drawing")
 @pytest.mark.parametrize("world", WORLDS)
 def test_the_same_seed_gives_the_same_bytes_however_time_passes(world: str, tmp_path: Path) -> None:
     trial = Trial.parse(room(world))
@@ -79,6 +80,7 @@ def test_explicit_people_have_the_same_bodies(world: str) -> None:
     assert run(trial, 4).digest == run(trial.explicit(4)).digest
 
 
+@pytest.mark.usefixtures("drawing")
 @pytest.mark.parametrize("world", WORLDS)
 def test_readings_of_the_room(world: str) -> None:
     episode = run(Trial.parse(room(world)))
@@ -102,6 +104,7 @@ def test_readings_of_the_room(world: str) -> None:
     assert with_people & {0, 1, 2, 3, 4}
 
 
+@pytest.mark.usefixtures("drawing")
 @pytest.mark.parametrize("world", WORLDS)
 def test_readings_arrive_late_and_keep_their_instant(world: str) -> None:
     simulation = Simulation(Trial.parse(room(world)), 4)
