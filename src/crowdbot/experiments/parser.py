@@ -8,15 +8,15 @@ from pathlib import Path
 from crowdbot.core import TrialError, format_xml
 from crowdbot.trials import Reader, element_from, parse_trial_xml
 
-from .checks import problems_of
+from .checks import everything, problems_of
 from .experiment import Experiment
 
-__all__ = ["experiment_xml", "read_experiment"]
+__all__ = ["check_experiment", "experiment_xml", "parse_experiment"]
 
 ROOT = "experiment"
 
 
-def read_experiment(
+def parse_experiment(
     text: str | bytes, *, place: str = ROOT, folder: Path | None = None, trust: bool = False, whole: bool = True
 ) -> Experiment:
     """Read an experiment from XML and check it.
@@ -31,7 +31,7 @@ def read_experiment(
     Raises:
         TrialError: with every problem found, one sentence each, in the order of the lines.
 
-    >>> read_experiment('<experiment name="e"><block name="b" ordr="random"/></experiment>')
+    >>> parse_experiment('<experiment name="e"><block name="b" ordr="random"/></experiment>')
     Traceback (most recent call last):
     crowdbot.core.errors.TrialError: experiment:1: <block> has no attribute 'ordr', did you mean 'order'?; it takes \
 name, order, repetitions, seeds
@@ -56,3 +56,22 @@ name, order, repetitions, seeds
 def experiment_xml(experiment: Experiment) -> str:
     """Return the XML text of an experiment."""
     return format_xml(element_from(ROOT, experiment, None))
+
+
+def check_experiment(experiment: Experiment, *, trust: bool = False) -> None:
+    """Check an experiment made in Python: names, files, trials.
+
+    Args:
+        experiment: the experiment.
+        trust: whether trials may load code from outside their folders.
+
+    Raises:
+        TrialError: with every problem found, a sentence each.
+    """
+    found = problems_of(everything(experiment), experiment.folder, trust)
+    if sentences := [f"experiment {experiment.name!r}: {_called(thing)} {sentence}" for thing, sentence in found]:
+        raise TrialError(*sentences)
+
+
+def _called(thing: object) -> str:
+    return f"{type(thing).__name__} {getattr(thing, 'name', '')!r}"
