@@ -57,7 +57,6 @@ def __dir__() -> list[str]:
 
 
 if TYPE_CHECKING:
-
     from .benchmark import cite as cite
     from .calibration import Calibrator as Calibrator
     from .core import CrowdbotError as CrowdbotError

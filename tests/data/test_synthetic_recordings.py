@@ -137,9 +137,7 @@ def test_speeds_that_are_impossible_for_people_are_noted(tmp_path, metres, fps, 
 def test_a_row_rate_is_refused_by_speed_alone(tmp_path):
     path = tmp_path / "two.csv"
     path.write_text("id,frame,x,y\n" + "".join(f"1,{60 * k},{0.02 * k},0\n" for k in range(5)))
-    with pytest.raises(
-        RowRateError, match=r"time step 1.5 s \(60 frames per row\) and the median speed 0.013"
-    ):
+    with pytest.raises(RowRateError, match=r"time step 1.5 s \(60 frames per row\) and the median speed 0.013"):
         load(path, fps=40)
     assert load(path, fps=100).dt == 0.6
 
