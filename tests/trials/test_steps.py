@@ -17,7 +17,7 @@ from trial_texts import FLOW, GOOD
 from crowdbot.core import Clock, ExternalClock, FreeClock, InputError, PacedClock, Pose, Scene, Twist
 from crowdbot.models import ORCA
 from crowdbot.navigation import Navigator, Observation
-from crowdbot.sensors import Lidar2D, Scan
+from crowdbot.sensors import Lidar2D, SensorView
 from crowdbot.trials import Running, Simulation, Trial, opened, read_episode, record
 from crowdbot.trials.simulation import Frame
 from crowdbot.trials.tally import Tally
@@ -49,9 +49,9 @@ class Wheels(DifferentialDrive):
 
 @dataclasses.dataclass(frozen=True)
 class Eye(Lidar2D):
-    def measure(self, scene: Scene, pose: Pose, rng: Any = None) -> Scan:
-        EVENTS.append(("sensors", scene.time))
-        return super().measure(scene, pose, rng)
+    def measure(self, view: SensorView, state: Any, rng: Any = None) -> Any:
+        EVENTS.append(("sensors", view.time))
+        return super().measure(view, state, rng)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -161,9 +161,7 @@ class Simulation:
         self.world, figures = world_of(trial, people, seed)
         if posed and figures is None:
             figures = cast_of(trial, people, self.world.scene.shape[1], seed)
-        skins = trial.bodies == "skins" or any(
-            getattr(m.sensor, "skins", False) for r in trial.robots for m in r.sensors
-        )
+        skins = trial.bodies == "skins" or any(m.sensor.sees_skins for r in trial.robots for m in r.sensors)
         self.around = Surroundings(trial, self.world, figures, seed, skins)
         self.carriers = [self._carrier(robot, len(people) + k) for k, robot in enumerate(trial.robots)]
         self.event: str | None = None
