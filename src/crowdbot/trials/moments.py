@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Pose
 from crowdbot.data import Tape
+from crowdbot.metrics import AgentStates
 from crowdbot.sensors import Reading, Scan
 
 from .contact_messages import COLLISIONS, FORCES, Collided, Pushed, collided, pushed
 from .episode import ScanRow, scan_row
 from .episode_file import CONTACTS, DIGEST, MAP, heading_of
 from .readings import KIND, REST, reading_of
-from .travel import Instant
 
 __all__ = ["Moment", "RobotState", "Touched", "read_moments"]
 
@@ -63,7 +63,7 @@ class Moment:
     """
 
     nanoseconds: int
-    people: Instant | None = None
+    people: AgentStates | None = None
     robots: dict[str, RobotState] = field(default_factory=dict)
     commands: dict[str, tuple[float, float, float]] = field(default_factory=dict)
     readings: dict[str, Reading] = field(default_factory=dict)
@@ -85,7 +85,7 @@ class Moment:
         hits += [scan.hit for scan in self.scans.values()]
         return {*seen, *(int(hit.max(initial=-1)) for hit in hits if hit is not None)}
 
-    def everyone(self, robots: Mapping[str, tuple[int, float]]) -> Instant:
+    def everyone(self, robots: Mapping[str, tuple[int, float]]) -> AgentStates:
         """Return people and robots together.
 
         Args:
@@ -97,7 +97,7 @@ class Moment:
         rows = np.array([(s.x, s.y, s.vx, s.vy, s.heading, own[1]) for own, s in states]).reshape(-1, 6)
         ids = np.concatenate([people.ids, np.array([own[0] for own, _ in states], dtype=np.int64)])
         order = np.argsort(ids)
-        return Instant(
+        return AgentStates(
             self.time,
             ids[order],
             np.concatenate([people.position, rows[:, 0:2]])[order],
@@ -171,7 +171,7 @@ def _take(
         moment.commands[robot] = message.linear.x, message.angular.z, message.linear.y
 
 
-def _people(time: float, people: Any) -> Instant:
+def _people(time: float, people: Any) -> AgentStates:
     numbers = np.empty((len(people), 6))
     ids = np.empty(len(people), dtype=np.int64)
     for k, person in enumerate(people):
@@ -179,7 +179,7 @@ def _people(time: float, people: Any) -> Instant:
         place, moving = person.position, person.velocity
         ids[k] = int(person.name)
         numbers[k] = place.x, place.y, moving.x, moving.y, float(tags["heading"]), float(tags["radius"])
-    return Instant(time, ids, numbers[:, 0:2], numbers[:, 2:4], numbers[:, 4], numbers[:, 5])
+    return AgentStates(time, ids, numbers[:, 0:2], numbers[:, 2:4], numbers[:, 4], numbers[:, 5])
 
 
 def _robot(message: Any) -> RobotState:

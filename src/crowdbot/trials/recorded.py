@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import EpisodeError
 from crowdbot.data import MAGIC, Tape, Trajectories
+from crowdbot.metrics import AgentStates
 from crowdbot.sensors import Reading
 
 from .contact_messages import Collided, Pushed
@@ -22,7 +23,6 @@ from .episode import ScanRow, tracks_of
 from .episode_file import END_KEYS, ENDING, KEYS, METADATA, from_json
 from .moments import Moment, Touched, read_moments
 from .tally import Summary
-from .travel import Instant
 
 __all__ = ["Recorded", "moments", "read_episode", "read_metadata"]
 
@@ -287,7 +287,7 @@ class _Arrays:
             np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(shape), np.zeros(agents), np.zeros(shape, dtype=bool)
         )
 
-    def put(self, k: int, people: Instant) -> None:
+    def put(self, k: int, people: AgentStates) -> None:
         """Put people in at an instant."""
         if np.any(people.ids < 0):
             raise ValueError(f"a person has the id {people.ids.min()}")
