@@ -2,9 +2,9 @@
 
 Before, a run and its log gave different values for some keys. These values count now:
 
-===================================  ====================================================================================
+=================================  ====================================================================================
 key                                value
-===================================  ====================================================================================
+=================================  ====================================================================================
 ``success``, ``collision``,        with an outcome given to :meth:`NavigationMetrics.result` (a run with one robot):
 ``timeout``, ``time_to_goal``      that of the run, judged at every time step. Otherwise judged from the records: the
                                    clearance to people and walls, swept between records, or ``contact`` of a record
@@ -13,7 +13,7 @@ key                                value
 ``duration`` and everything else   from the records up to the first at the goal, the time limit or the end
 ``heading_change``                 from the headings; if unknown (NaN) from the direction of the velocity while moving
 ``radius`` of people               the radius in each record
-===================================  ====================================================================================
+=================================  ====================================================================================
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +45,9 @@ class Ranging(Sensor):
 
     def with_skins(self) -> Self:
         """Return a copy that sees people by their triangle skins."""
-        return dataclasses.replace(self, skins=True)
+        anything: Any = self
+        copy: Self = dataclasses.replace(anything, skins=True)
+        return copy
 
     def check_ranges(self) -> None:
         """Raise :class:`InputError` when limits are not finite, not in order, or too narrow for the resolution."""

@@ -50,7 +50,8 @@ class Ending:
     def take(self, moment: Moment) -> None:
         """Take an instant."""
         self.count = max(self.count, *(1 + who for who in moment.named()), 0)
-        self.touching |= {who for one in moment.contacts for who in (one.robot, one.other)}
+        names = {name for one in moment.contacts for name in (one.robot, one.other)}
+        self.touching |= {body[0] for name, body in self.bodies.items() if name in names}
         if moment.people is not None:
             self.last = moment
             if self.travels:
