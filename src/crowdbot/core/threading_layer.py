@@ -85,7 +85,7 @@ class ParallelKernel:
 def _is_thread_safe() -> bool:
     """Return whether numba has started its threads, on a layer that several Python threads may enter."""
     try:
-        return bool(threading_layer() != "workqueue")
+        return bool(threading_layer() != "workqueue")  # type: ignore[no-untyped-call]
     except ValueError:  # not started yet
         return False
 

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from crowdbot.core import EpisodeError
 from crowdbot.data import MAGIC, Tape, Trajectories
 from crowdbot.messages import Collided, Pushed
+from crowdbot.metrics import AgentStates
 from crowdbot.sensors import Reading
-from crowdbot.simulation import Instant, ScanRow, tracks_of
+from crowdbot.simulation import ScanRow, tracks_of
 
 from .episode_repair import Ending
 from .metadata import END_KEYS, ENDING, KEYS, METADATA, from_json
@@ -277,7 +278,7 @@ class _Arrays:
             np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(shape), np.zeros(agents), np.zeros(shape, dtype=bool)
         )
 
-    def put(self, k: int, people: Instant) -> None:
+    def put(self, k: int, people: AgentStates) -> None:
         """Put people in at an instant."""
         if np.any(people.ids < 0):
             raise ValueError(f"a person has the id {people.ids.min()}")

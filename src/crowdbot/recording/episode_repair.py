@@ -10,7 +10,8 @@ import numpy as np
 
 from crowdbot.core import EpisodeError, Walls
 from crowdbot.data import MAGIC, Tape, TapeError, is_whole
-from crowdbot.simulation import Travel, robot_metrics
+from crowdbot.metrics import NavigationMetrics
+from crowdbot.simulation import robot_metrics
 
 from .mcap_writer import finish
 from .metadata import END_KEYS, ENDING, METADATA, as_json
@@ -32,24 +33,32 @@ class Ending:
         rings = [np.array(ring, dtype=np.float64) for ring in json.loads(known["walls"])]
         walls = Walls.of(rings).segments()
         self.travels = [
-            Travel(
-                int(one["id"]), float(one["radius"]), (one["goal"][0], one["goal"][1]), float(one["tolerance"]), walls
+            NavigationMetrics(
+                int(one["id"]),
+                float(one["radius"]),
+                (one["goal"][0], one["goal"][1]),
+                float(one["tolerance"]),
+                walls=walls,
             )
             for one in self.robots
         ]
         self.bodies = {one["name"]: (int(one["id"]), float(one["radius"])) for one in self.robots}
         self.count = 1 + max([-1, *(travel.robot for travel in self.travels)])
         self.last: Moment | None = None
+        self.touching: set[int] = set()
 
     def take(self, moment: Moment) -> None:
         """Take an instant."""
         self.count = max(self.count, *(1 + who for who in moment.named()), 0)
+        names = {name for one in moment.contacts for name in (one.robot, one.other)}
+        self.touching |= {body[0] for name, body in self.bodies.items() if name in names}
         if moment.people is not None:
             self.last = moment
             if self.travels:
                 now = moment.everyone(self.bodies)
                 for travel in self.travels:
-                    travel.take(now)
+                    travel.update(now, travel.robot in self.touching)
+            self.touching = set()
 
     def metadata(self) -> dict[str, str]:
         """Return the record."""

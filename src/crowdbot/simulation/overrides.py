@@ -122,9 +122,12 @@ def _carrier(simulation: Simulation, old: Carrier, robot: Robot, seed: int | Non
     if seed is not None:
         fresh = probes_of(simulation.trial, robot, clock, seed)
         probes = tuple(dataclasses.replace(one, rng=new.rng) for one, new in zip(probes, fresh, strict=True))
+    same = type(old.robot.navigator) is type(robot.navigator)
     return dataclasses.replace(
         old,
         robot=robot,
+        memory=old.memory if same else None,
+        begun=old.begun and same,
         limits=limits_of(robot.drive),
         control_every=clock.every(robot.control_period),
         probes=probes,

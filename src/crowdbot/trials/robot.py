@@ -261,8 +261,8 @@ class Robot:
 
 
 def _drawn(mount: Mount | world.SensorMount) -> bool:
-    """Whether a sensor shows what somebody draws: slow, and not to be had on every machine."""
-    return bool(getattr(mount.sensor, "draws", False))
+    """Return whether a sensor needs a renderer, which is slow and needs graphics."""
+    return mount.sensor.renders
 
 
 def _merged(carried: tuple[Mount, ...], own: Any) -> tuple[Mount, ...]:
