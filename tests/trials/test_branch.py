@@ -82,7 +82,7 @@ def test_a_branch_with_changes_differs_from_then_on_and_replays(flowing: Path, t
     original = read_episode(flowing)
     changes = {
         "duration": 14,
-        "berth": 0.3,
+        "robot-margin": 0.3,
         "crowd[hurried].type": "orca",
         "limits.max-speed": 1.0,
         "source[west].rate": 2.0,
@@ -102,7 +102,7 @@ def test_a_branch_with_changes_differs_from_then_on_and_replays(flowing: Path, t
     assert read.times[1] == 6.2
     speeds = np.hypot(*read.velocity[5:, :4].reshape(-1, 2).T)
     assert speeds.max() < 1.0 + 1e-9
-    assert parse_trial(read.xml).berth == 0.3
+    assert parse_trial(read.xml).robot_margin == 0.3
     assert replay(tmp_path / "episode.mcap").equal
 
 

@@ -68,7 +68,7 @@ class Course:
         place = f"{path} (trial, written by crowdbot {known['version']})"
 
         def parsed(xml: str) -> Trial:
-            return parse_trial(xml, place=place, folder=folder or path.parent, trust=trust)
+            return parse_trial(xml, place=place, folder=folder or path.parent, trust=trust, quiet=True)
 
         try:
             origin = json.loads(known.get("origin", "[]"))
