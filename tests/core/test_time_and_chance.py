@@ -82,7 +82,7 @@ def test_stream_values_are_pinned():
 
 @dataclass(frozen=True)
 class _Model:
-    tau: float = parameter(0.5, unit="s", low=0.1, high=1.5, source="test", minimum=0.01)
+    tau: float = parameter(0.5, unit="s", low=0.1, high=1.5, source="test", min=0.01)
 
 
 def test_parameter_tables():
