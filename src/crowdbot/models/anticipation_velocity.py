@@ -210,8 +210,8 @@ class AnticipationVelocity(CrowdModel):
     )
 
     strength: PerAgent = parameter(8.0, unit="1", low=1.0, high=15.0, source="JuPedSim 1.4.2")
-    range: PerAgent = parameter(0.1, unit="m", low=0.02, high=0.5, source="JuPedSim 1.4.2", minimum=1e-3)
-    time_gap: PerAgent = parameter(1.06, unit="s", low=0.3, high=2.0, source="JuPedSim 1.4.2", minimum=1e-2)
+    range: PerAgent = parameter(0.1, unit="m", low=0.02, high=0.5, source="JuPedSim 1.4.2", min=1e-3)
+    time_gap: PerAgent = parameter(1.06, unit="s", low=0.3, high=2.0, source="JuPedSim 1.4.2", min=1e-2)
     anticipation_time: PerAgent = parameter(1.0, unit="s", low=0.0, high=3.0, source="JuPedSim 1.4.2")
     reaction_time: PerAgent = parameter(0.3, unit="s", low=0.1, high=1.0, source="JuPedSim 1.4.2")
     wall_buffer: PerAgent = parameter(0.1, unit="m", low=0.0, high=0.5, source="JuPedSim 1.4.2")

@@ -276,7 +276,7 @@ class Boids(CrowdModel):
 
     goal_gain: PerAgent = parameter(3.5, unit="1/s", low=1.0, high=8.0, source="CrowdBot simulator, found by probing")
     look_ahead: PerAgent = parameter(1.5, unit="s", low=0.0, high=4.0, source="20 people change places on a circle")
-    margin: PerAgent = parameter(0.5, unit="m", low=0.1, high=1.5, source="own choice, personal space", minimum=1e-3)
+    margin: PerAgent = parameter(0.5, unit="m", low=0.1, high=1.5, source="own choice, personal space", min=1e-3)
     separation: PerAgent = parameter(
         12.0, unit="m/s^2", low=1.0, high=30.0, source="20 people change places on a circle"
     )
@@ -289,7 +289,7 @@ class Boids(CrowdModel):
     )
     max_acceleration: PerAgent = parameter(5.0, unit="m/s^2", low=1.0, high=20.0, source="UMANS, default of agents")
     zone_factor: PerAgent = parameter(
-        5.4, unit="1", low=2.0, high=8.0, source="CrowdBot simulator, found by probing", minimum=1e-3
+        5.4, unit="1", low=2.0, high=8.0, source="CrowdBot simulator, found by probing", min=1e-3
     )
     zone_gain: PerAgent = parameter(
         65.0, unit="1/s^2", low=10.0, high=150.0, source="CrowdBot simulator, found by probing"

@@ -171,10 +171,10 @@ class CollisionFreeSpeed(CrowdModel):
     )
 
     strength: PerAgent = parameter(8.0, unit="1", low=1.0, high=15.0, source="JuPedSim 1.4.2")
-    range: PerAgent = parameter(0.1, unit="m", low=0.02, high=0.5, source="JuPedSim 1.4.2", minimum=1e-3)
+    range: PerAgent = parameter(0.1, unit="m", low=0.02, high=0.5, source="JuPedSim 1.4.2", min=1e-3)
     wall_strength: PerAgent = parameter(5.0, unit="1", low=1.0, high=15.0, source="JuPedSim 1.4.2")
-    wall_range: PerAgent = parameter(0.02, unit="m", low=0.01, high=0.2, source="JuPedSim 1.4.2", minimum=1e-3)
-    time_gap: PerAgent = parameter(1.0, unit="s", low=0.3, high=2.0, source="JuPedSim 1.4.2", minimum=1e-2)
+    wall_range: PerAgent = parameter(0.02, unit="m", low=0.01, high=0.2, source="JuPedSim 1.4.2", min=1e-3)
+    time_gap: PerAgent = parameter(1.0, unit="s", low=0.3, high=2.0, source="JuPedSim 1.4.2", min=1e-2)
     neighbor_distance: PerAgent = parameter(3.0, unit="m", low=1.0, high=5.0, source="JuPedSim 1.4.2")
     max_neighbors: PerAgent = parameter(
         50.0, unit="1", low=5.0, high=100.0, source="chosen here: more are never needed"

@@ -52,7 +52,7 @@ class PreferredVelocity(VelocityCost):
 
     natural: ClassVar[str] = "closed-form"
 
-    exponent: PerAgent = parameter(1.0, unit="1", low=1.0, high=3.0, source="van den Berg et al. 2008", minimum=0.1)
+    exponent: PerAgent = parameter(1.0, unit="1", low=1.0, high=3.0, source="van den Berg et al. 2008", min=0.1)
 
     def value(self, world: Surroundings, candidates: Floats) -> Floats:
         """Return ``|v' - p|^exponent``."""
@@ -74,7 +74,7 @@ class Inertia(VelocityCost):
 
     natural: ClassVar[str] = "closed-form"
 
-    exponent: PerAgent = parameter(1.0, unit="1", low=1.0, high=3.0, source="chosen here", minimum=0.1)
+    exponent: PerAgent = parameter(1.0, unit="1", low=1.0, high=3.0, source="chosen here", min=0.1)
 
     def value(self, world: Surroundings, candidates: Floats) -> Floats:
         """Return ``|v' - v|^exponent``."""
@@ -151,7 +151,7 @@ class PowerLawForce(Force):
 
     strength: PerAgent = parameter(1.5, unit="m^2 s^(m-2)", low=0.3, high=5.0, source="Karamouzas et al. 2014")
     exponent: PerAgent = parameter(2.0, unit="1", low=1.0, high=4.0, source="Karamouzas et al. 2014")
-    time_horizon: PerAgent = parameter(3.0, unit="s", low=0.5, high=8.0, source="Karamouzas et al. 2014", minimum=1e-3)
+    time_horizon: PerAgent = parameter(3.0, unit="s", low=0.5, high=8.0, source="Karamouzas et al. 2014", min=1e-3)
 
     def force(self, world: Surroundings) -> Floats:
         """Return the accelerations ``[N, 2]`` [m/s^2]."""
@@ -201,7 +201,7 @@ class PowerLawEnergy(VelocityCost):
 
     strength: PerAgent = parameter(1.5, unit="m^2 s^(m-2)", low=0.3, high=5.0, source="Karamouzas et al. 2014")
     exponent: PerAgent = parameter(2.0, unit="1", low=1.0, high=4.0, source="Karamouzas et al. 2014")
-    time_horizon: PerAgent = parameter(3.0, unit="s", low=0.5, high=8.0, source="Karamouzas et al. 2014", minimum=1e-3)
+    time_horizon: PerAgent = parameter(3.0, unit="s", low=0.5, high=8.0, source="Karamouzas et al. 2014", min=1e-3)
 
     def value(self, world: Surroundings, candidates: Floats) -> Floats:
         """Return the sum of the energies with all neighbours and the first wall."""
@@ -248,9 +248,9 @@ class HalfPlanes(VelocityCost):
 
     natural: ClassVar[str] = "closed-form"
 
-    time_horizon: PerAgent = parameter(2.0, unit="s", low=0.2, high=8.0, source="RVO2, pedestrian", minimum=1e-3)
+    time_horizon: PerAgent = parameter(2.0, unit="s", low=0.2, high=8.0, source="RVO2, pedestrian", min=1e-3)
     time_horizon_walls: PerAgent = parameter(
-        2.0, unit="s", low=0.2, high=4.0, source="CrowdBot simulator, horizon of agents", minimum=1e-3
+        2.0, unit="s", low=0.2, high=4.0, source="CrowdBot simulator, horizon of agents", min=1e-3
     )
 
     def value(self, world: Surroundings, candidates: Floats) -> Floats:
@@ -314,10 +314,8 @@ class Effort(VelocityCost):
     """
 
     rest_power: PerAgent = parameter(2.23, unit="J/(kg s)", low=0.1, high=5.0, source="Guy et al. 2010")
-    walk_power: PerAgent = parameter(
-        1.26, unit="J s/(kg m^2)", low=0.5, high=3.0, source="Guy et al. 2010", minimum=1e-3
-    )
-    planning_time: PerAgent = parameter(3.0, unit="s", low=0.2, high=8.0, source="UMANS", minimum=1e-3)
+    walk_power: PerAgent = parameter(1.26, unit="J s/(kg m^2)", low=0.5, high=3.0, source="Guy et al. 2010", min=1e-3)
+    planning_time: PerAgent = parameter(3.0, unit="s", low=0.2, high=8.0, source="UMANS", min=1e-3)
     safe_time: PerAgent = parameter(0.5, unit="s", low=0.0, high=2.0, source="UMANS")
 
     def value(self, world: Surroundings, candidates: Floats) -> Floats:
@@ -344,7 +342,7 @@ class FreeWay(VelocityCost):
     """
 
     sight_distance: PerAgent = parameter(10.0, unit="m", low=2.0, high=15.0, source="Moussaid et al. 2011")
-    relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="Moussaid et al. 2011", minimum=1e-3)
+    relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="Moussaid et al. 2011", min=1e-3)
 
     def value(self, world: Surroundings, candidates: Floats) -> Floats:
         """Return ``(1 + D^2) (1 + (1 - |v'| / S)^2)``, D to the end of the free way f, S = min(|p|, f / tau)."""

@@ -241,11 +241,11 @@ class EscapePanic(CrowdModel):
     )
 
     strength: PerAgent = parameter(2000.0, unit="N", low=100.0, high=4000.0, source="Helbing et al. 2000")
-    distance: PerAgent = parameter(0.08, unit="m", low=0.03, high=0.4, source="Helbing et al. 2000", minimum=1e-3)
+    distance: PerAgent = parameter(0.08, unit="m", low=0.03, high=0.4, source="Helbing et al. 2000", min=1e-3)
     body: PerAgent = parameter(1.2e5, unit="kg/s^2", low=1e4, high=1.2e5, source="Helbing et al. 2000")
     friction: PerAgent = parameter(2.4e5, unit="kg/(m s)", low=0.0, high=2.4e5, source="Helbing et al. 2000")
-    mass: PerAgent = parameter(80.0, unit="kg", low=40.0, high=120.0, source="Helbing et al. 2000", minimum=1e-3)
-    relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="Helbing et al. 2000", minimum=1e-3)
+    mass: PerAgent = parameter(80.0, unit="kg", low=40.0, high=120.0, source="Helbing et al. 2000", min=1e-3)
+    relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="Helbing et al. 2000", min=1e-3)
     neighbor_distance: PerAgent = parameter(3.0, unit="m", low=1.0, high=10.0, source="the repulsion is nothing beyond")
     max_neighbors: PerAgent = parameter(
         40.0, unit="1", low=1.0, high=60.0, source="crowdbot: all who matter up to 1 person/m^2"
@@ -257,7 +257,7 @@ class EscapePanic(CrowdModel):
     def __post_init__(self) -> None:
         super().__post_init__()
         check_limit(self, self.max_speed)
-        check_number("EscapePanic", "longest_step", self.longest_step, "s", at_least=1e-6)
+        check_number("EscapePanic", "longest_step", self.longest_step, "s", min=1e-6)
         if self.variant not in VARIANTS:
             near = did_you_mean(self.variant, VARIANTS)
             raise InputError(f"EscapePanic: variant {self.variant!r} is unknown{near}; choose {' or '.join(VARIANTS)}")

@@ -240,9 +240,7 @@ class Heuristics(CrowdModel):
     field_of_view: PerAgent = parameter(
         math.radians(75.0), unit="rad", low=0.5, high=math.pi / 2, source="Moussaid et al. 2011, 75 degrees"
     )
-    sight_distance: PerAgent = parameter(
-        10.0, unit="m", low=2.0, high=15.0, source="Moussaid et al. 2011", minimum=1e-2
-    )
+    sight_distance: PerAgent = parameter(10.0, unit="m", low=2.0, high=15.0, source="Moussaid et al. 2011", min=1e-2)
     relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="Moussaid et al. 2011")
     contact_stiffness: PerAgent = parameter(
         62.5, unit="1/s^2", low=10.0, high=200.0, source="Moussaid et al. 2011, 5000 kg/s^2 at 80 kg"

@@ -99,7 +99,7 @@ def check_limit(model: CrowdModel, max_speed: PerAgent | None) -> None:
     """Raise :class:`InputError` unless a model's own maximum speed is None, or finite and not below 0."""
     if max_speed is None:
         return
-    bounds = Bounds("m/s", at_least=0.0, at_most=LARGEST)
+    bounds = Bounds("m/s", min=0.0, max=LARGEST)
     if not bounds.holds(max_speed):
         raise InputError(
             f"{type(model).__name__}: max_speed = {bounds.worst(max_speed)} [m/s] is not allowed, it must be"

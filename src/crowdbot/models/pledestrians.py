@@ -154,14 +154,14 @@ class PLEdestrians(CrowdModel):
         "10.2312/SCA/SCA10/119-128",
     )
 
-    planning_time: PerAgent = parameter(3.0, unit="s", low=0.2, high=8.0, source="UMANS", minimum=SHORTEST)
+    planning_time: PerAgent = parameter(3.0, unit="s", low=0.2, high=8.0, source="UMANS", min=SHORTEST)
     neighbor_distance: PerAgent = parameter(5.0, unit="m", low=1.0, high=15.0, source="RVO2, pedestrian settings")
     max_neighbors: PerAgent = parameter(10.0, unit="1", low=1.0, high=20.0, source="RVO2, examples")
     time_horizon: PerAgent = parameter(
-        2.0, unit="s", low=0.2, high=8.0, source="RVO2, pedestrian settings", minimum=SHORTEST
+        2.0, unit="s", low=0.2, high=8.0, source="RVO2, pedestrian settings", min=SHORTEST
     )
     time_horizon_walls: PerAgent = parameter(
-        2.0, unit="s", low=0.2, high=4.0, source="CrowdBot simulator, horizon of agents", minimum=SHORTEST
+        2.0, unit="s", low=0.2, high=4.0, source="CrowdBot simulator, horizon of agents", min=SHORTEST
     )
     max_speed: PerAgent | None = None
 

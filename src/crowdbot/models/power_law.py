@@ -184,9 +184,9 @@ class PowerLaw(CrowdModel):
 
     strength: PerAgent = parameter(1.5, unit="m^2 s^(m-2)", low=0.3, high=5.0, source="Karamouzas et al. 2014")
     exponent: PerAgent = parameter(2.0, unit="1", low=1.0, high=4.0, source="Karamouzas et al. 2014")
-    time_horizon: PerAgent = parameter(3.0, unit="s", low=0.5, high=8.0, source="Karamouzas et al. 2014", minimum=1e-3)
+    time_horizon: PerAgent = parameter(3.0, unit="s", low=0.5, high=8.0, source="Karamouzas et al. 2014", min=1e-3)
     relaxation_time: PerAgent = parameter(
-        0.54, unit="s", low=0.2, high=1.5, source="Karamouzas et al. 2014, as remembered", minimum=1e-3
+        0.54, unit="s", low=0.2, high=1.5, source="Karamouzas et al. 2014, as remembered", min=1e-3
     )
     neighbor_distance: PerAgent = parameter(
         10.0, unit="m", low=1.0, high=15.0, source="Karamouzas et al. 2014, as remembered"

@@ -247,11 +247,11 @@ class SocialForce(CrowdModel):
     )
 
     strength: PerAgent = parameter(2.1, unit="m^2/s^2", low=0.5, high=8.0, source="paper, V0")
-    distance: PerAgent = parameter(0.3, unit="m", low=0.1, high=1.0, source="paper, sigma", minimum=0.01)
+    distance: PerAgent = parameter(0.3, unit="m", low=0.1, high=1.0, source="paper, sigma", min=0.01)
     look_ahead: PerAgent = parameter(2.0, unit="s", low=0.0, high=4.0, source="paper, delta t")
     wall_strength: PerAgent = parameter(10.0, unit="m^2/s^2", low=1.0, high=20.0, source="paper, U0")
-    wall_distance: PerAgent = parameter(0.2, unit="m", low=0.05, high=1.0, source="paper, R", minimum=0.01)
-    relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="paper, tau", minimum=0.01)
+    wall_distance: PerAgent = parameter(0.2, unit="m", low=0.05, high=1.0, source="paper, R", min=0.01)
+    relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="paper, tau", min=0.01)
     view_angle: PerAgent = parameter(
         math.radians(100), unit="rad", low=1.0, high=math.pi, source="paper, 2 phi = 200 deg"
     )

@@ -171,7 +171,7 @@ class Tangent(CrowdModel):
     direction_error: PerAgent = parameter(0.5, unit="1", low=0.0, high=1.0, source="CrowdBot simulator (g_beta)")
     speed_error: PerAgent = parameter(0.25, unit="1", low=0.0, high=1.0, source="CrowdBot simulator (g_gamma)")
     time_horizon: PerAgent = parameter(15.0, unit="s", low=1.0, high=15.0, source="CrowdBot simulator")
-    wall_horizon: PerAgent = parameter(1.5, unit="s", low=0.5, high=4.0, source="chosen", minimum=1e-3)
+    wall_horizon: PerAgent = parameter(1.5, unit="s", low=0.5, high=4.0, source="chosen", min=1e-3)
     neighbor_distance: PerAgent = parameter(15.0, unit="m", low=3.0, high=15.0, source="CrowdBot simulator")
     max_neighbors: PerAgent = parameter(15.0, unit="1", low=1.0, high=20.0, source="CrowdBot simulator")
     max_speed: PerAgent | None = None

@@ -320,16 +320,16 @@ class VOG(CrowdModel):
 
     neighbor_distance: PerAgent = parameter(5.0, unit="m", low=1.0, high=15.0, source="CrowdBot simulator")
     max_neighbors: PerAgent = parameter(10.0, unit="1", low=1.0, high=20.0, source="RVO2, examples")
-    time_horizon: PerAgent = parameter(2.0, unit="s", low=0.2, high=8.0, source="CrowdBot simulator", minimum=SHORTEST)
-    wall_horizon: PerAgent = parameter(1.0, unit="s", low=0.2, high=4.0, source="CrowdBot simulator", minimum=SHORTEST)
+    time_horizon: PerAgent = parameter(2.0, unit="s", low=0.2, high=8.0, source="CrowdBot simulator", min=SHORTEST)
+    wall_horizon: PerAgent = parameter(1.0, unit="s", low=0.2, high=4.0, source="CrowdBot simulator", min=SHORTEST)
     preference_weight: PerAgent = parameter(0.15, unit="1", low=0.02, high=0.6, source="CrowdBot simulator")
     group_weight: PerAgent = parameter(0.2, unit="1", low=0.0, high=0.8, source="CrowdBot simulator")
     group_neighbors: PerAgent = parameter(
-        2.0, unit="1", low=1.0, high=4.0, source="CrowdBot simulator", maximum=MOST_FELLOWS
+        2.0, unit="1", low=1.0, high=4.0, source="CrowdBot simulator", max=MOST_FELLOWS
     )
     group_radius: PerAgent = parameter(1.0, unit="m", low=0.5, high=3.0, source="CrowdBot simulator")
     group_distance: PerAgent = parameter(80.0, unit="m", low=5.0, high=80.0, source="CrowdBot simulator")
-    group_horizon: PerAgent = parameter(2.0, unit="s", low=0.5, high=4.0, source="CrowdBot simulator", minimum=SHORTEST)
+    group_horizon: PerAgent = parameter(2.0, unit="s", low=0.5, high=4.0, source="CrowdBot simulator", min=SHORTEST)
     formation: PerAgent = parameter(0.2, unit="m", low=0.0, high=0.5, source="CrowdBot simulator")
     closeness: PerAgent = parameter(1.0, unit="1", low=0.1, high=1.0, source="CrowdBot simulator")
     max_speed: PerAgent | None = None

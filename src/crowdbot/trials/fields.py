@@ -76,7 +76,7 @@ class Rule:
             return "is not finite"
         if self.bounds.holds(low) and self.bounds.holds(high):
             return ""
-        too_high = dataclasses.replace(self.bounds, at_most=None).holds(low)
+        too_high = dataclasses.replace(self.bounds, max=None).holds(low)
         return f"must be {self.bounds.allowed(too_high)}{self._reach(low, high)}"
 
     @functools.cached_property

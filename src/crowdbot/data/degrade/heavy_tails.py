@@ -32,7 +32,7 @@ class HeavyTails(Degradation):
     probability: float = parameter(0.05, unit="1", low=0.0, high=0.3, source="ours")
     scale: float = parameter(0.3, unit="m", low=0.05, high=1.0, source="ours: a body away, somebody else was measured")
     freedom: float = parameter(
-        3.0, unit="1", low=1.0, high=10.0, minimum=0.5, source="ours: the fewest with a finite variance"
+        3.0, unit="1", low=1.0, high=10.0, min=0.5, source="ours: the fewest with a finite variance"
     )
 
     level: ClassVar[str] = "probability"

@@ -34,7 +34,7 @@ class MissingFrames(Degradation):
     """
 
     probability: float = parameter(0.1, unit="1", low=0.0, high=0.8, source="ours")
-    burst: float = parameter(1.0, unit="1", low=1.0, high=10.0, minimum=1.0, source="ours: independent drops")
+    burst: float = parameter(1.0, unit="1", low=1.0, high=10.0, min=1.0, source="ours: independent drops")
     of: str = "person"
 
     level: ClassVar[str] = "probability"

@@ -35,7 +35,7 @@ class CurrentDirection(Goal):
     """
 
     steps: int = 1
-    horizon: float = parameter(20.0, unit="s", low=5.0, high=60.0, source="crowdbot", minimum=0.1)
+    horizon: float = parameter(20.0, unit="s", low=5.0, high=60.0, source="crowdbot", min=0.1)
     adaptive: bool = False
 
     def __post_init__(self) -> None:

@@ -73,7 +73,7 @@ class EnvironmentLayout(Goal):
     certainty: float = parameter(1.5, unit="1/m", low=0.5, high=20.0, source="crowdbot")
     pull: float = parameter(0.4, unit="1", low=0.0, high=1.0, source="crowdbot")
     lookahead: float = parameter(0.5, unit="s", low=0.0, high=5.0, source="crowdbot")
-    horizon: float = parameter(20.0, unit="s", low=5.0, high=60.0, source="crowdbot", minimum=0.1)
+    horizon: float = parameter(20.0, unit="s", low=5.0, high=60.0, source="crowdbot", min=0.1)
     pace: LearnedVelocity | None = None
     routes: Routes = field(init=False, repr=False)
 

@@ -70,10 +70,10 @@ class LearnedDestinations(Goal):
     exits: Floats
     voters: Ballot
     pace: LearnedVelocity
-    reach: float = parameter(1.5, unit="m", low=0.5, high=3.0, source="crowdbot", minimum=0.05)
-    spread: float = parameter(0.15, unit="rad", low=0.05, high=0.6, source="crowdbot", minimum=0.01)
-    doubt: float = parameter(5.0, unit="m/s", low=0.0, high=50.0, source="crowdbot", minimum=0.0)
-    horizon: float = parameter(20.0, unit="s", low=5.0, high=60.0, source="crowdbot", minimum=0.1)
+    reach: float = parameter(1.5, unit="m", low=0.5, high=3.0, source="crowdbot", min=0.05)
+    spread: float = parameter(0.15, unit="rad", low=0.05, high=0.6, source="crowdbot", min=0.01)
+    doubt: float = parameter(5.0, unit="m/s", low=0.0, high=50.0, source="crowdbot", min=0.0)
+    horizon: float = parameter(20.0, unit="s", low=5.0, high=60.0, source="crowdbot", min=0.1)
 
     learns: ClassVar[bool] = True
     paper: ClassVar[Paper] = BENNEWITZ
