@@ -37,7 +37,10 @@ def test_rows_come_back_exactly(tmp_path_factory, suffix, tracks):
     save(tracks, path)
     back = load(path, fps=tracks.fps if suffix in ("txt", "csv") else None)
     assert same_rows(tracks, back)
-    assert back.row_rate == tracks.row_rate
+    if suffix in ("txt", "csv"):
+        assert back.fps == pytest.approx(tracks.fps, rel=1e-12)
+    else:
+        assert back.row_rate == tracks.row_rate
     assert [file.name for file in path.parent.iterdir()] == [path.name]
 
 
@@ -65,7 +68,7 @@ def test_parquet_keeps_everything(tmp_path):
     save(tracks, tmp_path / "all.parquet")
     back = load(tmp_path / "all.parquet")
     assert same_rows(tracks, back)
-    for name in ("frame_rate", "frame_step", "units", "note", "robots", "labels", "scenes"):
+    for name in ("row_rate", "frame_step", "units", "note", "robots", "labels", "scenes"):
         assert getattr(back, name) == getattr(tracks, name)
     assert back.homography.tobytes() == tracks.homography.tobytes()
     assert [ring.tobytes() for ring in back.walls] == [ring.tobytes() for ring in tracks.walls]
