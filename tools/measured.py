@@ -17,9 +17,8 @@ import numpy as np
 
 import crowdbot as cb
 from crowdbot import navigation
-from crowdbot.benchmark import measure
+from crowdbot.benchmark import evaluate, measure
 from crowdbot.metrics import Score
-from crowdbot.prediction import evaluate
 from crowdbot.recording import run
 
 FOLDS = {

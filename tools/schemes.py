@@ -10,10 +10,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from crowdbot.benchmark.prediction_plots import plot_errors
+from crowdbot.benchmark import Result, Study, plot_errors
 from crowdbot.data import Recording
 from crowdbot.models.goals import CurrentDirection
-from crowdbot.prediction import ConstantVelocity, Kalman, Recipe, Result, Simulated, Study
+from crowdbot.prediction import ConstantVelocity, Kalman, Recipe, Simulated
 
 MODELS = ("orca", "social-force", "power-law", "boids")
 COSTS = ("absolute", "inter-pedestrian", "progressive")

@@ -20,10 +20,10 @@ import numpy as np
 
 from crowdbot.core import stream
 from crowdbot.data import Trajectories, Windows, load
-from crowdbot.prediction.learned.extra import threads
-from crowdbot.prediction.learned.samples import Samples
-from crowdbot.prediction.learned.social_ways_predictor import SocialWays
-from crowdbot.prediction.learned.training import BEST, Schedule, train
+from crowdbot.prediction import SocialWays
+from crowdbot.prediction.training.loop import BEST, Schedule, train
+from crowdbot.prediction.training.samples import Samples
+from crowdbot.prediction.training.torch_backend import threads
 
 SCALE = 0.0373
 """Metres of a pixel in gates/video2, as estimated_scales.yaml says."""
@@ -50,7 +50,7 @@ def places(options: argparse.Namespace) -> dict[str, Trajectories]:
 
 def drawn(options: argparse.Namespace, place: str, method: str, learned: Windowed, asked: Windowed) -> np.ndarray:
     """Return futures ``[N, 128, T, 2]`` [m] of everyone scored."""
-    from crowdbot.prediction.learned.social_ways_training import learner
+    from crowdbot.prediction.social_ways.training import learner
 
     settings, values = METHODS[method]
     samples, folder = Samples.cut(*learned, place), options.out / f"{place}-{method}"

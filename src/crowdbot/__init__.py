@@ -78,8 +78,6 @@ if TYPE_CHECKING:
     from .models import SocialForce as SocialForce
     from .navigation import Navigator as Navigator
     from .navigation import Observation as Observation
-    from .prediction import AnchorNet as AnchorNet
-    from .prediction import Anchors as Anchors
     from .prediction import ConstantAcceleration as ConstantAcceleration
     from .prediction import ConstantVelocity as ConstantVelocity
     from .prediction import Kalman as Kalman

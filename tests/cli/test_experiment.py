@@ -171,11 +171,12 @@ class Program:
         self.process.stdin.flush()
 
     def until(self, where, word, count=1):
-        end = time.monotonic() + 120
-        while not (where.exists() and where.read_text().count(word) >= count):
-            assert time.monotonic() < end, self.said.read_text()
+        for _ in range(12_000):
+            if where.exists() and where.read_text().count(word) >= count:
+                return
             assert self.process.poll() is None, self.said.read_text()
             time.sleep(0.01)
+        raise AssertionError(self.said.read_text())
 
     def over(self):
         self.process.stdin.close()

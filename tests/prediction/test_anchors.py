@@ -9,11 +9,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from crowdbot.benchmark import evaluate
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Trajectories, Windows
-from crowdbot.prediction import Anchors, ConstantVelocity, SampledConstantVelocity, evaluate
-from crowdbot.prediction.anchors import centres, residuals, spread_over_time
-from crowdbot.prediction.places import FOLDS, fold_of, kept_out, read_numbers
+from crowdbot.prediction import Anchors, ConstantVelocity, SampledConstantVelocity
+from crowdbot.prediction.anchor_net.anchors import centres, residuals, spread_over_time
+from crowdbot.prediction.pretrained_weights import FOLDS, fold_of, kept_out, read_numbers
 
 Maker = Callable[..., Windows]
 

@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 
+from crowdbot.benchmark import Task, evaluate, sweep
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Trajectories
 from crowdbot.data.degrade import (
@@ -19,16 +20,7 @@ from crowdbot.data.degrade import (
     MissingFrames,
     Occlusion,
 )
-from crowdbot.prediction import (
-    ConstantVelocity,
-    Kalman,
-    SampledConstantVelocity,
-    Simulated,
-    Task,
-    evaluate,
-    seen_windows,
-    sweep,
-)
+from crowdbot.prediction import ConstantVelocity, Kalman, SampledConstantVelocity, Simulated, seen_windows
 
 FIELDS = ("position", "present", "scored", "robot", "id", "frame")
 

@@ -9,7 +9,7 @@ import pytest
 
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Recording
-from crowdbot.prediction.learned.samples import Samples, leave_out, short_recordings, split_in_time
+from crowdbot.prediction.training.samples import Samples, leave_out, short_recordings, split_in_time
 
 
 @pytest.fixture(scope="module")

@@ -63,7 +63,7 @@ def test_robots_scans_and_contacts(recorded: tuple[Path, Recorded], tmp_path: Pa
 
 
 @pytest.fixture(scope="module")
-def seen(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def seen(drawing: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("seen")
     record(parse_trial(room(text=ROOM)), out=folder)
     return folder / "episode.mcap"

@@ -139,8 +139,8 @@ def test_scans_name_whom_they_hit(recorded: tuple[Path, Episode]) -> None:
 
 
 def test_the_report_shows_everybody(recorded: tuple[Path, Episode], tmp_path: Path) -> None:
-    from crowdbot.benchmark.report import Predicted, write_report
-    from crowdbot.prediction import ConstantVelocity, evaluate
+    from crowdbot.benchmark import Predicted, evaluate, write_report
+    from crowdbot.prediction import ConstantVelocity
 
     _, episode = recorded
     past, future = episode.tracks().windows(8, 12, near=8.0)

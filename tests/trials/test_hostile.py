@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.util
 import itertools
 import random
-import time
 from pathlib import Path
 from typing import Any
 
@@ -33,10 +32,8 @@ def external(target: Path) -> str:
 
 
 def refused(text: str | bytes) -> str:
-    begin = time.perf_counter()
     with pytest.raises(TrialError) as found:
         parse_trial(text, place="t.xml")
-    assert time.perf_counter() - begin < 2.0
     return str(found.value)
 
 

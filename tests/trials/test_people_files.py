@@ -81,7 +81,7 @@ def test_an_agent_without_goal_stands_and_looks_where_it_is_told() -> None:
     ],
 )  # fmt: skip
 def test_wrong_agents_are_told(agent: str, sentence: str) -> None:
-    assert sentence in refused(apply_values('  <end collision="false"/>', f"  {agent}\n  <end/>"))
+    assert sentence in refused(changed('  <end collision="false"/>', f"  {agent}\n  <end/>"))
 
 
 def test_groups_begin_together_and_share_goal_and_speed() -> None:
@@ -110,7 +110,7 @@ def test_people_who_stand_stay() -> None:
     episode = run(trial(spawners=[standing]))
     assert np.allclose(episode.position[0], episode.position[-1], atol=0.01)
     assert len(np.unique(episode.heading[0])) == 6
-    both = apply_values('count="2" zone="-5', 'stands="true" count="2" zone="-5')
+    both = changed('count="2" zone="-5', 'stands="true" count="2" zone="-5')
     assert "has people who stand, and a goal or a journey" in refused(both)
 
 
@@ -138,8 +138,8 @@ def test_parameters_differ_from_person_to_person() -> None:
     ],
 )
 def test_wrong_distributions_of_parameters_are_told(value: str, sentence: str) -> None:
-    assert sentence in refused(apply_values('time-horizon="2"', f'time-horizon="{value}"'))
-    unknown = refused(apply_values('time-horizon="2"', 'max-sped="normal(2, 0.1)"'))
+    assert sentence in refused(changed('time-horizon="2"', f'time-horizon="{value}"'))
+    unknown = refused(changed('time-horizon="2"', 'max-sped="normal(2, 0.1)"'))
     assert "has no attribute 'max-sped', did you mean 'max-speed'?" in unknown
     assert "max-speed cannot be drawn" in unknown
 
@@ -172,7 +172,7 @@ def test_an_explicit_trial_tells_everybodys_own_parameters() -> None:
 
 
 def test_sweeps_make_variants() -> None:
-    text = apply_values("  <end", '  <sweep path="spawner[west]/count" values="1 2 3"/>\n'
+    text = changed("  <end", '  <sweep path="spawner[west]/count" values="1 2 3"/>\n'
                    '  <sweep path="crowd/time-horizon" values="1 normal(2, 0.1)"/>\n'
                    '  <sweep path="end/goal" values="true false"/>\n  <end')  # fmt: skip
     many = parse_trial(text)
@@ -207,7 +207,7 @@ def test_sweeps_make_variants() -> None:
     ],
 )
 def test_wrong_sweeps_are_told_with_their_line(path: str, values: str, sentence: str) -> None:
-    text = apply_values("  <end", f'  <sweep path="{path}" values="{values}"/>\n  <end')
+    text = changed("  <end", f'  <sweep path="{path}" values="{values}"/>\n  <end')
     said = refused(text)
     assert sentence in said
     assert said.startswith("t.xml:16: <sweep> ")
@@ -215,7 +215,7 @@ def test_wrong_sweeps_are_told_with_their_line(path: str, values: str, sentence:
 
 def test_values_are_changed_by_their_paths() -> None:
     given = parse_trial(GOOD)
-    other = with_values(given, {"robot/goal/x": "2", "recording/period": "0.2", "robot/navigator/type": "orca"})
+    other = apply_values(given, {"robot/goal/x": "2", "recording/period": "0.2", "robot/navigator/type": "orca"})
     assert (other.robots[0].goal.x, other.recording.period) == (2.0, 0.2)
     assert load_trial("crossing-flows", **{"crowd/time-horizon": 3}).crowd == dataclasses.replace(
         load_trial("crossing-flows").crowd, time_horizon=3.0
@@ -224,7 +224,7 @@ def test_values_are_changed_by_their_paths() -> None:
 
 
 def test_conditions_end_a_trial() -> None:
-    given = parse_trial(apply_values('<end collision="false"/>', '<end collision="false"><when what="x" above="-1"/></end>'))
+    given = parse_trial(changed('<end collision="false"/>', '<end collision="false"><when what="x" above="-1"/></end>'))
     episode = run(given)
     assert episode.outcome == "finished"
     assert episode.position[-1, episode.robots[0], 0] == pytest.approx(-1.0, abs=0.15)
@@ -238,7 +238,7 @@ def test_conditions_end_a_trial() -> None:
     assert empty.times[-1] < 20.0
     assert not empty.active[-1].any()
     for words in ('what="x"', 'what="x" above="1" below="2"'):
-        text = apply_values('<end collision="false"/>', f"<end><when {words}/></end>")
+        text = changed('<end collision="false"/>', f"<end><when {words}/></end>")
         assert "needs one of below and above" in refused(text)
 
 

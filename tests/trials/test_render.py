@@ -26,6 +26,7 @@ def test_cameras_have_names() -> None:
     assert camera_names(load_trial("frontal")) == ("overview",)
 
 
+@pytest.mark.usefixtures("drawing")
 @pytest.mark.parametrize("world", ["planar", "physics"])
 def test_every_camera_sees_the_room(world: str) -> None:
     trial = parse_trial(room(world))
@@ -66,6 +67,7 @@ def test_the_overview_has_the_whole_stage_in_view_and_the_feet_of_people(name: s
     assert np.degrees(camera.pitch) >= 60.0 - 1e-9
 
 
+@pytest.mark.usefixtures("drawing")
 def test_the_depth_camera_of_pepper_does_not_see_its_own_eye() -> None:
     inside = '<goal x="9" y="0"/><navigator type="straight"/>'
     robot = f'<robot name="pepper" type="pepper" x="0" y="0" rates="nearest">{inside}</robot>'
@@ -84,12 +86,14 @@ def crosses(a: np.ndarray, b: np.ndarray, wall: np.ndarray) -> bool:
     return side(a, b, c) * side(a, b, d) < 0.0 and side(c, d, a) * side(c, d, b) < 0.0
 
 
+@pytest.mark.usefixtures("drawing")
 def test_an_open_place_is_seen_from_near_by() -> None:
     camera = overview(load_trial("circle-crossing").stage, np.array([[-5.0, 0.0], [5.0, 4.0]]))
     assert (round(np.degrees(camera.pitch)), round(np.degrees(camera.field_of_view))) == (60, 60)
     assert camera.x == 0.0
 
 
+@pytest.mark.usefixtures("drawing")
 def test_a_film_is_even_and_the_same_each_time() -> None:
     trial = parse_trial(room(text=LEAN))
     films = [list(shots(trial, "door", Take(0.2, 0.6, 12.5))) for _ in range(2)]
@@ -99,6 +103,7 @@ def test_a_film_is_even_and_the_same_each_time() -> None:
     assert len(list(shots(trial, "door", Take(0.0, 0.4)))) == 11
 
 
+@pytest.mark.usefixtures("drawing")
 def test_a_camera_does_not_change_the_run() -> None:
     trial = parse_trial(room(text=LEAN))
     before = run(trial).digest
@@ -106,6 +111,7 @@ def test_a_camera_does_not_change_the_run() -> None:
     assert run(trial).digest == before
 
 
+@pytest.mark.usefixtures("drawing")
 @pytest.mark.parametrize("ending", [".png", ".jpg", ".webp"])
 def test_an_image_is_written(ending: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "deep" / f"door{ending}"
@@ -129,6 +135,7 @@ def test_an_image_is_written(ending: str, tmp_path: Path, capsys: pytest.Capture
     assert sorted(path.parent.iterdir()) == sorted(names)
 
 
+@pytest.mark.usefixtures("drawing")
 @pytest.mark.parametrize("ending", [".gif", ".webp", ".mp4", ""])
 def test_a_film_is_written(ending: str, tmp_path: Path) -> None:
     path = tmp_path / f"film{ending}"

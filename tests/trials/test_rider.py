@@ -64,6 +64,7 @@ def test_the_rider_sits_in_the_chair_wherever_it_goes(world: str) -> None:
     assert ends[NAMES.index("foot_l"), :, 2].min() > 0.1
 
 
+@pytest.mark.usefixtures("drawing")
 @pytest.mark.parametrize("world", ["planar", "physics"])
 def test_a_picture_shows_the_rider_as_a_part_of_the_robot(world: str) -> None:
     counts = []

@@ -56,6 +56,7 @@ TRIAL = """<trial name="look" duration="0.2" step="0.1" seed="1" {world}>
 </trial>"""
 
 
+@pytest.mark.usefixtures("drawing")
 @pytest.mark.parametrize("world", ["", 'world="physics"'])
 def test_a_trial_that_asks_has_pictures_and_one_that_does_not_draws_nothing(
     world: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path

@@ -205,12 +205,12 @@ def test_however_time_comes_the_digest_is_the_same(pauses: list[int]) -> None:
     assert driven(TRIAL, ExternalClock(0.05), times) == driven(TRIAL, None, None)
 
 
-def test_a_paced_run_gives_the_same_bytes_and_takes_its_time() -> None:
-    import time
-
-    begin = time.monotonic()
+def test_a_paced_run_gives_the_same_bytes_and_takes_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    slept: list[float] = []
+    monkeypatch.setattr("crowdbot.core.clock.time.monotonic", lambda: sum(slept))
+    monkeypatch.setattr("crowdbot.core.clock.time.sleep", slept.append)
     assert driven(TRIAL, PacedClock(0.05, rate=8.0), None) == driven(TRIAL, None, None)
-    assert time.monotonic() - begin > 0.45
+    assert sum(slept) == pytest.approx(TRIAL.ticks * 0.05 / 8.0)
 
 
 def test_clocks_that_do_not_fit_are_refused() -> None:

@@ -48,6 +48,7 @@ def test_every_builtin_trial_runs_in_both_worlds_and_is_recorded(name: str, tmp_
         assert read.digest == done.digest
 
 
+@pytest.mark.usefixtures("drawing")
 @pytest.mark.parametrize("world", WORLDS)
 def test_the_same_seed_gives_the_same_bytes_however_time_passes(world: str, tmp_path: Path) -> None:
     trial = parse_trial(room(world))
@@ -88,6 +89,7 @@ def test_explicit_people_have_the_same_bodies(world: str) -> None:
     assert run(trial, 4).digest == run(expand_spawners(trial, 4)).digest
 
 
+@pytest.mark.usefixtures("drawing")
 @pytest.mark.parametrize("world", WORLDS)
 def test_readings_of_the_room(world: str) -> None:
     episode = run(parse_trial(room(world)))
@@ -111,6 +113,7 @@ def test_readings_of_the_room(world: str) -> None:
     assert with_people & {0, 1, 2, 3, 4}
 
 
+@pytest.mark.usefixtures("drawing")
 @pytest.mark.parametrize("world", WORLDS)
 def test_readings_arrive_late_and_keep_their_instant(world: str) -> None:
     simulation = Simulation(parse_trial(room(world)), 4)

@@ -98,7 +98,9 @@ def _predicted(
     fit: Fit, past: Windows, future: Windows, seed: int, progress: Callable[[float], None]
 ) -> list[Predicted]:
     from crowdbot.core import stream
-    from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, Kalman, Simulated, evaluate
+    from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, Kalman, Simulated
+
+    from .prediction import evaluate
 
     found = []
     predictors = (ConstantVelocity(), ConstantAcceleration(), Kalman(), Simulated.of(fit))

@@ -12,8 +12,8 @@ from .recordings import add_recordings, horizon, recordings, tell_notes
 from .schemes import add_scheme, frame_line, recipes
 
 if TYPE_CHECKING:
+    from crowdbot.benchmark import Part, Piece, Result, Study
     from crowdbot.metrics import Score
-    from crowdbot.prediction import Part, Piece, Result, Study
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -39,8 +39,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Score every predictor on every recording and on all together."""
+    from crowdbot.benchmark import Study
     from crowdbot.core import InputError
-    from crowdbot.prediction import Study
 
     if options.animate is not None and options.out is None:
         raise InputError("--animate writes a file: say where with --out DIR")
@@ -151,7 +151,7 @@ def as_json(study: Study, results: list[Result]) -> dict[str, Any]:
 
 def _written(options: argparse.Namespace, study: Study, results: list[Result]) -> None:
     """Write the scores, every frame, the plots and, when asked for, the animation."""
-    from crowdbot.benchmark.prediction_plots import animate, plot_errors, plot_frames
+    from crowdbot.benchmark import animate, plot_errors, plot_frames
 
     from .output import json_text
 
