@@ -23,7 +23,7 @@ from crowdbot.data.degrade import (
     Occlusion,
 )
 from crowdbot.data.degrade.identity_switches import encounters
-from crowdbot.data.degrade.turns import rank, turns
+from crowdbot.data.degrade.row_ranks import rank, turns
 
 KINDS = list(builtin_classes(degrade, degrade.Degradation).values())
 DETERMINISTIC = (LateStart,)

@@ -2,11 +2,11 @@
 
 from .forecast import Forecast
 from .load import FORMATS, load
+from .mcap_reader import MAGIC, Kind, Tape, TapeError, attachment, is_whole
 from .motion import bridged, observed_velocity, slice_rows, steady_velocity
 from .protocols import PROTOCOLS
 from .recording import Recording
 from .save import save
-from .tape import MAGIC, Kind, Tape, TapeError, attachment, is_whole
 from .time_base import RowRateError
 from .trajectories import PrimaryScene, Trajectories
 from .ucy import TO_METRES as UCY_TO_METRES

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError
 
 from .assemble import assemble
+from .mcap_reader import Tape, TapeError, Topic, is_whole
 from .reader import Reader, ReadOptions
 from .source import Source, parse_errors
-from .tape import Tape, TapeError, Topic, is_whole
 from .trajectories import Trajectories
 
 __all__ = ["READER"]

@@ -10,7 +10,7 @@ import numpy as np
 from crowdbot.core import Paper, parameter
 
 from .degradation import Degradation, Degraded
-from .turns import turns
+from .row_ranks import turns
 
 __all__ = ["CorrelatedNoise"]
 

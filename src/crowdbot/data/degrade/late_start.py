@@ -10,7 +10,7 @@ import numpy as np
 from crowdbot.core import InputError, parameter
 
 from .degradation import Degradation, Degraded
-from .turns import rank
+from .row_ranks import rank
 
 __all__ = ["LateStart"]
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Paper, did_you_mean, parameter
 
 from .degradation import Degradation, Degraded
-from .turns import turns
+from .row_ranks import turns
 
 __all__ = ["MissingFrames"]
 
