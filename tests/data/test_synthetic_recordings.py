@@ -25,9 +25,9 @@ def test_every_format_has_a_synthetic_recording():
 
 @pytest.mark.parametrize("name", SYNTHETIC)
 def test_the_format_is_detected(files, name):
-    from crowdbot.data.load import _sniffed
+    from crowdbot.data.load import _detect
 
-    assert _sniffed(Source.of(files[name])).name == SYNTHETIC[name].format
+    assert _detect(Source.of(files[name])).name == SYNTHETIC[name].format
 
 
 @pytest.mark.parametrize("name", SYNTHETIC)

@@ -36,7 +36,7 @@ def read_hdf5(source: Source, options: ReadOptions) -> Trajectories:
             found = ", ".join(table.dtype.names or ()) or "no named columns"
             raise DataError(f"{source.name}: table 'trajectory' lacks {', '.join(missing)}; it has {found}")
         if table.size > MAX_ROWS:
-            raise DataError(f"{source.name} has {table.size} rows, more than the {MAX_ROWS} that are read")
+            raise DataError(f"{source.name} has {table.size} rows, more than the limit of {MAX_ROWS}")
         columns: dict[str, Any] = {column: np.asarray(table[column]) for column in COLUMNS}
         fps = table.attrs.get("fps", file.attrs.get("fps"))
         unit = UNIT.search(str(table.attrs.get("x", "")))

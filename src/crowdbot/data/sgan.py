@@ -44,12 +44,12 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         x=values[:, 2],
         y=values[:, 3],
         fps=fps,
-        note="; ".join(part for part in (note, base, _exchanged(values)) if part),
+        note="; ".join(part for part in (note, base, _exchange_warning(values)) if part),
         line=line,
     )
 
 
-def _exchanged(values: NDArray[np.float64]) -> str:
+def _exchange_warning(values: NDArray[np.float64]) -> str:
     """Return a warning when people would walk far more smoothly if the first column were the id."""
     told, other = _jump(values[:, 1], values[:, 0], values), _jump(values[:, 0], values[:, 1], values)
     if told is None or other is None or not told > SMOOTHER * other:

@@ -52,7 +52,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
             f"{source.name}: its splines span {spans:.0f} frames, at most {MAX_INTERPOLATED} are read;"
             " a frame of a control point may be damaged"
         )
-    parts = [_interpolated(points, number) for number, points in enumerate(splines, 1) if len(points)]
+    parts = [_interpolate(points, number) for number, points in enumerate(splines, 1) if len(points)]
     if not parts:
         raise DataError(f"{source.name} holds no control point of any spline")
     id, frame, x, y = (np.concatenate(column) for column in zip(*parts, strict=True))
@@ -112,7 +112,7 @@ def _point(name: str, number: int, words: str) -> list[float]:
     return [x, y, frame]
 
 
-def _interpolated(points: NDArray[np.float64], number: int) -> tuple[NDArray[np.float64], ...]:
+def _interpolate(points: NDArray[np.float64], number: int) -> tuple[NDArray[np.float64], ...]:
     """Return id, frame, x, y at every whole frame between the first and the last control point."""
     points = points[np.argsort(points[:, 2], kind="stable")]
     frame = np.arange(np.ceil(points[0, 2]), np.floor(points[-1, 2]) + 1)

@@ -2,7 +2,7 @@
 
 from .chain import Chain
 from .correlated_noise import CorrelatedNoise
-from .degradation import GHOST, Degradation, Degraded, NobodySeen
+from .degradation import GHOST, Degradation, DegradedTracks, EmptyRecordingError
 from .false_tracks import FalseTracks
 from .gaussian_noise import GaussianNoise
 from .heavy_tails import HeavyTails
@@ -16,13 +16,13 @@ __all__ = [
     "Chain",
     "CorrelatedNoise",
     "Degradation",
-    "Degraded",
+    "DegradedTracks",
+    "EmptyRecordingError",
     "FalseTracks",
     "GaussianNoise",
     "HeavyTails",
     "IdentitySwitches",
     "LateStart",
     "MissingFrames",
-    "NobodySeen",
     "Occlusion",
 ]

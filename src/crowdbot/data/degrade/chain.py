@@ -12,7 +12,7 @@ import numpy as np
 from crowdbot.core import InputError, stream
 from crowdbot.data.trajectories import Trajectories
 
-from .degradation import Degradation, Degraded
+from .degradation import Degradation, DegradedTracks
 
 __all__ = ["Chain"]
 
@@ -64,10 +64,10 @@ class Chain:
         """Return the links with every parameter."""
         return " + ".join(map(str, self.links))
 
-    def told(self, level: bool = True) -> dict[str, str]:
+    def describe(self, level: bool = True) -> dict[str, str]:
         """Return every parameter with its unit, in words, see :meth:`Degradation.told`."""
-        words = [(link, link.told(level or number > 0)) for number, link in enumerate(self.links)]
-        return {f"{link.name}.{name}": word for link, told in words for name, word in told.items()}
+        words = [(link, link.describe(level or number > 0)) for number, link in enumerate(self.links)]
+        return {f"{link.name}.{name}": word for link, values in words for name, word in values.items()}
 
     def at(self, level: float) -> Self:
         """Return the same chain with the first link at another level."""
@@ -78,10 +78,10 @@ class Chain:
         for link in self.links:
             link.check(tracks)
 
-    def apply(self, tracks: Trajectories | Degraded, rng: np.random.Generator | None = None) -> Degraded:
+    def apply(self, tracks: Trajectories | DegradedTracks, rng: np.random.Generator | None = None) -> DegradedTracks:
         """Return the recording as it is seen, see :meth:`Degradation.apply`."""
         source = stream(0, "degrade") if rng is None else rng
-        seen = Degraded.of(tracks)
+        seen = DegradedTracks.of(tracks)
         for link, seed in zip(self.links, source.integers(0, 2**63, size=len(self.links)), strict=True):
             seen = link.apply(seen, np.random.Generator(np.random.PCG64(int(seed))))
         return seen

@@ -9,8 +9,8 @@ import numpy as np
 
 from crowdbot.core import Paper, parameter
 
-from .degradation import Degradation, Degraded
-from .row_ranks import turns
+from .degradation import Degradation, DegradedTracks
+from .row_ranks import iterate_ranks
 
 __all__ = ["CorrelatedNoise"]
 
@@ -39,14 +39,14 @@ class CorrelatedNoise(Degradation):
         "10.1103/PhysRev.36.823",
     )  # fmt: skip
 
-    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
+    def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
         """Return the noisy recording, see :meth:`Degradation.apply`."""
         tracks = seen.tracks
         error, time = rng.standard_normal((len(tracks), 2)), tracks.time
-        for rows, before in turns(tracks.id, tracks.frame):
+        for rows, before in iterate_ranks(tracks.id, tracks.frame):
             if len(before) == 0:
                 continue
             passed = time[rows] - time[before]
             keep = np.exp(-passed / self.time)[:, None] if self.time > 0.0 else np.zeros((len(rows), 1))
             error[rows] = keep * error[before] + np.sqrt(1.0 - keep * keep) * error[rows]
-        return seen.moved(self.sd * error)
+        return seen.displace(self.sd * error)

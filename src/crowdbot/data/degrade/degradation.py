@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import DataError, InputError, check_parameters, kebab, parameters, stream
 from crowdbot.data.trajectories import Trajectories
 
-__all__ = ["GHOST", "Degradation", "Degraded", "NobodySeen"]
+__all__ = ["GHOST", "Degradation", "DegradedTracks", "EmptyRecordingError"]
 
 GHOST = -1
 """Truth of a row that is nobody."""
@@ -23,12 +23,12 @@ Integers = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 
-class NobodySeen(DataError):
+class EmptyRecordingError(DataError):
     """Nothing is left of a recording."""
 
 
 @dataclass(frozen=True, eq=False)
-class Degraded:
+class DegradedTracks:
     """A recording as it is seen, and who each of its rows truly is.
 
     Fields:
@@ -39,7 +39,7 @@ class Degraded:
         DataError: there is not one truth a row.
 
     >>> tracks = Trajectories([7, 7], [0, 10], [0.0, 0.5], [2.0, 2.0], row_rate=2.5)
-    >>> seen = Degraded.of(tracks).renamed([7, 9])
+    >>> seen = DegradedTracks.of(tracks).relabel([7, 9])
     >>> seen.tracks.id.tolist(), seen.truth.tolist()
     ([7, 9], [7, 7])
     """
@@ -52,13 +52,13 @@ class Degraded:
             raise DataError(f"{self.tracks.name} has {len(self.tracks)} rows, truth has shape {np.shape(self.truth)}")
 
     @classmethod
-    def of(cls, tracks: Trajectories | Degraded) -> Degraded:
+    def of(cls, tracks: Trajectories | DegradedTracks) -> DegradedTracks:
         """Return a recording in which everyone is who the ids say; one that is degraded already comes back as it is.
 
         Raises:
             DataError: somebody has the id -1, which here means nobody.
         """
-        if isinstance(tracks, Degraded):
+        if isinstance(tracks, DegradedTracks):
             return tracks
         if np.any(tracks.id == GHOST):
             raise DataError(f"{tracks.name} has a track of id {GHOST}, which stands for false tracks; give it another")
@@ -69,28 +69,30 @@ class Degraded:
         """``[N]``, rows of robots: they know where they are, so nothing here touches them."""
         return np.isin(self.tracks.id, np.asarray(sorted(self.tracks.robots), dtype=np.int64))
 
-    def moved(self, away: Floats) -> Degraded:
+    def displace(self, away: Floats) -> DegradedTracks:
         """Return every row displaced by ``away`` ``[N, 2]`` [units]; robots stay."""
         away = np.where(self.robot[:, None], 0.0, away)
         return self._with(x=self.tracks.x + away[:, 0], y=self.tracks.y + away[:, 1])
 
-    def kept(self, rows: Bools) -> Degraded:
+    def keep_rows(self, rows: Bools) -> DegradedTracks:
         """Return the rows ``[N]`` that are still seen; those of robots always are.
 
         Raises:
-            NobodySeen: no row is left.
+            EmptyRecordingError: no row is left.
         """
         rows = rows | self.robot
         if not np.any(rows):
-            raise NobodySeen(f"{self.tracks.name}: nobody is seen any more, not one row is left; degrade it less")
+            raise EmptyRecordingError(
+                f"{self.tracks.name}: nobody is seen any more, not one row is left; degrade it less"
+            )
         columns = {name: getattr(self.tracks, name)[rows] for name in ("id", "frame", "x", "y")}
         return self._with(**columns, truth=self.truth[rows])
 
-    def renamed(self, id: ArrayLike) -> Degraded:
+    def relabel(self, id: ArrayLike) -> DegradedTracks:
         """Return the rows under other ids ``[N]``."""
         return self._with(id=np.asarray(id, dtype=np.int64))
 
-    def added(self, id: Integers, frame: Integers, position: Floats) -> Degraded:
+    def add_false_rows(self, id: Integers, frame: Integers, position: Floats) -> DegradedTracks:
         """Return the recording with more rows: ids ``[M]``, frames ``[M]`` and positions ``[M, 2]`` of ghosts."""
         own = self.tracks
         return self._with(
@@ -101,7 +103,7 @@ class Degraded:
             truth=np.concatenate([self.truth, np.full(len(id), GHOST, dtype=np.int64)]),
         )
 
-    def _with(self, truth: Integers | None = None, **columns: Any) -> Degraded:
+    def _with(self, truth: Integers | None = None, **columns: Any) -> DegradedTracks:
         own = self.tracks
         id, frame = columns.get("id", own.id), columns.get("frame", own.frame)
         order = np.lexsort((id, frame))  # the order in which Trajectories will put the rows
@@ -113,7 +115,7 @@ class Degraded:
             labels={one: label for one, label in own.labels.items() if one in here},
             scenes=tuple(scene for scene in own.scenes if scene.person in here),
         )
-        return Degraded(tracks, (self.truth if truth is None else truth)[order])
+        return DegradedTracks(tracks, (self.truth if truth is None else truth)[order])
 
 
 @dataclass(frozen=True)
@@ -162,7 +164,7 @@ class Degradation(ABC):
         """Return the name with every parameter."""
         return f"{self.name}({', '.join(f'{name}={value}' for name, value in self.told().items())})"
 
-    def told(self, level: bool = True) -> dict[str, str]:
+    def describe(self, level: bool = True) -> dict[str, str]:
         """Return every parameter with its unit, in words; ``level=False`` leaves out the level."""
         units = {row.name: row.unit for row in parameters(self)}
         found = {}
@@ -186,7 +188,7 @@ class Degradation(ABC):
         if self.metric and tracks.units != "m":
             raise DataError(f"{tracks.name} is in pixels, {self.name} is in metres; turn it into metres first")
 
-    def apply(self, tracks: Trajectories | Degraded, rng: np.random.Generator | None = None) -> Degraded:
+    def apply(self, tracks: Trajectories | DegradedTracks, rng: np.random.Generator | None = None) -> DegradedTracks:
         """Return the recording as it is seen.
 
         Args:
@@ -196,12 +198,12 @@ class Degradation(ABC):
         Raises:
             DataError: this recording cannot be degraded so, or nothing is left of it.
         """
-        seen = Degraded.of(tracks)
+        seen = DegradedTracks.of(tracks)
         if self.neutral:
             return seen
         self.check(seen.tracks)
         return self.degrade(seen, stream(0, "degrade") if rng is None else rng)
 
     @abstractmethod
-    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
+    def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
         """Return the recording as it is seen at a level above 0; see :meth:`apply`."""

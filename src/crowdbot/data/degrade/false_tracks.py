@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import parameter
 
-from .degradation import Degradation, Degraded
+from .degradation import Degradation, DegradedTracks
 
 __all__ = ["FalseTracks"]
 
@@ -38,7 +38,7 @@ class FalseTracks(Degradation):
     level: ClassVar[str] = "rate"
     levels: ClassVar[tuple[float, ...]] = (0.0, 0.2, 0.5, 1.0, 2.0)
 
-    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
+    def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
         """Return the recording with ghosts, see :meth:`Degradation.apply`."""
         tracks = seen.tracks
         frames, first = np.unique(tracks.frame, return_index=True)
@@ -57,7 +57,7 @@ class FalseTracks(Degradation):
                 position.append(low + begin * (high - low) + velocity * (times[rows] - birth)[:, None])
         if not id:
             return seen
-        return seen.added(np.concatenate(id), np.concatenate(frame), np.concatenate(position))
+        return seen.add_false_rows(np.concatenate(id), np.concatenate(frame), np.concatenate(position))
 
     def _ghosts(self, seconds: float, rng: np.random.Generator) -> list[Ghost]:
         """Return birth [s], life [s], place in the area (0 to 1) and velocity [m/s] of every ghost."""

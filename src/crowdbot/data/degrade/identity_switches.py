@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import parameter
 from crowdbot.data.trajectories import Trajectories
 
-from .degradation import Degradation, Degraded
+from .degradation import Degradation, DegradedTracks
 
 __all__ = ["Encounter", "IdentitySwitches", "encounters"]
 
@@ -82,7 +82,7 @@ class IdentitySwitches(Degradation):
     level: ClassVar[str] = "probability"
     levels: ClassVar[tuple[float, ...]] = (0.0, 0.1, 0.25, 0.5, 1.0)
 
-    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
+    def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
         """Return the recording with swapped ids, see :meth:`Degradation.apply`."""
         tracks = seen.tracks
         met = encounters(tracks, self.distance)
@@ -97,4 +97,4 @@ class IdentitySwitches(Degradation):
                     rows[np.searchsorted(tracks.frame[rows], frame) :] for rows in map(rows_of.__getitem__, pair)
                 )
                 id[one], id[other] = id[other[0]], id[one[0]]
-        return seen.renamed(id)
+        return seen.relabel(id)

@@ -9,8 +9,8 @@ import numpy as np
 
 from crowdbot.core import InputError, parameter
 
-from .degradation import Degradation, Degraded
-from .row_ranks import rank
+from .degradation import Degradation, DegradedTracks
+from .row_ranks import row_rank
 
 __all__ = ["LateStart"]
 
@@ -37,6 +37,6 @@ class LateStart(Degradation):
             raise InputError(f"{self.name}: rows = {self.rows} must be a whole number")
         object.__setattr__(self, "rows", int(self.rows))
 
-    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
+    def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
         """Return the recording without the first rows of its tracks, see :meth:`Degradation.apply`."""
-        return seen.kept(rank(seen.tracks.id, seen.tracks.frame) >= self.rows)
+        return seen.keep_rows(row_rank(seen.tracks.id, seen.tracks.frame) >= self.rows)

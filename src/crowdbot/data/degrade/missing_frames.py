@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, did_you_mean, parameter
 
-from .degradation import Degradation, Degraded
-from .row_ranks import turns
+from .degradation import Degradation, DegradedTracks
+from .row_ranks import iterate_ranks
 
 __all__ = ["MissingFrames"]
 
@@ -52,7 +52,7 @@ class MissingFrames(Degradation):
                 f"{self.name}: of {self.of!r} is unknown{did_you_mean(self.of, OF)}; known are {', '.join(OF)}"
             )
 
-    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
+    def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
         """Return the recording with gaps, see :meth:`Degradation.apply`."""
         tracks = seen.tracks
         if self.of == "frame":
@@ -60,14 +60,14 @@ class MissingFrames(Degradation):
             missing = self._missing(np.zeros_like(frames), frames, rng)[place]
         else:
             missing = self._missing(tracks.id, tracks.frame, rng)
-        return seen.kept(~missing)
+        return seen.keep_rows(~missing)
 
     def _missing(self, id: NDArray[np.int64], frame: NDArray[np.int64], rng: np.random.Generator) -> NDArray[np.bool_]:
         """Return which rows are missing; those of a low level are missing at every higher one, too."""
         drawn = rng.random(len(id))
         missing = np.zeros(len(id), dtype=np.bool_)
         seen_again = (1.0 - self.probability) / self.burst
-        for rows, before in turns(id, frame):
+        for rows, before in iterate_ranks(id, frame):
             chance = np.full(len(rows), self.probability)
             if len(before):
                 chance = np.where(missing[before], 1.0 - seen_again, self.probability / self.burst)

@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError, InputError, Walls, parameter
 from crowdbot.data.trajectories import Trajectories
 
-from .degradation import GHOST, Degradation, Degraded
+from .degradation import GHOST, Degradation, DegradedTracks
 
-__all__ = ["Occlusion", "hidden"]
+__all__ = ["Occlusion", "occlusion_mask"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 
-def hidden(eye: Floats, place: Floats, bodies: Floats, radius: float, reach: float, walls: Floats) -> Bools:
+def occlusion_mask(eye: Floats, place: Floats, bodies: Floats, radius: float, reach: float, walls: Floats) -> Bools:
     """Return who cannot be seen from a point.
 
     The line of sight to a person's centre counts, so that about half a body must be free. A body hides who is farther
@@ -36,7 +36,7 @@ def hidden(eye: Floats, place: Floats, bodies: Floats, radius: float, reach: flo
 
     >>> none = np.zeros((0, 4))
     >>> row = np.array([[1.0, 0.0], [2.0, 0.0], [2.0, 0.6], [9.0, 9.0]])
-    >>> hidden(np.zeros(2), row, row, 0.25, 8.0, none).tolist()
+    >>> occlusion_mask(np.zeros(2), row, row, 0.25, 8.0, none).tolist()
     [False, True, False, True]
     """
     sight, body = place - eye, bodies - eye
@@ -113,7 +113,7 @@ class Occlusion(Degradation):
                 f" ids go from {tracks.ids[0]} to {tracks.ids[-1]}"
             )
 
-    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
+    def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
         """Return the rows that the eye sees, see :meth:`Degradation.apply`."""
         tracks = seen.tracks
         keeps = rng.random(len(tracks)) >= self.probability
@@ -132,5 +132,5 @@ class Occlusion(Degradation):
                 lost[rows] = True
                 continue
             eye = np.asarray(self.eye) if isinstance(self.eye, tuple) else place[own][0]
-            lost[rows] = hidden(eye, place, place[body[rows]], self.radius, self.reach, walls)
-        return seen.kept(keeps | ~lost | looks | (seen.truth == GHOST))
+            lost[rows] = occlusion_mask(eye, place, place[body[rows]], self.radius, self.reach, walls)
+        return seen.keep_rows(keeps | ~lost | looks | (seen.truth == GHOST))
