@@ -335,7 +335,7 @@ def test_wrong_recordings_are_one_sentence():
     with pytest.raises(DataError, match="made is in pixels, gaussian-noise is in metres"):
         GaussianNoise(0.1).apply(pixels)
     assert len(MissingFrames(0.5).apply(pixels).tracks) < len(pixels)
-    with pytest.raises(DataError, match="id -1, which stands for false tracks"):
+    with pytest.raises(DataError, match="id -1, which is reserved for false tracks"):
         GaussianNoise(0.1).apply(Trajectories([-1], [0], [0.0], [0.0], row_rate=2.5))
     with pytest.raises(DataError, match="1 rows, truth has shape"):
         DegradedTracks(Trajectories([1], [0], [0.0], [0.0], row_rate=2.5), np.zeros(2, np.int64))

@@ -65,10 +65,10 @@ def read_sqlite(source: Source, options: ReadOptions) -> Trajectories:
             )
         query = "SELECT id, frame, pos_x, pos_y FROM trajectory_data LIMIT ?"
         rows = base.execute(query, (MAX_ROWS + 1,)).fetchall()
-        told = dict(base.execute("SELECT key, value FROM metadata"))
+        metadata = dict(base.execute("SELECT key, value FROM metadata"))
         area = base.execute("SELECT wkt FROM geometry").fetchone() if "geometry" in held else None
     id, frame, x, y = (np.asarray(column) for column in zip(*rows, strict=True)) if rows else np.empty((4, 0))
-    fps = told.get("fps")
+    fps = metadata.get("fps")
     return assemble(
         source,
         options,

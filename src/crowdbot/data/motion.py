@@ -76,10 +76,9 @@ def observed_velocity(past: Windows, displacements: int = 1) -> NDArray[np.float
 def steady_velocity(past: Windows) -> NDArray[np.float64]:
     """Return a velocity averaged according to the noise of the tracks, ``[W, A, 2]`` [m/s].
 
-    The means of the last 1, 2, 3, ... displacements are weighed by how well each would have foretold the observed
-    rows from earlier ones: on smooth tracks the last displacement wins, on noisy or swaying ones a long mean. The
-    errors of everyone in the window are shared, as all are seen by the same eye. Holes are bridged; who was seen at
-    the last row only, or is not there at the last row, gets 0.
+    The means of the last 1, 2, 3, ... displacements are weighted by how well each predicts observed rows from earlier
+    ones: smooth tracks use the last displacement, noisy or swaying ones a long mean. The errors of all people in the
+    window are pooled. Gaps are filled; people who are present at the last row only, or absent at the last row, get 0.
 
     >>> import numpy as np
     >>> x = np.array([0.0, 1.1, 1.9, 3.1, 3.9, 5.1, 5.9, 7.1])  # one metre a row, off by 0.1 m to and fro

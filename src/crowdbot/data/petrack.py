@@ -32,8 +32,8 @@ COLUMNS = re.compile(r"^#\s*id\s+frame\b", re.IGNORECASE)
 def sniff(source: Source) -> bool:
     """Return whether a header names PeTrack or its columns, or the rows are id frame x y z without a header."""
     header = _header(source)
-    told = any("petrack" in line.lower() or COLUMNS.match(line) or FPS.search(line) for line in header)
-    return source.numeric(5) or (told and source.numeric(4))
+    is_petrack = any("petrack" in line.lower() or COLUMNS.match(line) or FPS.search(line) for line in header)
+    return source.numeric(5) or (is_petrack and source.numeric(4))
 
 
 def read(source: Source, options: ReadOptions) -> Trajectories:

@@ -51,8 +51,8 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
 
 def _exchange_warning(values: NDArray[np.float64]) -> str:
     """Return a warning when people would walk far more smoothly if the first column were the id."""
-    told, other = _jump(values[:, 1], values[:, 0], values), _jump(values[:, 0], values[:, 1], values)
-    if told is None or other is None or not told > SMOOTHER * other:
+    given_order, swapped_order = _jump(values[:, 1], values[:, 0], values), _jump(values[:, 0], values[:, 1], values)
+    if given_order is None or swapped_order is None or not given_order > SMOOTHER * swapped_order:
         return ""
     return "id and frame look exchanged (read as frame id x y); format petrack reads id frame x y"
 

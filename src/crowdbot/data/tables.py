@@ -102,7 +102,7 @@ def _words(line: str) -> list[str]:
     return [word.strip().strip('"') for word in line.split(_delimiter(line))]
 
 
-def _tracks(source: Source, options: ReadOptions, columns: Columns, told: dict[str, Any], line: Lines) -> Trajectories:
+def _tracks(source: Source, options: ReadOptions, columns: Columns, extra: dict[str, Any], line: Lines) -> Trajectories:
     name = source.name
     found, units = find_columns(list(columns))
     check_columns(found, list(columns), name)
@@ -123,32 +123,32 @@ def _tracks(source: Source, options: ReadOptions, columns: Columns, told: dict[s
         "labels": {key: label for key, label in named.items() if label != ROBOT},
         "robots": frozenset(key for key, label in named.items() if label == ROBOT),
     }
-    return assemble(source, options, id=id, frame=frame, x=values["x"], y=values["y"], line=line, **{**beside, **told})
+    return assemble(source, options, id=id, frame=frame, x=values["x"], y=values["y"], line=line, **{**beside, **extra})
 
 
 def _metadata_fields(name: str, metadata: dict[bytes, bytes]) -> dict[str, Any]:
     """Return the fields that crowdbot writes to the metadata of a table."""
     try:
-        told = json.loads(metadata.get(b"crowdbot", b"{}"))
-        if not told:
+        extra = json.loads(metadata.get(b"crowdbot", b"{}"))
+        if not extra:
             return {}
         return {
-            "row_rate": float(told["frame_rate"]),
-            "frame_step": int(told["frame_step"]),
-            "units": str(told["units"]),
-            "note": str(told["note"]),
-            "homography": None if told["homography"] is None else np.asarray(told["homography"], dtype=np.float64),
-            "robots": frozenset(map(int, told["robots"])),
-            "walls": tuple(np.asarray(ring, dtype=np.float64) for ring in told["walls"]),
-            "labels": {int(key): str(label) for key, label in told["labels"]},
-            "scenes": tuple(_scene(scene) for scene in told["scenes"]),
+            "row_rate": float(extra["frame_rate"]),
+            "frame_step": int(extra["frame_step"]),
+            "units": str(extra["units"]),
+            "note": str(extra["note"]),
+            "homography": None if extra["homography"] is None else np.asarray(extra["homography"], dtype=np.float64),
+            "robots": frozenset(map(int, extra["robots"])),
+            "walls": tuple(np.asarray(ring, dtype=np.float64) for ring in extra["walls"]),
+            "labels": {int(key): str(label) for key, label in extra["labels"]},
+            "scenes": tuple(_scene(scene) for scene in extra["scenes"]),
         }
     except (ValueError, TypeError, KeyError, IndexError) as error:
         raise DataError(f"{name}: the metadata written by crowdbot is damaged: {error!r}") from None
 
 
-def _scene(told: list[Any]) -> PrimaryScene:
-    id, person, first, last, tag = told
+def _scene(extra: list[Any]) -> PrimaryScene:
+    id, person, first, last, tag = extra
     return PrimaryScene(int(id), int(person), int(first), int(last), tuple(map(int, tag)))
 
 

@@ -94,10 +94,10 @@ def _value(record: dict[str, Any], key: str, name: str, number: int) -> float:
 
 
 def _row_rate(name: str, scenes: list[dict[str, Any]], options: ReadOptions) -> float | None:
-    told = sorted({float(s["fps"]) for s in scenes if isinstance(s.get("fps"), int | float)})
-    if len(told) > 1 and options.fps is None:
-        raise DataError(f"{name}: its scenes tell {len(told)} frame rates, {told[0]} to {told[-1]}; give fps")
-    return told[0] if told else None
+    rates = sorted({float(s["fps"]) for s in scenes if isinstance(s.get("fps"), int | float)})
+    if len(rates) > 1 and options.fps is None:
+        raise DataError(f"{name}: its scenes have {len(rates)} values of fps, {rates[0]} to {rates[-1]}; give fps")
+    return rates[0] if rates else None
 
 
 def _scene(name: str, scene: dict[str, Any]) -> PrimaryScene:

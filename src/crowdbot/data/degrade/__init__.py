@@ -1,4 +1,4 @@
-"""What trackers do to recordings: noise, gaps, occlusion, swapped, late and false tracks, each in one file."""
+"""Degradations: tracking errors added to recordings, as noise, gaps, occlusion, switched, late and false tracks."""
 
 from .chain import Chain
 from .correlated_noise import CorrelatedNoise

@@ -1,4 +1,4 @@
-"""Chain: several degradations, one after the other."""
+"""Chain: several degradations in sequence."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["Chain"]
 
 @dataclass(frozen=True)
 class Chain:
-    """Degradations applied in order, each with randomness of its own; the level of the first one is the level.
+    """Degradations applied in order, each with its own random stream; the level is that of the first.
 
     Fields:
         links: at least one degradation.
@@ -57,7 +57,7 @@ class Chain:
 
     @property
     def neutral(self) -> bool:
-        """Whether the recording comes back unchanged."""
+        """Whether the recording is unchanged."""
         return all(link.neutral for link in self.links)
 
     def __str__(self) -> str:
@@ -65,7 +65,7 @@ class Chain:
         return " + ".join(map(str, self.links))
 
     def describe(self, level: bool = True) -> dict[str, str]:
-        """Return every parameter with its unit, in words, see :meth:`Degradation.told`."""
+        """Return every parameter with its unit as text, see :meth:`Degradation.describe`."""
         words = [(link, link.describe(level or number > 0)) for number, link in enumerate(self.links)]
         return {f"{link.name}.{name}": word for link, values in words for name, word in values.items()}
 
@@ -74,12 +74,12 @@ class Chain:
         return dataclasses.replace(self, links=(self.links[0].at(level), *self.links[1:]))
 
     def check(self, tracks: Trajectories) -> None:
-        """Raise :class:`DataError` unless such a recording can be degraded."""
+        """Raise :class:`DataError` unless the recording can be degraded."""
         for link in self.links:
             link.check(tracks)
 
     def apply(self, tracks: Trajectories | DegradedTracks, rng: np.random.Generator | None = None) -> DegradedTracks:
-        """Return the recording as it is seen, see :meth:`Degradation.apply`."""
+        """Return the degraded recording, see :meth:`Degradation.apply`."""
         source = stream(0, "degrade") if rng is None else rng
         seen = DegradedTracks.of(tracks)
         for link, seed in zip(self.links, source.integers(0, 2**63, size=len(self.links)), strict=True):

@@ -1,4 +1,4 @@
-"""Correlated noise: an error that drifts, as that of a tracker which smooths or follows one edge of a body."""
+"""Correlated noise: errors that drift, as in trackers that smooth or follow one edge of a body."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ __all__ = ["CorrelatedNoise"]
 
 @dataclass(frozen=True)
 class CorrelatedNoise(Degradation):
-    """Every coordinate of a track is off by a first-order Gauss-Markov process of its own.
+    """Every coordinate of a track has an independent first-order Gauss-Markov error.
 
-    Errors at times t and s of one track have the correlation exp(-|t - s| / time); over holes, too. ``time=0`` is
+    Errors at times t and s of one track have the correlation exp(-|t - s| / time), also across gaps. ``time=0`` is
     white noise.
 
     Fields:

@@ -1,4 +1,4 @@
-"""False tracks: a tracker believes in people who are not there."""
+"""False tracks: tracks of people who do not exist."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ Ghost = tuple[float, float, NDArray[np.float64], NDArray[np.float64]]
 
 @dataclass(frozen=True)
 class FalseTracks(Degradation):
-    """Ghosts are born at a rate, walk straight on, and are gone after a while.
+    """Ghosts appear at a rate, walk straight, and disappear.
 
-    They are born anywhere in the rectangle that holds all people of the recording, as a Poisson process in time; their
-    lives are exponential, the components of their velocity normal. Their ids are above all others.
+    They appear uniformly in the bounding box of the people, as a Poisson process in time, with exponential lifetimes
+    and normal velocity components. Their ids are above all others.
 
     Fields:
-        rate: ghosts born a second in the whole area [1/s]; the level.
-        life: mean life [s].
+        rate: ghosts per second in the whole area [1/s]; the level.
+        life: mean lifetime [s].
         speed: root mean square speed [m/s].
     """
 

@@ -1,4 +1,4 @@
-"""White noise: every measured position is a little wrong, each on its own."""
+"""Gaussian noise: independent errors of every measured position."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["GaussianNoise"]
 
 @dataclass(frozen=True)
 class GaussianNoise(Degradation):
-    """Every coordinate of every row is off by a normal error of its own.
+    """Every coordinate of every row has an independent normal error.
 
     Fields:
         sd: standard deviation of a coordinate [m]; the level.

@@ -1,4 +1,4 @@
-"""Heavy tails: most positions are right, a few are far off."""
+"""Heavy tails: outliers among correct positions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Late start: a tracker waits before it believes in a new track."""
+"""Late start: new tracks are confirmed after some rows."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ __all__ = ["LateStart"]
 
 @dataclass(frozen=True)
 class LateStart(Degradation):
-    """A track is confirmed, and seen, only after its first rows.
+    """A track is confirmed, and visible, only after its first rows.
 
-    A track that is never longer is never seen. Holes later in a track do not start it again. Nothing here is random.
+    Shorter tracks are never visible. Gaps later in a track do not restart it. Deterministic.
 
     Fields:
-        rows: rows of a track before it is confirmed; the level.
+        rows: rows of a track before confirmation; the level.
     """
 
     rows: int = parameter(3, unit="rows", low=0, high=10, source="ours: the usual three hits of multi-object trackers")

@@ -1,4 +1,4 @@
-"""Missing frames: rows that nobody measured, one at a time or several in a row."""
+"""Missing frames: rows without a measurement, single or in bursts."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ OF = ("person", "frame")
 
 @dataclass(frozen=True)
 class MissingFrames(Degradation):
-    """A share of the rows is missing, single ones or bursts: a chain of two states, seen and missing (Gilbert).
+    """A share of the rows is missing, single or in bursts: a Markov chain with the states seen and missing (Gilbert).
 
-    After a missing row the next one is missing with probability 1 - (1 - probability) / burst, so that a gap has
-    burst / (1 - probability) rows in the mean; ``burst=1`` drops every row on its own.
+    After a missing row the next one is missing with probability 1 - (1 - probability) / burst, so that the mean
+    gap has burst / (1 - probability) rows; ``burst=1`` drops every row on its own.
 
     Fields:
         probability: that a row is missing [1]; the level.
-        burst: how many times longer gaps are than those of independent drops [1], at least 1.
-        of: ``person``: each track has gaps of its own; ``frame``: everyone is missing at the same frames.
+        burst: length of gaps relative to independent drops [1], at least 1.
+        of: ``person``: each track has its own gaps; ``frame``: everyone is missing at the same frames.
 
     Paper: Gilbert (1960), doi 10.1002/j.1538-7305.1960.tb03959.x.
     """

@@ -1,4 +1,4 @@
-"""Rows of many tracks at once: the first row of every track, then the second of every track, and so on."""
+"""Ranks of rows in their tracks: all first rows, then all second rows, and so on."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Indices = NDArray[np.intp]
 
 
 def row_rank(id: NDArray[np.int64], frame: NDArray[np.int64]) -> Indices:
-    """Return how many rows of its own track come before each row ``[N]``.
+    """Return the number of earlier rows of the same track for each row ``[N]``.
 
     >>> row_rank(np.array([7, 7, 3, 7]), np.array([0, 20, 10, 10])).tolist()
     [0, 2, 0, 1]
@@ -27,9 +27,9 @@ def row_rank(id: NDArray[np.int64], frame: NDArray[np.int64]) -> Indices:
 
 
 def iterate_ranks(id: NDArray[np.int64], frame: NDArray[np.int64]) -> Iterator[tuple[Indices, Indices]]:
-    """Yield the rows of the tracks turn by turn, each time with the row before of the same tracks.
+    """Yield the rows of each rank with the previous rows of the same tracks.
 
-    The first turn has no rows before.
+    Rank 0 has no previous rows.
 
     >>> [(a.tolist(), b.tolist()) for a, b in iterate_ranks(np.array([7, 3, 7]), np.array([0, 0, 10]))]
     [([1, 0], []), ([2], [0])]
