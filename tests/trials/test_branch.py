@@ -14,7 +14,7 @@ from space_trials import LEAN, room
 from trial_texts import FLOW, GOOD
 
 from crowdbot.core import EpisodeError, InputError, TrialError
-from crowdbot.data import Tape
+from crowdbot.data import McapReader
 from crowdbot.recording import branch, read_episode, record, replay, run
 from crowdbot.trials import apply_values, parse_trial
 
@@ -37,7 +37,7 @@ def flowing(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def messages(path: Path, begin: float = 0.0) -> list[tuple[str, int, bytes]]:
     with path.open("rb") as stream:
-        return [(h.topic.topic, h.stamp, h.data) for h in Tape(stream).messages() if h.stamp >= round(begin * 1e9)]
+        return [(h.topic.topic, h.stamp, h.data) for h in McapReader(stream).messages() if h.stamp >= begin * 1e9]
 
 
 @pytest.mark.parametrize("at", [0.0, 0.1, 2.0, 3.9, 4.0])

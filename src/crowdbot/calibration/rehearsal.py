@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Scene
-from crowdbot.data import Windows, bridged, slice_rows
+from crowdbot.data import Windows, fill_gaps, slice_rows
 
 from .rollout import Rollout
 
@@ -55,7 +55,7 @@ class Rehearsal:
     def __init__(self, rollout: Rollout, past: Windows) -> None:
         self.rollout = rollout
         self.past = past
-        self.whole = bridged(past)
+        self.whole = fill_gaps(past)
 
     def walked(self, candidate: Candidate, copies: int, which: Integers) -> Walked:
         """Return what ``copies`` candidates make of the windows ``which``."""

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, Walls
-from crowdbot.data import Windows, bridged, slice_rows
+from crowdbot.data import Windows, fill_gaps, slice_rows
 from crowdbot.models import CrowdModel
 from crowdbot.models.goals import Goal
 
@@ -64,7 +64,7 @@ class Rollout:
             raise InputError(
                 f"{past.source} is in {past.units}: crowd models walk in metres, give the recording a scale"
             )
-        whole = bridged(past)
+        whole = fill_gaps(past)
         known = slice_rows(whole, 0, max(row, 1) + 1)
         velocity = self.goal.velocity(known)
         here = whole.present[:, row]

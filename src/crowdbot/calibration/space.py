@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Parameter, Scene, did_you_mean, kebab, parameters
-from crowdbot.data import Windows, bridged, observed_velocity
+from crowdbot.data import Windows, fill_gaps, observed_velocity
 from crowdbot.models import CrowdModel
 
 from .rollout import Rollout, with_speed
@@ -87,7 +87,7 @@ class Space:
         Raises:
             InputError: a free parameter of the model has one value for each agent already.
         """
-        velocity = rollout.goal.velocity(bridged(past))
+        velocity = rollout.goal.velocity(fill_gaps(past))
         observed = np.sqrt(velocity[..., 0] ** 2 + velocity[..., 1] ** 2)
         values = np.zeros((*observed.shape, len(self.table)))
         for column, row in enumerate(self.table):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, Walls, check_parameters, parameter
-from crowdbot.data import Trajectories, Windows, bridged, steady_velocity
+from crowdbot.data import Trajectories, Windows, fill_gaps, steady_velocity
 
 from .exits import hull, openings, track_ends
 from .goal import Choices, Goal
@@ -176,7 +176,7 @@ class EnvironmentLayout(Goal):
         weight[here, 0] = 1.0
         moving = here & (length(velocity) > MOVING)
         if np.any(moving):
-            turn[moving], weight[moving] = self._weighed(bridged(past), velocity[moving], moving)
+            turn[moving], weight[moving] = self._weighed(fill_gaps(past), velocity[moving], moving)
         return velocity, turn, weight, here
 
     def _weighed(self, known: Windows, velocity: Floats, moving: NDArray[np.bool_]) -> tuple[Floats, Floats]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
-from crowdbot.data import Trajectories, Windows, bridged, slice_rows, steady_velocity
+from crowdbot.data import Trajectories, Windows, fill_gaps, slice_rows, steady_velocity
 
 __all__ = ["LearnedVelocity", "mean_velocity", "pairs_of"]
 
@@ -80,7 +80,7 @@ class LearnedVelocity:
                 f" {self.dt:.4g} s; resample one of them"
             )
         most = len(self.weight)
-        known = slice_rows(bridged(past), max(0, past.position.shape[1] - 1 - most), past.position.shape[1])
+        known = slice_rows(fill_gaps(past), max(0, past.position.shape[1] - 1 - most), past.position.shape[1])
         steady = steady_velocity(known)
         offs, both = _offs(known, steady)
         count = np.minimum(np.sum(both, axis=1), most)
@@ -124,7 +124,7 @@ def _sample(past: Windows, future: Windows, count: int) -> tuple[Floats, Floats]
     known = slice_rows(past, rows - 1 - count, rows)
     steady = steady_velocity(known)
     counted = future.scored
-    off = np.moveaxis(_offs(bridged(known), steady)[0], 1, 2)[counted]
+    off = np.moveaxis(_offs(fill_gaps(known), steady)[0], 1, 2)[counted]
     return off, (mean_velocity(past, future) - steady)[counted]
 
 

@@ -1,4 +1,4 @@
-"""Rows of many tracks at once: the first row of every track, then the second of every track, and so on."""
+"""Ranks of rows in their tracks: all first rows, then all second rows, and so on."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["rank", "turns"]
+__all__ = ["iterate_ranks", "row_rank"]
 
 Indices = NDArray[np.intp]
 
 
-def rank(id: NDArray[np.int64], frame: NDArray[np.int64]) -> Indices:
-    """Return how many rows of its own track come before each row ``[N]``.
+def row_rank(id: NDArray[np.int64], frame: NDArray[np.int64]) -> Indices:
+    """Return the number of earlier rows of the same track for each row ``[N]``.
 
-    >>> rank(np.array([7, 7, 3, 7]), np.array([0, 20, 10, 10])).tolist()
+    >>> row_rank(np.array([7, 7, 3, 7]), np.array([0, 20, 10, 10])).tolist()
     [0, 2, 0, 1]
     """
     order = np.lexsort((frame, id))
@@ -26,18 +26,18 @@ def rank(id: NDArray[np.int64], frame: NDArray[np.int64]) -> Indices:
     return number
 
 
-def turns(id: NDArray[np.int64], frame: NDArray[np.int64]) -> Iterator[tuple[Indices, Indices]]:
-    """Yield the rows of the tracks turn by turn, each time with the row before of the same tracks.
+def iterate_ranks(id: NDArray[np.int64], frame: NDArray[np.int64]) -> Iterator[tuple[Indices, Indices]]:
+    """Yield the rows of each rank with the previous rows of the same tracks.
 
-    The first turn has no rows before.
+    Rank 0 has no previous rows.
 
-    >>> [(a.tolist(), b.tolist()) for a, b in turns(np.array([7, 3, 7]), np.array([0, 0, 10]))]
+    >>> [(a.tolist(), b.tolist()) for a, b in iterate_ranks(np.array([7, 3, 7]), np.array([0, 0, 10]))]
     [([1, 0], []), ([2], [0])]
     """
     order = np.lexsort((frame, id))
     before = np.empty(len(id), dtype=np.intp)
     before[order[1:]] = order[:-1]
-    number = rank(id, frame)
+    number = row_rank(id, frame)
     by_turn = order[np.argsort(number[order], kind="stable")]
     borders = np.searchsorted(number[by_turn], np.arange(int(number.max()) + 2))
     for turn, (begin, end) in enumerate(pairwise(borders.tolist())):
