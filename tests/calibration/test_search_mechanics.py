@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.calibration import Annealing, Genetic, Geometric, RandomSearch, Search
-from crowdbot.calibration.ledger import Ledger
+from crowdbot.calibration.search_state import Ledger
 from crowdbot.core import stream
 
 Function = Callable[[np.ndarray, np.ndarray], np.ndarray]

@@ -15,7 +15,7 @@ from crowdbot.data import Trajectories, bridged, load, observed_velocity, steady
 from crowdbot.models.goals import CurrentDirection, LearnedDestinations
 from crowdbot.models.goals.exits import clusters, track_ends
 from crowdbot.models.goals.learned_velocity import LearnedVelocity, mean_velocity
-from crowdbot.models.goals.votes import NODES, Ballot, poll, typical_turn
+from crowdbot.models.goals.turn_histogram import NODES, Ballot, poll, typical_turn
 
 
 def eastwards(x, y, speed=1.3):

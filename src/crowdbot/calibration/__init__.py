@@ -3,7 +3,6 @@
 from .absolute import Absolute
 from .annealing import Annealing
 from .calibrator import Calibrator
-from .campaign import Campaign, FittedPiece
 from .cma_es import CMAES
 from .cooling import Cooling, Geometric
 from .cost import Cost
@@ -12,14 +11,15 @@ from .futures import futures
 from .genetic import Genetic
 from .greedy import Greedy
 from .inter_pedestrian import InterPedestrian
-from .named import goal_for, kind_of_goal, named_cost, named_goal, named_model, named_search
-from .prior import PopulationPrior
+from .parameter_space import Space
+from .population_prior import PopulationPrior
 from .progressive import Progressive
 from .random_search import RandomSearch
-from .rehearsal import Rehearsal, Walked
+from .recording_calibration import Campaign, FittedPiece
+from .resimulation import Rehearsal, Walked
 from .rollout import Rollout
+from .scheme_parts import goal_for, kind_of_goal, named_cost, named_goal, named_model, named_search
 from .search import Found, Search
-from .space import Space
 from .weighted_sum import WeightedSum
 
 __all__ = [

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Paper
 
 from .cooling import Cooling, Geometric
-from .ledger import Floats, Ledger, own_best
 from .search import Search
+from .search_state import Floats, Ledger, own_best
 
 __all__ = ["Annealing"]
 

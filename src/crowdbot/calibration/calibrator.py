@@ -18,12 +18,12 @@ from crowdbot.models.goals import Goal
 
 from .cost import Cost
 from .fit import Fit
-from .named import named_cost, named_goal, named_model, named_search
-from .prior import PopulationPrior
-from .rehearsal import Rehearsal
+from .parameter_space import RADIUS, Space
+from .population_prior import PopulationPrior
+from .resimulation import Rehearsal
 from .rollout import Rollout
+from .scheme_parts import named_cost, named_goal, named_model, named_search
 from .search import Found, Search
-from .space import RADIUS, Space
 
 __all__ = ["Calibrator"]
 

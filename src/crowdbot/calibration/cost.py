@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Paper
 
-from .rehearsal import Walked
+from .resimulation import Walked
 
 __all__ = ["METRICS", "Cost", "mean_over_rows"]
 

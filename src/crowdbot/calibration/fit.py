@@ -13,8 +13,8 @@ from crowdbot.data import Forecast, Windows
 from crowdbot.models import CrowdModel
 
 from .futures import futures
+from .parameter_space import PREFERRED_SPEED, Space
 from .rollout import Rollout
-from .space import PREFERRED_SPEED, Space
 
 __all__ = ["Fit"]
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from crowdbot.core import InputError, Paper
 
-from .ledger import Floats, Ledger
 from .search import Search
+from .search_state import Floats, Ledger
 
 __all__ = ["Genetic"]
 

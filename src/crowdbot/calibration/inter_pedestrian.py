@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import kernel
 
 from .cost import Cost
-from .rehearsal import Walked
+from .resimulation import Walked
 
 __all__ = ["InterPedestrian"]
 

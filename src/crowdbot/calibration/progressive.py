@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .cost import Cost, mean_over_rows
-from .rehearsal import Walked
+from .resimulation import Walked
 
 __all__ = ["Progressive"]
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from crowdbot.core import InputError
 
-from .ledger import Floats, Ledger, own_best
 from .search import Search
+from .search_state import Floats, Ledger, own_best
 
 __all__ = ["RandomSearch"]
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .ledger import Ledger
+from .search_state import Ledger
 
 __all__ = ["Floats", "Found", "Function", "Integers", "Search", "check_box"]
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 
 from .cost import Cost
-from .rehearsal import Walked
+from .resimulation import Walked
 
 __all__ = ["WeightedSum"]
 

@@ -15,7 +15,7 @@ from .exits import clusters, track_ends
 from .goal import Choices, Goal
 from .headings import MOVING, ahead, angle_between, length, turned, unit
 from .learned_velocity import LearnedVelocity, mean_velocity, pairs_of
-from .votes import NODES, Ballot, poll, typical_turn
+from .turn_histogram import NODES, Ballot, poll, typical_turn
 
 __all__ = ["LearnedDestinations"]
 

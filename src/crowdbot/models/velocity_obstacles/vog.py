@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
 from crowdbot.core.neighbors import nearest
+from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
 
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
 from .vog_cost import CONE, FELLOW, collision, companion, cone, fellowship, own_way, walls_near
 
 __all__ = ["VOG"]

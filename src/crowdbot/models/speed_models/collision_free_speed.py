@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest
-
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
+from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
 
 __all__ = ["CollisionFreeSpeed", "is_hidden", "way_to", "within"]
 

@@ -11,10 +11,20 @@ from numba import prange
 from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    kept,
+    neighbors_of,
+    rows,
+    speed_limit,
+    spread,
+    walkers,
+    wishes,
+)
 
-from .laws import law_of, shortened
-from .model import CrowdModel, check_limit, kept, neighbors_of, rows, speed_limit, spread, walkers, wishes
-from .surfaces import Surfaces, at_corner, surfaces_of
+from .parameter_rows import law_of, shortened
+from .wall_surfaces import Surfaces, at_corner, surfaces_of
 
 __all__ = ["PowerLaw"]
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from model_crowds import PILLAR, ROOM
 
 from crowdbot.core import Walls
-from crowdbot.models.surfaces import feel, surfaces_of
+from crowdbot.models.forces.wall_surfaces import feel, surfaces_of
 
 
 def felt(walls, x, y, reach=100.0):

@@ -24,8 +24,7 @@ from crowdbot.core import (
 )
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest
-
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
+from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
 
 __all__ = ["VBM"]
 

@@ -9,16 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import PerAgent, parameter
+from crowdbot.models.model import CrowdModel, rows
+from crowdbot.models.velocity_obstacles.linear_program import best_velocity
+from crowdbot.models.velocity_obstacles.orca_lines import avoid_agent, avoid_edge, edges_in_reach, edges_of
 
-from .linear_program import best_velocity
-from .model import CrowdModel, rows
-from .orca_lines import avoid_agent, avoid_edge, edges_in_reach, edges_of
-from .surroundings import Surroundings
-from .velocity_cost import Force, Sum, VelocityCost, length
+from .neighbor_view import Surroundings
+from .velocity_cost import Force, VelocityCost, length
 
 __all__ = [
     "Effort",
-    "Force",
     "FreeWay",
     "GoalForce",
     "HalfPlanes",
@@ -29,9 +28,6 @@ __all__ = [
     "PowerLawForce",
     "PreferredVelocity",
     "ReciprocalObstacles",
-    "Sum",
-    "Surroundings",
-    "VelocityCost",
 ]
 
 Floats = NDArray[np.float64]

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest
+from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
 
 from .collision_free_speed import is_hidden, way_to, within
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
 
 __all__ = ["AnticipationVelocity"]
 

@@ -23,8 +23,17 @@ from crowdbot.core import (
     per_agent,
 )
 from crowdbot.core.geometry import nearest_on_segment
-
-from .model import CrowdModel, check_limit, kept, neighbors_of, rows, speed_limit, spread, walkers, wishes
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    kept,
+    neighbors_of,
+    rows,
+    speed_limit,
+    spread,
+    walkers,
+    wishes,
+)
 
 __all__ = ["SocialForce"]
 

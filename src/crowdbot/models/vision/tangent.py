@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
 from crowdbot.core.neighbors import nearest
+from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
 
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
 from .tangent_threats import MOST, RETREAT, THREAT, insert, least_change, retreat, threat_of_neighbor, threat_of_wall
 
 __all__ = ["Tangent"]

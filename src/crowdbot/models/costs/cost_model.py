@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, PerAgent, Scene, did_you_mean, parameter, per_agent, stream
 from crowdbot.core.neighbors import nearest
+from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
 
-from .costs import HalfPlanes, VelocityCost
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
-from .surroundings import Surroundings
-from .velocity_cost import length, suited
+from .cost_terms import HalfPlanes
+from .neighbor_view import Surroundings
+from .velocity_cost import VelocityCost, length, suited
 
 __all__ = ["CostModel"]
 

@@ -23,11 +23,11 @@ from crowdbot.core import (
     per_agent,
 )
 from crowdbot.core.neighbors import nearest
+from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
 
-from .group_bonds import Groups, bond, bond_as_package, groups_of
-from .laws import law_of, shortened
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
-from .surfaces import feel, surfaces_of
+from .group_cohesion import Groups, bond, bond_as_package, groups_of
+from .parameter_rows import law_of, shortened
+from .wall_surfaces import feel, surfaces_of
 
 __all__ = ["GroupForce"]
 

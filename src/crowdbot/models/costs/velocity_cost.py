@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, check_parameters
 
-from .surroundings import Surroundings
+from .neighbor_view import Surroundings
 
 __all__ = ["Force", "Sum", "VelocityCost", "length", "suited"]
 

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Neighbors, PerAgent, Scene, per_agent
-
-from .model import rows
+from crowdbot.models.model import rows
 
 __all__ = ["Surroundings"]
 

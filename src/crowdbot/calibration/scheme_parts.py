@@ -9,8 +9,7 @@ from typing import cast
 from crowdbot import models
 from crowdbot.core import InputError, find_class, kebab
 from crowdbot.data import Recording
-from crowdbot.models import CrowdModel, goals
-from crowdbot.models.goals import Goal, GroundTruth
+from crowdbot.models import CrowdModel, Goal, GroundTruth, goals
 
 from .cost import Cost
 from .search import Search

@@ -18,7 +18,7 @@ from crowdbot.data import Recording, Windows
 
 from .calibrator import Calibrator
 from .fit import Fit
-from .named import goal_for
+from .scheme_parts import goal_for
 
 __all__ = ["Campaign", "FittedPiece"]
 

@@ -12,8 +12,17 @@ from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
 from crowdbot.core.geometry import nearest_on_segment, ray_to_disc, time_to_segment
-
-from .model import CrowdModel, check_limit, kept, neighbors_of, rows, speed_limit, spread, walkers, wishes
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    kept,
+    neighbors_of,
+    rows,
+    speed_limit,
+    spread,
+    walkers,
+    wishes,
+)
 
 __all__ = ["Heuristics"]
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .space import PREFERRED_SPEED, Space
+from .parameter_space import PREFERRED_SPEED, Space
 
 if TYPE_CHECKING:
     from .fit import Fit

@@ -11,9 +11,19 @@ from numba import prange
 from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    kept,
+    neighbors_of,
+    rows,
+    speed_limit,
+    spread,
+    walkers,
+    wishes,
+)
 
 from .linear_program import best_velocity
-from .model import CrowdModel, check_limit, kept, neighbors_of, rows, speed_limit, spread, walkers, wishes
 from .orca_lines import Edges, avoid_agent, avoid_edge, edges_in_reach, edges_of
 
 __all__ = ["PLEdestrians"]

@@ -24,10 +24,10 @@ from crowdbot.core import (
 )
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest
+from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
 
-from .laws import law_of, shortened
-from .model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
-from .surfaces import Surfaces, at_corner, surfaces_of
+from .parameter_rows import law_of, shortened
+from .wall_surfaces import Surfaces, at_corner, surfaces_of
 
 __all__ = ["Boids"]
 
