@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from made_crowds import Drifting, walked, windows
+from made_crowds import Drifting, resimulate, windows
 
-from crowdbot.calibration import Absolute, Cost, InterPedestrian, Progressive, Rehearsal, Rollout, WeightedSum
+from crowdbot.calibration import Absolute, Cost, InterPedestrian, Progressive, Resimulation, Rollout, WeightedSum
 from crowdbot.core import InputError, Scene
 from crowdbot.data import Windows, slice_rows
 from crowdbot.models import CrowdModel, CurrentDirection
@@ -62,7 +62,7 @@ def slow_again(
 
 def test_people_simulated_once_equal_their_slow_twin() -> None:
     past = windows()
-    fast = walked(past, MODEL, radius=0.4, substep=0.2).once
+    fast = resimulate(past, MODEL, radius=0.4, substep=0.2).once
     assert fast.shape == (1, 3, 5, 5, 2)
     for w in range(3):
         for a, path in slow_again(past, MODEL, w, 2, 0.4).items():
@@ -72,7 +72,7 @@ def test_people_simulated_once_equal_their_slow_twin() -> None:
 
 def test_people_simulated_row_by_row_equal_their_slow_twin() -> None:
     past = windows()
-    fast = walked(past, MODEL, radius=0.4, substep=0.2).stepwise
+    fast = resimulate(past, MODEL, radius=0.4, substep=0.2).stepwise
     assert fast.shape == (1, 3, 4, 5, 2)
     for w in range(3):
         for row in range(1, 5):
@@ -93,26 +93,26 @@ def _longer(past: Windows) -> Windows:
 def test_copies_lie_along_e_and_equal_each_candidate_alone() -> None:
     past = windows()
     share, radius = np.array([0.5, 1.0, 1.5]), np.array([0.1, 0.3, 0.2])
-    rehearsal = Rehearsal(Rollout(Drifting(push=1.0), CurrentDirection()), past)
+    resimulation = Resimulation(Rollout(Drifting(push=1.0), CurrentDirection()), past)
 
-    def dressed(rollout: Rollout, scene: Scene, copies: int) -> tuple[Rollout, Scene]:
+    def apply_to_scene(rollout: Rollout, scene: Scene, copies: int) -> tuple[Rollout, Scene]:
         each = np.repeat(np.repeat(np.arange(3), 3), copies)
         model = Drifting(share=share[each][:, None], push=1.0)
         sized = scene.replace(radius=np.broadcast_to(radius[each][:, None], scene.shape).copy())
         return Rollout(model, rollout.goal), sized
 
-    together = rehearsal.walked(dressed, 3, np.arange(3))
+    together = resimulation.resimulate(apply_to_scene, 3, np.arange(3))
     for number in range(3):
-        alone = walked(past, Drifting(float(share[number]), 1.0), float(radius[number]))
+        alone = resimulate(past, Drifting(float(share[number]), 1.0), float(radius[number]))
         assert np.array_equal(together.once[number], alone.once[0])
         assert np.array_equal(together.stepwise[number], alone.stepwise[0])
 
 
 def test_some_of_the_windows_equal_the_same_among_all() -> None:
     past = windows()
-    rehearsal = Rehearsal(Rollout(MODEL, CurrentDirection()), past)
-    some = rehearsal.walked(lambda rollout, scene, copies: (rollout, scene), 1, np.array([2, 0]))
-    whole = walked(past, MODEL)
+    resimulation = Resimulation(Rollout(MODEL, CurrentDirection()), past)
+    some = resimulation.resimulate(lambda rollout, scene, copies: (rollout, scene), 1, np.array([2, 0]))
+    whole = resimulate(past, MODEL)
     assert np.array_equal(some.once[0], whole.once[0][[2, 0]])
     assert np.array_equal(some.stepwise[0], whole.stepwise[0][[2, 0]])
 
@@ -122,7 +122,7 @@ def counted_from(past: Windows, w: int, a: int, first: int) -> list[int]:
 
 
 def test_the_absolute_difference_equals_its_slow_twin() -> None:
-    past, again = windows(), walked(windows(), MODEL)
+    past, again = windows(), resimulate(windows(), MODEL)
     fast = Absolute().measure(again)
     for w, a in np.ndindex(3, 5):
         seen = counted_from(past, w, a, 1) if past.present[w, 0, a] else []
@@ -131,7 +131,7 @@ def test_the_absolute_difference_equals_its_slow_twin() -> None:
 
 
 def test_the_progressive_difference_equals_its_slow_twin() -> None:
-    past, again = windows(), walked(windows(), MODEL)
+    past, again = windows(), resimulate(windows(), MODEL)
     fast = Progressive().measure(again)
     for w, a in np.ndindex(3, 5):
         seen = [t for t in counted_from(past, w, a, 2) if past.present[w, t - 1, a]]
@@ -140,7 +140,7 @@ def test_the_progressive_difference_equals_its_slow_twin() -> None:
 
 
 def test_the_inter_pedestrian_difference_equals_its_slow_twin() -> None:
-    past, again = windows(), walked(windows(), MODEL)
+    past, again = windows(), resimulate(windows(), MODEL)
     fast = InterPedestrian().measure(again)
     for w, a in np.ndindex(3, 5):
         difference = []
@@ -162,7 +162,7 @@ def _assert_mean(found: float, values: list[float]) -> None:
 
 
 def test_a_weighted_sum_adds_up_and_counts_who_counts_everywhere() -> None:
-    again = walked(windows(), MODEL)
+    again = resimulate(windows(), MODEL)
     one, other = Absolute().measure(again), InterPedestrian().measure(again)
     found = WeightedSum((Absolute(), InterPedestrian()), (2.0, 0.5)).measure(again)
     np.testing.assert_allclose(found, 2.0 * one + 0.5 * other)
@@ -174,17 +174,17 @@ def test_a_crowd_made_by_the_model_costs_nothing(cost: Cost) -> None:
     begun = windows()
     everyone = np.ones_like(begun.present)
     whole = Windows(begun.position, everyone, begun.scored, np.zeros_like(begun.robot), *list(vars(begun).values())[4:])
-    made = np.concatenate([whole.position[:, :1], walked(whole, Drifting(push=0.0)).once[0]], axis=1)
+    made = np.concatenate([whole.position[:, :1], resimulate(whole, Drifting(push=0.0)).once[0]], axis=1)
     copy = Windows(made, *list(vars(whole).values())[1:])
-    np.testing.assert_allclose(cost.measure(walked(copy, Drifting(push=0.0))), 0.0, atol=1e-12)
+    np.testing.assert_allclose(cost.measure(resimulate(copy, Drifting(push=0.0))), 0.0, atol=1e-12)
 
 
 def test_somebody_alone_has_no_distance_to_others() -> None:
     past = windows()
     only = past.present & (np.arange(5) == 0)
     alone = Windows(past.position, only, *list(vars(past).values())[2:])
-    assert np.all(np.isnan(InterPedestrian().measure(walked(alone, MODEL))))
-    assert not np.any(np.isnan(Absolute().measure(walked(alone, MODEL))[..., 0]))
+    assert np.all(np.isnan(InterPedestrian().measure(resimulate(alone, MODEL))))
+    assert not np.any(np.isnan(Absolute().measure(resimulate(alone, MODEL))[..., 0]))
 
 
 def test_wrong_weights_are_refused() -> None:

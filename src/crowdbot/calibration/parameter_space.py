@@ -13,9 +13,9 @@ from crowdbot.core import InputError, Parameter, Scene, did_you_mean, kebab, par
 from crowdbot.data import Windows, bridged, observed_velocity
 from crowdbot.models import CrowdModel
 
-from .rollout import Rollout, with_speed
+from .rollout import Rollout, set_preferred_speed
 
-__all__ = ["PREFERRED_SPEED", "RADIUS", "Space"]
+__all__ = ["PREFERRED_SPEED", "RADIUS", "ParameterSpace"]
 
 Floats = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ PREFERRED_SPEED = Parameter("preferred_speed", "m/s", 1.34, 0.0, 2.5, "Weidmann 
 
 
 @dataclass(frozen=True)
-class Space:
+class ParameterSpace:
     """D numbers of every person: parameters of a model, then radius and preferred speed.
 
     Fields:
@@ -81,7 +81,7 @@ class Space:
         """Upper end of the box ``[D]``."""
         return np.array([row.high for row in self.table])
 
-    def given(self, past: Windows, rollout: Rollout) -> Floats:
+    def initial_values(self, past: Windows, rollout: Rollout) -> Floats:
         """Return what people have before a calibration: ``[W, A, D]``; speeds are the observed ones.
 
         Raises:
@@ -108,7 +108,7 @@ class Space:
                 values[..., column] = np.sqrt(velocity[..., 0] ** 2 + velocity[..., 1] ** 2)
         return values
 
-    def applied(self, rollout: Rollout, values: Floats) -> Rollout:
+    def apply(self, rollout: Rollout, values: Floats) -> Rollout:
         """Return the rollout of people with these numbers, ``[W, A, D]`` or ``[D]`` for everyone."""
         one = values.ndim == 1
         columns = {name: (float(values[k]) if one else values[..., k]) for k, name in enumerate(self.names)}
@@ -117,11 +117,11 @@ class Space:
         model = dataclasses.replace(self.model, **columns) if columns else self.model
         return dataclasses.replace(rollout, model=model, radius=radius, preferred_speed=speed)
 
-    def dressed(self, rollout: Rollout, scene: Scene, values: Floats) -> tuple[Rollout, Scene]:
+    def apply_to_scene(self, rollout: Rollout, scene: Scene, values: Floats) -> tuple[Rollout, Scene]:
         """Return rollout and scene in which agents have their numbers ``[E, A, D]``."""
-        taken = self.applied(rollout, values)
+        taken = self.apply(rollout, values)
         if RADIUS.name in self.names:
             scene = scene.replace(radius=np.ascontiguousarray(taken.radius))
         if taken.preferred_speed is not None:
-            scene = with_speed(scene, np.ascontiguousarray(taken.preferred_speed))
+            scene = set_preferred_speed(scene, np.ascontiguousarray(taken.preferred_speed))
         return taken, scene

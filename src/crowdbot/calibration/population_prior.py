@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .parameter_space import PREFERRED_SPEED, Space
+from .parameter_space import PREFERRED_SPEED, ParameterSpace
 
 if TYPE_CHECKING:
     from .fit import Fit
@@ -66,7 +66,7 @@ class PopulationPrior:
             raise InputError(f"population prior: strength = {self.strength} must be finite and not below 0")
 
     @classmethod
-    def learned(cls, fits: Fit | Sequence[Fit], strength: float = 0.1) -> PopulationPrior:
+    def from_fits(cls, fits: Fit | Sequence[Fit], strength: float = 0.1) -> PopulationPrior:
         """Return the distribution of the parameters of everyone who was calibrated alone.
 
         Raises:
@@ -77,7 +77,7 @@ class PopulationPrior:
             raise InputError("population prior: it is learned from fits of each person, all of the same parameters")
         space = many[0].space
         rows = np.concatenate(
-            [_transformed(space, fit.values, fit.given)[fit.counted] for fit in many if np.any(fit.counted)]
+            [_transform(space, fit.values, fit.given)[fit.counted] for fit in many if np.any(fit.counted)]
             or [np.zeros((0, len(space.names)))]
         )
         if len(rows) < len(space.names) + 2:
@@ -89,7 +89,7 @@ class PopulationPrior:
         own = np.diag(np.maximum(np.diag(covariance), 1e-4))
         return cls(space.names, rows.mean(axis=0), (1.0 - SHRINKAGE) * covariance + SHRINKAGE * own, strength)
 
-    def penalty(self, space: Space, values: Floats, given: Floats) -> Floats:
+    def penalty(self, space: ParameterSpace, values: Floats, given: Floats) -> Floats:
         """Return what people's values ``[..., A, D]`` cost more [m] for being unusual: ``[..., A]``.
 
         ``given`` holds the values before the calibration; its preferred speed is the observed one.
@@ -98,11 +98,11 @@ class PopulationPrior:
             InputError: the space has other parameters.
         """
         self._check(space)
-        away = _transformed(space, values, given) - self.mean
+        away = _transform(space, values, given) - self.mean
         square = np.sum(away @ np.linalg.inv(self.covariance) * away, axis=-1)
         return np.asarray(0.5 * self.strength * square)
 
-    def typical(self, space: Space, given: Floats) -> Floats:
+    def typical(self, space: ParameterSpace, given: Floats) -> Floats:
         """Return the values ``[..., A, D]`` of the average person, with everyone's own observed speed."""
         self._check(space)
         share = 1.0 / (1.0 + np.exp(-self.mean))
@@ -141,14 +141,14 @@ class PopulationPrior:
         except (ValueError, KeyError, TypeError, np.linalg.LinAlgError):
             raise InputError(f"{path} is not a population prior; write one with PopulationPrior.save") from None
 
-    def _check(self, space: Space) -> None:
+    def _check(self, space: ParameterSpace) -> None:
         if space.names != self.names:
             raise InputError(
                 f"population prior: it is of {', '.join(self.names)}, and {', '.join(space.names)} are calibrated"
             )
 
 
-def _transformed(space: Space, values: Floats, given: Floats) -> Floats:
+def _transform(space: ParameterSpace, values: Floats, given: Floats) -> Floats:
     share = np.clip((values - space.low) / (space.high - space.low), EDGE, 1.0 - EDGE)
     out = np.log(share / (1.0 - share))
     for column, name in enumerate(space.names):

@@ -1,4 +1,4 @@
-"""Campaign: everyone in a recording calibrated, piece by piece on several workers; what is done is kept."""
+"""RecordingCalibration: everyone in a recording calibrated, piece by piece on several workers; what is done is kept."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .calibrator import Calibrator
 from .fit import Fit
 from .scheme_parts import goal_for
 
-__all__ = ["Campaign", "FittedPiece"]
+__all__ = ["CalibrationChunk", "RecordingCalibration"]
 
 PIECES = 8
 """A recording is cut into at least so many pieces ..."""
@@ -29,7 +29,7 @@ AGENTS = 2_000
 
 
 @dataclass(frozen=True)
-class FittedPiece:
+class CalibrationChunk:
     """The windows ``first`` to ``last`` (not included) of a recording, calibrated.
 
     Fields:
@@ -45,7 +45,7 @@ class FittedPiece:
 
 
 @dataclass(frozen=True)
-class Campaign:
+class RecordingCalibration:
     """Which recording is calibrated, by which scheme.
 
     Fields:
@@ -61,7 +61,7 @@ class Campaign:
     seed: int = 0
 
     @property
-    def prepared(self) -> Calibrator:
+    def goal_calibrator(self) -> Calibrator:
         """The calibrator with the goal of this recording."""
         if self.goal is None:
             return self.calibrator
@@ -70,29 +70,29 @@ class Campaign:
     @property
     def key(self) -> str:
         """Hash of everything that decides about the result."""
-        told = pickle.dumps((code_digest(), self, self.recording.digest))
-        return hashlib.blake2b(told, digest_size=12).hexdigest()
+        content = pickle.dumps((code_digest(), self, self.recording.digest))
+        return hashlib.blake2b(content, digest_size=12).hexdigest()
 
     @property
     def past(self) -> Windows:
         """What is calibrated on."""
         return self.recording.windows[0]
 
-    def run(self, workers: int = 1, cluster: str | None = None, keep: Path | None = None) -> Iterator[FittedPiece]:
+    def run(self, workers: int = 1, cluster: str | None = None, keep: Path | None = None) -> Iterator[CalibrationChunk]:
         """Yield the pieces as they are done; those kept in the folder ``keep`` come first."""
         past = self.past
         people = int(past.present[:, -1].sum())
         size = max(1, min(len(past) // PIECES, AGENTS * len(past) // max(1, people)))
         jobs = [(self, first, min(first + size, len(past))) for first in range(0, len(past), size)]
         files = [] if keep is None else [keep / f"{self.key}-{first}.npz" for _, first, _ in jobs]
-        for _, piece in each_kept(_fitted, jobs, files, _save, _load, workers, cluster):
-            yield piece
+        for _, chunk in each_kept(_calibrate_chunk, jobs, files, _save, _load, workers, cluster):
+            yield chunk
 
-    def joined(self, pieces: Sequence[FittedPiece]) -> Fit:
+    def merge(self, chunks: Sequence[CalibrationChunk]) -> Fit:
         """Return the fit of the whole recording from all its pieces."""
-        ordered = sorted(pieces, key=lambda piece: piece.first)
-        calibrator = self.prepared
-        whole = {name: np.concatenate([piece.arrays[name] for piece in ordered]) for name in ordered[0].arrays}
+        ordered = sorted(chunks, key=lambda chunk: chunk.first)
+        calibrator = self.goal_calibrator
+        whole = {name: np.concatenate([chunk.arrays[name] for chunk in ordered]) for name in ordered[0].arrays}
         seconds = float(whole.pop("seconds").sum())
         return Fit(
             calibrator.scheme, calibrator.space, calibrator.rollout, **whole, seconds=seconds, windows=len(self.past)
@@ -102,25 +102,25 @@ class Campaign:
 ARRAYS = ("values", "given", "id", "counted", "cost", "given_cost", "evaluations", "history")
 
 
-def _fitted(job: tuple[Campaign, int, int]) -> FittedPiece:
+def _calibrate_chunk(job: tuple[RecordingCalibration, int, int]) -> CalibrationChunk:
     campaign, first, last = job
     past = campaign.past[first:last]
     rngs = [stream(campaign.seed, "calibrate", window) for window in range(first, last)]
-    fit = campaign.prepared.fit_each(past, rngs)
+    fit = campaign.goal_calibrator.fit_each(past, rngs)
     arrays = {name: getattr(fit, name) for name in ARRAYS}
     arrays["seconds"] = np.array([fit.seconds])
-    return FittedPiece(first, last, past.frame[:, -1], past.present[:, -1].sum(axis=1), arrays)
+    return CalibrationChunk(first, last, past.frame[:, -1], past.present[:, -1].sum(axis=1), arrays)
 
 
-def _save(piece: FittedPiece, file: Path) -> None:
+def _save(chunk: CalibrationChunk, file: Path) -> None:
     with file.open("wb") as stream_:
-        bounds = np.array([piece.first, piece.last])
-        arrays: dict[str, Any] = {"bounds": bounds, "frame": piece.frame, "people": piece.people, **piece.arrays}
+        bounds = np.array([chunk.first, chunk.last])
+        arrays: dict[str, Any] = {"bounds": bounds, "frame": chunk.frame, "people": chunk.people, **chunk.arrays}
         np.savez_compressed(stream_, **arrays)
 
 
-def _load(file: Path) -> FittedPiece:
+def _load(file: Path) -> CalibrationChunk:
     with np.load(file, allow_pickle=False) as kept:
         first, last = kept["bounds"].tolist()
         arrays = {name: kept[name] for name in (*ARRAYS, "seconds")}
-        return FittedPiece(first, last, kept["frame"], kept["people"], arrays)
+        return CalibrationChunk(first, last, kept["frame"], kept["people"], arrays)

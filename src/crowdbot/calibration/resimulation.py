@@ -14,7 +14,7 @@ from crowdbot.data import Windows, bridged, slice_rows
 
 from .rollout import Rollout
 
-__all__ = ["Rehearsal", "Walked"]
+__all__ = ["ResimulatedTracks", "Resimulation"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -22,7 +22,7 @@ Candidate = Callable[[Rollout, Scene, int], tuple[Rollout, Scene]]
 """Gives every copy of a scene the parameters of its candidate; the number is how often each window comes in a row."""
 
 
-class Walked:
+class ResimulatedTracks:
     """What P candidates made of the observed rows of W windows; simulated only when a cost asks for it.
 
     Fields:
@@ -45,7 +45,7 @@ class Walked:
         return self._stepwise()
 
 
-class Rehearsal:
+class Resimulation:
     """Windows made ready to be simulated again, many times with different parameters.
 
     Everyone present at the row where a simulation begins but the robots is simulated until their last observed row;
@@ -57,9 +57,9 @@ class Rehearsal:
         self.past = past
         self.whole = bridged(past)
 
-    def walked(self, candidate: Candidate, copies: int, which: Integers) -> Walked:
+    def resimulate(self, candidate: Candidate, copies: int, which: Integers) -> ResimulatedTracks:
         """Return what ``copies`` candidates make of the windows ``which``."""
-        return Walked(
+        return ResimulatedTracks(
             self.past[which],
             lambda: self._from_first_row(candidate, copies, which),
             lambda: self._row_by_row(candidate, copies, which),
@@ -76,7 +76,7 @@ class Rehearsal:
         rows = range(1, self.past.position.shape[1] - 1)
         scenes = [self.rollout.scene(slice_rows(self.past, 0, row + 1), row) for row in rows]
         order = np.arange(len(rows) * len(self.past)).reshape(len(rows), -1).T.ravel()
-        return _joined(scenes).environments(order)
+        return _concatenate(scenes).environments(order)
 
     @functools.cached_property
     def _recorded(self) -> _Recorded:
@@ -88,8 +88,8 @@ class Rehearsal:
         place = np.zeros((len(index), T - 1, A, 2))
         rollout, scene = candidate(self.rollout, self._first.environments(index), 1)
         for row in range(T - 1):
-            scene = self._recorded.shown(scene, row, index)
-            scene = rollout.advanced(scene, self.past.dt)
+            scene = self._recorded.with_recorded(scene, row, index)
+            scene = rollout.advance(scene, self.past.dt)
             place[:, row] = scene.position
         return place.reshape(copies, len(which), T - 1, A, 2)
 
@@ -99,7 +99,7 @@ class Rehearsal:
             return np.zeros((copies, len(which), 0, A, 2))
         index = np.tile((which[:, None] * (T - 2) + np.arange(T - 2)).ravel(), copies)
         rollout, scene = candidate(self.rollout, self._each.environments(index), T - 2)
-        place = rollout.advanced(scene, self.past.dt).position
+        place = rollout.advance(scene, self.past.dt).position
         return place.reshape(copies, len(which), T - 2, A, 2)
 
 
@@ -116,7 +116,7 @@ class _Recorded:
     last: Integers
     changes: bool
 
-    def shown(self, scene: Scene, row: int, index: Integers) -> Scene:
+    def with_recorded(self, scene: Scene, row: int, index: Integers) -> Scene:
         """Return the scene with external agents as recorded at ``row``, and without those who have gone for good."""
         if not self.changes:
             return scene
@@ -139,7 +139,7 @@ def _recorded(past: Windows) -> _Recorded:
     return _Recorded(past.position, velocity, past.present, last, changes)
 
 
-def _joined(scenes: list[Scene]) -> Scene:
+def _concatenate(scenes: list[Scene]) -> Scene:
     """Return the environments of several scenes with the same people and walls, one scene after the other."""
     first = scenes[0]
     names = [name for name, value in vars(first).items() if isinstance(value, np.ndarray)]

@@ -14,20 +14,20 @@ from crowdbot.models import CrowdModel, Goal, GroundTruth, goals
 from .cost import Cost
 from .search import Search
 
-__all__ = ["goal_for", "kind_of_goal", "named_cost", "named_goal", "named_model", "named_search"]
+__all__ = ["goal_class", "goal_for", "resolve_cost", "resolve_goal", "resolve_model", "resolve_search"]
 
 
-def named_model(value: CrowdModel | str) -> CrowdModel:
+def resolve_model(value: CrowdModel | str) -> CrowdModel:
     """Return a crowd model from itself, its name or its address, with default parameters."""
-    return cast(CrowdModel, _named(value, models, CrowdModel))
+    return cast(CrowdModel, _resolve(value, models, CrowdModel))
 
 
-def named_goal(value: Goal | str) -> Goal:
+def resolve_goal(value: Goal | str) -> Goal:
     """Return a goal from itself, its name or its address, with default parameters."""
-    return cast(Goal, _named(value, goals, Goal))
+    return cast(Goal, _resolve(value, goals, Goal))
 
 
-def kind_of_goal(name: str) -> type[Goal]:
+def goal_class(name: str) -> type[Goal]:
     """Return the class of a goal by its name or address."""
     return cast(type[Goal], find_class(name, goals, Goal))
 
@@ -38,25 +38,25 @@ def goal_for(name: str, recording: Recording) -> Goal:
     Raises:
         InputError: the name is unknown, or the goal learns and no part of the recording was kept for it.
     """
-    kind = kind_of_goal(name)
+    kind = goal_class(name)
     if issubclass(kind, GroundTruth):
         return GroundTruth(*recording.windows)
     if kind.learns:
         return kind.learned(recording.known)
-    return named_goal(name)
+    return resolve_goal(name)
 
 
-def named_cost(value: Cost | str) -> Cost:
+def resolve_cost(value: Cost | str) -> Cost:
     """Return a cost from itself, its name or its address."""
-    return cast(Cost, _named(value, sys.modules[__package__ or ""], Cost))
+    return cast(Cost, _resolve(value, sys.modules[__package__ or ""], Cost))
 
 
-def named_search(value: Search | str) -> Search:
+def resolve_search(value: Search | str) -> Search:
     """Return a search from itself, its name or its address, with default parameters."""
-    return cast(Search, _named(value, sys.modules[__package__ or ""], Search))
+    return cast(Search, _resolve(value, sys.modules[__package__ or ""], Search))
 
 
-def _named(value: object, room: ModuleType, contract: type) -> object:
+def _resolve(value: object, room: ModuleType, contract: type) -> object:
     """Return a value as it is, or an instance of the class that a name means.
 
     Raises:

@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-__all__ = ["Ledger", "own_best"]
+__all__ = ["SearchState", "own_best"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-class Ledger:
+class SearchState:
     """Evaluates whole-crowd candidates of W problems and keeps the best of each; used by one search, once.
 
     A search holds its state in arrays whose axis 1 is L, the problems that are not done yet: ``live [L]`` are their
@@ -24,7 +24,7 @@ class Ledger:
 
     Fields:
         low, high, span: ``[D]``, the box and its sides.
-        best, cost, evaluations, history: as in :class:`~crowdbot.calibration.Found`.
+        best, cost, evaluations, history: as in :class:`~crowdbot.calibration.SearchResult`.
     """
 
     def __init__(
@@ -93,7 +93,7 @@ class Ledger:
         self._spent += P
         self.evaluations[live] = self._spent
 
-    def settle(self, *arrays: Floats) -> tuple[Floats, ...]:
+    def drop_finished(self, *arrays: Floats) -> tuple[Floats, ...]:
         """Return the arrays ``[_, L, ...]`` with only those problems that are not done, and forget the others."""
         live = self.live
         nobody = ~self.counts.any(axis=1)
@@ -131,26 +131,26 @@ class Ledger:
         """Return the best whole-crowd candidates so far, ``[1, L, N, D]``, moved into the box."""
         return np.clip(self.best[self.live], self.low, self.high)[None]
 
-    def inside(self, place: Floats) -> Floats:
+    def scale_to_box(self, place: Floats) -> Floats:
         """Return values from places ``[..., D]`` in the box, 0 at its lower and 1 at its upper end, never beyond."""
         return np.clip(self.low + self.span * place, self.low, self.high)
 
-    def folded(self, values: Floats) -> Floats:
+    def fold(self, values: Floats) -> Floats:
         """Return values mirrored at the sides of the box, and into it."""
         side = np.clip(values, self.low, self.high)
         return np.clip(2.0 * side - values, self.low, self.high)
 
-    def anywhere(self, count: int) -> Floats:
+    def sample_uniform(self, count: int) -> Floats:
         """Return ``count`` candidates ``[count, L, N, D]`` that lie uniformly at random in the box."""
         shape = (count, *self.best.shape[1:])
-        return self.inside(self.draw(lambda rng: rng.random(shape)))
+        return self.scale_to_box(self.draw(lambda rng: rng.random(shape)))
 
 
-def own_best(pool: Floats, cost: Floats) -> tuple[Floats, Floats]:
+def own_best(population: Floats, cost: Floats) -> tuple[Floats, Floats]:
     """Return everyone's own best parameters in a pool, together as one candidate ``[1, L, N, D]``.
 
     Nobody's cost is his own alone: what the candidate costs is known when it has been evaluated. Also returned are the
     costs ``[1, L, N]`` that everyone had in his own best candidate.
     """
     row = np.argmin(cost, axis=0)[None]
-    return np.take_along_axis(pool, row[..., None], axis=0), np.take_along_axis(cost, row, axis=0)
+    return np.take_along_axis(population, row[..., None], axis=0), np.take_along_axis(cost, row, axis=0)
