@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from model_crowds import PILLAR, ROOM
 
 from crowdbot.core import Walls
-from crowdbot.models.forces.wall_surfaces import feel, surfaces_of
+from crowdbot.models.forces.wall_surfaces import surface_distance, wall_surfaces
 
 
 def felt(walls, x, y, reach=100.0):
     """Return distance and normal of every surface that is felt at x, y, nearest first."""
-    surfaces = surfaces_of(Walls.of(walls))
-    all_ = [feel(*surfaces, k, x, y, reach) for k in range(len(surfaces.face) + len(surfaces.corner))]
+    surfaces = wall_surfaces(Walls.of(walls))
+    all_ = [surface_distance(*surfaces, k, x, y, reach) for k in range(len(surfaces.face) + len(surfaces.corner))]
     return sorted(one for one in all_ if one[0] < math.inf)
 
 

@@ -13,7 +13,7 @@ from .cost_terms import (
     PreferredVelocity,
     ReciprocalObstacles,
 )
-from .neighbor_view import Surroundings
+from .neighbor_view import NeighborView
 from .velocity_cost import Force, Sum, VelocityCost
 
 __all__ = [
@@ -24,12 +24,12 @@ __all__ = [
     "HalfPlanes",
     "Inertia",
     "ModelForce",
+    "NeighborView",
     "Noise",
     "PowerLawEnergy",
     "PowerLawForce",
     "PreferredVelocity",
     "ReciprocalObstacles",
     "Sum",
-    "Surroundings",
     "VelocityCost",
 ]

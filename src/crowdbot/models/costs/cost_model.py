@@ -11,11 +11,19 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, PerAgent, Scene, did_you_mean, parameter, per_agent, stream
 from crowdbot.core.neighbors import nearest
-from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    movable,
+    rows,
+    speed_limit,
+)
 
 from .cost_terms import HalfPlanes
-from .neighbor_view import Surroundings
-from .velocity_cost import VelocityCost, length, suited
+from .neighbor_view import NeighborView
+from .velocity_cost import VelocityCost, length, suitable_optimiser
 
 __all__ = ["CostModel"]
 
@@ -119,24 +127,24 @@ class CostModel(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` serves costs and samples."""
-        wish, walking = wishes(scene, dt), walkers(scene)
+        wish, walking = desired_velocity(scene, dt), movable(scene)
 
         def value(name: str) -> Floats:
             return per_agent(getattr(self, name), scene.shape, name)
 
         seen = scene.active & scene.visible
         near = nearest(scene.position, value("neighbor_distance"), np.rint(value("max_neighbors")), seen, walking)
-        world = Surroundings.of(scene, wish, speed_limit(self.max_speed, scene), walking, near, float(dt), rng)
-        optimiser = suited(self.costs) if self.optimiser == "natural" else self.optimiser
+        world = NeighborView.of(scene, wish, speed_limit(self.max_speed, scene), walking, near, float(dt), rng)
+        optimiser = suitable_optimiser(self.costs) if self.optimiser == "natural" else self.optimiser
         discs = self._discs(rng) if optimiser == "sampling" else np.zeros((0, 2))
         step = max(1, BUDGET // ((len(discs) + GIVEN) * (world.there.shape[1] + len(world.segments) + 1)))
-        out = kept(scene)
+        out = initial_velocity(scene)
         for begin in range(0, len(world), step):
             part = world.part(begin, begin + step)
             rows(out)[part.row] = self._next(part, optimiser, discs)
         return out
 
-    def _next(self, world: Surroundings, optimiser: str, discs: Floats) -> Floats:
+    def _next(self, world: NeighborView, optimiser: str, discs: Floats) -> Floats:
         dt = world.dt
         if optimiser == "gradient":
             slope = self.costs.gradient(world, world.velocity)
@@ -146,12 +154,12 @@ class CostModel(CrowdModel):
             relaxation = np.maximum(world.each(self.relaxation_time, "relaxation_time"), dt)
             change = (best - world.velocity) / relaxation[:, None]
         if self.max_acceleration is not None:
-            change = _shortened(change, world.each(self.max_acceleration, "max_acceleration"))
-        velocity = _shortened(world.velocity + change * dt, world.max_speed)
+            change = _limit_length(change, world.each(self.max_acceleration, "max_acceleration"))
+        velocity = _limit_length(world.velocity + change * dt, world.max_speed)
         stiffness = np.minimum(world.each(self.contact_stiffness, "contact_stiffness"), 1.0 / dt**2)
         if not np.any(stiffness):
             return velocity
-        return _shortened(velocity + (stiffness * dt)[:, None] * world.overlaps(), world.max_speed)
+        return _limit_length(velocity + (stiffness * dt)[:, None] * world.sum_overlaps(), world.max_speed)
 
     def _discs(self, random: np.random.Generator | None) -> Floats:
         """Return the samples ``[C, 2]`` for a maximum speed of 1 and the desired direction +x."""
@@ -167,7 +175,7 @@ class CostModel(CrowdModel):
         speed = (1.0 + np.arange(self.speeds))[:, None] / self.speeds
         return np.stack([speed * np.cos(angle), speed * np.sin(angle)], axis=-1).reshape(-1, 2)
 
-    def _best_sample(self, world: Surroundings, discs: Floats) -> Floats:
+    def _best_sample(self, world: NeighborView, discs: Floats) -> Floats:
         ahead = world.direction()
         if self.samples == "umans":
             ahead = np.broadcast_to([1.0, 0.0], ahead.shape)
@@ -176,16 +184,16 @@ class CostModel(CrowdModel):
         turned = size * (discs[:, :1] * ahead[:, None] + discs[:, 1:] * across[:, None])
         given = [np.zeros_like(ahead)]
         if self.samples != "umans":
-            given += [_shortened(world.wish, world.max_speed), _shortened(world.velocity, world.max_speed)]
+            given += [_limit_length(world.wish, world.max_speed), _limit_length(world.velocity, world.max_speed)]
         best = _least(self.costs, world, np.concatenate([np.stack(given, axis=1), turned], axis=1))
         for level in range(self.refinements):
             span = size[:, 0] * (1.0 / self.speeds) / 2.0 ** (level + 1)
             tries = [best] + [best + span * (i * ahead + j * across) for i in (1, 0, -1) for j in (0, -1, 1) if i or j]
-            best = _least(self.costs, world, np.stack([_shortened(t, world.max_speed) for t in tries], axis=1))
+            best = _least(self.costs, world, np.stack([_limit_length(t, world.max_speed) for t in tries], axis=1))
         return best
 
 
-def _least(costs: VelocityCost, world: Surroundings, candidates: Floats) -> Floats:
+def _least(costs: VelocityCost, world: NeighborView, candidates: Floats) -> Floats:
     """Return the candidate of least cost ``[N, 2]``, of equal ones the first."""
     cost = costs.value(world, candidates)
     cost = np.where(np.isnan(cost), np.inf, cost)
@@ -195,7 +203,7 @@ def _least(costs: VelocityCost, world: Surroundings, candidates: Floats) -> Floa
     return np.asarray(candidates[np.arange(len(candidates)), chosen])
 
 
-def _shortened(vectors: Floats, longest: Floats) -> Floats:
+def _limit_length(vectors: Floats, longest: Floats) -> Floats:
     """Return vectors ``[N, 2]``, none longer than ``longest`` [N]."""
     size = length(vectors)
     return np.asarray(vectors * np.minimum(1.0, longest / np.maximum(size, 1e-300))[:, None])

@@ -13,7 +13,7 @@ from crowdbot.models.model import CrowdModel, rows
 from crowdbot.models.velocity_obstacles.linear_program import best_velocity
 from crowdbot.models.velocity_obstacles.orca_lines import avoid_agent, avoid_edge, edges_in_reach, edges_of
 
-from .neighbor_view import Surroundings
+from .neighbor_view import NeighborView
 from .velocity_cost import Force, VelocityCost, length
 
 __all__ = [
@@ -50,12 +50,12 @@ class PreferredVelocity(VelocityCost):
 
     exponent: PerAgent = parameter(1.0, unit="1", low=1.0, high=3.0, source="van den Berg et al. 2008", minimum=0.1)
 
-    def value(self, world: Surroundings, candidates: Floats) -> Floats:
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
         """Return ``|v' - p|^exponent``."""
         distance = length(candidates - world.wish[:, None])
         return np.asarray(distance ** world.each(self.exponent, "exponent")[:, None])
 
-    def best(self, world: Surroundings) -> Floats:
+    def best(self, world: NeighborView) -> Floats:
         """Return the desired velocities."""
         return world.wish
 
@@ -72,12 +72,12 @@ class Inertia(VelocityCost):
 
     exponent: PerAgent = parameter(1.0, unit="1", low=1.0, high=3.0, source="chosen here", minimum=0.1)
 
-    def value(self, world: Surroundings, candidates: Floats) -> Floats:
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
         """Return ``|v' - v|^exponent``."""
         distance = length(candidates - world.velocity[:, None])
         return np.asarray(distance ** world.each(self.exponent, "exponent")[:, None])
 
-    def best(self, world: Surroundings) -> Floats:
+    def best(self, world: NeighborView) -> Floats:
         """Return the present velocities."""
         return world.velocity
 
@@ -92,7 +92,7 @@ class Noise(VelocityCost):
 
     deviation: float = parameter(0.1, unit="1", low=0.0, high=1.0, source="chosen here")
 
-    def value(self, world: Surroundings, candidates: Floats) -> Floats:
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
         """Return normally distributed numbers."""
         if world.random is None:
             return np.zeros(candidates.shape[:2])
@@ -109,7 +109,7 @@ class GoalForce(Force):
 
     relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="Helbing and Molnar 1995")
 
-    def force(self, world: Surroundings) -> Floats:
+    def force(self, world: NeighborView) -> Floats:
         """Return the accelerations ``[N, 2]`` [m/s^2]."""
         relaxation = np.maximum(world.each(self.relaxation_time, "relaxation_time"), world.dt)
         return np.asarray((world.wish - world.velocity) / relaxation[:, None])
@@ -125,9 +125,11 @@ class ModelForce(Force):
 
     model: CrowdModel
 
-    def force(self, world: Surroundings) -> Floats:
+    def force(self, world: NeighborView) -> Floats:
         """Return the accelerations ``[N, 2]`` [m/s^2]."""
-        chosen = world.once(("model", id(self.model)), lambda: self.model.velocity(world.scene, world.dt, world.random))
+        chosen = world.compute_once(
+            ("model", id(self.model)), lambda: self.model.velocity(world.scene, world.dt, world.random)
+        )
         return np.asarray((rows(chosen)[world.row] - world.velocity) / world.dt)
 
 
@@ -149,7 +151,7 @@ class PowerLawForce(Force):
     exponent: PerAgent = parameter(2.0, unit="1", low=1.0, high=4.0, source="Karamouzas et al. 2014")
     time_horizon: PerAgent = parameter(3.0, unit="s", low=0.5, high=8.0, source="Karamouzas et al. 2014", minimum=1e-3)
 
-    def force(self, world: Surroundings) -> Floats:
+    def force(self, world: NeighborView) -> Floats:
         """Return the accelerations ``[N, 2]`` [m/s^2]."""
         time = world.contact_times(world.velocity[:, None])[:, 0]
         soon = np.isfinite(time)
@@ -160,7 +162,7 @@ class PowerLawForce(Force):
         pushes = np.sum(size[..., None] * touch, axis=1)
         return np.asarray(pushes + self._from_walls(world))
 
-    def _from_walls(self, world: Surroundings) -> Floats:
+    def _from_walls(self, world: NeighborView) -> Floats:
         if len(world.segments) == 0:
             return np.zeros_like(world.velocity)
         time = world.wall_times(world.velocity[:, None])
@@ -170,7 +172,7 @@ class PowerLawForce(Force):
         closing = -np.sum(away * world.velocity, axis=-1)
         return np.asarray((self._steepness(world, time)[:, 0] / np.where(soon, closing, 1.0))[:, None] * away)
 
-    def _steepness(self, world: Surroundings, time: Floats) -> Floats:
+    def _steepness(self, world: NeighborView, time: Floats) -> Floats:
         """Return minus the derivative of the energy over time ``[N, K]``; 0 where there is no collision soon."""
         k, m, horizon = (world.each(getattr(self, name), name)[:, None] for name in _ENERGY)
         soon = (time > 0.0) & (time <= horizon)
@@ -199,7 +201,7 @@ class PowerLawEnergy(VelocityCost):
     exponent: PerAgent = parameter(2.0, unit="1", low=1.0, high=4.0, source="Karamouzas et al. 2014")
     time_horizon: PerAgent = parameter(3.0, unit="s", low=0.5, high=8.0, source="Karamouzas et al. 2014", minimum=1e-3)
 
-    def value(self, world: Surroundings, candidates: Floats) -> Floats:
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
         """Return the sum of the energies with all neighbours and the first wall."""
         walls = world.wall_times(candidates)[..., None]
         time = np.concatenate([world.contact_times(candidates), walls], axis=-1)
@@ -222,7 +224,7 @@ class ReciprocalObstacles(VelocityCost):
 
     weight: PerAgent = parameter(1.0, unit="m", low=0.1, high=10.0, source="UMANS")
 
-    def value(self, world: Surroundings, candidates: Floats) -> Floats:
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
         """Return the cost, inf above the maximum speed."""
         time = world.first_contact(2.0 * candidates - world.velocity[:, None])
         cost = world.each(self.weight, "weight")[:, None] / time + length(candidates - world.wish[:, None])
@@ -249,7 +251,7 @@ class HalfPlanes(VelocityCost):
         2.0, unit="s", low=0.2, high=4.0, source="CrowdBot simulator, horizon of agents", minimum=1e-3
     )
 
-    def value(self, world: Surroundings, candidates: Floats) -> Floats:
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
         """Return the cost of each velocity."""
         lines, _, count = self._lines(world)
         dx = lines[:, None, :, 0] - candidates[:, :, None, 0]
@@ -260,7 +262,7 @@ class HalfPlanes(VelocityCost):
         far = length(candidates - world.wish[:, None])
         return np.where(deepest <= EDGE, far, deepest + 2.0 * world.max_speed[:, None])
 
-    def best(self, world: Surroundings) -> Floats:
+    def best(self, world: NeighborView) -> Floats:
         """Return the solutions of the linear programs."""
         lines, fixed, count = self._lines(world)
         spare, top, wish = np.empty(lines.shape[1:]), world.max_speed, world.wish
@@ -269,7 +271,7 @@ class HalfPlanes(VelocityCost):
             out[n] = best_velocity(lines[n], fixed[n], count[n], top[n], wish[n, 0], wish[n, 1], spare)
         return out
 
-    def _lines(self, world: Surroundings) -> tuple[Floats, NDArray[np.int64], NDArray[np.int64]]:
+    def _lines(self, world: NeighborView) -> tuple[Floats, NDArray[np.int64], NDArray[np.int64]]:
         """Return the lines ``[N, L, 4]``, how many of them belong to walls ``[N]``, and how many there are."""
         edges = edges_of(world.scene.walls)
         corner, following = edges.corner, edges.next
@@ -316,7 +318,7 @@ class Effort(VelocityCost):
     planning_time: PerAgent = parameter(3.0, unit="s", low=0.2, high=8.0, source="UMANS", minimum=1e-3)
     safe_time: PerAgent = parameter(0.5, unit="s", low=0.0, high=2.0, source="UMANS")
 
-    def value(self, world: Surroundings, candidates: Floats) -> Floats:
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
         """Return ``t (e_s + e_w |v'|^2) + 2 |g - t v'| sqrt(e_s e_w)``."""
         rest, walk, t, safe = (
             world.each(getattr(self, name), name)[:, None]
@@ -342,7 +344,7 @@ class FreeWay(VelocityCost):
     sight_distance: PerAgent = parameter(10.0, unit="m", low=2.0, high=15.0, source="Moussaid et al. 2011")
     relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="Moussaid et al. 2011", minimum=1e-3)
 
-    def value(self, world: Surroundings, candidates: Floats) -> Floats:
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
         """Return ``(1 + D^2) (1 + (1 - |v'| / S)^2)``, D to the end of the free way f, S = min(|p|, f / tau)."""
         sight = world.each(self.sight_distance, "sight_distance")[:, None]
         speed, wanted = length(candidates), length(world.wish)[:, None]

@@ -1,4 +1,4 @@
-"""Surroundings: what agents know when they weigh velocities, one row per walker, and when each velocity meets what."""
+"""NeighborView: what agents know when they weigh velocities, one row per walker, and when each velocity meets what."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from crowdbot.core import Neighbors, PerAgent, Scene, per_agent
 from crowdbot.models.model import rows
 
-__all__ = ["Surroundings"]
+__all__ = ["NeighborView"]
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Surroundings:
+class NeighborView:
     """What N walkers of all environments know; neighbours that are not there fill up their K places.
 
     Fields:
@@ -55,7 +55,7 @@ class Surroundings:
     dt: float
     scene: Scene
     random: np.random.Generator | None
-    answers: dict[Hashable, Any]
+    cache: dict[Hashable, Any]
 
     @classmethod
     def of(
@@ -67,7 +67,7 @@ class Surroundings:
         near: Neighbors,
         dt: float,
         random: np.random.Generator | None = None,
-    ) -> Surroundings:
+    ) -> NeighborView:
         """Look at ``scene`` with the eyes of those who are ``walking`` [E, A], who have these neighbours."""
         row = np.flatnonzero(walking)
         A = max(1, scene.shape[1])
@@ -101,7 +101,7 @@ class Surroundings:
         """Return the number of walkers."""
         return len(self.row)
 
-    def part(self, begin: int, end: int) -> Surroundings:
+    def part(self, begin: int, end: int) -> NeighborView:
         """Return the surroundings of the walkers from ``begin`` to before ``end`` only."""
         shared = ("segments", "dt", "scene", "random", "answers")
         names = [field.name for field in dataclasses.fields(self) if field.name not in shared]
@@ -114,11 +114,11 @@ class Surroundings:
             return np.full(len(self), value, dtype=np.float64)
         return rows(per_agent(value, self.scene.shape, name))[self.row]
 
-    def once(self, key: Hashable, answer: Callable[[], Any]) -> Any:
+    def compute_once(self, key: Hashable, answer: Callable[[], Any]) -> Any:
         """Return ``answer()``, asked once for all parts of these surroundings."""
-        if key not in self.answers:
-            self.answers[key] = answer()
-        return self.answers[key]
+        if key not in self.cache:
+            self.cache[key] = answer()
+        return self.cache[key]
 
     def direction(self) -> Floats:
         """Return the unit directions ``[N, 2]`` of the wishes; of velocity or heading where nothing is wished."""
@@ -166,7 +166,7 @@ class Surroundings:
             best = np.where(touching, best, np.minimum(best, t))
         return best
 
-    def overlaps(self) -> Floats:
+    def sum_overlaps(self) -> Floats:
         """Return how far bodies and walls reach into each walker, summed as vectors ``[N, 2]`` [m] away from them."""
         distance = np.sqrt(self.offset[..., 0] ** 2 + self.offset[..., 1] ** 2)
         deep = np.where(self.there, np.maximum(self.reach - distance, 0.0), 0.0)

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, check_parameters
 
-from .neighbor_view import Surroundings
+from .neighbor_view import NeighborView
 
-__all__ = ["Force", "Sum", "VelocityCost", "length", "suited"]
+__all__ = ["Force", "Sum", "VelocityCost", "length", "suitable_optimiser"]
 
 Floats = NDArray[np.float64]
 
@@ -51,17 +51,17 @@ class VelocityCost(abc.ABC):
         check_parameters(self)
 
     @abc.abstractmethod
-    def value(self, world: Surroundings, candidates: Floats) -> Floats:
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
         """Return the cost ``[N, C]`` of each velocity ``[N, C, 2]`` [m/s]; inf is never chosen."""
 
-    def gradient(self, world: Surroundings, velocity: Floats) -> Floats:
+    def gradient(self, world: NeighborView, velocity: Floats) -> Floats:
         """Return the slope ``[N, 2]`` of the cost at ``velocity`` [N, 2] [m/s]; here by differences."""
         steps = STEP * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
         cost = self.value(world, velocity[:, None] + steps)
         with np.errstate(invalid="ignore"):  # inf - inf: the model takes no step there
             return np.stack([cost[:, 0] - cost[:, 1], cost[:, 2] - cost[:, 3]], axis=-1) / (2.0 * STEP)
 
-    def best(self, world: Surroundings) -> Floats:
+    def best(self, world: NeighborView) -> Floats:
         """Return the velocities ``[N, 2]`` [m/s] where the cost is least.
 
         Raises:
@@ -94,7 +94,7 @@ class Sum(VelocityCost):
             if not math.isfinite(weight):
                 raise InputError(f"weight {weight} of {cost} is not finite")
 
-    def value(self, world: Surroundings, candidates: Floats) -> Floats:
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
         """Return the weighted sum ``[N, C]``."""
         total = np.zeros(candidates.shape[:2])
         for weight, cost in self.terms:
@@ -102,7 +102,7 @@ class Sum(VelocityCost):
                 total = total + weight * cost.value(world, candidates)
         return total
 
-    def gradient(self, world: Surroundings, velocity: Floats) -> Floats:
+    def gradient(self, world: NeighborView, velocity: Floats) -> Floats:
         """Return the weighted sum of the slopes ``[N, 2]``."""
         total = np.zeros_like(velocity)
         for weight, cost in self.terms:
@@ -110,7 +110,7 @@ class Sum(VelocityCost):
                 total = total + weight * cost.gradient(world, velocity)
         return total
 
-    def best(self, world: Surroundings) -> Floats:
+    def best(self, world: NeighborView) -> Floats:
         """Return what is best for the only term."""
         if len(self.terms) != 1 or not self.terms[0][0] > 0.0:
             return super().best(world)
@@ -120,7 +120,7 @@ class Sum(VelocityCost):
         return " + ".join(str(cost) if weight == 1.0 else f"{weight:g} * {cost}" for weight, cost in self.terms)
 
 
-def suited(cost: VelocityCost) -> str:
+def suitable_optimiser(cost: VelocityCost) -> str:
     """Return the optimiser that suits a cost: for a sum of several, gradient when all are forces, else sampling.
 
     >>> from crowdbot.models.costs import GoalForce, PowerLawForce, PreferredVelocity
@@ -155,18 +155,18 @@ class Force(VelocityCost):
     natural: ClassVar[str] = "gradient"
 
     @abc.abstractmethod
-    def force(self, world: Surroundings) -> Floats:
+    def force(self, world: NeighborView) -> Floats:
         """Return the accelerations ``[N, 2]`` [m/s^2]."""
 
-    def value(self, world: Surroundings, candidates: Floats) -> Floats:
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
         """Return ``|v' - (v + F dt)|^2 / (2 dt)``."""
         to = self.best(world)
         return np.asarray(length(candidates - to[:, None]) ** 2 / (2.0 * world.dt))
 
-    def gradient(self, world: Surroundings, velocity: Floats) -> Floats:
+    def gradient(self, world: NeighborView, velocity: Floats) -> Floats:
         """Return ``(velocity - v) / dt - F``."""
         return np.asarray((velocity - world.velocity) / world.dt - self.force(world))
 
-    def best(self, world: Surroundings) -> Floats:
+    def best(self, world: NeighborView) -> Floats:
         """Return ``v + F dt``."""
         return np.asarray(world.velocity + world.dt * self.force(world))

@@ -24,10 +24,19 @@ from crowdbot.core import (
 )
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest
-from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    launch,
+    movable,
+    rows,
+    speed_limit,
+)
 
-from .parameter_rows import law_of, shortened
-from .wall_surfaces import Surfaces, at_corner, surfaces_of
+from .parameter_rows import limit_length, parameter_rows
+from .wall_surfaces import WallSurfaces, is_nearest_corner, wall_surfaces
 
 __all__ = ["Boids"]
 
@@ -156,7 +165,7 @@ def _from_walls(
         ox, oy = x - corner[c, 0], y - corner[c, 1]
         time = _nearest_time(ox, oy, vx, vy, ahead)
         px, py = _away(ox, oy, vx, vy, time, reach)
-        if (px != 0.0 or py != 0.0) and at_corner(corner, arm, first, c, x + vx * time, y + vy * time):
+        if (px != 0.0 or py != 0.0) and is_nearest_corner(corner, arm, first, c, x + vx * time, y + vy * time):
             ax, ay = ax + separation * px, ay + separation * py
     return ax, ay
 
@@ -195,7 +204,7 @@ def _as_simulator(
 
 @kernel(parallel=True)
 def _choose(
-    crowd: _Crowd, near: Neighbors, walls: Surfaces, segment: Floats, simulator: bool, dt: float, out: Floats
+    crowd: _Crowd, near: Neighbors, walls: WallSurfaces, segment: Floats, simulator: bool, dt: float, out: Floats
 ) -> None:
     """Choose the next velocity of every agent, row by row."""
     for part in prange((len(out) + CHUNK - 1) // CHUNK):
@@ -204,8 +213,8 @@ def _choose(
 
 @kernel
 def _choose_part(
-    begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Surfaces, segment: Floats, simulator: bool, dt: float,
-    out: Floats,
+    begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: WallSurfaces, segment: Floats, simulator: bool,
+    dt: float, out: Floats,
 ) -> None:  # fmt: skip
     # fields are taken out of the tuples here: inside the loop each access would count references
     place, velocity, desired, radius, top, walking, laws = crowd
@@ -230,8 +239,8 @@ def _choose_part(
             qx, qy = _from_walls(
                 place[row, 0], place[row, 1], vx, vy, radius[row], law[3], law[4], law[5], face, corner, arm, first
             )
-            ax, ay = shortened(ax + px + qx, ay + py + qy, law[9])
-        out[row, 0], out[row, 1] = shortened(vx + ax * dt, vy + ay * dt, top[row])
+            ax, ay = limit_length(ax + px + qx, ay + py + qy, law[9])
+        out[row, 0], out[row, 1] = limit_length(vx + ax * dt, vy + ay * dt, top[row])
 
 
 @dataclass(frozen=True)
@@ -306,7 +315,7 @@ class Boids(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = wishes(scene, dt), walkers(scene)
+        wish, walking = desired_velocity(scene, dt), movable(scene)
         simulator = self.variant == "crowdbot"
         seen = scene.active & scene.visible
         reach = per_agent(self.neighbor_distance, scene.shape, "neighbor_distance")
@@ -323,10 +332,10 @@ class Boids(CrowdModel):
             rows(scene.radius),
             rows(speed_limit(top, scene)),
             rows(walking),
-            law_of(self, LAW, scene.shape),
+            parameter_rows(self, LAW, scene.shape),
         )
         near = nearest(scene.position, reach, most, seen, walking)
-        walls = surfaces_of(scene.walls), np.ascontiguousarray(scene.walls.segments())
-        out = kept(scene)
-        spread(_choose, _choose_part, rows(out), crowd, near, *walls, simulator, float(dt))
+        walls = wall_surfaces(scene.walls), np.ascontiguousarray(scene.walls.segments())
+        out = initial_velocity(scene)
+        launch(_choose, _choose_part, rows(out), crowd, near, *walls, simulator, float(dt))
         return out

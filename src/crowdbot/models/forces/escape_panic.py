@@ -26,10 +26,18 @@ from crowdbot.core import (
 )
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest
-from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    movable,
+    rows,
+    speed_limit,
+)
 
-from .parameter_rows import law_of, shortened
-from .wall_surfaces import feel, surfaces_of
+from .parameter_rows import limit_length, parameter_rows
+from .wall_surfaces import surface_distance, wall_surfaces
 
 __all__ = ["EscapePanic"]
 
@@ -72,7 +80,7 @@ class _Walls(NamedTuple):
 
 
 @kernel
-def _squeeze(overlap: float, strength: float, distance: float, body: float) -> float:
+def _repulsion(overlap: float, strength: float, distance: float, body: float) -> float:
     """Return repulsion and body force [m/s^2] of discs that overlap by ``overlap`` [m], below 0 when they do not."""
     return strength * math.exp(min(overlap / distance, STEEPEST)) + body * max(0.0, overlap)
 
@@ -93,7 +101,7 @@ def _next_velocity(
         gap = math.sqrt(dx * dx + dy * dy)
         nx, ny = (dx / gap, dy / gap) if gap > 0.0 else (1.0 if row < other else -1.0, 0.0)
         overlap = own + radius[other] - gap
-        size = _squeeze(overlap, strength, distance, body)
+        size = _repulsion(overlap, strength, distance, body)
         ax, ay = ax + size * nx, ay + size * ny
         if overlap > 0.0:
             rate = friction * overlap
@@ -101,9 +109,9 @@ def _next_velocity(
             ax, ay = ax - slide * ny, ay + slide * nx
             xx, xy, yy = xx + rate * ny * ny, xy - rate * nx * ny, yy + rate * nx * nx
     for k in range(len(face) + len(corner)):
-        gap, nx, ny = feel(face, corner, arm, first, k, x, y, own + law[6])
+        gap, nx, ny = surface_distance(face, corner, arm, first, k, x, y, own + law[6])
         if gap < math.inf:
-            size = _squeeze(own - gap, strength, distance, body)
+            size = _repulsion(own - gap, strength, distance, body)
             rate = friction * max(0.0, own - gap)
             ax, ay = ax + size * nx, ay + size * ny
             xx, xy, yy = xx + rate * ny * ny, xy - rate * nx * ny, yy + rate * nx * nx
@@ -133,7 +141,7 @@ def _next_as_simulator(
         if overlap > 0.0 and not pressed:  # forget all who do not touch
             pressed = True
             ax, ay = (desired[row, 0] - vx) / relaxation, (desired[row, 1] - vy) / relaxation
-        size = _squeeze(overlap, strength, distance, body)
+        size = _repulsion(overlap, strength, distance, body)
         ax, ay = ax + size * dx, ay + size * dy
         if overlap > 0.0 and gap > 0.0:
             slide = friction * overlap * ((velocity[other, 1] - vy) * dx - (velocity[other, 0] - vx) * dy) / gap
@@ -145,7 +153,7 @@ def _next_as_simulator(
         if not 0.0 < gap < WALL_REACH * own:
             continue
         nx, ny = dx / gap, dy / gap
-        size = _squeeze(own - gap, strength, distance, body)
+        size = _repulsion(own - gap, strength, distance, body)
         slide = friction * max(0.0, own - gap) * (vx * ny - vy * nx)
         ax, ay = ax + size * nx - slide * ny, ay + size * ny + slide * nx
     return vx + h * ax, vy + h * ay
@@ -194,7 +202,7 @@ def _walk_part(
             x, y = _next_velocity(
                 row, a, mates, count, place, velocity, desired, radius, law, face, corner, arm, first, h
             )  # fmt: skip
-        after[row, 0], after[row, 1] = shortened(x, y, top[row])
+        after[row, 0], after[row, 1] = limit_length(x, y, top[row])
 
 
 @dataclass(frozen=True)
@@ -264,16 +272,16 @@ class EscapePanic(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the mean velocities ``[E, A, 2]`` [m/s] over the next ``dt`` [s]; ``rng`` is not used."""
-        return self._moved(scene, dt)[0]
+        return self._move_agents(scene, dt)[0]
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
         """Return the scene ``dt`` [s] later, which remembers the last velocities; ``rng`` is not used."""
-        mean, last = self._moved(scene, dt)
+        mean, last = self._move_agents(scene, dt)
         return scene.advanced(mean, dt).replace(memory={**scene.memory, MEMORY: last - mean})
 
-    def _moved(self, scene: Scene, dt: float) -> tuple[Floats, Floats]:
+    def _move_agents(self, scene: Scene, dt: float) -> tuple[Floats, Floats]:
         """Return the mean and the last velocities ``[E, A, 2]`` [m/s]."""
-        wish, walking = wishes(scene, dt), walkers(scene)
+        wish, walking = desired_velocity(scene, dt), movable(scene)
         simulator = self.variant == "crowdbot"
         steps = 1 if simulator else min(MOST_STEPS, max(1, math.ceil(dt / self.longest_step - 1e-9)))
         reach = per_agent(self.neighbor_distance, scene.shape, "neighbor_distance")
@@ -284,18 +292,18 @@ class EscapePanic(CrowdModel):
             rows(scene.radius),
             rows(top),
             rows(walking),
-            law_of(self, LAW, scene.shape),
+            parameter_rows(self, LAW, scene.shape),
         )
         near = nearest(scene.position, reach, most, scene.active & scene.visible, walking)
-        walls = _Walls(*surfaces_of(scene.walls), np.ascontiguousarray(scene.walls.segments()))
-        out = kept(scene)
-        velocity = np.where(walking[..., None], scene.velocity + _remembered(scene), out)
+        walls = _Walls(*wall_surfaces(scene.walls), np.ascontiguousarray(scene.walls.segments()))
+        out = initial_velocity(scene)
+        velocity = np.where(walking[..., None], scene.velocity + _memory(scene), out)
         place, after, total = scene.position.copy(), out.copy(), np.zeros_like(out)
         _walk(rows(place), rows(velocity), rows(after), rows(total), crowd, near, walls, simulator, steps, dt / steps)
         return np.where(walking[..., None], total / steps, out), velocity
 
 
-def _remembered(scene: Scene) -> Floats:
+def _memory(scene: Scene) -> Floats:
     """Return ``[E, A, 2]`` [m/s], what the last step has left in the memory of the scene."""
     excess = np.asarray(scene.memory.get(MEMORY, np.zeros_like(scene.velocity)), dtype=np.float64)
     if excess.shape != scene.velocity.shape or not np.all(np.isfinite(excess[scene.active])):

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Scene, kernel
 
-__all__ = ["Groups", "bond", "bond_as_package", "groups_of"]
+__all__ = ["Groups", "group_acceleration", "groups_of", "pysocialforce_group_acceleration"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -47,7 +47,7 @@ def groups_of(scene: Scene) -> Groups:
 
 
 @kernel
-def bond(
+def group_acceleration(
     row: int, begin: int, end: int, member: Ints, seen: NDArray[np.bool_], place: Floats, velocity: Floats,
     gaze: float, view_angle: float, cohesion: float, repulsion: float, apart: float,
 ) -> tuple[float, float]:  # fmt: skip
@@ -80,7 +80,7 @@ def bond(
 
 
 @kernel
-def bond_as_package(
+def pysocialforce_group_acceleration(
     row: int, begin: int, end: int, member: Ints, seen: NDArray[np.bool_], place: Floats, heading: Floats,
     repulsion: float, apart: float,
 ) -> tuple[float, float]:  # fmt: skip

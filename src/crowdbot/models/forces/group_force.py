@@ -23,11 +23,20 @@ from crowdbot.core import (
     per_agent,
 )
 from crowdbot.core.neighbors import nearest
-from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    launch,
+    movable,
+    rows,
+    speed_limit,
+)
 
-from .group_cohesion import Groups, bond, bond_as_package, groups_of
-from .parameter_rows import law_of, shortened
-from .wall_surfaces import feel, surfaces_of
+from .group_cohesion import Groups, group_acceleration, groups_of, pysocialforce_group_acceleration
+from .parameter_rows import limit_length, parameter_rows
+from .wall_surfaces import surface_distance, wall_surfaces
 
 __all__ = ["GroupForce"]
 
@@ -188,16 +197,16 @@ def _choose_part(
         ay = (desired[row, 1] - vy) / law[7] + law[0] * fy
         if package:
             px, py = _from_points(x, y, law[5], law[6], segment)
-            qx, qy = bond_as_package(
+            qx, qy = pysocialforce_group_acceleration(
                 row, begin[row], end[row], member, seen, place, heading, law[11], law[12]
             )  # fmt: skip
         else:
             px, py = _from_surfaces(x, y, radius[row], law[5], law[6], law[13], face, corner, arm, first)
-            qx, qy = bond(
+            qx, qy = group_acceleration(
                 row, begin[row], end[row], member, seen, place, velocity, law[8], law[9], law[10], law[11], law[12]
             )
         ax, ay = ax + px + qx, ay + py + qy
-        out[row, 0], out[row, 1] = shortened(vx + dt * ax, vy + dt * ay, top[row])
+        out[row, 0], out[row, 1] = limit_length(vx + dt * ax, vy + dt * ay, top[row])
 
 
 @kernel
@@ -208,7 +217,7 @@ def _from_surfaces(
     """Return the acceleration by walls, which falls off with the clearance of the body."""
     ax = ay = 0.0
     for k in range(len(face) + len(corner)):
-        gap, nx, ny = feel(face, corner, arm, first, k, x, y, radius + sight)
+        gap, nx, ny = surface_distance(face, corner, arm, first, k, x, y, radius + sight)
         if gap < math.inf:
             size = strength * math.exp(min((radius - gap) / distance, STEEPEST))
             ax, ay = ax + size * nx, ay + size * ny
@@ -291,7 +300,7 @@ class GroupForce(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = wishes(scene, dt), walkers(scene)
+        wish, walking = desired_velocity(scene, dt), movable(scene)
         package = self.variant == "pysocialforce"
         top = speed_limit(self.max_speed, scene)
         heading = _heading(scene, wish)
@@ -305,15 +314,15 @@ class GroupForce(CrowdModel):
             rows(top),
             rows(walking),
             rows(seen),
-            law_of(self, LAW, scene.shape),
+            parameter_rows(self, LAW, scene.shape),
         )
         most = np.rint(per_agent(0.0 if package else self.max_neighbors, scene.shape, "max_neighbors"))
         near = nearest(
             scene.position, per_agent(self.neighbor_distance, scene.shape, "neighbor_distance"), most, seen, walking
         )
-        walls = _Walls(*surfaces_of(scene.walls), np.ascontiguousarray(scene.walls.segments()))
-        out = kept(scene)
-        spread(_choose, _choose_part, rows(out), crowd, near, groups_of(scene), walls, package, float(dt))
+        walls = _Walls(*wall_surfaces(scene.walls), np.ascontiguousarray(scene.walls.segments()))
+        out = initial_velocity(scene)
+        launch(_choose, _choose_part, rows(out), crowd, near, groups_of(scene), walls, package, float(dt))
         return out
 
 

@@ -11,19 +11,19 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel, per_agent
 
-__all__ = ["law_of", "shortened"]
+__all__ = ["limit_length", "parameter_rows"]
 
 Floats = NDArray[np.float64]
 
 
-def law_of(model: Any, names: Sequence[str], shape: tuple[int, int]) -> Floats:
+def parameter_rows(model: Any, names: Sequence[str], shape: tuple[int, int]) -> Floats:
     """Return the parameters ``names`` of a model as ``[E * A, N]``, or ``[1, N]`` when they are the same for all.
 
     Raises:
         InputError: a parameter does not broadcast to ``shape`` [E, A].
 
     >>> from types import SimpleNamespace
-    >>> law_of(SimpleNamespace(a=1.0, b=np.array([2.0, 3.0])), ["a", "b"], (1, 2)).tolist()
+    >>> parameter_rows(SimpleNamespace(a=1.0, b=np.array([2.0, 3.0])), ["a", "b"], (1, 2)).tolist()
     [[1.0, 2.0], [1.0, 3.0]]
     """
     values = [getattr(model, name) for name in names]
@@ -34,7 +34,7 @@ def law_of(model: Any, names: Sequence[str], shape: tuple[int, int]) -> Floats:
 
 
 @kernel
-def shortened(x: float, y: float, longest: float) -> tuple[float, float]:
+def limit_length(x: float, y: float, longest: float) -> tuple[float, float]:
     """Return the vector x, y, not longer than ``longest``."""
     length = math.sqrt(x * x + y * y)
     if length <= longest:

@@ -14,17 +14,17 @@ from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, para
 from crowdbot.models.model import (
     CrowdModel,
     check_limit,
-    kept,
+    desired_velocity,
+    initial_velocity,
+    launch,
+    movable,
     neighbors_of,
     rows,
     speed_limit,
-    spread,
-    walkers,
-    wishes,
 )
 
-from .parameter_rows import law_of, shortened
-from .wall_surfaces import Surfaces, at_corner, surfaces_of
+from .parameter_rows import limit_length, parameter_rows
+from .wall_surfaces import WallSurfaces, is_nearest_corner, wall_surfaces
 
 __all__ = ["PowerLaw"]
 
@@ -112,14 +112,16 @@ def _from_face(
 
 
 @kernel(parallel=True)
-def _choose(crowd: _Crowd, near: Neighbors, walls: Surfaces, dt: float, out: Floats) -> None:
+def _choose(crowd: _Crowd, near: Neighbors, walls: WallSurfaces, dt: float, out: Floats) -> None:
     """Choose the next velocity of every agent, row by row."""
     for part in prange((len(out) + CHUNK - 1) // CHUNK):
         _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, walls, dt, out)
 
 
 @kernel
-def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Surfaces, dt: float, out: Floats) -> None:
+def _choose_part(
+    begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: WallSurfaces, dt: float, out: Floats
+) -> None:
     # fields are taken out of the tuples here: inside the loop each access would count references
     place, velocity, desired, radius, top, walking, law = crowd
     agent, number, order = near
@@ -146,10 +148,10 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Su
             ax, ay = ax + fx, ay + fy
         for c in range(len(corner)):
             fx, fy, time = _from_disc(x - corner[c, 0], y - corner[c, 1], vx, vy, radius[row], k, m, t)
-            if time < math.inf and at_corner(corner, arm, first, c, x + vx * time, y + vy * time):
+            if time < math.inf and is_nearest_corner(corner, arm, first, c, x + vx * time, y + vy * time):
                 ax, ay = ax + fx, ay + fy
-        ax, ay = shortened(ax, ay, most)
-        out[row, 0], out[row, 1] = shortened(vx + ax * dt, vy + ay * dt, top[row])
+        ax, ay = limit_length(ax, ay, most)
+        out[row, 0], out[row, 1] = limit_length(vx + ax * dt, vy + ay * dt, top[row])
 
 
 @dataclass(frozen=True)
@@ -215,7 +217,7 @@ class PowerLaw(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = wishes(scene, dt), walkers(scene)
+        wish, walking = desired_velocity(scene, dt), movable(scene)
         near = neighbors_of(self, scene, walking)
         crowd = _Crowd(
             rows(scene.position),
@@ -224,8 +226,8 @@ class PowerLaw(CrowdModel):
             rows(scene.radius),
             rows(speed_limit(self.max_speed, scene)),
             rows(walking),
-            law_of(self, LAW, scene.shape),
+            parameter_rows(self, LAW, scene.shape),
         )
-        out = kept(scene)
-        spread(_choose, _choose_part, rows(out), crowd, near, surfaces_of(scene.walls), float(dt))
+        out = initial_velocity(scene)
+        launch(_choose, _choose_part, rows(out), crowd, near, wall_surfaces(scene.walls), float(dt))
         return out

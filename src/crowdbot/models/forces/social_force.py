@@ -26,13 +26,13 @@ from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.models.model import (
     CrowdModel,
     check_limit,
-    kept,
+    desired_velocity,
+    initial_velocity,
+    launch,
+    movable,
     neighbors_of,
     rows,
     speed_limit,
-    spread,
-    walkers,
-    wishes,
 )
 
 __all__ = ["SocialForce"]
@@ -168,7 +168,7 @@ def _by_walls(x: float, y: float, ex: float, ey: float, law: Floats, segments: F
 
 
 @kernel
-def _capped(x: float, y: float, most: float) -> tuple[float, float]:
+def _limit_length(x: float, y: float, most: float) -> tuple[float, float]:
     """Return a vector no longer than ``most``."""
     length = math.sqrt(x * x + y * y)
     if length <= most:
@@ -208,8 +208,8 @@ def _choose_part(
         ax, ay = ax + wx + (px - vx) / law[5], ay + wy + (py - vy) / law[5]
         if umans and still:  # the library stops whoever has arrived
             ax, ay = -vx / dt, -vy / dt
-        ax, ay = _capped(ax, ay, law[9])
-        vx, vy = _capped(vx + ax * dt, vy + ay * dt, top[row])
+        ax, ay = _limit_length(ax, ay, law[9])
+        vx, vy = _limit_length(vx + ax * dt, vy + ay * dt, top[row])
         out[row, 0] = vx + UMANS_CONTACT * push_x * dt
         out[row, 1] = vy + UMANS_CONTACT * push_y * dt
 
@@ -284,7 +284,7 @@ class SocialForce(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = wishes(scene, dt), walkers(scene)
+        wish, walking = desired_velocity(scene, dt), movable(scene)
         umans = self.variant == "umans2018"
         if umans and scene.preferred_velocity is None:  # there one has arrived when the goal is under the own disc
             away = scene.goal - scene.position
@@ -299,8 +299,8 @@ class SocialForce(CrowdModel):
             rows(walking),
             self._law(scene.shape),
         )
-        out = kept(scene)
-        spread(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments(), umans, float(dt))
+        out = initial_velocity(scene)
+        launch(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments(), umans, float(dt))
         return out
 
     def _law(self, shape: tuple[int, int]) -> Floats:

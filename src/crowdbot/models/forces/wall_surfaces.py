@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Walls, kernel
 
-__all__ = ["Surfaces", "at_corner", "feel", "surfaces_of"]
+__all__ = ["WallSurfaces", "is_nearest_corner", "surface_distance", "wall_surfaces"]
 
 Floats = NDArray[np.float64]
 
 
-class Surfaces(NamedTuple):
+class WallSurfaces(NamedTuple):
     """Faces and corners of walls."""
 
     face: Floats
@@ -32,10 +32,10 @@ class Surfaces(NamedTuple):
     """``[C + 1]``."""
 
 
-def surfaces_of(walls: Walls) -> Surfaces:
+def wall_surfaces(walls: Walls) -> WallSurfaces:
     """Return the faces of ``walls``, and the corners that stick out into free space.
 
-    >>> wall = surfaces_of(Walls.of([[(0, 0), (2, 0)], [(2, 0), (4, 0)]]))
+    >>> wall = wall_surfaces(Walls.of([[(0, 0), (2, 0)], [(2, 0), (4, 0)]]))
     >>> len(wall.face), wall.corner.tolist()
     (4, [[0.0, 0.0], [2.0, 0.0], [4.0, 0.0]])
     """
@@ -49,7 +49,7 @@ def surfaces_of(walls: Walls) -> Surfaces:
     order = np.argsort(which, kind="stable")
     order = order[out[which[order]]]
     count = np.bincount(which, minlength=len(corner))[out]
-    return Surfaces(
+    return WallSurfaces(
         np.ascontiguousarray(np.concatenate([walls.start, walls.end, direction], axis=1)),
         np.ascontiguousarray(corner[out]),
         np.ascontiguousarray(np.concatenate([direction, -direction])[order]),
@@ -58,7 +58,7 @@ def surfaces_of(walls: Walls) -> Surfaces:
 
 
 @kernel
-def at_corner(corner: Floats, arm: Floats, first: NDArray[np.int64], c: int, x: float, y: float) -> bool:
+def is_nearest_corner(corner: Floats, arm: Floats, first: NDArray[np.int64], c: int, x: float, y: float) -> bool:
     """Return whether corner c is nearer to x, y than the rest of all edges that meet there."""
     dx, dy = x - corner[c, 0], y - corner[c, 1]
     near = True
@@ -68,7 +68,7 @@ def at_corner(corner: Floats, arm: Floats, first: NDArray[np.int64], c: int, x: 
 
 
 @kernel
-def feel(
+def surface_distance(
     face: Floats, corner: Floats, arm: Floats, first: NDArray[np.int64], k: int, x: float, y: float, reach: float
 ) -> tuple[float, float, float]:
     """Return distance and unit normal of surface k, faces first, at x, y; inf when it is not felt within ``reach``."""
@@ -84,6 +84,6 @@ def feel(
     c = k - len(face)
     dx, dy = x - corner[c, 0], y - corner[c, 1]
     distance = math.sqrt(dx * dx + dy * dy)
-    if 0.0 < distance < reach and at_corner(corner, arm, first, c, x, y):
+    if 0.0 < distance < reach and is_nearest_corner(corner, arm, first, c, x, y):
         return distance, dx / distance, dy / distance
     return math.inf, 0.0, 0.0

@@ -13,7 +13,16 @@ from numpy.typing import NDArray
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest
-from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    launch,
+    movable,
+    rows,
+    speed_limit,
+)
 
 from .collision_free_speed import is_hidden, way_to, within
 
@@ -236,7 +245,7 @@ class AnticipationVelocity(CrowdModel):
         return scene.advanced(velocity, dt).replace(heading=heading)
 
     def _move(self, scene: Scene, dt: float, rng: np.random.Generator | None) -> tuple[Floats, Floats]:
-        wish, walking = wishes(scene, dt), walkers(scene)
+        wish, walking = desired_velocity(scene, dt), movable(scene)
 
         def value(name: str) -> Floats:
             return per_agent(getattr(self, name), scene.shape, name)
@@ -266,6 +275,6 @@ class AnticipationVelocity(CrowdModel):
             rows(shuffle),
             rows(walking),
         )
-        out, heading = kept(scene), scene.heading.copy()
-        spread(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments(), float(dt), rows(heading))
+        out, heading = initial_velocity(scene), scene.heading.copy()
+        launch(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments(), float(dt), rows(heading))
         return out, heading

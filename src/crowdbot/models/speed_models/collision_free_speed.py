@@ -13,7 +13,16 @@ from numpy.typing import NDArray
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest
-from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, spread, walkers, wishes
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    launch,
+    movable,
+    rows,
+    speed_limit,
+)
 
 __all__ = ["CollisionFreeSpeed", "is_hidden", "way_to", "within"]
 
@@ -186,7 +195,7 @@ class CollisionFreeSpeed(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = wishes(scene, dt), walkers(scene)
+        wish, walking = desired_velocity(scene, dt), movable(scene)
 
         def value(name: str) -> Floats:
             return per_agent(getattr(self, name), scene.shape, name)
@@ -207,6 +216,6 @@ class CollisionFreeSpeed(CrowdModel):
             rows(value("neighbor_distance")),
             rows(walking),
         )
-        out = kept(scene)
-        spread(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments())
+        out = initial_velocity(scene)
+        launch(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments())
         return out

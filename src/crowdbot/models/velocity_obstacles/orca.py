@@ -13,13 +13,13 @@ from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, para
 from crowdbot.models.model import (
     CrowdModel,
     check_limit,
-    kept,
+    desired_velocity,
+    initial_velocity,
+    launch,
+    movable,
     neighbors_of,
     rows,
     speed_limit,
-    spread,
-    walkers,
-    wishes,
 )
 
 from .linear_program import best_velocity
@@ -138,7 +138,7 @@ class ORCA(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = wishes(scene, dt), walkers(scene)
+        wish, walking = desired_velocity(scene, dt), movable(scene)
         near = neighbors_of(self, scene, walking)
         crowd = _Crowd(
             rows(scene.position),
@@ -151,6 +151,6 @@ class ORCA(CrowdModel):
             rows(scene.external),
             rows(walking),
         )
-        out = kept(scene)
-        spread(_choose, _choose_part, rows(out), crowd, near, edges_of(scene.walls), float(dt))
+        out = initial_velocity(scene)
+        launch(_choose, _choose_part, rows(out), crowd, near, edges_of(scene.walls), float(dt))
         return out

@@ -13,7 +13,15 @@ from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
 from crowdbot.core.neighbors import nearest
-from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    movable,
+    rows,
+    speed_limit,
+)
 
 from .vog_cost import CONE, FELLOW, collision, companion, cone, fellowship, own_way, walls_near
 
@@ -237,7 +245,7 @@ def _choose_part(
             if lowest == 0.0:
                 break
             count = _sample_around(samples, best)
-        out[row, 0], out[row, 1], out[row, 2] = _settled(bx, by, vx, vy, top[row], calm[row])
+        out[row, 0], out[row, 1], out[row, 2] = _slow_down(bx, by, vx, vy, top[row], calm[row])
 
 
 @kernel
@@ -258,7 +266,7 @@ def _walking_direction(px: float, py: float, qx: float, qy: float, vx: float, vy
 
 
 @kernel
-def _settled(x: float, y: float, vx: float, vy: float, top: float, calm: float) -> tuple[float, float, float]:
+def _slow_down(x: float, y: float, vx: float, vy: float, top: float, calm: float) -> tuple[float, float, float]:
     """Return the chosen velocity, slow ones as 0 and fast ones as ``top``, and how calm the agent is after it."""
     speed = math.sqrt(x * x + y * y)
     if speed < SLOW:
@@ -340,7 +348,7 @@ class VOG(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        return self._chosen(scene, dt)[..., :2]
+        return self._choose_velocity(scene, dt)[..., :2]
 
     @property
     def memory_at_start(self) -> Mapping[str, float]:
@@ -349,12 +357,12 @@ class VOG(CrowdModel):
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
         """Return the scene ``dt`` [s] later, which remembers how calm everyone is as ``vog_calm``."""
-        out = self._chosen(scene, dt)
-        calm = np.where(walkers(scene), out[..., 2] + 10.0 * dt, CALM)
+        out = self._choose_velocity(scene, dt)
+        calm = np.where(movable(scene), out[..., 2] + 10.0 * dt, CALM)
         return scene.advanced(out[..., :2], dt).replace(memory={**scene.memory, MEMORY: calm})
 
-    def _chosen(self, scene: Scene, dt: float) -> Floats:
-        wish, walking = wishes(scene, dt), walkers(scene)
+    def _choose_velocity(self, scene: Scene, dt: float) -> Floats:
+        wish, walking = desired_velocity(scene, dt), movable(scene)
 
         def each(name: str) -> Floats:
             return per_agent(getattr(self, name), scene.shape, name)
@@ -372,7 +380,7 @@ class VOG(CrowdModel):
             rows(each("closeness")),
         )  # fmt: skip
         out = np.zeros((*scene.shape, 3))
-        out[..., :2] = kept(scene)
+        out[..., :2] = initial_velocity(scene)
         _choose(crowd, near, _groups(scene.group, seen), scene.walls.segments(), rows(out))
         return out
 

@@ -15,13 +15,13 @@ from crowdbot.core.geometry import nearest_on_segment, ray_to_disc, time_to_segm
 from crowdbot.models.model import (
     CrowdModel,
     check_limit,
-    kept,
+    desired_velocity,
+    initial_velocity,
+    launch,
+    movable,
     neighbors_of,
     rows,
     speed_limit,
-    spread,
-    walkers,
-    wishes,
 )
 
 __all__ = ["Heuristics"]
@@ -266,7 +266,7 @@ class Heuristics(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = wishes(scene, dt), walkers(scene)
+        wish, walking = desired_velocity(scene, dt), movable(scene)
         near = neighbors_of(self, scene, walking)
         relaxation = np.maximum(per_agent(self.relaxation_time, scene.shape, "relaxation_time"), dt)
         stiffness = np.minimum(per_agent(self.contact_stiffness, scene.shape, "contact_stiffness"), 1.0 / dt**2)
@@ -282,6 +282,6 @@ class Heuristics(CrowdModel):
             rows(stiffness),
             rows(walking),
         )
-        out = kept(scene)
-        spread(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments(), float(dt))
+        out = initial_velocity(scene)
+        launch(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments(), float(dt))
         return out

@@ -12,7 +12,15 @@ from numpy.typing import NDArray
 
 from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
 from crowdbot.core.neighbors import nearest
-from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    movable,
+    rows,
+    speed_limit,
+)
 
 from .tangent_threats import MOST, RETREAT, THREAT, insert, least_change, retreat, threat_of_neighbor, threat_of_wall
 
@@ -91,7 +99,9 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Fl
             if count > 0:
                 tx, ty = least_change(threats, count, lines, best, bx, by, comfort[row], top[row])
                 break
-        out[row, 0], out[row, 1] = _changed(vx, vy, tx, ty, comfort[row] * dt, top[row], remaining[row] / RETREAT)
+        out[row, 0], out[row, 1] = _change_velocity(
+            vx, vy, tx, ty, comfort[row] * dt, top[row], remaining[row] / RETREAT
+        )
 
 
 @kernel
@@ -108,7 +118,7 @@ def _first_inside(
 
 
 @kernel
-def _changed(
+def _change_velocity(
     vx: float, vy: float, tx: float, ty: float, most: float, top: float, arriving: float
 ) -> tuple[float, float]:
     """Return the velocity on the way to its target, limited in change, in speed and near the goal."""
@@ -182,7 +192,7 @@ class Tangent(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
-        wish, walking = wishes(scene, dt), walkers(scene)
+        wish, walking = desired_velocity(scene, dt), movable(scene)
 
         def each(name: str) -> Floats:
             return per_agent(getattr(self, name), scene.shape, name)
@@ -199,7 +209,7 @@ class Tangent(CrowdModel):
             rows(speed_limit(self.max_speed, scene)), rows(reaction), rows(each("time_horizon")),
             rows(each("wall_horizon")), rows(scene.external), rows(walking),
         )  # fmt: skip
-        out = kept(scene)
+        out = initial_velocity(scene)
         _choose(crowd, near, scene.walls.segments(), float(dt), rows(out))
         return out
 

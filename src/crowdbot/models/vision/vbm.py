@@ -24,7 +24,15 @@ from crowdbot.core import (
 )
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest
-from crowdbot.models.model import CrowdModel, check_limit, kept, rows, speed_limit, walkers, wishes
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    movable,
+    rows,
+    speed_limit,
+)
 
 __all__ = ["VBM"]
 
@@ -360,17 +368,17 @@ class VBM(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` varies the push aside."""
-        return self._chosen(scene, dt, rng)[..., :2]
+        return self._choose_velocity(scene, dt, rng)[..., :2]
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
         """Return the scene ``dt`` [s] later; standing agents turn, too."""
-        out = self._chosen(scene, dt, rng)
+        out = self._choose_velocity(scene, dt, rng)
         after = scene.advanced(out[..., :2], dt)
-        turned = np.where(walkers(scene), np.arctan2(out[..., 3], out[..., 2]), after.heading)
+        turned = np.where(movable(scene), np.arctan2(out[..., 3], out[..., 2]), after.heading)
         return after.replace(heading=turned)
 
-    def _chosen(self, scene: Scene, dt: float, rng: np.random.Generator | None) -> Floats:
-        wish, walking = wishes(scene, dt), walkers(scene)
+    def _choose_velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None) -> Floats:
+        wish, walking = desired_velocity(scene, dt), movable(scene)
 
         def each(name: str) -> Floats:
             return rows(per_agent(getattr(self, name), scene.shape, name))
@@ -392,7 +400,7 @@ class VBM(CrowdModel):
         angle = np.linspace(-0.5 * FIELD, 0.5 * FIELD, self.rays if field else FAN)
         luck = np.full(scene.shape, 0.5) if rng is None else rng.random(scene.shape)
         out = np.zeros((*scene.shape, 4))
-        out[..., :2] = kept(scene)
+        out[..., :2] = initial_velocity(scene)
         walls = scene.walls.segments()
         _choose(crowd, seen, walls, np.stack([np.sin(angle), np.cos(angle)]), field, rows(luck), float(dt), rows(out))
         return out
