@@ -11,7 +11,7 @@ from crowdbot.core import InputError, check_parameters, parameter
 from crowdbot.data import Windows, steady_velocity
 
 from .goal import Goal
-from .headings import ahead
+from .headings import extrapolate
 
 __all__ = ["CurrentDirection"]
 
@@ -47,7 +47,7 @@ class CurrentDirection(Goal):
 
     def resolve(self, past: Windows) -> Floats:
         """Return the goals ``[W, A, 2]`` [m]; 0 for people who are not present at the last observed step."""
-        return ahead(past.position[:, -1], past.present[:, -1], self.velocity(past), self.horizon)
+        return extrapolate(past.position[:, -1], past.present[:, -1], self.velocity(past), self.horizon)
 
     def velocity(self, past: Windows) -> Floats:
         """Return the averaged velocity ``[W, A, 2]`` [m/s], see :meth:`Goal.velocity`."""

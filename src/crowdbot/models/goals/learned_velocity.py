@@ -40,7 +40,7 @@ class LearnedVelocity:
     dt: float
 
     @classmethod
-    def learned(cls, recordings: tuple[Trajectories, ...], observe: int = 8, lookahead: float = 1.6) -> Self:
+    def learn(cls, recordings: tuple[Trajectories, ...], observe: int = 8, lookahead: float = 1.6) -> Self:
         """Return what recordings of one place teach.
 
         Args:
@@ -52,10 +52,10 @@ class LearnedVelocity:
             InputError: no recording is given, they are in pixels or differ in time step, or a value is not allowed.
             DataError: a recording has no window that is long enough.
         """
-        return cls.fitted(pairs_of(recordings, observe, lookahead))
+        return cls.fit(pairs_of(recordings, observe, lookahead))
 
     @classmethod
-    def fitted(cls, pairs: list[tuple[Windows, Windows]]) -> Self:
+    def fit(cls, pairs: list[tuple[Windows, Windows]]) -> Self:
         """Return the weights that suit the people who are scored in pairs of past and future."""
         most = pairs[0][0].position.shape[1] - 1
         weight = np.zeros((most, most))
