@@ -10,10 +10,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from crowdbot.benchmark import Result, Study, plot_errors
+from crowdbot.benchmark import Evaluation, PredictorResult, plot_errors
 from crowdbot.data import Recording
 from crowdbot.models.goals import CurrentDirection
-from crowdbot.prediction import ConstantVelocity, Kalman, Recipe, Simulated
+from crowdbot.prediction import ConstantVelocity, Kalman, PredictorSpec, Simulated
 
 MODELS = ("orca", "social-force", "power-law", "boids")
 COSTS = ("absolute", "inter-pedestrian", "progressive")
@@ -58,11 +58,11 @@ def _report(shared: Path, folder: Path) -> str:
             str(shared / "hermes/Corridor-2D/bo-360-090-090.txt"), step=0.2, observe=5, predict=5, every=8
         ),
     )  # fmt: skip
-    recipes = [Recipe(predictor) for predictor in (*VARIANTS, Kalman())]
+    specs = [PredictorSpec(predictor) for predictor in (*VARIANTS, Kalman())]
     for model, cost, search, goal in itertools.product(MODELS, COSTS, SEARCHES, GOALS):
         crowd = Simulated(model, CurrentDirection(), cost, search, BUDGET)
-        recipes.append(Recipe(crowd, goal if goal == "ground-truth" else None))
-    results = _run(Study(recordings, tuple(recipes)), folder, "report")
+        specs.append(PredictorSpec(crowd, goal if goal == "ground-truth" else None))
+    results = _run(Evaluation(recordings, tuple(specs)), folder, "report")
     lines = ["![ADE of every scheme and baseline](schemes/report.png)\n"]
     for recording in recordings:
         own = [one for one in results if one.recording is recording]
@@ -70,13 +70,13 @@ def _report(shared: Path, folder: Path) -> str:
     return "\n".join(lines)
 
 
-def _summary(results: Sequence[Result]) -> list[str]:
+def _summary(results: Sequence[PredictorResult]) -> list[str]:
     """Say which scheme beats the best baseline, and give the table model x cost with the best search of each goal."""
     base = min((one for one in results if not one.frames.calibrated), key=lambda one: one.score.ade)
-    real = [one for one in results if one.frames.calibrated and one.recipe.goal != "ground-truth"]
+    real = [one for one in results if one.frames.calibrated and one.spec.goal != "ground-truth"]
     best = min(real, key=lambda one: one.score.ade)
     beaten = [one for one in real if one.score.ade < base.score.ade]
-    oracle = min((one for one in results if one.recipe.goal == "ground-truth"), key=lambda one: one.score.ade)
+    oracle = min((one for one in results if one.spec.goal == "ground-truth"), key=lambda one: one.score.ade)
     away, (low, high) = best.score.difference(base.score)
     lines = [
         f"{base.score.persons} persons in {base.score.windows} windows. The best baseline is {base.label}"
@@ -126,34 +126,34 @@ def _learned(shared: Path, folder: Path) -> str:
     def scheme(model: str = "orca") -> Simulated:
         return Simulated(model, CurrentDirection(), "progressive", "genetic", BUDGET)
 
-    made: dict[str, Recipe] = {f"cv, mean of {one.displacements}": Recipe(one) for one in VARIANTS}
+    made: dict[str, PredictorSpec] = {f"cv, mean of {one.displacements}": PredictorSpec(one) for one in VARIANTS}
     made |= {
-        "Kalman": Recipe(Kalman()),
-        "ORCA, current direction, as given": Recipe(Simulated("orca")),
-        "ORCA, current direction, each": Recipe(scheme()),
-        "ORCA, layout, each": Recipe(scheme(), "environment-layout"),
-        "ORCA, learned, as given": Recipe(Simulated("orca"), "learned-destinations"),
-        "ORCA, learned, each": Recipe(scheme(), "learned-destinations"),
-        "ORCA, learned, prior": Recipe(scheme(), "learned-destinations", prior=True),
-        "ORCA, learned, shared": Recipe(scheme(), "learned-destinations", shared=True),
-        "SocialForce, learned, shared": Recipe(scheme("social-force"), "learned-destinations", shared=True),
-        "PowerLaw, learned, shared": Recipe(scheme("power-law"), "learned-destinations", shared=True),
+        "Kalman": PredictorSpec(Kalman()),
+        "ORCA, current direction, as given": PredictorSpec(Simulated("orca")),
+        "ORCA, current direction, each": PredictorSpec(scheme()),
+        "ORCA, layout, each": PredictorSpec(scheme(), "environment-layout"),
+        "ORCA, learned, as given": PredictorSpec(Simulated("orca"), "learned-destinations"),
+        "ORCA, learned, each": PredictorSpec(scheme(), "learned-destinations"),
+        "ORCA, learned, prior": PredictorSpec(scheme(), "learned-destinations", prior=True),
+        "ORCA, learned, shared": PredictorSpec(scheme(), "learned-destinations", shared=True),
+        "SocialForce, learned, shared": PredictorSpec(scheme("social-force"), "learned-destinations", shared=True),
+        "PowerLaw, learned, shared": PredictorSpec(scheme("power-law"), "learned-destinations", shared=True),
     }
-    results = _run(Study(recordings, tuple(made.values())), folder, "learned")
-    found = {(one.recording.path, one.recipe.name): one for one in results}
+    results = _run(Evaluation(recordings, tuple(made.values())), folder, "learned")
+    found = {(one.recording.path, one.spec.name): one for one in results}
     lines = [LEARNED.format(budget=BUDGET), "| | " + " | ".join(PLACES) + " |", "|---" * (len(PLACES) + 1) + "|"]
-    for label, recipe in made.items():
-        cells = [_cell(found[recording.path, recipe.name]) for recording in recordings]
+    for label, spec in made.items():
+        cells = [_cell(found[recording.path, spec.name]) for recording in recordings]
         lines.append(f"| {label} | " + " | ".join(cells) + " |")
     return "\n".join([*lines, "", *_verdicts(recordings, made, found)])
 
 
-def _cell(result: Result) -> str:
+def _cell(result: PredictorResult) -> str:
     return f"{result.score.ade:.4f} ({100.0 * result.score.collisions:.1f} %)"
 
 
 def _verdicts(
-    recordings: Sequence[Recording], made: dict[str, Recipe], found: dict[tuple[str, str], Result]
+    recordings: Sequence[Recording], made: dict[str, PredictorSpec], found: dict[tuple[str, str], PredictorResult]
 ) -> list[str]:
     """Say for each scheme on how many recordings it beats the best constant velocity, and whether collisions fell."""
     lines = [
@@ -161,12 +161,12 @@ def _verdicts(
         "|---|---|---|",
     ]
     variants = [made[f"cv, mean of {one.displacements}"].name for one in VARIANTS]
-    for label, recipe in made.items():
-        if not isinstance(recipe.predictor, Simulated):
+    for label, spec in made.items():
+        if not isinstance(spec.predictor, Simulated):
             continue
         better, fewer = [], 0
         for (place, _), recording in zip(PLACES.items(), recordings, strict=True):
-            one = found[recording.path, recipe.name].score
+            one = found[recording.path, spec.name].score
             best = min((found[recording.path, name].score for name in variants), key=lambda score: score.ade)
             away, (_, high) = one.difference(best)
             better += [f"{place}{' (95 %)' if high < 0.0 else ''}"] if away < 0.0 else []
@@ -176,13 +176,13 @@ def _verdicts(
     return [*lines, "", "(95 %): the interval of the difference, drawn by person, lies below 0.", ""]
 
 
-def _run(study: Study, folder: Path, name: str) -> list[Result]:
+def _run(evaluation: Evaluation, folder: Path, name: str) -> list[PredictorResult]:
     done = []
-    pieces = len(study.pieces())
-    for piece, part in study.run(keep=Path("build/schemes")):
-        done.append((piece, part))
-        print(f"\r{name}: {len(done)} of {pieces}", end="", file=sys.stderr, flush=True)
-    results = study.results(done)
+    jobs = len(evaluation.jobs())
+    for job, part in evaluation.run(keep=Path("build/schemes")):
+        done.append((job, part))
+        print(f"\r{name}: {len(done)} of {jobs}", end="", file=sys.stderr, flush=True)
+    results = evaluation.results(done)
     plot_errors(results, folder / f"{name}.png")
     return results
 

@@ -157,8 +157,8 @@ def test_sampled_constant_velocity_is_the_known_floor(recorded: Recorded) -> Non
 
 @pytest.mark.parametrize("scene", COLLISIONS)
 def test_share_of_people_that_constant_velocity_lets_collide_and_who_truly_did(recorded: Recorded, scene: str) -> None:
-    predicted, true = COLLISIONS[scene]
-    assert scored(recorded, scene, ConstantVelocity()).collisions == near(predicted)
+    run_job, true = COLLISIONS[scene]
+    assert scored(recorded, scene, ConstantVelocity()).collisions == near(run_job)
     hit, people = 0.0, 0
     for name in SCENES[scene]:
         _, future = recorded(name).windows(observe=8, predict=12, protocol="sgan")

@@ -11,7 +11,7 @@ import pytest
 from crowdbot.core import InputError, stream
 from crowdbot.data import Windows
 from crowdbot.prediction import SocialWays
-from crowdbot.prediction.joint_futures import kept_apart
+from crowdbot.prediction.joint_futures import separate_people
 from crowdbot.prediction.pretrained_weights import FOLDS
 
 Maker = Callable[..., Windows]
@@ -66,7 +66,10 @@ def test_nobody_is_moved_aside_through_a_wall(windows: Maker) -> None:
     past = walking(windows, (0.0, 0.0, 1.2, 0.0), (9.6, 0.02, -1.2, 0.0))
     place = np.stack([np.array([[1.2 * 0.4 * t, 0.0], [9.6 - 1.2 * 0.4 * t, 0.02]]) for t in range(1, 13)])[None, None]
     wall = np.array([[-1.0, -0.05], [12.0, -0.05], [12.0, -0.3], [-1.0, -0.3]])
-    free, walled = kept_apart(past, place, 0.25), kept_apart(dataclasses.replace(past, walls=(wall,)), place, 0.25)
+    free, walled = (
+        separate_people(past, place, 0.25),
+        separate_people(dataclasses.replace(past, walls=(wall,)), place, 0.25),
+    )
     assert free[0, 0, :, 0, 1].min() < -0.05
     assert np.array_equal(walled[..., 0, :], place[..., 0, :])
     assert np.array_equal(walled[..., 1, :], free[..., 1, :])

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, json_text, note, print_json, print_table, progress
 from .recordings import add_recordings, recordings, tell_notes
-from .schemes import add_scheme, assignments, recipes
+from .schemes import add_scheme, assignments, predictor_specs
 
 if TYPE_CHECKING:
-    from crowdbot.benchmark import DegradedScore, Task
+    from crowdbot.benchmark import DegradedScore, DegradedTask
     from crowdbot.data import Recording, Trajectories
     from crowdbot.data.degrade import Chain, Degradation
     from crowdbot.prediction import Predictor
@@ -162,20 +162,20 @@ def _predictors(options: argparse.Namespace, found: Sequence[Recording]) -> list
     )
     options.predictor = [*dict.fromkeys(options.predictor or plain)]
     options.set = []  # they are parameters of the degradation here
-    made = recipes(options)
+    made = predictor_specs(options)
     late = next((one.goal for one in made if one.goal is not None), None)
     if late is not None and len(found) > 1:
         raise InputError(
             f"the goal {late} belongs to one recording: degrade them one by one, not {len(found)} together"
         )
-    return [one.prepared(found[0]) for one in made]
+    return [one.build(found[0]) for one in made]
 
 
-def _task(options: argparse.Namespace) -> Task:
-    from crowdbot.benchmark import Task
+def _task(options: argparse.Namespace) -> DegradedTask:
+    from crowdbot.benchmark import DegradedTask
 
     names = ("observe", "predict", "protocol", "near", "samples", "best_of", "seed", "carry", "draws", "every")
-    return Task(**{name: getattr(options, name) for name in names})
+    return DegradedTask(**{name: getattr(options, name) for name in names})
 
 
 def _sweep(
@@ -183,20 +183,20 @@ def _sweep(
     recordings: Sequence[Trajectories],
     degradations: Sequence[Degradation | Chain],
     predictors: Sequence[Predictor],
-    task: Task,
+    task: DegradedTask,
     report: Progress,
     done: dict[str, list[DegradedScore]],
 ) -> None:
     """Fill ``done``, degradation by degradation, and keep the file up to date."""
-    from crowdbot.benchmark import sweep
+    from crowdbot.benchmark import sweep_degradations
 
-    for found in sweep(recordings, degradations, predictors, options.levels, task, report):
+    for found in sweep_degradations(recordings, degradations, predictors, options.levels, task, report):
         done.setdefault(found[0].degradation.name, []).extend(found)
         _keep(options, done, task, complete=False, plot=False)
 
 
 def _keep(
-    options: argparse.Namespace, done: Mapping[str, list[DegradedScore]], task: Task, complete: bool, plot: bool
+    options: argparse.Namespace, done: Mapping[str, list[DegradedScore]], task: DegradedTask, complete: bool, plot: bool
 ) -> list[Path]:
     """Write what is done into the folder ``--out`` and return the files."""
     from crowdbot.core import InputError
@@ -211,20 +211,20 @@ def _keep(
         os.replace(draft, file)
         if not plot:
             return [file]
-        from crowdbot.benchmark import draw_degraded
+        from crowdbot.benchmark import plot_degraded
 
-        return [file, *draw_degraded(list(done.values()), options.out, _title(options, task))]
+        return [file, *plot_degraded(list(done.values()), options.out, _title(options, task))]
     except OSError as error:
         raise InputError(f"--out {options.out} cannot be written: {error.strerror or error}") from None
 
 
-def _title(options: argparse.Namespace, task: Task) -> str:
+def _title(options: argparse.Namespace, task: DegradedTask) -> str:
     names = ", ".join(path.name for path in options.data)
     return f"{names}: protocol {task.protocol}, {task.observe} observed + {task.predict} predicted rows"
 
 
 def _page(
-    options: argparse.Namespace, done: Mapping[str, list[DegradedScore]], task: Task, complete: bool
+    options: argparse.Namespace, done: Mapping[str, list[DegradedScore]], task: DegradedTask, complete: bool
 ) -> dict[str, Any]:
     """Return what ``degraded.json`` and ``--json`` say."""
     import dataclasses
@@ -246,7 +246,10 @@ def _page(
 
 
 def _tables(
-    done: Mapping[str, list[DegradedScore]], recordings: Sequence[Trajectories], task: Task, files: Sequence[Path]
+    done: Mapping[str, list[DegradedScore]],
+    recordings: Sequence[Trajectories],
+    task: DegradedTask,
+    files: Sequence[Path],
 ) -> None:
     names = ", ".join(tracks.name for tracks in recordings)
     units = recordings[0].units

@@ -11,9 +11,18 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from crowdbot.calibration import PopulationPrior, Search
     from crowdbot.models import CrowdModel
-    from crowdbot.prediction import Predictor, Recipe
+    from crowdbot.prediction import Predictor, PredictorSpec
 
-__all__ = ["add_scheme", "assignments", "chosen", "crowd_model", "frame_line", "named_search", "prior", "recipes"]
+__all__ = [
+    "add_scheme",
+    "assignments",
+    "chosen",
+    "crowd_model",
+    "frame_line",
+    "named_search",
+    "predictor_specs",
+    "prior",
+]
 
 SCHEME = ("model", "cost", "search", "goal", "free", "prior", "shared")
 """Options that only predictors which simulate a crowd understand."""
@@ -37,7 +46,7 @@ def add_scheme(parser: argparse.ArgumentParser, many: bool) -> None:
         add("--shared", action="store_true", help="one set of parameters, fitted to the --learn share")
 
 
-def recipes(options: argparse.Namespace) -> tuple[Recipe, ...]:
+def predictor_specs(options: argparse.Namespace) -> tuple[PredictorSpec, ...]:
     """Return the predictors that the options name; those that simulate a crowd in every combination of scheme parts.
 
     Raises:
@@ -47,7 +56,7 @@ def recipes(options: argparse.Namespace) -> tuple[Recipe, ...]:
     from crowdbot.core import InputError, find_class
 
     values = assignments(options.set)
-    found: list[Recipe] = []
+    found: list[PredictorSpec] = []
     used = False
     for name in options.predictor:
         kind = find_class(name, prediction, prediction.Predictor)
@@ -55,7 +64,7 @@ def recipes(options: argparse.Namespace) -> tuple[Recipe, ...]:
             used = True
             found += _schemes(options, values)
         else:
-            found.append(prediction.Recipe(chosen(name, None, values if len(options.predictor) == 1 else {})))
+            found.append(prediction.PredictorSpec(chosen(name, None, values if len(options.predictor) == 1 else {})))
     given = next((part for part in SCHEME if getattr(options, part)), None)
     if given is not None and not used:
         raise InputError(f"--{given} is for predictors that simulate a crowd; {', '.join(options.predictor)} does not")
@@ -72,9 +81,9 @@ def frame_line(
     return f"{frame:<8d} {people:6d}  {least:>16}  {evaluations:11d}  {seconds:7.4f}"
 
 
-def _schemes(options: argparse.Namespace, values: Mapping[str, str]) -> list[Recipe]:
+def _schemes(options: argparse.Namespace, values: Mapping[str, str]) -> list[PredictorSpec]:
     from crowdbot.calibration import kind_of_goal
-    from crowdbot.prediction import Recipe
+    from crowdbot.prediction import PredictorSpec
 
     learns = options.prior == "learn"
     own: dict[str, Any] = {"budget": options.budget, "free": tuple(options.free)}
@@ -89,7 +98,7 @@ def _schemes(options: argparse.Namespace, values: Mapping[str, str]) -> list[Rec
         late = kind.knows_future or kind.learns
         if goal is not None and not late:
             predictor = chosen("simulated", model, values, {**fields, "goal": goal})
-        made.append(Recipe(predictor, goal if late else None, learns, options.shared))
+        made.append(PredictorSpec(predictor, goal if late else None, learns, options.shared))
     return made
 
 

@@ -10,7 +10,7 @@ from .output import add_json, json_text, note, number, print_json, print_table, 
 from .schemes import assignments
 
 if TYPE_CHECKING:
-    from crowdbot.benchmark import Run, ToyStudy
+    from crowdbot.benchmark import GanComparison, GanRun
 
 STUDIES = ("gan",)
 
@@ -32,20 +32,20 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Train every method with every seed, measure, and draw."""
-    from crowdbot.benchmark import METHODS, ToyStudy, with_values
+    from crowdbot.benchmark import METHODS, GanComparison, with_settings
     from crowdbot.core import UnknownName
-    from crowdbot.prediction import device_of
+    from crowdbot.prediction import torch_device
 
     if options.what not in STUDIES:
         raise UnknownName("study", options.what, STUDIES)
     for name in options.methods or ():
         if name not in METHODS:
             raise UnknownName("method", name, METHODS)
-    device_of(options.device)
+    torch_device(options.device)
     methods, seeds = tuple(options.methods or METHODS), tuple(range(options.seeds))
-    study = ToyStudy(methods, seeds, options.updates, options.check_every, device=options.device)
-    study = with_values(study, assignments(options.set))
-    runs: list[Run] = []
+    study = GanComparison(methods, seeds, options.updates, options.check_every, device=options.device)
+    study = with_settings(study, assignments(options.set))
+    runs: list[GanRun] = []
     with progress(options.json) as report:
         for run in study.run(options.out / "trainings", options.workers):
             runs.append(run)
@@ -53,7 +53,7 @@ def main(options: argparse.Namespace) -> int:
     return _said(options, study, runs)
 
 
-def _said(options: argparse.Namespace, study: ToyStudy, runs: list[Run]) -> int:
+def _said(options: argparse.Namespace, study: GanComparison, runs: list[GanRun]) -> int:
     from crowdbot.benchmark import plot_measures, plot_samples
 
     ideal = study.ideal()

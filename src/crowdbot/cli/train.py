@@ -13,7 +13,7 @@ from .schemes import assignments
 
 if TYPE_CHECKING:
     from crowdbot.data import Recording
-    from crowdbot.prediction import Row, Samples, Trained
+    from crowdbot.prediction import LogRow, Samples, TrainingResult
 
 LEARNERS = ("anchor-net", "social-ways")
 EPOCHS = 100
@@ -46,7 +46,16 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Learn, and say where the weights are."""
     from crowdbot.core import InputError, UnknownName
-    from crowdbot.prediction import BEST, LAST, Schedule, make_learner, short_recordings, threads, torch_module, train
+    from crowdbot.prediction import (
+        BEST,
+        LAST,
+        TrainingSchedule,
+        make_learner,
+        short_recordings,
+        torch_module,
+        torch_threads,
+        train,
+    )
 
     if options.what not in LEARNERS:
         raise UnknownName("learned predictor", options.what, LEARNERS)
@@ -57,7 +66,7 @@ def main(options: argparse.Namespace) -> int:
         )
     torch_module()  # said before anything is read
     epochs = EPOCHS if options.updates is None and options.epochs is None else options.epochs
-    schedule = Schedule(
+    schedule = TrainingSchedule(
         options.updates, epochs, options.check_every, options.check_every, ("ade", "fde"), options.patience,
         options.seed,
     )  # fmt: skip
@@ -72,7 +81,7 @@ def main(options: argparse.Namespace) -> int:
     )
     if not options.json:
         note(f"{options.what} learns {samples.people} futures in {len(samples)} windows of {len(learned)} recordings")
-    with threads(options.threads), _events(options) as written:
+    with torch_threads(options.threads), _events(options) as written:
         done = train(model, schedule, options.out, options.resume, _told(options.json, written))
     _said(options, done, options.out / BEST, left)
     return 0
@@ -106,7 +115,7 @@ class _Events:
         if self.writer is not None:
             self.writer.close()
 
-    def add(self, row: Row) -> None:
+    def add(self, row: LogRow) -> None:
         """Write the numbers of one line of the log."""
         if self.writer is not None:
             for name, value in row.items():
@@ -128,8 +137,8 @@ def _events(options: argparse.Namespace) -> _Events:
     return _Events(SummaryWriter(str(options.out)))
 
 
-def _told(quiet: bool, events: _Events) -> Callable[[Row], None]:
-    def told(row: Row) -> None:
+def _told(quiet: bool, events: _Events) -> Callable[[LogRow], None]:
+    def told(row: LogRow) -> None:
         events.add(row)
         if not quiet:
             words = [f"{name} {value:.4f}" for name, value in row.items() if name not in ("update", "epoch", "seconds")]
@@ -138,7 +147,7 @@ def _told(quiet: bool, events: _Events) -> Callable[[Row], None]:
     return told
 
 
-def _said(options: argparse.Namespace, done: Trained, file: Path, left: list[str]) -> None:
+def _said(options: argparse.Namespace, done: TrainingResult, file: Path, left: list[str]) -> None:
     best = done.rows[done.best] if done.best is not None else {}
     if options.json:
         print_json(

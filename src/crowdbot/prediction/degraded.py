@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from crowdbot.data import Windows
 from crowdbot.data.degrade import GHOST, Degraded
 
-__all__ = ["Seen", "seen_windows"]
+__all__ = ["DegradedWindows", "degraded_windows"]
 
 Integers = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class Seen:
+class DegradedWindows:
     """Windows as they are seen in a degraded recording.
 
     Fields:
@@ -35,7 +35,7 @@ class Seen:
     predictable: int
 
 
-def seen_windows(past: Windows, future: Windows, degraded: Degraded, carry: int = 0) -> Seen:
+def degraded_windows(past: Windows, future: Windows, degraded: Degraded, carry: int = 0) -> DegradedWindows:
     """Return clean windows as they are seen in the degraded recording.
 
     In a window are those people of the clean one who are seen at its last observed row, and every ghost that is. A
@@ -78,7 +78,7 @@ def seen_windows(past: Windows, future: Windows, degraded: Degraded, carry: int 
     there[who[0], :, who[1]] = future.present[who[0], :, clean[real]]
     scored[who] = future.scored[who[0], clean[real]]
     seen: dict[str, Any] = {"id": id, "robot": robot}
-    return Seen(
+    return DegradedWindows(
         dataclasses.replace(past, position=position, present=present, scored=np.zeros_like(scored), **seen),
         dataclasses.replace(future, position=then, present=there, scored=scored, **seen),
         asked=int(future.scored.sum()),

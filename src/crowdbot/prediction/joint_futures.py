@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from crowdbot.data import Windows
 
-from .joint_kernels import arrange, crossing, part_ways
+from .joint_kernels import assign_futures, first_crossing, separate_paths
 
-__all__ = ["before_walls", "drawn_together", "kept_apart", "set_together"]
+__all__ = ["coordinate_draws", "coordinate_modes", "separate_people", "stop_at_walls"]
 
 Floats = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ ROUNDS = 12
 """People give way so often at most."""
 
 
-def set_together(past: Windows, place: Floats, share: Floats, contact: float) -> tuple[Floats, Floats]:
+def coordinate_modes(past: Windows, place: Floats, share: Floats, contact: float) -> tuple[Floats, Floats]:
     """Return joint futures ``[W, K, T, A, 2]`` [m] and their weights ``[W, K]``.
 
     Args:
@@ -37,7 +37,7 @@ def set_together(past: Windows, place: Floats, share: Floats, contact: float) ->
     found, weight = place.copy(), np.full((W, K), 1.0 / K)
     for window, who in _members(past):
         choice = _choice(past, place, window, who, contact, ORDER)
-        found[window][:, :, who] = _taken(place[window][:, :, who], choice)
+        found[window][:, :, who] = _reorder(place[window][:, :, who], choice)
         people = [a for a, person in enumerate(who) if not past.robot[window, person]]
         if people:
             own = np.take_along_axis(share[window, who], choice, axis=1)[people]
@@ -46,18 +46,18 @@ def set_together(past: Windows, place: Floats, share: Floats, contact: float) ->
     return found, weight
 
 
-def drawn_together(past: Windows, place: Floats, contact: float, block: int) -> Floats:
+def coordinate_draws(past: Windows, place: Floats, contact: float, block: int) -> Floats:
     """Return draws ``[W, K, T, A, 2]`` [m] shared out anew within blocks of ``block``, so that people keep apart."""
     found = place.copy()
     for window, who in _members(past):
         for first in range(0, place.shape[1], block):
             part = slice(first, first + block)
             choice = _choice(past, place[:, part], window, who, contact, 0.0)
-            found[window, part][:, :, who] = _taken(place[window, part][:, :, who], choice)
+            found[window, part][:, :, who] = _reorder(place[window, part][:, :, who], choice)
     return found
 
 
-def kept_apart(past: Windows, place: Floats, contact: float) -> Floats:
+def separate_people(past: Windows, place: Floats, contact: float) -> Floats:
     """Return joint futures ``[W, K, T, A, 2]`` [m] in which who comes nearer than ``contact`` [m] is moved aside.
 
     Nobody is moved through a wall: who would be stays on the own path.
@@ -71,18 +71,18 @@ def kept_apart(past: Windows, place: Floats, contact: float) -> Floats:
         fixed = past.robot[window, who]
         for k in range(place.shape[1]):
             path = _with_plans(past, np.ascontiguousarray(np.moveaxis(place[window, k][:, who], 1, 0)), window, who)
-            moved = part_ways(path, fixed, contact, ROUNDS)
+            moved = separate_paths(path, fixed, contact, ROUNDS)
             found[window, k][:, who] = np.moveaxis(moved, 0, 1)
     windows, slots = np.nonzero(past.present[:, -1])
     if past.walls and len(windows):
         now = past.position[windows, -1, slots][:, None, None]
-        _, hit = before_walls(past, found[windows, :, :, slots] - now, windows, slots)
+        _, hit = stop_at_walls(past, found[windows, :, :, slots] - now, windows, slots)
         who, draw = np.nonzero(hit)
         found[windows[who], draw, :, slots[who]] = place[windows[who], draw, :, slots[who]]
     return found
 
 
-def before_walls(
+def stop_at_walls(
     past: Windows, path: Floats, window: NDArray[np.int64], slot: NDArray[np.int64]
 ) -> tuple[Floats, NDArray[np.bool_]]:
     """Return displacements ``[N, K, T, 2]`` [m] that end before the walls of the windows, and which did not [N, K]."""
@@ -92,7 +92,7 @@ def before_walls(
     one = np.concatenate(rings)
     other = np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
     start = np.ascontiguousarray(past.position[window, -1, slot])
-    free = np.asarray(crossing(start, np.ascontiguousarray(path), one, other))
+    free = np.asarray(first_crossing(start, np.ascontiguousarray(path), one, other))
     T = path.shape[2]
     last = np.take_along_axis(path, np.maximum(free - 1, 0)[:, :, None, None], axis=2)
     last = np.where((free > 0)[:, :, None, None], last, 0.0)
@@ -116,7 +116,7 @@ def _choice(
         return np.tile(np.arange(K), (len(who), 1))
     path = np.ascontiguousarray(place[window][:, :, who].transpose(2, 0, 1, 3))
     path = np.stack([_with_plans(past, np.ascontiguousarray(path[:, k]), window, who) for k in range(K)], axis=1)
-    return np.asarray(arrange(path, contact, order, SWEEPS))
+    return np.asarray(assign_futures(path, contact, order, SWEEPS))
 
 
 def _with_plans(past: Windows, path: Floats, window: int, who: NDArray[np.int64]) -> Floats:
@@ -130,6 +130,6 @@ def _with_plans(past: Windows, path: Floats, window: int, who: NDArray[np.int64]
     return path
 
 
-def _taken(place: Floats, choice: NDArray[np.int64]) -> Floats:
+def _reorder(place: Floats, choice: NDArray[np.int64]) -> Floats:
     """Return ``place [K, T, A, 2]`` with the futures of each person in the order ``choice [A, K]``."""
     return np.take_along_axis(place, choice.T[:, None, :, None], axis=0)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 
-__all__ = ["arrange", "crossing", "part_ways"]
+__all__ = ["assign_futures", "first_crossing", "separate_paths"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -39,12 +39,12 @@ def _boxes(path: Floats, room: float) -> Floats:  # pragma: no cover - compiled
 
 
 @kernel
-def _apart(one: Floats, other: Floats) -> bool:  # pragma: no cover - compiled
+def _disjoint(one: Floats, other: Floats) -> bool:  # pragma: no cover - compiled
     return bool(one[2] < other[0] or other[2] < one[0] or one[3] < other[1] or other[3] < one[1])
 
 
 @kernel
-def _meeting(
+def _find_collisions(
     path: Floats, a: int, b: int, box: Floats, limit: float, hit: Bools
 ) -> bool:  # pragma: no cover - compiled
     """Write ``[K, K]`` whether two people collide in each pair of their futures; return whether they do in any."""
@@ -53,7 +53,7 @@ def _meeting(
     for k in range(K):
         for j in range(K):
             hit[k, j] = False
-            if _apart(box[a, k], box[b, j]):
+            if _disjoint(box[a, k], box[b, j]):
                 continue
             for t in range(T):
                 dx, dy = path[a, k, t, 0] - path[b, j, t, 0], path[a, k, t, 1] - path[b, j, t, 1]
@@ -65,7 +65,7 @@ def _meeting(
 
 
 @kernel
-def arrange(path: Floats, limit: float, order: float, sweeps: int) -> Integers:  # pragma: no cover - compiled
+def assign_futures(path: Floats, limit: float, order: float, sweeps: int) -> Integers:  # pragma: no cover - compiled
     """Return ``[A, K]``: which own future each of A people takes in each of K joint futures, each exactly once.
 
     The futures ``[A, K, T, 2]`` [m] stand sorted, the likeliest first. People who would come nearer than ``limit`` [m]
@@ -82,13 +82,13 @@ def arrange(path: Floats, limit: float, order: float, sweeps: int) -> Integers: 
     count = 0
     for a in range(A):
         for b in range(a + 1, A):
-            if not _apart(box[a, K], box[b, K]):
+            if not _disjoint(box[a, K], box[b, K]):
                 one[count], other[count] = a, b
                 count += 1
     hit = np.zeros((count, K, K), dtype=np.bool_)
     meet = np.zeros(count, dtype=np.bool_)
     for p in range(count):
-        meet[p] = _meeting(path, one[p], other[p], box, limit, hit[p])
+        meet[p] = _find_collisions(path, one[p], other[p], box, limit, hit[p])
     cost = np.empty((K, K))
     for _ in range(sweeps):
         changed = False
@@ -105,7 +105,7 @@ def arrange(path: Floats, limit: float, order: float, sweeps: int) -> Integers: 
                             if hit[p, m, choice[other[p], k]] if first else hit[p, choice[one[p], k], m]:
                                 cost[m, k] += 1.0
                                 clash = True
-            if clash and _exchanged(choice[a], cost):
+            if clash and _exchange(choice[a], cost):
                 changed = True
         if not changed:
             break
@@ -113,7 +113,7 @@ def arrange(path: Floats, limit: float, order: float, sweeps: int) -> Integers: 
 
 
 @kernel
-def _exchanged(choice: Integers, cost: Floats) -> bool:  # pragma: no cover - compiled
+def _exchange(choice: Integers, cost: Floats) -> bool:  # pragma: no cover - compiled
     """Exchange futures of one person while it pays, ``cost[future, joint]``; return whether there was one."""
     K = len(choice)
     changed = False
@@ -135,7 +135,7 @@ def _exchanged(choice: Integers, cost: Floats) -> bool:  # pragma: no cover - co
 
 
 @kernel
-def part_ways(path: Floats, fixed: Bools, limit: float, rounds: int) -> Floats:  # pragma: no cover - compiled
+def separate_paths(path: Floats, fixed: Bools, limit: float, rounds: int) -> Floats:  # pragma: no cover - compiled
     """Return the paths ``[A, T, 2]`` [m] of one joint future with people who come too near moved aside.
 
     Two people nearer than ``limit`` [m] at their closest step give way in opposite directions, half of what is missing
@@ -185,7 +185,7 @@ def part_ways(path: Floats, fixed: Bools, limit: float, rounds: int) -> Floats: 
 
 
 @kernel
-def crossing(start: Floats, path: Floats, one: Floats, other: Floats) -> Integers:  # pragma: no cover - compiled
+def first_crossing(start: Floats, path: Floats, one: Floats, other: Floats) -> Integers:  # pragma: no cover - compiled
     """Return ``[N, K]`` the first step in which paths ``start [N, 2] + path [N, K, T, 2]`` cross a segment, T if none.
 
     The segments go from ``one`` to ``other`` ``[M, 2]`` [m].

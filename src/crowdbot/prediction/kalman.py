@@ -58,7 +58,7 @@ class _Filter(Predictor):
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
         """Return where people will be, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
-        motion, _ = self._filtered(_rows_first(past.position), _rows_first(past.present), past.dt)
+        motion, _ = self._run_filter(_rows_first(past.position), _rows_first(past.present), past.dt)
         time = past.dt * np.arange(1, steps + 1)[:, None, None]
         terms = [value[:, None] * time**order / math.factorial(order) for order, value in enumerate(motion)]
         place = np.sum(terms[1:], axis=0) + terms[0]
@@ -78,47 +78,49 @@ class _Filter(Predictor):
         if sum(len(track.present.T) for track in tracks) == 0:
             raise InputError("kalman: a fit needs at least one person who is seen at two rows")
         best = dict(cls.first_guess)
-        cost = _surprise(cls(**best), tracks)
+        cost = _negative_log_likelihood(cls(**best), tracks)
         factor = 4.0
         while factor > 1.001:
             improved = False
             for name in cls.lowest:
                 for ratio in (factor, 1.0 / factor):
                     trial = best | {name: max(best[name] * ratio, cls.lowest[name])}
-                    value = _surprise(cls(**trial), tracks)
+                    value = _negative_log_likelihood(cls(**trial), tracks)
                     if value < cost:
                         best, cost, improved = trial, value, True
             factor = factor if improved else math.sqrt(factor)
         return cls(**best)
 
-    def surprise(self, *pasts: Windows) -> float:
+    def negative_log_likelihood(self, *pasts: Windows) -> float:
         """Return the mean negative log-likelihood of a row (two coordinates) given the rows before it [nat]."""
-        return _surprise(self, [_tracks(past) for past in pasts])
+        return _negative_log_likelihood(self, [_tracks(past) for past in pasts])
 
-    def _filtered(self, position: Floats, present: NDArray[np.bool_], dt: float) -> tuple[list[Floats], float]:
+    def _run_filter(self, position: Floats, present: NDArray[np.bool_], dt: float) -> tuple[list[Floats], float]:
         """Return position and derivatives ``[..., 2]`` after the rows ``[T, ..., 2]``, and the sum of the surprise."""
         n, shape = len(self._start), present.shape[1:]
         drift, noise = _step(n, dt), self._push**2 * _noise(n, dt)
         measured = self._start[0] ** 2
         motion = [np.zeros((*shape, 2)) for _ in range(n)]
         spread = [[np.full(shape, self._start[i] ** 2 if i == j else 0.0) for j in range(n)] for i in range(n)]
-        started, surprise = np.zeros(shape, dtype=np.bool_), 0.0
+        started, negative_log_likelihood = np.zeros(shape, dtype=np.bool_), 0.0
         for seen, here in zip(position, present, strict=True):
-            motion = _carried(drift, motion)
-            later = _spread_later(drift, spread, noise)
+            motion = _propagate(drift, motion)
+            later = _predict_covariance(drift, spread, noise)
             spread = [[np.where(started, later[i][j], spread[i][j]) for j in range(n)] for i in range(n)]
             update = started & here
             expected = spread[0][0] + measured
             wrong = np.where(update[..., None], seen - motion[0], 0.0)
             length2 = wrong[..., 0] ** 2 + wrong[..., 1] ** 2
-            surprise += float(np.sum(np.where(update, np.log(expected) + length2 / (2.0 * expected), 0.0)))
+            negative_log_likelihood += float(
+                np.sum(np.where(update, np.log(expected) + length2 / (2.0 * expected), 0.0))
+            )
             gain = [np.where(update, spread[i][0] / expected, 0.0) for i in range(n)]
             motion = [value + gain[i][..., None] * wrong for i, value in enumerate(motion)]
             spread = [[spread[i][j] - gain[i] * spread[0][j] for j in range(n)] for i in range(n)]
             first = here & ~started
             motion[0] = np.where(first[..., None], seen, motion[0])
             started |= here
-        return motion, surprise
+        return motion, negative_log_likelihood
 
 
 @dataclass(frozen=True)
@@ -228,8 +230,8 @@ def _tracks(past: Windows) -> _Tracks:
     )
 
 
-def _surprise(filter_: _Filter, tracks: list[_Tracks]) -> float:
-    total = sum(filter_._filtered(*track)[1] for track in tracks)
+def _negative_log_likelihood(filter_: _Filter, tracks: list[_Tracks]) -> float:
+    total = sum(filter_._run_filter(*track)[1] for track in tracks)
     rows = sum(int(np.sum(track.present)) - track.present.shape[1] for track in tracks)
     return float(total / rows + math.log(2.0 * math.pi))
 
@@ -247,7 +249,7 @@ def _noise(n: int, dt: float) -> Floats:
     )
 
 
-def _carried(drift: Floats, rows: list[Floats]) -> list[Floats]:
+def _propagate(drift: Floats, rows: list[Floats]) -> list[Floats]:
     """Return the product of a triangular matrix and a column, without a library whose last bits depend on the batch."""
     n = len(rows)
     found = []
@@ -259,10 +261,10 @@ def _carried(drift: Floats, rows: list[Floats]) -> list[Floats]:
     return found
 
 
-def _spread_later(drift: Floats, spread: list[list[Floats]], noise: Floats) -> list[list[Floats]]:
+def _predict_covariance(drift: Floats, spread: list[list[Floats]], noise: Floats) -> list[list[Floats]]:
     """Return ``F P F' + Q``."""
-    columns = [_carried(drift, list(column)) for column in zip(*spread, strict=True)]
-    rows = [_carried(drift, list(row)) for row in zip(*columns, strict=True)]
+    columns = [_propagate(drift, list(column)) for column in zip(*spread, strict=True)]
+    rows = [_propagate(drift, list(row)) for row in zip(*columns, strict=True)]
     return [[value + noise[i, j] for j, value in enumerate(row)] for i, row in enumerate(rows)]
 
 

@@ -16,9 +16,9 @@ from crowdbot.core import InputError
 from crowdbot.data import Windows, bridged
 
 from .predictor import Predictor
-from .pretrained_weights import ALL, AUTO, FOLDS, STEP, fold_of, misfit, shipped
+from .pretrained_weights import ALL, AUTO, FOLDS, STEP, fold_of, incompatibility, pretrained_file
 
-__all__ = ["LearnedPredictor", "whole_tracks"]
+__all__ = ["LearnedPredictor", "complete_tracks"]
 
 Floats = NDArray[np.float64]
 
@@ -72,7 +72,7 @@ class LearnedPredictor(Predictor):
         return f"{self.kind}({file.parent.name}/{file.name} {self.digest})"
 
     @property
-    def shipped(self) -> bool:
+    def pretrained_file(self) -> bool:
         """Whether weights of the package are used."""
         return self.checkpoint in (AUTO, *FOLDS)
 
@@ -81,11 +81,11 @@ class LearnedPredictor(Predictor):
         if not self.shipped:
             return Path(self.checkpoint)
         fold = fold_of(source) if self.checkpoint == AUTO else self.checkpoint
-        return shipped(self.kind, ELSEWHERE if fold == ALL else fold)
+        return pretrained_file(self.kind, ELSEWHERE if fold == ALL else fold)
 
     def note(self, past: Windows) -> str:
         """Return what a user should know of forecasts of such windows in one sentence, or nothing."""
-        why = self.misfit(past)
+        why = self.incompatibility(past)
         if why:
             return f"{self.kind}: {why}; a baseline answers instead"
         if self.checkpoint == AUTO and fold_of(past.source) == ALL:
@@ -95,7 +95,7 @@ class LearnedPredictor(Predictor):
             )
         return ""
 
-    def misfit(self, past: Windows) -> str:
+    def incompatibility(self, past: Windows) -> str:
         """Return why shipped weights do not fit these windows, or nothing; own weights speak for themselves."""
         if not self.shipped:
             return ""
@@ -104,7 +104,7 @@ class LearnedPredictor(Predictor):
                 f"{past.source} has steps of {past.dt:.4g} s, it was learned at {STEP} s:"
                 f" bring it there with --step {STEP}"
             )
-        return misfit(past)
+        return incompatibility(past)
 
     @staticmethod
     def fits(past: Windows, facts: Mapping[str, Any], what: str) -> None:
@@ -118,7 +118,7 @@ class LearnedPredictor(Predictor):
             raise InputError(f"{what} has learned tracks in {facts['units']}, {past.source} is in {past.units}")
 
 
-def whole_tracks(past: Windows, rows: int) -> Floats:
+def complete_tracks(past: Windows, rows: int) -> Floats:
     """Return the last ``rows`` rows of everyone ``[W, rows, A, 2]`` [m], with what was not seen filled in.
 
     Holes are bridged by an even walk; before the first row that was seen, people walk backwards with their first

@@ -37,8 +37,8 @@ class Live:
 
     >>> from crowdbot.prediction import ConstantVelocity
     >>> live = Live(ConstantVelocity(), dt=0.4)
-    >>> live.see([7], [[0.0, 0.0]])
-    >>> live.see([7, 9], [[0.4, 0.0], [3.0, 1.0]])
+    >>> live.update([7], [[0.0, 0.0]])
+    >>> live.update([7, 9], [[0.4, 0.0], [3.0, 1.0]])
     >>> live.predict(2).position[0, 0, :, 0].round(1).tolist(), live.ids.tolist()
     ([[0.8, 0.0], [1.2, 0.0]], [7, 9])
     """
@@ -72,7 +72,7 @@ class Live:
         """Identity of everyone in the last row, robots too, in the order of forecasts."""
         return self._rows[-1][0] if self._rows else np.zeros(0, dtype=np.int64)
 
-    def see(self, ids: ArrayLike, position: ArrayLike, robots: Iterable[int] = ()) -> None:
+    def update(self, ids: ArrayLike, position: ArrayLike, robots: Iterable[int] = ()) -> None:
         """Add a row: who is seen ``[N]`` and where ``[N, 2]`` [m]; ``robots`` names those who are robots.
 
         Raises:
@@ -121,7 +121,7 @@ class Live:
             InputError: nothing was seen yet, or a plan is for nobody in the last row.
         """
         if not self._rows:
-            raise InputError("live: nothing was seen yet; call see first")
+            raise InputError("live: nothing was seen yet; call update first")
         rng = stream(self._seed, "live", self._count)
         forecast, memory = self.predictor.follow(self.past(plans), steps, samples, rng, self._memory)
         if not plans:

@@ -1,4 +1,4 @@
-"""Recipe: a predictor that may have to be made for the recording it is used on."""
+"""PredictorSpec: a predictor that may have to be made for the recording it is used on."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from crowdbot.models import Goal
 from .predictor import Predictor
 from .simulated import Simulated
 
-__all__ = ["Recipe"]
+__all__ = ["PredictorSpec"]
 
 LEARNING_WINDOWS = 60
 """Priors and shared parameters are learned from about so many windows, evenly over the known part of a recording."""
 
 
 @dataclass(frozen=True)
-class Recipe:
+class PredictorSpec:
     """How a predictor is made for a recording.
 
     Fields:
@@ -102,7 +102,7 @@ class Recipe:
                 " predicting live; take current-direction, or leave out --live"
             )
 
-    def prepared(self, recording: Recording) -> Predictor:
+    def build(self, recording: Recording) -> Predictor:
         """Return the predictor for a recording.
 
         Raises:
@@ -112,19 +112,19 @@ class Recipe:
 
 
 @functools.lru_cache(maxsize=16)
-def _prepared(recipe: Recipe, recording: Recording) -> Predictor:
-    crowd = recipe.predictor
+def _prepared(spec: PredictorSpec, recording: Recording) -> Predictor:
+    crowd = spec.predictor
     if not isinstance(crowd, Simulated):
         return crowd
-    if recipe.goal is not None:
-        crowd = dataclasses.replace(crowd, goal=goal_for(recipe.goal, recording))
-    if not (recipe.prior or recipe.shared):
+    if spec.goal is not None:
+        crowd = dataclasses.replace(crowd, goal=goal_for(spec.goal, recording))
+    if not (spec.prior or spec.shared):
         return crowd
     calibrator = cast(Calibrator, crowd.calibrator)
-    if kind_of_goal(recipe.goal or "current-direction").knows_future:
-        raise InputError(f"{recipe.goal} knows the future of what is predicted only: nothing can be learned with it")
+    if kind_of_goal(spec.goal or "current-direction").knows_future:
+        raise InputError(f"{spec.goal} knows the future of what is predicted only: nothing can be learned with it")
     past = _known(recording)
-    if recipe.shared:
+    if spec.shared:
         fit = dataclasses.replace(calibrator, shared=True, free=_shareable(calibrator)).fit(past)
         return Simulated.of(fit)
     fit = calibrator.fit_each(past, [stream(0, "prior", window) for window in range(len(past))])

@@ -24,11 +24,11 @@ __all__ = [
     "Numbers",
     "check_fold",
     "fold_of",
-    "kept_out",
-    "learned",
-    "misfit",
-    "read_numbers",
-    "shipped",
+    "incompatibility",
+    "is_held_out",
+    "load_pretrained",
+    "pretrained_file",
+    "read_weights",
 ]
 
 Numbers = dict[str, NDArray[np.float64]]
@@ -66,27 +66,27 @@ def fold_of(source: str) -> str:
     return next((fold for fold, begins in FOLDS.items() if name.startswith(begins)), ALL)
 
 
-def kept_out(fold: str, name: str) -> bool:
+def is_held_out(fold: str, name: str) -> bool:
     """Return whether a recording of this name has no part in the training of a fold."""
     return fold != ALL and Path(name).name.startswith(FOLDS[fold])
 
 
 @functools.cache
-def learned(kind: str, fold: str) -> Numbers:
+def load_pretrained(kind: str, fold: str) -> Numbers:
     """Return the arrays of a shipped file, in float64.
 
     Raises:
         DataError: the file is missing from the installation.
     """
-    return read_numbers(shipped(kind, fold))
+    return read_weights(pretrained_file(kind, fold))
 
 
-def shipped(kind: str, fold: str) -> Path:
+def pretrained_file(kind: str, fold: str) -> Path:
     """Return the file of what a predictor learned without a place."""
     return Path(str(importlib.resources.files("crowdbot").joinpath("assets", "predictors", f"{kind}-{fold}.npz")))
 
 
-def read_numbers(path: Path) -> Numbers:
+def read_weights(path: Path) -> Numbers:
     """Return the arrays of a file, in float64; nothing in it is executed.
 
     Raises:
@@ -107,7 +107,7 @@ def read_numbers(path: Path) -> Numbers:
     return found
 
 
-def misfit(past: Windows) -> str:
+def incompatibility(past: Windows) -> str:
     """Return why what was learned at 0.4 s in metres does not fit these windows, or nothing."""
     if past.units != "m":
         return f"{past.source} is in {past.units}, not in metres"

@@ -15,25 +15,39 @@ from numpy.typing import NDArray
 from crowdbot.data import Windows, bridged
 from crowdbot.prediction.pretrained_weights import STEP
 
-__all__ = ["AHEAD", "COMPANY", "GAITS", "INPUTS", "MOMENTS", "NEAR", "ROWS", "People", "completed", "features",
-           "forward", "gait", "people_of", "turned"]  # fmt: skip
+__all__ = [
+    "AGENT_FEATURES",
+    "LOOKAHEAD_ROWS",
+    "NEAR",
+    "NEIGHBOR_FEATURES",
+    "PREDICTED_ROWS",
+    "ROWS",
+    "SPEED_CLASSES",
+    "AgentHistories",
+    "agent_features",
+    "agent_histories",
+    "fill_gaps",
+    "heading_vectors",
+    "rotate",
+    "speed_class",
+]  # fmt: skip
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 ROWS = 8
 """Observed rows."""
-AHEAD = 12
+PREDICTED_ROWS = 12
 """Predicted rows."""
 NEAR = 12
 """So many nearest others are seen."""
-MOMENTS = (4, 8, 12)
+LOOKAHEAD_ROWS = (4, 8, 12)
 """Steps ahead at which it is looked where others will be: as planned, or with their last velocity."""
-INPUTS = 7 * 2 + 7 * 2 + 1 + 2 + 7
+AGENT_FEATURES = 7 * 2 + 7 * 2 + 1 + 2 + 7
 """Numbers about a person alone: places, displacements, speed, mean velocity, which rows were seen."""
-COMPANY = 2 + 2 + 2 + 1 + 1 + 1 + 1 + 2 * len(MOMENTS)
+NEIGHBOR_FEATURES = 2 + 2 + 2 + 1 + 1 + 1 + 1 + 2 * len(LOOKAHEAD_ROWS)
 """Numbers about each neighbour."""
-GAITS = (0.03, 0.2, 0.8, 2.0, 3.5)
+SPEED_CLASSES = (0.03, 0.2, 0.8, 2.0, 3.5)
 """Distances [m] walked in 2.8 s that part still, standing, shuffling, slow, usual and fast people."""
 MOVED = 0.1
 """Less motion than this [m] gives no heading; it is then looked for further back."""
@@ -41,7 +55,7 @@ FEW = 64
 """Windows whose pairs are compared at once."""
 
 
-class People(NamedTuple):
+class AgentHistories(NamedTuple):
     """N people, in the axes of the world, seen from their last place."""
 
     past: Floats
@@ -59,15 +73,15 @@ class People(NamedTuple):
     there: Bools
     """``[N, 12]``, whether there is such a neighbour."""
 
-    def at(self, rows: NDArray[np.int64] | slice) -> People:
+    def at(self, rows: NDArray[np.int64] | slice) -> AgentHistories:
         """Return some of the people."""
-        return People(
+        return AgentHistories(
             self.past[rows], self.seen[rows], self.near[rows], self.pace[rows], self.later[rows], self.known[rows],
             self.there[rows],
         )  # fmt: skip
 
 
-def completed(position: Floats, seen: Bools) -> Floats:
+def fill_gaps(position: Floats, seen: Bools) -> Floats:
     """Return places ``[N, T, 2]`` at every row from those at the ``seen`` rows ``[N, T]``, the last of them included.
 
     Holes are bridged by an even walk; before the first row people walk with their first velocity; who was seen at the
@@ -93,7 +107,7 @@ def completed(position: Floats, seen: Bools) -> Floats:
     return np.where(seen[..., None], position, start + share * (end - start))
 
 
-def forward(past: Floats) -> Floats:
+def heading_vectors(past: Floats) -> Floats:
     """Return the unit vector ``[N, 2]`` along which people with the places ``[N, 8, 2]`` [m] move.
 
     It is taken from the last two displacements, or where they are shorter than 0.1 m from the last four or all seven.
@@ -108,16 +122,16 @@ def forward(past: Floats) -> Floats:
     return np.where(length > 1e-9, heading / np.where(length > 1e-9, length, 1.0), np.array([1.0, 0.0]))
 
 
-def gait(past: Floats) -> NDArray[np.int64]:
+def speed_class(past: Floats) -> NDArray[np.int64]:
     """Return how fast people with the places ``[N, 8, 2]`` [m] walk ``[N]``: 0 is still, ``len(GAITS)`` is fast.
 
     >>> gait(np.linspace(0.0, [[0.0, 0.0], [3.0, 0.0]], 8, axis=1)).tolist()
     [0, 4]
     """
-    return np.asarray(np.searchsorted(np.asarray(GAITS), _length(past[:, -1] - past[:, 0])))
+    return np.asarray(np.searchsorted(np.asarray(SPEED_CLASSES), _length(past[:, -1] - past[:, 0])))
 
 
-def turned(vector: Floats, heading: Floats, back: bool = False) -> Floats:
+def rotate(vector: Floats, heading: Floats, back: bool = False) -> Floats:
     """Return vectors ``[N, ..., 2]`` in frames with the x axis along ``heading`` [N, 2], or from there to the world."""
     shape = (len(heading), *(1,) * (vector.ndim - 2))
     c, s = heading[:, 0].reshape(shape), heading[:, 1].reshape(shape)
@@ -126,9 +140,9 @@ def turned(vector: Floats, heading: Floats, back: bool = False) -> Floats:
     return np.stack([c * x + s * y, c * y - s * x], axis=-1)
 
 
-def features(people: People, heading: Floats) -> tuple[Floats, Floats]:
+def agent_features(people: AgentHistories, heading: Floats) -> tuple[Floats, Floats]:
     """Return the numbers of each person ``[N, INPUTS]`` and neighbour ``[N, 12, COMPANY]``, looking along headings."""
-    past, near, pace, later = (turned(values, heading) for values in (people.past, people.near, people.pace,
+    past, near, pace, later = (rotate(values, heading) for values in (people.past, people.near, people.pace,
                                                                      people.later))  # fmt: skip
     step = past[:, 1:] - past[:, :-1]
     last = step[:, -1]
@@ -142,19 +156,19 @@ def features(people: People, heading: Floats) -> tuple[Floats, Floats]:
     closing = pace - last[:, None]
     speed2 = closing[..., 0] * closing[..., 0] + closing[..., 1] * closing[..., 1]
     inward = near[..., 0] * closing[..., 0] + near[..., 1] * closing[..., 1]
-    soon = np.clip(-inward / np.maximum(speed2, 1e-9), 0.0, float(AHEAD))
+    soon = np.clip(-inward / np.maximum(speed2, 1e-9), 0.0, float(PREDICTED_ROWS))
     closest = _length(near + closing * soon[..., None])
-    moment = np.asarray(MOMENTS, dtype=np.float64)[:, None]
+    moment = np.asarray(LOOKAHEAD_ROWS, dtype=np.float64)[:, None]
     meant = (later - last[:, None, None] * moment) / 5.0
     company = np.concatenate(
         [near / 5.0, pace, near / np.maximum(distance, 1e-9)[..., None],
-         np.stack([1.0 / (1.0 + distance), 1.0 / (1.0 + closest), soon / AHEAD, people.known], axis=-1),
+         np.stack([1.0 / (1.0 + distance), 1.0 / (1.0 + closest), soon / PREDICTED_ROWS, people.known], axis=-1),
          meant.reshape(N, near.shape[1], -1)], axis=2,
     )  # fmt: skip
     return own, np.where(people.there[..., None], company, 0.0)
 
 
-def people_of(past: Windows) -> tuple[People, NDArray[np.int64], NDArray[np.int64]]:
+def agent_histories(past: Windows) -> tuple[AgentHistories, NDArray[np.int64], NDArray[np.int64]]:
     """Return everyone who is there at the last row, and the window and slot of each; rows are at steps of 0.4 s.
 
     Other time steps are interpolated between rows up to the last one. Neighbours are the nearest others who were seen
@@ -164,7 +178,7 @@ def people_of(past: Windows) -> tuple[People, NDArray[np.int64], NDArray[np.int6
     window, slot = np.nonzero(past.present[:, -1])
     now = position[window, -1, slot]
     own = seen[window, :, slot]
-    track = completed(position[window, :, slot] - now[:, None], own)
+    track = fill_gaps(position[window, :, slot] - now[:, None], own)
     step = np.zeros((len(past), past.present.shape[2], 2))
     step[window, slot] = track[:, -1] - track[:, -2]
     who, there = _nearest(position[:, -1], past.present[:, -1], seen.sum(axis=1) > 1, past.id)
@@ -172,15 +186,15 @@ def people_of(past: Windows) -> tuple[People, NDArray[np.int64], NDArray[np.int6
     where = window[:, None]
     place = position[where, -1, who] - now[:, None]
     pace = step[where, who]
-    moment = np.asarray(MOMENTS, dtype=np.float64)[:, None]
+    moment = np.asarray(LOOKAHEAD_ROWS, dtype=np.float64)[:, None]
     later = place[:, :, None] + pace[:, :, None] * moment
     known: Bools = np.zeros(who.shape, dtype=np.bool_)
     if past.plan is not None:
-        planned = np.stack([_plan_at(past, k)[where, who] for k in MOMENTS], axis=2)
+        planned = np.stack([_plan_at(past, k)[where, who] for k in LOOKAHEAD_ROWS], axis=2)
         known = np.asarray(~np.isnan(planned).any(axis=(2, 3)))
         later = np.where(known[..., None, None], planned - now[:, None, None], later)
     zero = there[..., None]
-    people = People(
+    people = AgentHistories(
         track, own, np.where(zero, place, 0.0), np.where(zero, pace, 0.0), np.where(zero[..., None], later, 0.0),
         known & there, there,
     )  # fmt: skip

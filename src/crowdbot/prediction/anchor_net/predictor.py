@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError, InputError, Paper, did_you_mean
 from crowdbot.data import Forecast, Windows
 from crowdbot.prediction.constant import ConstantVelocity, SampledConstantVelocity
-from crowdbot.prediction.joint_futures import before_walls, drawn_together, kept_apart, set_together
+from crowdbot.prediction.joint_futures import coordinate_draws, coordinate_modes, separate_people, stop_at_walls
 from crowdbot.prediction.predictor import Predictor, window_streams
 from crowdbot.prediction.pretrained_weights import (
     ALL,
@@ -24,14 +24,24 @@ from crowdbot.prediction.pretrained_weights import (
     Numbers,
     check_fold,
     fold_of,
-    learned,
-    misfit,
-    read_numbers,
+    incompatibility,
+    load_pretrained,
+    read_weights,
 )
 from crowdbot.prediction.training.checkpoint import load_checkpoint
 
-from .agent_frame import AHEAD, COMPANY, GAITS, INPUTS, features, forward, gait, people_of, turned
-from .anchors import CHAI, scattered, spread_over_time
+from .agent_frame import (
+    AGENT_FEATURES,
+    NEIGHBOR_FEATURES,
+    PREDICTED_ROWS,
+    SPEED_CLASSES,
+    agent_features,
+    agent_histories,
+    heading_vectors,
+    rotate,
+    speed_class,
+)
+from .anchors import CHAI, resample_paths, scatter_to_slots
 from .layers import attend, dense
 
 __all__ = ["AnchorNet", "Modes", "network_output"]
@@ -131,7 +141,7 @@ class AnchorNet(Predictor):
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
         """Return where people will be, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
-        why = misfit(past)
+        why = incompatibility(past)
         if why:
             one: Predictor = ConstantVelocity() if samples == 1 else SampledConstantVelocity()
             warnings.warn(f"anchor-net: {why}; {one.name} answers instead", stacklevel=2)
@@ -142,25 +152,25 @@ class AnchorNet(Predictor):
             return self._draws(past, steps, samples, rng, numbers, bends)
         if samples == 1:
             path = _path(numbers, bends, bends.single[:, None], past, steps)[0]
-            place = scattered(past, path, bends.window, bends.slot)
-            return self.forecast(past, kept_apart(past, place, self.contact))
+            place = scatter_to_slots(past, path, bends.window, bends.slot)
+            return self.forecast(past, separate_people(past, place, self.contact))
         path = _path(numbers, bends, bends.mode, past, steps)[0]
-        place = scattered(past, path, bends.window, bends.slot)
+        place = scatter_to_slots(past, path, bends.window, bends.slot)
         share = np.full((len(past), past.present.shape[2], path.shape[1]), 0.0)
         share[bends.window, bends.slot] = bends.probability
-        place, weight = set_together(past, place, share, self.contact)
+        place, weight = coordinate_modes(past, place, share, self.contact)
         weight = weight[:, :samples] / weight[:, :samples].sum(axis=1, keepdims=True)
-        forecast = self.forecast(past, kept_apart(past, place[:, :samples], self.contact))
+        forecast = self.forecast(past, separate_people(past, place[:, :samples], self.contact))
         return dataclasses.replace(forecast, weight=weight)
 
-    def modes(self, past: Windows, steps: int = AHEAD) -> Modes:
+    def modes(self, past: Windows, steps: int = PREDICTED_ROWS) -> Modes:
         """Return the futures and probabilities of everyone there at the last row, each for itself.
 
         Raises:
             InputError: the windows do not fit what was learned.
         """
         self.check(past, steps)
-        why = misfit(past)
+        why = incompatibility(past)
         if why:
             raise InputError(f"anchor-net: {why}; there are no modes of it")
         numbers = self._numbers(past)
@@ -171,7 +181,7 @@ class AnchorNet(Predictor):
 
     def note(self, past: Windows) -> str:
         """Return what a user should know of forecasts of such windows in one sentence, or nothing."""
-        why = misfit(past)
+        why = incompatibility(past)
         if why:
             return f"anchor-net: {why}; a baseline answers instead"
         if not self.file and self.fold == AUTO and fold_of(past.source) == ALL:
@@ -183,7 +193,7 @@ class AnchorNet(Predictor):
 
     def _numbers(self, past: Windows) -> Numbers:
         if not self.file:
-            return learned("anchor-net", fold_of(past.source) if self.fold == AUTO else self.fold)
+            return load_pretrained("anchor-net", fold_of(past.source) if self.fold == AUTO else self.fold)
         return _own(self.file, Path(self.file).stat().st_mtime_ns if Path(self.file).is_file() else 0)
 
     def _draws(
@@ -211,8 +221,8 @@ class AnchorNet(Predictor):
             _, through = _path(numbers, bends, bend, past)
             bend = np.where(through[..., None], middle, bend)
         path, _ = _path(numbers, bends, bend, past, steps)
-        place = drawn_together(past, scattered(past, path, bends.window, bends.slot), self.contact, DRAWS)
-        return self.forecast(past, kept_apart(past, place[:, :samples], self.contact))
+        place = coordinate_draws(past, scatter_to_slots(past, path, bends.window, bends.slot), self.contact, DRAWS)
+        return self.forecast(past, separate_people(past, place[:, :samples], self.contact))
 
 
 def network_output(numbers: Numbers, own: Floats, company: Floats, there: NDArray[np.bool_]) -> Floats:
@@ -233,12 +243,16 @@ def network_output(numbers: Numbers, own: Floats, company: Floats, there: NDArra
 def _own(file: str, changed: int) -> Numbers:
     known = _OWN.get(file)
     if known is None or known[0] != changed:
-        numbers = read_numbers(Path(file))
+        numbers = read_weights(Path(file))
         if "content" in numbers:  # what crowdbot train keeps
             weights = load_checkpoint(file, "anchor-net")["weights"]
             numbers = {name: np.asarray(values, dtype=np.float64) for name, values in weights.items()}
         missing = [name for name in NEEDED if name not in numbers]
-        shapes = {"own_1_weight": INPUTS, "near_1_weight": COMPANY, "temperature": len(GAITS) + 1}
+        shapes = {
+            "own_1_weight": AGENT_FEATURES,
+            "near_1_weight": NEIGHBOR_FEATURES,
+            "temperature": len(SPEED_CLASSES) + 1,
+        }
         wrong = [name for name, rows in shapes.items() if not missing and numbers[name].shape[:1] != (rows,)]
         if missing or wrong:
             what = f"it has no {missing[0]}" if missing else f"its {wrong[0]} is of another shape"
@@ -251,16 +265,16 @@ _OWN: dict[str, tuple[int, Numbers]] = {}
 
 
 def _bends(numbers: Numbers, past: Windows) -> _Bends:
-    people, window, slot = people_of(past)
-    heading = forward(people.past)
+    people, window, slot = agent_histories(past)
+    heading = heading_vectors(people.past)
     K, D = numbers["centres"].shape
     out = np.zeros((len(window), K * D + K + 2 * D))
     for first in range(0, len(window), MOST_AT_ONCE):
         part = slice(first, first + MOST_AT_ONCE)
         some = people.at(part)
-        out[part] = network_output(numbers, *features(some, heading[part]), some.there)
+        out[part] = network_output(numbers, *agent_features(some, heading[part]), some.there)
     mode = numbers["centres"] + out[:, : K * D].reshape(-1, K, D) * numbers["spread"]
-    kind = gait(people.past)
+    kind = speed_class(people.past)
     score = out[:, K * D : K * D + K] / numbers["temperature"][kind, None]
     probability = np.exp(score - score.max(axis=1, keepdims=True, initial=-np.inf))
     total = np.cumsum(probability, axis=1)[:, -1:]  # summed in one order, whatever the number of people
@@ -311,7 +325,7 @@ def _path(
     away = np.zeros((*bend.shape[:2], basis.shape[1]))
     for d in range(len(basis)):  # in one order, whatever the number of people
         away += bend[..., d, None] * basis[d]
-    local = away.reshape(*bend.shape[:2], AHEAD, 2)
-    time = (steps, past.dt) if steps else (AHEAD, STEP)
-    path = spread_over_time(turned(local, bends.heading, back=True), bends.step, *time)
-    return before_walls(past, path, bends.window, bends.slot)
+    local = away.reshape(*bend.shape[:2], PREDICTED_ROWS, 2)
+    time = (steps, past.dt) if steps else (PREDICTED_ROWS, STEP)
+    path = resample_paths(rotate(local, bends.heading, back=True), bends.step, *time)
+    return stop_at_walls(past, path, bends.window, bends.slot)

@@ -15,9 +15,26 @@ from crowdbot.data import Trajectories, Windows
 from crowdbot.prediction.pretrained_weights import STEP
 from crowdbot.prediction.training.samples import Samples
 
-from .agent_frame import AHEAD, ROWS, People, completed, features, forward, people_of, turned
+from .agent_frame import (
+    PREDICTED_ROWS,
+    ROWS,
+    AgentHistories,
+    agent_features,
+    agent_histories,
+    fill_gaps,
+    heading_vectors,
+    rotate,
+)
 
-__all__ = ["Batch", "Material", "Variation", "backwards", "batch", "gathered", "material_of"]
+__all__ = [
+    "Augmentation",
+    "TrainingBatch",
+    "TrainingSet",
+    "make_batch",
+    "reverse_time",
+    "training_set",
+    "training_set_of",
+]
 
 Floats = NDArray[np.float64]
 
@@ -25,11 +42,11 @@ AT_ONCE = 64
 """About so many scenes, of nearly the same size, are laid out together."""
 
 
-class Material(NamedTuple):
+class TrainingSet(NamedTuple):
     """N people to learn from, in the axes of the world, seen from their last place."""
 
-    people: People
-    planned: People
+    people: AgentHistories
+    planned: AgentHistories
     """The same with the neighbours whose future is known walking there, as a robot with a plan does."""
     ahead: Floats
     """``[N, 12, 2]`` [m] where they went."""
@@ -47,7 +64,7 @@ class Material(NamedTuple):
         return found.hexdigest()
 
 
-class Batch(NamedTuple):
+class TrainingBatch(NamedTuple):
     """What the network is shown: own numbers, neighbours, and what constant velocity misses."""
 
     own: Floats
@@ -57,7 +74,7 @@ class Batch(NamedTuple):
 
 
 @dataclasses.dataclass(frozen=True)
-class Variation:
+class Augmentation:
     """How people are varied; a share is a probability for each person and batch.
 
     Fields:
@@ -89,10 +106,10 @@ class Variation:
     unseen: float = 0.05
 
 
-NONE = Variation(*(0.0,) * 13)
+NO_AUGMENTATION = Augmentation(*(0.0,) * 13)
 
 
-def gathered(recordings: Sequence[Trajectories], reverse: bool = True) -> Material:
+def training_set(recordings: Sequence[Trajectories], reverse: bool = True) -> TrainingSet:
     """Return everyone who is seen over 8 + 12 rows at 0.4 s, and with ``reverse`` also as if time ran backwards.
 
     Raises:
@@ -105,14 +122,14 @@ def gathered(recordings: Sequence[Trajectories], reverse: bool = True) -> Materi
                 f"{tracks.name} has steps of {tracks.dt:.4g} s in {tracks.units}; learning needs 0.4 s in metres:"
                 " give fps=2.5, or resample"
             )
-        for one in (tracks, backwards(tracks)) if reverse else (tracks,):
+        for one in (tracks, reverse_time(tracks)) if reverse else (tracks,):
             parts.append(_people(*one.windows()))
     if not parts:
         raise InputError("there is no recording to learn from")
     return _material(parts)
 
 
-def material_of(samples: Samples, reverse: bool = True) -> Material:
+def training_set_of(samples: Samples, reverse: bool = True) -> TrainingSet:
     """Return everyone of the samples who is seen over 8 + 12 rows, and with ``reverse`` also as if time ran backwards.
 
     Backwards, only those are near who were there at both ends of the observed rows.
@@ -120,9 +137,11 @@ def material_of(samples: Samples, reverse: bool = True) -> Material:
     Raises:
         InputError: there is nobody, or rows or units do not fit.
     """
-    if (samples.observe, samples.predict, samples.units) != (ROWS, AHEAD, "m") or abs(samples.dt - STEP) > 0.01 * STEP:
+    if (samples.observe, samples.predict, samples.units) != (ROWS, PREDICTED_ROWS, "m") or abs(
+        samples.dt - STEP
+    ) > 0.01 * STEP:
         raise InputError(
-            f"anchor-net learns {ROWS} + {AHEAD} rows of {STEP} s in metres, {samples.names[0]} is cut into"
+            f"anchor-net learns {ROWS} + {PREDICTED_ROWS} rows of {STEP} s in metres, {samples.names[0]} is cut into"
             f" {samples.observe} + {samples.predict} rows of {samples.dt:.4g} s in {samples.units}; resample with"
             f" --step {STEP}"
         )
@@ -147,7 +166,7 @@ def _windows(place: Floats, there: NDArray[np.bool_], scored: NDArray[np.bool_],
     return past, future
 
 
-def backwards(tracks: Trajectories) -> Trajectories:
+def reverse_time(tracks: Trajectories) -> Trajectories:
     """Return the tracks as if time ran backwards; people walk alike."""
     last = tracks.frame.max() + tracks.frame.min()
     return Trajectories(
@@ -156,22 +175,24 @@ def backwards(tracks: Trajectories) -> Trajectories:
     )  # fmt: skip
 
 
-def batch(material: Material, rows: NDArray[np.int64], how: Variation, rng: np.random.Generator) -> Batch:
+def make_batch(
+    material: TrainingSet, rows: NDArray[np.int64], how: Augmentation, rng: np.random.Generator
+) -> TrainingBatch:
     """Return the people ``rows`` of the material, varied."""
     people, ahead, seen_from = _varied(material, rows, how, rng)
-    heading = forward(people.past)
+    heading = heading_vectors(people.past)
     angle = how.turn * rng.standard_normal(len(rows))
     wrong = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
-    heading = turned(heading, wrong)
-    own, company = features(people, heading)
+    heading = rotate(heading, wrong)
+    own, company = agent_features(people, heading)
     step = people.past[:, -1] - people.past[:, -2]
-    missed = ahead - seen_from - step[:, None] * np.arange(1.0, AHEAD + 1.0)[:, None]
-    return Batch(own, company, people.there, turned(missed, heading))
+    missed = ahead - seen_from - step[:, None] * np.arange(1.0, PREDICTED_ROWS + 1.0)[:, None]
+    return TrainingBatch(own, company, people.there, rotate(missed, heading))
 
 
 def _varied(
-    material: Material, rows: NDArray[np.int64], how: Variation, rng: np.random.Generator
-) -> tuple[People, Floats, Floats]:
+    material: TrainingSet, rows: NDArray[np.int64], how: Augmentation, rng: np.random.Generator
+) -> tuple[AgentHistories, Floats, Floats]:
     """Return people, where they went, and where they were seen last, all from the true last place."""
     N = len(rows)
     plain, planned = material.people.at(rows), material.planned.at(rows)
@@ -185,17 +206,17 @@ def _varied(
     past = past + _noise(N, past.shape[1], how, rng)
     past = _switched(past, near, pace, how, rng)
     seen = _rows_seen(past, plain.seen, how, rng)
-    past = completed(past, seen)
+    past = fill_gaps(past, seen)
     now = past[:, -1:]
     zero = there[..., None]
-    people = People(
+    people = AgentHistories(
         past - now, seen, np.where(zero, near - now, 0.0), np.where(zero, pace, 0.0),
         np.where(zero[..., None], later * factor[:, None, None] - now[:, None], 0.0), knows & there, there,
     )  # fmt: skip
     return people, ahead, now
 
 
-def _noise(count: int, rows: int, how: Variation, rng: np.random.Generator) -> Floats:
+def _noise(count: int, rows: int, how: Augmentation, rng: np.random.Generator) -> Floats:
     """Return ``[N, 8, 2]`` [m]; most tracks are right at the last row."""
     small = how.jitter * rng.random(count)[:, None, None] * rng.standard_normal((count, rows, 2))
     small[:, -1] = 0.0
@@ -203,7 +224,7 @@ def _noise(count: int, rows: int, how: Variation, rng: np.random.Generator) -> F
     return np.where((rng.random(count) < how.noisy)[:, None, None], large, small)
 
 
-def _switched(past: Floats, near: Floats, pace: Floats, how: Variation, rng: np.random.Generator) -> Floats:
+def _switched(past: Floats, near: Floats, pace: Floats, how: Augmentation, rng: np.random.Generator) -> Floats:
     """Return tracks, some with the older rows of the nearest neighbour, who walked evenly."""
     N, T, _ = past.shape
     row = np.arange(1.0 - T, 1.0)[:, None]
@@ -214,7 +235,7 @@ def _switched(past: Floats, near: Floats, pace: Floats, how: Variation, rng: np.
     return np.where((chosen & (np.arange(T) < from_row))[..., None], other, past)
 
 
-def _rows_seen(past: Floats, seen: NDArray[np.bool_], how: Variation, rng: np.random.Generator) -> NDArray[np.bool_]:
+def _rows_seen(past: Floats, seen: NDArray[np.bool_], how: Augmentation, rng: np.random.Generator) -> NDArray[np.bool_]:
     N, T = seen.shape
     hole = (rng.random((N, 1)) < how.holes) & (rng.random((N, T)) < how.hole)
     begin = np.where(rng.random((N, 1)) < how.late, T - rng.integers(2, T, size=(N, 1)), 0)
@@ -225,25 +246,25 @@ def _rows_seen(past: Floats, seen: NDArray[np.bool_], how: Variation, rng: np.ra
     return kept
 
 
-def _people(past: Windows, future: Windows) -> Material:
+def _people(past: Windows, future: Windows) -> TrainingSet:
     whole = np.asarray(future.present.all(axis=1))
     known = np.where(whole[:, None, :, None], future.position, np.nan)
-    people, window, slot = people_of(past)
-    planned, _, _ = people_of(dataclasses.replace(past, plan=known))
+    people, window, slot = agent_histories(past)
+    planned, _, _ = agent_histories(dataclasses.replace(past, plan=known))
     kept = np.flatnonzero(future.scored[window, slot])
     window, slot = window[kept], slot[kept]
     ahead = future.position[window, :, slot] - past.position[window, -1, slot][:, None]
-    return Material(people.at(kept), planned.at(kept), ahead)
+    return TrainingSet(people.at(kept), planned.at(kept), ahead)
 
 
-def _material(parts: Sequence[Material]) -> Material:
-    return Material(
+def _material(parts: Sequence[TrainingSet]) -> TrainingSet:
+    return TrainingSet(
         _joined([part.people for part in parts]),
         _joined([part.planned for part in parts]),
         np.concatenate([part.ahead for part in parts]),
     )
 
 
-def _joined(parts: Sequence[People]) -> People:
+def _joined(parts: Sequence[AgentHistories]) -> AgentHistories:
     columns: list[Any] = [np.concatenate(values) for values in zip(*parts, strict=True)]
-    return People(*columns)
+    return AgentHistories(*columns)
