@@ -66,19 +66,19 @@ class LearnedPredictor(Predictor):
     @property
     def name(self) -> str:
         """Name on the command line, followed by what weights it has: folder, file and hash when they are own ones."""
-        if self.shipped:
+        if self.is_pretrained:
             return self.kind + (f"(checkpoint={self.checkpoint})" if self.checkpoint != AUTO else "")
         file = Path(self.checkpoint)
         return f"{self.kind}({file.parent.name}/{file.name} {self.digest})"
 
     @property
-    def pretrained_file(self) -> bool:
+    def is_pretrained(self) -> bool:
         """Whether weights of the package are used."""
         return self.checkpoint in (AUTO, *FOLDS)
 
     def file(self, source: str) -> Path:
         """Return the file of the weights for a recording of this name."""
-        if not self.shipped:
+        if not self.is_pretrained:
             return Path(self.checkpoint)
         fold = fold_of(source) if self.checkpoint == AUTO else self.checkpoint
         return pretrained_file(self.kind, ELSEWHERE if fold == ALL else fold)
@@ -97,7 +97,7 @@ class LearnedPredictor(Predictor):
 
     def incompatibility(self, past: Windows) -> str:
         """Return why shipped weights do not fit these windows, or nothing; own weights speak for themselves."""
-        if not self.shipped:
+        if not self.is_pretrained:
             return ""
         if past.units == "m" and abs(past.dt - STEP) > TOLERANCE * STEP:
             return (
