@@ -227,11 +227,11 @@ def test_a_search_stops_by_tolerance_and_patience(capsys, street):
 def test_schemes_without_a_simulated_crowd_are_refused(capsys, street):
     for words in (["--cost", "absolute"], ["--prior", "learn"], ["--model", "orca"]):
         assert main(["predict", "--data", street, "--predictor", "kalman", *words]) == 2
-        assert "is for predictors that simulate a crowd; kalman does not" in capsys.readouterr().err
+        assert "requires the predictor simulated, not kalman" in capsys.readouterr().err
     assert main(["predict", "--data", street, "--predictor", "simulated", "--shared"]) == 2
     assert "name a cost and a search" in capsys.readouterr().err
     assert main(["predict", "--data", street, "--animate", "3"]) == 2
-    assert "say where with --out DIR" in capsys.readouterr().err
+    assert "--animate requires --out DIR" in capsys.readouterr().err
 
 
 def test_somebody_alone_cannot_be_compared_with_others(capsys, tmp_path):

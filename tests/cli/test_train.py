@@ -44,8 +44,7 @@ def test_a_training_that_never_began_is_not_resumed(
     status, _, err = said(["train", "social-ways", "--data", *walks, "--out", str(out), "--resume"], capsys)
     assert status == 2
     assert err == (
-        f"crowdbot: --out {out} holds no training to go on with (there is no last.npz in it); give the folder of one,"
-        " or begin one without --resume\n"
+        f"crowdbot: --out {out} has no last.npz: nothing to resume; give the folder of a training, or omit --resume\n"
     )
     assert list(tmp_path.iterdir()) == ([out] if there else [])
 

@@ -139,7 +139,7 @@ def test_wrong_use_is_said_in_a_sentence(windows: Maker) -> None:
     with pytest.raises(InputError, match="live: 'anchor-net' is no predictor; give an object, such as crowdbot.Anchor"):
         Live("anchor-net", dt=0.4)  # type: ignore[arg-type]
     live = Live(ConstantVelocity(), dt=0.4)
-    with pytest.raises(InputError, match="nothing was seen yet"):
+    with pytest.raises(InputError, match="no row yet"):
         live.predict(3)
     with pytest.raises(InputError, match="2 identities and 1 positions"):
         live.update([1, 2], [[0.0, 0.0]])

@@ -22,34 +22,49 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add(
         "--predictor", nargs="+", default=["constant-velocity"], metavar="NAME",
-        help="one or several: crowdbot list predictors, or file.py:Name (default constant-velocity)",
+        help="predictors: names from `crowdbot list predictors`, or file.py:Name (default: constant-velocity)",
     )  # fmt: skip
     add_scheme(parser, many=True)
-    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="parameters of the predictor or its crowd model")
-    add("--samples", type=int, default=1, metavar="K", help="futures drawn from a predictor that samples")
-    add("--best-of", default="person", metavar="RULE", help="how the best of K is chosen: person, scene or same")
-    add("--live", action="store_true", help="frame by frame: calibrations begin with the fit of the frame before")
-    add("--workers", type=int, default=1, metavar="N", help="processes (default 1)")
-    add("--cluster", metavar="ADDRESS", help="run on a Ray cluster, such as auto; needs crowdbot[cluster]")
-    add("--out", type=Path, metavar="DIR", help="write tables and plots there; run again to go on after a stop")
-    add("--animate", type=int, metavar="FRAME", help="with --out: also an animation of the predictions at this frame")
-    add("--seed", type=int, default=0, help="seed of predictors that sample or search")
+    add(
+        "--set",
+        nargs="+",
+        default=[],
+        metavar="NAME=VALUE",
+        help="parameters of the predictor or its crowd model (default: none)",
+    )
+    add("--samples", type=int, default=1, metavar="K", help="number of futures per person (default: 1)")
+    add(
+        "--best-of",
+        default="person",
+        metavar="RULE",
+        help="selection of the best of K futures: person, scene or same (default: person)",
+    )
+    add(
+        "--live",
+        action="store_true",
+        help="frame-by-frame prediction; each calibration starts from the fit of the previous frame",
+    )
+    add("--workers", type=int, default=1, metavar="N", help="number of processes (default: 1)")
+    add("--cluster", metavar="ADDRESS", help="address of a Ray cluster, such as auto; requires crowdbot[cluster]")
+    add("--out", type=Path, metavar="DIR", help="folder for tables, plots and resumable results (default: none)")
+    add("--animate", type=int, metavar="FRAME", help="frame to animate; requires --out")
+    add("--seed", type=int, default=0, help="random seed (default: 0)")
     add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:
-    """Score every predictor on every recording and on all together."""
+    """Evaluate every predictor on every recording."""
     from crowdbot.benchmark import Evaluation
     from crowdbot.core import InputError
 
     if options.animate is not None and options.out is None:
-        raise InputError("--animate writes a file: say where with --out DIR")
+        raise InputError("--animate requires --out DIR")
     found = recordings(options)
     evaluation = Evaluation(
         found, predictor_specs(options), options.samples, options.best_of, options.seed, options.live
     )
     if options.animate is not None:
-        evaluation.window_at(options.animate)  # says now, not after the work, that there is none
+        evaluation.window_at(options.animate)  # fails before the evaluation starts
     keep = None if options.out is None else options.out / "parts"
     with progress(options.json) as report, warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=".* answers instead$")  # a note says it, once
@@ -80,7 +95,7 @@ def _resume_hint(evaluation: Evaluation, keep: Path | None) -> str:
 
 
 def _notes(results: list[PredictorResult]) -> list[str]:
-    """Return what predictors say about the recordings, each sentence once."""
+    """Return the notes of the predictors about the recordings, without duplicates."""
     said = (one.spec.predictor.note(one.recording.windows[0]) for one in results)
     return [sentence for sentence in dict.fromkeys(said) if sentence]
 
@@ -88,7 +103,7 @@ def _notes(results: list[PredictorResult]) -> list[str]:
 def _done(
     evaluation: Evaluation, options: argparse.Namespace, keep: Path | None, report: Progress
 ) -> list[tuple[EvaluationJob, JobResult]]:
-    """Run the evaluation; each frame of a calibrated crowd is one line as soon as it is known."""
+    """Run the evaluation; print one line per frame of a calibrated crowd."""
     jobs = evaluation.jobs()
     whole: dict[tuple[str, str], int] = {}
     for job in jobs:
@@ -115,11 +130,12 @@ def _frame_lines(part: JobResult) -> None:
 
 
 def _tables(options: argparse.Namespace, evaluation: Evaluation, results: list[PredictorResult]) -> None:
-    """Print one table a predictor, or with several predictors one a recording."""
+    """Print one table for one predictor, or one table per recording for several."""
     from crowdbot.metrics import Score
 
     best = f", best of {options.samples} per {options.best_of}" if options.samples > 1 else ""
-    caption = f"protocol {evaluation.recordings[0].protocol}{best}; means over persons, 95 % by drawing persons"
+    protocol = evaluation.recordings[0].protocol
+    caption = f"protocol {protocol}{best}; means over persons, 95 % intervals by bootstrap over persons"
     reach = f"{options.observe} observed + {options.predict} predicted rows"
     if len(evaluation.specs) == 1:
         scores = [result.score for result in results]
@@ -144,7 +160,7 @@ def _table(title: str, head: str, rows: list[str], scores: list[Score], caption:
 
 
 def as_json(evaluation: Evaluation, results: list[PredictorResult]) -> dict[str, Any]:
-    """Return the object that ``--json`` prints."""
+    """Return the output of ``--json``."""
     from crowdbot.metrics import Score
 
     return {
@@ -165,7 +181,7 @@ def as_json(evaluation: Evaluation, results: list[PredictorResult]) -> dict[str,
 
 
 def _written(options: argparse.Namespace, evaluation: Evaluation, results: list[PredictorResult]) -> None:
-    """Write the scores, every frame, the plots and, when asked for, the animation."""
+    """Write the scores, the results by frame, the plots and the animation, if requested."""
     from crowdbot.benchmark import animate_window, plot_errors, plot_frames
 
     from .output import json_text

@@ -56,7 +56,7 @@ class _Filter(Predictor):
                 raise InputError(f"{self.name.partition('(')[0]}: {name} = {value} must be finite and above 0")
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return where people will be, see :meth:`Predictor.predict`."""
+        """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
         motion, _ = self._run_filter(_rows_first(past.position), _rows_first(past.present), past.dt)
         time = past.dt * np.arange(1, steps + 1)[:, None, None]

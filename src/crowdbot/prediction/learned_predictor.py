@@ -84,7 +84,7 @@ class LearnedPredictor(Predictor):
         return pretrained_file(self.kind, ELSEWHERE if fold == ALL else fold)
 
     def note(self, past: Windows) -> str:
-        """Return what a user should know of forecasts of such windows in one sentence, or nothing."""
+        """Return a one-sentence remark on forecasts of such windows, or an empty string."""
         why = self.incompatibility(past)
         if why:
             return f"{self.kind}: {why}; a baseline answers instead"

@@ -109,7 +109,7 @@ class Simulated(Predictor):
         )  # fmt: skip
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return where people will be, see :meth:`Predictor.predict`."""
+        """Return the forecast, see :meth:`Predictor.predict`."""
         return self.follow(past, steps, samples, rng)[0]
 
     def follow(

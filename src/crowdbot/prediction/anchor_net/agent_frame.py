@@ -46,7 +46,7 @@ LOOKAHEAD_ROWS = (4, 8, 12)
 AGENT_FEATURES = 7 * 2 + 7 * 2 + 1 + 2 + 7
 """Numbers about a person alone: places, displacements, speed, mean velocity, which rows were seen."""
 NEIGHBOR_FEATURES = 2 + 2 + 2 + 1 + 1 + 1 + 1 + 2 * len(LOOKAHEAD_ROWS)
-"""Numbers about each neighbour."""
+"""Numbers about each neighbor."""
 SPEED_CLASSES = (0.03, 0.2, 0.8, 2.0, 3.5)
 """Distances [m] walked in 2.8 s that part still, standing, shuffling, slow, usual and fast people."""
 MOVED = 0.1
@@ -71,7 +71,7 @@ class AgentHistories(NamedTuple):
     known: Bools
     """``[N, 12]``, whether that is known, as of a robot with a plan."""
     there: Bools
-    """``[N, 12]``, whether there is such a neighbour."""
+    """``[N, 12]``, whether there is such a neighbor."""
 
     def at(self, rows: NDArray[np.int64] | slice) -> AgentHistories:
         """Return some of the people."""
@@ -141,7 +141,7 @@ def rotate(vector: Floats, heading: Floats, back: bool = False) -> Floats:
 
 
 def agent_features(people: AgentHistories, heading: Floats) -> tuple[Floats, Floats]:
-    """Return the numbers of each person ``[N, INPUTS]`` and neighbour ``[N, 12, COMPANY]``, looking along headings."""
+    """Return the numbers of each person ``[N, INPUTS]`` and neighbor ``[N, 12, COMPANY]``, looking along headings."""
     past, near, pace, later = (rotate(values, heading) for values in (people.past, people.near, people.pace,
                                                                      people.later))  # fmt: skip
     step = past[:, 1:] - past[:, :-1]

@@ -70,15 +70,17 @@ class Anchors(Predictor):
         check_fold(self.fold)
         if (self.shapes is None) != (self.share is None):
             raise InputError("anchors: shapes and share belong together")
-        if self.shapes is not None and self.share is not None and (
-            self.shapes.ndim != 3 or self.shapes.shape[1:] != (PREDICTED_ROWS, 2) or self.share.shape != self.shapes.shape[:1]
-        ):  # fmt: skip
+        if (
+            self.shapes is not None
+            and self.share is not None
+            and (self.shapes.shape[1:] != (PREDICTED_ROWS, 2) or self.share.shape != self.shapes.shape[:1])
+        ):
             raise InputError(
                 f"anchors: shapes {list(self.shapes.shape)} must be [K, {PREDICTED_ROWS}, 2] and share [K]"
             )
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return where people will be, see :meth:`Predictor.predict`."""
+        """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
         why = incompatibility(past)
         if why:
@@ -86,8 +88,8 @@ class Anchors(Predictor):
             return SampledConstantVelocity().predict(past, steps, samples, rng)
         shapes, share = self._chosen(past)
         people, window, slot = agent_histories(past)
-        bend = rotate(np.broadcast_to(shapes[:samples], (len(window), *shapes[:samples].shape)), heading_vectors(people.past),
-                      back=True)  # fmt: skip
+        residual = np.broadcast_to(shapes[:samples], (len(window), *shapes[:samples].shape))
+        bend = rotate(residual, heading_vectors(people.past), back=True)
         bend = np.where((people.seen.sum(axis=1) > 1)[:, None, None, None], bend, 0.0)
         step = people.past[:, -1] - people.past[:, -2]
         path = scatter_to_slots(past, resample_paths(bend, step, steps, past.dt), window, slot)
@@ -102,7 +104,7 @@ class Anchors(Predictor):
         return found["shapes"], found["share"]
 
     def note(self, past: Windows) -> str:
-        """Return what a user should know of forecasts of such windows in one sentence, or nothing."""
+        """Return a one-sentence remark on forecasts of such windows, or an empty string."""
         why = incompatibility(past)
         if why:
             return f"anchors: {why}; a baseline answers instead"

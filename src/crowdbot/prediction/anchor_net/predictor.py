@@ -139,7 +139,7 @@ class AnchorNet(Predictor):
             raise InputError(f"anchor-net: contact = {self.contact} m must be finite and at least 0")
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return where people will be, see :meth:`Predictor.predict`."""
+        """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
         why = incompatibility(past)
         if why:
@@ -180,7 +180,7 @@ class AnchorNet(Predictor):
         return Modes(path, bends.probability, single, bends.window, bends.slot)
 
     def note(self, past: Windows) -> str:
-        """Return what a user should know of forecasts of such windows in one sentence, or nothing."""
+        """Return a one-sentence remark on forecasts of such windows, or an empty string."""
         why = incompatibility(past)
         if why:
             return f"anchor-net: {why}; a baseline answers instead"

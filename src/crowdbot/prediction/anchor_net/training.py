@@ -42,7 +42,7 @@ class AnchorTraining:
 
     Fields:
         people: in one batch.
-        width, social: numbers in a hidden layer, and about a neighbour.
+        width, social: numbers in a hidden layer, and about a neighbor.
         count: futures.
         rate, decay, warm: learning rate, weight decay, updates until the full rate.
         average: of the weights.
@@ -130,7 +130,8 @@ def _layers(W: int, S: int, K: int) -> Any:
     layers: Any = torch.nn.ModuleDict(
         {
             "own_1": torch.nn.Linear(AGENT_FEATURES, W), "own_2": torch.nn.Linear(W, W),
-            "query": torch.nn.Linear(W, S), "near_1": torch.nn.Linear(NEIGHBOR_FEATURES, S), "near_2": torch.nn.Linear(S, S),
+            "query": torch.nn.Linear(W, S),
+            "near_1": torch.nn.Linear(NEIGHBOR_FEATURES, S), "near_2": torch.nn.Linear(S, S),
             "both_1": torch.nn.Linear(W + S, W), "both_2": torch.nn.Linear(W, W),
             "out": torch.nn.Linear(W, RANK * K + K + 2 * RANK),
         }

@@ -47,7 +47,7 @@ class TrainingSet(NamedTuple):
 
     people: AgentHistories
     planned: AgentHistories
-    """The same with the neighbours whose future is known walking there, as a robot with a plan does."""
+    """The same with the neighbors whose future is known walking there, as a robot with a plan does."""
     ahead: Floats
     """``[N, 12, 2]`` [m] where they went."""
 
@@ -65,7 +65,7 @@ class TrainingSet(NamedTuple):
 
 
 class TrainingBatch(NamedTuple):
-    """What the network is shown: own numbers, neighbours, and what constant velocity misses."""
+    """What the network is shown: own numbers, neighbors, and what constant velocity misses."""
 
     own: Floats
     company: Floats
@@ -86,9 +86,9 @@ class Augmentation:
         noisy, noise: share of tracks with noise at every row, and its largest standard deviation [m].
         holes, hole: share of tracks with rows missing, and the share of their rows.
         late: share of tracks that begin late, with 2 to 7 rows.
-        switched: share of tracks whose older rows belong to the nearest neighbour.
-        planned: share of people who know where some neighbours go.
-        unseen: share of neighbours that are not seen.
+        switched: share of tracks whose older rows belong to the nearest neighbor.
+        planned: share of people who know where some neighbors go.
+        unseen: share of neighbors that are not seen.
     """
 
     mirror: float = 0.5
@@ -225,7 +225,7 @@ def _noise(count: int, rows: int, how: Augmentation, rng: np.random.Generator) -
 
 
 def _switched(past: Floats, near: Floats, pace: Floats, how: Augmentation, rng: np.random.Generator) -> Floats:
-    """Return tracks, some with the older rows of the nearest neighbour, who walked evenly."""
+    """Return tracks, some with the older rows of the nearest neighbor, who walked evenly."""
     N, T, _ = past.shape
     row = np.arange(1.0 - T, 1.0)[:, None]
     other = near[:, :1] + pace[:, :1] * row

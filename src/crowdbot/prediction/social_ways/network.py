@@ -1,4 +1,4 @@
-"""Social Ways, the network: a generator of futures with attention over neighbours, and its discriminator.
+"""Social Ways, the network: a generator of futures with attention over neighbors, and its discriminator.
 
 Axes: B scenes (draws of one scene are B apart), A people, T rows, H = 128 hidden, P = 64 pooled, M = 64 noise.
 States are (x, y, vx, vy) in the frame of each person, divided by scales of the training data.
@@ -119,7 +119,7 @@ class Generator(nn.Module):
         return hidden
 
     def pooled(self, hidden: Tensor, place: Tensor, velocity: Tensor, sight: SceneInput) -> Tensor:
-        """Return what the neighbours mean to everyone ``[B * A, P]``; 0 for who has none.
+        """Return what the neighbors mean to everyone ``[B * A, P]``; 0 for who has none.
 
         Args:
             hidden: ``[B * A, H]`` encoded tracks up to now.

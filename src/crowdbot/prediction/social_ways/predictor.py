@@ -194,7 +194,7 @@ class SocialWays(LearnedPredictor):
         return _network(str(self.file(source)), self.digest, self.device)
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return where people will be, see :meth:`Predictor.predict`.
+        """Return the forecast, see :meth:`Predictor.predict`.
 
         Raises:
             InputError: windows have another time step or other units than what was learned.
