@@ -97,8 +97,8 @@ def test_weights_that_do_not_fit_are_said_and_a_baseline_answers(
              "--data", walks[0]]  # fmt: skip
     status, _, err = said(words, capsys)
     assert status == 0
-    assert "anchor-net: street.txt has steps of 1 s, it was learned at 0.4 s and takes up to 0.7 s; a baseline" in err
-    assert "social-ways: street.txt has steps of 1 s, it was learned at 0.4 s: bring it there with --step 0.4" in err
+    assert "anchor-net: street.txt has time steps of 1 s; the weights require 0.4 s, at most 0.7 s; a baseline" in err
+    assert "social-ways: street.txt has time steps of 1 s; the weights require 0.4 s: resample with --step 0.4" in err
     assert "UserWarning" not in err
     status, out, _ = said([*words, "--json"], capsys)
     assert [len(one["notes"]) for one in json.loads(out)["results"]] == [1, 1]

@@ -220,7 +220,7 @@ def test_own_weights_are_read_and_wrong_ones_are_one_sentence(crowd: Maker, tmp_
     for file, word in (("half", "it has no query_bias"), ("old", "its own_1_weight is of another shape")):
         with pytest.raises(DataError, match=f"{file}.npz holds no weights of this network: {word}"):
             AnchorNet(file=str(tmp_path / f"{file}.npz")).predict(crowd(), 12)
-    with pytest.raises(DataError, match="there is no file"):
+    with pytest.raises(DataError, match="does not exist"):
         AnchorNet(file=str(tmp_path / "none.npz")).predict(crowd(), 12)
 
 

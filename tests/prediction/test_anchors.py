@@ -127,10 +127,10 @@ def test_wrong_wishes_are_one_sentence(crowd: Maker, tmp_path) -> None:
     with pytest.raises(InputError, match="learning needs 12 rows ahead"):
         Anchors.fit((crowd(), crowd()))
     (tmp_path / "bad.npz").write_bytes(b"PK\x03\x04 not an archive")
-    with pytest.raises(DataError, match=r"bad\.npz cannot be read as learned numbers"):
+    with pytest.raises(DataError, match=r"bad\.npz is not a file of weights"):
         read_weights(tmp_path / "bad.npz")
-    with pytest.raises(DataError, match="there is no file"):
+    with pytest.raises(DataError, match="does not exist"):
         read_weights(tmp_path / "none.npz")
     np.savez(tmp_path / "nan.npz", shapes=np.full(3, np.nan))
-    with pytest.raises(DataError, match="shapes holds numbers that are not finite"):
+    with pytest.raises(DataError, match="shapes has values that are not finite"):
         read_weights(tmp_path / "nan.npz")

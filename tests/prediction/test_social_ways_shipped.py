@@ -102,7 +102,9 @@ def test_what_does_not_fit_is_said_and_a_baseline_answers(windows: Maker) -> Non
     assert "not in metres; a baseline answers instead" in social.note(pixels)
     with pytest.warns(UserWarning, match="not in metres; sampled-constant-velocity answers instead"):
         assert social.predict(pixels, 12, 3).samples == 3
-    with pytest.warns(UserWarning, match="learned at 0.4 s: bring it there with --step 0.4; constant-velocity answers"):
+    with pytest.warns(
+        UserWarning, match="the weights require 0.4 s: resample with --step 0.4; constant-velocity answers"
+    ):
         assert social.predict(fast, 12).samples == 1
     with pytest.raises(InputError, match="crowdbot train makes one, and shipped are eth, hotel, univ, zara1, zara2"):
         SocialWays("zara3")

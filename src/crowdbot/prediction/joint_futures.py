@@ -1,4 +1,4 @@
-"""Joint futures: people of a window take their own futures so that they do not walk through each other."""
+"""Joint futures: combinations of individual futures without collisions."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ __all__ = ["coordinate_draws", "coordinate_modes", "separate_people", "stop_at_w
 Floats = NDArray[np.float64]
 
 SWEEPS = 8
-"""Everyone is asked so often at most to exchange futures."""
+"""Maximum number of passes over all people when futures are exchanged."""
 ORDER = 0.3
-"""Price of leaving the order of probability, in collisions."""
+"""Cost of a permutation relative to the cost of a collision."""
 ROUNDS = 12
-"""People give way so often at most."""
+"""Maximum number of separation rounds."""
 
 
 def coordinate_modes(past: Windows, place: Floats, share: Floats, contact: float) -> tuple[Floats, Floats]:
@@ -26,12 +26,12 @@ def coordinate_modes(past: Windows, place: Floats, share: Floats, contact: float
 
     Args:
         past: windows.
-        place: ``[W, K, T, A, 2]`` [m], everyone's futures, the likeliest first.
+        place: ``[W, K, T, A, 2]`` [m], individual futures by decreasing probability.
         share: ``[W, A, K]`` their probabilities.
-        contact: distance [m] that people keep.
+        contact: minimum distance between people [m].
 
-    Everyone takes every own future once. The weight of a joint future is the mean over people of the probabilities of
-    what they do in it: for one person that is the own probability.
+    Each person uses each individual future once. The weight of a joint future is the mean probability of its individual
+    futures.
     """
     W, K = place.shape[:2]
     found, weight = place.copy(), np.full((W, K), 1.0 / K)
@@ -47,7 +47,7 @@ def coordinate_modes(past: Windows, place: Floats, share: Floats, contact: float
 
 
 def coordinate_draws(past: Windows, place: Floats, contact: float, block: int) -> Floats:
-    """Return draws ``[W, K, T, A, 2]`` [m] shared out anew within blocks of ``block``, so that people keep apart."""
+    """Return draws ``[W, K, T, A, 2]`` [m], permuted within blocks of ``block`` draws to reduce collisions."""
     found = place.copy()
     for window, who in _members(past):
         for first in range(0, place.shape[1], block):
@@ -58,9 +58,9 @@ def coordinate_draws(past: Windows, place: Floats, contact: float, block: int) -
 
 
 def separate_people(past: Windows, place: Floats, contact: float) -> Floats:
-    """Return joint futures ``[W, K, T, A, 2]`` [m] in which who comes nearer than ``contact`` [m] is moved aside.
+    """Return joint futures ``[W, K, T, A, 2]`` [m] with people separated to at least ``contact`` [m].
 
-    Nobody is moved through a wall: who would be stays on the own path.
+    Paths that would cross a wall after the separation are not changed.
     """
     if contact <= 0.0:
         return place
@@ -85,7 +85,7 @@ def separate_people(past: Windows, place: Floats, contact: float) -> Floats:
 def stop_at_walls(
     past: Windows, path: Floats, window: NDArray[np.int64], slot: NDArray[np.int64]
 ) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return displacements ``[N, K, T, 2]`` [m] that end before the walls of the windows, and which did not [N, K]."""
+    """Return displacements ``[N, K, T, 2]`` [m] that stop at walls, and a mask ``[N, K]`` of the stopped paths."""
     rings = [np.asarray(ring, dtype=np.float64) for ring in past.walls if len(ring) > 1]
     if not rings:
         return path, np.zeros(path.shape[:2], dtype=np.bool_)
@@ -100,7 +100,7 @@ def stop_at_walls(
 
 
 def _members(past: Windows) -> list[tuple[int, NDArray[np.int64]]]:
-    """Return every window with who is there, by id, so that the order of slots does not matter."""
+    """Return the slots of the agents in each window, sorted by id: results do not depend on the order of slots."""
     found = []
     for window in range(len(past)):
         who = np.flatnonzero(past.present[window, -1])
@@ -120,7 +120,7 @@ def _choice(
 
 
 def _with_plans(past: Windows, path: Floats, window: int, who: NDArray[np.int64]) -> Floats:
-    """Return paths ``[A, T, 2]`` with robots where their plans say."""
+    """Return paths ``[A, T, 2]`` in which robots follow their plans."""
     if past.plan is None:
         return path
     path = path.copy()
@@ -131,5 +131,5 @@ def _with_plans(past: Windows, path: Floats, window: int, who: NDArray[np.int64]
 
 
 def _reorder(place: Floats, choice: NDArray[np.int64]) -> Floats:
-    """Return ``place [K, T, A, 2]`` with the futures of each person in the order ``choice [A, K]``."""
+    """Return ``place [K, T, A, 2]`` with the futures of each person permuted by ``choice [A, K]``."""
     return np.take_along_axis(place, choice.T[:, None, :, None], axis=0)

@@ -1,4 +1,4 @@
-"""What learned predictors share: a checkpoint that says what it fits, and tracks made whole for it."""
+"""LearnedPredictor: base class of predictors with weights in a checkpoint file."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ __all__ = ["LearnedPredictor", "complete_tracks"]
 Floats = NDArray[np.float64]
 
 ELSEWHERE = "eth"
-"""Shipped weights for places that are none of the five: those that saw all but this one, the smallest."""
+"""Fold of the shipped weights for other places: trained on all places except this one, the smallest."""
 TOLERANCE = 0.02
-"""Windows whose time step is off by more than this share do not fit."""
+"""Maximum relative difference of the time step."""
 
 
 @dataclass(frozen=True)
 class LearnedPredictor(Predictor):
-    """A predictor whose weights come from a file that ``crowdbot train`` made.
+    """A predictor with weights from a file of ``crowdbot train``.
 
     Fields:
-        checkpoint: the file; or a place (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``) for the shipped weights
-            that were learned without it; or ``auto``: without the place that the recording is named after.
+        checkpoint: file of the weights; or a place (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``) for the shipped
+            weights trained without it; or ``auto``: without the place of the recording, by its name.
         device: ``cpu``, ``cuda`` or ``cuda:N``.
-        digest: hash of the file, so that results which are kept belong to its content.
+        digest: hash of the file.
 
     Raises:
-        InputError: there is no such file.
+        InputError: the file cannot be read.
     """
 
     checkpoint: str = AUTO
@@ -65,7 +65,7 @@ class LearnedPredictor(Predictor):
 
     @property
     def name(self) -> str:
-        """Name on the command line, followed by what weights it has: folder, file and hash when they are own ones."""
+        """Name on the command line with its weights: folder, file and hash for own weights."""
         if self.is_pretrained:
             return self.kind + (f"(checkpoint={self.checkpoint})" if self.checkpoint != AUTO else "")
         file = Path(self.checkpoint)
@@ -73,7 +73,7 @@ class LearnedPredictor(Predictor):
 
     @property
     def is_pretrained(self) -> bool:
-        """Whether weights of the package are used."""
+        """Whether shipped weights are used."""
         return self.checkpoint in (AUTO, *FOLDS)
 
     def file(self, source: str) -> Path:
@@ -96,19 +96,19 @@ class LearnedPredictor(Predictor):
         return ""
 
     def incompatibility(self, past: Windows) -> str:
-        """Return why shipped weights do not fit these windows, or nothing; own weights speak for themselves."""
+        """Return why shipped weights cannot be used with these windows, or an empty string."""
         if not self.is_pretrained:
             return ""
         if past.units == "m" and abs(past.dt - STEP) > TOLERANCE * STEP:
             return (
-                f"{past.source} has steps of {past.dt:.4g} s, it was learned at {STEP} s:"
-                f" bring it there with --step {STEP}"
+                f"{past.source} has time steps of {past.dt:.4g} s; the weights require {STEP} s:"
+                f" resample with --step {STEP}"
             )
         return incompatibility(past)
 
     @staticmethod
     def fits(past: Windows, facts: Mapping[str, Any], what: str) -> None:
-        """Raise :class:`InputError` unless windows have the time step and units that were learned."""
+        """Raise :class:`InputError` if windows have another time step or other units than the training data."""
         if abs(past.dt - facts["dt"]) > TOLERANCE * facts["dt"]:
             raise InputError(
                 f"{what} has learned steps of {facts['dt']:.4g} s, {past.source} has steps of {past.dt:.4g} s;"
@@ -119,10 +119,10 @@ class LearnedPredictor(Predictor):
 
 
 def complete_tracks(past: Windows, rows: int) -> Floats:
-    """Return the last ``rows`` rows of everyone ``[W, rows, A, 2]`` [m], with what was not seen filled in.
+    """Return the last ``rows`` rows of all agents ``[W, rows, A, 2]`` [m] without gaps.
 
-    Holes are bridged by an even walk; before the first row that was seen, people walk backwards with their first
-    velocity; who was seen once stood there all the time.
+    Gaps are interpolated linearly; rows before the first observed row are extrapolated with the first velocity. Agents
+    observed once have a constant position.
     """
     known = bridged(past)
     have = known.position.shape[1]
