@@ -192,18 +192,18 @@ def test_the_plan_of_a_robot_is_kept_and_moves_people(windows: Maker) -> None:
 @both
 def test_what_does_not_fit_is_said_and_a_baseline_answers(net: AnchorNet, crowd: Maker) -> None:
     slow = dataclasses.replace(crowd(), dt=1.6)
-    with pytest.warns(UserWarning, match="anchor-net: made has steps of 1.6 s.*constant-velocity answers instead"):
+    with pytest.warns(UserWarning, match="anchor-net: made has time steps of 1.6 s.*constant-velocity is used instead"):
         one = net.predict(slow, 12)
     assert np.array_equal(one.position, ConstantVelocity().predict(slow, 12).position)
-    with pytest.warns(UserWarning, match="sampled-constant-velocity answers instead"):
+    with pytest.warns(UserWarning, match="sampled-constant-velocity is used instead"):
         many = net.predict(slow, 12, 4, stream(1))
     assert np.array_equal(many.position, SampledConstantVelocity().predict(slow, 12, 4, stream(1)).position)
-    with pytest.raises(InputError, match="there are no modes of it"):
+    with pytest.raises(InputError, match="anchor-net: "):
         net.modes(dataclasses.replace(crowd(), units="px"))
 
 
 def test_the_place_decides_which_weights_are_taken(crowd: Maker) -> None:
-    assert "not named after one of the five places" in AnchorNet().note(crowd())
+    assert "not named after a training place" in AnchorNet().note(crowd())
     assert AnchorNet().note(dataclasses.replace(crowd(), source="biwi_eth.txt")) == ""
     assert AnchorNet("eth").note(crowd()) == ""
     assert "steps of 2 s" in AnchorNet("eth").note(dataclasses.replace(crowd(), dt=2.0))
@@ -217,8 +217,8 @@ def test_own_weights_are_read_and_wrong_ones_are_one_sentence(crowd: Maker, tmp_
     assert np.array_equal(own.predict(crowd(), 12).position, AnchorNet("all").predict(crowd(), 12).position)
     np.savez(tmp_path / "half.npz", **{k: v for k, v in numbers.items() if k != "query_bias"})
     np.savez(tmp_path / "old.npz", **numbers | {"own_1_weight": np.zeros((30, 256))})
-    for file, word in (("half", "it has no query_bias"), ("old", "its own_1_weight is of another shape")):
-        with pytest.raises(DataError, match=f"{file}.npz holds no weights of this network: {word}"):
+    for file, word in (("half", "query_bias is missing"), ("old", "own_1_weight has another shape")):
+        with pytest.raises(DataError, match=f"{file}.npz is not a file of AnchorNet weights: {word}"):
             AnchorNet(file=str(tmp_path / f"{file}.npz")).predict(crowd(), 12)
     with pytest.raises(DataError, match="does not exist"):
         AnchorNet(file=str(tmp_path / "none.npz")).predict(crowd(), 12)

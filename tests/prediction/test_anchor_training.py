@@ -178,5 +178,5 @@ def test_what_cannot_be_learned_from_is_one_sentence(recorded: Callable[[str], T
     with pytest.raises(InputError, match="there is no recording to learn from"):
         training_set([])
     fast = recorded("biwi_hotel").resample(0.2)
-    with pytest.raises(InputError, match="steps of 0.2 s in m; learning needs 0.4 s in metres"):
+    with pytest.raises(InputError, match="steps of 0.2 s in m; training requires 0.4 s and metres"):
         training_set([fast])

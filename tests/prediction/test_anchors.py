@@ -79,7 +79,7 @@ def test_beyond_what_was_learned_the_bend_stays() -> None:
 @pytest.mark.parametrize(("change", "word"), [({"dt": 1.0}, "steps of 1 s"), ({"units": "px"}, "in px")])
 def test_what_does_not_fit_is_said_and_a_baseline_answers(crowd: Maker, change: dict[str, object], word: str) -> None:
     past = dataclasses.replace(crowd(), **change)  # type: ignore[arg-type]
-    with pytest.warns(UserWarning, match=f"anchors: made .*{word}.*answers instead"):
+    with pytest.warns(UserWarning, match=f"anchors: made .*{word}.*is used instead"):
         found = Anchors().predict(past, 5, 3, stream(1))
     assert np.array_equal(found.position, SampledConstantVelocity().predict(past, 5, 3, stream(1)).position)
 
@@ -89,7 +89,7 @@ def test_the_place_decides_which_set_is_taken(crowd: Maker) -> None:
     there = dataclasses.replace(here, source="crowds_zara02.txt")
     assert np.array_equal(Anchors().predict(there, 12, 20).position, Anchors("zara2").predict(here, 12, 20).position)
     assert np.array_equal(Anchors().predict(here, 12, 20).position, Anchors("all").predict(here, 12, 20).position)
-    assert "made is none of the five places" in Anchors().note(here)
+    assert "made is not named after a training place" in Anchors().note(here)
     assert Anchors().note(there) == ""
 
 
@@ -124,7 +124,7 @@ def test_wrong_wishes_are_one_sentence(crowd: Maker, tmp_path) -> None:
         Anchors(shapes=np.zeros((3, 8, 2)), share=np.ones(3) / 3)
     with pytest.raises(InputError, match="too few for 20 shapes"):
         Anchors.fit()
-    with pytest.raises(InputError, match="learning needs 12 rows ahead"):
+    with pytest.raises(InputError, match="training requires 12 future rows"):
         Anchors.fit((crowd(), crowd()))
     (tmp_path / "bad.npz").write_bytes(b"PK\x03\x04 not an archive")
     with pytest.raises(DataError, match=r"bad\.npz is not a file of weights"):

@@ -92,19 +92,21 @@ def test_the_name_of_a_recording_chooses_the_weights(windows: Maker) -> None:
     named, social = dataclasses.replace(past, source="biwi_hotel.txt"), SocialWays()
     assert (social.name, social.note(named)) == ("social-ways", "")
     assert np.array_equal(predicted(social, named), predicted(SocialWays("hotel"), past))
-    assert "none of the five places it knows, so the weights learned at all of them but eth" in social.note(past)
+    assert "not named after a training place; using the weights trained without eth" in social.note(past)
     assert np.array_equal(predicted(social, past), predicted(ETH, past))
 
 
 def test_what_does_not_fit_is_said_and_a_baseline_answers(windows: Maker) -> None:
     past, social = walking(windows, (0.0, 0.0, 1.0, 0.0)), SocialWays()
     pixels, fast = dataclasses.replace(past, units="px"), dataclasses.replace(past, dt=0.2)
-    assert "not in metres; a baseline answers instead" in social.note(pixels)
-    with pytest.warns(UserWarning, match="not in metres; sampled-constant-velocity answers instead"):
+    assert "not in metres; a baseline is used instead" in social.note(pixels)
+    with pytest.warns(UserWarning, match="not in metres; sampled-constant-velocity is used instead"):
         assert social.predict(pixels, 12, 3).samples == 3
     with pytest.warns(
         UserWarning, match="the weights require 0.4 s: resample with --step 0.4; constant-velocity answers"
     ):
         assert social.predict(fast, 12).samples == 1
-    with pytest.raises(InputError, match="crowdbot train makes one, and shipped are eth, hotel, univ, zara1, zara2"):
+    with pytest.raises(
+        InputError, match="give a file of crowdbot train, or auto, eth, hotel, univ, zara1, zara2 for shipped weights"
+    ):
         SocialWays("zara3")

@@ -28,7 +28,7 @@ _MODULES = {
         "sweep_degradations",
     ),
     "speed": ("SpeedRow", "measure", "measurements"),
-    "toy_gan": ("METHODS", "Run", "GanComparison", "plot_measures", "plot_samples", "with_settings"),
+    "toy_gan": ("METHODS", "GanRun", "GanComparison", "plot_measures", "plot_samples", "with_settings"),
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names}
 
@@ -71,7 +71,7 @@ if TYPE_CHECKING:
     from .speed import measurements as measurements
     from .toy_gan import METHODS as METHODS
     from .toy_gan import GanComparison as GanComparison
-    from .toy_gan import Run as Run
+    from .toy_gan import GanRun as GanRun
     from .toy_gan import plot_measures as plot_measures
     from .toy_gan import plot_samples as plot_samples
     from .toy_gan import with_settings as with_settings

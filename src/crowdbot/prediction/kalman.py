@@ -180,8 +180,8 @@ class KalmanAcceleration(_Filter):
         speed: initial standard deviation of a velocity component [m/s].
         acceleration: initial standard deviation of an acceleration component [m/s^2].
 
-    The defaults are the maximum-likelihood values for the six recordings of :class:`Kalman`. The last value is the lower
-    bound of the fit. The mean log-likelihood per row is below that of
+    The defaults are the maximum-likelihood values for the six recordings of :class:`Kalman`. The last value is the
+    lower bound of the fit. The mean log-likelihood per row is below that of
     :class:`Kalman` (1.374 against 1.482 nat).
 
     Paper: Kalman (1960), doi 10.1115/1.3662552.

@@ -53,8 +53,8 @@ class LearnedPredictor(Predictor):
             content = self.file("").read_bytes()
         except OSError as error:
             raise InputError(
-                f"the checkpoint {self.checkpoint!r} cannot be read ({error.strerror}); crowdbot train makes one, and"
-                f" shipped are {', '.join(FOLDS)}"
+                f"the checkpoint {self.checkpoint!r} cannot be read ({error.strerror}); give a file of crowdbot train,"
+                f" or auto, {', '.join(FOLDS)} for shipped weights"
             ) from None
         object.__setattr__(self, "digest", hashlib.blake2b(content, digest_size=4).hexdigest())
 
@@ -87,11 +87,11 @@ class LearnedPredictor(Predictor):
         """Return a one-sentence remark on forecasts of such windows, or an empty string."""
         why = self.incompatibility(past)
         if why:
-            return f"{self.kind}: {why}; a baseline answers instead"
+            return f"{self.kind}: {why}; a baseline is used instead"
         if self.checkpoint == AUTO and fold_of(past.source) == ALL:
             return (
-                f"{self.kind}: {past.source} is none of the five places it knows, so the weights learned at all of them"
-                f" but {ELSEWHERE} are used"
+                f"{self.kind}: {past.source} is not named after a training place; using the weights trained without"
+                f" {ELSEWHERE}"
             )
         return ""
 
@@ -111,11 +111,11 @@ class LearnedPredictor(Predictor):
         """Raise :class:`InputError` if windows have another time step or other units than the training data."""
         if abs(past.dt - facts["dt"]) > TOLERANCE * facts["dt"]:
             raise InputError(
-                f"{what} has learned steps of {facts['dt']:.4g} s, {past.source} has steps of {past.dt:.4g} s;"
-                f" bring it there with --step {facts['dt']:.4g} or Trajectories.resample"
+                f"{what} requires time steps of {facts['dt']:.4g} s, {past.source} has {past.dt:.4g} s;"
+                f" resample with --step {facts['dt']:.4g} or Trajectories.resample"
             )
         if past.units != facts["units"]:
-            raise InputError(f"{what} has learned tracks in {facts['units']}, {past.source} is in {past.units}")
+            raise InputError(f"{what} requires tracks in {facts['units']}, {past.source} is in {past.units}")
 
 
 def complete_tracks(past: Windows, rows: int) -> Floats:

@@ -75,7 +75,7 @@ def _save(canvas: Any, file: Path) -> None:
     canvas.print_png(buffer)
     picture = Image.open(io.BytesIO(buffer.getvalue())).convert("RGB")
     draft = file.with_suffix(".part")
-    picture.quantize(64, dither=Image.Dither.NO_AUGMENTATION).save(draft, format="PNG", optimize=True)
+    picture.quantize(64, dither=Image.Dither.NONE).save(draft, format="PNG", optimize=True)
     os.replace(draft, file)
 
 

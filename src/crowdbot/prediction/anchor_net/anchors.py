@@ -1,4 +1,4 @@
-"""Anchors: a constant velocity plus a fixed set of bends, the same for everybody; the floor of learned predictors."""
+"""Anchors: constant velocity plus a fixed set of residuals, the baseline of learned predictors."""
 
 from __future__ import annotations
 
@@ -35,27 +35,26 @@ CHAI = Paper(
     "CoRL", "10.48550/arXiv.1910.05449",
 )  # fmt: skip
 POINTS = 8000
-"""The centres are looked for among so many residuals at most."""
+"""Maximum number of residuals for the clustering."""
 
 
 @dataclass(frozen=True)
 class Anchors(Predictor):
-    """Everyone goes on with the last displacement, bent in 20 fixed ways in their own frame: no network at all.
+    """Constant velocity plus 20 fixed residuals in each person's frame, without a network.
 
-    The ways are the centres of what constant velocity missed in training recordings, sorted by how often each was the
-    nearest; these shares are the weights of the forecast. Fewer samples are the likeliest ways; more than there are
-    are not given. Best of 20 mostly rewards covering the plane well, so a learned predictor is worth something only
-    below this one.
+    The residuals are cluster centers of the errors of constant velocity in training recordings, sorted by cluster
+    size; the relative cluster sizes are the weights of the forecast. K is at most 20; smaller K selects the most
+    frequent ones. Best-of-20 errors mostly measure the coverage of the plane: a learned predictor is useful only if it
+    has lower errors than this one.
 
     Fields:
-        fold: which shipped set is used: the one learned without this place (``eth``, ``hotel``, ``univ``, ``zara1``,
-            ``zara2``), ``all`` recordings, or ``auto``: the one without the place that the recording is named after,
-            else ``all``.
-        shapes: ``[K, 12, 2]`` [m] own bends at steps of 0.4 s, see :meth:`fit`; None means the shipped ones.
-        share: ``[K]`` how often each is the nearest.
+        fold: shipped set: trained without a place (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``), with ``all``
+            places, or ``auto``: without the place of the recording, by its name, else ``all``.
+        shapes: ``[K, 12, 2]`` [m] own residuals at steps of 0.4 s, see :meth:`fit`; None means the shipped set.
+        share: ``[K]`` relative cluster sizes.
 
-    Rows at other time steps up to 0.7 s are interpolated; beyond the 12th step of 0.4 s the bend stays as it is, and
-    somebody seen once stands.
+    Other time steps up to 0.7 s are interpolated. Beyond 12 steps of 0.4 s the residual is constant. People observed
+    once have a constant position.
 
     Paper: the idea of fixed anchors, Chai et al. (2019), arXiv 1910.05449.
     """
@@ -84,7 +83,7 @@ class Anchors(Predictor):
         self.check(past, steps, samples)
         why = incompatibility(past)
         if why:
-            warnings.warn(f"anchors: {why}; sampled constant velocity answers instead", stacklevel=2)
+            warnings.warn(f"anchors: {why}; sampled constant velocity is used instead", stacklevel=2)
             return SampledConstantVelocity().predict(past, steps, samples, rng)
         shapes, share = self._chosen(past)
         people, window, slot = agent_histories(past)
@@ -107,17 +106,17 @@ class Anchors(Predictor):
         """Return a one-sentence remark on forecasts of such windows, or an empty string."""
         why = incompatibility(past)
         if why:
-            return f"anchors: {why}; a baseline answers instead"
+            return f"anchors: {why}; a baseline is used instead"
         if self.shapes is None and self.fold == AUTO and fold_of(past.source) == ALL:
-            return f"anchors: {past.source} is none of the five places, so the shapes of all of them are used"
+            return f"anchors: {past.source} is not named after a training place; using the anchors of all places"
         return ""
 
     @classmethod
     def fit(cls, *pairs: tuple[Windows, Windows], count: int = 20, seed: int = 0) -> Self:
-        """Return the anchors of training windows, pairs of past and future as :meth:`Trajectories.windows` cuts them.
+        """Return the anchors of training windows, pairs of past and future from :meth:`Trajectories.windows`.
 
         Raises:
-            InputError: fewer than ``count`` people are scored over 12 rows at steps of 0.4 s.
+            InputError: fewer than ``count`` people with 12 future rows at steps of 0.4 s.
         """
         missed = np.concatenate([residuals(*pair) for pair in pairs]) if pairs else np.zeros((0, PREDICTED_ROWS, 2))
         if len(missed) < count:
@@ -128,10 +127,10 @@ class Anchors(Predictor):
 
 
 def residuals(past: Windows, future: Windows) -> Floats:
-    """Return what constant velocity misses ``[N, 12, 2]`` [m] in the own frames of everyone scored over all 12 rows."""
+    """Return residuals to constant velocity ``[N, 12, 2]`` [m], in the frames of people with 12 future rows."""
     if future.present.shape[1] != PREDICTED_ROWS or abs(past.dt - STEP) > 1e-6:
         raise InputError(
-            f"learning needs 12 rows ahead at steps of {STEP} s, not {future.present.shape[1]} of {past.dt:.4g} s"
+            f"training requires 12 future rows at steps of {STEP} s, not {future.present.shape[1]} of {past.dt:.4g} s"
         )
     people, window, slot = agent_histories(past)
     kept = future.scored[window, slot] & future.present[window, :, slot].all(axis=1)
@@ -144,9 +143,9 @@ def residuals(past: Windows, future: Windows) -> Floats:
 def cluster_centers(
     points: Floats, count: int, seed: int = 0, rounds: int = 60, starts: int = 2
 ) -> tuple[Floats, Floats]:
-    """Return ``count`` centres of points ``[N, D]``, the ones most points are near to first, and these shares.
+    """Return ``count`` cluster centers of points ``[N, D]``, sorted by cluster size, and the relative sizes.
 
-    Lloyd's rounds after a k-means++ start; the best of the starts is kept.
+    k-means with k-means++ initialization; the best of several starts.
     """
     rng = stream(seed, "anchors")
     if len(points) > POINTS:
@@ -171,12 +170,13 @@ def cluster_centers(
 
 
 def resample_paths(bend: Floats, step: Floats, steps: int, dt: float) -> Floats:
-    """Return displacements ``[N, K, steps, 2]`` [m] at rows of ``dt`` of a constant velocity plus bends.
+    """Return displacements ``[N, K, steps, 2]`` [m] at time steps ``dt`` of constant velocity plus residuals.
 
     Args:
-        bend: ``[N, K, 12, 2]`` [m] at steps of 0.4 s; between them it is interpolated, later it stays.
+        bend: ``[N, K, 12, 2]`` [m] at steps of 0.4 s, interpolated linearly and constant beyond the last step.
         step: ``[N, 2]`` [m] last displacement in 0.4 s.
-        steps, dt: rows asked for, and the time between them [s].
+        steps: number of rows.
+        dt: time step [s].
     """
     time = np.arange(1, steps + 1) * (dt / STEP)
     time = np.where(np.abs(time - np.rint(time)) < 1e-6, np.rint(time), time)
@@ -189,7 +189,7 @@ def resample_paths(bend: Floats, step: Floats, steps: int, dt: float) -> Floats:
 
 
 def scatter_to_slots(past: Windows, away: Floats, window: NDArray[np.int64], slot: NDArray[np.int64]) -> Floats:
-    """Return positions ``[W, K, T, A, 2]`` [m] of displacements ``[N, K, T, 2]`` from the last places."""
+    """Return positions ``[W, K, T, A, 2]`` [m] from displacements ``[N, K, T, 2]`` [m]."""
     W, A = past.present.shape[0], past.present.shape[2]
     path = np.zeros((W, *away.shape[1:3], A, 2))
     path[window, :, :, slot] = past.position[window, -1, slot][:, None, None] + away
@@ -197,7 +197,7 @@ def scatter_to_slots(past: Windows, away: Floats, window: NDArray[np.int64], slo
 
 
 def _start(points: Floats, count: int, rng: np.random.Generator) -> Floats:
-    """Return ``count`` of the points, far from each other (k-means++)."""
+    """Return ``count`` initial centers (k-means++)."""
     place: Floats = points[int(rng.integers(len(points)))][None]
     nearest = _squared(points, place)[:, 0]
     for _ in range(count - 1):

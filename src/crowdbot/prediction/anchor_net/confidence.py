@@ -1,4 +1,4 @@
-"""Probabilities and spreads of the anchor network say how often things happen, on people not learned from."""
+"""Calibration of the probabilities and spreads of AnchorNet on validation data."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ Numbers = dict[str, NDArray[Any]]
 TEMPERATURES = np.exp(np.linspace(-3.0, 1.5, 91))
 WIDENINGS = np.exp(np.linspace(-2.5, 1.5, 81))
 FEW = 200
-"""With fewer people than this of one gait, those of all gaits are asked."""
+"""Minimum number of people per speed class; below it, all people are used."""
 WORST = -50.0
-"""Logarithms of densities are not let below this, so that one strange person does not decide."""
+"""Lower bound of log-densities, to limit the influence of outliers."""
 
 
 def calibrate_confidence(numbers: Numbers, material: TrainingSet) -> Numbers:
-    """Return the numbers with ``temperature`` and ``widening``, one for each gait from still to fast.
+    """Return the weights with ``temperature`` and ``widening`` for each speed class.
 
-    Probabilities are sharpened or softened by the temperature, spreads are multiplied by the widening, so that people
-    who were not learned from are most likely: the nearest future among all, and the truth around its futures.
+    The temperature divides the logits of the probabilities, the widening multiplies the spreads. Both maximize the
+    likelihood of validation data: of the nearest future, and of the truth under the mixture.
     """
     held = {name: np.asarray(values, dtype=np.float64) for name, values in numbers.items()}
     own, company, there, missed = make_batch(

@@ -1,7 +1,4 @@
-"""Training of the anchor network: a minute on one core, the same bits for the same seed, stopped and gone on with.
-
-The numbers that come out are those that :class:`~crowdbot.prediction.AnchorNet` reads.
-"""
+"""Training of AnchorNet; reproducible bit for bit, and resumable."""
 
 from __future__ import annotations
 
@@ -31,14 +28,14 @@ Floats = NDArray[np.float64]
 Numbers = dict[str, NDArray[Any]]
 
 UPDATES = 4000
-"""Steps of the optimiser behind the shipped weights; the last weights are taken, averaged, none is picked."""
+"""Optimizer steps of the shipped weights, which are the averaged weights after the last step."""
 RANK = 6
-"""Numbers that a bend is made of; they reconstruct what constant velocity misses to about 2 cm."""
+"""Number of coefficients of a residual; the reconstruction error is about 2 cm."""
 
 
 @dataclasses.dataclass(frozen=True)
 class AnchorTraining:
-    """How the anchor network is trained.
+    """Training settings of AnchorNet.
 
     Fields:
         people: in one batch.
@@ -73,7 +70,7 @@ class AnchorTraining:
 def learner(
     settings: str | None, values: Mapping[str, str], samples: Samples, watched: Samples, seed: int, device: str
 ) -> AnchorNetTraining:
-    """Return the anchor network ready to train, as the command line asks for it.
+    """Return an AnchorNet ready to train, from the options of the command line.
 
     Args:
         settings: there is one kind, ``shipped``, that of the shipped weights.
@@ -159,8 +156,8 @@ def outputs(layers: Any, own: Any, company: Any, there: Any) -> Any:
 class AnchorNetTraining(Trainable):
     """The anchor network with its people; see :class:`~crowdbot.prediction.Trainable`.
 
-    The last weights, averaged, are as good as any: with ``check_every`` as large as the number of updates none is
-    picked. Probabilities and spreads are calibrated on who is watched, whenever weights are given out.
+    With ``check_every`` equal to the number of updates, the averaged weights after the last update are used.
+    Probabilities and spreads are calibrated on the validation data.
 
     Args:
         config: how it is trained.
@@ -242,7 +239,7 @@ class AnchorNetTraining(Trainable):
         }  # fmt: skip
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Go back to a state."""
+        """Restore a state."""
         kept = to_tensors(dict(state), self.device)
         self.layers.load_state_dict(kept["layers"])
         self.optimiser.load_state_dict(kept["optimiser"])

@@ -1,4 +1,4 @@
-"""What the anchor network learns from: people of training recordings, and how each is varied before it is seen."""
+"""Training data of AnchorNet and their augmentation."""
 
 from __future__ import annotations
 
@@ -39,17 +39,17 @@ __all__ = [
 Floats = NDArray[np.float64]
 
 AT_ONCE = 64
-"""About so many scenes, of nearly the same size, are laid out together."""
+"""Approximate number of scenes of similar size per batch."""
 
 
 class TrainingSet(NamedTuple):
-    """N people to learn from, in the axes of the world, seen from their last place."""
+    """N people with their futures, in world axes, relative to their last position."""
 
     people: AgentHistories
     planned: AgentHistories
-    """The same with the neighbors whose future is known walking there, as a robot with a plan does."""
+    """The same, with known futures of neighbors, as for robots with a plan."""
     ahead: Floats
-    """``[N, 12, 2]`` [m] where they went."""
+    """``[N, 12, 2]`` [m] true futures."""
 
     def __len__(self) -> int:
         """Return the number of people."""
@@ -57,7 +57,7 @@ class TrainingSet(NamedTuple):
 
     @property
     def digest(self) -> str:
-        """Hash of where everyone was, went, and who was near."""
+        """Hash of all arrays."""
         found = hashlib.blake2b(digest_size=12)
         for array in (self.ahead, *self.people, *self.planned):
             found.update(np.ascontiguousarray(array).tobytes())
@@ -65,7 +65,7 @@ class TrainingSet(NamedTuple):
 
 
 class TrainingBatch(NamedTuple):
-    """What the network is shown: own numbers, neighbors, and what constant velocity misses."""
+    """Inputs of the network and residuals to constant velocity."""
 
     own: Floats
     company: Floats
@@ -75,7 +75,7 @@ class TrainingBatch(NamedTuple):
 
 @dataclasses.dataclass(frozen=True)
 class Augmentation:
-    """How people are varied; a share is a probability for each person and batch.
+    """Data augmentation; shares are probabilities per person and batch.
 
     Fields:
         mirror: share of mirrored people.
@@ -110,17 +110,17 @@ NO_AUGMENTATION = Augmentation(*(0.0,) * 13)
 
 
 def training_set(recordings: Sequence[Trajectories], reverse: bool = True) -> TrainingSet:
-    """Return everyone who is seen over 8 + 12 rows at 0.4 s, and with ``reverse`` also as if time ran backwards.
+    """Return all people with 8 + 12 rows at 0.4 s, and with ``reverse`` their time-reversed tracks.
 
     Raises:
-        InputError: there is nobody, or a recording is not in metres at 0.4 s.
+        InputError: no recording, or a recording is not in metres at 0.4 s.
     """
     parts = []
     for tracks in recordings:
         if tracks.units != "m" or abs(tracks.dt - STEP) > 1e-6:
             raise InputError(
-                f"{tracks.name} has steps of {tracks.dt:.4g} s in {tracks.units}; learning needs 0.4 s in metres:"
-                " give fps=2.5, or resample"
+                f"{tracks.name} has steps of {tracks.dt:.4g} s in {tracks.units}; training requires 0.4 s and metres:"
+                " set fps=2.5, or resample"
             )
         for one in (tracks, reverse_time(tracks)) if reverse else (tracks,):
             parts.append(_people(*one.windows()))
@@ -130,12 +130,10 @@ def training_set(recordings: Sequence[Trajectories], reverse: bool = True) -> Tr
 
 
 def training_set_of(samples: Samples, reverse: bool = True) -> TrainingSet:
-    """Return everyone of the samples who is seen over 8 + 12 rows, and with ``reverse`` also as if time ran backwards.
-
-    Backwards, only those are near who were there at both ends of the observed rows.
+    """Return all people of the samples with 8 + 12 rows, and with ``reverse`` their time-reversed tracks.
 
     Raises:
-        InputError: there is nobody, or rows or units do not fit.
+        InputError: nobody with complete tracks, or other rows or units.
     """
     if (samples.observe, samples.predict, samples.units) != (ROWS, PREDICTED_ROWS, "m") or abs(
         samples.dt - STEP
@@ -167,7 +165,7 @@ def _windows(place: Floats, there: NDArray[np.bool_], scored: NDArray[np.bool_],
 
 
 def reverse_time(tracks: Trajectories) -> Trajectories:
-    """Return the tracks as if time ran backwards; people walk alike."""
+    """Return the time-reversed tracks."""
     last = tracks.frame.max() + tracks.frame.min()
     return Trajectories(
         tracks.id, last - tracks.frame, tracks.x, tracks.y, frame_rate=1.0 / tracks.dt, frame_step=tracks.frame_step,
@@ -178,7 +176,7 @@ def reverse_time(tracks: Trajectories) -> Trajectories:
 def make_batch(
     material: TrainingSet, rows: NDArray[np.int64], how: Augmentation, rng: np.random.Generator
 ) -> TrainingBatch:
-    """Return the people ``rows`` of the material, varied."""
+    """Return a batch of augmented people."""
     people, ahead, seen_from = _varied(material, rows, how, rng)
     heading = heading_vectors(people.past)
     angle = how.turn * rng.standard_normal(len(rows))
@@ -193,7 +191,7 @@ def make_batch(
 def _varied(
     material: TrainingSet, rows: NDArray[np.int64], how: Augmentation, rng: np.random.Generator
 ) -> tuple[AgentHistories, Floats, Floats]:
-    """Return people, where they went, and where they were seen last, all from the true last place."""
+    """Return augmented histories, futures and last positions, relative to the true last position."""
     N = len(rows)
     plain, planned = material.people.at(rows), material.planned.at(rows)
     knows = (rng.random(N) < how.planned)[:, None] & (rng.random(planned.known.shape) < 0.3) & planned.known
@@ -217,7 +215,7 @@ def _varied(
 
 
 def _noise(count: int, rows: int, how: Augmentation, rng: np.random.Generator) -> Floats:
-    """Return ``[N, 8, 2]`` [m]; most tracks are right at the last row."""
+    """Return noise ``[N, 8, 2]`` [m]; for most tracks it is 0 at the last row."""
     small = how.jitter * rng.random(count)[:, None, None] * rng.standard_normal((count, rows, 2))
     small[:, -1] = 0.0
     large = how.noise * rng.random(count)[:, None, None] * rng.standard_normal((count, rows, 2))
@@ -225,7 +223,7 @@ def _noise(count: int, rows: int, how: Augmentation, rng: np.random.Generator) -
 
 
 def _switched(past: Floats, near: Floats, pace: Floats, how: Augmentation, rng: np.random.Generator) -> Floats:
-    """Return tracks, some with the older rows of the nearest neighbor, who walked evenly."""
+    """Return tracks, some with an identity switch: earlier rows come from the nearest neighbor."""
     N, T, _ = past.shape
     row = np.arange(1.0 - T, 1.0)[:, None]
     other = near[:, :1] + pace[:, :1] * row

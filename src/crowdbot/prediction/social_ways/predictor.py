@@ -203,7 +203,7 @@ class SocialWays(LearnedPredictor):
         why = self.incompatibility(past)
         if why:
             one: Predictor = ConstantVelocity() if samples == 1 else SampledConstantVelocity()
-            warnings.warn(f"{self.kind}: {why}; {one.name} answers instead", stacklevel=2)
+            warnings.warn(f"{self.kind}: {why}; {one.name} is used instead", stacklevel=2)
             return one.predict(past, steps, samples, rng)
         network = self.network(past.source)
         self.fits(past, network.facts, self.name)
