@@ -96,10 +96,10 @@ def _summary(results: Sequence[PredictorResult]) -> list[str]:
 
 PLACES = {
     "eth": ("eth_biwi/seq_eth/obsmat.txt", {"predict": 3}),
-    "hotel": ("eth_ucy_splits/all_data/biwi_hotel.txt", {"fps": 2.5, "predict": 3}),
-    "univ": ("eth_ucy_splits/all_data/students003.txt", {"fps": 2.5, "predict": 3, "every": 4}),
-    "zara1": ("eth_ucy_splits/all_data/crowds_zara01.txt", {"fps": 2.5, "predict": 3}),
-    "zara2": ("eth_ucy_splits/all_data/crowds_zara02.txt", {"fps": 2.5, "predict": 3}),
+    "hotel": ("eth_ucy_splits/all_data/biwi_hotel.txt", {"fps": 25.0, "predict": 3}),
+    "univ": ("eth_ucy_splits/all_data/students003.txt", {"fps": 25.0, "predict": 3, "every": 4}),
+    "zara1": ("eth_ucy_splits/all_data/crowds_zara01.txt", {"fps": 25.0, "predict": 3}),
+    "zara2": ("eth_ucy_splits/all_data/crowds_zara02.txt", {"fps": 25.0, "predict": 3}),
     "corridor, one-way": ("hermes/Corridor-1D/uo-080-240-240.txt", {"step": 0.2, "observe": 5, "predict": 5}),
     "corridor, two-way": ("hermes/Corridor-2D/bo-360-090-090.txt", {"step": 0.2, "observe": 5, "predict": 5}),
     "corridor, bi_corr": (

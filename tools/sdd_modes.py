@@ -42,10 +42,10 @@ def places(options: argparse.Namespace) -> dict[str, Trajectories]:
     """Return both recordings in metres at 0.4 s."""
     raw = load(options.sdd / "gates" / "video2" / "annotations.txt").resample(0.4)
     gates = Trajectories(
-        raw.id, raw.frame, SCALE * raw.x, SCALE * raw.y, frame_rate=1.0 / raw.dt, frame_step=raw.frame_step,
+        raw.id, raw.frame, SCALE * raw.x, SCALE * raw.y, row_rate=1.0 / raw.dt, frame_step=raw.frame_step,
         name="gates-2",
     )  # fmt: skip
-    return {"hyang-6": load(options.trajnet / "Train" / "stanford" / "hyang_6.txt", fps=2.5), "gates-2": gates}
+    return {"hyang-6": load(options.trajnet / "Train" / "stanford" / "hyang_6.txt"), "gates-2": gates}
 
 
 def drawn(options: argparse.Namespace, place: str, method: str, learned: Windowed, asked: Windowed) -> np.ndarray:

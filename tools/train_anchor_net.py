@@ -40,7 +40,7 @@ SMALL = ("basis", "centres", "spread", "width", "temperature", "widening")
 
 def recordings(folder: Path, fold: str, left_out: bool = False) -> list[Trajectories]:
     """Return the recordings of a folder that belong to the training of a fold, or those that are left out."""
-    found = [load(path, fps=2.5) for path in sorted(folder.glob("*.txt"))]
+    found = [load(path, fps=25) for path in sorted(folder.glob("*.txt"))]
     return [tracks for tracks in found if is_held_out(fold, tracks.name) == left_out]
 
 

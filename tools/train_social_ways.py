@@ -45,7 +45,7 @@ def samples_of(recordings: list[Trajectories], protocol: str = "all") -> Samples
 
 def texts(folder: Path, fold: str, left_out: bool = False) -> list[Trajectories]:
     """Return the recordings of a folder that belong to the training of a fold, or those that are left out."""
-    found = [load(path, fps=2.5) for path in sorted(folder.glob("*.txt"))]
+    found = [load(path, fps=25) for path in sorted(folder.glob("*.txt"))]
     return [one for one in found if is_held_out(fold, one.name) == left_out]
 
 

@@ -31,7 +31,7 @@ def turners(count: int = 60) -> tuple[Windows, Windows]:
     tracks = np.concatenate([back, ahead], axis=1)
     frame = np.tile(np.arange(20), count) + np.repeat(np.arange(count) * 30, 20)
     x, y = tracks.reshape(-1, 2).T
-    return Trajectories(np.repeat(np.arange(count), 20), frame, x, y, frame_rate=2.5).windows()
+    return Trajectories(np.repeat(np.arange(count), 20), frame, x, y, row_rate=2.5).windows()
 
 
 def test_shapes_are_the_ways_people_bend() -> None:

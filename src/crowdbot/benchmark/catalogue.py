@@ -118,7 +118,7 @@ def _trials() -> dict[str, str]:
 
 
 def _experiments() -> dict[str, str]:
-    from crowdbot.trials.experiment import builtin_experiments, load_experiment
+    from crowdbot.experiments import builtin_experiments, load_experiment
 
     return {name: load_experiment(name).about for name in builtin_experiments()}
 

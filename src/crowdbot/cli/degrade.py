@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, json_text, note, print_json, print_table, progress
-from .recordings import add_recordings, recordings, tell_notes
+from .recordings import add_recordings, horizon, recordings, tell_notes
 from .schemes import add_scheme, assignments, predictor_specs
 
 if TYPE_CHECKING:
@@ -272,6 +272,7 @@ def _tables(
 ) -> None:
     names = ", ".join(tracks.name for tracks in recordings)
     units = recordings[0].units
+    rows_and_seconds = horizon([one.dt for one in recordings], task.observe, task.predict)
     best = f", best of {task.samples} per {task.best_of}" if task.samples > 1 else ""
     carried = f", carried {task.carry} rows" if task.carry else ""
     for name, scores in done.items():
@@ -288,7 +289,7 @@ def _tables(
             f"{name}{f' ({rest})' if rest else ''}: ADE / FDE [{units}] of {names}",
             (f"{degradation.level}{unit}", "predicted", *map(_head, predictors)),
             rows,
-            caption=f"protocol {task.protocol}, {task.observe} observed + {task.predict} predicted rows{best};"
+            caption=f"protocol {task.protocol}, {rows_and_seconds}{best};"
             f" {scores[0].asked} persons, means over the predicted ones;"
             f" {max(score.draws for score in scores)} draws, seed {task.seed}{carried}",
         )

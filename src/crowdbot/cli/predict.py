@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, note, print_json, print_table, progress
-from .recordings import add_recordings, recordings, tell_notes
+from .recordings import add_recordings, horizon, recordings, tell_notes
 from .schemes import add_scheme, frame_line, predictor_specs
 
 if TYPE_CHECKING:
@@ -136,18 +136,19 @@ def _tables(options: argparse.Namespace, evaluation: Evaluation, results: list[P
     best = f", best of {options.samples} per {options.best_of}" if options.samples > 1 else ""
     protocol = evaluation.recordings[0].protocol
     caption = f"protocol {protocol}{best}; means over persons, 95 % intervals by bootstrap over persons"
-    reach = f"{options.observe} observed + {options.predict} predicted rows"
     if len(evaluation.specs) == 1:
         scores = [result.score for result in results]
         rows = [result.recording.name for result in results]
         if len(scores) > 1:
             scores.append(Score.total(scores))
             rows.append("together")
+        steps = [one.tracks.dt for one in evaluation.recordings]
+        reach = horizon(steps, options.observe, options.predict)
         _table(f"{evaluation.specs[0].name}, {reach}", "recording", rows, scores, caption)
         return
     for recording in evaluation.recordings:
         own = [result for result in results if result.recording is recording]
-        title = f"{recording.name}, {reach}"
+        title = f"{recording.name}, {horizon([recording.tracks.dt], options.observe, options.predict)}"
         _table(title, "predictor", [result.label for result in own], [r.score for r in own], caption)
 
 

@@ -51,9 +51,9 @@ def degraded_windows(past: Windows, future: Windows, degraded: Degraded, carry: 
         carry: maximum number of extrapolated rows.
 
     >>> from crowdbot.data.degrade import LateStart
-    >>> tracks = Trajectories([7] * 4, range(4), range(4), [0.0] * 4, frame_rate=2.5)
+    >>> tracks = Trajectories([7] * 4, range(4), range(4), [0.0] * 4, row_rate=2.5)
     >>> clean = tracks.windows(observe=2, predict=2)
-    >>> seen = seen_windows(*clean, LateStart(1).apply(tracks))
+    >>> seen = degraded_windows(*clean, LateStart(1).apply(tracks))
     >>> seen.past.present[:, :, 0].tolist(), seen.predictable, seen.asked
     ([[False, True]], 1, 1)
     """

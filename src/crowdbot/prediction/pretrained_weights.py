@@ -6,7 +6,6 @@ A fold is a place that was excluded from the training data, for an unbiased eval
 from __future__ import annotations
 
 import functools
-import importlib.resources
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +13,8 @@ from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError, did_you_mean
 from crowdbot.data import Windows
+
+from .weight_files import find_weights
 
 __all__ = [
     "ALL",
@@ -83,7 +84,7 @@ def load_pretrained(kind: str, fold: str) -> Numbers:
 
 def pretrained_file(kind: str, fold: str) -> Path:
     """Return the file of the shipped weights of a predictor."""
-    return Path(str(importlib.resources.files("crowdbot").joinpath("assets", "predictors", f"{kind}-{fold}.npz")))
+    return find_weights(kind, fold)
 
 
 def read_weights(path: Path) -> Numbers:

@@ -26,7 +26,7 @@ class DegradedTask:
     Fields:
         observe, predict, protocol, near: as :meth:`Trajectories.windows` takes them, on the clean recording.
         samples, best_of, seed: as :func:`evaluate` takes them; the seed is also that of the degradation.
-        carry: rows for which somebody who is not seen any more is walked on, see :func:`seen_windows`.
+        carry: rows for which somebody who is not seen any more is walked on, see :func:`degraded_windows`.
         draws: how often the degradation is drawn anew; scores are means over all draws.
         every: only every such window is predicted.
     """
@@ -105,7 +105,7 @@ def sweep_degradations(
         degradations: what is done to them, each alone.
         predictors: what is scored.
         levels: of the degradations; None means those of each.
-        task: what is asked; None means ``Task()``.
+        task: what is asked; None means ``DegradedTask()``.
         progress: told the degradation and the share of it that is done, 0 to 1.
 
     Raises:

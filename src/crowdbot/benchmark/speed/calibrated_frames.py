@@ -12,6 +12,7 @@ import numpy as np
 from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories, Windows, load
 from crowdbot.prediction import Simulated
+from crowdbot.recording import run
 
 from .measurement import Gauge
 
@@ -67,4 +68,4 @@ def _tracks(recording: Path | None) -> Trajectories:
         return load(recording, fps=None)
     from crowdbot.trials import load_trial
 
-    return load_trial("crossing-flows").run().tracks(0.4)
+    return run(load_trial("crossing-flows")).tracks(0.4)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import Scene, parameters, stream
+from crowdbot.recording import run
 
 from .measurement import Gauge, Measurement
 from .ray_casting import mujoco_rays, people_with_limbs
@@ -175,7 +176,7 @@ def _lidar() -> Measurement:
 
     sensor, scene = Lidar2D(rays=720), crowd(50)
     pose = Pose.of((5.0, 5.0), 0.0)
-    return Measurement("scans/s", 20, lambda: [sensor.measure(scene, pose) for _ in range(20)], "a 10 Hz sensor", 10.0)
+    return Measurement("scans/s", 20, lambda: [sensor.read(scene, pose) for _ in range(20)], "a 10 Hz sensor", 10.0)
 
 
 def _rays_of_limbs(rings: int = 0) -> Measurement:
@@ -189,7 +190,7 @@ def _rays_of_limbs(rings: int = 0) -> Measurement:
     words = "mj_multiRay of MuJoCo, the same 750 capsules as moving bodies, 4 walls and the floor"
     ours, others = (40, 1) if rings else (300, 10)  # about as long, so that the load of the machine meets both alike
     return Measurement(
-        "scans/s", ours, lambda: [sensor.measure(scene, pose) for _ in range(ours)], words,
+        "scans/s", ours, lambda: [sensor.read(scene, pose) for _ in range(ours)], words,
         other=lambda: [theirs() for _ in range(others)], other_amount=others,
     )  # fmt: skip
 
@@ -199,7 +200,7 @@ def _predictor(name: str) -> Measurement:
     from crowdbot.trials import load_trial
 
     predictor = getattr(prediction, name)()
-    past, _ = load_trial("crossing-flows").run().tracks(0.4).windows(8, 12)
+    past, _ = run(load_trial("crossing-flows")).tracks(0.4).windows(8, 12)
     live = "2.5 windows/s of a live stream"
     return Measurement("windows/s", len(past), lambda: predictor.predict(past, 12), live, 2.5)
 
@@ -207,25 +208,26 @@ def _predictor(name: str) -> Measurement:
 def _physics(people: int) -> Measurement:
     """Time one robot among people in steps of 5 ms, with its odometry and a laser that sees limbs, both at 10 Hz."""
     from crowdbot.core import Twist
-    from crowdbot.sensors import Lidar2D
+    from crowdbot.sensors import Lidar2D, SensorView
 
     world, robot = _bodies(people)
     laser, chassis = Lidar2D(rays=1080), world.carrier(robot)
     wheels = chassis.robot.mount("odometry").sensor
-    told = [wheels.measure(world.scene, world.pose(robot))]
+    _, state = wheels.measure(SensorView(world.scene, world.pose(robot)), wheels.begin())
 
     def work() -> None:
+        nonlocal state
         for _ in range(20):
             world.step({robot: Twist(0.5, 0.3)})
-            told[0] = wheels.measure(world.scene, world.pose(robot), last=told[0])
-            laser.measure(world.seen().without(robot), chassis.mounted("laser"))
+            _, state = wheels.measure(SensorView(world.scene, world.pose(robot)), state)
+            laser.read(world.seen().without(robot), chassis.mounted("laser"))
 
     return Measurement("simulated s/s", 20 * DT, work, "real time", 1.0)
 
 
 def _camera() -> Measurement:
     """Time images of 640 x 480 with depth."""
-    from crowdbot.world.physics import Camera
+    from crowdbot.world import Camera
 
     world, _ = _bodies(50)
     camera = Camera((-2.0, -2.0, 3.0), (5.0, 5.0, 0.8), detail=2)
@@ -235,8 +237,7 @@ def _camera() -> Measurement:
 def _bodies(people: int) -> tuple[Any, int]:
     """Return a physics world with a robot in the middle of a crowd, and the agent that it is."""
     from crowdbot.models import ORCA
-    from crowdbot.world import Robot
-    from crowdbot.world.physics import PhysicsWorld
+    from crowdbot.world import PhysicsWorld, Robot
 
     robot, some = Robot.load("differential"), crowd(people)
     middle = some.position[0].mean(axis=0)
@@ -253,5 +254,5 @@ def _trial() -> Measurement:
 
     trial = load_trial("crossing-flows")
     trial = dataclasses.replace(trial, duration=10.0)
-    seconds = float(trial.run().times[-1])
-    return Measurement("simulated s/s", seconds, trial.run, "real time", 1.0)
+    seconds = float(run(trial).times[-1])
+    return Measurement("simulated s/s", seconds, lambda: run(trial), "real time", 1.0)

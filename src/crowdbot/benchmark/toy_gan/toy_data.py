@@ -36,7 +36,7 @@ class ToyData:
     Raises:
         InputError: the numbers do not fit together.
 
-    >>> Toy().paths(np.random.default_rng(0), 5).shape
+    >>> ToyData().paths(np.random.default_rng(0), 5).shape
     (6, 3, 5, 4, 2)
     """
 

@@ -120,7 +120,7 @@ def training_set(recordings: Sequence[Trajectories], reverse: bool = True) -> Tr
         if tracks.units != "m" or abs(tracks.dt - STEP) > 1e-6:
             raise InputError(
                 f"{tracks.name} has steps of {tracks.dt:.4g} s in {tracks.units}; training requires 0.4 s and metres:"
-                " set fps=2.5, or resample"
+                " set fps (25 for tracks with 10 frames per row of 0.4 s), or resample"
             )
         for one in (tracks, reverse_time(tracks)) if reverse else (tracks,):
             parts.append(_people(*one.windows()))
@@ -168,7 +168,7 @@ def reverse_time(tracks: Trajectories) -> Trajectories:
     """Return the time-reversed tracks."""
     last = tracks.frame.max() + tracks.frame.min()
     return Trajectories(
-        tracks.id, last - tracks.frame, tracks.x, tracks.y, frame_rate=1.0 / tracks.dt, frame_step=tracks.frame_step,
+        tracks.id, last - tracks.frame, tracks.x, tracks.y, row_rate=1.0 / tracks.dt, frame_step=tracks.frame_step,
         name=tracks.name,
     )  # fmt: skip
 
