@@ -11,7 +11,7 @@ from goal_places import crowd, street, windows
 from scipy.optimize import minimize
 
 from crowdbot.core import InputError
-from crowdbot.data import Trajectories, fill_gaps, load, observed_velocity, steady_velocity
+from crowdbot.data import Trajectories, bridged, load, observed_velocity, steady_velocity
 from crowdbot.models.goals import CurrentDirection, LearnedDestinations
 from crowdbot.models.goals.exits import clusters, track_ends
 from crowdbot.models.goals.learned_velocity import LearnedVelocity, mean_velocity
@@ -75,7 +75,6 @@ def test_on_real_streets_it_is_as_good_as_the_best_constant_velocity(recordings,
     assert np.min([error(ways[:, :, k] / goal.horizon) for k in range(3)], axis=0).mean() < 0.93 * one
 
 
-@pytest.mark.soak
 def test_thirty_people_take_less_than_five_milliseconds():
     goal = LearnedDestinations.learn(street(people=200))
     past = crowd(W=1, A=30, holes=0.0)
@@ -132,7 +131,7 @@ def test_the_learned_velocity_minimises_the_summed_distance():
     past, future = street(seed=5, noise=0.1).windows(5, 4)
     pace = LearnedVelocity.fit([(past, future)])
     steady, after, seen = steady_velocity(past), mean_velocity(past, future), future.scored
-    off = np.diff(fill_gaps(past).position, axis=1) / past.dt - steady[:, None]
+    off = np.diff(bridged(past).position, axis=1) / past.dt - steady[:, None]
 
     def total(weight):
         miss = after - steady - np.sum(off * np.asarray(weight)[:, None, None], axis=1)
@@ -176,7 +175,7 @@ def test_what_was_learned_is_the_same_again():
 
 def slow_clock():
     tracks = street()
-    return Trajectories(tracks.id, tracks.frame, tracks.x, tracks.y, row_rate=1.0, frame_step=10, name="slow")
+    return Trajectories(tracks.id, tracks.frame, tracks.x, tracks.y, frame_rate=1.0, frame_step=10, name="slow")
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""``crowdbot calibrate``: which parameters make a crowd model walk like the people of a recording."""
+"""``crowdbot calibrate``: fit the parameters of a crowd model to recordings of people."""
 
 from __future__ import annotations
 
@@ -20,12 +20,18 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_recordings(parser)
     add_scheme(parser, many=False)
     add = parser.add_argument
-    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="parameters of the crowd model before the fit")
-    add("--shared", action="store_true", help="one set of parameters for everyone instead of each person's own")
-    add("--workers", type=int, default=1, metavar="N", help="processes (default 1)")
-    add("--cluster", metavar="ADDRESS", help="run on a Ray cluster, such as auto; needs crowdbot[cluster]")
-    add("--out", type=Path, metavar="DIR", help="write parameters and prior there; run again to go on after a stop")
-    add("--seed", type=int, default=0, help="seed of the search")
+    add(
+        "--set",
+        nargs="+",
+        default=[],
+        metavar="NAME=VALUE",
+        help="initial parameters of the crowd model (default: none)",
+    )
+    add("--shared", action="store_true", help="one common set of parameters instead of individual ones")
+    add("--workers", type=int, default=1, metavar="N", help="number of processes (default: 1)")
+    add("--cluster", metavar="ADDRESS", help="address of a Ray cluster, such as auto; requires crowdbot[cluster]")
+    add("--out", type=Path, metavar="DIR", help="folder for parameters, prior and resumable results (default: none)")
+    add("--seed", type=int, default=0, help="random seed (default: 0)")
     add_json(parser)
 
 
@@ -50,7 +56,7 @@ def main(options: argparse.Namespace) -> int:
 
 
 def _calibrator(options: argparse.Namespace) -> tuple[Calibrator, str | None]:
-    """Return what calibrates, and the name of the goal when it needs the recording."""
+    """Return the calibrator, and the name of the goal if it depends on the recording."""
     from crowdbot.calibration import Calibrator, goal_class
 
     kind = goal_class(options.goal or "current-direction")
@@ -111,7 +117,9 @@ def _shared(
 
     if goal is not None:
         if len(found) > 1:
-            raise InputError(f"{goal} belongs to one recording: calibrate them one by one, not {len(found)} together")
+            raise InputError(
+                f"the goal {goal} depends on the recording: calibrate one recording at a time, not {len(found)}"
+            )
         calibrator = dataclasses.replace(calibrator, goal=goal_for(goal, found[0]))
     pasts = [one.windows[0] for one in found]
     return calibrator.fit(pasts, options.seed, lambda share: report("shared parameters", share))
@@ -136,7 +144,7 @@ def _table(name: str, fit: Fit) -> None:
     ]
     caption = (
         f"mean cost {np.nanmean(fit.cost):.4f} m, {np.nanmean(fit.given_cost):.4f} m before;"
-        f" {fit.persons} persons in {fit.windows} windows, {int(fit.evaluations.sum())} crowds tried,"
+        f" {fit.persons} persons in {fit.windows} windows, {int(fit.evaluations.sum())} evaluations,"
         f" {fit.seconds:.1f} s"
     )
     middle = ("shared", "", "unit") if fit.shared else ("median", "sd over people", "unit")
@@ -144,7 +152,7 @@ def _table(name: str, fit: Fit) -> None:
 
 
 def as_json(fit: Fit) -> dict[str, Any]:
-    """Return what ``--json`` prints of a fit."""
+    """Return the output of ``--json`` for a fit."""
     import numpy as np
 
     return {
@@ -161,7 +169,7 @@ def as_json(fit: Fit) -> dict[str, Any]:
 
 
 def _written(folder: Path, fits: dict[str, Fit], shared: bool) -> None:
-    """Write the summary, everyone's parameters and, of each person's own, the population prior."""
+    """Write the summary and, for individual parameters, the table of parameters and the population prior."""
     from crowdbot.calibration import PopulationPrior
 
     folder.mkdir(parents=True, exist_ok=True)
