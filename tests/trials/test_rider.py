@@ -39,7 +39,7 @@ def simulated(world: str, text: str = ROOM) -> Simulation:
 
 
 def walkers_of(simulation: Simulation) -> Walkers:
-    found = simulation.around._walkers
+    found = simulation.world.people
     assert found is not None
     return found
 

@@ -14,7 +14,7 @@ from crowdbot.navigation import Limits
 from crowdbot.trials import Agent, Crowds, Figures, People, RecordedPeople, Robot, Trial, cast_of, crowd_names, own
 from crowdbot.world import Journeys, PlanarWorld, Router, Script, Source, Track
 
-from .mounted_sensor import bodies_for, spatial
+from .mounted_sensor import spatial
 
 __all__ = ["limits_of", "start_scene", "world_of"]
 
@@ -58,7 +58,9 @@ def world_of(trial: Trial, people: People, seed: int) -> tuple[PlanarWorld, Figu
     if trial.world == "physics":
         world = _with_bodies(trial, scene, model, robots, figures, whole)
     else:
-        world = PlanarWorld(scene, model, {agent: robot.drive for agent, robot in robots.items()}, **whole)
+        latency = {agent: robot.latency for agent, robot in robots.items()}
+        drives = {agent: robot.drive for agent, robot in robots.items()}
+        world = PlanarWorld(scene, model, drives, latency=latency, **whole)
     walkers = first - len(people.walks)
     if walkers and (router or journeys):
         world.scene = _setting_off(world.scene, walkers, router, journeys, people.heading)
@@ -69,7 +71,7 @@ def _embodied(trial: Trial) -> bool:
     """Whether anything needs the bodies of people."""
     if trial.world == "physics":
         return True
-    kind = bodies_for(trial)
+    kind = trial.bodies or PlanarWorld.people_shape
     return any(spatial(robot, mount, kind) for robot in trial.robots for mount in robot.sensors)
 
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from .rendering.renderer import Studio
     from .robots.ackermann import AckermannDrive, SteeredTwists
     from .robots.drive import DifferentialDrive, Drive, Omnidirectional, Twists, moved
-    from .robots.mount import SensorMount
+    from .robots.mount import MountPlacement, SensorMount
     from .robots.robot import Robot, builtin_robots
     from .robots.servo import CommandDelay, Pending, VelocityServo
     from .robots.wheel import Wheel
@@ -59,6 +59,7 @@ _LAZY = {
     "Journeys": "crowd.journey",
     "Light": "physics.stage",
     "Limbs": "physics.people_motion",
+    "MountPlacement": "robots.mount",
     "Omnidirectional": "robots.drive",
     "Party": "physics.contacts",
     "Pending": "robots.servo",
@@ -125,6 +126,7 @@ __all__ = [
     "Journeys",
     "Light",
     "Limbs",
+    "MountPlacement",
     "Omnidirectional",
     "Party",
     "Pending",

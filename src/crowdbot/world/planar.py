@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, FreeClock, InputError, Pose, Scene, Twist, stream
-from crowdbot.metrics import swept_distance
+from crowdbot.core import Clock, FreeClock, InputError, Pose, Scene, SpatialPose, Twist, Walls, stream
+from crowdbot.metrics import swept_distance, wall_clearance
 from crowdbot.models import CrowdModel
 from crowdbot.models.mixture import MODEL, Mixture
 
@@ -23,12 +23,24 @@ from .crowd.portal import Portal, ported
 from .crowd.replay import Script
 from .crowd.routing import WAY, Router
 from .crowd.source import Source
-from .crowd.walk import Stepping, Walk, alone
+from .crowd.walk import Stepping, Walk
 from .crowd.waypoint import Zone
 from .robots.drive import Drive, Twists
+from .robots.mount import MountPlacement
+from .robots.servo import CommandDelay, Pending
 from .world import Contact, World
 
+if TYPE_CHECKING:
+    from crowdbot.humans import People
+
+    from .physics.kinematic_bodies import KinematicBodies
+    from .physics.stage import PhysicsStage
+    from .rendering.renderer import Studio
+    from .robots.robot import Robot
+
 __all__ = ["PlanarWorld"]
+
+Floats = NDArray[np.float64]
 
 
 @dataclass
@@ -64,6 +76,7 @@ class PlanarWorld(World):
             meet exactly head on do not stop for ever; 1e-3 is enough.
         substeps: the crowd takes so many steps in one step of the world, robots meanwhile go on straight.
         ids: ``[A]`` or ``[E, A]`` int, who people are; chance follows them. None: 0 to A - 1.
+        latency: delay of the commands of a robot [s], by agent, see :class:`CommandDelay`; 0 for robots left out.
 
     Attributes:
         clock: who counts the time.
@@ -85,6 +98,9 @@ class PlanarWorld(World):
     (0.1, [[0.01, 0.0], [4.87, 1.0]])
     """
 
+    people_shape: ClassVar[str] = "discs"
+    walls_fixed: ClassVar[bool] = False
+
     scene: Scene
     model: CrowdModel
     drives: Mapping[int, Drive]
@@ -103,6 +119,7 @@ class PlanarWorld(World):
     symmetry: float = 0.0
     substeps: int = 1
     ids: Any = None
+    latency: Mapping[int, float] = field(default_factory=dict)
     clock: Clock = field(init=False)
     twists: dict[int, Twists] = field(init=False)
     contacts: tuple[Contact, ...] = field(init=False, default=())
@@ -122,14 +139,15 @@ class PlanarWorld(World):
             self.scene = self.script.begun(self.scene)
         self.scene = self._traffic.begun(self._held(self.scene)).replace(external=external)
         self._surfaces: Surfaces | None = None
-
-    def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
-        """Go one time step on and return the new scene; see :class:`World`."""
-        return alone(self.stepping(commands))
+        self._bodies: KinematicBodies | None = None
+        self._previous = self.scene
+        self._segments: tuple[Walls, Floats] | None = None
+        self._delayed: dict[int, tuple[tuple[Pending, ...], Twist | Twists]] = {}
 
     def stepping(self, commands: Mapping[int, Twist | Twists]) -> Stepping[Scene]:
         """Go one time step on, and ask somebody else how the crowd walks; see :func:`crowdbot.world.alone`."""
         asked = self._checked(commands)
+        self._previous = self.scene
         before = self._held(self.scene)
         self.clock.advance()
         earlier, crowd = yield from self._walked(before)
@@ -155,12 +173,12 @@ class PlanarWorld(World):
             scene: in the place of the one now, with the same agents; its time is taken as that of now.
             sources: as many as before, with the same journeys.
             seed: for new chance from now on.
-            how: other values of model, drives, berth, router, contact, limits, exits, symmetry or substeps.
+            how: other values of model, drives, latency, berth, router, contact, limits, exits, symmetry or substeps.
 
         Raises:
             InputError: that cannot change while the world runs, or a value is not allowed.
         """
-        known = ("model", "drives", "berth", "router", "contact", "limits", "exits", "symmetry", "substeps")
+        known = ("model", "drives", "latency", "berth", "router", "contact", "limits", "exits", "symmetry", "substeps")
         for name in how:
             if name not in known:
                 raise InputError(f"{name} of a world cannot change while it runs; these can: {', '.join(known)}")
@@ -190,6 +208,73 @@ class PlanarWorld(World):
     def pose(self, robot: int) -> Pose:
         """Return where a robot is in every environment."""
         return Pose(self.scene.position[:, robot].copy(), self.scene.heading[:, robot].copy())
+
+    def sensor_pose(self, robot: int, mount: MountPlacement, spatial: bool) -> Pose | SpatialPose:
+        """Return the pose of a sensor of a robot in its posture; see :class:`World`."""
+        x, y, z, roll, pitch, yaw = mount.placed
+        base = self.pose(robot)
+        return base.lifted(0.0).mounted(x, y, z, roll, pitch, yaw) if spatial else base.mounted(x, y, yaw)
+
+    def wall_clearance(self, robot: int) -> Floats:
+        """Return the clearance ``[E]`` [m] to walls on the straight path of the last step; see :class:`World`."""
+        walls = self.scene.walls
+        if self._segments is None or self._segments[0] is not walls:
+            self._segments = (walls, walls.segments())
+        paths = np.stack([self._previous.position[:, robot], self.scene.position[:, robot]], axis=1)
+        radius = self.scene.radius[:, robot].tolist()
+        return np.array(
+            [wall_clearance(path, size, self._segments[1])[1] for path, size in zip(paths, radius, strict=True)]
+        )
+
+    def plane_scene(self) -> Scene:
+        """Return the scene, see :class:`World`; the outlines of props are among its walls from the beginning."""
+        return self.scene
+
+    def body_scene(self, skins: int | None = None) -> Scene:
+        """Return the scene with bodies; see :class:`World`."""
+        return self._embodied().scene(self.scene, skins)
+
+    @property
+    def studio(self) -> Studio:
+        """Renderer of the current scene; see :class:`World`."""
+        return self._embodied().studio(self.scene)
+
+    def embody(
+        self,
+        robots: Mapping[int, Robot],
+        stage: PhysicsStage,
+        people: People,
+        *,
+        riders: Sequence[int] = (),
+        activity: Sequence[str] = (),
+        walls: Walls | None = None,
+        seed: int = 0,
+    ) -> None:
+        """Add bodies for sensors and cameras; see :class:`World`."""
+        from .physics.kinematic_bodies import KinematicBodies
+
+        self._bodies = KinematicBodies(self.scene, robots, stage, people, riders=riders, walls=walls, seed=seed)
+        self.people = self._bodies.people
+        self._begin_activity(activity)
+
+    def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
+        """Replace robots and stage; see :class:`World`."""
+        if self._bodies is not None:
+            self._bodies.robots, self._bodies.stage, self._bodies.walls = dict(robots), stage, walls
+
+    def pose_people(self) -> None:
+        """Move the bodies of people to the current scene; see :class:`World`."""
+        if self._bodies is not None:
+            self._bodies.people.walk(self.scene, self.dt)
+
+    def _begin_activity(self, activity: Sequence[str]) -> None:
+        if self.people is not None and set(activity) - {"walk"}:
+            self.people.begin(self.scene, activity)
+
+    def _embodied(self) -> KinematicBodies:
+        if self._bodies is None:
+            raise InputError("the world has no bodies of people and robots: call World.embody first")
+        return self._bodies
 
     def _held(self, scene: Scene) -> Scene:
         """Return the scene in which who follows a script is external."""
@@ -251,7 +336,17 @@ class PlanarWorld(World):
         missing = [robot for robot in self.twists if robot not in commands]
         if missing:
             raise InputError(f"robot {missing[0]} has no command; give one in every step, Twist() to stand")
-        return {robot: Twists.of(commands[robot], self.scene.shape[0]) for robot in self.twists}
+        asked = {robot: Twists.of(commands[robot], self.scene.shape[0]) for robot in self.twists}
+        return {robot: self._after_latency(robot, command) for robot, command in asked.items()}
+
+    def _after_latency(self, robot: int, command: Twists) -> Twists:
+        """Return the command that is in force during the next step."""
+        latency = self.latency.get(robot, 0.0)
+        if latency == 0.0:
+            return command
+        pending, now = self._delayed.get(robot, ((), Twist()))
+        self._delayed[robot] = CommandDelay(latency).step(pending, now, command, self.dt)
+        return Twists.of(self._delayed[robot][1], self.scene.shape[0])
 
     def _driven(self, before: Scene, after: Scene, asked: Mapping[int, Twists]) -> Scene:
         position, velocity, heading = after.position.copy(), after.velocity.copy(), after.heading.copy()

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Bodies, InputError, Pose, Scene
+from crowdbot.core import Bodies, InputError, Pose, Scene, SpatialPose, Walls
 from crowdbot.humans import People
 from crowdbot.models import CrowdModel
 from crowdbot.world.crowd.walk import Stepping
@@ -17,7 +17,9 @@ from crowdbot.world.planar import PlanarWorld
 from crowdbot.world.rendering.camera import Camera, Images
 from crowdbot.world.rendering.renderer import Studio
 from crowdbot.world.robots.drive import Twists
+from crowdbot.world.robots.mount import MountPlacement
 from crowdbot.world.robots.robot import Robot
+from crowdbot.world.robots.robot import spatial as spatial_pose
 from crowdbot.world.world import Contact
 
 from .colliders import bodies
@@ -87,6 +89,9 @@ class PhysicsWorld(PlanarWorld):
     ([0.4], ())
     """
 
+    people_shape = "limbs"
+    walls_fixed = True
+
     def __init__(
         self,
         scene: Scene,
@@ -110,7 +115,8 @@ class PhysicsWorld(PlanarWorld):
         super().__init__(scene, model, {agent: robot.drive for agent, robot in robots.items()}, dt, seed, **planar)
         persons = np.array([a for a in range(scene.shape[1]) if a not in robots], dtype=np.int64)
         self.stage, self.physics_dt = stage, physics_dt
-        self.walkers = Walkers(self.scene, persons, people, seed, riders)
+        self.walkers = self.people = Walkers(self.scene, persons, people, seed, riders)
+        self._plane: tuple[Scene, Scene] | None = None
         self.left_out = 0
         self.forces: tuple[BodyForce, ...] = ()
         self._touched: dict[tuple[int, int], float] = {}
@@ -121,10 +127,6 @@ class PhysicsWorld(PlanarWorld):
     def collisions(self) -> tuple[Collision, ...]:
         """Every collision so far, by first touch."""
         return self._book.collisions
-
-    def pose(self, robot: int) -> Pose:
-        """Return where a robot is, E = 1."""
-        return Pose(self.scene.position[:, robot].copy(), self.scene.heading[:, robot].copy())
 
     def command(self, robot: int, joints: Mapping[str, float]) -> None:
         """Send values to the motors of a robot's joints; they hold until the next ones.
@@ -165,6 +167,54 @@ class PhysicsWorld(PlanarWorld):
         """Return the capsules of all people as they stand now."""
         return self.walkers.limbs(self.scene.active[0])
 
+    def sensor_pose(self, robot: int, mount: MountPlacement, spatial: bool) -> Pose | SpatialPose:
+        """Return the pose of a sensor from the simulated frame of its link; see :class:`World`."""
+        if not (spatial or mount.link):
+            return super().sensor_pose(robot, mount, spatial)
+        body = self.carrier(robot)
+        found = spatial_pose(body.frame(mount.link or body.robot.model.root) @ mount.origin)
+        return found if spatial else found.planar
+
+    def wall_clearance(self, robot: int) -> Floats:
+        """Return minus the largest overlap [m] with walls and fixed props in the last step, infinity without contact.
+
+        See :class:`World`.
+        """
+        depth = [one.depth for one in self.forces if one.first == ("robot", robot) and self._fixed(one.second)]
+        return np.array([-max(*depth, 1e-9) if depth else math.inf])
+
+    def plane_scene(self) -> Scene:
+        """Return the scene with the outlines of props, where they are, among the walls; see :class:`World`."""
+        if self._plane is None or self._plane[0] is not self.scene:
+            self._plane = (self.scene, self.scene.replace(walls=self._outlines()))
+        return self._plane[1]
+
+    def body_scene(self, skins: int | None = None) -> Scene:
+        """Return the scene with bodies; see :meth:`seen`."""
+        return self.seen(skins)
+
+    def embody(
+        self,
+        robots: Mapping[int, Robot],
+        stage: PhysicsStage,
+        people: People,
+        *,
+        riders: Sequence[int] = (),
+        activity: Sequence[str] = (),
+        walls: Walls | None = None,
+        seed: int = 0,
+    ) -> None:
+        """Start the activities of people; their bodies, robots and stage are those of the constructor."""
+        self._begin_activity(activity)
+
+    def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
+        """Replace the descriptions of robots: sensors, posture and latency; the stage stays. See :class:`World`."""
+        for agent, robot in robots.items():
+            self.carrier(agent).robot = robot
+
+    def pose_people(self) -> None:
+        """Do nothing: a step moves the bodies of people."""
+
     def bodies(self, skins: int | None = None) -> Bodies:
         """Return what range sensors see, as it is now; ``skins`` is a level of detail, see :func:`bodies`."""
         frames = {agent: chassis.frames() for agent, chassis in self.chassis.items()}
@@ -191,6 +241,27 @@ class PhysicsWorld(PlanarWorld):
         found = np.eye(4)
         found[:3, :3], found[:3, 3] = body.xmat.reshape(3, 3), body.xpos
         return found
+
+    def _outlines(self) -> Walls:
+        if not self._movable:
+            return self._outlined
+        rings = []
+        for number, prop in enumerate(self.stage.props):
+            ring = prop.outline()
+            if ring is None:
+                matrix, half = self.prop(number), 0.5 * float(getattr(prop, "size", 1.0))
+                corners = half * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+                turn = np.arctan2(matrix[1, 0], matrix[0, 0])
+                cos, sin = np.cos(turn), np.sin(turn)
+                ring = corners @ np.array([[cos, sin], [-sin, cos]]) + matrix[:2, 3]
+            rings.append(ring)
+        return joined(self.scene.walls, tuple(rings))
+
+    def _fixed(self, party: Party) -> bool:
+        return party.kind == "wall" or (party.kind == "prop" and not self.stage.props[party.number].movable)
+
+    def _after_latency(self, robot: int, command: Twists) -> Twists:
+        return command  # the body of the robot delays it, by steps of the engine
 
     def _compose(self, robots: Mapping[int, Robot], slots: int, motors: Any) -> None:
         self._mj = engine()
