@@ -19,7 +19,7 @@ from crowdbot.trials import load_trial
 
 RUN = """import sys
 from crowdbot.trials import load_trial
-from crowdbot.simulation import opened
+from crowdbot.recording import opened
 with opened(load_trial(sys.argv[1]), out=sys.argv[2]) as running:
     while running.step() is None:
         print(running.simulation.world.clock.time, flush=True)

@@ -15,7 +15,7 @@ import sys
 import time
 from pathlib import Path
 
-from crowdbot.simulation import record
+from crowdbot.recording import record
 from crowdbot.trials import load_trial
 
 HOME = Path(__file__).parents[1]

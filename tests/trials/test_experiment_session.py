@@ -41,6 +41,7 @@ from crowdbot.experiments import (
     Typed,
     event_of,
     load_experiment,
+    parse_experiment,
     read_log,
     record_of,
     save_summary,
@@ -250,7 +251,7 @@ def test_a_session_leaves_its_folders(whole: Path) -> None:
         "001-x", "001-x/answers.jsonl", "001-x/episode.mcap", "002-y", "002-y/answers.jsonl", "002-y/episode.mcap",
         "answers.jsonl", "experiment.xml", "session.jsonl",
     ]  # fmt: skip
-    assert Experiment.parse((whole / "experiment.xml").read_text()) == EXPERIMENT
+    assert parse_experiment((whole / "experiment.xml").read_text()) == EXPERIMENT
     records = read_log(whole / "session.jsonl")
     assert records[0]["participant"] == 1
     assert [record["at"] for record in records] == [101.0 + k for k in range(len(records))]

@@ -31,10 +31,10 @@ from crowdbot.messages import (
     said,
     unsaid,
 )
-from crowdbot.recording import READING_TABLES, read_episode, replay
+from crowdbot.recording import READING_TABLES, read_episode, replay, run
 from crowdbot.sensors import Gaussian, Lens, Reading, Sensor
 from crowdbot.simulation import Episode
-from crowdbot.trials import Trial
+from crowdbot.trials import parse_trial
 
 SENSORS: dict[str, Sensor] = {
     "Scan": sensors.Lidar2D(rays=31, noise=Gaussian(0.01)),
@@ -194,7 +194,7 @@ def test_pictures_are_images_with_their_lens(monkeypatch: pytest.MonkeyPatch) ->
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Episode]:
     folder = tmp_path_factory.mktemp("eyes")
-    return folder / "episode.mcap", Trial.parse(TRIAL).run(out=folder)
+    return folder / "episode.mcap", run(parse_trial(TRIAL), out=folder)
 
 
 def test_an_episode_keeps_every_reading(recorded: tuple[Path, Episode]) -> None:

@@ -23,6 +23,7 @@ def world():
     return PhysicsWorld(scene, ORCA(), {0: Robot.load("turtlebot2")}, 0.1, stage=stage)
 
 
+@pytest.mark.usefixtures("drawing")
 def test_depth_is_metric_and_everyone_is_named(world):
     camera = Camera((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), width=160, height=120, view=math.radians(60.0))
     seen = world.render(camera, rgb=True, depth=True, segmentation=True)
@@ -46,6 +47,7 @@ def test_depth_is_metric_and_everyone_is_named(world):
     assert column.min() > 80  # it lies to the right
 
 
+@pytest.mark.usefixtures("drawing")
 def test_skins_follow_the_walk_and_the_camera_its_robot(world):
     camera = Camera((0.2, 0.0, 0.4), (1.0, 0.0, 0.5), width=80, height=60, robot=0, detail=2)
     first = world.render(camera, segmentation=True, rgb=False)
@@ -65,6 +67,7 @@ def test_skins_follow_the_walk_and_the_camera_its_robot(world):
     assert 1 not in world.render(camera, segmentation=True, rgb=False).segmentation
 
 
+@pytest.mark.usefixtures("drawing")
 def test_the_same_world_gives_the_same_image():
     def image():
         world = facing(Robot.load("turtlebot2"), gap=1.5)
@@ -75,6 +78,7 @@ def test_the_same_world_gives_the_same_image():
     assert one.std() > 10.0
 
 
+@pytest.mark.usefixtures("drawing")
 def test_contexts_are_given_back():
     world = alone(Robot.load("turtlebot2"))
     gc.collect()
@@ -87,6 +91,7 @@ def test_contexts_are_given_back():
     assert len(gl_context.OPEN) == count
 
 
+@pytest.mark.usefixtures("drawing")
 def test_what_cannot_be_drawn_is_said(world, monkeypatch):
     for wrong, match in (
         ({"width": 0}, "width = 0 pixels must be from 1 to 1920"),

@@ -10,6 +10,9 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from crowdbot.experiments import experiment_xml
+from crowdbot.trials import check_trial, trial_xml
+
 from .output import add_json, note, number, print_json, print_table, spoken_warnings
 
 if TYPE_CHECKING:
@@ -225,14 +228,14 @@ def _imported(options: argparse.Namespace) -> tuple[str, ...]:
     from crowdbot.experiments import FILE, import_experiment
 
     done = import_experiment(options.original, participant=options.participant)
-    texts = {name: trial.xml() for name, trial in done.trials} | {FILE: done.experiment.xml()}
+    texts = {name: trial_xml(trial) for name, trial in done.trials} | {FILE: experiment_xml(done.experiment)}
     options.folder.mkdir(parents=True)
     for name, text in texts.items():
         (options.folder / name).write_text(text, encoding="utf-8")
     mend: list[str] = []
     for name, trial in done.trials:
         try:
-            trial.check()
+            check_trial(trial)
         except TrialError as error:
             mend += [f"to mend in {name}: {sentence}" for sentence in error.problems]
     return (*done.left_out, *mend)

@@ -7,6 +7,8 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from crowdbot.trials import trial_remarks
+
 from .output import add_json, number, print_json, print_metrics, print_table, progress, spoken_warnings
 from .settings import add_settings, add_world, chosen, settings
 
@@ -30,7 +32,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Run the trial."""
     from crowdbot.core import PacedClock
-    from crowdbot.simulation import record
+    from crowdbot.recording import record
     from crowdbot.trials import load_trial
 
     trial = chosen(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
@@ -60,5 +62,5 @@ def tell(done: Summary, as_json: bool, wall: float) -> None:
         return
     print_table(f"{done.trial.name}, seed {done.seed}", ("", ""), [(key, number(v)) for key, v in summary.items()])
     print_metrics("navigation", done.metrics)
-    for remark in done.trial.remarks():
+    for remark in trial_remarks(done.trial):
         print(f"note: {remark}")

@@ -8,10 +8,10 @@ from .log import Log, read_log
 from .order import orders, rows_of, seed_of, williams
 from .original import import_experiment
 from .page import page_of, sanitised
+from .parser import check_experiment, experiment_xml, parse_experiment
 from .person import Given, Person, Typed
 from .plan import plan
 from .question import Choice, FreeText, Number, Option, Scale
-from .reading import read_experiment
 from .session import Session
 from .sitting import Sitting
 from .summary import save_summary, summary
@@ -47,14 +47,16 @@ __all__ = [
     "TrialEntry",
     "Typed",
     "builtin_experiments",
+    "check_experiment",
     "event_of",
+    "experiment_xml",
     "import_experiment",
     "is_experiment",
     "load_experiment",
     "orders",
     "page_of",
+    "parse_experiment",
     "plan",
-    "read_experiment",
     "read_log",
     "record_of",
     "rows_of",

@@ -11,9 +11,9 @@ from crowdbot.core import InputError, TrialError
 from crowdbot.trials import readable, told
 
 from .experiment import Block, Experiment, Screen, TrialEntry
-from .loading import trial_of
 from .page import page_of
 from .question import Question
+from .trial_source import trial_of
 
 __all__ = ["everything", "problems_of"]
 

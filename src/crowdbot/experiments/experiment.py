@@ -6,8 +6,7 @@ import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
 
-from crowdbot.core import TrialError
-from crowdbot.trials import Trial, attribute, check, children
+from crowdbot.trials import attribute, check, children
 
 from .question import QUESTIONS, SHORT, Question
 
@@ -82,15 +81,16 @@ class Block:
 class Experiment:
     """Trials for participants, with screens around them.
 
-    An experiment made in Python is checked like one from a file when a session begins, or with :meth:`check`.
+    An experiment made in Python is checked like one from a file when a session begins, or by
+    :func:`crowdbot.experiments.check_experiment`.
 
     Raises:
         InputError: a value is not allowed.
 
     >>> block = Block(name="main", order="latin-square", trials=[TrialEntry(name="meet", source="frontal")])
     >>> experiment = Experiment(name="meeting", blocks=[block])
-    >>> Experiment.parse(experiment.xml()) == experiment
-    True
+    >>> [entry.source for entry in experiment.blocks[0].trials]
+    ['frontal']
     """
 
     name: str = attribute(about="name of the experiment", pattern=r"\S.{0,79}")
@@ -105,43 +105,3 @@ class Experiment:
 
     def __post_init__(self) -> None:
         check(self)
-
-    @classmethod
-    def load(cls, source: str | Path, *, trust: bool = False) -> Experiment:
-        """Read an experiment file or a built-in one; see :func:`crowdbot.experiments.load_experiment`."""
-        from .loading import load_experiment
-
-        return load_experiment(source, trust=trust)
-
-    @classmethod
-    def parse(
-        cls, text: str | bytes, *, place: str = "experiment", folder: Path | None = None, trust: bool = False
-    ) -> Experiment:
-        """Read an experiment from XML; see :func:`crowdbot.experiments.reading.read_experiment`."""
-        from .reading import read_experiment
-
-        return read_experiment(text, place=place, folder=folder, trust=trust)
-
-    def xml(self) -> str:
-        """Return the XML text of this experiment; reading it gives an equal experiment."""
-        from .reading import experiment_xml
-
-        return experiment_xml(self)
-
-    def check(self, *, trust: bool = False) -> None:
-        """Raise :class:`TrialError` with everything that is wrong: names, files, trials."""
-        from .checks import everything, problems_of
-
-        found = problems_of(everything(self), self.folder, trust)
-        if sentences := [f"experiment {self.name!r}: {_called(thing)} {sentence}" for thing, sentence in found]:
-            raise TrialError(*sentences)
-
-    def trial(self, entry: TrialEntry, *, trust: bool = False) -> Trial:
-        """Return the trial that an entry names; see :func:`crowdbot.experiments.loading.trial_of`."""
-        from .loading import trial_of
-
-        return trial_of(entry.source, self.folder, trust)
-
-
-def _called(thing: object) -> str:
-    return f"{type(thing).__name__} {getattr(thing, 'name', '')!r}"

@@ -7,12 +7,13 @@ import importlib.resources
 from pathlib import Path
 from xml.parsers import expat
 
-from crowdbot.core import InputError, TrialError, did_you_mean
-from crowdbot.trials import Trial, builtin_trials, load_trial, read_trial_bytes
+from crowdbot.core import TrialError, did_you_mean
+from crowdbot.trials import read_trial_bytes
 
 from .experiment import Experiment
+from .parser import parse_experiment
 
-__all__ = ["FILE", "builtin_experiments", "is_experiment", "load_experiment", "trial_of"]
+__all__ = ["FILE", "builtin_experiments", "is_experiment", "load_experiment"]
 
 FILE = "experiment.xml"
 
@@ -53,7 +54,7 @@ def load_experiment(source: str | Path, *, trust: bool = False) -> Experiment:
     data = read_trial_bytes(path)
     if not data.strip():
         raise TrialError(f"{path} is empty; an experiment is an XML file with the root element <experiment>")
-    return Experiment.parse(data, place=str(path), folder=path.parent, trust=trust)
+    return parse_experiment(data, place=str(path), folder=path.parent, trust=trust)
 
 
 def is_experiment(source: str | Path) -> bool:
@@ -90,26 +91,3 @@ def _file(source: str | Path) -> Path | None:
         if file.is_file():
             return file
     return None
-
-
-def trial_of(source: str, folder: Path | None, trust: bool = False) -> Trial:
-    """Return the trial that ``source`` means: a file in the folder of the experiment, or a built-in one.
-
-    Raises:
-        TrialError: everything that is wrong with the trial.
-        InputError: the file lies outside the folder.
-    """
-    root = (folder or Path.cwd()).resolve()
-    path = (root / source).resolve()
-    if path.is_file():
-        if not trust and not path.is_relative_to(root):
-            raise InputError(
-                f"the trial {source!r} lies outside the folder of the experiment; pass --trust to allow it"
-            )
-        return Trial.parse(read_trial_bytes(path), place=source, folder=path.parent, trust=trust)
-    if source in builtin_trials():
-        return load_trial(source)
-    raise TrialError(
-        f"there is no trial {source!r}{did_you_mean(source, builtin_trials())}: it is no file in the folder of the"
-        f" experiment, and built in are {', '.join(builtin_trials())}"
-    )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from pathlib import Path
 
+from crowdbot.recording import run
 from crowdbot.simulation import Episode
 from crowdbot.trials import Trial
 
@@ -71,7 +72,7 @@ class Running:
 
     def _run(self, trial: Trial, seed: int, out: Path | None) -> None:
         try:
-            self._episode = trial.run(seed=seed, out=out, progress=self._told)
+            self._episode = run(trial, seed=seed, out=out, progress=self._told)
         except Exception as error:  # raised again by result(), where somebody can be told
             self._error = error
         finally:

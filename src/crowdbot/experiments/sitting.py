@@ -12,14 +12,16 @@ from typing import Any
 from crowdbot.core import EpisodeError, InputError
 from crowdbot.recording import as_json, versions
 from crowdbot.simulation import Episode
-from crowdbot.trials import Trial
+from crowdbot.trials import Trial, trial_xml
 
 from .event import Answered, Begin, Event, Finish, Repeat, Resume, event_of, record_of
 from .experiment import Experiment, Screen
 from .log import Log
 from .order import seed_of
 from .page import Page, page_of
+from .parser import check_experiment, experiment_xml
 from .session import Session
+from .trial_source import trial_of
 
 __all__ = ["ANSWERS", "COPY", "LOG", "Sitting", "folder_of"]
 
@@ -63,12 +65,12 @@ class Sitting:
         resume: bool = False,
         trust: bool = False,
     ) -> None:
-        experiment.check(trust=trust)
+        check_experiment(experiment, trust=trust)
         self.experiment, self.participant, self.clock = experiment, participant, clock
         self.session = Session.of(experiment, participant)
         self.folder = folder_of(out, participant)
         entries = {step.entry.source: step.entry for step in self.session.steps if step.entry}
-        self.trials: dict[str, Trial] = {s: experiment.trial(e, trust=trust) for s, e in entries.items()}
+        self.trials: dict[str, Trial] = {s: trial_of(e.source, experiment.folder, trust) for s, e in entries.items()}
         self.pages: dict[Screen, Page] = {
             step.screen: page_of(step.screen, experiment.folder) for step in self.session.steps if step.screen
         }
@@ -179,7 +181,7 @@ class Sitting:
 
     def _copy(self) -> None:
         if not (self.folder / COPY).exists():
-            _write(self.folder / COPY, self.experiment.xml())
+            _write(self.folder / COPY, experiment_xml(self.experiment))
 
     def _again(self, path: Path, number: int, record: dict[str, Any]) -> None:
         if "event" not in record:
@@ -205,8 +207,8 @@ class Sitting:
     def _digest(self) -> str:
         """Return the hash of the experiment, its screens and its trials."""
         pages = [page.digest for page in self.pages.values()]
-        trials = [trial.xml() for trial in self.trials.values()]
-        whole = json.dumps([self.experiment.xml(), pages, trials])
+        trials = [trial_xml(trial) for trial in self.trials.values()]
+        whole = json.dumps([experiment_xml(self.experiment), pages, trials])
         return hashlib.blake2b(whole.encode(), digest_size=16).hexdigest()
 
     def _write_answers(self, number: int) -> None:

@@ -12,7 +12,7 @@ from crowdbot.trials import read_trial_bytes
 
 from .event import event_of
 from .log import read_log
-from .reading import read_experiment
+from .parser import parse_experiment
 from .session import Session
 from .sitting import COPY, LOG
 
@@ -30,7 +30,7 @@ def session_of(folder: Path) -> tuple[int, Session]:
     """
     path = folder / LOG
     records = read_log(path)
-    experiment = read_experiment(read_trial_bytes(folder / COPY), place=str(folder / COPY), folder=folder, whole=False)
+    experiment = parse_experiment(read_trial_bytes(folder / COPY), place=str(folder / COPY), folder=folder, whole=False)
     participant = records[0].get("participant")
     try:
         session = Session.of(experiment, participant if isinstance(participant, int) else 0)

@@ -1,8 +1,8 @@
 """Messages: ROS 2 message types, CDR encoding, and the codecs of sensor readings."""
 
-from .cdr import Shape, marker_bytes, people_bytes
+from .cdr import MAP, Shape, marker_bytes, people_bytes
 from .codec import Codec, Told, arrays_of, mounted
-from .contacts import COLLISIONS, FORCES, Collided, Pushed, collided, hashed, pushed, pushes
+from .contacts import COLLISIONS, FORCES, Collided, Pushed, collided, pushed, pushes
 from .images import image_in, picture_codec
 from .marker_array import markers
 from .message_store import Messages
@@ -14,6 +14,7 @@ __all__ = [
     "COLLISIONS",
     "FORCES",
     "KIND",
+    "MAP",
     "REST",
     "Codec",
     "Collided",
@@ -24,7 +25,6 @@ __all__ = [
     "arrays_of",
     "codec_of",
     "collided",
-    "hashed",
     "image_in",
     "marker_bytes",
     "markers",

@@ -13,15 +13,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.recording import MAP
-
-__all__ = ["Shape", "marker_bytes", "people_bytes"]
+__all__ = ["MAP", "Shape", "marker_bytes", "people_bytes"]
 
 Floats = NDArray[np.float64]
 
 START = b"\x00\x01\x00\x00"
 """Little-endian CDR; positions are counted after it."""
 TAGNAMES = struct.pack("<II7sxI8sI", 2, 7, b"radius", 8, b"heading", 2)
+MAP = "map"
+"""The frame of the world."""
 FRAME = MAP.encode() + b"\0"
 
 

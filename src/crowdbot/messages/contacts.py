@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from .message_store import Messages
 
-__all__ = ["COLLISIONS", "FORCES", "Collided", "Pushed", "collided", "hashed", "pushed", "pushes"]
+__all__ = ["COLLISIONS", "FORCES", "Collided", "Pushed", "collided", "pushed", "pushes"]
 
 FORCES = "/crowdbot/forces"
 """Topic of the forces of each step."""
@@ -126,11 +125,3 @@ def pushed(time: float, message: Any) -> list[Pushed]:
 def collided(message: Any) -> list[Collided]:
     """Return the collisions of a message."""
     return [Collided(*(getattr(one, name) for name in Collided._fields)) for one in message.collisions]
-
-
-def hashed(frame: Any) -> Iterator[bytes]:
-    """Yield what the digest takes of forces and collisions: nothing in a world that knows none."""
-    for one in getattr(frame, "forces", ()):
-        yield f"force {tuple(one)!r}\n".encode()
-    for one in getattr(frame, "collisions", ()):
-        yield f"collision {dataclasses.astuple(one)!r}\n".encode()

@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from crowdbot.core import Scene, SpatialPose
-from crowdbot.recording import MAP
 
-from .cdr import people_bytes
+from .cdr import MAP, people_bytes
 
 __all__ = ["Messages"]
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 from crowdbot.core import EpisodeError, InputError
 from crowdbot.simulation import (
@@ -16,25 +17,47 @@ from crowdbot.simulation import (
     Stop,
     Summary,
     Tally,
-    changed,
+    apply_overrides,
     drive,
     stopping,
-    target,
-    turn_to,
 )
-from crowdbot.trials import Trial
+from crowdbot.trials import Trial, apply_values, trial_xml
 
 from .attachments import unpacked
-from .episode_reader import read_metadata
+from .episode_reader import Recorded, read_metadata
+from .episode_writer import Recorder
 from .provenance import Comparison, Course, Part, digests
+from .recorded_run import target
 
-__all__ = ["branch", "branched"]
+__all__ = ["branch"]
 
 Progress = Callable[[float], None]
 
 
+@dataclass(frozen=True)
+class _Options:
+    """What a branch does differently, and where it is recorded."""
+
+    seed: int | None
+    changes: Mapping[str, Any]
+    trial: Trial | None
+    out: Path | str | None
+    progress: Progress | None
+
+
+@overload
 def branch(
-    path: Path | str,
+    source: Episode, at: float, *, seed: int | None = None, changes: Mapping[str, Any] | None = None,
+    trial: Trial | None = None, out: Path | str | None = None, progress: Progress | None = None,
+) -> Episode: ...  # fmt: skip
+@overload
+def branch(
+    source: Path | str | Recorded, at: float, *, seed: int | None = None, changes: Mapping[str, Any] | None = None,
+    trial: Trial | None = None, out: Path | str | None = None, folder: Path | None = None, trust: bool = False,
+    progress: Progress | None = None,
+) -> Summary: ...  # fmt: skip
+def branch(
+    source: Path | str | Recorded | Episode,
     at: float,
     *,
     seed: int | None = None,
@@ -44,76 +67,82 @@ def branch(
     folder: Path | None = None,
     trust: bool = False,
     progress: Progress | None = None,
-) -> Summary:
-    """Go on from an instant of a recorded episode, with other values, and record what follows.
+) -> Summary | Episode:
+    """Continue an episode from a recorded instant, with the same or with other values.
 
-    The trial is run again, without recording, up to the instant, and its digest is compared with the recorded one at
-    every instant on the way. So a branch begins in exactly the state of then, everything that people, sensors and
-    random numbers remember included; it costs the time that the run itself needs up to there. What is recorded begins
-    at the instant. With no changes every message, and the digest at the end, is the same as in the original.
+    The trial runs again, without recording, up to the instant; its digest is compared with the recorded digest at
+    every instant on the way. A branch therefore starts in exactly the recorded state, including everything that people,
+    sensors and random streams remember; this takes as long as the original run up to the instant. Without changes,
+    every message and the final digest equal those of the original.
 
     Args:
-        path: of the episode; it may be a branch itself, or a run that was killed.
+        source: an episode file (also a branch, or the file of a killed run), or an episode in memory.
         at: a recorded instant [s].
-        seed: for new chance from then on; None: chance goes on.
-        changes: other values by path; see :func:`crowdbot.simulation.overrides.changed`. They apply from the next step.
-        trial: the trial to go on by, instead of ``changes``.
+        seed: new random streams from then on; None continues the old ones.
+        changes: other values by path, as in :class:`crowdbot.trials.Sweep`; they apply from the next step.
+        trial: the trial to continue with; ``changes`` apply to it.
         out: file to record to, or a folder for ``episode.mcap``.
-        folder, trust: as of :func:`replay`.
-        progress: called with the share that is done, 0 to 1.
+        folder, trust: as in :func:`replay`, for files only.
+        progress: called with the completed share, 0 to 1.
+
+    Returns:
+        An :class:`Episode` for an episode in memory, otherwise a :class:`Summary`.
 
     Raises:
         EpisodeError: the file cannot be read, has no such instant, or does not replay to the same bytes.
-        InputError: something is changed that only counts at the beginning.
+        InputError: a change that only applies at the start.
+
+    >>> from crowdbot.models import ORCA
+    >>> from crowdbot.simulation import simulate
+    >>> episode = simulate(Trial(name="empty", duration=2.0, crowd=ORCA()))
+    >>> later = branch(episode, at=1.5, changes={"duration": 3})
+    >>> float(later.times[0]), float(later.times[-1]), branch(episode, at=1.0).digest == episode.digest
+    (1.5, 3.0, True)
     """
-    source = Path(path)
+    options = _Options(seed, changes or {}, trial, out, progress)
+    if isinstance(source, Episode):
+        return _branch_of_episode(source, at, options)
+    path = source.path if isinstance(source, Recorded) else Path(source)
+    return _branch_of_file(path, at, folder, trust, options)
+
+
+def _branch_of_file(source: Path, at: float, folder: Path | None, trust: bool, options: _Options) -> Summary:
+    out = options.out
     if out is not None and target(out).exists() and target(out).resolve() == source.resolve():
         raise InputError(f"{source} is the episode to branch from; record the branch to another place")
     with unpacked(source, read_metadata(source), folder, trust) as place:
         course = Course.of(source, place.folder, trust)
-        wanted = digests(source)
-        tally, outcome, steps = _run(course, at, wanted, seed, changes, trial, out, progress, Tally, str(source))
+        tally, outcome, steps = _run(course, at, digests(source), options, Tally, str(source))
     summary: Summary = tally.summary(outcome, steps, None if out is None else target(out))
     return summary
 
 
-def branched(
-    episode: Episode, at: float, *, seed: int | None = None, changes: Mapping[str, Any] | None = None,
-    trial: Trial | None = None, out: Path | str | None = None,
-) -> Episode:  # fmt: skip
-    """Go on from an instant of an episode in memory; see :func:`branch`. The episode must not be a branch itself."""
+def _branch_of_episode(episode: Episode, at: float, options: _Options) -> Episode:
     if episode.times[0] > 0.0:
         raise InputError("this episode is a branch; record the first one and branch from the files")
     course = Course((Part(0, episode.trial, episode.seed),))
-    log, outcome, steps = _run(course, at, {}, seed, changes, trial, out, None, Log, f"episode {episode.trial.name!r}")
+    log, outcome, steps = _run(course, at, {}, options, Log, f"episode {episode.trial.name!r}")
     after: Episode = log.episode(outcome, steps)
     return after
 
 
 def _run(
-    course: Course,
-    at: float,
-    wanted: Mapping[int, str],
-    seed: int | None,
-    changes: Mapping[str, Any] | None,
-    trial: Trial | None,
-    out: Path | str | None,
-    progress: Progress | None,
-    kind: type[Any],
-    name: str,
+    course: Course, at: float, wanted: Mapping[int, str], options: _Options, kind: type[Any], name: str
 ) -> tuple[Any, str, int]:
     last = course.parts[-1]
-    new = changed(last.trial if trial is None else trial, changes or {})
-    if out is not None:
-        new.xml()  # say at once when it cannot be recorded
+    old = last.trial if options.trial is None else options.trial
+    new = apply_values(old, options.changes, place=f"trial {old.name!r} with changes")
+    if options.out is not None:
+        trial_xml(new)  # raises now if the trial cannot be recorded
     with stopping() as stop:
         comparison = Comparison(Digest(), dict(wanted))
-        simulation = _there(course, at, comparison, stop, progress, name, max(wanted, default=None))
-        turn_to(simulation, new, seed)
+        simulation = _there(course, at, comparison, stop, options.progress, name, max(wanted, default=None))
+        apply_overrides(simulation, new, options.seed)
         _check_period(simulation, new, at)
-        part = Part(simulation.tick, new, last.seed if seed is None else int(seed))
+        part = Part(simulation.tick, new, last.seed if options.seed is None else int(options.seed))
         tally = kind(new, part.seed, comparison.digest)
-        return tally, *_recorded(simulation, tally, comparison, (*course.parts, part), out, stop, progress)
+        parts = (*course.parts, part)
+        return tally, *_recorded(simulation, tally, comparison, parts, options.out, stop, options.progress)
 
 
 def _there(
@@ -176,8 +205,6 @@ def _recorded(
     sinks: list[Sink] = [tally]
     if out is None:
         return drive(simulation, sinks, stop, rest), simulation.tick
-    from .episode_writer import Recorder
-
     course, earlier = Course(parts), [part.trial for part in parts[:-1]]
     with Recorder(target(out), tally, course.origin, begin=parts[-1].tick, earlier=earlier) as recorder:
         recorder.take(frame)

@@ -16,7 +16,7 @@ from crowdbot.core import EpisodeError
 from crowdbot.data import MAGIC, Tape, Trajectories
 from crowdbot.messages import Collided, Pushed
 from crowdbot.sensors import Reading
-from crowdbot.simulation import Instant, ScanRow, Summary, tracks_of
+from crowdbot.simulation import Instant, ScanRow, tracks_of
 
 from .episode_repair import Ending
 from .metadata import END_KEYS, ENDING, KEYS, METADATA, from_json
@@ -118,14 +118,6 @@ class Recorded:
     def tracks(self, dt: float = 0.4) -> Trajectories:
         """Return people and robots every ``dt`` [s] as trajectories, as :meth:`Episode.tracks` does."""
         return tracks_of(self, self.name, dt)
-
-    def branch(
-        self, at: float, seed: int | None = None, out: Path | str | None = None, trust: bool = False, **changes: Any
-    ) -> Summary:
-        """Go on from an instant, with other values; see :func:`crowdbot.recording.episode_branch`."""
-        from .episode_branch import branch
-
-        return branch(self.path, at, seed=seed, out=out, trust=trust, changes=changes)
 
 
 def read_episode(path: Path | str) -> Recorded:

@@ -12,14 +12,14 @@ from types import TracebackType
 from typing import Any
 
 from crowdbot.core import EpisodeError
-from crowdbot.messages import Messages, Told, codec_of, markers, mounted, pushes, said
+from crowdbot.messages import MAP, Messages, Told, codec_of, markers, mounted, pushes, said
 from crowdbot.messages.marker_array import KIND as MARKERS
 from crowdbot.simulation import WALL, Frame, Tally
-from crowdbot.trials import Trial
+from crowdbot.trials import Trial, trial_xml
 
 from .attachments import LeftOut, carried, left_out
 from .mcap_writer import TapeWriter
-from .metadata import CONTACTS, DIGEST, ENDING, FORMAT, MAP, METADATA, as_json, versions
+from .metadata import CONTACTS, DIGEST, ENDING, FORMAT, METADATA, as_json, versions
 
 __all__ = ["Recorder"]
 
@@ -72,7 +72,7 @@ class Recorder:
     ) -> None:
         self.path, self.tally, self.origin, self.begin = path, tally, origin, begin
         self.trial, self.seed = tally.trial, tally.seed
-        self.xml = self.trial.xml()
+        self.xml = trial_xml(self.trial)
         self.files = carried([self.trial, *earlier])
         if sentence := left_out(file for file, _ in self.files):
             warnings.warn(sentence, LeftOut, stacklevel=2)
@@ -87,6 +87,7 @@ class Recorder:
         self._markers_due = -(-start // self._markers_every) * self._markers_every
         self._write_due = start
         self._names = {self.trial.people + k: robot.name for k, robot in enumerate(self.trial.robots)}
+        self._goals = [(one.goal.x, one.goal.y, one.goal.tolerance) for one in self.trial.robots]
         self._mounts = [
             (f"{robot.name}/base_link", f"{robot.name}/{mount.name}", mounted(robot, mount))
             for robot in self.trial.robots
@@ -170,7 +171,7 @@ class Recorder:
             self._write(f"/{name}/cmd_vel", make.twist(*frame.commands[k]), now)
         if now >= self._markers_due:
             self._markers_due = now - now % self._markers_every + self._markers_every
-            self._put("/crowd/markers", MARKERS, markers(now, scene, frame.ids, self.trial.robots), now)
+            self._put("/crowd/markers", MARKERS, markers(now, scene, frame.ids, self._goals), now)
 
     def _fixed(self, frame: Frame) -> None:
         """Write where sensors sit, at every instant, so that each tells by itself where everything was."""

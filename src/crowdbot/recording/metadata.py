@@ -19,7 +19,6 @@ __all__ = [
     "END_KEYS",
     "FORMAT",
     "KEYS",
-    "MAP",
     "METADATA",
     "as_json",
     "from_json",
@@ -40,8 +39,6 @@ DIGEST = "/crowdbot/digest"
 """Topic of the digest up to each recorded instant, as it is when the run is interrupted there."""
 CONTACTS = "/crowdbot/contacts"
 """Topic of the contacts of robots."""
-MAP = "map"
-"""The frame of the world."""
 
 
 def versions() -> dict[str, str]:

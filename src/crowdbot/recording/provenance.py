@@ -10,8 +10,8 @@ from typing import Any
 
 from crowdbot.core import EpisodeError
 from crowdbot.data import Tape
-from crowdbot.simulation import Digest, Frame, Running, Simulation, Stop, turn_to
-from crowdbot.trials import Trial
+from crowdbot.simulation import Digest, Frame, Running, Simulation, Stop, apply_overrides
+from crowdbot.trials import Trial, parse_trial, trial_xml
 
 from .episode_reader import read_metadata
 from .metadata import DIGEST
@@ -68,7 +68,7 @@ class Course:
         place = f"{path} (trial, written by crowdbot {known['version']})"
 
         def parsed(xml: str) -> Trial:
-            return Trial.parse(xml, place=place, folder=folder or path.parent, trust=trust)
+            return parse_trial(xml, place=place, folder=folder or path.parent, trust=trust)
 
         try:
             origin = json.loads(known.get("origin", "[]"))
@@ -81,7 +81,7 @@ class Course:
     @property
     def origin(self) -> list[dict[str, Any]]:
         """What the metadata of an episode keep of the parts before the last."""
-        return [{"tick": part.tick, "trial": part.trial.xml(), "seed": part.seed} for part in self.parts[:-1]]
+        return [{"tick": part.tick, "trial": trial_xml(part.trial), "seed": part.seed} for part in self.parts[:-1]]
 
     def begun(
         self, sink: Comparison, stop: Stop, progress: Callable[[float], None] | None = None, until: int | None = None
@@ -104,7 +104,7 @@ class Course:
             _on(simulation, end, sink, stop, progress)
             if number + 1 < len(self.parts):
                 part = self.parts[number + 1]
-                turn_to(simulation, part.trial, None if part.seed == self.parts[number].seed else part.seed)
+                apply_overrides(simulation, part.trial, None if part.seed == self.parts[number].seed else part.seed)
         return simulation
 
 

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Pose
 from crowdbot.data import Tape
-from crowdbot.messages import COLLISIONS, FORCES, KIND, REST, Collided, Pushed, collided, pushed, reading_of
+from crowdbot.messages import COLLISIONS, FORCES, KIND, MAP, REST, Collided, Pushed, collided, pushed, reading_of
 from crowdbot.sensors import Reading, Scan
 from crowdbot.simulation import Instant, ScanRow, scan_row
 
-from .metadata import CONTACTS, DIGEST, MAP, heading_of
+from .metadata import CONTACTS, DIGEST, heading_of
 
 __all__ = ["Moment", "RobotState", "Touched", "read_moments"]
 

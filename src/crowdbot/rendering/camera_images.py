@@ -16,7 +16,7 @@ from crowdbot.sensors.camera import distorted
 from crowdbot.sensors.sensor import in_space
 from crowdbot.sensors.shapes import NOTHING
 from crowdbot.simulation import Carrier, Running, Simulation
-from crowdbot.trials import OVERVIEW, Camera, Mount, Trial, overview
+from crowdbot.trials import OVERVIEW, Camera, Mount, Trial, check_trial, overview
 
 __all__ = ["Shot", "Take", "camera_names", "shots"]
 
@@ -94,7 +94,7 @@ def shots(
     [(600, 960, 3)]
     """
     chosen = trial.seed if seed is None else int(seed)
-    trial.check(chosen)
+    check_trial(trial, chosen)
     name = camera or camera_names(trial)[0]
     if name not in camera_names(trial):
         known = camera_names(trial)

@@ -2,8 +2,8 @@
 
 from .batch import run_batch
 from .episode import Episode, Log, ScanRow, scan_row, tracks_of
-from .overrides import changed, turn_to
-from .runner import Bridge, Running, Sink, Stop, drive, opened, record, run, stopping, target
+from .overrides import apply_overrides
+from .runner import Bridge, Running, Sink, Stop, drive, simulate, stopping
 from .simulation import WALL, Carrier, Frame, Simulation, Touch
 from .statistics import Digest, Summary, Tally, robot_metrics
 from .travel import Instant, Travel
@@ -27,17 +27,13 @@ __all__ = [
     "Tally",
     "Touch",
     "Travel",
-    "changed",
+    "apply_overrides",
     "drive",
-    "opened",
-    "record",
     "robot_metrics",
-    "run",
     "run_batch",
     "scan_row",
+    "simulate",
     "start_scene",
     "stopping",
-    "target",
     "tracks_of",
-    "turn_to",
 ]

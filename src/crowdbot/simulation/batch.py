@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from crowdbot.core import InputError, Scene
-from crowdbot.trials import Trial
+from crowdbot.trials import Trial, check_trial
 from crowdbot.world import Stepping, Walk, together
 
 from .episode import Episode, Log
@@ -41,7 +41,7 @@ def run_batch(
     if not seeds:
         raise InputError("run_batch: there are no seeds; give at least one, such as range(8)")
     for seed in seeds:
-        trial.check(int(seed))
+        check_trial(trial, int(seed))
     logs = [Log(trial, int(seed)) for seed in seeds]
     with stopping() as stop:
         runs = [Running(Simulation(trial, log.seed), [log], stop=stop) for log in logs]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -109,33 +108,6 @@ class Episode:
         """
         return tracks_of(self, self.trial.name, dt)
 
-    def branch(
-        self,
-        at: float,
-        seed: int | None = None,
-        out: Path | str | None = None,
-        trial: Trial | None = None,
-        **changes: Any,
-    ) -> Episode:
-        """Go on from an instant, with other values; see :func:`crowdbot.recording.episode_branch`.
-
-        Args:
-            at: a recorded instant [s].
-            seed: for new chance from then on.
-            out: file to record to, or a folder.
-            trial: the trial to go on by.
-            changes: values by path, such as ``duration=20`` or ``**{"robot[pepper].goal.x": 3.0}``.
-
-        >>> from crowdbot.models import ORCA
-        >>> episode = Trial(name="empty", duration=2.0, crowd=ORCA()).run()
-        >>> later = episode.branch(at=1.5, duration=3)
-        >>> float(later.times[0]), float(later.times[-1]), episode.branch(at=1.0).digest == episode.digest
-        (1.5, 3.0, True)
-        """
-        from crowdbot.recording import branched
-
-        return branched(self, at, seed=seed, changes=changes, trial=trial, out=out)
-
 
 def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
     """Return the trajectories of an episode, run or read."""
@@ -151,7 +123,7 @@ def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
         frame,
         place[:, 0],
         place[:, 1],
-        frame_rate=1.0 / dt,
+        row_rate=1.0 / dt,
         frame_step=1,
         name=name,
         note="simulated",

@@ -1,116 +1,27 @@
-"""Changing: a trial with other values, and a simulation that goes on by it."""
+"""Overrides: a running simulation continues with other values of its trial."""
 
 from __future__ import annotations
 
 import dataclasses
-import re
-from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
-from crowdbot.core import Element, InputError, did_you_mean, format_xml
+from crowdbot.core import InputError
 from crowdbot.models import Mixture
-from crowdbot.trials import Crowds, Robot, Trial, crowd_names, parse_trial_xml
+from crowdbot.trials import Crowds, Robot, Trial, crowd_names
 
 from .mounted_sensor import probes_of
 from .simulation import Carrier, Simulation
 from .world_builder import limits_of
 
-__all__ = ["changed", "turn_to"]
+__all__ = ["apply_overrides"]
 
 FIXED = ("world", "physics_step", "bodies", "step", "capacity", "spawners", "agents", "recorded", "journeys")
 """What cannot change once people are under way."""
 START = ("name", "type", "x", "y", "heading")
 """What cannot change of a robot that is under way."""
-WORD = re.compile(r"([A-Za-z0-9_-]+)(?:\[([^\]]+)\])?")
 
 
-def changed(trial: Trial, changes: Mapping[str, Any]) -> Trial:
-    """Return a trial with other values, named as in its XML.
-
-    Args:
-        trial: the one to begin with.
-        changes: by path: elements and at last an attribute, with dots between; of several elements with one name the
-            one is chosen by its name or number (from 0) in brackets, such as ``robot[pepper].navigator.max-speed``.
-            With slashes it is a path as of a sweep, whose numbers count from 1: ``robot[1]/navigator/max-speed``.
-
-    Raises:
-        InputError: there is no such element.
-        TrialError: the new trial is impossible.
-
-    >>> from crowdbot.models import ORCA
-    >>> trial = Trial(name="alone", duration=2.0, crowd=ORCA())
-    >>> new = changed(trial, {"duration": 3, "crowd.time-horizon": 1.5, "end.goal": False})
-    >>> new.duration, new.crowd.time_horizon, new.end.goal
-    (3.0, 1.5, False)
-    """
-    if not changes:
-        return trial
-    root = parse_trial_xml(trial.xml().encode(), "trial")
-    for path, value in changes.items():
-        _set(root, path, _text(value))
-    return Trial.parse(format_xml(root), place=f"trial {trial.name!r} with changes", folder=trial.folder, trust=True)
-
-
-def _set(root: Element, path: str, text: str) -> None:
-    first, dot = (1, "/") if "/" in path else (0, ".")
-    *steps, last = [word.replace("_", "-") for word in path.strip().strip("/").split(dot)]
-    element = root
-    for step in steps:
-        element = _inner(element, step, path, first)
-    if re.fullmatch(r"[A-Za-z][A-Za-z0-9-]*", last) is None:
-        raise _no_path(path)
-    other = last == "type" and element.tag != "robot" and element.attributes.get("type") != text
-    if other:  # the values of another type mean nothing to this one
-        own = ("name", "link", "x", "y", "z", "roll", "pitch", "heading") if element.tag == "sensor" else ("name",)
-        element.attributes = {key: value for key, value in element.attributes.items() if key in own}
-    element.attributes[last] = text
-
-
-def _no_path(path: str) -> InputError:
-    return InputError(f"{path!r} is no path; write elements and an attribute, such as robot[NAME]/goal/x")
-
-
-def _inner(element: Element, step: str, path: str, first: int) -> Element:
-    match = WORD.fullmatch(step)
-    if match is None:
-        raise _no_path(path)
-    tag, which = match.groups()
-    found = [inner for inner in element.children if inner.tag == tag]
-    if which is not None:
-        found = [
-            one
-            for k, one in enumerate(found, first)
-            if which in (str(k), one.attributes.get("name", "").replace("_", "-"))
-        ]
-    if len(found) == 1:
-        return found[0]
-    if found:
-        names = ", ".join(f"{tag}[{one.attributes.get('name', k)}]" for k, one in enumerate(found, first))
-        raise InputError(f"{path!r}: <{element.tag}> has {len(found)} <{tag}>; choose one: {names}")
-    if (
-        which is None
-        and tag in ("stage", "routing", "contact", "limits", "end", "recording")
-        and element.tag == "trial"
-    ):
-        element.children.append(Element(tag))  # left out, since everything in it was as usual
-        return element.children[-1]
-    known = [f"{inner.tag}[{inner.attributes['name']}]" if "name" in inner.attributes else inner.tag
-             for inner in element.children]  # fmt: skip
-    has = ", ".join(known) or "no elements"
-    raise InputError(f"{path!r}: <{element.tag}> has no {step}{did_you_mean(step, known)}; it has {has}")
-
-
-def _text(value: Any) -> str:
-    if isinstance(value, bool | np.bool_):
-        return "true" if value else "false"
-    if isinstance(value, float):
-        return repr(float(value))
-    return str(value)
-
-
-def turn_to(simulation: Simulation, trial: Trial, seed: int | None = None) -> None:
+def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = None) -> None:
     """Let a simulation go on by another trial from where it is, with new chance when a seed is given.
 
     Everybody stays where they are and keeps what they remember, robots the commands they hold. What only the beginning

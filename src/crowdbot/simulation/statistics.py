@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Pose, SpatialPose
-from crowdbot.messages import hashed
 from crowdbot.trials import Trial
 
 from .simulation import Frame
@@ -64,8 +63,10 @@ class Digest:
             who = [] if np.array_equal(frame.ids, np.arange(len(frame.ids))) else [frame.ids]
             for array in (*who, *present(frame), frame.twists, frame.commands):
                 self._sum.update(_bytes(array))
-        for words in hashed(frame):
-            self._sum.update(words)
+        for force in frame.forces:
+            self._sum.update(f"force {tuple(force)!r}\n".encode())
+        for collision in frame.collisions:
+            self._sum.update(f"collision {dataclasses.astuple(collision)!r}\n".encode())
 
     def ended(self, outcome: str) -> str:
         """Return the hash of everything so far and the outcome."""

@@ -11,7 +11,19 @@ from numpy.typing import NDArray
 from crowdbot.core import Scene, TrialError
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.navigation import Limits
-from crowdbot.trials import Agent, Crowds, Figures, People, RecordedPeople, Robot, Trial, cast_of, crowd_names, own
+from crowdbot.trials import (
+    Agent,
+    Crowds,
+    Figures,
+    People,
+    RecordedPeople,
+    Robot,
+    Trial,
+    cast_of,
+    crowd_names,
+    expand_sweeps,
+    own,
+)
 from crowdbot.world import Journeys, PlanarWorld, Router, Script, Source, Track
 
 from .mounted_sensor import spatial
@@ -28,8 +40,8 @@ def world_of(trial: Trial, people: People, seed: int) -> tuple[PlanarWorld, Figu
     the number of the own place. Free places have numbers below 0.
     """
     if trial.sweeps:
-        raise TrialError(f"trial {trial.name!r} stands for {len(trial.variants())} trials by its sweeps; run one of its"
-                         " variants")  # fmt: skip
+        count = len(expand_sweeps(trial))
+        raise TrialError(f"trial {trial.name!r} has {count} variants by its sweeps; run one of them")
     sources = [source.source(trial.journeys, crowd_names(trial.crowd)) for source in trial.sources]
     first = len(people)
     scene = start_scene(trial, people, spare := _spare(trial, first, sources, seed))

@@ -13,10 +13,11 @@ from .importers.recording import recorded_trial
 from .journey import Direction, Exit, Journey, Point, Portal, Zone
 from .map_files import is_file_of_area, map_files
 from .notation import Points, plain
+from .parser import check_trial, parse_trial
 from .partial import readable, told
 from .people import Group, Source, Spawner
 from .placement.appearance import Figures, cast_of
-from .placement.expansion import explicit
+from .placement.expansion import expand_spawners
 from .placement.population import place
 from .placement.spawn_placement import GAP, People
 from .props import Cube, Light, Table, Tree
@@ -27,12 +28,14 @@ from .scenarios import PRESETS
 from .scenarios.challenge import FLOWS, SIZES
 from .scenarios.crowds import DENSITIES
 from .stage import Obstacle, Stage, Wall, area
-from .sweep import Sweep, changed
+from .sweep import Sweep
 from .trial import End, Recording, Trial, When
 from .trial_files import beside
+from .validation.rates import trial_remarks
+from .variants import apply_values, expand_sweeps
 from .xml.document import parse_trial_xml, read_trial_bytes
 from .xml.reader import Reader
-from .xml.writer import element_from
+from .xml.writer import element_from, trial_xml
 from .xml.xsd import schema
 
 __all__ = [
@@ -84,17 +87,19 @@ __all__ = [
     "Wall",
     "When",
     "Zone",
+    "apply_values",
     "area",
     "attribute",
     "beside",
     "builtin_trials",
     "cast_of",
-    "changed",
     "check",
+    "check_trial",
     "children",
     "crowd_names",
     "element_from",
-    "explicit",
+    "expand_spawners",
+    "expand_sweeps",
     "import_original",
     "is_code",
     "is_file_of_area",
@@ -104,6 +109,7 @@ __all__ = [
     "outline",
     "overview",
     "own",
+    "parse_trial",
     "parse_trial_xml",
     "place",
     "plain",
@@ -114,5 +120,7 @@ __all__ = [
     "schema",
     "shown",
     "told",
+    "trial_remarks",
+    "trial_xml",
     "trials_of",
 ]

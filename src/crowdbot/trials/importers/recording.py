@@ -46,7 +46,7 @@ def recorded_trial(
 
     Args:
         path: of the recording; the trial names it without its folder, so it must lie beside the trial file.
-        fps, format, units: of the file, where it does not say.
+        fps, format, units: of the file, as in :func:`crowdbot.load` (default: from the file).
         mode: ``scripted``, or ``reactive``: people nearer to the robot than ``near`` walk by a model.
         near: [m].
         replace: id of the person in whose place, from whose start to whose goal and at whose time a robot goes.

@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from crowdbot.models import CrowdModel
     from crowdbot.trials.trial import Trial
 
-__all__ = ["explicit"]
+__all__ = ["expand_spawners"]
 
 
-def explicit(trial: Trial, seed: int | None = None) -> Trial:
+def expand_spawners(trial: Trial, seed: int | None = None) -> Trial:
     """Return the trial with everybody of its spawners as an agent, as this seed places them.
 
     It runs exactly as the trial does with this seed, which becomes its own. Sources and recorded people stay as they
@@ -41,7 +41,7 @@ def explicit(trial: Trial, seed: int | None = None) -> Trial:
     >>> from crowdbot.trials import Spawner, Trial
     >>> square = [(0, 0), (2, 0), (2, 2), (0, 2)]
     >>> trial = Trial(name="t", duration=1.0, crowd=ORCA(), spawners=[Spawner(count=2, zone=square, goal=square)])
-    >>> one = explicit(trial, seed=3)
+    >>> one = expand_spawners(trial, seed=3)
     >>> len(one.agents), len(one.spawners), one.seed, one.run().digest == trial.run(seed=3).digest
     (2, 0, 3, True)
     """

@@ -9,7 +9,7 @@ from crowdbot.core import FreeClock, InputError
 from crowdbot.trials.robot import Mount, Robot
 from crowdbot.trials.trial import Trial
 
-__all__ = ["fitting", "misfits", "remarks"]
+__all__ = ["fitting", "misfits", "trial_remarks"]
 
 
 def fitting(periods: Sequence[float]) -> float:
@@ -40,14 +40,14 @@ def misfits(robot: Robot, step: float) -> list[Mount]:
     return found
 
 
-def remarks(trial: Trial) -> list[str]:
+def trial_remarks(trial: Trial) -> list[str]:
     """Return a sentence for every robot whose sensors measure at other times than its type says.
 
     >>> from crowdbot.models import ORCA
     >>> from crowdbot.navigation import Straight
     >>> from crowdbot.trials import Goal
     >>> pepper = Robot(type="pepper", x=0, y=0, goal=Goal(5, 0), navigator=Straight())
-    >>> [sentence[-36:] for sentence in remarks(Trial(name="t", duration=1, crowd=ORCA(), robots=[pepper]))]
+    >>> [sentence[-36:] for sentence in trial_remarks(Trial(name="t", duration=1, crowd=ORCA(), robots=[pepper]))]
     ['step="0.01" all would be as they are']
     """
     found = []

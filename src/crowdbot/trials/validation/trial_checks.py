@@ -5,14 +5,13 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from crowdbot.core import FreeClock, InputError, TrialError, did_you_mean
+from crowdbot.core import FreeClock, InputError, did_you_mean
 from crowdbot.trials.camera import Camera
-from crowdbot.trials.crowd import Crowd, Crowds
+from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import shown
 from crowdbot.trials.notation import Points
 from crowdbot.trials.partial import Unread, origin, readable, rest, told
@@ -20,17 +19,15 @@ from crowdbot.trials.people import Spawner
 from crowdbot.trials.placement.population import place
 from crowdbot.trials.recorded_people import RecordedPeople
 from crowdbot.trials.robot import Goal, Mount, Robot
-from crowdbot.trials.stage import Obstacle, Stage
-from crowdbot.trials.sweep import sweep_problems
+from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
-from crowdbot.trials.xml.writer import element_of
 
 from .context import Checked, Names, Problems
 from .flow_checks import astray, expected, flows, names, taken
 from .rates import fitting, misfits
 from .zones import areas, crooked
 
-__all__ = ["check_trial", "problems_of"]
+__all__ = ["problems_of"]
 
 MOST_VALUES = 100_000_000
 """An episode is held in memory: recorded scenes times agents must not exceed this."""
@@ -39,24 +36,6 @@ NOBODY = Spawner(count=0, zone=Points.parse("0,0 1,0 0,1"))
 """Stands in for a spawner whose people cannot be placed, so that those of others are drawn as ever."""
 WALKING = 1.6
 """About how fast [m/s] people go from portal to portal."""
-
-
-def check_trial(trial: Trial, seed: int | None = None) -> None:
-    """Raise :class:`TrialError` with every problem of a trial.
-
-    Args:
-        trial: made in Python or read.
-        seed: places people with it; None is the trial's own.
-    """
-    found = problems_of(trial, Crowds.spread(trial.crowd), seed)
-    sentences = [f"trial {trial.name!r}: {_called(thing)} {sentence}" for thing, sentence in found]
-    if trial.sweeps and not sentences:
-        from crowdbot.trials.xml.reader import Reader
-
-        reader = Reader(trial.name, trial.folder or Path.cwd(), True, seed)
-        sentences = [sentence for _, sentence in sweep_problems(element_of(trial), trial.sweeps, reader.others)]
-    if sentences:
-        raise TrialError(*sentences)
 
 
 def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) -> list[tuple[Any, str]]:
@@ -285,10 +264,3 @@ def _apart(robot: Robot, other: Robot) -> Problems:
             f"starts {away:.2f} m from robot {other.name!r}, and their radii add up to"
             f" {robot.radius + other.radius:g} m",
         )
-
-
-def _called(thing: Any) -> str:
-    if isinstance(thing, Obstacle):
-        return "obstacle"
-    name = getattr(thing, "name", "")
-    return type(thing).__name__.lower() + (f" {name!r}" if name else "")

@@ -25,55 +25,15 @@ from crowdbot.core import (
     parse_number,
     required_fields,
 )
-from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.fields import Part, Plug, outline, shown
 from crowdbot.trials.partial import EVERYTHING, begun, is_torn, readable, torn
 from crowdbot.trials.randomized_model import Drawn, is_drawn
-from crowdbot.trials.sweep import sweep_problems
-from crowdbot.trials.trial import Trial
-from crowdbot.trials.validation.trial_checks import problems_of
 
-from .document import parse_trial_xml
-
-__all__ = ["Reader", "read_trial"]
+__all__ = ["ROOT", "Reader"]
 
 MOST_PROBLEMS = 100
 ROOT = "trial"
-
-
-def read_trial(text: str | bytes, *, place: str = "trial", folder: Path | None = None, trust: bool = False) -> Trial:
-    """Read a trial from XML and check it.
-
-    Args:
-        text: the XML.
-        place: name of the file for messages.
-        folder: of the trial; code that the trial names is looked up here (default: the working folder).
-        trust: whether code from outside the folder may be loaded.
-
-    Raises:
-        TrialError: with every problem found, one sentence each, in the order of the lines.
-
-    >>> read_trial('<trial name="t" duration="-1"><crowd type="orca" time-horizn="2"/></trial>')
-    Traceback (most recent call last):
-    crowdbot.core.errors.TrialError: trial:1: <trial> duration="-1" must be above 0 s and at most 86400 s
-    trial:1: <crowd> has no attribute 'time-horizn', did you mean 'time-horizon'?; it takes neighbor-distance, \
-max-neighbors, time-horizon, time-horizon-walls, max-speed, name
-    """
-    try:
-        data = text.encode() if isinstance(text, str) else text
-    except UnicodeEncodeError:
-        raise TrialError(f"{place}: this is not well-formed XML: it holds half a character") from None
-    root = parse_trial_xml(data, place, "utf-8" if isinstance(text, str) else None)
-    if root.tag != ROOT:
-        raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
-    reader = Reader(place, folder or Path.cwd(), trust)
-    trial = reader.checked(root)
-    for sweep, sentence in sweep_problems(root, trial.sweeps, reader.others):
-        reader.say(reader.lines[id(sweep)], "sweep", sentence)
-    reader.finish()
-    assert isinstance(trial, Trial)
-    return dataclasses.replace(trial, folder=folder)
 
 
 class Reader:
@@ -113,22 +73,6 @@ class Reader:
             sentences = [*sentences[:MOST_PROBLEMS], f"{self.place}: and {more} more problems"]
         if sentences:
             raise TrialError(*sentences)
-
-    def checked(self, root: Element) -> Any:
-        """Return the trial that an element means, torn when it has a problem, after looking for all of them."""
-        trial = self.element(Trial, root)
-        crowds = [one for one in self.made if isinstance(one, Crowd)]
-        for thing, sentence in problems_of(trial, crowds, self.seed):
-            self.say(self.lines.get(id(thing), root.line), self.words.get(id(thing), ROOT), sentence)
-        return trial
-
-    def others(self, root: Element) -> list[str]:
-        """Return what is wrong with a variant of the trial that was read, and not with that trial itself."""
-        reader = Reader(self.place, self.folder, self.trust, self.seed)
-        reader.checked(root)
-        return [
-            f"<{tag}> {sentence}" for line, tag, sentence in reader.found if (line, tag, sentence) not in self.found
-        ]
 
     def element(self, cls: type, element: Element) -> Any:
         """Return what the element means, torn when it has a problem or one in it has."""

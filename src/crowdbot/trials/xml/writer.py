@@ -13,10 +13,10 @@ from crowdbot.trials.fields import Part, outline
 from crowdbot.trials.notation import plain
 from crowdbot.trials.randomized_model import Drawn
 
-__all__ = ["element_from", "element_of", "xml"]
+__all__ = ["element_from", "element_of", "trial_xml"]
 
 
-def xml(trial: Any) -> str:
+def trial_xml(trial: Any) -> str:
     """Return the XML text of a trial.
 
     Raises:
@@ -24,7 +24,7 @@ def xml(trial: Any) -> str:
 
     >>> from crowdbot.models import ORCA
     >>> from crowdbot.trials import Trial
-    >>> print(xml(Trial(name="alone", duration=2.0, crowd=ORCA(time_horizon=3))), end="")
+    >>> print(trial_xml(Trial(name="alone", duration=2.0, crowd=ORCA(time_horizon=3))), end="")
     <?xml version="1.0" encoding="UTF-8"?>
     <trial name="alone" duration="2">
       <crowd type="orca" time-horizon="3"/>
