@@ -139,14 +139,14 @@ def test_cliff_sensors_see_the_floor_and_bumpers_what_touches():
 def test_wheels_measure_what_was_driven_and_lasers_see_bodies_in_the_physics_world():
     """Sensors of a robot in the physics world: odometry within 1 %, the laser meets a leg where it is."""
     world = facing(load("turtlebot2"), gap=2.0, dt=0.1)
-    wheels = world.chassis[0].robot.mount("odometry").sensor
+    wheels = world.robot_bodies[0].robot.mount("odometry").sensor
     last = wheels.measure(world.scene, world.pose(0))
     for _ in range(20):
         world.step({0: Twist(0.4, 0.0)})
         last = wheels.measure(world.scene, world.pose(0), last=last)
     assert last.estimate.position[0] == pytest.approx(world.pose(0).position[0], abs=0.01)
-    laser = world.chassis[0].robot.mount("laser").sensor
-    scan = laser.measure(world.seen().without(0), world.chassis[0].mounted("laser"))
+    laser = world.robot_bodies[0].robot.mount("laser").sensor
+    scan = laser.measure(world.seen().without(0), world.robot_bodies[0].mounted("laser"))
     met = scan.hit[0] == 1
     assert 2 <= met.sum() < 60
     away = world.scene.position[0, 1, 0] - world.scene.position[0, 0, 0]

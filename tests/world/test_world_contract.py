@@ -11,7 +11,7 @@ from crowdbot.models import ORCA
 
 DRIVES = builtin_classes(room, room.Drive)
 WORLDS = builtin_classes(room, room.World)
-STAGE = room.PhysicsStage(props=(room.Cube(0.0, 3.0, size=0.4, fixed=True),))
+STAGE = room.PhysicsStage(props=(room.CubeBody(0.0, 3.0, size=0.4, fixed=True),))
 
 
 @pytest.mark.parametrize("kind", DRIVES.values(), ids=list(DRIVES))
@@ -69,11 +69,10 @@ def test_a_step_as_a_generator_is_the_same_step(kind):
     one, other = build(kind), build(kind)
     for _ in range(3):
         scene = one.step({0: Twist(0.5, 0.2)})
-        asking = other.stepping({0: Twist(0.5, 0.2)})
+        asking = other.step_requests({0: Twist(0.5, 0.2)})
         request = next(asking)
         with pytest.raises(StopIteration) as done:
-            while True:
-                request = asking.send(request.model.step(request.scene, request.dt, request.rng))
+            asking.send(request.model.step(request.scene, request.dt, request.rng))
         assert done.value.value is other.scene
         assert scene.digest() == other.scene.digest()
 
@@ -83,7 +82,7 @@ def test_without_contact_there_are_no_forces(kind):
     world = build(kind)
     for _ in range(3):
         world.step({0: Twist(0.5, 0.0)})
-    assert (world.contacts, world.forces, world.collisions) == ((), (), ())
+    assert (world.contacts, world.forces, world.contact_events) == ((), (), ())
     assert world.wall_clearance(0).shape == (1,)
     assert world.wall_clearance(0)[0] > 0.0
 
@@ -95,7 +94,7 @@ def test_driving_into_a_wall_is_a_contact_with_it(kind):
         world.step({0: Twist(0.5, 0.0)})
         least = min(least, float(world.wall_clearance(0)[0]))
     assert least < 0.0
-    assert bool(world.forces) == (kind == "physics-world") == bool(world.collisions)
+    assert bool(world.forces) == (kind == "physics-world") == bool(world.contact_events)
 
 
 @each_world

@@ -34,7 +34,7 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
     if trial == old and seed is None:
         return
     _check(old, trial, simulation.world.clock.time)
-    world.turn_to(
+    world.reconfigure(
         _scene(simulation, trial),
         [source.source(trial.journeys, crowd_names(trial.crowd)) for source in trial.sources],
         seed,
@@ -43,11 +43,11 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
         latency={
             carrier.agent: robot.latency for carrier, robot in zip(simulation.carriers, trial.robots, strict=True)
         },
-        berth=trial.berth,
+        robot_margin=trial.berth,
         contact=None if trial.contact is None else trial.contact.bodies(),
         limits=None if trial.limits is None else trial.limits.kept(),
         exits=[way.out() for way in trial.exits],
-        symmetry=trial.symmetry,
+        heading_jitter=trial.symmetry,
         substeps=trial.substeps,
         **_router(old, trial),
     )

@@ -9,7 +9,7 @@ from crowdbot.world import World
 
 if TYPE_CHECKING:
     from crowdbot.trials import Figures, Trial
-    from crowdbot.world import Studio
+    from crowdbot.world import Renderer
 
 __all__ = ["Surroundings"]
 
@@ -68,13 +68,13 @@ class Surroundings:
         return self._space[1]
 
     @property
-    def studio(self) -> Studio:
+    def studio(self) -> Renderer:
         """Renderer of the world as it is now.
 
         Raises:
             MissingExtra: mujoco is not installed.
         """
-        return self.world.studio
+        return self.world.renderer
 
 
 def _walls(trial: Trial) -> Walls | None:

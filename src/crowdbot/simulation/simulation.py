@@ -28,7 +28,7 @@ from crowdbot.metrics.contacts import HOLD
 from crowdbot.navigation import Limits, Observation
 from crowdbot.sensors import Reading, Scan
 from crowdbot.trials import Mount, Robot, Trial, cast_of, place
-from crowdbot.world import Stepping, alone
+from crowdbot.world import StepGenerator, run_step
 
 from .mounted_sensor import Probe, probes_of
 from .sensor_view import Surroundings
@@ -36,7 +36,7 @@ from .termination import ended, ways_out
 from .world_builder import limits_of, start_scene, world_of
 
 if TYPE_CHECKING:
-    from crowdbot.world import BodyForce, Collision
+    from crowdbot.world import ContactEvent, ContactForce
 
 __all__ = ["Carrier", "Frame", "Simulation", "Touch", "start_scene"]
 
@@ -84,8 +84,8 @@ class Frame:
     readings: tuple[tuple[Robot, Mount, Reading], ...]
     due: bool
     touches: tuple[Touch, ...] = ()
-    forces: tuple[BodyForce, ...] = ()
-    collisions: tuple[Collision, ...] = ()
+    forces: tuple[ContactForce, ...] = ()
+    collisions: tuple[ContactEvent, ...] = ()
 
 
 @dataclass
@@ -160,12 +160,12 @@ class Simulation:
 
     def step(self) -> None:
         """Go one step on: parts 1 to 5 of the order."""
-        alone(self.stepping())
+        run_step(self.stepping())
 
-    def stepping(self) -> Stepping[None]:
+    def stepping(self) -> StepGenerator[None]:
         """Go one step on, and ask somebody else how the crowd walks: see :func:`crowdbot.simulation.run_batch`."""
         before, ids = self.world.scene, self.ids.copy()
-        yield from self.world.stepping({carrier.agent: carrier.command for carrier in self.carriers})
+        yield from self.world.step_requests({carrier.agent: carrier.command for carrier in self.carriers})
         self._let_leave()
         self.world.pose_people()
         self._judge(before, ids)
@@ -229,7 +229,7 @@ class Simulation:
         )
 
     @property
-    def forces(self) -> tuple[BodyForce, ...]:
+    def forces(self) -> tuple[ContactForce, ...]:
         """What bodies of the physics world did to each other in the latest step; none in the plane."""
         return self.world.forces
 
@@ -238,10 +238,10 @@ class Simulation:
         """Whether something has happened that is recorded even when no scene is due."""
         return bool(self.touches or self.forces)
 
-    def _collisions(self, last: bool) -> tuple[Collision, ...]:
+    def _collisions(self, last: bool) -> tuple[ContactEvent, ...]:
         """Return the collisions that have ended since they were asked for before, by their ends."""
         now = self.world.clock.time
-        over = [one for one in self.world.collisions if last or now - one.end > HOLD + INSTANT]
+        over = [one for one in self.world.contact_events if last or now - one.end > HOLD + INSTANT]
         over.sort(key=lambda one: (one.end, one.begin, one.first, one.second))
         new, self._told = over[self._told :], len(over)
         return tuple(new)

@@ -24,7 +24,7 @@ from crowdbot.trials import (
     expand_sweeps,
     own,
 )
-from crowdbot.world import Journeys, PlanarWorld, Router, Script, Source, Track
+from crowdbot.world import JourneyAssignment, PeopleSource, PlanarWorld, ReplayedPeople, ReplayedTrack, Router
 
 from .mounted_sensor import spatial
 
@@ -52,7 +52,7 @@ def world_of(trial: Trial, people: People, seed: int) -> tuple[PlanarWorld, Figu
     whole: dict[str, Any] = {
         "dt": trial.step,
         "seed": seed,
-        "berth": trial.berth,
+        "robot_margin": trial.berth,
         "router": router,
         "contact": None if trial.contact is None else trial.contact.bodies(),
         "limits": None if trial.limits is None else trial.limits.kept(),
@@ -61,7 +61,7 @@ def world_of(trial: Trial, people: People, seed: int) -> tuple[PlanarWorld, Figu
         "exits": [way.out() for way in trial.exits],
         "portals": [portal.gate() for portal in trial.portals],
         "script": _script(people),
-        "symmetry": trial.symmetry,
+        "heading_jitter": trial.symmetry,
         "substeps": trial.substeps,
         "ids": np.concatenate([np.arange(there), -1 - np.arange(spare)]),
     }
@@ -145,7 +145,7 @@ def limits_of(drive: Any) -> Limits:
     return Limits(**({"max_speed": 1.0, "max_turn_rate": 1.0} | known))
 
 
-def _spare(trial: Trial, first: int, sources: Sequence[Source], seed: int) -> int:
+def _spare(trial: Trial, first: int, sources: Sequence[PeopleSource], seed: int) -> int:
     """Return how many free places are needed: as many as people ever come in, up to the capacity."""
     end = trial.ticks * trial.step
     come = sum(source.come_by(end, seed, number) for number, source in enumerate(sources))
@@ -174,22 +174,22 @@ def _values(people: People, members: Iterable[int]) -> dict[int, dict[str, float
     return found
 
 
-def _script(people: People) -> Script | None:
+def _script(people: People) -> ReplayedPeople | None:
     """Return the recordings that people follow."""
     if not people.walks:
         return None
     first = len(people) - len(people.walks)
     owners = [people.owners[k] for k in people.owner[first:].tolist()]
     release = [one.near if isinstance(one, RecordedPeople) and one.mode == "reactive" else 0.0 for one in owners]
-    tracks = [Track(first + k, walk.time, walk.position) for k, walk in enumerate(people.walks)]
-    return Script(tracks, release)
+    tracks = [ReplayedTrack(first + k, walk.time, walk.position) for k, walk in enumerate(people.walks)]
+    return ReplayedPeople(tracks, release)
 
 
-def _journeys(trial: Trial, people: People, agents: int) -> Journeys | None:
+def _journeys(trial: Trial, people: People, agents: int) -> JourneyAssignment | None:
     which = _chosen(people, agents, "journey", tuple(journey.name for journey in trial.journeys), -1)
     if np.all(which < 0):
         return None
-    return Journeys(tuple(journey.journey() for journey in trial.journeys), which)
+    return JourneyAssignment(tuple(journey.journey() for journey in trial.journeys), which)
 
 
 def _chosen(people: People, agents: int, word: str, names: tuple[str, ...], otherwise: int) -> NDArray[np.int64]:
@@ -205,12 +205,12 @@ def _chosen(people: People, agents: int, word: str, names: tuple[str, ...], othe
 
 
 def _setting_off(
-    scene: Scene, first: int, router: Router | None, journeys: Journeys | None, given: NDArray[np.float64]
+    scene: Scene, first: int, router: Router | None, journeys: JourneyAssignment | None, given: NDArray[np.float64]
 ) -> Scene:
     """Return the scene in which the ``first`` people walk on their ways, around walls and to their first stops."""
     position, aim = scene.position[0, :first], scene.goal[0, :first].copy()
     if router is not None:
-        led = np.ones(first, dtype=np.bool_) if journeys is None else journeys.routed(scene)[0, :first]
+        led = np.ones(first, dtype=np.bool_) if journeys is None else journeys.uses_routing(scene)[0, :first]
         aim[led] = router.towards(position[led], aim[led])
     away = aim - position
     distance = np.hypot(away[:, 0], away[:, 1])

@@ -11,18 +11,18 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Clock, Pose, Scene, SpatialPose, Twist, Walls
 
-from .crowd.walk import Stepping, alone
+from .crowd.walk import StepGenerator, run_step
 from .robots.drive import Twists
 from .robots.mount import MountPlacement
 
 if TYPE_CHECKING:
     from crowdbot.humans import People
 
-    from .crowd.source import Source
-    from .physics.contact_events import BodyForce, Collision
-    from .physics.people_motion import Walkers
+    from .crowd.source import PeopleSource
+    from .physics.contact_events import ContactEvent, ContactForce
+    from .physics.people_motion import PeopleMotion
     from .physics.stage import PhysicsStage
-    from .rendering.renderer import Studio
+    from .rendering.renderer import Renderer
     from .robots.robot import Robot
 
 __all__ = ["Contact", "World"]
@@ -64,8 +64,8 @@ class World(ABC):
     ids: NDArray[np.int64]
     twists: dict[int, Twists]
     contacts: tuple[Contact, ...]
-    forces: tuple[BodyForce, ...] = ()
-    people: Walkers | None = None
+    forces: tuple[ContactForce, ...] = ()
+    people: PeopleMotion | None = None
 
     def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
         """Advance by one time step and return the new scene.
@@ -77,14 +77,14 @@ class World(ABC):
         Raises:
             InputError: a robot has no command, an agent with a command is not a robot, or a value is not finite.
         """
-        return alone(self.stepping(commands))
+        return run_step(self.step_requests(commands))
 
     @abstractmethod
-    def stepping(self, commands: Mapping[int, Twist | Twists]) -> Stepping[Scene]:
+    def step_requests(self, commands: Mapping[int, Twist | Twists]) -> StepGenerator[Scene]:
         """Advance by one time step as :meth:`step`; yield the steps of the crowd model instead of computing them."""
 
     @property
-    def collisions(self) -> tuple[Collision, ...]:
+    def contact_events(self) -> tuple[ContactEvent, ...]:
         """All contact events so far, ordered by first touch; empty in a world without forces."""
         return ()
 
@@ -120,7 +120,7 @@ class World(ABC):
 
     @property
     @abstractmethod
-    def studio(self) -> Studio:
+    def renderer(self) -> Renderer:
         """Renderer of the current scene.
 
         Raises:
@@ -161,5 +161,5 @@ class World(ABC):
         """Move the bodies of people to the current scene; to be called once after each step."""
 
     @abstractmethod
-    def turn_to(self, scene: Scene, sources: Sequence[Source], seed: int | None = None, **how: Any) -> None:
+    def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: int | None = None, **how: Any) -> None:
         """Change parameters of a running world; see :meth:`PlanarWorld.turn_to`."""

@@ -211,7 +211,7 @@ def _physics(people: int) -> Measurement:
     from crowdbot.sensors import Lidar2D
 
     world, robot = _bodies(people)
-    laser, chassis = Lidar2D(rays=1080), world.carrier(robot)
+    laser, chassis = Lidar2D(rays=1080), world.robot_body(robot)
     wheels = chassis.robot.mount("odometry").sensor
     told = [wheels.measure(world.scene, world.pose(robot))]
 
@@ -226,10 +226,10 @@ def _physics(people: int) -> Measurement:
 
 def _camera() -> Measurement:
     """Time images of 640 x 480 with depth."""
-    from crowdbot.world import Camera
+    from crowdbot.world import SceneCamera
 
     world, _ = _bodies(50)
-    camera = Camera((-2.0, -2.0, 3.0), (5.0, 5.0, 0.8), detail=2)
+    camera = SceneCamera((-2.0, -2.0, 3.0), (5.0, 5.0, 0.8), detail=2)
     return Measurement("images/s", 1, lambda: world.render(camera, depth=True), "a camera of 10 Hz", 10.0)
 
 

@@ -8,11 +8,11 @@ import numpy as np
 
 from crowdbot.core import Scene, Walls
 from crowdbot.humans import People
-from crowdbot.world.rendering.renderer import Studio
+from crowdbot.world.rendering.renderer import Renderer
 from crowdbot.world.robots.robot import Robot
 
-from .colliders import bodies
-from .people_motion import Walkers
+from .colliders import scene_bodies
+from .people_motion import PeopleMotion
 from .stage import PhysicsStage
 
 __all__ = ["KinematicBodies"]
@@ -47,21 +47,21 @@ class KinematicBodies:
     ) -> None:
         self.robots, self.stage, self.walls = dict(robots), stage, walls
         agents = np.array([a for a in range(scene.shape[1]) if a not in self.robots], dtype=np.int64)
-        self.people = Walkers(scene, agents, people, seed, riders)
-        self._studio: Studio | None = None
+        self.people = PeopleMotion(scene, agents, people, seed, riders)
+        self._renderer: Renderer | None = None
 
     def scene(self, scene: Scene, skins: int | None) -> Scene:
         """Return the scene with bodies and wall height, see :meth:`crowdbot.world.World.body_scene`."""
-        found = bodies(scene, self.people, self.robots, self.stage, skins=skins)
+        found = scene_bodies(scene, self.people, self.robots, self.stage, skins=skins)
         return scene.replace(bodies=found, walls=self._walls(scene), wall_height=self.stage.wall_height)
 
-    def studio(self, scene: Scene) -> Studio:
+    def renderer(self, scene: Scene) -> Renderer:
         """Return the renderer, set to a scene."""
         now = scene.replace(walls=self._walls(scene))
-        if self._studio is None:
-            self._studio = Studio(now, self.robots, self.stage, self.people)
-        self._studio.show(now)
-        return self._studio
+        if self._renderer is None:
+            self._renderer = Renderer(now, self.robots, self.stage, self.people)
+        self._renderer.show(now)
+        return self._renderer
 
     def _walls(self, scene: Scene) -> Walls:
         return scene.walls if self.walls is None else self.walls

@@ -9,7 +9,7 @@ import numpy as np
 
 from crowdbot.core import InputError, Pose, Twist, check_number
 
-from .drive import Drive, Floats, Twists, check_step, moved
+from .drive import Drive, Floats, Twists, check_step, integrate_twist
 
 __all__ = ["AckermannDrive", "SteeredTwists"]
 
@@ -82,7 +82,7 @@ class AckermannDrive(Drive):
         forward = np.clip(speed, twist.forward - push, twist.forward + push)
         turn = forward * np.tan(steering) / self.wheelbase
         after = SteeredTwists(forward, turn, np.zeros_like(forward), steering)
-        return moved(pose, after, dt), after
+        return integrate_twist(pose, after, dt), after
 
     def _fitting(self, twist: Twists) -> Floats:
         """Return the steering ``[E]`` [rad] that gives this turn rate at this speed; backwards, it mirrors."""

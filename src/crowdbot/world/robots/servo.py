@@ -10,7 +10,7 @@ import numpy as np
 
 from crowdbot.core import InputError, Pose, Twist, check_number
 
-from .drive import Drive, Twists, check_limits, check_step, moved
+from .drive import Drive, Twists, check_limits, check_step, integrate_twist
 
 __all__ = ["CommandDelay", "Pending", "VelocityServo"]
 
@@ -70,7 +70,7 @@ class VelocityServo(Drive):
         change = self.max_turn_acceleration * dt
         turn = np.where(np.abs(twisting) < NEAR, turning, twist.turn + np.clip(twisting * gain, -change, change))
         after = Twists(np.ascontiguousarray(velocity[:, 0]), turn, np.ascontiguousarray(velocity[:, 1]))
-        return moved(pose, after, dt), after
+        return integrate_twist(pose, after, dt), after
 
 
 class Pending(NamedTuple):
