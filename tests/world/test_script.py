@@ -76,3 +76,33 @@ def test_a_robot_frees_who_is_near_and_only_those_who_may():
 def test_wrong_scripts_are_told(tracks, release, words):
     with pytest.raises(InputError, match=words):
         ReplayedPeople(tracks, release)
+
+
+@pytest.mark.parametrize(("distance", "visible", "state"), [(1.99, True, 2.0), (2.01, True, 1.0), (1.99, False, 1.0)])
+def test_people_are_released_within_the_distance_of_a_visible_robot(distance, visible, state):
+    tracks = [ReplayedTrack(0, np.array([0.0, 9.0]), np.array([[0.0, 0.0], [9.0, 0.0]]))]
+    start = Scene.of([[0.0, 0.0], [0.0, distance]], external=[False, True], visible=[True, visible])
+    script = ReplayedPeople(tracks, 2.0)
+    now = script.begun(start)
+    assert now.memory["script"][0].tolist() == [state, 0.0]
+    assert script.held(now)[0].tolist() == [state == 1.0, False]
+    later = script.placed(now, 1.0)
+    if state == 2.0:
+        assert later.position[0, 0].tolist() == [0.0, 0.0]
+        assert later.goal[0, 0].tolist() == [2.5, 0.0]
+        assert later.max_speed[0, 0] == pytest.approx(1.3 * 1.5)
+        assert later.preferred_speed[0, 0] == pytest.approx(1.5)
+    else:
+        assert later.position[0, 0].tolist() == [1.0, 0.0]
+
+
+def test_released_people_leave_at_the_end_of_their_track():
+    tracks = [ReplayedTrack(0, np.array([0.0, 3.0]), np.array([[0.0, 0.0], [3.0, 0.0]]))]
+    start = Scene.of([[0.0, 0.0], [0.0, 1.0]], external=[False, True])
+    script = ReplayedPeople(tracks, 2.0)
+    free = script.begun(start)
+    near = free.replace(position=np.array([[[2.75, 0.0], [0.0, 1.0]]]))
+    assert script.placed(near, 1.4).active[0].tolist() == [True, True]
+    gone = script.placed(near, 1.5)
+    assert gone.active[0].tolist() == [False, True]
+    assert gone.memory["script"][0, 0] == 3.0

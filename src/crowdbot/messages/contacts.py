@@ -39,7 +39,7 @@ class Pushed(NamedTuple):
 
 
 class Collided(NamedTuple):
-    """From the first touch of two to their parting: see ``crowdbot.world.ContactEvent``; times in [s]."""
+    """From the first touch of two to their parting: see ``crowdbot.world.BodyContactEvent``; times in [s]."""
 
     first: str
     second: str

@@ -36,7 +36,7 @@ from .termination import ended, ways_out
 from .world_builder import limits_of, start_scene, world_of
 
 if TYPE_CHECKING:
-    from crowdbot.world import ContactEvent, ContactForce
+    from crowdbot.world import BodyContactEvent, ContactForce
 
 __all__ = ["Carrier", "Frame", "Simulation", "Touch", "start_scene"]
 
@@ -85,7 +85,7 @@ class Frame:
     due: bool
     touches: tuple[Touch, ...] = ()
     forces: tuple[ContactForce, ...] = ()
-    collisions: tuple[ContactEvent, ...] = ()
+    collisions: tuple[BodyContactEvent, ...] = ()
 
 
 @dataclass
@@ -238,7 +238,7 @@ class Simulation:
         """Whether something has happened that is recorded even when no scene is due."""
         return bool(self.touches or self.forces)
 
-    def _collisions(self, last: bool) -> tuple[ContactEvent, ...]:
+    def _collisions(self, last: bool) -> tuple[BodyContactEvent, ...]:
         """Return the collisions that have ended since they were asked for before, by their ends."""
         now = self.world.clock.time
         over = [one for one in self.world.contact_events if last or now - one.end > HOLD + INSTANT]

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
         two_body_force,
     )
     from .physics.colliders import scene_bodies
-    from .physics.contact_events import ContactEvent, ContactForce
+    from .physics.contact_events import BodyContactEvent, ContactForce
     from .physics.contacts import ContactBody
     from .physics.people_motion import LimbCapsules, PeopleMotion
     from .physics.robot_body import RobotBody
@@ -49,12 +49,12 @@ if TYPE_CHECKING:
 _LAZY = {
     "AckermannDrive": "robots.ackermann",
     "BODY_REGION_LIMITS": "physics.body_region_limits",
+    "BodyContactEvent": "physics.contact_events",
     "BodyRegionLimits": "physics.body_region_limits",
     "CameraImages": "rendering.camera",
     "CommandDelay": "robots.servo",
     "Contact": "world",
     "ContactBody": "physics.contacts",
-    "ContactEvent": "physics.contact_events",
     "ContactForce": "physics.contact_events",
     "ContactModel": "crowd.contact",
     "CrowdLimits": "crowd.limits",
@@ -115,12 +115,12 @@ _LAZY = {
 __all__ = [
     "BODY_REGION_LIMITS",
     "AckermannDrive",
+    "BodyContactEvent",
     "BodyRegionLimits",
     "CameraImages",
     "CommandDelay",
     "Contact",
     "ContactBody",
-    "ContactEvent",
     "ContactForce",
     "ContactModel",
     "CrowdLimits",

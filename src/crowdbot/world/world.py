@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from crowdbot.humans import People
 
     from .crowd.source import PeopleSource
-    from .physics.contact_events import ContactEvent, ContactForce
+    from .physics.contact_events import BodyContactEvent, ContactForce
     from .physics.people_motion import PeopleMotion
     from .physics.stage import PhysicsStage
     from .rendering.renderer import Renderer
@@ -84,7 +84,7 @@ class World(ABC):
         """Advance by one time step as :meth:`step`; yield the steps of the crowd model instead of computing them."""
 
     @property
-    def contact_events(self) -> tuple[ContactEvent, ...]:
+    def contact_events(self) -> tuple[BodyContactEvent, ...]:
         """All contact events so far, ordered by first touch; empty in a world without forces."""
         return ()
 

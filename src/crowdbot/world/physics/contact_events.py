@@ -18,7 +18,7 @@ from crowdbot.metrics.contacts import HOLD
 from .body_region_limits import BODY_REGION_LIMITS, region_of, two_body_force
 from .contacts import ContactBody, EngineContact
 
-__all__ = ["ContactEvent", "ContactForce", "ContactTracker"]
+__all__ = ["BodyContactEvent", "ContactForce", "ContactTracker"]
 
 Floats = NDArray[np.float64]
 CLAMPED = 0.5
@@ -55,7 +55,7 @@ class ContactForce(NamedTuple):
 
 
 @dataclass(frozen=True)
-class ContactEvent:
+class BodyContactEvent:
     """From the first touch of two until they have been apart for half a second.
 
     Fields:
@@ -156,11 +156,11 @@ class ContactTracker:
         self._step, self._mass_of, self._limb_mass_of, self._heading_of = step, mass_of, limb_mass_of, heading_of
         self._window = max(1, round(WINDOW / step))
         self._running: dict[tuple[ContactBody, ContactBody], _Running] = {}
-        self._over: list[ContactEvent] = []
+        self._over: list[BodyContactEvent] = []
         self._sums: dict[tuple[ContactBody, ContactBody, str, str], tuple[Floats, float, Floats]] = {}
 
     @property
-    def contact_events(self) -> tuple[ContactEvent, ...]:
+    def contact_events(self) -> tuple[BodyContactEvent, ...]:
         """All so far, by first touch; those that are not over end with their last touch."""
         now = [_closed(pair, running) for pair, running in self._running.items()]
         return tuple(sorted([*self._over, *now], key=lambda one: (one.begin, one.first, one.second)))
@@ -283,9 +283,9 @@ def _closing(touch: EngineContact) -> float:
     return max(0.0, float((touch.first_velocity - touch.second_velocity) @ touch.normal))
 
 
-def _closed(pair: tuple[ContactBody, ContactBody], running: _Running) -> ContactEvent:
+def _closed(pair: tuple[ContactBody, ContactBody], running: _Running) -> BodyContactEvent:
     force, limb, region = running.hardest
-    return ContactEvent(
+    return BodyContactEvent(
         *pair,
         begin=running.begin,
         end=running.end,

@@ -23,15 +23,16 @@ from crowdbot.world.robots.robot import spatial as spatial_pose
 from crowdbot.world.world import Contact
 
 from .colliders import scene_bodies
-from .contact_events import ContactEvent, ContactForce, ContactTracker
+from .contact_events import BodyContactEvent, ContactForce, ContactTracker
 from .contacts import ContactBody, ContactReader
 from .engine import engine
 from .mjcf_model import build_mjcf_model
 from .people_bodies import PeopleBodies
 from .people_motion import LimbCapsules, PeopleMotion
 from .robot_body import RobotBody
-from .scenery import joined
+from .scenery import joined, outline_props
 from .stage import PhysicsStage
+from .world_checks import check_arguments
 
 __all__ = ["PhysicsWorld"]
 
@@ -109,7 +110,7 @@ class PhysicsWorld(PlanarWorld):
         **planar: Any,
     ) -> None:
         stage = stage or PhysicsStage()
-        _checked(scene, robots, dt, physics_dt, slots)
+        check_arguments(scene, robots, dt, physics_dt, slots)
         self._steps = round(dt / physics_dt)
         self._outlined = joined(scene.walls, stage.outlines())
         super().__init__(scene, model, {agent: robot.drive for agent, robot in robots.items()}, dt, seed, **planar)
@@ -124,7 +125,7 @@ class PhysicsWorld(PlanarWorld):
         self._compose(robots, min(len(persons), 24) if slots is None else slots, motors)
 
     @property
-    def contact_events(self) -> tuple[ContactEvent, ...]:
+    def contact_events(self) -> tuple[BodyContactEvent, ...]:
         """Every collision so far, by first touch."""
         return self._contact_tracker.collisions
 
@@ -247,17 +248,7 @@ class PhysicsWorld(PlanarWorld):
     def _outlines(self) -> Walls:
         if not self._movable:
             return self._outlined
-        rings = []
-        for number, prop in enumerate(self.stage.props):
-            ring = prop.outline()
-            if ring is None:
-                matrix, half = self.prop(number), 0.5 * float(getattr(prop, "size", 1.0))
-                corners = half * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-                turn = np.arctan2(matrix[1, 0], matrix[0, 0])
-                cos, sin = np.cos(turn), np.sin(turn)
-                ring = corners @ np.array([[cos, sin], [-sin, cos]]) + matrix[:2, 3]
-            rings.append(ring)
-        return joined(self.scene.walls, tuple(rings))
+        return outline_props(self.scene.walls, self.stage, {number: self.prop(number) for number in self._movable})
 
     def _fixed(self, party: ContactBody) -> bool:
         return party.kind == "wall" or (party.kind == "prop" and not self.stage.props[party.number].movable)
@@ -423,19 +414,3 @@ class PhysicsWorld(PlanarWorld):
 
 def _lifted(place: Floats) -> Floats:
     return np.column_stack([place, np.zeros(len(place))])
-
-
-def _checked(scene: Scene, robots: Mapping[int, Robot], dt: float, physics_dt: float, slots: int | None) -> None:
-    if scene.shape[0] != 1:
-        raise InputError(f"a physics world has one environment, the scene has {scene.shape[0]}; take PlanarWorld")
-    if not 1e-4 <= physics_dt <= 0.02:
-        raise InputError(f"physics_dt = {physics_dt} s must be from 0.0001 to 0.02 s; 0.005 s is usual")
-    if not math.isfinite(dt) or dt < physics_dt or abs(dt / physics_dt - round(dt / physics_dt)) > 1e-6:
-        raise InputError(f"the time step {dt} s must be a whole number of steps of the engine, {physics_dt} s")
-    if slots is not None and (isinstance(slots, bool) or not isinstance(slots, int) or not 0 <= slots <= 1000):
-        raise InputError(f"slots = {slots!r} must be a whole number from 0 to 1000")
-    for agent, robot in robots.items():
-        if not isinstance(robot, Robot):
-            raise InputError(f"robots[{agent}] is a {type(robot).__name__}; give a Robot, as Robot.load('turtlebot2')")
-        if 0 <= agent < scene.shape[1] and not scene.active[0, agent]:
-            raise InputError(f"robot {robot.name} of agent {agent} is absent (active=False); robots are always there")
