@@ -80,7 +80,7 @@ def rays(folder: Path) -> None:
     """Draw what a laser of a robot meets among limbs, from above, and where one LiDAR meets the world, in space."""
     world = crowd(Robot.load("qolo"), 28)
     robot = max(world.robot_bodies)
-    robot_bodies, seen = world.robot_body(robot), world.seen()
+    robot_bodies, seen = world.robot_body(robot), world.body_scene()
     figure = Figure(figsize=(12, 5.2), layout="constrained")
     left, right = figure.subplots(1, 2)
     scan = robot_bodies.robot.mount("lidar_front").sensor.measure(

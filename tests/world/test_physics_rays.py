@@ -46,7 +46,7 @@ def embodied(world):
     """Return the scene with only those people whose bodies the engine knows now, where they are in it."""
     agents = world._people_bodies.agent
     known = np.isin(np.arange(world.scene.shape[1]), agents[agents >= 0]) | world.scene.external[0]
-    return world.seen().replace(active=world.scene.active & known[None])
+    return world.body_scene().replace(active=world.scene.active & known[None])
 
 
 @pytest.mark.parametrize("height", [0.15, 0.45, 1.1])
@@ -127,7 +127,7 @@ def test_trees_and_robots_of_all_kinds_have_bodies():
     stage = PhysicsStage(props=(TreeBody(3.0, 0.0, height=4.0, crown=1.0),))
     for name in ("pepper", "qolo", "wheelchair", "turtlebot2", "differential"):
         world = alone(Robot.load(name), stage=stage)
-        seen = world.seen()
+        seen = world.body_scene()
         pose = SpatialPose.of((-3.0, 0.0, 0.15 if name != "turtlebot2" else 0.06))
         hits = cast(seen, pose, beams(fan(np.linspace(-0.5, 0.5, 101))), FAR)
         assert 0 in hits.hit

@@ -146,7 +146,7 @@ def test_wheels_measure_what_was_driven_and_lasers_see_bodies_in_the_physics_wor
         last = wheels.measure(world.scene, world.pose(0), last=last)
     assert last.estimate.position[0] == pytest.approx(world.pose(0).position[0], abs=0.01)
     laser = world.robot_bodies[0].robot.mount("laser").sensor
-    scan = laser.measure(world.seen().without(0), world.robot_bodies[0].mounted("laser"))
+    scan = laser.measure(world.body_scene().without(0), world.robot_bodies[0].mounted("laser"))
     met = scan.hit[0] == 1
     assert 2 <= met.sum() < 60
     away = world.scene.position[0, 1, 0] - world.scene.position[0, 0, 0]

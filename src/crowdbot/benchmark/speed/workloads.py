@@ -219,7 +219,7 @@ def _physics(people: int) -> Measurement:
         for _ in range(20):
             world.step({robot: Twist(0.5, 0.3)})
             told[0] = wheels.measure(world.scene, world.pose(robot), last=told[0])
-            laser.measure(world.seen().without(robot), chassis.mounted("laser"))
+            laser.measure(world.body_scene().without(robot), chassis.mounted("laser"))
 
     return Measurement("simulated s/s", 20 * DT, work, "real time", 1.0)
 

@@ -27,6 +27,7 @@ from .contact_events import BodyContactEvent, ContactForce, ContactTracker
 from .contacts import ContactBody, ContactReader
 from .engine import engine
 from .mjcf_model import build_mjcf_model
+from .nearby_people import people_near
 from .people_bodies import PeopleBodies
 from .people_motion import LimbCapsules, PeopleMotion
 from .robot_body import RobotBody
@@ -192,10 +193,6 @@ class PhysicsWorld(PlanarWorld):
             self._plane = (self.scene, self.scene.replace(walls=self._outlines()))
         return self._plane[1]
 
-    def body_scene(self, skins: int | None = None) -> Scene:
-        """Return the scene with bodies; see :meth:`seen`."""
-        return self.seen(skins)
-
     def embody(
         self,
         robots: Mapping[int, Robot],
@@ -225,14 +222,14 @@ class PhysicsWorld(PlanarWorld):
         moved = {number: self.prop(number) for number in self._movable}
         return scene_bodies(self.scene, self.people, robots, self.stage, frames=frames, props=moved, skins=skins)
 
-    def seen(self, skins: int | None = None) -> Scene:
+    def body_scene(self, skins: int | None = None) -> Scene:
         """Return the scene with the bodies and the height of the walls, for range sensors.
 
         >>> start = Scene.of([[0.0, 0.0], [2.0, 0.0]], heading=[0.0, 0.0], external=[True, False])
         >>> from crowdbot.models import ORCA
         >>> from crowdbot.sensors import Lidar2D
         >>> world = PhysicsWorld(start, ORCA(), {0: Robot.load("turtlebot2")}, dt=0.1)
-        >>> scan = Lidar2D(rays=1).measure(world.seen().without(0), world.pose(0).lifted(1.2))
+        >>> scan = Lidar2D(rays=1).measure(world.body_scene().without(0), world.pose(0).lifted(1.2))
         >>> scan.hit.tolist(), bool(1.7 < scan.ranges[0, 0] < 2.0)
         ([[1]], True)
         """
@@ -333,7 +330,7 @@ class PhysicsWorld(PlanarWorld):
             there = self.people.agents
             limbs = np.zeros((2, before.shape[1], *ends.shape[1:]))
             for k, (scene, points) in enumerate(((before, self.people.ends), (after, ends))):
-                limbs[k, there] = points - np.tile(_lifted(scene.position[0, there]), 2)[:, None]
+                limbs[k, there] = points - np.tile(np.pad(scene.position[0, there], ((0, 0), (0, 1))), 2)[:, None]
             self._people_bodies.begin(before.position[0], way, limbs[0], limbs[1], self.dt)
         return gait, ends
 
@@ -341,18 +338,7 @@ class PhysicsWorld(PlanarWorld):
         """Give bodies to those who may touch something in this step, the nearest first."""
         persons = self.people.afoot
         persons = persons[scene.active[0, persons]]
-        nearest = np.full(len(persons), np.inf)
-        mass = np.ones(len(persons))
-        ahead = np.ones(len(persons), dtype=np.bool_)
-        looks = np.stack([np.cos(scene.heading[0, persons]), np.sin(scene.heading[0, persons])], axis=-1)
-        for x, y, radius, weight in self._movers():
-            away = np.array([x, y]) - scene.position[0, persons]
-            gap = np.sqrt(np.sum(away * away, axis=1)) - radius
-            closer = gap < nearest
-            nearest[closer], mass[closer] = gap[closer], weight
-            ahead[closer] = np.sum(away * looks, axis=1)[closer] >= 0.0
-        near = np.flatnonzero(nearest < NEAR + FAST * self.dt)
-        near = near[np.lexsort((persons[near], nearest[near]))]
+        near, mass, ahead = people_near(scene, persons, self._movers(), NEAR + FAST * self.dt)
         rows = self.people.row[persons[near]]
         self.skipped_people = self._people_bodies.take(
             persons[near], self.people.people.mass[rows], self.people.radius[rows], mass[near], ahead[near]
@@ -410,7 +396,3 @@ class PhysicsWorld(PlanarWorld):
         if party.kind == "person":
             return float(self.people.people.mass[self.people.row[party.number]])
         return self.stage.props[party.number].weight if party.kind == "prop" else math.inf
-
-
-def _lifted(place: Floats) -> Floats:
-    return np.column_stack([place, np.zeros(len(place))])
