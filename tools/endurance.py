@@ -15,7 +15,7 @@ import numpy as np
 
 from crowdbot.core import Scene, Twist, stream
 from crowdbot.models import ORCA
-from crowdbot.world import BodyContact, Cube, PhysicsStage, PhysicsWorld, Robot, Table
+from crowdbot.world import ContactModel, CubeBody, PhysicsStage, PhysicsWorld, Robot, TableBody
 
 HALF, DT = 12.0, 0.1
 
@@ -36,8 +36,10 @@ def made(people: int) -> tuple[PhysicsWorld, int]:
         max_speed=1.8,
         walls=[room],
     )
-    stage = PhysicsStage(props=(Cube(3.0, 2.0, mass=15.0), Table(-6.0, 5.0), Table(6.0, -6.0, heading=1.0)))
-    return PhysicsWorld(scene, ORCA(), {people: robot}, DT, stage=stage, contact=BodyContact(), symmetry=1e-3), people
+    stage = PhysicsStage(props=(CubeBody(3.0, 2.0, mass=15.0), TableBody(-6.0, 5.0), TableBody(6.0, -6.0, heading=1.0)))
+    return PhysicsWorld(
+        scene, ORCA(), {people: robot}, DT, stage=stage, contact=ContactModel(), heading_jitter=1e-3
+    ), people
 
 
 def sent_on(scene: Scene, draw: np.random.Generator) -> Scene:
@@ -74,11 +76,16 @@ def run(minutes: float, people: int) -> None:
         if (k + 1) % max(1, steps // 4) == 0:
             used.append(round(memory(), 1))
     took = time.perf_counter() - begin
-    events = [event for event in world.collisions if event.second.kind == "person"]
+    events = [event for event in world.contact_events if event.second.kind == "person"]
     print(f"{minutes:g} simulated minutes, {people} people: {minutes * 60.0 / took:.1f} times real time")
     print(f"memory at quarters of the run [MB]: {used}")
-    print(f"farthest from the middle: {farthest:.2f} m of {HALF} m; robot tilt {world.chassis[robot].tilt:.4f} rad")
-    print(f"{len(world.collisions)} collisions, {len(events)} with people; {world.left_out} without a body at the end")
+    print(
+        f"farthest from the middle: {farthest:.2f} m of {HALF} m; robot tilt {world.robot_bodies[robot].tilt:.4f} rad"
+    )
+    print(
+        f"{len(world.contact_events)} contact events, {len(events)} with people;"
+        f" {world.skipped_people} people without a body at the end"
+    )
     for kind in ("robot", "prop"):
         some = [event for event in events if event.first.kind == kind]
         for name in ("impact_speed", "peak_force", "steady_force", "simulated_peak", "severity") if some else ():

@@ -12,7 +12,7 @@ from matplotlib.image import imsave
 
 from crowdbot.core import Scene, Twist, stream
 from crowdbot.models import ORCA
-from crowdbot.world import Camera, Cube, PhysicsStage, PhysicsWorld, Robot, Table, Tree, builtin_robots
+from crowdbot.world import CubeBody, PhysicsStage, PhysicsWorld, Robot, SceneCamera, TableBody, TreeBody, builtin_robots
 
 
 def crowd(robot: Robot, people: int) -> PhysicsWorld:
@@ -27,7 +27,12 @@ def crowd(robot: Robot, people: int) -> PhysicsWorld:
         radius=np.append(np.full(people, 0.25), robot.radius), external=np.append(np.zeros(people, dtype=bool), True),
         active=np.append(np.hypot(*place.T) > robot.radius + 0.5, True), walls=[[(-7.0, 7.0), (7.0, 7.0)]],
     )  # fmt: skip
-    props = (Table(4.0, 5.8), Tree(-5.5, 5.0, height=4.0, crown=1.1), Cube(2.0, -3.5), Cube(2.3, -4.4, size=0.3))
+    props = (
+        TableBody(4.0, 5.8),
+        TreeBody(-5.5, 5.0, height=4.0, crown=1.1),
+        CubeBody(2.0, -3.5),
+        CubeBody(2.3, -4.4, size=0.3),
+    )
     world = PhysicsWorld(scene, ORCA(), {people: robot}, 0.1, stage=PhysicsStage(props=props))
     for _ in range(20):
         world.step({people: Twist(0.3, 0.1)})
@@ -43,7 +48,7 @@ def robots(folder: Path) -> None:
         scene = Scene.of(place, goal=place, heading=[0.0, 0.0], external=[True, False], radius=[robot.radius, 0.25])
         world = PhysicsWorld(scene, ORCA(), {0: robot}, 0.1)
         world.step({0: Twist()})
-        camera = Camera((2.6, -1.6, 1.5), (0.0, 0.35, 0.75), 560, 480, detail=0, shadows=True, view=0.85)
+        camera = SceneCamera((2.6, -1.6, 1.5), (0.0, 0.35, 0.75), 560, 480, detail=0, shadows=True, view=0.85)
         axes.imshow(world.render(camera).rgb)
         axes.set_title(name)
         axes.axis("off")
@@ -53,10 +58,12 @@ def robots(folder: Path) -> None:
 def cameras(folder: Path) -> None:
     """Draw a populated stage: from outside, and colours, depth and segmentation from the robot."""
     world = crowd(Robot.load("pepper"), 28)
-    outside = Camera((-6.4, -4.0, 2.9), (-0.9, 0.7, 0.7), 1000, 560, detail=0, shadows=True, view=0.66)
+    outside = SceneCamera((-6.4, -4.0, 2.9), (-0.9, 0.7, 0.7), 1000, 560, detail=0, shadows=True, view=0.66)
     imsave(folder / "stage.png", world.render(outside).rgb)
-    robot = max(world.chassis)
-    seen = world.render(Camera((0.1, 0.0, 1.15), (2.0, 0.0, 1.0), robot=robot, detail=0), depth=True, segmentation=True)
+    robot = max(world.robot_bodies)
+    seen = world.render(
+        SceneCamera((0.1, 0.0, 1.15), (2.0, 0.0, 1.0), robot=robot, detail=0), depth=True, segmentation=True
+    )
     figure = Figure(figsize=(13, 3.6), layout="constrained")
     left, middle, right = figure.subplots(1, 3)
     left.imshow(seen.rgb)
@@ -72,15 +79,15 @@ def cameras(folder: Path) -> None:
 def rays(folder: Path) -> None:
     """Draw what a laser of a robot meets among limbs, from above, and where one LiDAR meets the world, in space."""
     world = crowd(Robot.load("qolo"), 28)
-    robot = max(world.chassis)
-    chassis, seen = world.carrier(robot), world.seen()
+    robot = max(world.robot_bodies)
+    robot_bodies, seen = world.robot_body(robot), world.body_scene()
     figure = Figure(figsize=(12, 5.2), layout="constrained")
     left, right = figure.subplots(1, 2)
-    scan = chassis.robot.mount("lidar_front").sensor.read(
-        seen.without(robot), chassis.mounted("lidar_front"), stream(0, "scan")
+    scan = robot_bodies.robot.mount("lidar_front").sensor.read(
+        seen.without(robot), robot_bodies.mounted("lidar_front"), stream(0, "scan")
     )
     ends, hit = scan.points()[0], scan.hit[0]
-    start = chassis.mounted("lidar_front").position[0]
+    start = robot_bodies.mounted("lidar_front").position[0]
     for end in ends[np.isfinite(ends[:, 0]) & (np.hypot(*(ends - start).T[:2]) < 9.0)]:
         left.plot([start[0], end[0]], [start[1], end[1]], color="0.85", linewidth=0.6, zorder=1)
     limbs = world.limbs()
@@ -96,7 +103,9 @@ def rays(folder: Path) -> None:
     left.set(xlim=(-6, 6), ylim=(-5, 7.5), aspect="equal", xlabel="x [m]", ylabel="y [m]")
     left.set_title("lidar_front of Qolo, 160 degrees")
     left.legend(loc="lower left")
-    cloud = chassis.robot.mount("velodyne_front").sensor.read(seen.without(robot), chassis.mounted("velodyne_front"))
+    cloud = robot_bodies.robot.mount("velodyne_front").sensor.read(
+        seen.without(robot), robot_bodies.mounted("velodyne_front")
+    )
     points, who = cloud.points(in_world=True)[0].reshape(-1, 3), cloud.hit[0].ravel()
     near = np.isfinite(points[:, 0]) & (np.abs(points[:, 0]) < 8.0) & (np.abs(points[:, 1]) < 8.0)
     view = np.array([0.77, 0.64]) @ points[near, :2].T

@@ -11,7 +11,7 @@ from goal_places import crowd, street, windows
 from scipy.optimize import minimize
 
 from crowdbot.core import InputError
-from crowdbot.data import Trajectories, bridged, load, observed_velocity, steady_velocity
+from crowdbot.data import Trajectories, fill_gaps, load, observed_velocity, steady_velocity
 from crowdbot.models.goals import CurrentDirection, LearnedDestinations
 from crowdbot.models.goals.exits import clusters, track_ends
 from crowdbot.models.goals.learned_velocity import LearnedVelocity, mean_velocity
@@ -131,7 +131,7 @@ def test_the_learned_velocity_minimises_the_summed_distance():
     past, future = street(seed=5, noise=0.1).windows(5, 4)
     pace = LearnedVelocity.fit([(past, future)])
     steady, after, seen = steady_velocity(past), mean_velocity(past, future), future.scored
-    off = np.diff(bridged(past).position, axis=1) / past.dt - steady[:, None]
+    off = np.diff(fill_gaps(past).position, axis=1) / past.dt - steady[:, None]
 
     def total(weight):
         miss = after - steady - np.sum(off * np.asarray(weight)[:, None, None], axis=1)

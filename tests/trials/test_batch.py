@@ -15,7 +15,7 @@ from crowdbot.models.mixture import Mixture
 from crowdbot.recording import run
 from crowdbot.simulation import run_batch
 from crowdbot.trials import Trial, expand_sweeps, load_trial, parse_trial
-from crowdbot.world import Walk, alone, together
+from crowdbot.world import CrowdStepRequest, compute_together, run_step
 
 SEEDS = range(8)
 
@@ -55,17 +55,17 @@ def test_who_ends_early_leaves_the_others_alone() -> None:
 class Asked(ORCA):
     """A model that counts environments."""
 
-    seen = []  # noqa: RUF012
+    seen = []
 
     def step(self, scene, dt, rng=None):  # type: ignore[no-untyped-def]
         self.seen.append(scene.shape[0])
         return super().step(scene, dt, rng)
 
 
-def walks(count: int, models: list[CrowdModel], agents: list[int]) -> list[Walk]:
+def walks(count: int, models: list[CrowdModel], agents: list[int]) -> list[CrowdStepRequest]:
     rng = np.random.default_rng(0)
     return [
-        Walk(
+        CrowdStepRequest(
             models[k],
             Scene.of(rng.uniform(-3, 3, (agents[k], 2)), goal=rng.uniform(-3, 3, (agents[k], 2)), radius=0.2),
             0.1,
@@ -77,11 +77,11 @@ def walks(count: int, models: list[CrowdModel], agents: list[int]) -> list[Walk]
 
 def test_built_in_models_are_asked_once_and_others_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
     Asked.seen.clear()
-    together(walks(3, [Asked()] * 3, [4, 4, 4]))
+    compute_together(walks(3, [Asked()] * 3, [4, 4, 4]))
     assert Asked.seen == [1, 1, 1]
     Asked.seen.clear()
     monkeypatch.setattr(Asked, "__module__", "crowdbot.models.velocity_obstacles.orca")
-    together(walks(3, [Asked()] * 3, [4, 4, 4]))
+    compute_together(walks(3, [Asked()] * 3, [4, 4, 4]))
     assert Asked.seen == [3]
 
 
@@ -92,7 +92,7 @@ def test_parameters_of_each_and_mixtures_stay_with_their_people(agents: list[int
     mixed = [Mixture((ORCA(), SocialForce()), rng.integers(2, size=count)) for count in agents]
     for models in (own, mixed):
         questions = walks(3, models, agents)
-        found = together(questions)
+        found = compute_together(questions)
         for walk, scene in zip(questions, found, strict=True):
             assert scene.digest() == walk.answered().digest()
             assert scene.shape == walk.scene.shape
@@ -106,7 +106,7 @@ def test_a_question_is_answered_alone() -> None:
         second = yield walk
         return first.digest() == second.digest()
 
-    assert alone(step()) is True
+    assert run_step(step()) is True
 
 
 def test_wrong_batches_are_refused() -> None:

@@ -254,7 +254,7 @@ def test_people_of_a_source_walk_by_the_model_of_their_crowd() -> None:
 
 def test_the_world_is_as_the_trial_says() -> None:
     made = Simulation(WHOLE, 1).world
-    assert made.contact == world.BodyContact("force", 50.0, 4)
+    assert made.contact == world.ContactModel("force", 50.0, 4)
     assert made.limits == world.CrowdLimits(2.5, 5.0)
     assert made.router is not None
     assert (made.router.radius, made.router.unreachable) == (0.25, "nearest")

@@ -42,7 +42,7 @@ def test_two_orders_become_a_latin_square(tmp_path: Path) -> None:
     )  # fmt: skip
     assert [orders(done.experiment, block, who) for who in (1, 2, 3)] == [[[0, 1]], [[1, 0]], [[0, 1]]]
     assert [trial.duration for _, trial in done.trials] == [5.0, 6.0]
-    said = "\n".join(done.left_out)
+    said = "\n".join(done.skipped_people)
     for words in ("<Recording>", "<log>", "userHeight", "screens", "seeds"):
         assert words in said
 
@@ -52,7 +52,7 @@ def test_orders_that_differ_otherwise_are_told(tmp_path: Path) -> None:
     config = study(tmp_path, "O{USER}", O1=one, O2=two, O3=three)
     done = import_experiment(config)
     assert done.experiment.blocks[0].order == "fixed"
-    assert any("the one of participant 1 is taken; those of 2 differ" in sentence for sentence in done.left_out)
+    assert any("the one of participant 1 is taken; those of 2 differ" in sentence for sentence in done.skipped_people)
     assert [entry.name for entry in import_experiment(config, participant=2).experiment.blocks[0].trials] == [*"acb"]
 
 

@@ -11,7 +11,7 @@ from crowdbot.humans import LIMBS
 from crowdbot.rendering import Take, shots
 from crowdbot.simulation import Running, Simulation
 from crowdbot.trials import parse_trial, trial_xml
-from crowdbot.world import Walkers
+from crowdbot.world import PeopleMotion
 
 ROOM = """<trial name="ride" duration="4" seed="3" step="0.05">
   <stage walkable="-6,-4 6,-4 6,4 -6,4"/>
@@ -38,8 +38,8 @@ def simulated(world: str, text: str = ROOM) -> Simulation:
     return simulation
 
 
-def walkers_of(simulation: Simulation) -> Walkers:
-    found = simulation.around._walkers
+def walkers_of(simulation: Simulation) -> PeopleMotion:
+    found = simulation.world.people
     assert found is not None
     return found
 
@@ -106,7 +106,7 @@ def test_who_cannot_ride_is_told(old: str, new: str, sentence: str) -> None:
 
 def test_activities_are_those_of_people_on_foot() -> None:
     scene = Scene.of([[0.0, 0.0], [3.0, 0.0]], external=[True, False])
-    walkers = Walkers(scene, np.array([1]), riders=[0])
+    walkers = PeopleMotion(scene, np.array([1]), riders=[0])
     walkers.begin(scene, ["phone"])
     assert walkers.row.tolist() == [1, 0]
     assert walkers.limbs(np.array([True, True])).owner[-1] == 0

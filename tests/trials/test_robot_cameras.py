@@ -70,7 +70,7 @@ def test_a_trial_that_asks_has_pictures_and_one_that_does_not_draws_nothing(
     def refuse(*args: object, **more: object) -> None:
         raise AssertionError("nothing is to be drawn")
 
-    monkeypatch.setattr("crowdbot.world.rendering.renderer.Studio.render", refuse)
+    monkeypatch.setattr("crowdbot.world.rendering.renderer.Renderer.render", refuse)
     plain = run(parse_trial(TRIAL.format(world=world, cameras="")))
     assert "robot/camera" not in plain.readings
     assert set(asked.readings) - set(plain.readings) == {"robot/camera"}

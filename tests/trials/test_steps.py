@@ -134,8 +134,8 @@ def test_the_order_of_a_step(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_order_of_a_step_in_the_physics_world(monkeypatch: pytest.MonkeyPatch) -> None:
     simulation = watched(monkeypatch, "physics")
     world: Any = simulation.world
-    (agent,) = world.chassis
-    ask, substep, limbs = world.chassis[agent].ask, world._substep, world.walkers.take
+    (agent,) = world.robot_bodies
+    ask, substep, limbs = world.robot_bodies[agent].ask, world._substep, world.people.take
     asked: list[float] = []
 
     def robots(command: Any) -> None:
@@ -151,9 +151,9 @@ def test_the_order_of_a_step_in_the_physics_world(monkeypatch: pytest.MonkeyPatc
         EVENTS.append(("limbs", 0.0))
         limbs(gait, ends)
 
-    monkeypatch.setattr(world.chassis[agent], "ask", robots)
+    monkeypatch.setattr(world.robot_bodies[agent], "ask", robots)
     monkeypatch.setattr(world, "_substep", engine)
-    monkeypatch.setattr(world.walkers, "take", taken)
+    monkeypatch.setattr(world.people, "take", taken)
     running = Running(simulation, [Book()], [Wire()])
     assert BEGIN == EVENTS
     for old in (0.0, 0.05, 0.1):

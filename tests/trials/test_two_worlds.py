@@ -204,7 +204,7 @@ def test_collisions_and_forces_are_told_once() -> None:
     drive(simulation, [Keeper()], Stop())
     told = [one for frame in frames for one in frame.collisions]
     world: object = simulation.world
-    assert sorted(map(repr, told)) == sorted(map(repr, world.collisions))  # type: ignore[attr-defined]
+    assert sorted(map(repr, told)) == sorted(map(repr, world.contact_events))  # type: ignore[attr-defined]
     assert told
     forced = {frame.nanoseconds / 1e9 for frame in frames if frame.forces}
     assert forced

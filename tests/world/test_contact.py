@@ -9,12 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import InputError, Scene
-from crowdbot.world import BodyContact
+from crowdbot.world import ContactModel
 
 ROOM = [(0.0, 0.0), (0.0, 8.0), (8.0, 8.0), (8.0, 0.0)]  # clockwise: people are inside
 PILLAR = [(3.0, 3.0), (4.0, 3.0), (4.0, 4.0), (3.0, 4.0)]
 SCREEN = [(5.0, 1.0), (5.0, 4.0)]
-KINDS = [BodyContact(), BodyContact("force"), BodyContact("force", stiffness=1e6)]
+KINDS = [ContactModel(), ContactModel("force"), ContactModel("force", stiffness=1e6)]
 both = pytest.mark.parametrize("contact", KINDS, ids=["position", "force", "stiff force"])
 
 
@@ -62,38 +62,38 @@ def rooms(scene):
     return outside * 2 + ((x > 3.0) & (x < 4.0) & (y > 3.0) & (y < 4.0))
 
 
-@pytest.mark.parametrize("contact", [BodyContact(iterations=1), BodyContact("force"), BodyContact("force", 4000.0)])
+@pytest.mark.parametrize("contact", [ContactModel(iterations=1), ContactModel("force"), ContactModel("force", 4000.0)])
 @pytest.mark.parametrize("dt", [0.01, 0.5])
 def test_the_kernel_does_what_the_slow_twin_does(contact, dt):
     robots = np.arange(40) < 4
     hidden, here = np.arange(40) != 7, np.arange(40) != 9
     scene = crowd(1, width=4.0, walls=(), external=robots, visible=hidden, active=here)
-    after = contact.settled(scene, scene, dt)
+    after = contact.resolve_overlaps(scene, scene, dt)
     np.testing.assert_allclose(after.position[0, here], by_hand(scene, contact, dt)[here], atol=1e-12)
     assert np.count_nonzero(after.position != scene.position) > 30
 
 
 def test_two_share_the_push_and_a_robot_takes_none():
     pair = Scene.of([[0.0, 0.0], [0.3, 0.0]], radius=0.25)
-    apart = BodyContact().settled(pair, pair, 0.1)
+    apart = ContactModel().resolve_overlaps(pair, pair, 0.1)
     np.testing.assert_allclose(apart.position[0], [[-0.1, 0.0], [0.4, 0.0]], atol=1e-12)
     robot = pair.replace(external=np.array([[True, False]]))
-    apart = BodyContact().settled(robot, robot, 0.1)
+    apart = ContactModel().resolve_overlaps(robot, robot, 0.1)
     np.testing.assert_allclose(apart.position[0], [[0.0, 0.0], [0.5, 0.0]], atol=1e-12)
     ghost = robot.replace(visible=np.array([[False, True]]))
-    assert BodyContact().settled(ghost, ghost, 0.1).digest() == ghost.digest()
+    assert ContactModel().resolve_overlaps(ghost, ghost, 0.1).digest() == ghost.digest()
 
 
 def test_who_does_not_touch_keeps_every_byte():
     scene = Scene.of([[1.0, 1.0], [1.6, 1.0], [6.0, 6.0]], [[1.0, 0.0]] * 3, radius=0.3, walls=[ROOM])
-    assert BodyContact().settled(scene, scene, 0.1).digest() == scene.digest()
+    assert ContactModel().resolve_overlaps(scene, scene, 0.1).digest() == scene.digest()
 
 
 def test_overlaps_of_a_crowd_end_in_a_few_steps():
     scene = crowd(2, A=60)
     assert overlaps(scene).max() > 0.1
     for _ in range(30):
-        scene = BodyContact().settled(scene, scene, 0.1)
+        scene = ContactModel().resolve_overlaps(scene, scene, 0.1)
     assert overlaps(scene).max() < 1e-3
 
 
@@ -102,7 +102,7 @@ def test_overlaps_of_a_crowd_end_in_a_few_steps():
 def test_overlaps_never_grow_and_nobody_goes_farther_than_a_radius(contact, dt):
     scene = crowd(3, A=50, width=4.0, walls=())
     for _ in range(5):
-        after = contact.settled(scene, scene, dt)
+        after = contact.resolve_overlaps(scene, scene, dt)
         moved = np.hypot(*np.moveaxis(after.position - scene.position, -1, 0))
         assert np.all(moved <= scene.radius + 1e-12)
         assert overlaps(after).sum() <= overlaps(scene).sum() + 1e-9
@@ -111,7 +111,7 @@ def test_overlaps_never_grow_and_nobody_goes_farther_than_a_radius(contact, dt):
 
 def test_a_soft_force_accelerates_by_stiffness_times_overlap():
     pair = Scene.of([[0.0, 0.0], [0.4, 0.0]], radius=0.25)
-    after = BodyContact("force", stiffness=50.0).settled(pair, pair, 1e-4)
+    after = ContactModel("force", stiffness=50.0).resolve_overlaps(pair, pair, 1e-4)
     np.testing.assert_allclose(after.velocity[0, :, 0] / 1e-4, [-5.0, 5.0], rtol=1e-5)
 
 
@@ -119,7 +119,7 @@ def test_a_pair_pushed_by_force_comes_apart_without_swinging_at_any_step():
     for dt in (0.01, 0.1, 1.0, 100.0):
         scene = Scene.of([[0.0, 0.0], [0.2, 0.0]], radius=0.25)
         for _ in range(50):
-            scene = BodyContact("force", stiffness=500.0).settled(scene, scene, dt)
+            scene = ContactModel("force", stiffness=500.0).resolve_overlaps(scene, scene, dt)
             assert scene.position[0, 1, 0] - scene.position[0, 0, 0] <= 0.5 + 1e-9
         assert scene.position[0, 1, 0] - scene.position[0, 0, 0] > 0.45
 
@@ -127,7 +127,7 @@ def test_a_pair_pushed_by_force_comes_apart_without_swinging_at_any_step():
 @both
 def test_velocities_follow_the_push_up_to_the_maximum_speed(contact):
     scene = crowd(4, width=4.0, walls=())
-    after = contact.settled(scene, scene, 0.05)
+    after = contact.resolve_overlaps(scene, scene, 0.05)
     shift = (after.position - scene.position) / 0.05
     free = np.hypot(*np.moveaxis(scene.velocity + shift, -1, 0)) < scene.max_speed
     np.testing.assert_allclose(after.velocity[free], (scene.velocity + shift)[free], atol=1e-9)
@@ -137,14 +137,14 @@ def test_velocities_follow_the_push_up_to_the_maximum_speed(contact):
 
 def test_who_walks_into_a_wall_slides_along_it():
     before = Scene.of([[4.0, 0.5]], [[1.0, -1.0]], radius=0.3, max_speed=2.0, walls=[ROOM])
-    after = BodyContact().settled(before, before.advanced(before.velocity, 0.3), 0.3)
+    after = ContactModel().resolve_overlaps(before, before.advanced(before.velocity, 0.3), 0.3)
     np.testing.assert_allclose(after.position[0, 0], [4.3, 0.3], atol=1e-9)
     np.testing.assert_allclose(after.velocity[0, 0], [1.0, -2.0 / 3.0], atol=1e-9)
 
 
 def test_a_corner_holds():
     before = Scene.of([[0.5, 0.5]], [[-1.0, -1.2]], radius=0.3, walls=[ROOM])
-    after = BodyContact().settled(before, before.advanced(before.velocity, 1.0), 1.0)
+    after = ContactModel().resolve_overlaps(before, before.advanced(before.velocity, 1.0), 1.0)
     np.testing.assert_allclose(after.position[0, 0], [0.3, 0.3], atol=1e-9)
 
 
@@ -155,7 +155,7 @@ def test_nobody_goes_through_a_wall_however_fast(speed):
     rng = np.random.default_rng(0)
     for _ in range(20):
         velocity = rng.normal(0.0, speed, scene.velocity.shape)
-        scene = BodyContact().settled(scene, scene.advanced(velocity, 0.1), 0.1)
+        scene = ContactModel().resolve_overlaps(scene, scene.advanced(velocity, 0.1), 0.1)
         assert np.all(rooms(scene)[scene.active] == 0)
 
 
@@ -163,7 +163,7 @@ def test_nobody_is_pushed_through_a_thin_wall():
     place = [[5.0 - 0.01 - 0.05 * k, 2.0 + 0.01 * k] for k in range(20)]  # a heap beside the screen
     scene = Scene.of(place, radius=0.3, walls=[SCREEN])
     for _ in range(50):
-        after = BodyContact().settled(scene, scene, 0.1)
+        after = ContactModel().resolve_overlaps(scene, scene, 0.1)
         near = (after.position[0, :, 1] > 1.0) & (after.position[0, :, 1] < 4.0)
         came = (scene.position[0, :, 1] > 1.0) & (scene.position[0, :, 1] < 4.0)
         crossed = (scene.position[0, :, 0] < 5.0) != (after.position[0, :, 0] < 5.0)
@@ -175,21 +175,21 @@ def test_nobody_is_pushed_through_a_thin_wall():
 def test_who_stands_in_a_pillar_comes_out_of_it():
     scene = Scene.of([[[3.1, 3.5]], [[3.5, 3.2]]], radius=0.3, walls=[PILLAR])
     for _ in range(3):
-        scene = BodyContact().settled(scene, scene, 0.1)
+        scene = ContactModel().resolve_overlaps(scene, scene, 0.1)
     np.testing.assert_allclose(scene.position[:, 0], [[2.7, 3.5], [3.5, 2.7]], atol=1e-6)
 
 
 def test_a_thin_pillar_does_not_suck_anybody_through():
     board = [(0.0, 0.0), (4.0, 0.0), (4.0, 0.05), (0.0, 0.05)]
     scene = Scene.of([[2.0, 0.06]], radius=0.3, walls=[board])
-    after = BodyContact().settled(scene, scene, 0.1)
+    after = ContactModel().resolve_overlaps(scene, scene, 0.1)
     np.testing.assert_allclose(after.position[0, 0], [2.0, 0.35], atol=1e-9)
 
 
 def test_people_in_one_place_come_apart():
     scene = Scene.of(np.zeros((12, 2)), radius=0.25)
     for _ in range(60):
-        scene = BodyContact().settled(scene, scene, 0.1)
+        scene = ContactModel().resolve_overlaps(scene, scene, 0.1)
     assert overlaps(scene).max() < 0.01
     assert np.abs(scene.position).max() < 3.0
 
@@ -199,20 +199,20 @@ def test_people_in_one_place_come_apart():
 def test_batches_numbers_and_threads_do_not_matter(contact, A):
     scene = crowd(6, A=A, width=8.0)
     before = scene.replace(position=scene.position - 0.05)
-    alone = contact.settled(before, scene, 0.1)
+    alone = contact.resolve_overlaps(before, scene, 0.1)
     giants = scene.replace(radius=scene.radius * 2.0)
     fields = ("position", "velocity", "radius")
     together = {name: np.concatenate([getattr(giants, name), getattr(scene, name)]) for name in fields}
     start = {**together, "position": np.repeat(before.position, 2, axis=0)}
-    batch = contact.settled(Scene.of(**start, walls=scene.walls), Scene.of(**together, walls=scene.walls), 0.1)
+    batch = contact.resolve_overlaps(Scene.of(**start, walls=scene.walls), Scene.of(**together, walls=scene.walls), 0.1)
     assert batch.position[1].tobytes() == alone.position[0].tobytes()
     order = np.random.default_rng(0).permutation(A)
     mixed = [Scene.of(*(getattr(s, n)[:, order] for n in fields[:2]), radius=s.radius[:, order], walls=s.walls)
              for s in (before, scene)]  # fmt: skip
-    assert contact.settled(*mixed, 0.1).position.tobytes() == alone.position[:, order].tobytes()
+    assert contact.resolve_overlaps(*mixed, 0.1).position.tobytes() == alone.position[:, order].tobytes()
     most = numba.get_num_threads()
     numba.set_num_threads(1)
-    one = contact.settled(before, scene, 0.1)
+    one = contact.resolve_overlaps(before, scene, 0.1)
     numba.set_num_threads(most)
     assert one.digest() == alone.digest()
 
@@ -225,7 +225,7 @@ def test_an_impossible_crowd_takes_a_bounded_step(contact, seed, dt, width, A):
     here = np.random.default_rng(seed).random((1, A)) < 0.8
     scene = scene.replace(active=here, position=np.where(here[..., None], scene.position, np.nan))
     before = scene.replace(position=np.where(here[..., None], [4.0, 2.0], np.nan))
-    after = contact.settled(before, scene, dt)
+    after = contact.resolve_overlaps(before, scene, dt)
     assert np.all(np.isfinite(after.position[here]))
     assert np.all(np.isfinite(after.velocity[here]))
     assert np.all(np.hypot(*(after.position - scene.position)[here].T) <= 8.0 * math.sqrt(2.0) + 1.0)
@@ -243,4 +243,4 @@ def test_an_impossible_crowd_takes_a_bounded_step(contact, seed, dt, width, A):
 )
 def test_a_wrong_contact_is_explained(values, message):
     with pytest.raises(InputError, match=message):
-        BodyContact(**values)
+        ContactModel(**values)

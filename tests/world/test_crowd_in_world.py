@@ -12,15 +12,15 @@ from crowdbot.core import InputError, Scene, Twist, stream
 from crowdbot.models import ORCA, SocialForce
 from crowdbot.models.mixture import Mixture
 from crowdbot.world import (
-    BodyContact,
+    ContactModel,
     CrowdLimits,
     DifferentialDrive,
-    Journey,
-    Journeys,
+    JourneyAssignment,
+    PeopleSource,
     PlanarWorld,
+    PolygonZone,
     Router,
-    Source,
-    Zone,
+    WaypointSequence,
 )
 
 ROOM = [(0.0, 0.0), (0.0, 8.0), (12.0, 8.0), (12.0, 0.0)]  # clockwise: people are inside
@@ -34,14 +34,14 @@ def maze(seed, A=20, E=1, **more):
 
 
 def everything(scene, seed=0, **more):
-    far = Zone(((8.4, 0.4), (11.6, 0.4), (11.6, 7.6), (8.4, 7.6)), aim="random")
-    near = Zone(((0.4, 0.4), (3.6, 0.4), (3.6, 7.6), (0.4, 7.6)), aim="random")
+    far = PolygonZone(((8.4, 0.4), (11.6, 0.4), (11.6, 7.6), (8.4, 7.6)), aim="random")
+    near = PolygonZone(((0.4, 0.4), (3.6, 0.4), (3.6, 7.6), (0.4, 7.6)), aim="random")
     settings = {
         "router": Router.of(MAZE, 0.3),
-        "contact": BodyContact(),
+        "contact": ContactModel(),
         "limits": CrowdLimits(max_acceleration=5.0),
-        "journeys": Journeys((Journey((far, near, far)),)),
-        "sources": (Source(near, Journey((far,)), rate=0.5),),
+        "journeys": JourneyAssignment((WaypointSequence((far, near, far)),)),
+        "sources": (PeopleSource(near, WaypointSequence((far,)), rate=0.5),),
         "symmetry": 1e-3,
         "substeps": 2,
     } | more
@@ -62,7 +62,7 @@ def test_nothing_changes_unasked():
 
 @pytest.mark.parametrize("model", [ORCA(), SocialForce()], ids=["orca", "social force"])
 def test_nobody_stands_behind_a_wall_for_ever(model):
-    settings = {"leave_radius": 0.4, "symmetry": 1e-3, "contact": BodyContact()}
+    settings = {"leave_radius": 0.4, "symmetry": 1e-3, "contact": ContactModel()}
     led = PlanarWorld(maze(2), model, {}, 0.1, router=Router.of(MAZE, 0.3), **settings)
     straight = PlanarWorld(maze(2), model, {}, 0.1, **settings)
     while led.clock.time < 60.0 and np.any(led.scene.active):
@@ -73,7 +73,7 @@ def test_nobody_stands_behind_a_wall_for_ever(model):
 
 def test_contacts_keep_a_crowd_without_avoidance_apart_and_inside():
     blind = ORCA(max_neighbors=0, time_horizon_walls=1e-3)
-    world = PlanarWorld(maze(3, A=40), blind, {}, 0.1, contact=BodyContact(iterations=20))
+    world = PlanarWorld(maze(3, A=40), blind, {}, 0.1, contact=ContactModel(iterations=20))
     for _ in range(100):
         scene = world.step({})
     place = scene.position[0]
@@ -86,7 +86,7 @@ def test_contacts_keep_a_crowd_without_avoidance_apart_and_inside():
 def test_people_are_pushed_aside_by_a_robot_that_does_not_stop():
     scene = Scene.of([[0.0, 0.0], [1.0, 0.05]], external=[True, False], heading=0.0, radius=0.3)
     blind = ORCA(max_neighbors=0)
-    world = PlanarWorld(scene, blind, {0: DifferentialDrive(max_acceleration=100.0)}, 0.1, contact=BodyContact())
+    world = PlanarWorld(scene, blind, {0: DifferentialDrive(max_acceleration=100.0)}, 0.1, contact=ContactModel())
     for _ in range(30):
         scene = world.step({0: Twist(1.0, 0.0)})
         assert math.dist(scene.position[0, 0], scene.position[0, 1]) > 0.6 - 1e-3
@@ -94,10 +94,12 @@ def test_people_are_pushed_aside_by_a_robot_that_does_not_stop():
 
 
 def test_the_symmetry_breaker_lets_people_pass_who_meet_exactly():
-    def meet(symmetry, seed=0):
+    def meet(heading_jitter, seed=0):
         scene = Scene.of([[-4.0, 0.0], [4.0, 0.0]], goal=[[4.0, 0.0], [-4.0, 0.0]])
         # both look only a moment ahead and share the work evenly, so that they stop in front of each other
-        world = PlanarWorld(scene, SocialForce(), {}, 0.05, seed=seed, symmetry=symmetry, contact=BodyContact())
+        world = PlanarWorld(
+            scene, SocialForce(), {}, 0.05, seed=seed, heading_jitter=heading_jitter, contact=ContactModel()
+        )
         for _ in range(600):
             scene = world.step({})
         return scene
@@ -111,7 +113,7 @@ def test_the_symmetry_breaker_lets_people_pass_who_meet_exactly():
 
 def test_the_symmetry_breaker_turns_preferred_velocities_by_no_more_than_asked():
     scene = Scene.of(np.zeros((50, 2)) + np.arange(50)[:, None] * 9.0, preferred_velocity=np.tile([1.0, 0.0], (50, 1)))
-    after = PlanarWorld(scene, ORCA(), {}, 0.1, symmetry=0.01).step({})
+    after = PlanarWorld(scene, ORCA(), {}, 0.1, heading_jitter=0.01).step({})
     angle = np.arctan2(after.velocity[0, :, 1], after.velocity[0, :, 0])
     assert np.abs(angle).max() <= 0.01
     assert np.abs(angle).max() > 0.008
@@ -121,7 +123,7 @@ def test_the_symmetry_breaker_turns_preferred_velocities_by_no_more_than_asked()
 def test_substeps_are_steps_between_which_the_robot_goes_on():
     scene = maze(4, external=np.arange(20) == 0)
     scene = scene.replace(velocity=np.where((np.arange(20) == 0)[None, :, None], [0.5, 0.0], scene.velocity))
-    world = PlanarWorld(scene, ORCA(), {}, 0.4, substeps=4, berth=0.0)
+    world = PlanarWorld(scene, ORCA(), {}, 0.4, substeps=4, robot_margin=0.0)
     rng, expected = stream(0, "crowd"), scene
     for _ in range(4):
         expected = ORCA().step(expected, 0.1, rng)
@@ -132,7 +134,7 @@ def test_substeps_are_steps_between_which_the_robot_goes_on():
 
 def test_a_stiff_model_needs_substeps_and_has_them():
     crowd = Scene.of([[0.0, 0.0], [0.45, 0.0]], preferred_speed=0.0, max_speed=1.0, radius=0.25)
-    contact = BodyContact("force", stiffness=2000.0)
+    contact = ContactModel("force", stiffness=2000.0)
     coarse = PlanarWorld(crowd, ORCA(max_neighbors=0), {}, 0.5, contact=contact).step({})
     fine = PlanarWorld(crowd, ORCA(max_neighbors=0), {}, 0.5, contact=contact, substeps=50).step({})
     gaps = [scene.position[0, 1, 0] - scene.position[0, 0, 0] for scene in (coarse, fine)]
@@ -172,7 +174,7 @@ def test_everything_at_once_goes_along_when_people_are_renumbered():
     first = everything(scene, sources=())
     second = PlanarWorld(
         mixed, Mixture((ORCA(), SocialForce()), (np.arange(16) % 2)[order]), {}, 0.1, router=first.router, ids=order,
-        contact=first.contact, limits=first.limits, journeys=first.journeys, symmetry=1e-3, substeps=2,
+        contact=first.contact, limits=first.limits, journeys=first.journeys, heading_jitter=1e-3, substeps=2,
     )  # fmt: skip
     for _ in range(100):
         first.step({}), second.step({})
@@ -204,7 +206,7 @@ def test_an_impossible_crowd_on_an_impossible_stage_takes_bounded_steps(seed):
     )  # in walls, outside, in one place
     scene = Scene.of(place, goal=rng.integers(-2, 14, (1, 25, 2)), radius=rng.choice([0.05, 0.3, 0.6], (1, 25)),
                      active=rng.random(25) < 0.8, walls=walls)  # fmt: skip
-    on = {"router": Router.of(walls, 0.3, unreachable="nearest"), "contact": BodyContact(), "symmetry": 1e-3}
+    on = {"router": Router.of(walls, 0.3, unreachable="nearest"), "contact": ContactModel(), "symmetry": 1e-3}
     world = PlanarWorld(scene, ORCA(), {}, float(rng.choice([0.01, 0.1, 1.0])), **on)
     for _ in range(15):
         before = world.scene

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import InputError, Pose, Twist, stream, wrap
-from crowdbot.world import DifferentialDrive, Omnidirectional, Twists, moved
+from crowdbot.world import DifferentialDrive, Omnidirectional, Twists, integrate_twist
 
 few = settings(max_examples=60, deadline=None)
 finite = st.floats(-1e6, 1e6)
@@ -28,7 +28,7 @@ def arc_by_many_steps(place, heading, forward, turn, left, dt, parts=20_000):
 @few
 @given(speeds, speeds, speeds, st.floats(-3.0, 3.0), st.floats(0.01, 3.0))
 def test_the_arc_is_what_many_small_steps_give(forward, turn, left, heading, dt):
-    after = moved(Pose.of((1.0, -2.0), heading), Twists.of(Twist(forward, turn, left), 1), dt)
+    after = integrate_twist(Pose.of((1.0, -2.0), heading), Twists.of(Twist(forward, turn, left), 1), dt)
     x, y, angle = arc_by_many_steps((1.0, -2.0), heading, forward, turn, left, dt)
     np.testing.assert_allclose(after.position[0], [x, y], rtol=0, atol=1e-6)
     assert abs(wrap(float(after.heading[0]) - angle)) < 1e-9
@@ -38,7 +38,7 @@ def test_the_arc_is_what_many_small_steps_give(forward, turn, left, heading, dt)
 def test_circles_close():
     pose, twist = Pose.of((0.3, 0.4), 0.7), Twists.of(Twist(1.2, 0.8), 1)
     for _ in range(10):
-        pose = moved(pose, twist, 2 * math.pi / 0.8 / 10)
+        pose = integrate_twist(pose, twist, 2 * math.pi / 0.8 / 10)
     np.testing.assert_allclose(pose.position[0], [0.3, 0.4], atol=1e-12)
     assert pose.heading[0] == pytest.approx(0.7, abs=1e-12)
 
@@ -47,13 +47,13 @@ def test_an_arc_in_one_step_or_in_many_is_the_same():
     start, twist = Pose.of((0.0, 0.0), 0.1), Twists.of(Twist(0.9, 1.3), 1)
     pose = start
     for _ in range(100):
-        pose = moved(pose, twist, 0.01)
-    np.testing.assert_allclose(pose.position, moved(start, twist, 1.0).position, atol=1e-12)
+        pose = integrate_twist(pose, twist, 0.01)
+    np.testing.assert_allclose(pose.position, integrate_twist(start, twist, 1.0).position, atol=1e-12)
 
 
 @pytest.mark.parametrize("turn", [0.0, 1e-12, 1e-8, 1e-5, 3e-4, -3e-4])
 def test_nearly_straight_is_smooth(turn):
-    after = moved(Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(1.0, turn), 1), 1.0)
+    after = integrate_twist(Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(1.0, turn), 1), 1.0)
     exact = (
         (math.sin(turn) / turn, (1.0 - math.cos(turn)) / turn) if abs(turn) > 1e-4 else (1.0 - turn**2 / 6, turn / 2)
     )
@@ -161,3 +161,18 @@ def test_wrong_commands_are_explained(command, message):
 def test_time_must_go_on():
     with pytest.raises(InputError, match="time step 0.0 s of a drive must be finite and above 0"):
         DifferentialDrive().step(Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(), 1), Twist(), 0.0)
+
+
+def test_omnidirectional_limits_speed_and_acceleration_as_vectors():
+    """The diagonal of two commands at their limits is limited to the speed, not to its components."""
+    drive = Omnidirectional(max_speed=1.0, max_acceleration=100.0)
+    pose, twist = Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(), 1)
+    _, fast = drive.step(pose, twist, Twist(1.0, 0.0, left=1.0), 0.1)
+    assert (fast.forward[0], fast.left[0]) == pytest.approx((math.sqrt(0.5), math.sqrt(0.5)))
+    _, fast = drive.step(pose, twist, Twist(6.0, 0.0, left=-8.0), 0.1)
+    assert (fast.forward[0], fast.left[0]) == pytest.approx((0.6, -0.8))
+    slow = Omnidirectional(max_speed=1.0, max_acceleration=2.0)
+    _, pushed = slow.step(pose, twist, Twist(0.6, 0.0, left=0.8), 0.1)
+    assert (pushed.forward[0], pushed.left[0]) == pytest.approx((0.12, 0.16))
+    _, turned = slow.step(pose, Twists.of(Twist(0.6, 0.0, left=0.8), 1), Twist(0.6, 0.0, left=-0.8), 0.1)
+    assert (turned.forward[0], turned.left[0]) == pytest.approx((0.6, 0.6))

@@ -9,13 +9,23 @@ import pytest
 from crowdbot.core import InputError, Scene, Twist
 from crowdbot.models import ORCA, SocialForce
 from crowdbot.models.mixture import MODEL, Mixture
-from crowdbot.world import BodyContact, DifferentialDrive, Journey, Journeys, PlanarWorld, Point, Router, Source, Zone
+from crowdbot.world import (
+    ContactModel,
+    DifferentialDrive,
+    JourneyAssignment,
+    PeopleSource,
+    PlanarWorld,
+    PointWaypoint,
+    PolygonZone,
+    Router,
+    WaypointSequence,
+)
 from crowdbot.world.crowd.journey import JOURNEY, STOP
 from crowdbot.world.crowd.routing import CORNER, UNPLANNED, WAY
 
-DOOR = Zone(((0.0, 0.0), (1.0, 0.0), (1.0, 4.0), (0.0, 4.0)))
-FAR = Zone(((9.0, 0.0), (10.0, 0.0), (10.0, 4.0), (9.0, 4.0)), aim="random")
-ACROSS = Journey((FAR,))
+DOOR = PolygonZone(((0.0, 0.0), (1.0, 0.0), (1.0, 4.0), (0.0, 4.0)))
+FAR = PolygonZone(((9.0, 0.0), (10.0, 0.0), (10.0, 4.0), (9.0, 4.0)), aim="random")
+ACROSS = WaypointSequence((FAR,))
 
 
 @dataclass(frozen=True)
@@ -50,7 +60,7 @@ def entries(world, seconds):
 
 
 def test_people_come_regularly_at_the_rate():
-    world = world_of(Source(DOOR, ACROSS, rate=0.5, timing="regular", begin=1.0, end=9.5))
+    world = world_of(PeopleSource(DOOR, ACROSS, rate=0.5, timing="regular", begin=1.0, end=9.5))
     found = entries(world, 15.0)
     assert [time for time, *_ in found] == pytest.approx([1.0, 3.0, 5.0, 7.0, 9.0])
     assert [who for _, who, *_ in found] == [20, 21, 22, 23, 24]
@@ -59,7 +69,9 @@ def test_people_come_regularly_at_the_rate():
 
 
 def test_people_come_at_random_at_the_rate():
-    source = Source(Zone(((0, 0), (40, 0), (40, 40), (0, 40))), Journey((Point(20.0, 20.0, 0.5),)), rate=4.0)
+    source = PeopleSource(
+        PolygonZone(((0, 0), (40, 0), (40, 40), (0, 40))), WaypointSequence((PointWaypoint(20.0, 20.0, 0.5),)), rate=4.0
+    )
     world = world_of(source, scene=empty(400), dt=0.5)
     times = [time for time, *_ in entries(world, 100.0)]
     assert len(times) == pytest.approx(400, abs=60)
@@ -68,12 +80,12 @@ def test_people_come_at_random_at_the_rate():
 
 
 def test_no_more_come_than_asked_for():
-    assert len(entries(world_of(Source(DOOR, ACROSS, rate=5.0, most=7)), 30.0)) == 7
-    assert entries(world_of(Source(DOOR, ACROSS, rate=5.0, most=0)), 3.0) == []
+    assert len(entries(world_of(PeopleSource(DOOR, ACROSS, rate=5.0, most=7)), 30.0)) == 7
+    assert entries(world_of(PeopleSource(DOOR, ACROSS, rate=5.0, most=0)), 3.0) == []
 
 
 def test_who_comes_walks_with_a_speed_and_a_body_that_were_drawn():
-    world = world_of(Source(DOOR, ACROSS, rate=5.0, speed=Between(1.0, 1.4), radius=Between(0.2, 0.3)))
+    world = world_of(PeopleSource(DOOR, ACROSS, rate=5.0, speed=Between(1.0, 1.4), radius=Between(0.2, 0.3)))
     entries(world, 5.0)
     here = world.scene.active[0]
     assert np.count_nonzero(here) > 5
@@ -88,9 +100,9 @@ def test_who_comes_walks_with_a_speed_and_a_body_that_were_drawn():
 
 
 def test_nobody_comes_in_where_there_is_no_room_and_all_wait_in_order():
-    narrow = Zone(((0.0, 0.0), (0.6, 0.0), (0.6, 0.6), (0.0, 0.6)))
+    narrow = PolygonZone(((0.0, 0.0), (0.6, 0.0), (0.6, 0.6), (0.0, 0.6)))
     blocked = Scene.of(np.zeros((10, 2)) + 0.3, active=np.arange(10) == 0, external=np.arange(10) == 0)
-    world = world_of(Source(narrow, ACROSS, rate=1.0, timing="regular"), scene=blocked)
+    world = world_of(PeopleSource(narrow, ACROSS, rate=1.0, timing="regular"), scene=blocked)
     assert entries(world, 5.0) == []
     assert world.waiting.tolist() == [6]
     world.scene = world.scene.replace(active=np.zeros((1, 10), dtype=bool))
@@ -102,7 +114,7 @@ def test_nobody_comes_in_where_there_is_no_room_and_all_wait_in_order():
 
 def test_nobody_begins_in_a_wall_or_in_somebody():
     pillar = [(0.2, 0.2), (0.8, 0.2), (0.8, 1.8), (0.2, 1.8)]
-    world = world_of(Source(DOOR, ACROSS, rate=8.0), scene=empty(80, walls=[pillar]))
+    world = world_of(PeopleSource(DOOR, ACROSS, rate=8.0), scene=empty(80, walls=[pillar]))
     for _ in range(60):
         scene = world.step({})
         new = world.scene.active[0] & (world.scene.position[0, :, 0] <= 1.0)
@@ -113,7 +125,7 @@ def test_nobody_begins_in_a_wall_or_in_somebody():
 
 
 def test_places_of_people_who_left_are_used_again_with_new_identities():
-    world = world_of(Source(DOOR, ACROSS, rate=1.0), scene=empty(8))
+    world = world_of(PeopleSource(DOOR, ACROSS, rate=1.0), scene=empty(8))
     found = entries(world, 90.0)
     assert len(found) > 40
     assert len({who for _, who, *_ in found}) == len(found)
@@ -122,8 +134,8 @@ def test_places_of_people_who_left_are_used_again_with_new_identities():
 
 
 def test_a_full_scene_lets_nobody_in():
-    stay = Journey((FAR,), then="stay")
-    world = world_of(Source(DOOR, stay, rate=2.0), scene=empty(3))
+    stay = WaypointSequence((FAR,), then="stay")
+    world = world_of(PeopleSource(DOOR, stay, rate=2.0), scene=empty(3))
     assert len(entries(world, 20.0)) == 3
     assert world.waiting[0] > 20
 
@@ -132,7 +144,7 @@ def test_memories_of_who_left_are_forgotten():
     walls = [[(5.0, -3.0), (5.0, 3.0)]]
     keeps = {"kept": np.ones((1, 4))}
     scene = empty(4, walls=walls).replace(memory=keeps)
-    world = world_of(Source(DOOR, ACROSS, rate=1.0, most=2), scene=scene, router=Router.of(walls))
+    world = world_of(PeopleSource(DOOR, ACROSS, rate=1.0, most=2), scene=scene, router=Router.of(walls))
     while not np.any(world.scene.active):
         world.step({})
     a = int(np.flatnonzero(world.scene.active[0])[0])
@@ -147,14 +159,16 @@ def test_memories_begin_as_the_model_says():
         memory_at_start: ClassVar[dict[str, float]] = {"kept": 0.5}
 
     scene = empty(4).replace(memory={"kept": np.ones((1, 4))})
-    world = world_of(Source(DOOR, ACROSS, rate=9.0, most=1), scene=scene, model=Calm())
+    world = world_of(PeopleSource(DOOR, ACROSS, rate=9.0, most=1), scene=scene, model=Calm())
     entries(world, 2.0)
     assert sorted(world.scene.memory["kept"][0].tolist()) == [0.5, 1.0, 1.0, 1.0]
 
 
 def test_sources_do_not_change_each_other_nor_the_rest_of_the_crowd():
-    one = Source(DOOR, ACROSS, rate=0.3)
-    other = Source(Zone(((0, 50), (1, 50), (1, 54), (0, 54))), Journey((Point(9.0, 52.0),)), rate=0.4)
+    one = PeopleSource(DOOR, ACROSS, rate=0.3)
+    other = PeopleSource(
+        PolygonZone(((0, 50), (1, 50), (1, 54), (0, 54))), WaypointSequence((PointWaypoint(9.0, 52.0),)), rate=0.4
+    )
     alone = entries(world_of(one, scene=empty(30), seed=3), 20.0)
     both = entries(world_of(one, other, scene=empty(30), seed=3), 20.0)
     assert [(t, *p) for t, _, _, p in alone] == [(t, *p) for t, _, _, p in both if p[1] < 40.0]
@@ -162,7 +176,7 @@ def test_sources_do_not_change_each_other_nor_the_rest_of_the_crowd():
 
 
 def test_a_batch_gives_the_bytes_of_each_alone():
-    source = Source(DOOR, ACROSS, rate=1.5, speed=Between(1.0, 1.5))
+    source = PeopleSource(DOOR, ACROSS, rate=1.5, speed=Between(1.0, 1.5))
     batch = world_of(source, scene=empty(15, E=3), seed=10)
     alone = [world_of(source, scene=empty(15), seed=10 + e) for e in range(3)]
     for _ in range(150):
@@ -178,7 +192,7 @@ def test_a_batch_gives_the_bytes_of_each_alone():
 def test_people_leave_at_exits_and_robots_do_not():
     places = [[0.0, 0.0], [8.0, 2.0], [8.0, 3.0]]
     scene = Scene.of(places, goal=[[0.0, 0.0], [20.0, 2.0], [8.0, 3.0]], external=[True, False, False])
-    everywhere = Zone(((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)))
+    everywhere = PolygonZone(((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)))
     world = PlanarWorld(scene, ORCA(), {0: DifferentialDrive()}, 0.1, exits=(FAR, everywhere))
     for _ in range(30):
         world.step({0: Twist()})
@@ -187,7 +201,7 @@ def test_people_leave_at_exits_and_robots_do_not():
 
 def test_who_comes_may_walk_by_a_model_of_a_mixture():
     mixture = Mixture((ORCA(), SocialForce()))
-    sources = (Source(DOOR, ACROSS, rate=1.0, model=1), Source(DOOR, ACROSS, rate=1.0))
+    sources = (PeopleSource(DOOR, ACROSS, rate=1.0, model=1), PeopleSource(DOOR, ACROSS, rate=1.0))
     world = world_of(*sources, scene=empty(30), model=mixture, seed=1)
     entries(world, 8.0)
     here = world.scene.active[0]
@@ -201,10 +215,10 @@ def test_who_comes_may_walk_by_a_model_of_a_mixture():
 
 def test_a_flow_through_a_door_goes_on_and_on():
     walls = [[(5.0, -10.0), (5.0, 1.4)], [(5.0, 2.6), (5.0, 14.0)]]
-    journeys = Journeys((ACROSS,), -1)
+    journeys = JourneyAssignment((ACROSS,), -1)
     world = world_of(
-        Source(DOOR, ACROSS, rate=0.8), scene=empty(40, walls=walls), router=Router.of(walls), contact=BodyContact(),
-        journeys=journeys, symmetry=1e-3,
+        PeopleSource(DOOR, ACROSS, rate=0.8), scene=empty(40, walls=walls), router=Router.of(walls),
+        contact=ContactModel(), journeys=journeys, heading_jitter=1e-3,
     )  # fmt: skip
     found = entries(world, 60.0)
     assert len(found) - np.count_nonzero(world.scene.active) > 25
@@ -225,15 +239,15 @@ def test_a_flow_through_a_door_goes_on_and_on():
 )
 def test_a_wrong_source_is_explained(values, message):
     with pytest.raises(InputError, match=message):
-        Source(**({"zone": DOOR, "journey": ACROSS, "rate": 1.0} | values))
+        PeopleSource(**({"zone": DOOR, "journey": ACROSS, "rate": 1.0} | values))
 
 
 def test_wrong_worlds_of_sources_are_explained():
     for model in (ORCA(), Mixture((ORCA(),))):
         with pytest.raises(InputError, match="model = 1, but the crowd is no mixture that has"):
-            world_of(Source(DOOR, ACROSS, rate=1.0, model=1), model=model)
+            world_of(PeopleSource(DOOR, ACROSS, rate=1.0, model=1), model=model)
     with pytest.raises(InputError, match="a radius of -1.0 was drawn"):
-        entries(world_of(Source(DOOR, ACROSS, rate=9.0, radius=Between(-1.0, -1.0))), 2.0)
+        entries(world_of(PeopleSource(DOOR, ACROSS, rate=9.0, radius=Between(-1.0, -1.0))), 2.0)
     with pytest.raises(InputError, match="ids must be whole numbers, no two the same"):
         world_of(scene=empty(3), ids=[0, 1, 1])
     with pytest.raises(InputError, match=r"ids have shape \[2\]"):

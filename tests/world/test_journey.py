@@ -10,18 +10,26 @@ from hypothesis import strategies as st
 
 from crowdbot.core import InputError, Scene
 from crowdbot.models import ORCA
-from crowdbot.world import Direction, Journey, Journeys, PlanarWorld, Point, Router, Zone
+from crowdbot.world import (
+    HeadingWaypoint,
+    JourneyAssignment,
+    PlanarWorld,
+    PointWaypoint,
+    PolygonZone,
+    Router,
+    WaypointSequence,
+)
 from crowdbot.world.crowd.journey import STOP
 from crowdbot.world.crowd.person_random import uniform
-from crowdbot.world.crowd.waypoint import Luck
+from crowdbot.world.crowd.waypoint import PersonRandom
 
 STAR = [(0, 0), (4, 1), (8, 0), (7, 4), (8, 8), (4, 7), (0, 8), (1, 4)]
-HALL = Zone(((10.0, 0.0), (12.0, 0.0), (12.0, 4.0), (10.0, 4.0)))
-NOBODY = Luck(np.zeros(0, int), np.zeros(0, int))
+HALL = PolygonZone(((10.0, 0.0), (12.0, 0.0), (12.0, 4.0), (10.0, 4.0)))
+NOBODY = PersonRandom(np.zeros(0, int), np.zeros(0, int))
 
 
 def luck(count, seed=0):
-    return Luck(np.full(count, seed), np.arange(count), ("test",))
+    return PersonRandom(np.full(count, seed), np.arange(count), ("test",))
 
 
 def walk(world, seconds):
@@ -35,7 +43,7 @@ def walk(world, seconds):
 @given(st.integers(0, 999))
 def test_the_nearest_point_of_a_zone_is_what_shapely_says(seed):
     place = np.random.default_rng(seed).uniform(-3.0, 11.0, (40, 2))
-    zone, area = Zone(STAR), shapely.Polygon(STAR)
+    zone, area = PolygonZone(STAR), shapely.Polygon(STAR)
     points = shapely.points(place)
     assert np.array_equal(zone.contains(place), shapely.contains(area, points))
     goal = zone.goal(place, NOBODY)
@@ -45,7 +53,7 @@ def test_the_nearest_point_of_a_zone_is_what_shapely_says(seed):
 
 
 def test_random_points_fill_the_zone_evenly():
-    goal = Zone(STAR, aim="random").goal(np.zeros((4000, 2)), luck(4000))
+    goal = PolygonZone(STAR, aim="random").goal(np.zeros((4000, 2)), luck(4000))
     area = shapely.Polygon(STAR)
     assert np.all(shapely.covers(area, shapely.points(goal)))
     half = area.intersection(shapely.box(0, 0, 3, 8)).area / area.area
@@ -66,8 +74,8 @@ def test_chance_follows_the_person_not_the_place():
 
 
 def test_a_chain_of_stops_is_walked_in_order_and_people_leave_or_stay():
-    stops = (Point(4.0, 0.0), Point(4.0, 4.0), HALL)
-    journeys = Journeys((Journey(stops, "leave"), Journey(stops, "stay")), which=[0, 1, -1])
+    stops = (PointWaypoint(4.0, 0.0), PointWaypoint(4.0, 4.0), HALL)
+    journeys = JourneyAssignment((WaypointSequence(stops, "leave"), WaypointSequence(stops, "stay")), which=[0, 1, -1])
     start = Scene.of([[0.0, 0.0], [0.0, 9.0], [0.0, 20.0]], goal=[[0.0, 0.0], [0.0, 0.0], [3.0, 20.0]])
     scenes = walk(PlanarWorld(start, ORCA(), {}, 0.1, journeys=journeys), 25.0)
     track = np.array([scene.position[0] for scene in scenes])
@@ -86,13 +94,13 @@ def test_a_chain_of_stops_is_walked_in_order_and_people_leave_or_stay():
 
 
 def test_a_direction_is_walked_for_ever():
-    journeys = Journeys((Journey((Direction(math.pi / 2),)),))
+    journeys = JourneyAssignment((WaypointSequence((HeadingWaypoint(math.pi / 2),)),))
     scene = walk(PlanarWorld(Scene.of([[0.0, 0.0]]), ORCA(), {}, 0.1, journeys=journeys), 20.0)[-1]
     np.testing.assert_allclose(scene.position[0, 0], [0.0, 26.0], atol=1e-6)
 
 
 def test_random_goals_are_the_same_alone_in_a_batch_and_renumbered():
-    journeys = Journeys((Journey((Zone(STAR, "random"), Point(20.0, 0.0))),))
+    journeys = JourneyAssignment((WaypointSequence((PolygonZone(STAR, "random"), PointWaypoint(20.0, 0.0))),))
     place = np.random.default_rng(1).uniform(-9.0, -1.0, (2, 20, 2))
     batch = PlanarWorld(Scene.of(place), ORCA(), {}, 0.1, seed=5, journeys=journeys)
     alone = PlanarWorld(Scene.of(place[1]), ORCA(), {}, 0.1, seed=6, journeys=journeys)
@@ -109,10 +117,15 @@ def test_random_goals_are_the_same_alone_in_a_batch_and_renumbered():
 
 def test_random_goals_keep_clear_of_walls_when_there_is_a_router():
     pillar = [(1.0, 1.0), (7.0, 1.0), (7.0, 7.0), (1.0, 7.0)]
-    square = Zone(((0, 0), (8, 0), (8, 8), (0, 8)), aim="random")
+    square = PolygonZone(((0, 0), (8, 0), (8, 8), (0, 8)), aim="random")
     scene = Scene.of(np.random.default_rng(2).uniform(-9.0, -1.0, (60, 2)), walls=[pillar])
     world = PlanarWorld(
-        scene, ORCA(), {}, 0.1, journeys=Journeys((Journey((square,)),)), router=Router.of([pillar], 0.3)
+        scene,
+        ORCA(),
+        {},
+        0.1,
+        journeys=JourneyAssignment((WaypointSequence((square,)),)),
+        router=Router.of([pillar], 0.3),
     )
     away = shapely.distance(shapely.Polygon(pillar), shapely.points(world.scene.goal[0]))
     assert away.min() > 0.29
@@ -121,8 +134,8 @@ def test_random_goals_keep_clear_of_walls_when_there_is_a_router():
 def test_people_reach_a_zone_behind_walls():
     screen = [(3.0, -5.0), (3.0, 5.0)]
     scene = Scene.of(np.random.default_rng(3).uniform(-3.0, 2.0, (10, 2)), walls=[screen])
-    journeys = Journeys((Journey((Zone(((5, -1), (7, -1), (7, 1), (5, 1))),)),))
-    world = PlanarWorld(scene, ORCA(), {}, 0.1, journeys=journeys, router=Router.of([screen], 0.3), symmetry=1e-3)
+    journeys = JourneyAssignment((WaypointSequence((PolygonZone(((5, -1), (7, -1), (7, 1), (5, 1))),)),))
+    world = PlanarWorld(scene, ORCA(), {}, 0.1, journeys=journeys, router=Router.of([screen], 0.3), heading_jitter=1e-3)
     assert not np.any(walk(world, 40.0)[-1].active)
     stuck = PlanarWorld(scene, ORCA(), {}, 0.1, journeys=journeys)
     assert np.any(walk(stuck, 40.0)[-1].active)
@@ -131,16 +144,19 @@ def test_people_reach_a_zone_behind_walls():
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: Point(math.nan, 0.0), "Point: x = nan is not finite"),
-        (lambda: Point(0.0, 0.0, tolerance=0.0), "Point: tolerance 0.0 m"),
-        (lambda: Direction(math.inf), "Direction: heading = inf"),
-        (lambda: Zone(((0, 0), (1, 1))), "three or more finite points"),
-        (lambda: Zone(((0, 0), (1, 1), (2, 2))), "enclose 0 m2, which is no area"),
-        (lambda: Zone(STAR, aim="randon"), "aim 'randon' is unknown, did you mean 'random'"),
-        (lambda: Journey(()), "must be one or more of Point, Direction, Zone"),
-        (lambda: Journey((Point(0, 0),), then="stays"), "did you mean 'stay'"),
-        (lambda: Journeys((Journey((Point(0, 0),)),), which=[0, 1]), "must name journeys 0 to 0, or -1"),
-        (lambda: Journeys((Journey((Point(0, 0),)),), which=[0.5]), "must name journeys"),
+        (lambda: PointWaypoint(math.nan, 0.0), "Point: x = nan is not finite"),
+        (lambda: PointWaypoint(0.0, 0.0, tolerance=0.0), "PointWaypoint: tolerance 0.0 m"),
+        (lambda: HeadingWaypoint(math.inf), "HeadingWaypoint: heading = inf"),
+        (lambda: PolygonZone(((0, 0), (1, 1))), "three or more finite points"),
+        (lambda: PolygonZone(((0, 0), (1, 1), (2, 2))), "enclose 0 m2, which is no area"),
+        (lambda: PolygonZone(STAR, aim="randon"), "aim 'randon' is unknown, did you mean 'random'"),
+        (lambda: WaypointSequence(()), "must be one or more waypoints"),
+        (lambda: WaypointSequence((PointWaypoint(0, 0),), then="stays"), "did you mean 'stay'"),
+        (
+            lambda: JourneyAssignment((WaypointSequence((PointWaypoint(0, 0),)),), which=[0, 1]),
+            "must be from 0 to 0, or -1",
+        ),
+        (lambda: JourneyAssignment((WaypointSequence((PointWaypoint(0, 0),)),), which=[0.5]), "must name journeys"),
     ],
 )
 def test_wrong_stops_are_explained(make, message):
@@ -149,16 +165,16 @@ def test_wrong_stops_are_explained(make, message):
 
 
 def test_wrong_worlds_of_journeys_are_explained():
-    journeys = Journeys((Journey((Point(0, 0),)),), which=[0, 0, 0])
+    journeys = JourneyAssignment((WaypointSequence((PointWaypoint(0, 0),)),), which=[0, 0, 0])
     with pytest.raises(InputError, match=r"which has shape \[3\], it must fit \[E, A\] = \[1, 2\]"):
         PlanarWorld(Scene.of(np.zeros((2, 2))), ORCA(), {}, 0.1, journeys=journeys)
     given_velocity = Scene.of(np.zeros((3, 2)), preferred_velocity=np.ones((3, 2)))
     with pytest.raises(InputError, match="a scene with preferred velocities has no goals"):
         PlanarWorld(given_velocity, ORCA(), {}, 0.1, journeys=journeys)
-    walled = Zone(((1, 1), (2, 1), (2, 2), (1, 2)), aim="random")
+    walled = PolygonZone(((1, 1), (2, 1), (2, 2), (1, 2)), aim="random")
     pillar = [(0, 0), (3, 0), (3, 3), (0, 3)]
     with pytest.raises(InputError, match="no place for a body was found in the zone"):
         PlanarWorld(
             Scene.of([[-2.0, 0.0]], walls=[pillar]), ORCA(), {}, 0.1,
-            journeys=Journeys((Journey((walled,)),)), router=Router.of([pillar]),
+            journeys=JourneyAssignment((WaypointSequence((walled,)),)), router=Router.of([pillar]),
         )  # fmt: skip

@@ -8,10 +8,19 @@ import pytest
 from physics_worlds import alone, coasting, facing, ram
 
 from crowdbot.core import InputError, Twist
-from crowdbot.world import TISSUES, Cube, PhysicsStage, Robot, frame, permitted_speed, region_of, two_body_force
+from crowdbot.world import (
+    BODY_REGION_LIMITS,
+    CubeBody,
+    PhysicsStage,
+    Robot,
+    frame,
+    permitted_speed,
+    region_of,
+    two_body_force,
+)
 from crowdbot.world.physics.body_region_limits import reduced_mass, softness
 from crowdbot.world.physics.people_bodies import GIVEN, REACTION
-from crowdbot.world.urdf.model import Part
+from crowdbot.world.urdf.model import LinkShape
 from crowdbot.world.urdf.shapes import Box
 
 
@@ -19,7 +28,7 @@ def weak(beam=False):
     """Return a robot whose two wheels of 0.08 m push with 3 N m each: 75 N; with a beam at the height of shins."""
     robot = Robot.load("differential")
     if beam:
-        part = Part(Box((0.04, 0.6, 0.08)), frame((0.3, 0.0, 0.18)))
+        part = LinkShape(Box((0.04, 0.6, 0.08)), frame((0.3, 0.0, 0.18)))
         links = {**robot.model.links}
         links["base_link"] = dataclasses.replace(links["base_link"], collisions=(part,))
         robot = dataclasses.replace(robot, model=dataclasses.replace(robot.model, links=links))
@@ -47,7 +56,7 @@ def test_a_steady_push_on_a_wall_is_75_newton():
     measured = pushing(world, 45, "robot", "wall")
     assert measured[0] == 0.0
     assert measured[-20:] == pytest.approx([75.0] * 20, rel=0.02)
-    (event,) = world.collisions
+    (event,) = world.contact_events
     assert event.steady_force == pytest.approx(75.0, rel=0.02)
     assert math.isnan(event.peak_force)
     assert math.isnan(event.severity)
@@ -64,9 +73,9 @@ def test_a_steady_push_on_a_person_is_75_newton_and_the_person_yields():
     robot, person = world.scene.position[0, :, 0]
     assert 0.8 < person < 1.7
     assert 0.25 < person - robot < 0.45
-    speed = 75.0 * REACTION / world.walkers.people.mass[0]  # the push against what braces the person
+    speed = 75.0 * REACTION / world.people.people.mass[0]  # the push against what braces the person
     assert world.scene.velocity[0, 1, 0] == pytest.approx(speed, rel=0.05)
-    (event,) = world.collisions
+    (event,) = world.contact_events
     assert 30.0 < event.steady_force < 80.0  # one foot may carry all of it
     assert event.steady_region == "lower leg"
     assert event.severity < 2.5  # the knocks of a leg that comes back
@@ -95,10 +104,10 @@ def test_an_impact_gives_the_force_of_the_two_body_model(speed, mass, height, re
     coasting(world)
     for _ in range(100):
         world.step({0: Twist(speed, 0.0)})
-    event = world.collisions[0]
+    event = world.contact_events[0]
     assert event.region == region
     assert event.impact_speed == pytest.approx(speed, rel=0.01)
-    tissue = TISSUES[region]
+    tissue = BODY_REGION_LIMITS[region]
     expected = speed * math.sqrt(tissue.stiffness / (1.0 / mass + 1.0 / tissue.mass))
     assert event.peak_force == pytest.approx(expected, rel=0.01)
     assert event.simulated_peak == pytest.approx(expected, rel=0.1)
@@ -110,12 +119,12 @@ def test_an_impact_keeps_momentum():
     for _ in range(20):
         world.step({0: Twist(1.0, 0.0)})
     coasting(world)
-    while not world.collisions:
+    while not world.contact_events:
         world.step({0: Twist(1.0, 0.0)})
     before = 60.0
     for _ in range(5):
         scene = world.step({0: Twist(1.0, 0.0)})
-    mass = world.walkers.people.mass[0]
+    mass = world.people.people.mass[0]
     after = 60.0 * scene.velocity[0, 0, 0] + mass * scene.velocity[0, 1, 0]
     assert scene.velocity[0, 1, 0] > 0.3
     assert after == pytest.approx(before, rel=0.05)
@@ -125,7 +134,7 @@ def test_from_behind_it_is_the_back_and_the_one_who_walks_is_the_cause():
     world = facing(ram(60.0, 1.3), heading=0.0)
     for _ in range(80):
         world.step({0: Twist(1.0, 0.0)})
-    assert world.collisions[0].region == "back"
+    assert world.contact_events[0].region == "back"
     walking = facing(ram(60.0, 1.3), gap=2.0)
     walking.scene = walking.scene.replace(external=np.array([[True, True]]), velocity=np.array([[[0, 0], [-1.0, 0]]]))
     for _ in range(100):
@@ -140,8 +149,8 @@ def test_from_behind_it_is_the_back_and_the_one_who_walks_is_the_cause():
 
 def test_a_cube_is_pushed_and_a_fixed_one_is_not():
     robot = Robot.load("cuybot")
-    free = alone(robot, stage=PhysicsStage(props=(Cube(1.0, 0.0, size=0.4, mass=5.0),)))
-    fast = alone(robot, stage=PhysicsStage(props=(Cube(1.0, 0.0, size=0.4, fixed=True),)))
+    free = alone(robot, stage=PhysicsStage(props=(CubeBody(1.0, 0.0, size=0.4, mass=5.0),)))
+    fast = alone(robot, stage=PhysicsStage(props=(CubeBody(1.0, 0.0, size=0.4, fixed=True),)))
     for _ in range(60):
         free.step({0: Twist(0.5, 0.0)})
         fast.step({0: Twist(0.5, 0.0)})

@@ -9,7 +9,7 @@ from crowdbot.core import InputError, Pose, Scene, SpatialPose, Twist
 from crowdbot.models import ORCA
 from crowdbot.sensors.beams import beams, fan
 from crowdbot.sensors.cast import cast
-from crowdbot.world import Cube, PhysicsStage, PhysicsWorld, Robot, Table, Tree, Walkers, bodies
+from crowdbot.world import CubeBody, PeopleMotion, PhysicsStage, PhysicsWorld, Robot, TableBody, TreeBody, scene_bodies
 
 FAR = 60.0
 ROOM = [[(-7.0, -7.0), (-7.0, 7.0), (7.0, 7.0), (7.0, -7.0)], [(3.0, 3.0), (5.0, 3.0), (5.0, 4.0), (3.0, 4.0)]]
@@ -22,7 +22,7 @@ def world():
     scene = crowded(12, robot, seed=3, size=5.0)
     scene = scene.replace(walls=Scene.of([[0.0, 0.0]], walls=ROOM).walls)
     stage = PhysicsStage(
-        props=(Cube(1.2, 0.0), Table(-4.0, 4.0, heading=0.4), Cube(-3.0, -4.0, fixed=True, heading=0.3))
+        props=(CubeBody(1.2, 0.0), TableBody(-4.0, 4.0, heading=0.4), CubeBody(-3.0, -4.0, fixed=True, heading=0.3))
     )
     made = PhysicsWorld(scene, ORCA(), {12: robot}, 0.1, stage=stage)
     for _ in range(15):
@@ -44,9 +44,9 @@ def theirs(world, pose, directions, groups=(1, 0, 0, 1, 1, 0)):
 
 def embodied(world):
     """Return the scene with only those people whose bodies the engine knows now, where they are in it."""
-    agents = world._passers.agent
+    agents = world._people_bodies.agent
     known = np.isin(np.arange(world.scene.shape[1]), agents[agents >= 0]) | world.scene.external[0]
-    return world.seen().replace(active=world.scene.active & known[None])
+    return world.body_scene().replace(active=world.scene.active & known[None])
 
 
 @pytest.mark.parametrize("height", [0.15, 0.45, 1.1])
@@ -54,11 +54,11 @@ def test_rays_equal_mujocos_on_people_walls_and_props(world, height):
     """To 1e-9 on limbs, walls, floor and boxes; the engine gets the limbs of the walk, not those that lag behind."""
     scene = embodied(world)
     assert scene.active[0].sum() > 5
-    slots = np.flatnonzero(world._passers.agent >= 0)
-    held = world._passers  # limbs of who was touched lag behind the walk, so the engine gets the walk
+    slots = np.flatnonzero(world._people_bodies.agent >= 0)
+    held = world._people_bodies  # limbs of who was touched lag behind the walk, so the engine gets the walk
     place = scene.position[0, held.agent[slots]]
     held._late[slots] = False
-    ends = world.walkers.ends[world.walkers.row[held.agent[slots]]]
+    ends = world.people.ends[world.people.row[held.agent[slots]]]
     held._pose(slots, ends - np.tile(np.column_stack([place, np.zeros(len(place))]), 2)[:, None])
     for axis in (0, 1):
         world.data.qpos[held._place[slots] + axis] = place[:, axis]
@@ -104,11 +104,11 @@ def test_skins_and_capsules_are_within_5_cm_of_each_other():
         [[2.0, 0.0], [0.0, 2.0], [-2.0, 0.3], [0.4, -2.2]], velocity=[[0.0, 1.2], [1.0, 0.0], [0.5, 0.9], [0.0, 0.0]],
         heading=[1.57, 0.0, 1.0, 0.0],
     )  # fmt: skip
-    walkers = Walkers(scene, np.arange(4), seed=5)
+    motion = PeopleMotion(scene, np.arange(4), seed=5)
     for _ in range(7):
         scene = scene.replace(position=scene.position + 0.1 * scene.velocity)
-        walkers.walk(scene, 0.1)
-    seen = scene.replace(bodies=bodies(scene, walkers, skins=0))
+        motion.walk(scene, 0.1)
+    seen = scene.replace(scene_bodies=scene_bodies(scene, motion, skins=0))
     pose = SpatialPose.of((0.0, 0.0, 1.0))
     directions = fan(np.linspace(-np.pi, np.pi, 720)[None], np.radians(np.linspace(-40.0, 30.0, 60))[:, None])
     flat = beams(directions.reshape(-1, 3))
@@ -124,15 +124,15 @@ def test_skins_and_capsules_are_within_5_cm_of_each_other():
 
 
 def test_trees_and_robots_of_all_kinds_have_bodies():
-    stage = PhysicsStage(props=(Tree(3.0, 0.0, height=4.0, crown=1.0),))
+    stage = PhysicsStage(props=(TreeBody(3.0, 0.0, height=4.0, crown=1.0),))
     for name in ("pepper", "qolo", "wheelchair", "turtlebot2", "differential"):
         world = alone(Robot.load(name), stage=stage)
-        seen = world.seen()
+        seen = world.body_scene()
         pose = SpatialPose.of((-3.0, 0.0, 0.15 if name != "turtlebot2" else 0.06))
         hits = cast(seen, pose, beams(fan(np.linspace(-0.5, 0.5, 101))), FAR)
         assert 0 in hits.hit
         away = hits.distance[0][hits.hit[0] == 0].min()
-        assert away == pytest.approx(3.0 - world.chassis[0].robot.radius, abs=0.35)
+        assert away == pytest.approx(3.0 - world.robot_bodies[0].robot.radius, abs=0.35)
         trunk = cast(seen.without(0), pose, beams(fan(np.zeros(1))), FAR)
         assert trunk.hit.tolist() == [[-4]]
         assert trunk.distance[0, 0] == pytest.approx(6.0 - 0.15, abs=1e-9)
@@ -144,18 +144,18 @@ def test_trees_and_robots_of_all_kinds_have_bodies():
 def test_bodies_follow_the_scene_in_the_plane():
     robot = Robot.load("turtlebot2")
     scene = Scene.of([[1.0, 2.0], [4.0, 0.0]], heading=[0.5, 0.0], external=[True, False])
-    walkers = Walkers(scene, np.array([1]))
-    found = bodies(scene, walkers, {0: robot})
+    motion = PeopleMotion(scene, np.array([1]))
+    found = scene_bodies(scene, motion, {0: robot})
     assert found.parts[found.part[0]] == "pelvis"
     assert found.post_foot[0, :, :2].mean(axis=0) == pytest.approx([1.0, 2.0], abs=0.1)
-    gone = bodies(scene.without(1), walkers, {0: robot}, skins=2)
+    gone = scene_bodies(scene.without(1), motion, {0: robot}, skins=2)
     assert np.all(gone.radius[0, gone.owner == 1] == 0.0)
     assert np.all(np.isnan(gone.skins.vertices))
     own = cast(
-        scene.replace(bodies=found).without(0), Pose.of((1.0, 2.0), 0.0).lifted(0.1), beams(fan(np.zeros(8))), 9.0
+        scene.replace(scene_bodies=found).without(0), Pose.of((1.0, 2.0), 0.0).lifted(0.1), beams(fan(np.zeros(8))), 9.0
     )
     assert 0 not in own.hit
-    moved = bodies(scene, None, {0: Robot.load("pepper")}, joints={0: {"HeadYaw": 1.0}})
-    assert not np.array_equal(moved.start, bodies(scene, None, {0: Robot.load("pepper")}).start)
+    moved = scene_bodies(scene, None, {0: Robot.load("pepper")}, joints={0: {"HeadYaw": 1.0}})
+    assert not np.array_equal(moved.start, scene_bodies(scene, None, {0: Robot.load("pepper")}).start)
     with pytest.raises(InputError, match="the scene has 2 environments; give one"):
-        bodies(scene.environments([0, 0]), walkers)
+        scene_bodies(scene.environments([0, 0]), motion)

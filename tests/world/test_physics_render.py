@@ -9,7 +9,7 @@ from physics_worlds import alone, facing
 
 from crowdbot.core import InputError, Scene, Twist
 from crowdbot.models import ORCA
-from crowdbot.world import Camera, Cube, PhysicsStage, PhysicsWorld, Robot
+from crowdbot.world import CubeBody, PhysicsStage, PhysicsWorld, Robot, SceneCamera
 from crowdbot.world.rendering import gl_context
 
 
@@ -19,13 +19,13 @@ def world():
         [[0.0, 0.0], [3.0, 0.0], [3.0, 1.5]], heading=[0.0, math.pi, 0.0], external=[True, False, False],
         goal=[[0.0, 0.0], [3.0, 0.0], [3.0, 1.5]], walls=[[(5.0, -3.0), (5.0, 3.0)]], active=[True, True, False],
     )  # fmt: skip
-    stage = PhysicsStage(props=(Cube(3.0, -1.0, size=0.4),), wall_height=2.5)
+    stage = PhysicsStage(props=(CubeBody(3.0, -1.0, size=0.4),), wall_height=2.5)
     return PhysicsWorld(scene, ORCA(), {0: Robot.load("turtlebot2")}, 0.1, stage=stage)
 
 
 @pytest.mark.usefixtures("drawing")
 def test_depth_is_metric_and_everyone_is_named(world):
-    camera = Camera((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), width=160, height=120, view=math.radians(60.0))
+    camera = SceneCamera((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), width=160, height=120, view=math.radians(60.0))
     seen = world.render(camera, rgb=True, depth=True, segmentation=True)
     assert seen.rgb.shape == (120, 160, 3)
     assert seen.rgb.dtype == np.uint8
@@ -49,7 +49,7 @@ def test_depth_is_metric_and_everyone_is_named(world):
 
 @pytest.mark.usefixtures("drawing")
 def test_skins_follow_the_walk_and_the_camera_its_robot(world):
-    camera = Camera((0.2, 0.0, 0.4), (1.0, 0.0, 0.5), width=80, height=60, robot=0, detail=2)
+    camera = SceneCamera((0.2, 0.0, 0.4), (1.0, 0.0, 0.5), width=80, height=60, robot=0, detail=2)
     first = world.render(camera, segmentation=True, rgb=False)
     assert first.rgb is None
     assert first.depth is None
@@ -61,7 +61,7 @@ def test_skins_follow_the_walk_and_the_camera_its_robot(world):
     second = world.render(camera, segmentation=True, rgb=False)
     columns = [np.mean(np.argwhere(image.segmentation == 1)[:, 1]) for image in (first, second)]
     assert columns[1] < columns[0] - 10
-    world.chassis[0].put(0.0, 0.0, math.pi)
+    world.robot_bodies[0].put(0.0, 0.0, math.pi)
     world.scene = before.replace(heading=np.array([[math.pi, 0.0, 0.0]]))
     world.step({0: Twist()})
     assert 1 not in world.render(camera, segmentation=True, rgb=False).segmentation
@@ -71,7 +71,7 @@ def test_skins_follow_the_walk_and_the_camera_its_robot(world):
 def test_the_same_world_gives_the_same_image():
     def image():
         world = facing(Robot.load("turtlebot2"), gap=1.5)
-        return world.render(Camera((-1.0, -1.5, 1.5), (1.0, 0.0, 0.8), width=80, height=60, detail=2)).rgb
+        return world.render(SceneCamera((-1.0, -1.5, 1.5), (1.0, 0.0, 0.8), width=80, height=60, detail=2)).rgb
 
     one = image()
     assert np.array_equal(one, image())
@@ -84,7 +84,7 @@ def test_contexts_are_given_back():
     gc.collect()
     count = len(gl_context.OPEN)
     for detail in (2, 1):
-        world.render(Camera((-1.0, -1.5, 1.5), (1.0, 0.0, 0.8), width=8, height=8, detail=detail))
+        world.render(SceneCamera((-1.0, -1.5, 1.5), (1.0, 0.0, 0.8), width=8, height=8, detail=detail))
         assert len(gl_context.OPEN) == count + 1
     del world
     gc.collect()
@@ -101,11 +101,11 @@ def test_what_cannot_be_drawn_is_said(world, monkeypatch):
         ({"target": (0.0, 0.0, 1.0)}, "must be two different points"),
     ):
         with pytest.raises(InputError, match=match):
-            Camera(**({"position": (0.0, 0.0, 1.0), "target": (1.0, 0.0, 1.0)} | wrong))
+            SceneCamera(**({"position": (0.0, 0.0, 1.0), "target": (1.0, 0.0, 1.0)} | wrong))
     with pytest.raises(InputError, match="agent 2 is no robot"):
-        world.render(Camera((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), robot=2))
+        world.render(SceneCamera((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), robot=2))
     with pytest.raises(InputError, match="turtlebot2 has no link 'lasr_link', did you mean 'laser_link'"):
-        world.render(Camera((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), robot=0, link="lasr_link"))
+        world.render(SceneCamera((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), robot=0, link="lasr_link"))
     gl_context.backend.cache_clear()
     monkeypatch.setenv("MUJOCO_GL", "pencil")
     with pytest.raises(InputError, match="MUJOCO_GL = 'pencil' must be one of egl, osmesa"):
@@ -120,7 +120,7 @@ def test_what_cannot_be_drawn_is_said(world, monkeypatch):
 
 
 def test_a_camera_that_looks_down_has_ahead_on_top():
-    place, forward, up = Camera((0.0, 0.0, 3.0), (0.0, 0.0, 0.0)).axes(np.eye(4))
+    place, forward, up = SceneCamera((0.0, 0.0, 3.0), (0.0, 0.0, 0.0)).axes(np.eye(4))
     assert place.tolist() == [0.0, 0.0, 3.0]
     assert forward.tolist() == [0.0, 0.0, -1.0]
     assert up.tolist() == [1.0, 0.0, 0.0]

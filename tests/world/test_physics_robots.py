@@ -32,7 +32,7 @@ def test_real_robots_drive_in_the_physics_world(urdf, name):
     assert np.abs(world.data.qvel).max() < 5.0
     assert world.twists[0].forward[0] == pytest.approx(0.5, rel=0.02)
     assert scene.position[0, 0, 0] > 0.7
-    assert world.carrier(0).tilt < 1e-3
+    assert world.robot_body(0).tilt < 1e-3
     seen = world.bodies()
     assert np.all(seen.box_centre[0, :, 2] > 0.0)  # nothing lies below the floor
 
@@ -84,7 +84,7 @@ def test_a_car_steers_on_its_own_wheels(forward, turn):
     assert mean[0] == pytest.approx(forward, rel=0.02)
     assert mean[1] == pytest.approx(turn, rel=0.02, abs=0.01)
     assert mean[2] == pytest.approx(0.0, abs=0.02)
-    joints = world.carrier(0).joints()
+    joints = world.robot_body(0).joints()
     inner, outer = joints["front_left_steer"][0], joints["front_right_steer"][0]
     assert (abs(inner) > abs(outer)) == (turn / forward > 0.0) or turn == 0.0
     with pytest.raises(InputError, match="'front_left_steer' of car is a wheel; drive it by a Twist"):
@@ -150,19 +150,21 @@ def test_all_kinds_of_joints_move_as_they_should():
     world.command(0, {"j_revolute": 0.6, "j_continuous": 3.0, "j_prismatic": 0.2})
     for _ in range(40):
         world.step({0: Twist()})
-    chassis = world.carrier(0)
-    joints = chassis.joints()
+    robot_bodies = world.robot_body(0)
+    joints = robot_bodies.joints()
     assert joints["j_revolute"][0] == pytest.approx(0.6, abs=0.01)
     assert joints["j_continuous"][1] == pytest.approx(3.0, rel=0.02)
     assert joints["j_prismatic"][0] == pytest.approx(0.2, abs=0.01)
     assert joints["j_follower"][0] == pytest.approx(0.1 - 0.5 * joints["j_revolute"][0], abs=0.01)
-    assert chassis.frame("fixed")[:3, 3] - chassis.frame("base")[:3, 3] == pytest.approx([0.0, -0.2, 0.3], abs=1e-3)
-    assert chassis.frame("floating")[2, 3] < 0.4  # falls on
-    assert chassis.frame("planar")[2, 3] == pytest.approx(0.3, abs=1e-6)  # in its plane
+    assert robot_bodies.frame("fixed")[:3, 3] - robot_bodies.frame("base")[:3, 3] == pytest.approx(
+        [0.0, -0.2, 0.3], abs=1e-3
+    )
+    assert robot_bodies.frame("floating")[2, 3] < 0.4  # falls on
+    assert robot_bodies.frame("planar")[2, 3] == pytest.approx(0.3, abs=1e-6)  # in its plane
     world.command(0, {"j_revolute": 5.0})
     for _ in range(40):
         world.step({0: Twist()})
-    assert chassis.joints()["j_revolute"][0] == pytest.approx(1.0, abs=0.05)  # its limit
+    assert robot_bodies.joints()["j_revolute"][0] == pytest.approx(1.0, abs=0.05)  # its limit
 
 
 def test_effort_drives_a_joint_too():
@@ -170,4 +172,4 @@ def test_effort_drives_a_joint_too():
     world.command(0, {"j_continuous": 0.02})
     for _ in range(20):
         world.step({0: Twist()})
-    assert world.carrier(0).joints()["j_continuous"][1] == pytest.approx(0.02 / 0.01 * 1.0, rel=0.05)
+    assert world.robot_body(0).joints()["j_continuous"][1] == pytest.approx(0.02 / 0.01 * 1.0, rel=0.05)

@@ -5,25 +5,25 @@ import pytest
 from physics_worlds import alone, facing, ram
 
 from crowdbot.core import Twist
-from crowdbot.world import Cube, Party, PhysicsStage, Robot, two_body_force
-from crowdbot.world.physics.contact_events import CollisionBook
-from crowdbot.world.physics.contacts import Touch
+from crowdbot.world import ContactBody, CubeBody, PhysicsStage, Robot, two_body_force
+from crowdbot.world.physics.contact_events import ContactTracker
+from crowdbot.world.physics.contacts import EngineContact
 from crowdbot.world.physics.mjcf_model import LIMB_NAMES
 from crowdbot.world.physics.people_bodies import LIFTED, QUICK
 
-ROBOT, PERSON = Party("robot", 0), Party("person", 1)
+ROBOT, PERSON = ContactBody("robot", 0), ContactBody("person", 1)
 STEP = 0.005
 
 
-def book() -> CollisionBook:
+def book() -> ContactTracker:
     """Return a book of a robot of 50 kg and a person of 70 kg with limbs of 4 kg who looks at it, along -x."""
-    return CollisionBook(STEP, {ROBOT: 50.0, PERSON: 70.0}.get, lambda agent, limb: 4.0, lambda agent: np.pi)
+    return ContactTracker(STEP, {ROBOT: 50.0, PERSON: 70.0}.get, lambda agent, limb: 4.0, lambda agent: np.pi)
 
 
 def touch(force, normal=(1.0, 0.0, 0.0), limb="shank_l", robot=(0.0, 0.0, 0.0), person=(0.0, 0.0, 0.0), swing=None):
     """Return a touch of the robot with the person, by what the robot does to the person."""
     rows = [np.array(row, dtype=float) for row in (normal, (0.0, 0.0, 0.2), robot, person, swing or person)]
-    return Touch(ROBOT, PERSON, "base", limb, np.array(force, dtype=float), 0.002, *rows)
+    return EngineContact(ROBOT, PERSON, "base", limb, np.array(force, dtype=float), 0.002, *rows)
 
 
 def test_collisions_are_in_the_time_of_the_scene():
@@ -35,14 +35,14 @@ def test_collisions_are_in_the_time_of_the_scene():
         before = float(world.scene.position[0, 0, 0])
         scene = world.step({0: Twist(0.5, 0.0)})
         now = float(scene.time)
-        assert bool(world.forces) <= (len(world.collisions) > 0)
-        if met is None and world.collisions:
+        assert bool(world.forces) <= (len(world.contact_events) > 0)
+        if met is None and world.contact_events:
             met = now
-            (event,) = world.collisions
+            (event,) = world.contact_events
             assert now - world.dt - 1e-9 <= event.begin < event.end <= now + 1e-9
             share = (front - before) / (0.5 * world.dt)
             assert event.begin == pytest.approx(now - world.dt + share * world.dt, abs=0.03)
-    (event,) = world.collisions
+    (event,) = world.contact_events
     assert event.end <= float(world.scene.time) + 1e-9
     assert met is not None
 
@@ -52,12 +52,12 @@ class Watched:
 
     def __init__(self, world) -> None:
         self.world, self.rows, self._last = world, [], None
-        look, add = world._touches.look, world._book.add
-        world._touches.look = lambda: (look(), self._seen())
-        world._book.add = lambda time, touches: (add(time, touches), self._touched(time, touches))
+        look, add = world._contact_reader.look, world._contact_tracker.add
+        world._contact_reader.look = lambda: (look(), self._seen())
+        world._contact_tracker.add = lambda time, touches: (add(time, touches), self._touched(time, touches))
 
     def _seen(self) -> None:
-        model, data, geoms = self.world.engine_model, self.world.data, self.world._passers.geoms[0]
+        model, data, geoms = self.world.engine_model, self.world.data, self.world._people_bodies.geoms[0]
         reach = model.geom_size[geoms, 1:2] * data.geom_xmat[geoms].reshape(-1, 3, 3)[:, :, 2]
         now = np.stack([data.geom_xpos[geoms] - reach, data.geom_xpos[geoms] + reach], axis=1)
         self.speed = np.zeros_like(now) if self._last is None else (now - self._last) / STEP
@@ -77,7 +77,7 @@ def walked_into(ahead: float, steps: int):
     unseen = np.array([[False, True]])
     world.scene = world.scene.replace(goal=goal, preferred_speed=fast, max_speed=fast, visible=unseen)
     watched = Watched(world)
-    while not world.collisions:
+    while not world.contact_events:
         world.step({0: Twist(ahead, 0.0)})
         assert world.scene.time < 5.0
     for _ in range(steps):
@@ -92,7 +92,7 @@ def test_the_impact_speed_is_that_of_the_limb_against_the_robot(ahead):
     for _, low, high, one in watched.rows[:1]:
         own = float(one.second_velocity @ one.normal)
         assert low - 0.05 <= own <= high + 0.05
-    event = watched.world.collisions[0]
+    event = watched.world.contact_events[0]
     time, low, high, first = watched.rows[0]
     assert event.begin == pytest.approx(time - STEP)
     assert event.part == "leg"
@@ -149,13 +149,15 @@ def test_repeated_knocks_are_no_clamping():
 
 def test_a_leg_over_a_cube_is_lifted():
     """A cube appears under a foot: the engine's limb rises at once and stays above it, and nothing is clamped."""
-    world = facing(Robot.load("turtlebot2"), gap=3.0, dt=0.05, stage=PhysicsStage(props=(Cube(3.0, 0.0, size=0.08),)))
+    world = facing(
+        Robot.load("turtlebot2"), gap=3.0, dt=0.05, stage=PhysicsStage(props=(CubeBody(3.0, 0.0, size=0.08),))
+    )
     forces, heights = [], []
     for _ in range(40):
         world.step({0: Twist()})
         forces.append(sum(row.force for row in world.forces))
-        feet = world._passers.geoms[0][[LIMB_NAMES.index("foot_l"), LIMB_NAMES.index("foot_r")]]
+        feet = world._people_bodies.geoms[0][[LIMB_NAMES.index("foot_l"), LIMB_NAMES.index("foot_r")]]
         heights.append(float(world.data.geom_xpos[feet, 2].max()))
     assert max(heights) < LIFTED + 0.2
     assert np.mean(forces[10:]) < 100.0
-    assert all(event.steady_force < 100.0 for event in world.collisions)
+    assert all(event.steady_force < 100.0 for event in world.contact_events)

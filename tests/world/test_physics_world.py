@@ -14,21 +14,21 @@ from crowdbot.humans import LIMBS, People
 from crowdbot.models import ORCA
 from crowdbot.world import (
     AckermannDrive,
-    BodyContact,
-    Cube,
+    ContactModel,
+    CubeBody,
     DifferentialDrive,
-    Journeys,
-    Light,
+    JourneyAssignment,
+    LightSource,
+    PeopleSource,
     PhysicsStage,
     PhysicsWorld,
     PlanarWorld,
+    PolygonZone,
     Robot,
     Router,
-    Source,
-    Table,
-    Tree,
+    TableBody,
+    TreeBody,
     World,
-    Zone,
     builtin_robots,
 )
 
@@ -50,7 +50,7 @@ def test_robots_reach_the_speed_that_is_commanded(name):
         assert mean[0] == pytest.approx(goal.forward, rel=0.02, abs=0.02 * robot.drive.max_speed)
         assert mean[1] == pytest.approx(goal.turn, rel=0.02, abs=0.01)
         assert mean[2] == pytest.approx(0.0, abs=0.02)
-    assert world.chassis[0].tilt < 0.03
+    assert world.robot_bodies[0].tilt < 0.03
     assert world.contacts == ()
 
 
@@ -78,8 +78,8 @@ def test_without_a_touch_people_walk_as_in_the_plane():
     scene = scene.replace(position=away, goal=np.where(scene.external[..., None], away, scene.goal))
     options = {
         "router": Router.of(scene.walls),
-        "contact": BodyContact(),
-        "exits": [Zone([(-8.0, -8.0), (-6.0, -8.0), (-6.0, 8.0), (-8.0, 8.0)])],
+        "contact": ContactModel(),
+        "exits": [PolygonZone([(-8.0, -8.0), (-6.0, -8.0), (-6.0, 8.0), (-8.0, 8.0)])],
         "symmetry": 1e-3,
         "substeps": 2,
         "leave_radius": 0.3,
@@ -105,7 +105,7 @@ def test_near_a_robot_but_untouched_people_walk_as_in_the_plane():
     bodies = 0
     for _ in range(20):
         one, other = flat.step({0: Twist()}), deep.step({0: Twist()})
-        bodies += int(np.count_nonzero(deep._passers.agent >= 0))
+        bodies += int(np.count_nonzero(deep._people_bodies.agent >= 0))
         assert np.abs(one.position[0, 1] - other.position[0, 1]).max() < 1e-6
     assert bodies > 5
     assert deep.collisions == ()
@@ -118,7 +118,7 @@ def test_the_same_seed_gives_the_same_bytes_and_people_come_and_go():
     def digests(seed):
         world = PhysicsWorld(scene, ORCA(), {30: robot}, 0.1, seed, leave_radius=0.4)
         found = [world.step({30: Twist(0.8, 0.5)}).digest() for _ in range(60)]
-        return found, world.collisions, world.limbs().start.tobytes(), world.scene.active.sum()
+        return found, world.contact_events, world.limbs().start.tobytes(), world.scene.active.sum()
 
     first, again, other = digests(1), digests(1), digests(2)
     assert first == again
@@ -133,8 +133,8 @@ def test_a_pushed_person_goes_on_from_there():
     assert scene.position[0, 1, 0] > 1.3
     assert np.all(np.isfinite(scene.position))
     assert {contact.other for contact in world.contacts} <= {1}
-    assert world.collisions[0].first == ("robot", 0)
-    assert world.collisions[0].second == ("person", 1)
+    assert world.contact_events[0].first == ("robot", 0)
+    assert world.contact_events[0].second == ("person", 1)
     (x,) = world.limbs().start[0, :1, 0]
     assert x == pytest.approx(scene.position[0, 1, 0], abs=0.3)
     for _ in range(40):
@@ -173,8 +173,8 @@ def test_robots_bump_into_robots_and_walls():
         world.step({0: Twist(0.5, 0.0), 1: Twist(0.5, 0.0)})
         seen |= {(contact.robot, contact.other) for contact in world.contacts}
     assert seen == {(0, 1)}
-    assert world.collisions[0].cause == "mutual"
-    assert world.collisions[0].impact_speed == pytest.approx(1.0, rel=0.05)
+    assert world.contact_events[0].cause == "mutual"
+    assert world.contact_events[0].impact_speed == pytest.approx(1.0, rel=0.05)
     ring = [(1.0, -1.0), (2.0, -1.0), (2.0, 1.0), (1.0, 1.0)]
     room = [(-2.0, -2.0), (-2.0, 2.0), (3.0, 2.0), (3.0, -2.0)]
     for walls in ([ring], [room], [[(1.0, -1.0), (1.0, 1.0)]]):
@@ -190,7 +190,7 @@ def test_joints_are_commanded():
     world.command(0, {"HeadYaw": 0.5})
     for _ in range(40):
         world.step({0: Twist()})
-    assert world.chassis[0].joints()["HeadYaw"][0] == pytest.approx(0.5, abs=0.05)
+    assert world.robot_bodies[0].joints()["HeadYaw"][0] == pytest.approx(0.5, abs=0.05)
     with pytest.raises(InputError, match="has no motor on a joint 'HeadYow', did you mean 'HeadYaw'"):
         world.command(0, {"HeadYow": 0.5})
     with pytest.raises(InputError, match="agent 1 is no robot; robots are \\[0\\]"):
@@ -203,9 +203,11 @@ def test_joints_are_commanded():
 
 def test_props_stand_and_people_walk_around_those_that_stand_fast():
     robot = load("turtlebot2")
-    props = (Table(0.0, 0.0, heading=0.3), Tree(3.0, 3.0), Cube(6.0, 0.0, size=0.5))
+    props = (TableBody(0.0, 0.0, heading=0.3), TreeBody(3.0, 3.0), CubeBody(6.0, 0.0, size=0.5))
     scene = Scene.of([[-3.0, 0.05], [8.0, 8.0]], goal=[[3.0, 0.05], [8.0, 8.0]], external=[False, True])
-    world = PhysicsWorld(scene, ORCA(), {1: robot}, 0.1, stage=PhysicsStage(props=props, lights=(Light(0.0, 0.0),)))
+    world = PhysicsWorld(
+        scene, ORCA(), {1: robot}, 0.1, stage=PhysicsStage(props=props, lights=(LightSource(0.0, 0.0),))
+    )
     nearest = np.inf
     for _ in range(40):
         scene = world.step({1: Twist()})
@@ -217,20 +219,20 @@ def test_props_stand_and_people_walk_around_those_that_stand_fast():
 
 def test_a_person_walks_into_a_cube_and_pushes_it():
     scene = Scene.of([[0.0, 0.0], [9.0, 9.0]], goal=[[5.0, 0.0], [9.0, 9.0]], external=[False, True])
-    stage = PhysicsStage(props=(Cube(1.5, 0.0, size=0.4, mass=2.0),))
+    stage = PhysicsStage(props=(CubeBody(1.5, 0.0, size=0.4, mass=2.0),))
     world = PhysicsWorld(scene, ORCA(), {1: load("turtlebot2")}, 0.1, stage=stage)
     for _ in range(30):
         world.step({1: Twist()})
     assert world.prop(0)[0, 3] > 1.8
-    assert {(event.first.kind, event.second.kind) for event in world.collisions} == {("prop", "person")}
+    assert {(event.first.kind, event.second.kind) for event in world.contact_events} == {("prop", "person")}
 
 
 def test_few_bodies_are_enough_and_it_says_when_not():
     robot = load("cuybot")
     world = PhysicsWorld(crowded(60, robot, size=5.0), ORCA(), {60: robot}, 0.1, slots=3)
     world.step({60: Twist()})
-    assert np.count_nonzero(world._passers.agent >= 0) == 3
-    assert world.left_out > 0
+    assert np.count_nonzero(world._people_bodies.agent >= 0) == 3
+    assert world.skipped_people > 0
 
 
 def test_what_cannot_be_is_refused():
@@ -252,10 +254,10 @@ def test_what_cannot_be_is_refused():
     car = dataclasses.replace(robot, drive=AckermannDrive())
     refused('drives as AckermannDrive and has no wheels that steer; give it base="planar"', robots={0: car})
     refused("has no wheels that a motor turns", robots={0: dataclasses.replace(robot, wheels=())})
-    with pytest.raises(InputError, match="Cube: mass = 0.0 must be finite and above 0"):
-        Cube(0.0, 0.0, mass=0.0)
-    with pytest.raises(InputError, match="Light: brightness = 2.0 must be from 0 to 1"):
-        Light(0.0, 0.0, brightness=2.0)
+    with pytest.raises(InputError, match="CubeBody: mass = 0.0 must be finite and above 0"):
+        CubeBody(0.0, 0.0, mass=0.0)
+    with pytest.raises(InputError, match="LightSource: brightness = 2.0 must be from 0 to 1"):
+        LightSource(0.0, 0.0, brightness=2.0)
     with pytest.raises(InputError, match="PhysicsStage: wall_height = -1.0 must"):
         PhysicsStage(wall_height=-1.0)
 
@@ -272,11 +274,11 @@ def test_a_car_is_pulled():
 def test_people_who_come_in_have_bodies():
     robot = load("turtlebot2")
     scene = Scene.of([[8.0, 8.0], *[[0.0, 0.0]] * 5], external=[True] + [False] * 5, active=[True] + [False] * 5)
-    from crowdbot.world import Direction, Journey
+    from crowdbot.world import HeadingWaypoint, WaypointSequence
 
-    source = Source(
-        zone=Zone([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]),
-        journey=Journey((Direction(0.0),)),
+    source = PeopleSource(
+        zone=PolygonZone([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]),
+        journey=WaypointSequence((HeadingWaypoint(0.0),)),
         rate=2.0,
     )
     world = PhysicsWorld(
@@ -286,7 +288,7 @@ def test_people_who_come_in_have_bodies():
         0.1,
         sources=[source],
         ids=np.array([0, -1, -2, -3, -4, -5]),
-        journeys=Journeys((), -1),
+        journeys=JourneyAssignment((), -1),
     )
     for _ in range(30):
         scene = world.step({0: Twist()})
@@ -306,8 +308,8 @@ def test_a_crowd_stays_sound_and_memory_does_not_grow():
     robot = load("cuybot")
     scene = crowded(30, robot, seed=2, size=9.0)
     scene = scene.replace(walls=Scene.of([[0.0, 0.0]], walls=[[(-6, -6), (-6, 6), (6, 6), (6, -6)]]).walls)
-    stage = PhysicsStage(props=(Cube(2.0, 2.0), Table(-4.0, 4.0)))
-    world = PhysicsWorld(scene, ORCA(), {30: robot}, 0.1, stage=stage, contact=BodyContact())
+    stage = PhysicsStage(props=(CubeBody(2.0, 2.0), TableBody(-4.0, 4.0)))
+    world = PhysicsWorld(scene, ORCA(), {30: robot}, 0.1, stage=stage, contact=ContactModel())
     draw, used = np.random.default_rng(0), []
     for k in range(150):
         if k % 30 == 0:
@@ -325,6 +327,6 @@ def test_a_crowd_stays_sound_and_memory_does_not_grow():
     tracemalloc.stop()
     assert np.abs(world.prop(0)[:2, 3]).max() < 6.0
     assert used[1] - used[0] < 200_000
-    events = [event for event in world.collisions if event.second.kind == "person"]
+    events = [event for event in world.contact_events if event.second.kind == "person"]
     assert events
     assert max(event.simulated_peak for event in events) < 4000.0  # no limb is ever put inside of something

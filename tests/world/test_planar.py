@@ -71,12 +71,12 @@ def test_people_make_way_for_a_robot_they_see():
     assert ways[1] < 1e-9
 
 
-def standing_in_a_flow(berth):
+def standing_in_a_flow(robot_margin):
     """Return the smallest clearance of a robot that stands still while people walk past it both ways."""
     places = [[0.0, 0.0], *([x, 0.1 * k - 0.5] for k, x in enumerate(np.linspace(-8.0, 8.0, 10)))]
     goals = [[0.0, 0.0], *([-30.0 * np.sign(x), y] for x, y in places[1:])]
     start = Scene.of(places, goal=goals, external=np.arange(11) == 0, radius=0.25)
-    world = PlanarWorld(start, ORCA(), {0: FAST}, dt=0.1, berth=berth)
+    world = PlanarWorld(start, ORCA(), {0: FAST}, dt=0.1, robot_margin=robot_margin)
     paths = np.stack([start.position[0], *(scene.position[0] for scene in run(world, 80, Twist()))])
     away = paths[:, 1:] - paths[:, :1]
     assert np.array_equal(world.scene.radius, start.radius)

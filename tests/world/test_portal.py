@@ -5,10 +5,10 @@ import pytest
 
 from crowdbot.core import InputError, Scene, Twist
 from crowdbot.models import ORCA
-from crowdbot.world import DifferentialDrive, PlanarWorld, Portal, Zone
+from crowdbot.world import DifferentialDrive, PlanarWorld, PolygonZone, PortalTransfer
 
-RIGHT = Portal(Zone(((5, -3), (8, -3), (8, 3), (5, 3))), dx=-10.0)
-LEFT = Portal(Zone(((-8, -3), (-5, -3), (-5, 3), (-8, 3))), dx=10.0)
+RIGHT = PortalTransfer(PolygonZone(((5, -3), (8, -3), (8, 3), (5, 3))), dx=-10.0)
+LEFT = PortalTransfer(PolygonZone(((-8, -3), (-5, -3), (-5, 3), (-8, 3))), dx=10.0)
 
 
 def world(start, goal, **more):
@@ -61,4 +61,4 @@ def test_environments_do_not_disturb_each_other():
 @pytest.mark.parametrize("way", [{}, {"dx": np.inf}, {"dy": np.nan}])
 def test_a_portal_leads_elsewhere(way):
     with pytest.raises(InputError, match="must be finite, and not both 0"):
-        Portal(RIGHT.zone, **way)
+        PortalTransfer(RIGHT.zone, **way)

@@ -5,7 +5,7 @@ import pytest
 
 from crowdbot.core import InputError, Scene, Twist
 from crowdbot.models import ORCA
-from crowdbot.world import DifferentialDrive, PlanarWorld, Script, Track
+from crowdbot.world import DifferentialDrive, PlanarWorld, ReplayedPeople, ReplayedTrack
 
 TIME = np.array([0.5, 1.0, 2.0])
 PLACE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 3.0]])
@@ -16,7 +16,7 @@ def scene(*more):
 
 
 def test_somebody_is_on_the_track_from_its_beginning_to_its_end():
-    world = PlanarWorld(scene(), ORCA(), {}, 0.25, script=Script([Track(0, TIME, PLACE)]))
+    world = PlanarWorld(scene(), ORCA(), {}, 0.25, script=ReplayedPeople([ReplayedTrack(0, TIME, PLACE)]))
     assert not world.scene.active[0, 0]
     expected = {0.5: [0, 0], 0.75: [0.5, 0], 1.0: [1, 0], 1.25: [1, 0.75], 1.5: [1, 1.5], 1.75: [1, 2.25], 2.0: [1, 3]}
     for k in range(1, 12):
@@ -30,7 +30,7 @@ def test_somebody_is_on_the_track_from_its_beginning_to_its_end():
 
 
 def test_velocity_and_heading_are_those_of_the_way_ahead():
-    script = Script([Track(0, TIME, PLACE)])
+    script = ReplayedPeople([ReplayedTrack(0, TIME, PLACE)])
     now = script.begun(scene(), 1.0)
     assert now.velocity[0, 0].tolist() == [0.0, 3.0]
     assert now.heading[0, 0] == pytest.approx(np.pi / 2)
@@ -38,7 +38,11 @@ def test_velocity_and_heading_are_those_of_the_way_ahead():
 
 def test_nobody_jumps_into_a_contact_when_appearing():
     world = PlanarWorld(
-        scene([-4.0, 0.0]), ORCA(), {1: DifferentialDrive()}, 0.25, script=Script([Track(0, TIME, PLACE)])
+        scene([-4.0, 0.0]),
+        ORCA(),
+        {1: DifferentialDrive()},
+        0.25,
+        script=ReplayedPeople([ReplayedTrack(0, TIME, PLACE)]),
     )
     for _ in range(12):
         world.step({1: Twist()})
@@ -46,10 +50,10 @@ def test_nobody_jumps_into_a_contact_when_appearing():
 
 
 def test_a_robot_frees_who_is_near_and_only_those_who_may():
-    tracks = [Track(0, np.array([0.0, 9.0]), np.array([[0.0, 0.0], [9.0, 0.0]])),
-              Track(1, np.array([0.0, 9.0]), np.array([[0.0, 2.0], [9.0, 2.0]]))]  # fmt: skip
+    tracks = [ReplayedTrack(0, np.array([0.0, 9.0]), np.array([[0.0, 0.0], [9.0, 0.0]])),
+              ReplayedTrack(1, np.array([0.0, 9.0]), np.array([[0.0, 2.0], [9.0, 2.0]]))]  # fmt: skip
     start = Scene.of([[0, 0], [0, 2], [5, 0.1]], radius=0.25, external=[False, False, True])
-    world = PlanarWorld(start, ORCA(), {2: DifferentialDrive()}, 0.1, script=Script(tracks, [3.0, 0.0]))
+    world = PlanarWorld(start, ORCA(), {2: DifferentialDrive()}, 0.1, script=ReplayedPeople(tracks, [3.0, 0.0]))
     for _ in range(100):
         world.step({2: Twist()})
         assert world.contacts == () or world.contacts[0].other == 1
@@ -61,14 +65,44 @@ def test_a_robot_frees_who_is_near_and_only_those_who_may():
 @pytest.mark.parametrize(
     ("tracks", "release", "words"),
     [
-        ([Track(0, np.array([1.0, 1.0]), np.zeros((2, 2)))], 0.0, "its times do not rise"),
-        ([Track(0, np.array([1.0]), np.zeros((2, 2)))], 0.0, "must have places"),
-        ([Track(0, TIME, PLACE), Track(0, TIME, PLACE)], 0.0, "an agent has two tracks"),
-        ([Track(0, TIME, PLACE * np.nan)], 0.0, "is not finite"),
-        ([Track(0, TIME, PLACE)], -1.0, "release = -1.0 m must be finite and at least 0"),
-        ([Track(0, TIME, PLACE)], [1.0, 2.0], "one or one a track"),
+        ([ReplayedTrack(0, np.array([1.0, 1.0]), np.zeros((2, 2)))], 0.0, "its times do not rise"),
+        ([ReplayedTrack(0, np.array([1.0]), np.zeros((2, 2)))], 0.0, "must have places"),
+        ([ReplayedTrack(0, TIME, PLACE), ReplayedTrack(0, TIME, PLACE)], 0.0, "an agent has two tracks"),
+        ([ReplayedTrack(0, TIME, PLACE * np.nan)], 0.0, "is not finite"),
+        ([ReplayedTrack(0, TIME, PLACE)], -1.0, "release = -1.0 m must be finite and at least 0"),
+        ([ReplayedTrack(0, TIME, PLACE)], [1.0, 2.0], "one or one a track"),
     ],
 )
 def test_wrong_scripts_are_told(tracks, release, words):
     with pytest.raises(InputError, match=words):
-        Script(tracks, release)
+        ReplayedPeople(tracks, release)
+
+
+@pytest.mark.parametrize(("distance", "visible", "state"), [(1.99, True, 2.0), (2.01, True, 1.0), (1.99, False, 1.0)])
+def test_people_are_released_within_the_distance_of_a_visible_robot(distance, visible, state):
+    tracks = [ReplayedTrack(0, np.array([0.0, 9.0]), np.array([[0.0, 0.0], [9.0, 0.0]]))]
+    start = Scene.of([[0.0, 0.0], [0.0, distance]], external=[False, True], visible=[True, visible])
+    script = ReplayedPeople(tracks, 2.0)
+    now = script.begun(start)
+    assert now.memory["script"][0].tolist() == [state, 0.0]
+    assert script.held(now)[0].tolist() == [state == 1.0, False]
+    later = script.placed(now, 1.0)
+    if state == 2.0:
+        assert later.position[0, 0].tolist() == [0.0, 0.0]
+        assert later.goal[0, 0].tolist() == [2.5, 0.0]
+        assert later.max_speed[0, 0] == pytest.approx(1.3 * 1.5)
+        assert later.preferred_speed[0, 0] == pytest.approx(1.5)
+    else:
+        assert later.position[0, 0].tolist() == [1.0, 0.0]
+
+
+def test_released_people_leave_at_the_end_of_their_track():
+    tracks = [ReplayedTrack(0, np.array([0.0, 3.0]), np.array([[0.0, 0.0], [3.0, 0.0]]))]
+    start = Scene.of([[0.0, 0.0], [0.0, 1.0]], external=[False, True])
+    script = ReplayedPeople(tracks, 2.0)
+    free = script.begun(start)
+    near = free.replace(position=np.array([[[2.75, 0.0], [0.0, 1.0]]]))
+    assert script.placed(near, 1.4).active[0].tolist() == [True, True]
+    gone = script.placed(near, 1.5)
+    assert gone.active[0].tolist() == [False, True]
+    assert gone.memory["script"][0, 0] == 3.0

@@ -89,17 +89,17 @@ def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
 
 def _robot(name: str, trust: bool, packages: dict[str, Path]) -> dict[str, Any]:
     from crowdbot.core import InputError, RobotError
-    from crowdbot.world import Robot, described, read_urdf
+    from crowdbot.world import Robot, describe, read_urdf
 
     try:
         if Path(name).suffix in (".urdf", ".xacro"):
-            return {"problems": [], "robot": described(read_urdf(name, packages=packages))}
+            return {"problems": [], "robot": describe(read_urdf(name, packages=packages))}
         robot = Robot.load(name, trust=trust)
     except RobotError as error:
         return {"problems": list(error.problems)}
     except InputError as error:
         return {"problems": [str(error)]}
-    row = described(robot.model, robot.posture) | {
+    row = describe(robot.model, robot.posture) | {
         "footprint": robot.footprint.tolist(),
         "drive": repr(robot.drive),
         "latency": robot.latency,

@@ -17,7 +17,7 @@ COLLISIONS = "/crowdbot/collisions"
 
 
 class Pushed(NamedTuple):
-    """What two did to each other in one step: see ``crowdbot.world.BodyForce``.
+    """What two did to each other in one step: see ``crowdbot.world.ContactForce``.
 
     Fields:
         time: end of the step [s].
@@ -39,7 +39,7 @@ class Pushed(NamedTuple):
 
 
 class Collided(NamedTuple):
-    """From the first touch of two to their parting: see ``crowdbot.world.Collision``; times in [s]."""
+    """From the first touch of two to their parting: see ``crowdbot.world.BodyContactEvent``; times in [s]."""
 
     first: str
     second: str

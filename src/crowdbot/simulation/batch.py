@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from crowdbot.core import InputError, Scene
 from crowdbot.trials import Trial, check_trial
-from crowdbot.world import Stepping, Walk, together
+from crowdbot.world import CrowdStepRequest, StepGenerator, compute_together
 
 from .episode import Episode, Log
 from .runner import Running, stopping
@@ -58,11 +58,11 @@ def run_batch(
     )
 
 
-def _step(steps: Sequence[Stepping[str | None]]) -> None:
+def _step(steps: Sequence[StepGenerator[str | None]]) -> None:
     """Let all go one step, their questions answered together."""
     asking = [(one, next(one)) for one in steps]
     while asking:
-        answers = together([walk for _, walk in asking])
+        answers = compute_together([walk for _, walk in asking])
         asking = [
             (one, walk)
             for (one, _), answer in zip(asking, answers, strict=True)
@@ -70,7 +70,7 @@ def _step(steps: Sequence[Stepping[str | None]]) -> None:
         ]
 
 
-def _next(one: Stepping[str | None], answer: Scene) -> Walk | None:
+def _next(one: StepGenerator[str | None], answer: Scene) -> CrowdStepRequest | None:
     """Return the next question of a step, None when it is done."""
     try:
         return one.send(answer)

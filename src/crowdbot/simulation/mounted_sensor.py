@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, InputError, Pose, SpatialPose, stream
+from crowdbot.core import InputError, Pose, SpatialPose, stream
 from crowdbot.sensors import (
     Reading,
     Schedule,
@@ -18,11 +18,11 @@ from crowdbot.sensors import (
     Tracked,
 )
 from crowdbot.trials import Mount, Robot
-from crowdbot.world import quaternion
+from crowdbot.world import MountPlacement, World
 
 from .sensor_view import Surroundings
 
-__all__ = ["Probe", "Told", "bodies_for", "named", "probes_of", "spatial"]
+__all__ = ["Probe", "Told", "named", "probes_of", "spatial"]
 
 Ints = NDArray[np.int64]
 LEVEL = 1e-9
@@ -83,19 +83,8 @@ class Probe:
 
     def pose(self, agent: int, around: Surroundings) -> Pose | SpatialPose:
         """Return where the sensor is: in the plane when it looks from above, otherwise in space."""
-        link, chassis = self.mount.link, around.chassis(agent)
-        if chassis is None or (not self.space and not link):
-            base = around.pose(agent)
-            x, y, z, roll, pitch, yaw = self.placed
-            return base.lifted(0.0).mounted(x, y, z, roll, pitch, yaw) if self.space else base.mounted(x, y, yaw)
-        matrix = chassis.frame(link or chassis.robot.model.root) @ self.mount.origin
-        found = SpatialPose(matrix[None, :3, 3].copy(), quaternion(matrix[:3, :3])[None])
-        return found if self.space else found.planar
-
-
-def bodies_for(trial: Any) -> str:
-    """Return what people are to sensors: ``discs``, ``limbs`` or ``skins``."""
-    return trial.bodies or ("limbs" if trial.world == "physics" else "discs")
+        mount = MountPlacement(self.mount.link, self.mount.origin, self.placed)
+        return around.world.sensor_pose(agent, mount, self.space)
 
 
 def spatial(robot: Robot, mount: Mount, bodies: str) -> bool:
@@ -106,17 +95,17 @@ def spatial(robot: Robot, mount: Mount, bodies: str) -> bool:
 
 
 def probes_of(
-    trial: Any, robot: Robot, clock: Clock, seed: int, known: Mapping[str, Probe] | None = None
+    trial: Any, robot: Robot, world: World, seed: int, known: Mapping[str, Probe] | None = None
 ) -> tuple[Probe, ...]:
     """Return the sensors of a robot at work; those of ``known`` go on with their chance and what is on its way."""
-    bodies = bodies_for(trial)
+    bodies = trial.bodies or world.people_shape
     found = []
     for mount in robot.sensors:
         sensor = mount.sensor
         probe = Probe(
             dataclasses.replace(mount, sensor=sensor.with_skins()) if bodies == "skins" else mount,
             robot.placed(mount),
-            robot.schedule(mount, clock),
+            robot.schedule(mount, world.clock),
             stream(seed, "sensor", robot.name, mount.name),
             spatial(robot, mount, bodies),
             sensor.begin(),

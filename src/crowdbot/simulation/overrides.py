@@ -34,17 +34,20 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
     if trial == old and seed is None:
         return
     _check(old, trial, simulation.world.clock.time)
-    world.turn_to(
+    world.reconfigure(
         _scene(simulation, trial),
         [source.source(trial.journeys, crowd_names(trial.crowd)) for source in trial.sources],
         seed,
         model=_model(simulation, trial),
         drives={carrier.agent: robot.drive for carrier, robot in zip(simulation.carriers, trial.robots, strict=True)},
-        berth=trial.robot_margin,
+        latency={
+            carrier.agent: robot.latency for carrier, robot in zip(simulation.carriers, trial.robots, strict=True)
+        },
+        robot_margin=trial.robot_margin,
         contact=None if trial.contact is None else trial.contact.bodies(),
         limits=None if trial.limits is None else trial.limits.kept(),
         exits=[way.out() for way in trial.exits],
-        symmetry=trial.heading_jitter,
+        heading_jitter=trial.heading_jitter,
         substeps=trial.substeps,
         **_router(old, trial),
     )
@@ -81,7 +84,7 @@ def _check(old: Trial, new: Trial, time: float) -> None:
 def _scene(simulation: Simulation, trial: Trial) -> Any:
     scene = simulation.world.scene
     if trial.stage != simulation.trial.stage:
-        if trial.world == "physics":
+        if simulation.world.walls_fixed:
             raise InputError(
                 "the stage cannot change in a branch of the physics world: its walls and props have bodies"
             )
@@ -115,12 +118,11 @@ def _router(old: Trial, new: Trial) -> dict[str, Any]:
 def _carrier(simulation: Simulation, old: Carrier, robot: Robot, seed: int | None) -> Carrier:
     """Return a robot that goes on: what it holds and what its sensors said, as far as it still has them."""
     clock, names = simulation.world.clock, {mount.name for mount in robot.sensors}
-    chassis = simulation.around.chassis(old.agent)
-    if chassis is not None:
-        chassis.robot = robot.body
-    probes = probes_of(simulation.trial, robot, clock, simulation.seed, {one.mount.name: one for one in old.probes})
+    probes = probes_of(
+        simulation.trial, robot, simulation.world, simulation.seed, {one.mount.name: one for one in old.probes}
+    )
     if seed is not None:
-        fresh = probes_of(simulation.trial, robot, clock, seed)
+        fresh = probes_of(simulation.trial, robot, simulation.world, seed)
         probes = tuple(dataclasses.replace(one, rng=new.rng) for one, new in zip(probes, fresh, strict=True))
     same = type(old.robot.navigator) is type(robot.navigator)
     return dataclasses.replace(

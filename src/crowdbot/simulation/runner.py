@@ -13,7 +13,7 @@ from typing import Protocol, TypeVar
 from crowdbot.core import Clock, ExternalClock, InputError
 from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, Robot, Trial, check_trial
-from crowdbot.world import Stepping, alone
+from crowdbot.world import StepGenerator, run_step
 
 from .episode import Episode, Log
 from .simulation import Frame, Simulation
@@ -90,9 +90,9 @@ class Running:
         Raises:
             InputError: it has ended before.
         """
-        return alone(self.stepping())
+        return run_step(self.stepping())
 
-    def stepping(self) -> Stepping[str | None]:
+    def stepping(self) -> StepGenerator[str | None]:
         """Go one step on as :meth:`step` does, and ask somebody else how the crowd walks."""
         if self.outcome is not None:
             raise InputError(f"the run has ended ({self.outcome}) at {self.simulation.world.clock.time:g} s")

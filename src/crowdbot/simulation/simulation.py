@@ -16,7 +16,6 @@ At tick 0 only 6 to 8 happen. A sensor, a navigator and a recorder are due every
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -25,12 +24,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Clock, InputError, Scene, TrialError, Twist
-from crowdbot.metrics import wall_clearance
 from crowdbot.metrics.contacts import HOLD
 from crowdbot.navigation import Limits, Observation
 from crowdbot.sensors import Reading, Scan
 from crowdbot.trials import Mount, Robot, Trial, cast_of, place
-from crowdbot.world import CommandDelay, Pending, Stepping, Twists, alone
+from crowdbot.world import StepGenerator, run_step
 
 from .mounted_sensor import Probe, probes_of
 from .sensor_view import Surroundings
@@ -38,7 +36,7 @@ from .termination import ended, ways_out
 from .world_builder import limits_of, start_scene, world_of
 
 if TYPE_CHECKING:
-    from crowdbot.world import BodyForce, Collision, Party
+    from crowdbot.world import BodyContactEvent, ContactForce
 
 __all__ = ["Carrier", "Frame", "Simulation", "Touch", "start_scene"]
 
@@ -86,8 +84,8 @@ class Frame:
     readings: tuple[tuple[Robot, Mount, Reading], ...]
     due: bool
     touches: tuple[Touch, ...] = ()
-    forces: tuple[BodyForce, ...] = ()
-    collisions: tuple[Collision, ...] = ()
+    forces: tuple[ContactForce, ...] = ()
+    collisions: tuple[BodyContactEvent, ...] = ()
 
 
 @dataclass
@@ -107,17 +105,6 @@ class Carrier:
     """Memory of the navigator, once it has begun."""
     begun: bool = False
     arrived: bool = False
-    pending: tuple[Pending, ...] = ()
-    in_force: Twist | Twists = field(default_factory=Twist)
-    """Of a drive with latency in the plane: commands on their way, and the one that the wheels follow."""
-
-    def obeyed(self, dt: float) -> Twist | Twists:
-        """Return the command that the wheels follow in the next step; the physics world delays it by itself."""
-        if self.robot.latency == 0.0:
-            return self.command
-        delay = CommandDelay(self.robot.latency)
-        self.pending, self.in_force = delay.step(self.pending, self.in_force, self.command, dt)
-        return self.in_force
 
 
 class Simulation:
@@ -169,23 +156,19 @@ class Simulation:
         if clock is not None:
             self._keep_time(clock)
         self.ended: str | None = None
-        self._segments = trial.stage.as_walls().segments()
         self._ways_out = ways_out(people)
         self._told = 0
 
     def step(self) -> None:
         """Go one step on: parts 1 to 5 of the order."""
-        alone(self.stepping())
+        run_step(self.stepping())
 
-    def stepping(self) -> Stepping[None]:
+    def stepping(self) -> StepGenerator[None]:
         """Go one step on, and ask somebody else how the crowd walks: see :func:`crowdbot.simulation.run_batch`."""
         before, ids = self.world.scene, self.ids.copy()
-        physics = self.trial.world == "physics"
-        yield from self.world.stepping(
-            {c.agent: c.command if physics else c.obeyed(self.world.dt) for c in self.carriers}
-        )
+        yield from self.world.step_requests({carrier.agent: carrier.command for carrier in self.carriers})
         self._let_leave()
-        self.around.moved()
+        self.world.pose_people()
         self._judge(before, ids)
 
     def sense(self) -> tuple[tuple[Robot, Mount, Reading], ...]:
@@ -254,22 +237,19 @@ class Simulation:
         )
 
     @property
-    def forces(self) -> tuple[BodyForce, ...]:
+    def forces(self) -> tuple[ContactForce, ...]:
         """What bodies of the physics world did to each other in the latest step; none in the plane."""
-        return tuple(getattr(self.world, "forces", ()))
+        return self.world.forces
 
     @property
     def eventful(self) -> bool:
         """Whether something has happened that is recorded even when no scene is due."""
         return bool(self.touches or self.forces)
 
-    def _collisions(self, last: bool) -> tuple[Collision, ...]:
+    def _collisions(self, last: bool) -> tuple[BodyContactEvent, ...]:
         """Return the collisions that have ended since they were asked for before, by their ends."""
-        world: Any = self.world
-        if self.trial.world != "physics":
-            return ()
         now = self.world.clock.time
-        over = [one for one in world.collisions if last or now - one.end > HOLD + INSTANT]
+        over = [one for one in self.world.contact_events if last or now - one.end > HOLD + INSTANT]
         over.sort(key=lambda one: (one.end, one.begin, one.first, one.second))
         new, self._told = over[self._told :], len(over)
         return tuple(new)
@@ -277,8 +257,7 @@ class Simulation:
     def turn_to(self, trial: Trial, seed: int) -> None:
         """Go on by another trial; see :func:`crowdbot.simulation.overrides.turn_to`, which changes the world first."""
         self.trial, self.seed = trial, seed
-        self.around.trial = trial
-        self._segments = trial.stage.as_walls().segments()
+        self.around.change(trial)
 
     def ask(self, robot: str, command: Twist) -> None:
         """Give a robot another command, which it holds until its navigator decides again: for bridges, part 7.
@@ -310,7 +289,7 @@ class Simulation:
             agent,
             limits_of(robot.drive),
             every(robot.control_period),
-            probes_of(self.trial, robot, self.world.clock, self.seed),
+            probes_of(self.trial, robot, self.world, self.seed),
         )
 
     def _keep_time(self, clock: Clock) -> None:
@@ -341,11 +320,10 @@ class Simulation:
         now = self.world.scene
         touches = [Touch(int(ids[one.robot]), int(ids[one.other]), one.clearance) for one in self.world.contacts]
         for carrier in self.carriers:
-            path = np.stack([before.position[0, carrier.agent], now.position[0, carrier.agent]])
-            gap = self._wall_gap(carrier, path)
+            gap = float(self.world.wall_clearance(carrier.agent)[0])
             if gap < 0.0:
                 touches.append(Touch(int(ids[carrier.agent]), WALL, gap))
-            away = float(np.hypot(*(path[1] - np.array(carrier.robot.goal.position))))
+            away = float(np.hypot(*(now.position[0, carrier.agent] - np.array(carrier.robot.goal.position))))
             carrier.arrived |= away < carrier.robot.goal.tolerance
         self.touches = tuple(touches)
         collided = bool(touches)
@@ -355,18 +333,6 @@ class Simulation:
             self.event = "success"
         if self.ended is None:
             self.ended = ended(self)
-
-    def _wall_gap(self, carrier: Carrier, path: NDArray[np.float64]) -> float:
-        """Return the clearance [m] of a robot to what stands fast, below 0 when they touch."""
-        if self.trial.world != "physics":
-            return float(wall_clearance(path, carrier.robot.radius, self._segments)[1])
-        depth = [one.depth for one in self.forces if one.first == ("robot", carrier.agent) and self._fast(one.second)]
-        return -max(*depth, 1e-9) if depth else math.inf
-
-    def _fast(self, party: Party) -> bool:
-        if party.kind == "prop":
-            return not self.trial.stage.props[party.number].prop().movable
-        return party.kind == "wall"
 
 
 def _rows(twists: Sequence[Twist]) -> NDArray[np.float64]:

@@ -24,9 +24,9 @@ from crowdbot.trials import (
     expand_sweeps,
     own,
 )
-from crowdbot.world import Journeys, PlanarWorld, Router, Script, Source, Track
+from crowdbot.world import JourneyAssignment, PeopleSource, PlanarWorld, ReplayedPeople, ReplayedTrack, Router
 
-from .mounted_sensor import bodies_for, spatial
+from .mounted_sensor import spatial
 
 __all__ = ["limits_of", "start_scene", "world_of"]
 
@@ -52,7 +52,7 @@ def world_of(trial: Trial, people: People, seed: int) -> tuple[PlanarWorld, Figu
     whole: dict[str, Any] = {
         "dt": trial.step,
         "seed": seed,
-        "berth": trial.robot_margin,
+        "robot_margin": trial.robot_margin,
         "router": router,
         "contact": None if trial.contact is None else trial.contact.bodies(),
         "limits": None if trial.limits is None else trial.limits.kept(),
@@ -61,7 +61,7 @@ def world_of(trial: Trial, people: People, seed: int) -> tuple[PlanarWorld, Figu
         "exits": [way.out() for way in trial.exits],
         "portals": [portal.gate() for portal in trial.portals],
         "script": _script(people),
-        "symmetry": trial.heading_jitter,
+        "heading_jitter": trial.heading_jitter,
         "substeps": trial.substeps,
         "ids": np.concatenate([np.arange(there), -1 - np.arange(spare)]),
     }
@@ -70,7 +70,9 @@ def world_of(trial: Trial, people: People, seed: int) -> tuple[PlanarWorld, Figu
     if trial.world == "physics":
         world = _with_bodies(trial, scene, model, robots, figures, whole)
     else:
-        world = PlanarWorld(scene, model, {agent: robot.drive for agent, robot in robots.items()}, **whole)
+        latency = {agent: robot.latency for agent, robot in robots.items()}
+        drives = {agent: robot.drive for agent, robot in robots.items()}
+        world = PlanarWorld(scene, model, drives, latency=latency, **whole)
     walkers = first - len(people.walks)
     if walkers and (router or journeys):
         world.scene = _setting_off(world.scene, walkers, router, journeys, people.heading)
@@ -81,7 +83,7 @@ def _embodied(trial: Trial) -> bool:
     """Whether anything needs the bodies of people."""
     if trial.world == "physics":
         return True
-    kind = bodies_for(trial)
+    kind = trial.bodies or PlanarWorld.people_shape
     return any(spatial(robot, mount, kind) for robot in trial.robots for mount in robot.sensors)
 
 
@@ -143,7 +145,7 @@ def limits_of(drive: Any) -> Limits:
     return Limits(**({"max_speed": 1.0, "max_turn_rate": 1.0} | known))
 
 
-def _spare(trial: Trial, first: int, sources: Sequence[Source], seed: int) -> int:
+def _spare(trial: Trial, first: int, sources: Sequence[PeopleSource], seed: int) -> int:
     """Return how many free places are needed: as many as people ever come in, up to the capacity."""
     end = trial.ticks * trial.step
     come = sum(source.come_by(end, seed, number) for number, source in enumerate(sources))
@@ -172,7 +174,7 @@ def _values(people: People, members: Iterable[int]) -> dict[int, dict[str, float
     return found
 
 
-def _script(people: People) -> Script | None:
+def _script(people: People) -> ReplayedPeople | None:
     """Return the recordings that people follow."""
     if not people.walks:
         return None
@@ -181,15 +183,15 @@ def _script(people: People) -> Script | None:
     release = [
         one.reaction_distance if isinstance(one, RecordedPeople) and one.mode == "reactive" else 0.0 for one in owners
     ]
-    tracks = [Track(first + k, walk.time, walk.position) for k, walk in enumerate(people.walks)]
-    return Script(tracks, release)
+    tracks = [ReplayedTrack(first + k, walk.time, walk.position) for k, walk in enumerate(people.walks)]
+    return ReplayedPeople(tracks, release)
 
 
-def _journeys(trial: Trial, people: People, agents: int) -> Journeys | None:
+def _journeys(trial: Trial, people: People, agents: int) -> JourneyAssignment | None:
     which = _chosen(people, agents, "journey", tuple(journey.name for journey in trial.journeys), -1)
     if np.all(which < 0):
         return None
-    return Journeys(tuple(journey.journey() for journey in trial.journeys), which)
+    return JourneyAssignment(tuple(journey.journey() for journey in trial.journeys), which)
 
 
 def _chosen(people: People, agents: int, word: str, names: tuple[str, ...], otherwise: int) -> NDArray[np.int64]:
@@ -205,12 +207,12 @@ def _chosen(people: People, agents: int, word: str, names: tuple[str, ...], othe
 
 
 def _setting_off(
-    scene: Scene, first: int, router: Router | None, journeys: Journeys | None, given: NDArray[np.float64]
+    scene: Scene, first: int, router: Router | None, journeys: JourneyAssignment | None, given: NDArray[np.float64]
 ) -> Scene:
     """Return the scene in which the ``first`` people walk on their ways, around walls and to their first stops."""
     position, aim = scene.position[0, :first], scene.goal[0, :first].copy()
     if router is not None:
-        led = np.ones(first, dtype=np.bool_) if journeys is None else journeys.routed(scene)[0, :first]
+        led = np.ones(first, dtype=np.bool_) if journeys is None else journeys.uses_routing(scene)[0, :first]
         aim[led] = router.towards(position[led], aim[led])
     away = aim - position
     distance = np.hypot(away[:, 0], away[:, 1])

@@ -56,12 +56,12 @@ class Camera:
     def __post_init__(self) -> None:
         check(self)
 
-    def view(self, agent: int | None) -> world.Camera:
+    def view(self, agent: int | None) -> world.SceneCamera:
         """Return it for a studio; ``agent`` is the robot that carries it."""
         flat = math.cos(self.pitch)
         ahead = (flat * math.cos(self.heading), flat * math.sin(self.heading), -math.sin(self.pitch))
         place = (self.x, self.y, self.z)
-        return world.Camera(
+        return world.SceneCamera(
             place,
             (place[0] + ahead[0], place[1] + ahead[1], place[2] + ahead[2]),
             width=self.width,

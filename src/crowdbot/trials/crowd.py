@@ -120,9 +120,9 @@ class Contact:
     def __post_init__(self) -> None:
         check(self)
 
-    def bodies(self) -> world.BodyContact:
+    def bodies(self) -> world.ContactModel:
         """Return what bodies do in a world."""
-        return world.BodyContact(self.variant, self.stiffness, self.iterations)
+        return world.ContactModel(self.variant, self.stiffness, self.iterations)
 
 
 @dataclass(frozen=True, kw_only=True)

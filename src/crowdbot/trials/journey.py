@@ -27,9 +27,9 @@ class Point:
     def __post_init__(self) -> None:
         check(self)
 
-    def stop(self) -> world.Stop:
+    def stop(self) -> world.Waypoint:
         """Return the stop of a world."""
-        return world.Point(self.x, self.y, self.tolerance)
+        return world.PointWaypoint(self.x, self.y, self.tolerance)
 
 
 @dataclass(frozen=True)
@@ -41,9 +41,9 @@ class Direction:
     def __post_init__(self) -> None:
         check(self)
 
-    def stop(self) -> world.Stop:
+    def stop(self) -> world.Waypoint:
         """Return the stop of a world."""
-        return world.Direction(self.heading)
+        return world.HeadingWaypoint(self.heading)
 
 
 @dataclass(frozen=True)
@@ -61,9 +61,9 @@ class Zone:
     def __post_init__(self) -> None:
         check(self)
 
-    def stop(self) -> world.Stop:
+    def stop(self) -> world.Waypoint:
         """Return the stop of a world."""
-        return world.Zone(self.points, self.aim, self.tolerance)
+        return world.PolygonZone(self.points, self.aim, self.tolerance)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,9 +85,9 @@ class Journey:
     def __post_init__(self) -> None:
         check(self)
 
-    def journey(self) -> world.Journey:
+    def journey(self) -> world.WaypointSequence:
         """Return the journey of a world."""
-        return world.Journey(tuple(stop.stop() for stop in self.stops), self.then)
+        return world.WaypointSequence(tuple(stop.stop() for stop in self.stops), self.then)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,9 +100,9 @@ class Exit:
     def __post_init__(self) -> None:
         check(self)
 
-    def out(self) -> world.Zone:
+    def out(self) -> world.PolygonZone:
         """Return the exit of a world."""
-        return world.Zone(self.zone)
+        return world.PolygonZone(self.zone)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,6 +123,6 @@ class Portal:
         if self.dx == 0.0 and self.dy == 0.0:
             raise InputError("needs dx or dy: how far from there people come out")
 
-    def gate(self) -> world.Portal:
+    def gate(self) -> world.PortalTransfer:
         """Return the portal of a world."""
-        return world.Portal(world.Zone(self.zone), self.dx, self.dy)
+        return world.PortalTransfer(world.PolygonZone(self.zone), self.dx, self.dy)

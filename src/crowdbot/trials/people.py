@@ -120,12 +120,12 @@ class Source:
         come = self.rate * max(0.0, min(self.end, duration) - self.begin) + 1.0
         return come if self.max_count is None else min(come, float(self.max_count))
 
-    def source(self, journeys: Sequence[Journey], crowds: Sequence[str]) -> world.Source:
+    def source(self, journeys: Sequence[Journey], crowds: Sequence[str]) -> world.PeopleSource:
         """Return the source of a world, given the journeys and the names of the crowds of the trial."""
         named = next((one.journey() for one in journeys if one.name == self.journey), None)
-        goal = named or world.Journey((world.Zone(self.goal, aim="random"),), self.arrival)
-        return world.Source(
-            world.Zone(self.zone),
+        goal = named or world.WaypointSequence((world.PolygonZone(self.goal, aim="random"),), self.arrival)
+        return world.PeopleSource(
+            world.PolygonZone(self.zone),
             goal,
             self.rate,
             self.timing,

@@ -52,9 +52,9 @@ class Cube:
         """Its outline ``[N, 2]`` [m], counter-clockwise."""
         return _outline(dataclasses.replace(self, fixed=True))
 
-    def prop(self) -> world.Prop:
+    def prop(self) -> world.PropBody:
         """Return it for a world with bodies."""
-        return world.Cube(**_values(self))
+        return world.CubeBody(**_values(self))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,9 +68,9 @@ class Table(_Standing):
     width: float = attribute(0.8, about="of its top", unit="m", exclusive_min=0.05, max=100.0)
     height: float = attribute(0.74, about="above the floor", unit="m", exclusive_min=0.05, max=100.0)
 
-    def prop(self) -> world.Prop:
+    def prop(self) -> world.PropBody:
         """Return it for a world with bodies."""
-        return world.Table(**_values(self))
+        return world.TableBody(**_values(self))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,9 +84,9 @@ class Tree(_Standing):
     trunk: float = attribute(0.15, about="radius of the trunk", unit="m", min=0.001, max=10.0)
     crown: float = attribute(1.4, about="radius of the crown", unit="m", min=0.001, max=50.0)
 
-    def prop(self) -> world.Prop:
+    def prop(self) -> world.PropBody:
         """Return it for a world with bodies."""
-        return world.Tree(**_values(self))
+        return world.TreeBody(**_values(self))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,9 +102,9 @@ class Light:
     def __post_init__(self) -> None:
         check(self)
 
-    def light(self) -> world.Light:
+    def light(self) -> world.LightSource:
         """Return it for a world with bodies."""
-        return world.Light(**_values(self))
+        return world.LightSource(**_values(self))
 
 
 Prop = Cube | Table | Tree

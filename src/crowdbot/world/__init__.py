@@ -1,7 +1,7 @@
 """Worlds: people and robots move together, one time step at a time.
 
-Contracts: :class:`World`, :class:`Drive`, :class:`Stop`. Names are loaded on first use; MuJoCo is loaded when a world
-or a renderer needs it.
+Contracts: :class:`World`, :class:`Drive`, :class:`Waypoint`. Names are loaded on first use. MuJoCo is loaded when a
+world or a renderer needs it.
 """
 
 from __future__ import annotations
@@ -10,163 +10,171 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .crowd.contact import BodyContact
-    from .crowd.journey import Journey, Journeys
+    from .crowd.contact import ContactModel
+    from .crowd.journey import JourneyAssignment, WaypointSequence
     from .crowd.limits import CrowdLimits
-    from .crowd.portal import Portal
-    from .crowd.replay import Script, Track
+    from .crowd.portal import PortalTransfer
+    from .crowd.replay import ReplayedPeople, ReplayedTrack
     from .crowd.routing import Router
-    from .crowd.source import Source
-    from .crowd.walk import Stepping, Walk, alone, together
-    from .crowd.waypoint import Direction, Point, Stop, Zone
-    from .physics.body_region_limits import TISSUES, Tissue, permitted_speed, region_of, two_body_force
-    from .physics.colliders import bodies
-    from .physics.contact_events import BodyForce, Collision
-    from .physics.contacts import Party
-    from .physics.people_motion import Limbs, Walkers
-    from .physics.robot_body import Chassis
-    from .physics.stage import Cube, Light, PhysicsStage, Prop, Table, Tree
+    from .crowd.source import PeopleSource
+    from .crowd.walk import CrowdStepRequest, StepGenerator, compute_together, run_step
+    from .crowd.waypoint import HeadingWaypoint, PointWaypoint, PolygonZone, Waypoint
+    from .physics.body_region_limits import (
+        BODY_REGION_LIMITS,
+        BodyRegionLimits,
+        permitted_speed,
+        region_of,
+        two_body_force,
+    )
+    from .physics.colliders import scene_bodies
+    from .physics.contact_events import BodyContactEvent, ContactForce
+    from .physics.contacts import ContactBody
+    from .physics.people_motion import LimbCapsules, PeopleMotion
+    from .physics.robot_body import RobotBody
+    from .physics.stage import CubeBody, LightSource, PhysicsStage, PropBody, TableBody, TreeBody
     from .physics.world import PhysicsWorld
     from .planar import PlanarWorld
-    from .rendering.camera import Camera, Images
-    from .rendering.renderer import Studio
+    from .rendering.camera import CameraImages, SceneCamera
+    from .rendering.renderer import Renderer
     from .robots.ackermann import AckermannDrive, SteeredTwists
-    from .robots.drive import DifferentialDrive, Drive, Omnidirectional, Twists, moved
-    from .robots.mount import SensorMount
+    from .robots.drive import DifferentialDrive, Drive, Omnidirectional, Twists, integrate_twist
+    from .robots.mount import MountPlacement, SensorMount
     from .robots.robot import Robot, builtin_robots
     from .robots.servo import CommandDelay, Pending, VelocityServo
     from .robots.wheel import Wheel
-    from .urdf import RobotModel, described, read_urdf
+    from .urdf import RobotModel, describe, read_urdf
     from .urdf.transforms import frame, quaternion, roll_pitch_yaw
     from .world import Contact, World
 
 _LAZY = {
     "AckermannDrive": "robots.ackermann",
-    "BodyContact": "crowd.contact",
-    "BodyForce": "physics.contact_events",
-    "Camera": "rendering.camera",
-    "Chassis": "physics.robot_body",
-    "Collision": "physics.contact_events",
+    "BODY_REGION_LIMITS": "physics.body_region_limits",
+    "BodyContactEvent": "physics.contact_events",
+    "BodyRegionLimits": "physics.body_region_limits",
+    "CameraImages": "rendering.camera",
     "CommandDelay": "robots.servo",
     "Contact": "world",
+    "ContactBody": "physics.contacts",
+    "ContactForce": "physics.contact_events",
+    "ContactModel": "crowd.contact",
     "CrowdLimits": "crowd.limits",
-    "Cube": "physics.stage",
+    "CrowdStepRequest": "crowd.walk",
+    "CubeBody": "physics.stage",
     "DifferentialDrive": "robots.drive",
-    "Direction": "crowd.waypoint",
     "Drive": "robots.drive",
-    "Images": "rendering.camera",
-    "Journey": "crowd.journey",
-    "Journeys": "crowd.journey",
-    "Light": "physics.stage",
-    "Limbs": "physics.people_motion",
+    "HeadingWaypoint": "crowd.waypoint",
+    "JourneyAssignment": "crowd.journey",
+    "LightSource": "physics.stage",
+    "LimbCapsules": "physics.people_motion",
+    "MountPlacement": "robots.mount",
     "Omnidirectional": "robots.drive",
-    "Party": "physics.contacts",
     "Pending": "robots.servo",
+    "PeopleMotion": "physics.people_motion",
+    "PeopleSource": "crowd.source",
     "PhysicsStage": "physics.stage",
     "PhysicsWorld": "physics.world",
     "PlanarWorld": "planar",
-    "Point": "crowd.waypoint",
-    "Portal": "crowd.portal",
-    "Prop": "physics.stage",
+    "PointWaypoint": "crowd.waypoint",
+    "PolygonZone": "crowd.waypoint",
+    "PortalTransfer": "crowd.portal",
+    "PropBody": "physics.stage",
+    "Renderer": "rendering.renderer",
+    "ReplayedPeople": "crowd.replay",
+    "ReplayedTrack": "crowd.replay",
     "Robot": "robots.robot",
+    "RobotBody": "physics.robot_body",
     "RobotModel": "urdf",
     "Router": "crowd.routing",
-    "Script": "crowd.replay",
+    "SceneCamera": "rendering.camera",
     "SensorMount": "robots.mount",
-    "Source": "crowd.source",
     "SteeredTwists": "robots.ackermann",
-    "Stepping": "crowd.walk",
-    "Stop": "crowd.waypoint",
-    "Studio": "rendering.renderer",
-    "TISSUES": "physics.body_region_limits",
-    "Table": "physics.stage",
-    "Tissue": "physics.body_region_limits",
-    "Track": "crowd.replay",
-    "Tree": "physics.stage",
+    "StepGenerator": "crowd.walk",
+    "TableBody": "physics.stage",
+    "TreeBody": "physics.stage",
     "Twists": "robots.drive",
     "VelocityServo": "robots.servo",
-    "Walk": "crowd.walk",
-    "Walkers": "physics.people_motion",
+    "Waypoint": "crowd.waypoint",
+    "WaypointSequence": "crowd.journey",
     "Wheel": "robots.wheel",
     "World": "world",
-    "Zone": "crowd.waypoint",
-    "alone": "crowd.walk",
-    "bodies": "physics.colliders",
     "builtin_robots": "robots.robot",
-    "described": "urdf",
+    "compute_together": "crowd.walk",
+    "describe": "urdf",
     "frame": "urdf.transforms",
-    "moved": "robots.drive",
+    "integrate_twist": "robots.drive",
     "permitted_speed": "physics.body_region_limits",
     "quaternion": "urdf.transforms",
     "read_urdf": "urdf",
     "region_of": "physics.body_region_limits",
     "roll_pitch_yaw": "urdf.transforms",
-    "together": "crowd.walk",
+    "run_step": "crowd.walk",
+    "scene_bodies": "physics.colliders",
     "two_body_force": "physics.body_region_limits",
 }
 
 __all__ = [
-    "TISSUES",
+    "BODY_REGION_LIMITS",
     "AckermannDrive",
-    "BodyContact",
-    "BodyForce",
-    "Camera",
-    "Chassis",
-    "Collision",
+    "BodyContactEvent",
+    "BodyRegionLimits",
+    "CameraImages",
     "CommandDelay",
     "Contact",
+    "ContactBody",
+    "ContactForce",
+    "ContactModel",
     "CrowdLimits",
-    "Cube",
+    "CrowdStepRequest",
+    "CubeBody",
     "DifferentialDrive",
-    "Direction",
     "Drive",
-    "Images",
-    "Journey",
-    "Journeys",
-    "Light",
-    "Limbs",
+    "HeadingWaypoint",
+    "JourneyAssignment",
+    "LightSource",
+    "LimbCapsules",
+    "MountPlacement",
     "Omnidirectional",
-    "Party",
     "Pending",
+    "PeopleMotion",
+    "PeopleSource",
     "PhysicsStage",
     "PhysicsWorld",
     "PlanarWorld",
-    "Point",
-    "Portal",
-    "Prop",
+    "PointWaypoint",
+    "PolygonZone",
+    "PortalTransfer",
+    "PropBody",
+    "Renderer",
+    "ReplayedPeople",
+    "ReplayedTrack",
     "Robot",
+    "RobotBody",
     "RobotModel",
     "Router",
-    "Script",
+    "SceneCamera",
     "SensorMount",
-    "Source",
     "SteeredTwists",
-    "Stepping",
-    "Stop",
-    "Studio",
-    "Table",
-    "Tissue",
-    "Track",
-    "Tree",
+    "StepGenerator",
+    "TableBody",
+    "TreeBody",
     "Twists",
     "VelocityServo",
-    "Walk",
-    "Walkers",
+    "Waypoint",
+    "WaypointSequence",
     "Wheel",
     "World",
-    "Zone",
-    "alone",
-    "bodies",
     "builtin_robots",
-    "described",
+    "compute_together",
+    "describe",
     "frame",
-    "moved",
+    "integrate_twist",
     "permitted_speed",
     "quaternion",
     "read_urdf",
     "region_of",
     "roll_pitch_yaw",
-    "together",
+    "run_step",
+    "scene_bodies",
     "two_body_force",
 ]
 

@@ -5,30 +5,42 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Clock, FreeClock, InputError, Pose, Scene, Twist, stream
-from crowdbot.metrics import swept_distance
+from crowdbot.core import Clock, FreeClock, InputError, Pose, Scene, SpatialPose, Twist, Walls, stream
+from crowdbot.metrics import swept_distance, wall_clearance
 from crowdbot.models import CrowdModel
 from crowdbot.models.mixture import MODEL, Mixture
 
-from .crowd.contact import BodyContact, Surfaces
-from .crowd.journey import JOURNEY, Journeys
+from .crowd.contact import ContactModel, WallSurfaces
+from .crowd.journey import JOURNEY, JourneyAssignment
 from .crowd.limits import CrowdLimits
-from .crowd.people_flow import Traffic
-from .crowd.portal import Portal, ported
-from .crowd.replay import Script
+from .crowd.people_flow import PeopleFlow
+from .crowd.portal import PortalTransfer, apply_portals
+from .crowd.replay import ReplayedPeople
 from .crowd.routing import WAY, Router
-from .crowd.source import Source
-from .crowd.walk import Stepping, Walk, alone
-from .crowd.waypoint import Zone
+from .crowd.source import PeopleSource
+from .crowd.walk import CrowdStepRequest, StepGenerator
+from .crowd.waypoint import PolygonZone
 from .robots.drive import Drive, Twists
+from .robots.mount import MountPlacement
+from .robots.servo import CommandDelay, Pending
 from .world import Contact, World
 
+if TYPE_CHECKING:
+    from crowdbot.humans import People
+
+    from .physics.kinematic_bodies import KinematicBodies
+    from .physics.stage import PhysicsStage
+    from .rendering.renderer import Renderer
+    from .robots.robot import Robot
+
 __all__ = ["PlanarWorld"]
+
+Floats = NDArray[np.float64]
 
 
 @dataclass
@@ -39,7 +51,7 @@ class PlanarWorld(World):
     be, and the reverse. People see robots as agents that are moved from outside. Without a ``contact`` there are no
     forces between bodies: overlaps are reported in :attr:`contacts`, never resolved. A robot that is driven into a wall
     passes through it. The crowd draws from its own stream of randomness, so that sensors and navigators do not change
-    it. All that follows ``berth`` is off unless asked for.
+    it. All that follows ``robot_margin`` is off unless asked for.
 
     Args:
         scene: at the beginning; robots are agents with ``external=True``.
@@ -50,8 +62,8 @@ class PlanarWorld(World):
             world with this environment alone and the seed ``seed + e``.
         leave_radius: people nearer to their goal than this [m] leave (``active=False``); None: they stay. Robots
             never leave.
-        berth: how much wider people take a robot to be [m]. Discs of a crowd model pass one another at zero clearance;
-            without a berth ORCA people touch even a robot that stands still.
+        robot_margin: margin that people add to the radius of a robot [m]. Crowd models pass discs at zero clearance:
+            without a margin, ORCA people touch a robot that stands still.
         router: leads people around walls to their goals.
         contact: what happens to people whose bodies overlap after a step.
         limits: of speed and acceleration, after the model.
@@ -60,10 +72,11 @@ class PlanarWorld(World):
         exits: zones in which everybody leaves, robots apart.
         portals: zones whose people come out elsewhere, as new people.
         script: agents that are moved as they were recorded; to the crowd model they are external.
-        symmetry: everyone's preferred direction is off by up to this angle [rad], each by the own, so that people who
-            meet exactly head on do not stop for ever; 1e-3 is enough.
+        heading_jitter: largest offset of the preferred direction of a person [rad], constant for each person. It
+            resolves deadlocks of people who meet exactly head-on; 1e-3 is enough.
         substeps: the crowd takes so many steps in one step of the world, robots meanwhile go on straight.
         ids: ``[A]`` or ``[E, A]`` int, who people are; chance follows them. None: 0 to A - 1.
+        latency: delay of the commands of a robot [s], by agent, see :class:`CommandDelay`; 0 for robots left out.
 
     Attributes:
         clock: who counts the time.
@@ -85,24 +98,28 @@ class PlanarWorld(World):
     (0.1, [[0.01, 0.0], [4.87, 1.0]])
     """
 
+    people_shape: ClassVar[str] = "discs"
+    walls_fixed: ClassVar[bool] = False
+
     scene: Scene
     model: CrowdModel
     drives: Mapping[int, Drive]
     dt: float
     seed: int = 0
     leave_radius: float | None = None
-    berth: float = 0.1
+    robot_margin: float = 0.1
     router: Router | None = None
-    contact: BodyContact | None = None
+    contact: ContactModel | None = None
     limits: CrowdLimits | None = None
-    journeys: Journeys | None = None
-    sources: Sequence[Source] = ()
-    exits: Sequence[Zone] = ()
-    portals: Sequence[Portal] = ()
-    script: Script | None = None
-    symmetry: float = 0.0
+    journeys: JourneyAssignment | None = None
+    sources: Sequence[PeopleSource] = ()
+    exits: Sequence[PolygonZone] = ()
+    portals: Sequence[PortalTransfer] = ()
+    script: ReplayedPeople | None = None
+    heading_jitter: float = 0.0
     substeps: int = 1
     ids: Any = None
+    latency: Mapping[int, float] = field(default_factory=dict)
     clock: Clock = field(init=False)
     twists: dict[int, Twists] = field(init=False)
     contacts: tuple[Contact, ...] = field(init=False, default=())
@@ -113,54 +130,67 @@ class PlanarWorld(World):
         self.twists = {robot: self._initial_twist(robot) for robot in sorted(self.drives)}
         self._begin = self.scene.time
         self._rng = stream(self.seed, "crowd")
-        self._traffic = Traffic.of(
+        self._traffic = PeopleFlow.of(
             self.scene, self.model, self.seed, self.ids, self.router, self.journeys, self.sources
         )
         self.ids = self._traffic.ids
         external = self.scene.external
         if self.script is not None:
             self.scene = self.script.begun(self.scene)
-        self.scene = self._traffic.begun(self._held(self.scene)).replace(external=external)
-        self._surfaces: Surfaces | None = None
+        self.scene = self._traffic.begun(self._with_replayed_external(self.scene)).replace(external=external)
+        self._surfaces: WallSurfaces | None = None
+        self._bodies: KinematicBodies | None = None
+        self._previous = self.scene
+        self._segments: tuple[Walls, Floats] | None = None
+        self._delayed: dict[int, tuple[tuple[Pending, ...], Twist | Twists]] = {}
 
-    def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
-        """Go one time step on and return the new scene; see :class:`World`."""
-        return alone(self.stepping(commands))
-
-    def stepping(self, commands: Mapping[int, Twist | Twists]) -> Stepping[Scene]:
-        """Go one time step on, and ask somebody else how the crowd walks; see :func:`crowdbot.world.alone`."""
+    def step_requests(self, commands: Mapping[int, Twist | Twists]) -> StepGenerator[Scene]:
+        """Go one time step on, and ask somebody else how the crowd walks; see :func:`crowdbot.world.run_step`."""
         asked = self._checked(commands)
-        before = self._held(self.scene)
+        self._previous = self.scene
+        before = self._with_replayed_external(self.scene)
         self.clock.advance()
-        earlier, crowd = yield from self._walked(before)
-        after = self._driven(before, crowd, asked)
-        after = self._settled(earlier, after).replace(external=self.scene.external)
+        earlier, crowd = yield from self._step_crowd(before)
+        after = self._step_robots(before, crowd, asked)
+        after = self._resolve_overlaps(earlier, after).replace(external=self.scene.external)
         after = after.replace(time=self._begin + self.clock.time)
         if self.script is not None:
             after = self.script.placed(after, self.clock.time)
         after.check()
-        self.contacts = self._touching(before, after)
+        self.contacts = self._find_contacts(before, after)
         if self.leave_radius is not None:
             after = _left(after, self.leave_radius)
         for zone in self.exits:
             after = _out(after, zone)
-        after = ported(before, after, self.portals, self._traffic.ids, self._traffic.following)
-        self.scene = self._traffic.gone_on(after, self.clock.time)
+        after = apply_portals(before, after, self.portals, self._traffic.ids, self._traffic.following)
+        self.scene = self._traffic.advance(after, self.clock.time)
         return self.scene
 
-    def turn_to(self, scene: Scene, sources: Sequence[Source], seed: int | None = None, **how: Any) -> None:
+    def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: int | None = None, **how: Any) -> None:
         """Go on from here in another way: everybody stays where they are, chance goes on unless a seed is given.
 
         Args:
             scene: in the place of the one now, with the same agents; its time is taken as that of now.
             sources: as many as before, with the same journeys.
             seed: for new chance from now on.
-            how: other values of model, drives, berth, router, contact, limits, exits, symmetry or substeps.
+            how: new values of model, drives, latency, robot_margin, router, contact, limits, exits, heading_jitter or
+                substeps.
 
         Raises:
             InputError: that cannot change while the world runs, or a value is not allowed.
         """
-        known = ("model", "drives", "berth", "router", "contact", "limits", "exits", "symmetry", "substeps")
+        known = (
+            "model",
+            "drives",
+            "latency",
+            "robot_margin",
+            "router",
+            "contact",
+            "limits",
+            "exits",
+            "heading_jitter",
+            "substeps",
+        )
         for name in how:
             if name not in known:
                 raise InputError(f"{name} of a world cannot change while it runs; these can: {', '.join(known)}")
@@ -173,7 +203,7 @@ class PlanarWorld(World):
         for name, value in how.items():
             setattr(self, name, value)
         self._check()
-        self._traffic.turn_to(self.router, sources, seed)
+        self._traffic.reconfigure(self.router, sources, seed)
         if self._traffic.mixture is not None and isinstance(model, Mixture):
             self._traffic.mixture = model
         self.sources = sources
@@ -191,35 +221,102 @@ class PlanarWorld(World):
         """Return where a robot is in every environment."""
         return Pose(self.scene.position[:, robot].copy(), self.scene.heading[:, robot].copy())
 
-    def _held(self, scene: Scene) -> Scene:
+    def sensor_pose(self, robot: int, mount: MountPlacement, spatial: bool) -> Pose | SpatialPose:
+        """Return the pose of a sensor of a robot in its posture; see :class:`World`."""
+        x, y, z, roll, pitch, yaw = mount.placed
+        base = self.pose(robot)
+        return base.lifted(0.0).mounted(x, y, z, roll, pitch, yaw) if spatial else base.mounted(x, y, yaw)
+
+    def wall_clearance(self, robot: int) -> Floats:
+        """Return the clearance ``[E]`` [m] to walls on the straight path of the last step; see :class:`World`."""
+        walls = self.scene.walls
+        if self._segments is None or self._segments[0] is not walls:
+            self._segments = (walls, walls.segments())
+        paths = np.stack([self._previous.position[:, robot], self.scene.position[:, robot]], axis=1)
+        radius = self.scene.radius[:, robot].tolist()
+        return np.array(
+            [wall_clearance(path, size, self._segments[1])[1] for path, size in zip(paths, radius, strict=True)]
+        )
+
+    def plane_scene(self) -> Scene:
+        """Return the scene, see :class:`World`; the outlines of props are among its walls from the beginning."""
+        return self.scene
+
+    def body_scene(self, skins: int | None = None) -> Scene:
+        """Return the scene with bodies; see :class:`World`."""
+        return self._embodied().scene(self.scene, skins)
+
+    @property
+    def renderer(self) -> Renderer:
+        """Renderer of the current scene; see :class:`World`."""
+        return self._embodied().renderer(self.scene)
+
+    def embody(
+        self,
+        robots: Mapping[int, Robot],
+        stage: PhysicsStage,
+        people: People,
+        *,
+        riders: Sequence[int] = (),
+        activity: Sequence[str] = (),
+        walls: Walls | None = None,
+        seed: int = 0,
+    ) -> None:
+        """Add bodies for sensors and cameras; see :class:`World`."""
+        from .physics.kinematic_bodies import KinematicBodies
+
+        self._bodies = KinematicBodies(self.scene, robots, stage, people, riders=riders, walls=walls, seed=seed)
+        self.people = self._bodies.people
+        self._begin_activity(activity)
+
+    def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
+        """Replace robots and stage; see :class:`World`."""
+        if self._bodies is not None:
+            self._bodies.robots, self._bodies.stage, self._bodies.walls = dict(robots), stage, walls
+
+    def pose_people(self) -> None:
+        """Move the bodies of people to the current scene; see :class:`World`."""
+        if self._bodies is not None:
+            self._bodies.people.walk(self.scene, self.dt)
+
+    def _begin_activity(self, activity: Sequence[str]) -> None:
+        if self.people is not None and set(activity) - {"walk"}:
+            self.people.begin(self.scene, activity)
+
+    def _embodied(self) -> KinematicBodies:
+        if self._bodies is None:
+            raise InputError("the world has no bodies of people and robots: call World.embody first")
+        return self._bodies
+
+    def _with_replayed_external(self, scene: Scene) -> Scene:
         """Return the scene in which who follows a script is external."""
         return scene if self.script is None else scene.replace(external=scene.external | self.script.held(scene))
 
-    def _walked(self, before: Scene) -> Stepping[tuple[Scene, Scene]]:
+    def _step_crowd(self, before: Scene) -> StepGenerator[tuple[Scene, Scene]]:
         """Return the scene before the last substep of the crowd, and after it."""
         wide = before.radius.copy()
-        wide[:, list(self.twists)] += self.berth
-        crowd = earlier = self._traffic.felt(before, self.symmetry).replace(radius=wide)
+        wide[:, list(self.twists)] += self.robot_margin
+        crowd = earlier = self._traffic.desired_motion(before, self.heading_jitter).replace(radius=wide)
         h = self.dt / self.substeps
         for k in range(self.substeps):
             if k > 0:
-                crowd = self._settled(earlier, crowd.replace(radius=before.radius)).replace(radius=wide)
+                crowd = self._resolve_overlaps(earlier, crowd.replace(radius=before.radius)).replace(radius=wide)
             earlier = crowd
-            crowd = yield Walk(self.model, earlier, h, self._rng)
+            crowd = yield CrowdStepRequest(self.model, earlier, h, self._rng)
             if self.limits is not None:
                 crowd = self.limits.kept(earlier, crowd, h)
         own = {"radius": before.radius, "goal": before.goal, "preferred_velocity": before.preferred_velocity}
         return earlier, crowd.replace(**own, memory={**earlier.memory, **crowd.memory})
 
-    def _settled(self, earlier: Scene, after: Scene) -> Scene:
+    def _resolve_overlaps(self, earlier: Scene, after: Scene) -> Scene:
         """Return the scene with bodies that overlap pushed apart."""
         if self.contact is None:
             return after
         largest = float(after.radius[after.active].max(initial=0.0))
         known = self._surfaces
         if known is None or known.walls is not after.walls or known.reach < largest:
-            self._surfaces = known = Surfaces.of(after.walls, largest)
-        return self.contact.settled(earlier, after, self.dt / self.substeps, known)
+            self._surfaces = known = WallSurfaces.of(after.walls, largest)
+        return self.contact.resolve_overlaps(earlier, after, self.dt / self.substeps, known)
 
     def _check(self) -> None:
         agents = self.scene.shape[1]
@@ -228,12 +325,12 @@ class PlanarWorld(World):
                 raise InputError(f"a drive is given for agent {robot}, but the scene has agents 0 to {agents - 1}")
             if not np.all(self.scene.external[:, robot]):
                 raise InputError(f"agent {robot} has a drive but is not external: set external=True for robots")
-        if not 0.0 <= self.berth < math.inf:
-            raise InputError(f"berth {self.berth} m must be finite and at least 0")
+        if not 0.0 <= self.robot_margin < math.inf:
+            raise InputError(f"robot_margin {self.berth} m must be finite and at least 0")
         if self.leave_radius is not None and not 0.0 < self.leave_radius < math.inf:
             raise InputError(f"leave_radius {self.leave_radius} m must be finite and above 0, or None")
-        if not 0.0 <= self.symmetry <= math.pi:
-            raise InputError(f"symmetry {self.symmetry} rad must be from 0 to pi")
+        if not 0.0 <= self.heading_jitter <= math.pi:
+            raise InputError(f"heading_jitter {self.symmetry} rad must be from 0 to pi")
         if isinstance(self.substeps, bool) or not isinstance(self.substeps, int) or not 1 <= self.substeps <= 10_000:
             raise InputError(f"substeps = {self.substeps!r} must be a whole number from 1 to 10000")
 
@@ -251,9 +348,19 @@ class PlanarWorld(World):
         missing = [robot for robot in self.twists if robot not in commands]
         if missing:
             raise InputError(f"robot {missing[0]} has no command; give one in every step, Twist() to stand")
-        return {robot: Twists.of(commands[robot], self.scene.shape[0]) for robot in self.twists}
+        asked = {robot: Twists.of(commands[robot], self.scene.shape[0]) for robot in self.twists}
+        return {robot: self._after_latency(robot, command) for robot, command in asked.items()}
 
-    def _driven(self, before: Scene, after: Scene, asked: Mapping[int, Twists]) -> Scene:
+    def _after_latency(self, robot: int, command: Twists) -> Twists:
+        """Return the command that is in force during the next step."""
+        latency = self.latency.get(robot, 0.0)
+        if latency == 0.0:
+            return command
+        pending, now = self._delayed.get(robot, ((), Twist()))
+        self._delayed[robot] = CommandDelay(latency).step(pending, now, command, self.dt)
+        return Twists.of(self._delayed[robot][1], self.scene.shape[0])
+
+    def _step_robots(self, before: Scene, after: Scene, asked: Mapping[int, Twists]) -> Scene:
         position, velocity, heading = after.position.copy(), after.velocity.copy(), after.heading.copy()
         for robot, command in asked.items():
             here = before.active[:, robot]
@@ -265,7 +372,7 @@ class PlanarWorld(World):
             velocity[:, robot] = np.where(here[:, None], twist.velocity(heading[:, robot]), 0.0)
         return after.replace(position=position, velocity=velocity, heading=heading)
 
-    def _touching(self, before: Scene, after: Scene) -> tuple[Contact, ...]:
+    def _find_contacts(self, before: Scene, after: Scene) -> tuple[Contact, ...]:
         found: list[Contact] = []
         for number, robot in enumerate(self.twists):
             start = before.position - before.position[:, robot : robot + 1]
@@ -284,6 +391,6 @@ def _left(scene: Scene, radius: float) -> Scene:
     return scene.replace(active=scene.active & ~(arrived & ~scene.external))
 
 
-def _out(scene: Scene, exit_: Zone) -> Scene:
+def _out(scene: Scene, exit_: PolygonZone) -> Scene:
     there = exit_.contains(scene.position.reshape(-1, 2)).reshape(scene.shape)
     return scene.replace(active=scene.active & ~(there & ~scene.external))

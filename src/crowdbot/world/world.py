@@ -1,22 +1,37 @@
-"""The contract of worlds: people and robots together, one step of time at a time."""
+"""The contract of worlds: people and robots move together, one time step at a time."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
-from crowdbot.core import Scene, Twist
+import numpy as np
+from numpy.typing import NDArray
 
+from crowdbot.core import Clock, Pose, Scene, SpatialPose, Twist, Walls
+
+from .crowd.walk import StepGenerator, run_step
 from .robots.drive import Twists
+from .robots.mount import MountPlacement
+
+if TYPE_CHECKING:
+    from crowdbot.humans import People
+
+    from .crowd.source import PeopleSource
+    from .physics.contact_events import BodyContactEvent, ContactForce
+    from .physics.people_motion import PeopleMotion
+    from .physics.stage import PhysicsStage
+    from .rendering.renderer import Renderer
+    from .robots.robot import Robot
 
 __all__ = ["Contact", "World"]
 
 
 class Contact(NamedTuple):
-    """A robot and another agent that touched during a step.
+    """A contact between a robot and another agent during a step.
 
-    ``clearance`` [m] is the smallest during the step, negative: how deep they overlapped.
+    ``clearance`` [m] is the smallest clearance during the step. It is negative: the depth of the overlap.
     """
 
     environment: int
@@ -26,21 +41,125 @@ class Contact(NamedTuple):
 
 
 class World(ABC):
-    """What turns commands into the next scene.
+    """Moves people and robots. The worlds differ in what a body is; code that uses a world need not know which it is.
 
     Attributes:
-        scene: the scene now; who lets people in (a spawner) may put a changed one in its place between two steps.
+        people_shape: shape of people for sensors, unless a trial sets another: ``discs`` or ``limbs``.
+        walls_fixed: True if the walls cannot change after construction.
+        scene: current scene. A caller may replace it between two steps, for instance to remove people.
+        dt: time step [s].
+        clock: simulated time.
+        ids: ``[E, A]`` identity of the person or robot in each place.
+        twists: current twist of each robot, by agent.
+        contacts: contacts between robots and other agents in the last step.
+        forces: contact forces in the last step; empty in a world without forces.
+        people: bodies of people; None in a world whose people are discs.
     """
 
+    people_shape: ClassVar[str]
+    walls_fixed: ClassVar[bool]
     scene: Scene
+    dt: float
+    clock: Clock
+    ids: NDArray[np.int64]
+    twists: dict[int, Twists]
+    contacts: tuple[Contact, ...]
+    forces: tuple[ContactForce, ...] = ()
+    people: PeopleMotion | None = None
 
-    @abstractmethod
     def step(self, commands: Mapping[int, Twist | Twists]) -> Scene:
-        """Go one time step on and return the new scene.
+        """Advance by one time step and return the new scene.
 
         Args:
-            commands: for each robot (its agent index) the twist it is asked for, one for all environments or each.
+            commands: commanded twist of each robot, by agent; one for all environments or one each. The world applies
+                the latency of the robot.
 
         Raises:
-            InputError: a robot has no command, a command is for no robot, or is not finite.
+            InputError: a robot has no command, an agent with a command is not a robot, or a value is not finite.
         """
+        return run_step(self.step_requests(commands))
+
+    @abstractmethod
+    def step_requests(self, commands: Mapping[int, Twist | Twists]) -> StepGenerator[Scene]:
+        """Advance by one time step as :meth:`step`; yield the steps of the crowd model instead of computing them."""
+
+    @property
+    def contact_events(self) -> tuple[BodyContactEvent, ...]:
+        """All contact events so far, ordered by first touch; empty in a world without forces."""
+        return ()
+
+    @abstractmethod
+    def pose(self, robot: int) -> Pose:
+        """Return the pose of a robot in every environment."""
+
+    @abstractmethod
+    def sensor_pose(self, robot: int, mount: MountPlacement, spatial: bool) -> Pose | SpatialPose:
+        """Return the pose of a sensor: in space if ``spatial``, otherwise in the plane."""
+
+    @abstractmethod
+    def wall_clearance(self, robot: int) -> NDArray[np.float64]:
+        """Return the smallest clearance ``[E]`` [m] between a robot and fixed objects in the last step.
+
+        It is negative on contact. A world that measures contacts only returns infinity without contact.
+        """
+
+    @abstractmethod
+    def plane_scene(self) -> Scene:
+        """Return the scene in the plane, with the outlines of props among the walls."""
+
+    @abstractmethod
+    def body_scene(self, skins: int | None = None) -> Scene:
+        """Return the scene with the bodies of people, robots and props, for range sensors; E = 1.
+
+        Args:
+            skins: level of detail of people's skins; None for capsules.
+
+        Raises:
+            InputError: the world has no bodies, see :meth:`embody`.
+        """
+
+    @property
+    @abstractmethod
+    def renderer(self) -> Renderer:
+        """Renderer of the current scene.
+
+        Raises:
+            MissingExtra: mujoco is not installed.
+            InputError: the world has no bodies, see :meth:`embody`.
+        """
+
+    @abstractmethod
+    def embody(
+        self,
+        robots: Mapping[int, Robot],
+        stage: PhysicsStage,
+        people: People,
+        *,
+        riders: Sequence[int] = (),
+        activity: Sequence[str] = (),
+        walls: Walls | None = None,
+        seed: int = 0,
+    ) -> None:
+        """Add bodies for sensors and cameras. A world that has bodies only starts the activities of people.
+
+        Args:
+            robots: by agent.
+            stage: wall height, props and lights.
+            people: bodies of all agents that are not robots, then of riders.
+            riders: agents of the robots that carry a rider.
+            activity: activity of each person; empty: all walk.
+            walls: walls without the outlines of props; None: the walls of the scene.
+            seed: of the gaits.
+        """
+
+    @abstractmethod
+    def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
+        """Replace robots, and in a world whose walls can change the stage; arguments as in :meth:`embody`."""
+
+    @abstractmethod
+    def pose_people(self) -> None:
+        """Move the bodies of people to the current scene; to be called once after each step."""
+
+    @abstractmethod
+    def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: int | None = None, **how: Any) -> None:
+        """Change parameters of a running world; see :meth:`PlanarWorld.turn_to`."""

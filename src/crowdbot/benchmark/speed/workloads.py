@@ -165,7 +165,7 @@ def _memory() -> Gauge:
     )
     said = ""
     for _ in range(2):  # the first may have to compile, which takes more memory than the crowd
-        run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
+        run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
         said = run.stdout
     return Gauge("MB", float(said), "500 MB for 100000 people", 500.0)
 
@@ -211,7 +211,7 @@ def _physics(people: int) -> Measurement:
     from crowdbot.sensors import Lidar2D, SensorView
 
     world, robot = _bodies(people)
-    laser, chassis = Lidar2D(rays=1080), world.carrier(robot)
+    laser, chassis = Lidar2D(rays=1080), world.robot_body(robot)
     wheels = chassis.robot.mount("odometry").sensor
     _, state = wheels.measure(SensorView(world.scene, world.pose(robot)), wheels.begin())
 
@@ -220,17 +220,17 @@ def _physics(people: int) -> Measurement:
         for _ in range(20):
             world.step({robot: Twist(0.5, 0.3)})
             _, state = wheels.measure(SensorView(world.scene, world.pose(robot)), state)
-            laser.read(world.seen().without(robot), chassis.mounted("laser"))
+            laser.read(world.body_scene().without(robot), chassis.mounted("laser"))
 
     return Measurement("simulated s/s", 20 * DT, work, "real time", 1.0)
 
 
 def _camera() -> Measurement:
     """Time images of 640 x 480 with depth."""
-    from crowdbot.world import Camera
+    from crowdbot.world import SceneCamera
 
     world, _ = _bodies(50)
-    camera = Camera((-2.0, -2.0, 3.0), (5.0, 5.0, 0.8), detail=2)
+    camera = SceneCamera((-2.0, -2.0, 3.0), (5.0, 5.0, 0.8), detail=2)
     return Measurement("images/s", 1, lambda: world.render(camera, depth=True), "a camera of 10 Hz", 10.0)
 
 

@@ -16,7 +16,7 @@ from crowdbot.core.neighbors import nearest
 
 from .wall_cells import WallCells, wall_cells
 
-__all__ = ["BodyContact", "Surfaces"]
+__all__ = ["ContactModel", "WallSurfaces"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -228,7 +228,7 @@ def _off(
     return nx - side * ey / length * r, ny + side * ex / length * r
 
 
-class Surfaces(NamedTuple):
+class WallSurfaces(NamedTuple):
     """Walls as bodies meet them.
 
     Fields:
@@ -244,7 +244,7 @@ class Surfaces(NamedTuple):
     reach: float
 
     @classmethod
-    def of(cls, walls: Walls, reach: float) -> Surfaces:
+    def of(cls, walls: Walls, reach: float) -> WallSurfaces:
         """Sort walls for bodies up to a radius of ``reach`` [m]."""
         thin = walls.previous == walls.next
         once = ~thin | (np.arange(len(walls)) < walls.next)
@@ -253,7 +253,7 @@ class Surfaces(NamedTuple):
 
 
 @dataclass(frozen=True)
-class BodyContact:
+class ContactModel:
     """What bodies do when they overlap after a step of the crowd: they are pushed apart, and out of walls.
 
     Agents that are moved from outside push others and are not pushed; who is invisible pushes nobody. Nobody is pushed
@@ -270,7 +270,7 @@ class BodyContact:
         InputError: a value is not allowed.
 
     >>> near = Scene.of([[0.0, 0.0], [0.4, 0.0]], radius=0.25)
-    >>> BodyContact().settled(near, near, dt=0.1).position.round(9).tolist()
+    >>> ContactModel().settled(near, near, dt=0.1).position.round(9).tolist()
     [[[-0.05, 0.0], [0.45, 0.0]]]
     """
 
@@ -281,19 +281,19 @@ class BodyContact:
     def __post_init__(self) -> None:
         if self.variant not in VARIANTS:
             near = did_you_mean(str(self.variant), VARIANTS)
-            raise InputError(f"BodyContact: variant {self.variant!r} is unknown{near}; choose {' or '.join(VARIANTS)}")
+            raise InputError(f"ContactModel: variant {self.variant!r} is unknown{near}; choose {' or '.join(VARIANTS)}")
         if not 0.0 < self.stiffness <= 1e9:
-            raise InputError(f"BodyContact: stiffness {self.stiffness} 1/s^2 must be above 0 and at most 1e9")
+            raise InputError(f"ContactModel: stiffness {self.stiffness} 1/s^2 must be above 0 and at most 1e9")
         if not 1 <= self.iterations <= 1000:
-            raise InputError(f"BodyContact: iterations = {self.iterations}, it must be from 1 to 1000")
+            raise InputError(f"ContactModel: iterations = {self.iterations}, it must be from 1 to 1000")
 
-    def settled(self, before: Scene, after: Scene, dt: float, surfaces: Surfaces | None = None) -> Scene:
+    def resolve_overlaps(self, before: Scene, after: Scene, dt: float, surfaces: WallSurfaces | None = None) -> Scene:
         """Return the scene ``after`` a step of ``dt`` [s] from ``before``, with people pushed apart."""
         here = after.active
         radius = np.where(here, after.radius, 0.0)
         largest = radius.max(axis=1, initial=0.0)
         if surfaces is None:
-            surfaces = Surfaces.of(after.walls, largest.max(initial=0.0))
+            surfaces = WallSurfaces.of(after.walls, largest.max(initial=0.0))
         pushed = here & ~after.external
         seen = here & after.visible
         near = nearest(after.position, radius + (1.0 + SPARE) * largest[:, None], MOST, seen, pushed)

@@ -1,4 +1,4 @@
-"""Journeys: where people go, one stop after the other, and what they do at the end."""
+"""JourneyAssignment: where people go, one stop after the other, and what they do at the end."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, did_you_mean
 
-from .waypoint import Luck, Stop
+from .waypoint import PersonRandom, Waypoint
 
-__all__ = ["JOURNEY", "STOP", "Journey", "Journeys"]
+__all__ = ["JOURNEY", "STOP", "JourneyAssignment", "WaypointSequence"]
 
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -25,7 +25,7 @@ THENS = ("leave", "stay", "again")
 
 
 @dataclass(frozen=True)
-class Journey:
+class WaypointSequence:
     """Stops that one person after the other goes to, in order.
 
     Fields:
@@ -35,24 +35,25 @@ class Journey:
     Raises:
         InputError: there is no stop, or something is none.
 
-    >>> from crowdbot.world import Point, Zone
-    >>> Journey((Point(5.0, 0.0), Zone(((9, 0), (11, 0), (10, 1)))), then="stay").then
+    >>> from crowdbot.world import PointWaypoint, PolygonZone
+    >>> WaypointSequence((PointWaypoint(5.0, 0.0), PolygonZone(((9, 0), (11, 0), (10, 1)))), then="stay").then
     'stay'
     """
 
-    stops: tuple[Stop, ...]
+    stops: tuple[Waypoint, ...]
     then: str = "leave"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "stops", tuple(self.stops))
-        if not self.stops or not all(isinstance(stop, Stop) for stop in self.stops):
-            raise InputError(f"Journey: stops = {self.stops!r}, it must be one or more of Point, Direction, Zone")
+        if not self.stops or not all(isinstance(stop, Waypoint) for stop in self.stops):
+            raise InputError(f"WaypointSequence: stops = {self.stops!r}, it must be one or more waypoints")
         if self.then not in THENS:
             raise InputError(
-                f"Journey: then = {self.then!r}{did_you_mean(str(self.then), THENS)}; choose leave, stay or again"
+                f"WaypointSequence: then = {self.then!r}{did_you_mean(str(self.then), THENS)};"
+                " choose leave, stay or again"
             )
 
-    def stop(self, number: int) -> Stop | None:
+    def stop(self, number: int) -> Waypoint | None:
         """Return the stop that is this many stops after the first; None when there is none."""
         if self.then == "again":
             return self.stops[number % len(self.stops)]
@@ -60,7 +61,7 @@ class Journey:
 
 
 @dataclass(frozen=True)
-class Journeys:
+class JourneyAssignment:
     """The journeys of a crowd.
 
     Fields:
@@ -70,13 +71,14 @@ class Journeys:
     Raises:
         InputError: an index is not that of a journey.
 
-    >>> from crowdbot.world import Point
-    >>> both = Journeys((Journey((Point(0.0, 5.0),)), Journey((Point(9.0, 5.0),))), which=[0, 1, -1])
+    >>> from crowdbot.world import PointWaypoint
+    >>> paths = [WaypointSequence((PointWaypoint(x, 5.0),)) for x in (0.0, 9.0)]
+    >>> both = JourneyAssignment(tuple(paths), which=[0, 1, -1])
     >>> both.begun(Scene.of([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), np.array([0]), np.array([[0, 1, 2]])).goal.tolist()
     [[[0.0, 5.0], [9.0, 5.0], [2.0, 0.0]]]
     """
 
-    journeys: tuple[Journey, ...]
+    journeys: tuple[WaypointSequence, ...]
     which: int | Sequence[int] | Numbers = 0
 
     def __post_init__(self) -> None:
@@ -84,7 +86,8 @@ class Journeys:
         which = np.asarray(self.which)
         if which.dtype.kind not in "iu" or np.any((which < -1) | (which >= len(self.journeys))):
             raise InputError(
-                f"Journeys: which = {which.tolist()} must name journeys 0 to {len(self.journeys) - 1}, or -1 for none"
+                f"JourneyAssignment: which = {which.tolist()} must be from 0 to {len(self.journeys) - 1},"
+                " or -1 for none"
             )
 
     def begun(
@@ -102,12 +105,12 @@ class Journeys:
             which = np.broadcast_to(np.asarray(self.which, dtype=np.float64), scene.shape).copy()
         except ValueError:
             raise InputError(
-                f"Journeys: which has shape {list(np.shape(self.which))}, it must fit [E, A] = {list(scene.shape)}"
+                f"JourneyAssignment: which has shape {list(np.shape(self.which))}, it must fit {list(scene.shape)}"
             ) from None
         memory = {**scene.memory, JOURNEY: which, STOP: np.zeros(scene.shape)}
-        return self.aimed(scene.replace(memory=memory), which >= 0, seeds, ids, holds)
+        return self.aim(scene.replace(memory=memory), which >= 0, seeds, ids, holds)
 
-    def gone_on(
+    def advance(
         self, scene: Scene, seeds: Numbers, ids: Numbers, holds: Callable[[Floats], Bools] | None = None
     ) -> Scene:
         """Return the scene in which whoever has reached a stop is on the way to the next, or has left."""
@@ -125,9 +128,9 @@ class Journeys:
             if journey.stop(k + 1) is None and journey.then == "leave":
                 active &= ~there
         on = scene.replace(active=active, memory={**scene.memory, STOP: stop})
-        return self.aimed(on, renewed & active, seeds, ids, holds)
+        return self.aim(on, renewed & active, seeds, ids, holds)
 
-    def aimed(
+    def aim(
         self,
         scene: Scene,
         who: Bools,
@@ -143,19 +146,19 @@ class Journeys:
         for number, k, at, rows in self._parties(scene):
             mine = rows & who
             if np.any(mine):
-                luck = Luck(seed[mine], ids[mine], (STOP, number, k), holds)
+                luck = PersonRandom(seed[mine], ids[mine], (STOP, number, k), holds)
                 goal[mine] = at.goal(scene.position[mine], luck)
         return scene.replace(goal=goal)
 
-    def routed(self, scene: Scene) -> Bools:
+    def uses_routing(self, scene: Scene) -> Bools:
         """Return ``[E, A]`` whom a router may lead."""
         out = np.ones(scene.shape, dtype=np.bool_)
         for _, _, at, rows in self._parties(scene):
-            if not at.routed:
+            if not at.uses_routing:
                 out[rows] = False
         return out
 
-    def _parties(self, scene: Scene) -> list[tuple[int, int, Stop, Bools]]:
+    def _parties(self, scene: Scene) -> list[tuple[int, int, Waypoint, Bools]]:
         """Return for every journey and stop who is on the way there, where somebody is."""
         walking = scene.active & ~scene.external
         found = []

@@ -1,4 +1,4 @@
-"""Traffic: where everybody in a world wants to go next, who comes in, and who goes out."""
+"""PeopleFlow: where everybody in a world wants to go next, who comes in, and who goes out."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from crowdbot.core import InputError, Scene
 from crowdbot.models import CrowdModel, Mixture
 from crowdbot.models.mixture import MODEL
 
-from .journey import Journeys
+from .journey import JourneyAssignment
 from .person_random import uniform
 from .routing import WAY, Router, fresh
-from .source import Arrivals, Source
+from .source import Arrivals, PeopleSource
 
-__all__ = ["Traffic"]
+__all__ = ["PeopleFlow"]
 
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
 
 @dataclass
-class Traffic:
+class PeopleFlow:
     """Routes, journeys and arrivals of one world.
 
     Attributes:
@@ -41,7 +41,7 @@ class Traffic:
     ids: Numbers
     following: Numbers
     router: Router | None
-    journeys: Journeys | None
+    journeys: JourneyAssignment | None
     arrivals: Arrivals | None
     mixture: Mixture | None
 
@@ -53,9 +53,9 @@ class Traffic:
         seed: int,
         ids: Any,
         router: Router | None,
-        journeys: Journeys | None,
-        sources: Sequence[Source],
-    ) -> Traffic:
+        journeys: JourneyAssignment | None,
+        sources: Sequence[PeopleSource],
+    ) -> PeopleFlow:
         """Make the traffic of a world that begins with this scene.
 
         Raises:
@@ -70,23 +70,23 @@ class Traffic:
         for source in sources:
             if not 0 <= source.model < (1 if mixture is None else len(mixture.models)):
                 raise InputError(
-                    f"Source: model = {source.model}, but the crowd is no mixture that has a model of this number"
+                    f"PeopleSource: model = {source.model}, but the crowd is no mixture that has a model of this number"
                 )
         if sources:
-            first = journeys or Journeys((), -1)
+            first = journeys or JourneyAssignment((), -1)
             start = {WAY: fresh((1, 1))[0, 0], **model.memory_at_start}
             arrivals = Arrivals(tuple(sources), seeds.tolist(), len(first.journeys), start)
-            journeys = Journeys((*first.journeys, *(source.journey for source in sources)), first.which)
+            journeys = JourneyAssignment((*first.journeys, *(source.journey for source in sources)), first.which)
             return cls(seeds, who, following, router, journeys, arrivals, mixture)
         return cls(seeds, who, following, router, journeys, None, mixture)
 
-    def turn_to(self, router: Router | None, sources: Sequence[Source], seed: int | None) -> None:
+    def reconfigure(self, router: Router | None, sources: Sequence[PeopleSource], seed: int | None) -> None:
         """Go on with another router, other sources in the places of these, and new chance when a seed is given."""
         self.router = router
         if seed is not None:
             self.seeds = np.array([(int(seed) + e) % 2**63 for e in range(len(self.seeds))], dtype=np.int64)
         if self.arrivals is not None:
-            self.arrivals.turn_to(sources, None if seed is None else self.seeds.tolist())
+            self.arrivals.reconfigure(sources, None if seed is None else self.seeds.tolist())
         elif sources:
             raise InputError("sources cannot be added while a world runs")
 
@@ -105,22 +105,22 @@ class Traffic:
             scene = scene.replace(memory=self.router.led(scene, self._routed(scene)).memory)
         return scene
 
-    def felt(self, scene: Scene, symmetry: float) -> Scene:
+    def desired_motion(self, scene: Scene, heading_jitter: float) -> Scene:
         """Return the scene with goals as people walk to them: straight ahead on their ways, a little to one side."""
         if self.router is not None:
             scene = self.router.led(scene, self._routed(scene))
-        return _turned(scene, symmetry * (2.0 * self._luck() - 1.0)) if symmetry > 0.0 else scene
+        return _turned(scene, heading_jitter * (2.0 * self._luck() - 1.0)) if heading_jitter > 0.0 else scene
 
-    def gone_on(self, scene: Scene, time: float) -> Scene:
+    def advance(self, scene: Scene, time: float) -> Scene:
         """Return the scene with the next goals of those who arrived, and with those who have come in by a time [s]."""
         if self.journeys is not None:
-            scene = self.journeys.gone_on(scene, self.seeds, self.ids, self._holds)
+            scene = self.journeys.advance(scene, self.seeds, self.ids, self._holds)
         if self.arrivals is None or self.journeys is None:
             return scene
         scene, new = self.arrivals.let_in(scene, time, self.ids, self.following)
         if not np.any(new):
             return scene
-        return self._sent_off(self.journeys.aimed(scene, new, self.seeds, self.ids, self._holds), new)
+        return self._sent_off(self.journeys.aim(scene, new, self.seeds, self.ids, self._holds), new)
 
     def _sent_off(self, scene: Scene, new: NDArray[np.bool_]) -> Scene:
         """Return the scene in which those who are new walk at their preferred speed."""
@@ -140,7 +140,7 @@ class Traffic:
 
     def _routed(self, scene: Scene) -> NDArray[np.bool_]:
         walking = scene.active & ~scene.external
-        return walking if self.journeys is None else walking & self.journeys.routed(scene)
+        return walking if self.journeys is None else walking & self.journeys.uses_routing(scene)
 
     def _luck(self) -> Floats:
         return uniform(self.seeds[:, None], self.ids, "symmetry")

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene
 
-from .waypoint import Zone
+from .waypoint import PolygonZone
 
-__all__ = ["Portal", "ported"]
+__all__ = ["PortalTransfer", "apply_portals"]
 
 Floats = NDArray[np.float64]
 
@@ -23,7 +23,7 @@ GAP = 0.01
 
 
 @dataclass(frozen=True)
-class Portal:
+class PortalTransfer:
     """Whoever is in the zone comes out elsewhere, as soon as there is room; robots do not.
 
     Who finds no room waits in the zone. Others who wait in a portal take no room where somebody comes out.
@@ -38,20 +38,20 @@ class Portal:
     Raises:
         InputError: the way is not finite, or 0.
 
-    >>> Portal(Zone(((24, -5), (26, -5), (26, 5), (24, 5))), dx=-48.0).dy
+    >>> PortalTransfer(PolygonZone(((24, -5), (26, -5), (26, 5), (24, 5))), dx=-48.0).dy
     0.0
     """
 
-    zone: Zone
+    zone: PolygonZone
     dx: float = 0.0
     dy: float = 0.0
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.dx) and math.isfinite(self.dy)) or (self.dx == 0.0 and self.dy == 0.0):
-            raise InputError(f"Portal: dx = {self.dx} m, dy = {self.dy} m must be finite, and not both 0")
+            raise InputError(f"PortalTransfer: dx = {self.dx} m, dy = {self.dy} m must be finite, and not both 0")
 
 
-def ported(before: Scene, scene: Scene, portals: Sequence[Portal], ids: Any, following: Any) -> Scene:
+def apply_portals(before: Scene, scene: Scene, portals: Sequence[PortalTransfer], ids: Any, following: Any) -> Scene:
     """Return the scene in which whoever is in a portal has come out where there is room.
 
     Args:
@@ -86,5 +86,5 @@ def ported(before: Scene, scene: Scene, portals: Sequence[Portal], ids: Any, fol
     return scene.replace(position=np.where(held[..., None], before.position, position), velocity=velocity)
 
 
-def _within(scene: Scene, portal: Portal) -> NDArray[np.bool_]:
+def _within(scene: Scene, portal: PortalTransfer) -> NDArray[np.bool_]:
     return portal.zone.contains(scene.position.reshape(-1, 2)).reshape(scene.shape)

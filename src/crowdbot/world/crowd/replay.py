@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene
 
-__all__ = ["SCRIPT", "Script", "Track"]
+__all__ = ["SCRIPT", "ReplayedPeople", "ReplayedTrack"]
 
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -35,7 +35,7 @@ EARLY = 1e-4
 """Clocks whose step is rounded to nanoseconds are early or late by less than this [s]."""
 
 
-class Track(NamedTuple):
+class ReplayedTrack(NamedTuple):
     """Where one agent was recorded: its index, ``[T]`` times [s] that rise, and ``[T, 2]`` places [m]."""
 
     agent: int
@@ -44,7 +44,7 @@ class Track(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Script:
+class ReplayedPeople:
     """Tracks of agents that are moved along them, straight from one recorded place to the next.
 
     An agent is there from the first to the last instant of its track. With ``release`` it becomes free once a robot
@@ -58,29 +58,35 @@ class Script:
     Raises:
         InputError: times of a track do not rise, or something is not finite.
 
-    >>> script = Script([Track(0, np.array([0.0, 2.0]), np.array([[0.0, 0.0], [2.0, 1.0]]))])
+    >>> script = ReplayedPeople([ReplayedTrack(0, np.array([0.0, 2.0]), np.array([[0.0, 0.0], [2.0, 1.0]]))])
     >>> start = script.begun(Scene.of([[9.0, 9.0]]), 1.0)
     >>> start.position[0].tolist(), script.held(start).tolist()
     ([[1.0, 0.5]], [[True]])
     """
 
-    tracks: Sequence[Track]
+    tracks: Sequence[ReplayedTrack]
     release: float | Sequence[float] = 0.0
     _rows: _Rows = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        tracks = tuple(Track(int(a), np.asarray(t, float), np.asarray(p, float)) for a, t, p in self.tracks)
+        tracks = tuple(ReplayedTrack(int(a), np.asarray(t, float), np.asarray(p, float)) for a, t, p in self.tracks)
         object.__setattr__(self, "tracks", tracks)
         far = np.asarray(self.release, dtype=np.float64)
         if far.shape not in ((), (len(tracks),)) or not np.all((far >= 0.0) & (far < math.inf)):
-            raise InputError(f"Script: release = {self.release} m must be finite and at least 0, one or one a track")
+            raise InputError(
+                f"ReplayedPeople: release = {self.release} m must be finite and at least 0, one or one a track"
+            )
         if len({track.agent for track in tracks}) < len(tracks):
-            raise InputError("Script: an agent has two tracks; give each one")
+            raise InputError("ReplayedPeople: an agent has two tracks; give each one")
         for track in tracks:
             if len(track.time) == 0 or track.position.shape != (len(track.time), 2):
-                raise InputError(f"Script: the track of agent {track.agent} must have places [T, 2] for times [T]")
+                raise InputError(
+                    f"ReplayedPeople: the track of agent {track.agent} must have places [T, 2] for times [T]"
+                )
             if not (np.all(np.isfinite(track.position)) and np.all(np.diff(track.time) > 0.0)):
-                raise InputError(f"Script: the track of agent {track.agent} is not finite, or its times do not rise")
+                raise InputError(
+                    f"ReplayedPeople: the track of agent {track.agent} is not finite, or its times do not rise"
+                )
         object.__setattr__(self, "_rows", _Rows.of(tracks))
 
     def held(self, scene: Scene) -> Bools:
@@ -158,7 +164,7 @@ class _Rows(NamedTuple):
     pace: Floats
 
     @classmethod
-    def of(cls, tracks: Sequence[Track]) -> _Rows:
+    def of(cls, tracks: Sequence[ReplayedTrack]) -> _Rows:
         if not tracks:
             none = np.zeros(0)
             no = np.zeros(0, dtype=np.int64)
@@ -190,7 +196,7 @@ class _Rows(NamedTuple):
         return self.position[here] + step * np.maximum(share, 0.0)[:, None], pace
 
 
-def _fastest(track: Track) -> float:
+def _fastest(track: ReplayedTrack) -> float:
     """Return the largest speed [m/s] over at least a second of a track, 0 when it is shorter."""
     step = np.searchsorted(track.time, track.time + 1.0 - EARLY)
     whole = step < len(track.time)

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene, did_you_mean, stream
 from crowdbot.models.mixture import MODEL
 
-from .journey import JOURNEY, Journey
-from .waypoint import Zone
+from .journey import JOURNEY, WaypointSequence
+from .waypoint import PolygonZone
 
-__all__ = ["Arrivals", "Draw", "Source"]
+__all__ = ["Arrivals", "PeopleSource", "Sampler"]
 
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -32,7 +32,7 @@ TOP = 1.3
 MOST_RATE = 1e4
 
 
-class Draw(Protocol):
+class Sampler(Protocol):
     """A distribution that numbers can be drawn from."""
 
     def draw(self, rng: np.random.Generator, count: int) -> Floats:
@@ -40,7 +40,7 @@ class Draw(Protocol):
 
 
 @dataclass(frozen=True)
-class Source:
+class PeopleSource:
     """People come in at a rate, at random places of a zone, as soon as there is room.
 
     Whoever finds no room, or no free place among the agents of the scene, waits outside; the first to come is the first
@@ -61,44 +61,45 @@ class Source:
     Raises:
         InputError: a value is not allowed.
 
-    >>> from crowdbot.world import Point
-    >>> door = Zone(((0, 0), (1, 0), (1, 2), (0, 2)))
-    >>> Source(door, Journey((Point(9.0, 1.0),)), rate=0.5, most=20).timing
+    >>> from crowdbot.world import PointWaypoint
+    >>> door = PolygonZone(((0, 0), (1, 0), (1, 2), (0, 2)))
+    >>> PeopleSource(door, WaypointSequence((PointWaypoint(9.0, 1.0),)), rate=0.5, most=20).timing
     'poisson'
     """
 
-    zone: Zone
-    journey: Journey
+    zone: PolygonZone
+    journey: WaypointSequence
     rate: float
     timing: str = "poisson"
     begin: float = 0.0
     end: float = math.inf
     most: int | None = None
-    speed: float | Draw = 1.34
-    radius: float | Draw = 0.25
+    speed: float | Sampler = 1.34
+    radius: float | Sampler = 0.25
     model: int = 0
 
     def __post_init__(self) -> None:
         if not 0.0 < self.rate <= MOST_RATE:
-            raise InputError(f"Source: rate = {self.rate} people/s must be above 0 and at most {MOST_RATE:g}")
+            raise InputError(f"PeopleSource: rate = {self.rate} people/s must be above 0 and at most {MOST_RATE:g}")
         if self.timing not in TIMINGS:
             near = did_you_mean(str(self.timing), TIMINGS)
-            raise InputError(f"Source: timing {self.timing!r} is unknown{near}; choose {' or '.join(TIMINGS)}")
+            raise InputError(f"PeopleSource: timing {self.timing!r} is unknown{near}; choose {' or '.join(TIMINGS)}")
         if not (math.isfinite(self.begin) and self.begin < self.end):
-            raise InputError(f"Source: begin = {self.begin} s must be finite and before end = {self.end} s")
+            raise InputError(f"PeopleSource: begin = {self.begin} s must be finite and before end = {self.end} s")
         if self.most is not None and self.most < 0:
-            raise InputError(f"Source: most = {self.most} people must be at least 0, or None")
+            raise InputError(f"PeopleSource: most = {self.most} people must be at least 0, or None")
         for name in ("speed", "radius"):
             value = getattr(self, name)
             if isinstance(value, int | float) and not 0.0 < value < math.inf:
-                raise InputError(f"Source: {name} = {value} must be finite and above 0")
+                raise InputError(f"PeopleSource: {name} = {value} must be finite and above 0")
 
     def come_by(self, time: float, seed: int, number: int = 0) -> int:
         """Return how many people come by a time [s] as the source ``number`` of a world with this seed.
 
-        >>> from crowdbot.world import Point
-        >>> door = Zone(((0, 0), (1, 0), (1, 2), (0, 2)))
-        >>> Source(door, Journey((Point(9.0, 1.0),)), rate=0.5, timing="regular").come_by(9.0, seed=0)
+        >>> from crowdbot.world import PointWaypoint
+        >>> door = PolygonZone(((0, 0), (1, 0), (1, 2), (0, 2)))
+        >>> path = WaypointSequence((PointWaypoint(9.0, 1.0),))
+        >>> PeopleSource(door, path, rate=0.5, timing="regular").come_by(9.0, seed=0)
         5
         """
         queue = _Queue.of(self, int(seed) % 2**63, number)
@@ -110,7 +111,7 @@ class Source:
 class _Queue:
     """Who comes in by one source in one environment."""
 
-    source: Source
+    source: PeopleSource
     times: np.random.Generator
     bodies: np.random.Generator
     places: np.random.Generator
@@ -121,14 +122,14 @@ class _Queue:
     """Preferred speed [m/s] and radius [m] of the first who waits."""
 
     @classmethod
-    def of(cls, source: Source, seed: int, number: int) -> _Queue:
+    def of(cls, source: PeopleSource, seed: int, number: int) -> _Queue:
         times, bodies, places = (stream(seed, "source", number, name) for name in ("times", "bodies", "places"))
         queue = cls(source, times, bodies, places, source.begin)
         if source.timing == "poisson":
             queue.due += queue.pause()
         return queue
 
-    def turn_to(self, source: Source) -> None:
+    def reconfigure(self, source: PeopleSource) -> None:
         """Go on as another source; whoever comes evenly goes on from the next who is due."""
         begin = self.due - self.come / source.rate
         if source.timing == "regular" and source != self.source and self.come and begin < source.end:
@@ -162,7 +163,7 @@ class _Queue:
         value = getattr(self.source, name)
         number = float(value if isinstance(value, int | float) else np.asarray(value.draw(self.bodies, 1))[0])
         if not 0.0 < number < math.inf:
-            raise InputError(f"Source: a {name} of {number} was drawn, it must be finite and above 0")
+            raise InputError(f"PeopleSource: a {name} of {number} was drawn, it must be finite and above 0")
         return number
 
     def place(self, taken: Floats, walls: Floats) -> tuple[float, float] | None:
@@ -204,9 +205,10 @@ class Arrivals:
         first_journey: index of the journey of the first source; the others follow.
         fresh: what the memory of a scene holds for somebody new, by name; 0 under other names.
 
-    >>> from crowdbot.world import Point
-    >>> door = Zone(((0, 0), (1, 0), (1, 2), (0, 2)))
-    >>> coming = Arrivals([Source(door, Journey((Point(9, 1),)), rate=2.0, timing="regular")], [0], 0, {})
+    >>> from crowdbot.world import PointWaypoint
+    >>> door = PolygonZone(((0, 0), (1, 0), (1, 2), (0, 2)))
+    >>> path = WaypointSequence((PointWaypoint(9, 1),))
+    >>> coming = Arrivals([PeopleSource(door, path, rate=2.0, timing="regular")], [0], 0, {})
     >>> empty = Scene.of(np.zeros((3, 2)), active=False)
     >>> scene, new = coming.let_in(empty, 0.6, np.arange(3)[None], np.array([3]))
     >>> new.tolist(), scene.active.tolist()
@@ -214,7 +216,11 @@ class Arrivals:
     """
 
     def __init__(
-        self, sources: Sequence[Source], seeds: Sequence[int], first_journey: int, fresh: Mapping[str, float | Floats]
+        self,
+        sources: Sequence[PeopleSource],
+        seeds: Sequence[int],
+        first_journey: int,
+        fresh: Mapping[str, float | Floats],
     ) -> None:
         self._sources = sources
         self._queues = [[_Queue.of(source, int(seed), k) for k, source in enumerate(sources)] for seed in seeds]
@@ -226,7 +232,7 @@ class Arrivals:
         """How many wait outside, ``[E]``."""
         return np.array([sum(queue.waiting for queue in queues) for queues in self._queues], dtype=np.int64)
 
-    def turn_to(self, sources: Sequence[Source], seeds: Sequence[int] | None = None) -> None:
+    def reconfigure(self, sources: Sequence[PeopleSource], seeds: Sequence[int] | None = None) -> None:
         """Go on with other sources in the places of these; who is due or waits stays so.
 
         Args:
@@ -241,7 +247,7 @@ class Arrivals:
         self._sources = tuple(sources)
         for e, queues in enumerate(self._queues):
             for number, queue in enumerate(queues):
-                queue.turn_to(sources[number])
+                queue.reconfigure(sources[number])
                 if seeds is not None:
                     new = _Queue.of(sources[number], int(seeds[e]), number)
                     queue.times, queue.bodies, queue.places = new.times, new.bodies, new.places

@@ -1,4 +1,4 @@
-"""Walk: what a world asks of its crowd model in a step, so that many worlds can ask together."""
+"""CrowdStepRequest: what a world asks of its crowd model in a step, so that many worlds can ask together."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from crowdbot.core import Scene
 from crowdbot.models import CrowdModel, Mixture
 
-__all__ = ["Stepping", "Walk", "alone", "together"]
+__all__ = ["CrowdStepRequest", "StepGenerator", "compute_together", "run_step"]
 
 T = TypeVar("T")
 
 
-class Walk(NamedTuple):
+class CrowdStepRequest(NamedTuple):
     """A question: where are people ``dt`` [s] later? The answer is ``model.step(scene, dt, rng)``."""
 
     model: CrowdModel
@@ -25,27 +25,27 @@ class Walk(NamedTuple):
     dt: float
     rng: np.random.Generator
 
-    def answered(self) -> Scene:
+    def compute(self) -> Scene:
         """Return the answer."""
         return self.model.step(self.scene, self.dt, self.rng)
 
 
-Stepping = Generator[Walk, Scene, T]
+StepGenerator = Generator[CrowdStepRequest, Scene, T]
 """A step that asks, once for each substep of the crowd, and returns a ``T``."""
 
 
-def alone(stepping: Stepping[T]) -> T:
+def run_step(step_requests: StepGenerator[T]) -> T:
     """Go a step, each question answered on its own."""
     try:
-        walk = next(stepping)
+        walk = next(step_requests)
         while True:
-            walk = stepping.send(walk.answered())
+            walk = step_requests.send(walk.compute())
     except StopIteration as done:
         found: T = done.value
         return found
 
 
-def together(walks: Sequence[Walk]) -> list[Scene]:
+def compute_together(walks: Sequence[CrowdStepRequest]) -> list[Scene]:
     """Return the answers to several questions, E = 1 each, of worlds with the same walls.
 
     Built-in models, which draw nothing, are asked once for all, with every question as an environment; the bytes are
@@ -54,12 +54,12 @@ def together(walks: Sequence[Walk]) -> list[Scene]:
     >>> from crowdbot.models import ORCA
     >>> rng = np.random.default_rng(0)
     >>> scenes = [Scene.of(np.zeros((k + 1, 2)), goal=np.full((k + 1, 2), 5.0)) for k in range(2)]
-    >>> walks = [Walk(ORCA(), scene, 0.1, rng) for scene in scenes]
-    >>> [scene.digest() for scene in together(walks)] == [walk.answered().digest() for walk in walks]
+    >>> walks = [CrowdStepRequest(ORCA(), scene, 0.1, rng) for scene in scenes]
+    >>> [scene.digest() for scene in compute_together(walks)] == [walk.answered().digest() for walk in walks]
     True
     """
     if len(walks) < 2 or not all(_fits(walks[0], walk) for walk in walks):
-        return [walk.answered() for walk in walks]
+        return [walk.compute() for walk in walks]
     agents = max(walk.scene.shape[1] for walk in walks)
     model = _joined([walk.model for walk in walks], [walk.scene.shape[1] for walk in walks], agents)
     whole = _stacked([walk.scene for walk in walks], agents)
@@ -67,7 +67,7 @@ def together(walks: Sequence[Walk]) -> list[Scene]:
     return [_row(after, e, walk.scene) for e, walk in enumerate(walks)]
 
 
-def _fits(first: Walk, other: Walk) -> bool:
+def _fits(first: CrowdStepRequest, other: CrowdStepRequest) -> bool:
     """Whether both can be asked as environments of one scene."""
     a, b = first.scene, other.scene
     return (

@@ -15,7 +15,7 @@ from crowdbot.core import InputError, did_you_mean
 
 from .person_random import uniform
 
-__all__ = ["Direction", "Luck", "Point", "Stop", "Zone"]
+__all__ = ["HeadingWaypoint", "PersonRandom", "PointWaypoint", "PolygonZone", "Waypoint"]
 
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -29,7 +29,7 @@ AIMS = ("nearest", "random")
 
 
 @dataclass(frozen=True)
-class Luck:
+class PersonRandom:
     """Who draws, and what for.
 
     Fields:
@@ -49,10 +49,10 @@ class Luck:
 
 
 @dataclass(frozen=True)
-class Stop(ABC):
+class Waypoint(ABC):
     """Something to go to."""
 
-    routed: ClassVar[bool] = True
+    uses_routing: ClassVar[bool] = True
     """Whether a router leads there."""
 
     @property
@@ -61,7 +61,7 @@ class Stop(ABC):
         return False
 
     @abstractmethod
-    def goal(self, place: Floats, luck: Luck) -> Floats:
+    def goal(self, place: Floats, luck: PersonRandom) -> Floats:
         """Return the goals ``[N, 2]`` [m] of people at ``place`` ``[N, 2]`` [m]."""
 
     @abstractmethod
@@ -70,10 +70,10 @@ class Stop(ABC):
 
 
 @dataclass(frozen=True)
-class Point(Stop):
+class PointWaypoint(Waypoint):
     """A point, reached when one is nearer than the tolerance [m].
 
-    >>> Point(1.0, 2.0).reached(np.array([[1.0, 1.8], [1.0, 1.0]]), np.array([[1.0, 2.0], [1.0, 2.0]])).tolist()
+    >>> PointWaypoint(1.0, 2.0).reached(np.array([[1.0, 1.8], [1.0, 1.0]]), np.array([[1.0, 2.0], [1.0, 2.0]])).tolist()
     [True, False]
     """
 
@@ -82,10 +82,10 @@ class Point(Stop):
     tolerance: float = 0.3
 
     def __post_init__(self) -> None:
-        _check_finite("Point", x=self.x, y=self.y)
-        _check_tolerance("Point", self.tolerance)
+        _check_finite("PointWaypoint", x=self.x, y=self.y)
+        _check_tolerance("PointWaypoint", self.tolerance)
 
-    def goal(self, place: Floats, luck: Luck) -> Floats:
+    def goal(self, place: Floats, luck: PersonRandom) -> Floats:
         """Return the point for everyone."""
         return np.tile([float(self.x), float(self.y)], (len(place), 1))
 
@@ -95,25 +95,25 @@ class Point(Stop):
 
 
 @dataclass(frozen=True)
-class Direction(Stop):
+class HeadingWaypoint(Waypoint):
     """A direction [rad] to walk in for ever, counter-clockwise from +x; no router leads there.
 
-    >>> Direction(0.0).reached(np.zeros((1, 2)), np.ones((1, 2))).tolist()
+    >>> HeadingWaypoint(0.0).reached(np.zeros((1, 2)), np.ones((1, 2))).tolist()
     [False]
     """
 
-    routed: ClassVar[bool] = False
+    uses_routing: ClassVar[bool] = False
     heading: float = 0.0
 
     def __post_init__(self) -> None:
-        _check_finite("Direction", heading=self.heading)
+        _check_finite("HeadingWaypoint", heading=self.heading)
 
     @property
     def moves(self) -> bool:
         """Whether the goal depends on where one is."""
         return True
 
-    def goal(self, place: Floats, luck: Luck) -> Floats:
+    def goal(self, place: Floats, luck: PersonRandom) -> Floats:
         """Return a point far ahead of everyone."""
         return place + AHEAD * np.array([math.cos(self.heading), math.sin(self.heading)])
 
@@ -123,7 +123,7 @@ class Direction(Stop):
 
 
 @dataclass(frozen=True)
-class Zone(Stop):
+class PolygonZone(Waypoint):
     """A polygon, reached when one is in it, or nearer to the own goal in it than the tolerance [m].
 
     Fields:
@@ -134,8 +134,8 @@ class Zone(Stop):
     Raises:
         InputError: it has no area, or a value is not allowed.
 
-    >>> hall = Zone(((4.0, 0.0), (6.0, 0.0), (6.0, 3.0), (4.0, 3.0)))
-    >>> hall.goal(np.array([[0.0, 1.0], [5.0, 2.0]]), Luck(np.zeros(2, int), np.arange(2))).tolist()
+    >>> hall = PolygonZone(((4.0, 0.0), (6.0, 0.0), (6.0, 3.0), (4.0, 3.0)))
+    >>> hall.goal(np.array([[0.0, 1.0], [5.0, 2.0]]), PersonRandom(np.zeros(2, int), np.arange(2))).tolist()
     [[4.0, 1.0], [5.0, 2.0]]
     """
 
@@ -147,15 +147,15 @@ class Zone(Stop):
     def __post_init__(self) -> None:
         ring = np.array(self.corners, dtype=np.float64)
         if ring.ndim != 2 or ring.shape[1:] != (2,) or len(ring) < 3 or not np.all(np.isfinite(ring)):
-            raise InputError(f"Zone: corners {ring.tolist()} must be three or more finite points x, y")
+            raise InputError(f"PolygonZone: corners {ring.tolist()} must be three or more finite points x, y")
         area = 0.5 * abs(float(np.sum(ring[:, 0] * np.roll(ring[:, 1], -1) - np.roll(ring[:, 0], -1) * ring[:, 1])))
         if area < 1e-6:
-            raise InputError(f"Zone: corners {ring.tolist()} enclose {area:g} m2, which is no area")
+            raise InputError(f"PolygonZone: corners {ring.tolist()} enclose {area:g} m2, which is no area")
         if self.aim not in AIMS:
             raise InputError(
-                f"Zone: aim {self.aim!r} is unknown{did_you_mean(self.aim, AIMS)}; choose nearest or random"
+                f"PolygonZone: aim {self.aim!r} is unknown{did_you_mean(self.aim, AIMS)}; choose nearest or random"
             )
-        _check_tolerance("Zone", self.tolerance)
+        _check_tolerance("PolygonZone", self.tolerance)
         object.__setattr__(self, "corners", tuple(map(tuple, ring.tolist())))
         object.__setattr__(self, "_ring", ring)
 
@@ -164,7 +164,7 @@ class Zone(Stop):
         """Whether the goal depends on where one is."""
         return self.aim == "nearest"
 
-    def goal(self, place: Floats, luck: Luck) -> Floats:
+    def goal(self, place: Floats, luck: PersonRandom) -> Floats:
         """Return the nearest points of the zone, or random ones."""
         if self.aim == "random":
             return self.drawn(luck)
@@ -183,7 +183,7 @@ class Zone(Stop):
                 inside ^= ((ay > y) != (by > y)) & (x < ax + (bx - ax) * ((y - ay) / (by - ay)))
         return inside
 
-    def drawn(self, luck: Luck) -> Floats:
+    def drawn(self, luck: PersonRandom) -> Floats:
         """Return a random point of the zone ``[N, 2]`` for everyone, where a body has room.
 
         Raises:
@@ -196,14 +196,14 @@ class Zone(Stop):
         for k in range(TRIES):
             if len(missing) == 0:
                 return points
-            some = Luck(luck.seed[missing], luck.person[missing], luck.path)
+            some = PersonRandom(luck.seed[missing], luck.person[missing], luck.path)
             found = low + size * np.stack([some.draw(k, "x"), some.draw(k, "y")], axis=-1)
             good = self.contains(found)
             if luck.holds is not None and np.any(good):
                 good[good] = luck.holds(found[good])
             points[missing[good]] = found[good]
             missing = missing[~good]
-        raise InputError(f"Zone: no place for a body was found in the zone with corners {list(self.corners)}")
+        raise InputError(f"PolygonZone: no place for a body was found in the zone with corners {list(self.corners)}")
 
 
 def _on_border(ring: Floats, place: Floats) -> Floats:

@@ -12,7 +12,16 @@ from typing import NamedTuple
 
 from crowdbot.core import InputError, Paper
 
-__all__ = ["SOURCE", "TISSUES", "Tissue", "permitted_speed", "reduced_mass", "region_of", "softness", "two_body_force"]
+__all__ = [
+    "BODY_REGION_LIMITS",
+    "SOURCE",
+    "BodyRegionLimits",
+    "permitted_speed",
+    "reduced_mass",
+    "region_of",
+    "softness",
+    "two_body_force",
+]
 
 SOURCE = Paper(
     "ISO",
@@ -23,7 +32,7 @@ SOURCE = Paper(
 )
 
 
-class Tissue(NamedTuple):
+class BodyRegionLimits(NamedTuple):
     """A region of the body.
 
     Fields:
@@ -39,19 +48,19 @@ class Tissue(NamedTuple):
     transient: float = 2.0
 
 
-TISSUES: dict[str, Tissue] = {
-    "skull": Tissue(150e3, 4.4, 130.0, 0.0),
-    "face": Tissue(75e3, 4.4, 65.0, 0.0),
-    "neck": Tissue(50e3, 1.2, 150.0),
-    "back": Tissue(35e3, 40.0, 210.0),
-    "chest": Tissue(25e3, 40.0, 140.0),
-    "belly": Tissue(10e3, 40.0, 110.0),
-    "pelvis": Tissue(25e3, 40.0, 180.0),
-    "upper arm": Tissue(30e3, 3.0, 150.0),
-    "forearm": Tissue(40e3, 2.0, 160.0),
-    "hand": Tissue(75e3, 0.6, 140.0),
-    "thigh": Tissue(50e3, 75.0, 220.0),
-    "lower leg": Tissue(60e3, 75.0, 130.0),
+BODY_REGION_LIMITS: dict[str, BodyRegionLimits] = {
+    "skull": BodyRegionLimits(150e3, 4.4, 130.0, 0.0),
+    "face": BodyRegionLimits(75e3, 4.4, 65.0, 0.0),
+    "neck": BodyRegionLimits(50e3, 1.2, 150.0),
+    "back": BodyRegionLimits(35e3, 40.0, 210.0),
+    "chest": BodyRegionLimits(25e3, 40.0, 140.0),
+    "belly": BodyRegionLimits(10e3, 40.0, 110.0),
+    "pelvis": BodyRegionLimits(25e3, 40.0, 180.0),
+    "upper arm": BodyRegionLimits(30e3, 3.0, 150.0),
+    "forearm": BodyRegionLimits(40e3, 2.0, 160.0),
+    "hand": BodyRegionLimits(75e3, 0.6, 140.0),
+    "thigh": BodyRegionLimits(50e3, 75.0, 220.0),
+    "lower leg": BodyRegionLimits(60e3, 75.0, 130.0),
 }
 """Regions of :data:`SOURCE`; for certification buy the standard. Limits are for adults; those of children are lower."""
 
@@ -78,7 +87,7 @@ AHEAD = {"skull": "face"}
 
 
 def region_of(limb: str, ahead: bool = True) -> str:
-    """Return the region of :data:`TISSUES` of a limb that is touched from ahead or from behind.
+    """Return the region of :data:`BODY_REGION_LIMITS` of a limb that is touched from ahead or from behind.
 
     Raises:
         InputError: there is no such limb.
@@ -110,13 +119,13 @@ def two_body_force(speed: float, mass: float, region: str, person_mass: float = 
     Args:
         speed: closing speed along the normal [m/s].
         mass: of what hits [kg]; of a mobile robot its whole moving mass.
-        region: one of :data:`TISSUES`.
+        region: one of :data:`BODY_REGION_LIMITS`.
         person_mass: mass of the whole person [kg]; no region is heavier.
 
     >>> round(two_body_force(1.0, 60.0, "chest"), 1)
     774.6
     """
-    tissue = TISSUES[region]
+    tissue = BODY_REGION_LIMITS[region]
     return max(0.0, speed) * math.sqrt(tissue.stiffness * reduced_mass(mass, min(tissue.mass, person_mass)))
 
 
@@ -126,7 +135,7 @@ def permitted_speed(mass: float, region: str) -> float:
     >>> round(permitted_speed(60.0, "chest"), 2)
     0.36
     """
-    tissue = TISSUES[region]
+    tissue = BODY_REGION_LIMITS[region]
     return tissue.transient * tissue.limit / two_body_force(1.0, mass, region)
 
 
@@ -141,7 +150,7 @@ def softness(region: str, person: float, mass: float, dt: float) -> tuple[float,
     >>> round(math.sqrt(stiffness / (25e3 / 24.0)), 3)  # stiffer by what damping takes from the peak
     1.229
     """
-    tissue = TISSUES[region]
+    tissue = BODY_REGION_LIMITS[region]
     whole = reduced_mass(person, mass)
     wanted = tissue.stiffness * reduced_mass(mass, min(tissue.mass, person)) / whole**2
     frequency = min(math.sqrt(wanted) / _peak(DAMPING), math.pi / (SHORTEST * dt))

@@ -15,10 +15,10 @@ from crowdbot.world.robots.robot import Robot
 from crowdbot.world.urdf import Box, Capsule, Cylinder, Mesh, Sphere
 from crowdbot.world.urdf.transforms import frame, quaternion, turning
 
-from .people_motion import Walkers
-from .stage import PhysicsStage, Prop
+from .people_motion import PeopleMotion
+from .stage import PhysicsStage, PropBody
 
-__all__ = ["bodies"]
+__all__ = ["scene_bodies"]
 
 Floats = NDArray[np.float64]
 Frames = Mapping[str, Floats]
@@ -36,9 +36,9 @@ class _Rows(NamedTuple):
     size: Floats
 
 
-def bodies(
+def scene_bodies(
     scene: Scene,
-    walkers: Walkers | None = None,
+    motion: PeopleMotion | None = None,
     robots: Mapping[int, Robot] | None = None,
     stage: PhysicsStage | None = None,
     *,
@@ -69,7 +69,7 @@ def bodies(
         InputError: the scene has several environments.
 
     >>> scene = Scene.of([[0.0, 0.0], [3.0, 0.0]], external=[True, False])
-    >>> found = bodies(scene, Walkers(scene, np.array([1])), {0: Robot.load("turtlebot2")})
+    >>> found = scene_bodies(scene, PeopleMotion(scene, np.array([1])), {0: Robot.load("turtlebot2")})
     >>> found.start.shape, sorted(set(found.post_owner.tolist()))  # a castor is a ball, that is a short capsule
     ((1, 19, 3), [0])
     """
@@ -77,8 +77,8 @@ def bodies(
         raise InputError(f"bodies: the scene has {scene.shape[0]} environments; give one: scene.environments([0])")
     found = _Found()
     parts: tuple[str, ...] = ()
-    if walkers is not None:
-        limbs = walkers.limbs(scene.active[0])
+    if motion is not None:
+        limbs = motion.limbs(scene.active[0])
         parts = limbs.parts
         found.capsules.append((limbs.start[0], limbs.end[0], limbs.radius[0], limbs.owner, limbs.part))
     for agent, robot in (robots or {}).items():
@@ -89,7 +89,7 @@ def bodies(
     for number, prop in enumerate(stage.props if stage is not None else ()):
         for kind, place, size in _of_prop(prop, (props or {}).get(number)):
             found.add(kind, place[None], size[None], STAGE)
-    skin = None if skins is None or walkers is None else _skins(scene, walkers, skins)
+    skin = None if skins is None or motion is None else _skins(scene, motion, skins)
     return found.bodies(parts, skin)
 
 
@@ -139,7 +139,7 @@ class _Found:
             foot = np.column_stack([np.full(SLICES, x), np.full(SLICES, y), z + tall * low])
             self.posts.append((foot, wide * across, tall * (high - low), np.full(SLICES, owner)))
 
-    def bodies(self, parts: tuple[str, ...], skins: Skins | None) -> Bodies:
+    def scene_bodies(self, parts: tuple[str, ...], skins: Skins | None) -> Bodies:
         """Return all of them."""
         named = (
             (self.capsules, ("start", "end", "radius", "owner", "part")),
@@ -194,7 +194,7 @@ def _rows_of(robot: Robot) -> dict[str, _Rows]:
     }
 
 
-def _of_prop(prop: Prop, moved: Floats | None) -> list[tuple[str, Floats, Floats]]:
+def _of_prop(prop: PropBody, moved: Floats | None) -> list[tuple[str, Floats, Floats]]:
     """Return kind, frame and size of the shapes of a prop, as its body of MJCF says."""
     body = prop.body("prop")
     place = moved
@@ -216,12 +216,12 @@ def _numbers(element: Element, key: str) -> Floats:
     return np.array([float(word) for word in element.attributes.get(key, "0 0 0").split()])
 
 
-def _skins(scene: Scene, walkers: Walkers, level: int) -> Skins:
+def _skins(scene: Scene, motion: PeopleMotion, level: int) -> Skins:
     """Return the skins of everyone who is there, what they do not wear left out."""
-    points = walkers.gait.skin(walkers.state, level)
-    points[~scene.active[0, walkers.agents]] = np.nan
-    worn, faces = walkers.people.worn(level), walkers.people.faces(level)
+    points = motion.gait.skin(motion.state, level)
+    points[~scene.active[0, motion.agents]] = np.nan
+    worn, faces = motion.people.worn(level), motion.people.faces(level)
     count = points.shape[1]
     rows = [faces[own] + k * count for k, own in enumerate(worn)]
-    owner = np.repeat(walkers.agents, worn.sum(axis=1))
+    owner = np.repeat(motion.agents, worn.sum(axis=1))
     return Skins.of(points.reshape(1, -1, 3), np.concatenate(rows) if rows else np.zeros((0, 3)), owner)

@@ -15,10 +15,10 @@ from crowdbot.humans import LIMBS
 from crowdbot.metrics import cause_of
 from crowdbot.metrics.contacts import HOLD
 
-from .body_region_limits import TISSUES, region_of, two_body_force
-from .contacts import Party, Touch
+from .body_region_limits import BODY_REGION_LIMITS, region_of, two_body_force
+from .contacts import ContactBody, EngineContact
 
-__all__ = ["BodyForce", "Collision", "CollisionBook"]
+__all__ = ["BodyContactEvent", "ContactForce", "ContactTracker"]
 
 Floats = NDArray[np.float64]
 CLAMPED = 0.5
@@ -30,7 +30,7 @@ ANEW = 0.05
 PARTS = {limb.name: limb.region for limb in LIMBS}
 
 
-class BodyForce(NamedTuple):
+class ContactForce(NamedTuple):
     """What two did to each other during one step of the world.
 
     Fields:
@@ -43,8 +43,8 @@ class BodyForce(NamedTuple):
         point: ``[3]`` where [m], the last.
     """
 
-    first: Party
-    second: Party
+    first: ContactBody
+    second: ContactBody
     first_part: str
     limb: str
     part: str
@@ -55,7 +55,7 @@ class BodyForce(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Collision:
+class BodyContactEvent:
     """From the first touch of two until they have been apart for half a second.
 
     Fields:
@@ -77,8 +77,8 @@ class Collision:
             compared and not an injury force.
     """
 
-    first: Party
-    second: Party
+    first: ContactBody
+    second: ContactBody
     begin: float
     end: float
     cause: str
@@ -106,10 +106,10 @@ class Collision:
         """
         if not self.region:
             return math.nan
-        tissue = TISSUES[self.region]
+        tissue = BODY_REGION_LIMITS[self.region]
         allowed = tissue.transient * tissue.limit
         impact = self.peak_force / allowed if allowed > 0.0 else math.inf if self.peak_force > 0.0 else 0.0
-        steady = self.steady_force / TISSUES[self.steady_region].limit if self.steady_region else 0.0
+        steady = self.steady_force / BODY_REGION_LIMITS[self.steady_region].limit if self.steady_region else 0.0
         return max(impact, steady)
 
 
@@ -139,7 +139,7 @@ class _Running:
     region: dict[str, str] = field(default_factory=dict)
 
 
-class CollisionBook:
+class ContactTracker:
     """Keeps collisions from touches.
 
     Args:
@@ -150,26 +150,26 @@ class CollisionBook:
     """
 
     def __init__(
-        self, step: float, mass_of: Callable[[Party], float], limb_mass_of: Callable[[int, str], float],
+        self, step: float, mass_of: Callable[[ContactBody], float], limb_mass_of: Callable[[int, str], float],
         heading_of: Callable[[int], float],
     ) -> None:  # fmt: skip
         self._step, self._mass_of, self._limb_mass_of, self._heading_of = step, mass_of, limb_mass_of, heading_of
         self._window = max(1, round(WINDOW / step))
-        self._running: dict[tuple[Party, Party], _Running] = {}
-        self._over: list[Collision] = []
-        self._sums: dict[tuple[Party, Party, str, str], tuple[Floats, float, Floats]] = {}
+        self._running: dict[tuple[ContactBody, ContactBody], _Running] = {}
+        self._over: list[BodyContactEvent] = []
+        self._sums: dict[tuple[ContactBody, ContactBody, str, str], tuple[Floats, float, Floats]] = {}
 
     @property
-    def collisions(self) -> tuple[Collision, ...]:
+    def contact_events(self) -> tuple[BodyContactEvent, ...]:
         """All so far, by first touch; those that are not over end with their last touch."""
         now = [_closed(pair, running) for pair, running in self._running.items()]
         return tuple(sorted([*self._over, *now], key=lambda one: (one.begin, one.first, one.second)))
 
-    def add(self, time: float, touches: tuple[Touch, ...]) -> None:
+    def add(self, time: float, touches: tuple[EngineContact, ...]) -> None:
         """Take the touches of one step of the engine that ends at ``time`` [s]."""
         if not touches and not self._running:
             return
-        pairs: dict[tuple[Party, Party], list[Touch]] = {}
+        pairs: dict[tuple[ContactBody, ContactBody], list[EngineContact]] = {}
         for touch in touches:
             pairs.setdefault((touch.first, touch.second), []).append(touch)
             self._sum(touch)
@@ -180,19 +180,19 @@ class CollisionBook:
             if time - running.end > HOLD:
                 self._over.append(_closed(pair, self._running.pop(pair)))
 
-    def forces(self, steps: int) -> tuple[BodyForce, ...]:
+    def forces(self, steps: int) -> tuple[ContactForce, ...]:
         """Return the means over the last ``steps`` steps of the engine, and begin anew."""
         found = []
         for (first, second, one, limb), (force, depth, point) in self._sums.items():
             mean = force / steps
             size = _size(mean)
             found.append(
-                BodyForce(first, second, one, limb, PARTS.get(limb, ""), size, _three(mean), depth, _three(point))
+                ContactForce(first, second, one, limb, PARTS.get(limb, ""), size, _three(mean), depth, _three(point))
             )
         self._sums = {}
         return tuple(sorted(found))
 
-    def _sum(self, touch: Touch) -> None:
+    def _sum(self, touch: EngineContact) -> None:
         limb = touch.second_part if touch.second.kind == "person" else ""
         limb = touch.first_part if touch.first.kind == "person" else limb
         link = touch.first_part if touch.first.kind == "robot" else ""
@@ -200,7 +200,7 @@ class CollisionBook:
         force, depth, _ = self._sums.get(key, (np.zeros(3), 0.0, touch.point))
         self._sums[key] = (force + touch.force, max(depth, touch.depth), touch.point)
 
-    def _touched(self, pair: tuple[Party, Party], rows: list[Touch], time: float) -> None:
+    def _touched(self, pair: tuple[ContactBody, ContactBody], rows: list[EngineContact], time: float) -> None:
         running = self._running.get(pair)
         if running is None:
             fastest = max(rows, key=_closing)
@@ -214,7 +214,7 @@ class CollisionBook:
             if "person" in (touch.first.kind, touch.second.kind):
                 self._hit(running, touch, time)
 
-    def _hit(self, running: _Running, touch: Touch, time: float) -> None:
+    def _hit(self, running: _Running, touch: EngineContact, time: float) -> None:
         """Judge an impact on a limb by the two-body model."""
         first = touch.first.kind == "person"
         person, limb = (touch.first, touch.first_part) if first else (touch.second, touch.second_part)
@@ -238,7 +238,7 @@ class CollisionBook:
         if force > running.hardest[0]:
             running.hardest = (force, limb, region)
 
-    def _pressed(self, running: _Running, rows: list[Touch], time: float) -> None:
+    def _pressed(self, running: _Running, rows: list[EngineContact], time: float) -> None:
         """Follow the force on each limb."""
         sums: dict[str, Floats] = {}
         for touch in rows:
@@ -279,13 +279,13 @@ def _three(vector: Floats) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _closing(touch: Touch) -> float:
+def _closing(touch: EngineContact) -> float:
     return max(0.0, float((touch.first_velocity - touch.second_velocity) @ touch.normal))
 
 
-def _closed(pair: tuple[Party, Party], running: _Running) -> Collision:
+def _closed(pair: tuple[ContactBody, ContactBody], running: _Running) -> BodyContactEvent:
     force, limb, region = running.hardest
-    return Collision(
+    return BodyContactEvent(
         *pair,
         begin=running.begin,
         end=running.end,

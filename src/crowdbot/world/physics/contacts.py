@@ -1,4 +1,4 @@
-"""Touches: who presses on whom in one step of the engine, with which part, how hard and how deep."""
+"""ContactReader: who presses on whom in one step of the engine, with which part, how hard and how deep."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .engine import engine
 from .mjcf_model import LIMB_NAMES
 
-__all__ = ["KINDS", "Party", "Touch", "Touches"]
+__all__ = ["KINDS", "ContactBody", "ContactReader", "EngineContact"]
 
 Floats = NDArray[np.float64]
 KINDS = ("robot", "person", "prop", "wall")
@@ -19,7 +19,7 @@ NOTHING, ROBOT, PROP, PERSON, WALL = 0, 1, 2, 3, 4
 WORDS = {ROBOT: "robot", PROP: "prop", PERSON: "person", WALL: "wall"}
 
 
-class Party(NamedTuple):
+class ContactBody(NamedTuple):
     """One side of a touch.
 
     Fields:
@@ -31,7 +31,7 @@ class Party(NamedTuple):
     number: int
 
 
-class Touch(NamedTuple):
+class EngineContact(NamedTuple):
     """Two that touch in one step of the engine; the first is a robot if one is, then a prop, then a person.
 
     Fields:
@@ -45,8 +45,8 @@ class Touch(NamedTuple):
         swing: ``[3]`` what of the person's velocity is the limb's against the body; 0 without a person.
     """
 
-    first: Party
-    second: Party
+    first: ContactBody
+    second: ContactBody
     first_part: str
     second_part: str
     force: Floats
@@ -58,7 +58,7 @@ class Touch(NamedTuple):
     swing: Floats
 
 
-class _Contact(NamedTuple):
+class _ContactPoint(NamedTuple):
     """One point where the geom ``one`` meets ``other``, with velocities there."""
 
     row: int
@@ -69,7 +69,7 @@ class _Contact(NamedTuple):
     other: int
 
 
-class Touches:
+class ContactReader:
     """Reads the contacts of the engine.
 
     Args:
@@ -90,7 +90,7 @@ class Touches:
         self._kind = np.array([kind for kind, _, _ in rows], dtype=np.int64)
         self._number = [number for _, number, _ in rows]
         self._part = [part for _, _, part in rows]
-        self._found: list[_Contact] = []
+        self._found: list[_ContactPoint] = []
 
     def look(self) -> None:
         """Note the contacts that matter and how fast the surfaces are: between both halves of a step of the engine."""
@@ -110,7 +110,7 @@ class Touches:
                     swing = self._swung(geom, point)
             first = self._velocity(one, point) + (swing if self._kind[one] == PERSON else 0.0)
             second = self._velocity(other, point) + (swing if self._kind[other] == PERSON else 0.0)
-            self._found.append(_Contact(int(index), one, first, second, swing, other))
+            self._found.append(_ContactPoint(int(index), one, first, second, swing, other))
         self._share()
 
     def _share(self) -> None:
@@ -126,18 +126,18 @@ class Touches:
                 self._data.efc_R[rows] *= len(indices)
                 self._data.efc_D[rows] /= len(indices)
 
-    def read(self) -> tuple[Touch, ...]:
+    def read(self) -> tuple[EngineContact, ...]:
         """Return who presses on whom, after the second half of the step; points of the same parts are together."""
         if not self._found:
             return ()
-        together: dict[tuple[Party, Party, str, str], list[_Contact]] = {}
+        together: dict[tuple[ContactBody, ContactBody, str, str], list[_ContactPoint]] = {}
         for found in self._found:
             one, other = found.one, found.other
             key = (self._party(one), self._party(other), self._part[one], self._part[other])
             together.setdefault(key, []).append(found)
         return tuple(self._joined(key, rows) for key, rows in sorted(together.items(), key=lambda item: item[0]))
 
-    def _joined(self, key: tuple[Party, Party, str, str], rows: list[_Contact]) -> Touch:
+    def _joined(self, key: tuple[ContactBody, ContactBody, str, str], rows: list[_ContactPoint]) -> EngineContact:
         force, normals, depth, six = np.zeros(3), np.zeros(3), 0.0, np.zeros(6)
         for row in rows:
             contact = self._data.contact[row.row]
@@ -152,14 +152,14 @@ class Touches:
         second = np.mean([row.second for row in rows], axis=0)
         swing = np.mean([row.swing for row in rows], axis=0)
         point = np.mean([self._data.contact[row.row].pos for row in rows], axis=0)
-        return Touch(*key, force, depth, normal, point, first, second, swing)
+        return EngineContact(*key, force, depth, normal, point, first, second, swing)
 
     def _rank(self, geom: int) -> tuple[int, int]:
         return int(self._kind[geom]), geom
 
-    def _party(self, geom: int) -> Party:
+    def _party(self, geom: int) -> ContactBody:
         kind, number = int(self._kind[geom]), self._number[geom]
-        return Party(WORDS[kind], self._agent_of(number) if kind == PERSON else number)
+        return ContactBody(WORDS[kind], self._agent_of(number) if kind == PERSON else number)
 
     def _velocity(self, geom: int, point: Floats) -> Floats:
         """Return the velocity ``[3]`` of the body of a geom at a point."""

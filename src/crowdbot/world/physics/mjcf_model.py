@@ -19,7 +19,7 @@ from .layers import LIMB, PULLED, ROBOT, TRUNK
 from .scenery import scenery
 from .stage import PhysicsStage
 
-__all__ = ["PARKED", "Built", "built"]
+__all__ = ["PARKED", "MjcfModel", "build_mjcf_model"]
 
 PARKED = 60.0
 """Height [m] at which limbs that nobody has wait."""
@@ -35,7 +35,7 @@ SPRING = "0.5 0.5 0.001 0.5 2"
 """Of the touch of a limb: so the engine solves it as a spring and a damper, whose force two limbs cannot drive up."""
 
 
-class Built(NamedTuple):
+class MjcfModel(NamedTuple):
     """A model as XML tree with its mesh files; ``prefixes`` of the names of each robot; joints of all ``wheels``."""
 
     root: Element
@@ -51,14 +51,14 @@ class Built(NamedTuple):
         return model
 
 
-def built(
+def build_mjcf_model(
     scene: Scene,
     stage: PhysicsStage,
     robots: Mapping[int, Robot],
     slots: int,
     motors: Mapping[int, Mapping[str, str]] | None = None,
     posed: bool = False,
-) -> Built:
+) -> MjcfModel:
     """Return the model of a world.
 
     Args:
@@ -95,7 +95,7 @@ def built(
     root.children += [Element("asset", {}, assets), Element("worldbody", {}, world)]
     root.children += [Element(tag, {}, rows) for tag, rows in sections.items() if rows]
     wheels = {prefixes[agent] + wheel.joint for agent, robot in robots.items() for wheel in robot.wheels}
-    return Built(root, files, prefixes, frozenset(wheels))
+    return MjcfModel(root, files, prefixes, frozenset(wheels))
 
 
 def _steadied(model: Any, wheels: Collection[str]) -> None:

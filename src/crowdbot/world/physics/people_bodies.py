@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .body_region_limits import region_of, softness
-from .contacts import Touch
+from .contacts import EngineContact
 from .mjcf_model import LIMB_COUNT, LIMB_NAMES, PARKED
 
-__all__ = ["BRACE", "REACTION", "Passers"]
+__all__ = ["BRACE", "REACTION", "PeopleBodies"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -45,7 +45,7 @@ CHAINS = {name: chain for chain in (("thigh", "shank", "foot"), ("upperarm", "fo
 REGIONS = {ahead: tuple(region_of(name, ahead) for name in LIMB_NAMES) for ahead in (True, False)}
 
 
-class Passers:
+class PeopleBodies:
     """The bodies of the engine and who has them.
 
     Args:
@@ -139,7 +139,7 @@ class Passers:
         for axis in (0, 1):
             self._data.qfrc_applied[self._speed[here] + axis] = force[:, axis]
 
-    def stepped(self, touches: Iterable[Touch]) -> None:
+    def register_contacts(self, touches: Iterable[EngineContact]) -> None:
         """Notice who was pushed during the last step of the engine, and let limbs give way that are pressed."""
         self._touched = np.maximum(self._touched - 1, 0)
         fresh = self.step / REACTION

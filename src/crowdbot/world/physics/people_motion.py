@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene, stream
 from crowdbot.humans import CHAIR, LIMBS, WHEELCHAIR, Gait, Gaits, People
 
-__all__ = ["Limbs", "Walkers"]
+__all__ = ["LimbCapsules", "PeopleMotion"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -27,7 +27,7 @@ FASTEST = 11.9
 """Speeds [m/s] that models give are cut to this for the legs."""
 
 
-class Limbs(NamedTuple):
+class LimbCapsules(NamedTuple):
     """Capsules of the limbs of people, E = 1; the names are those of bodies in a scene.
 
     Fields:
@@ -44,7 +44,7 @@ class Limbs(NamedTuple):
     parts: tuple[str, ...]
 
 
-class Walkers:
+class PeopleMotion:
     """People who walk along in a scene.
 
     Args:
@@ -95,9 +95,9 @@ class Walkers:
 
     def walk(self, scene: Scene, dt: float) -> None:
         """Walk on for ``dt`` [s] to where everyone is in ``scene``: what a world in the plane does after each step."""
-        self.take(self.stepped(scene, dt))
+        self.take(self.next_state(scene, dt))
 
-    def stepped(self, scene: Scene, dt: float) -> Gaits:
+    def next_state(self, scene: Scene, dt: float) -> Gaits:
         """Return how everyone stands ``dt`` [s] later, when they have come to where they are in ``scene``."""
         place, velocity, heading = self._of(scene)
         return self.gait.step(self.state, place, velocity, heading, dt)
@@ -118,7 +118,7 @@ class Walkers:
         below = BELOW.get(stem, (stem,))
         return float(sum(own[NAMES.index(f"{name}_{side}" if side else name)] for name in below))
 
-    def limbs(self, active: NDArray[np.bool_]) -> Limbs:
+    def limbs(self, active: NDArray[np.bool_]) -> LimbCapsules:
         """Return the capsules of everyone.
 
         Args:
@@ -126,7 +126,7 @@ class Walkers:
         """
         count = len(self.agents) * len(LIMBS)
         there = np.where(active[self.agents, None], self.radius, 0.0)
-        return Limbs(
+        return LimbCapsules(
             self.ends[..., :3].reshape(1, count, 3),
             self.ends[..., 3:].reshape(1, count, 3),
             there.reshape(1, count),

@@ -17,13 +17,13 @@ from crowdbot.world.robots.servo import CommandDelay, Pending
 
 from .engine import engine
 
-__all__ = ["Chassis"]
+__all__ = ["RobotBody"]
 
 Floats = NDArray[np.float64]
 STILL = Twist()
 
 
-class Chassis:
+class RobotBody:
     """One robot in the engine.
 
     Args:
@@ -49,13 +49,13 @@ class Chassis:
         self._wheels = {} if self._servo else {joint: self._motor(joint) for joint in named}
         self._steers = any(wheel.steering for wheel in robot.wheels)
         units = [robot.wheel_speeds(Twist(*row)) for row in np.eye(3).tolist()]
-        self._driven = [joint for joint in units[0] if joint in self._wheels]
-        self._rolling = np.array([[unit[joint] for unit in units] for joint in self._driven]).reshape(-1, 3)
+        self._step_robots = [joint for joint in units[0] if joint in self._wheels]
+        self._rolling = np.array([[unit[joint] for unit in units] for joint in self._step_robots]).reshape(-1, 3)
         if self._servo:  # the engine takes the mean over three directions, one of which the base does not have
             model.body_invweight0[self.body, 0] = 1.0 / robot.model.mass
         self._delay = CommandDelay(robot.latency)
         self._pending: tuple[Pending, ...] = ()
-        self._held: Twist | Twists = STILL
+        self._with_replayed_external: Twist | Twists = STILL
         self._asked: Twist | Twists = STILL
         self._forced: Twist | Twists | None = None
         self._aim = Twists.of(STILL, 1)
@@ -107,8 +107,8 @@ class Chassis:
         """Send to the motors what holds for the next step of the engine: delayed, within the limits, ramped."""
         now = self._asked
         if self.robot.latency > 0.0:
-            self._pending, now = self._delay.step(self._pending, self._held, self._asked, self.step)
-            self._held = now
+            self._pending, now = self._delay.step(self._pending, self._with_replayed_external, self._asked, self.step)
+            self._with_replayed_external = now
         if now is self._forced:  # nothing has changed since the aim was reached
             return
         old = self._aim
@@ -121,7 +121,7 @@ class Chassis:
         elif self._steers:
             self._steered(self._aim)
         else:
-            self._data.ctrl[[self._wheels[joint] for joint in self._driven]] = self._rolling @ aim
+            self._data.ctrl[[self._wheels[joint] for joint in self._step_robots]] = self._rolling @ aim
 
     def _steered(self, aim: Twists) -> None:
         """Turn the wheels of a car; at rest they stay turned."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,7 +13,7 @@ from crowdbot.world.urdf.geoms import row
 from .layers import GROUND, STANDING
 from .stage import PhysicsStage
 
-__all__ = ["joined", "scenery"]
+__all__ = ["joined", "outline_props", "scenery"]
 
 Floats = NDArray[np.float64]
 THIN, THICK = 0.01, 0.025
@@ -60,6 +62,21 @@ def joined(walls: Walls, rings: tuple[Floats, ...]) -> Walls:
         np.concatenate([walls.next, more.next + first]),
         np.concatenate([walls.convex, more.convex]),
     )
+
+
+def outline_props(walls: Walls, stage: PhysicsStage, frames: Mapping[int, Floats]) -> Walls:
+    """Return walls and the outlines of all props; movable props have the frames ``[4, 4]`` given by their number."""
+    rings = []
+    for number, prop in enumerate(stage.props):
+        ring = prop.outline()
+        if ring is None:
+            matrix, half = frames[number], 0.5 * float(getattr(prop, "size", 1.0))
+            corners = half * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+            turn = np.arctan2(matrix[1, 0], matrix[0, 0])
+            cos, sin = np.cos(turn), np.sin(turn)
+            ring = corners @ np.array([[cos, sin], [-sin, cos]]) + matrix[:2, 3]
+        rings.append(ring)
+    return joined(walls, tuple(rings))
 
 
 def _ground(stage: PhysicsStage) -> tuple[list[Element], list[Element]]:

@@ -14,7 +14,7 @@ from crowdbot.world.urdf.geoms import row
 
 from .layers import DYNAMIC, STANDING
 
-__all__ = ["Cube", "Light", "PhysicsStage", "Prop", "Table", "Tree"]
+__all__ = ["CubeBody", "LightSource", "PhysicsStage", "PropBody", "TableBody", "TreeBody"]
 
 Floats = NDArray[np.float64]
 Color = tuple[float, float, float]
@@ -25,7 +25,7 @@ LEAF = "0.33 0.52 0.27 1"
 
 
 @dataclass(frozen=True)
-class Prop(ABC):
+class PropBody(ABC):
     """Something that stands on the floor at ``x``, ``y`` [m], turned by ``heading`` [rad]."""
 
     x: float
@@ -71,13 +71,13 @@ class Prop(ABC):
 
 
 @dataclass(frozen=True)
-class Cube(Prop):
+class CubeBody(PropBody):
     """A box of ``size`` [m] and ``mass`` [kg] on the floor; it can be pushed unless it is ``fixed``.
 
     Raises:
         InputError: a number is not finite, or a size, mass or friction is not above 0.
 
-    >>> Cube(1.0, 2.0, size=0.4).movable
+    >>> CubeBody(1.0, 2.0, size=0.4).movable
     True
     """
 
@@ -119,7 +119,7 @@ class Cube(Prop):
 
 
 @dataclass(frozen=True)
-class Table(Prop):
+class TableBody(PropBody):
     """A table that stands fast: a top of ``length``, ``width`` at ``height`` [m] on four legs."""
 
     length: float = 1.6
@@ -145,7 +145,7 @@ class Table(Prop):
 
 
 @dataclass(frozen=True)
-class Tree(Prop):
+class TreeBody(PropBody):
     """A tree of ``height`` [m] with a trunk of ``trunk`` and a crown of ``crown`` [m] radius."""
 
     height: float = 5.0
@@ -170,7 +170,7 @@ class Tree(Prop):
 
 
 @dataclass(frozen=True)
-class Light:
+class LightSource:
     """A lamp at ``x``, ``y``, ``z`` [m] that shines down, with a brightness from 0 to 1.
 
     Raises:
@@ -186,9 +186,9 @@ class Light:
     def __post_init__(self) -> None:
         for name in ("x", "y", "z"):
             if not math.isfinite(getattr(self, name)):
-                raise InputError(f"Light: {name} = {getattr(self, name)} m must be finite")
+                raise InputError(f"LightSource: {name} = {getattr(self, name)} m must be finite")
         if not 0.0 <= self.brightness <= 1.0:
-            raise InputError(f"Light: brightness = {self.brightness} must be from 0 to 1")
+            raise InputError(f"LightSource: brightness = {self.brightness} must be from 0 to 1")
 
     def element(self, name: str) -> Element:
         """Return it as MJCF."""
@@ -211,14 +211,14 @@ class PhysicsStage:
     Raises:
         InputError: the height or the friction is not finite and above 0.
 
-    >>> PhysicsStage(props=(Cube(1.0, 0.0), Table(3.0, 0.0))).outlines()[0].tolist()
+    >>> PhysicsStage(props=(CubeBody(1.0, 0.0), TableBody(3.0, 0.0))).outlines()[0].tolist()
     [[2.2, -0.4], [3.8, -0.4], [3.8, 0.4], [2.2, 0.4]]
     """
 
     wall_height: float = 2.5
     friction: float = 1.0
-    props: tuple[Prop, ...] = ()
-    lights: tuple[Light, ...] = ()
+    props: tuple[PropBody, ...] = ()
+    lights: tuple[LightSource, ...] = ()
     floor_color: Color = (0.80, 0.80, 0.78)
     wall_color: Color = (0.86, 0.84, 0.80)
 

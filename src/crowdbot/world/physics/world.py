@@ -9,27 +9,31 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Bodies, InputError, Pose, Scene
+from crowdbot.core import Bodies, InputError, Pose, Scene, SpatialPose, Walls
 from crowdbot.humans import People
 from crowdbot.models import CrowdModel
-from crowdbot.world.crowd.walk import Stepping
+from crowdbot.world.crowd.walk import StepGenerator
 from crowdbot.world.planar import PlanarWorld
-from crowdbot.world.rendering.camera import Camera, Images
-from crowdbot.world.rendering.renderer import Studio
+from crowdbot.world.rendering.camera import CameraImages, SceneCamera
+from crowdbot.world.rendering.renderer import Renderer
 from crowdbot.world.robots.drive import Twists
+from crowdbot.world.robots.mount import MountPlacement
 from crowdbot.world.robots.robot import Robot
+from crowdbot.world.robots.robot import spatial as spatial_pose
 from crowdbot.world.world import Contact
 
-from .colliders import bodies
-from .contact_events import BodyForce, Collision, CollisionBook
-from .contacts import Party, Touches
+from .colliders import scene_bodies
+from .contact_events import BodyContactEvent, ContactForce, ContactTracker
+from .contacts import ContactBody, ContactReader
 from .engine import engine
-from .mjcf_model import built
-from .people_bodies import Passers
-from .people_motion import Limbs, Walkers
-from .robot_body import Chassis
-from .scenery import joined
+from .mjcf_model import build_mjcf_model
+from .nearby_people import people_near
+from .people_bodies import PeopleBodies
+from .people_motion import LimbCapsules, PeopleMotion
+from .robot_body import RobotBody
+from .scenery import joined, outline_props
 from .stage import PhysicsStage
+from .world_checks import check_arguments
 
 __all__ = ["PhysicsWorld"]
 
@@ -69,7 +73,7 @@ class PhysicsWorld(PlanarWorld):
 
     Attributes:
         chassis: the robots by agent: ``pose``, ``twist``, ``tilt``, ``joints()``, ``frame(link)``, ``command(joints)``.
-        forces: of the last step, see :class:`BodyForce`.
+        forces: of the last step, see :class:`ContactForce`.
         contacts: robots and other agents whose bodies touched during the last step; the clearance is how deep, below 0.
         left_out: how many people were near something in the last step but got no body, because all were taken.
 
@@ -86,6 +90,9 @@ class PhysicsWorld(PlanarWorld):
     >>> world.twists[0].forward.round(2).tolist(), world.contacts
     ([0.4], ())
     """
+
+    people_shape = "limbs"
+    walls_fixed = True
 
     def __init__(
         self,
@@ -104,27 +111,24 @@ class PhysicsWorld(PlanarWorld):
         **planar: Any,
     ) -> None:
         stage = stage or PhysicsStage()
-        _checked(scene, robots, dt, physics_dt, slots)
+        check_arguments(scene, robots, dt, physics_dt, slots)
         self._steps = round(dt / physics_dt)
         self._outlined = joined(scene.walls, stage.outlines())
         super().__init__(scene, model, {agent: robot.drive for agent, robot in robots.items()}, dt, seed, **planar)
         persons = np.array([a for a in range(scene.shape[1]) if a not in robots], dtype=np.int64)
         self.stage, self.physics_dt = stage, physics_dt
-        self.walkers = Walkers(self.scene, persons, people, seed, riders)
-        self.left_out = 0
-        self.forces: tuple[BodyForce, ...] = ()
+        self.people = PeopleMotion(self.scene, persons, people, seed, riders)
+        self._plane: tuple[Scene, Scene] | None = None
+        self.skipped_people = 0
+        self.forces: tuple[ContactForce, ...] = ()
         self._touched: dict[tuple[int, int], float] = {}
-        self._studio: Studio | None = None
+        self._renderer: Renderer | None = None
         self._compose(robots, min(len(persons), 24) if slots is None else slots, motors)
 
     @property
-    def collisions(self) -> tuple[Collision, ...]:
+    def contact_events(self) -> tuple[BodyContactEvent, ...]:
         """Every collision so far, by first touch."""
-        return self._book.collisions
-
-    def pose(self, robot: int) -> Pose:
-        """Return where a robot is, E = 1."""
-        return Pose(self.scene.position[:, robot].copy(), self.scene.heading[:, robot].copy())
+        return self._contact_tracker.collisions
 
     def command(self, robot: int, joints: Mapping[str, float]) -> None:
         """Send values to the motors of a robot's joints; they hold until the next ones.
@@ -132,54 +136,100 @@ class PhysicsWorld(PlanarWorld):
         Raises:
             InputError: the agent is no robot, a joint has no motor or is a wheel, or a value is not finite.
         """
-        self.carrier(robot).command(joints)
+        self.robot_body(robot).command(joints)
 
-    def carrier(self, robot: int) -> Chassis:
+    def robot_body(self, robot: int) -> RobotBody:
         """Return the body of a robot.
 
         Raises:
             InputError: the agent is no robot.
         """
-        if robot not in self.chassis:
+        if robot not in self.robot_bodies:
             raise InputError(f"agent {robot} is no robot; robots are {sorted(self.chassis) or 'none'}")
-        return self.chassis[robot]
+        return self.robot_bodies[robot]
 
-    def render(self, camera: Camera, *, rgb: bool = True, depth: bool = False, segmentation: bool = False) -> Images:
+    def render(
+        self, camera: SceneCamera, *, rgb: bool = True, depth: bool = False, segmentation: bool = False
+    ) -> CameraImages:
         """Return what a camera sees now, people with their skins; no screen is needed.
 
         Raises:
             InputError: there is no way to draw here, or the camera is on no robot or no link.
         """
-        return self.studio.images(camera, rgb=rgb, depth=depth, segmentation=segmentation)
+        return self.renderer.images(camera, rgb=rgb, depth=depth, segmentation=segmentation)
 
     @property
-    def studio(self) -> Studio:
-        """Draws the world as it is now; of use for cameras of :mod:`crowdbot.sensors`, see :meth:`Studio.render`."""
-        if self._studio is None:
-            robots = {agent: chassis.robot for agent, chassis in self.chassis.items()}
-            self._studio = Studio.of_engine(self.built, robots, self.stage, self.walkers, self.scene)
-        self._studio.show_engine(self.scene, self.data.qpos)
-        return self._studio
+    def renderer(self) -> Renderer:
+        """Draws the world as it is now; of use for cameras of :mod:`crowdbot.sensors`, see :meth:`Renderer.render`."""
+        if self._renderer is None:
+            robots = {agent: robot_bodies.robot for agent, robot_bodies in self.robot_bodies.items()}
+            self._renderer = Renderer.of_physics(self.built, robots, self.stage, self.people, self.scene)
+        self._renderer.show_engine(self.scene, self.data.qpos)
+        return self._renderer
 
-    def limbs(self) -> Limbs:
+    def limbs(self) -> LimbCapsules:
         """Return the capsules of all people as they stand now."""
-        return self.walkers.limbs(self.scene.active[0])
+        return self.people.limbs(self.scene.active[0])
+
+    def sensor_pose(self, robot: int, mount: MountPlacement, spatial: bool) -> Pose | SpatialPose:
+        """Return the pose of a sensor from the simulated frame of its link; see :class:`World`."""
+        if not (spatial or mount.link):
+            return super().sensor_pose(robot, mount, spatial)
+        body = self.robot_body(robot)
+        found = spatial_pose(body.frame(mount.link or body.robot.model.root) @ mount.origin)
+        return found if spatial else found.planar
+
+    def wall_clearance(self, robot: int) -> Floats:
+        """Return minus the largest overlap [m] with walls and fixed props in the last step, infinity without contact.
+
+        See :class:`World`.
+        """
+        depth = [one.depth for one in self.forces if one.first == ("robot", robot) and self._fixed(one.second)]
+        return np.array([-max(*depth, 1e-9) if depth else math.inf])
+
+    def plane_scene(self) -> Scene:
+        """Return the scene with the outlines of props, where they are, among the walls; see :class:`World`."""
+        if self._plane is None or self._plane[0] is not self.scene:
+            self._plane = (self.scene, self.scene.replace(walls=self._outlines()))
+        return self._plane[1]
+
+    def embody(
+        self,
+        robots: Mapping[int, Robot],
+        stage: PhysicsStage,
+        people: People,
+        *,
+        riders: Sequence[int] = (),
+        activity: Sequence[str] = (),
+        walls: Walls | None = None,
+        seed: int = 0,
+    ) -> None:
+        """Start the activities of people; their bodies, robots and stage are those of the constructor."""
+        self._begin_activity(activity)
+
+    def change_bodies(self, robots: Mapping[int, Robot], stage: PhysicsStage, walls: Walls | None = None) -> None:
+        """Replace the descriptions of robots: sensors, posture and latency; the stage stays. See :class:`World`."""
+        for agent, robot in robots.items():
+            self.robot_body(agent).robot = robot
+
+    def pose_people(self) -> None:
+        """Do nothing: a step moves the bodies of people."""
 
     def bodies(self, skins: int | None = None) -> Bodies:
-        """Return what range sensors see, as it is now; ``skins`` is a level of detail, see :func:`bodies`."""
-        frames = {agent: chassis.frames() for agent, chassis in self.chassis.items()}
-        robots = {agent: chassis.robot for agent, chassis in self.chassis.items()}
+        """Return what range sensors see, as it is now; ``skins`` is a level of detail, see :func:`scene_bodies`."""
+        frames = {agent: robot_bodies.frames() for agent, robot_bodies in self.robot_bodies.items()}
+        robots = {agent: robot_bodies.robot for agent, robot_bodies in self.robot_bodies.items()}
         moved = {number: self.prop(number) for number in self._movable}
-        return bodies(self.scene, self.walkers, robots, self.stage, frames=frames, props=moved, skins=skins)
+        return scene_bodies(self.scene, self.people, robots, self.stage, frames=frames, props=moved, skins=skins)
 
-    def seen(self, skins: int | None = None) -> Scene:
+    def body_scene(self, skins: int | None = None) -> Scene:
         """Return the scene with the bodies and the height of the walls, for range sensors.
 
         >>> start = Scene.of([[0.0, 0.0], [2.0, 0.0]], heading=[0.0, 0.0], external=[True, False])
         >>> from crowdbot.models import ORCA
         >>> from crowdbot.sensors import Lidar2D
         >>> world = PhysicsWorld(start, ORCA(), {0: Robot.load("turtlebot2")}, dt=0.1)
-        >>> scan = Lidar2D(rays=1).read(world.seen().without(0), world.pose(0).lifted(1.2))
+        >>> scan = Lidar2D(rays=1).measure(world.body_scene().without(0), world.pose(0).lifted(1.2))
         >>> scan.hit.tolist(), bool(1.7 < scan.ranges[0, 0] < 2.0)
         ([[1]], True)
         """
@@ -192,110 +242,114 @@ class PhysicsWorld(PlanarWorld):
         found[:3, :3], found[:3, 3] = body.xmat.reshape(3, 3), body.xpos
         return found
 
+    def _outlines(self) -> Walls:
+        if not self._movable:
+            return self._outlined
+        return outline_props(self.scene.walls, self.stage, {number: self.prop(number) for number in self._movable})
+
+    def _fixed(self, party: ContactBody) -> bool:
+        return party.kind == "wall" or (party.kind == "prop" and not self.stage.props[party.number].movable)
+
+    def _after_latency(self, robot: int, command: Twists) -> Twists:
+        return command  # the body of the robot delays it, by steps of the engine
+
     def _compose(self, robots: Mapping[int, Robot], slots: int, motors: Any) -> None:
         self._mj = engine()
-        self.built = built(self.scene, self.stage, robots, slots, motors)
+        self.built = build_mjcf_model(self.scene, self.stage, robots, slots, motors)
         self.engine_model = self.built.load(self.physics_dt)
         self.data = self._mj.MjData(self.engine_model)
         both = self.engine_model, self.data
         prefixes = self.built.prefixes
-        self.chassis = {a: Chassis(*both, robot, prefixes[a], self.physics_dt) for a, robot in sorted(robots.items())}
-        self._passers = Passers(*both, slots, self.physics_dt)
-        agent_of = self._passers.agent
-        self._touches = Touches(*both, prefixes, lambda slot: int(agent_of[slot]), lambda: self._passers.swing)
+        self.robot_bodies = {
+            a: RobotBody(*both, robot, prefixes[a], self.physics_dt) for a, robot in sorted(robots.items())
+        }
+        self._people_bodies = PeopleBodies(*both, slots, self.physics_dt)
+        agent_of = self._people_bodies.agent
+        self._contact_reader = ContactReader(
+            *both, prefixes, lambda slot: int(agent_of[slot]), lambda: self._people_bodies.swing
+        )
         heading_of = lambda agent: float(self.scene.heading[0, agent])  # noqa: E731
-        self._book = CollisionBook(self.physics_dt, self._mass_of, self.walkers.limb_mass, heading_of)
+        self._contact_tracker = ContactTracker(self.physics_dt, self._mass_of, self.people.limb_mass, heading_of)
         self._movable = [k for k, prop in enumerate(self.stage.props) if prop.movable]
         self._settle()
 
     def _settle(self) -> None:
         """Let robots come to rest on the floor, and put them where they begin."""
-        for agent in self.chassis:
+        for agent in self.robot_bodies:
             self._put(agent, self.scene)
         self._mj.mj_step(self.engine_model, self.data, round(SETTLING / self.physics_dt))
-        for agent in self.chassis:
+        for agent in self.robot_bodies:
             self._put(agent, self.scene)
         self.data.time = 0.0
         self._mj.mj_forward(self.engine_model, self.data)
 
     def _put(self, agent: int, scene: Scene) -> None:
         x, y = scene.position[0, agent]
-        self.chassis[agent].put(float(x), float(y), float(scene.heading[0, agent]))
+        self.robot_bodies[agent].put(float(x), float(y), float(scene.heading[0, agent]))
         self._at = {**getattr(self, "_at", {}), agent: (float(x), float(y), float(scene.heading[0, agent]))}
 
-    def _walked(self, before: Scene) -> Stepping[tuple[Scene, Scene]]:
-        earlier, crowd = yield from super()._walked(before.replace(walls=self._outlined))
+    def _step_crowd(self, before: Scene) -> StepGenerator[tuple[Scene, Scene]]:
+        earlier, crowd = yield from super()._step_crowd(before.replace(walls=self._outlined))
         return earlier.replace(walls=before.walls), crowd.replace(walls=before.walls)
 
-    def _settled(self, earlier: Scene, after: Scene) -> Scene:
+    def _resolve_overlaps(self, earlier: Scene, after: Scene) -> Scene:
         """Push people apart as the plane does, but leave robots to the engine."""
         if self.contact is None:
             return after
         present = after.active.copy()
-        present[:, list(self.chassis)] = False
+        present[:, list(self.robot_bodies)] = False
         walls, robots = after.walls, after.active
-        settled = super()._settled(earlier, after.replace(active=present, walls=self._outlined))
-        return settled.replace(active=robots, walls=walls)
+        resolve_overlaps = super()._resolve_overlaps(earlier, after.replace(active=present, walls=self._outlined))
+        return resolve_overlaps.replace(active=robots, walls=walls)
 
-    def _driven(self, before: Scene, after: Scene, asked: Mapping[int, Twists]) -> Scene:
+    def _step_robots(self, before: Scene, after: Scene, asked: Mapping[int, Twists]) -> Scene:
         """Run the engine for a step of the world, and return the scene with what it moved."""
-        for agent, chassis in self.chassis.items():
+        for agent, robot_bodies in self.robot_bodies.items():
             if self._at[agent] != (*before.position[0, agent].tolist(), float(before.heading[0, agent])):
                 self._put(agent, before)
-            chassis.ask(asked[agent])
+            robot_bodies.ask(asked[agent])
         gait, ends = self._prepared(before, after)
         end = self.clock.time  # the clock is at the end of this step already
         self._touched = {}
         for k in range(self._steps):
             self._substep((k + 1) / self._steps, end - (self._steps - 1 - k) * self.physics_dt)
-        self.forces = self._book.forces(self._steps)
+        self.forces = self._contact_tracker.forces(self._steps)
         scene, moved = self._read(before, after)
-        if moved or len(self.walkers.agents) > len(self.walkers.afoot):  # who rides is where the robot came to
-            gait, ends = self.walkers.stepped(scene, self.dt), None
-        self.walkers.take(gait, ends)
+        if moved or len(self.people.agents) > len(self.people.afoot):  # who rides is where the robot came to
+            gait, ends = self.people.next_state(scene, self.dt), None
+        self.people.take(gait, ends)
         return scene
 
     def _prepared(self, before: Scene, after: Scene) -> tuple[Any, Floats | None]:
         """Give bodies to those near something, and return how everyone stands after the step."""
-        gait = self.walkers.stepped(after, self.dt)
-        ends = self.walkers.ends_of(gait)
-        if len(self._passers.agent):
+        gait = self.people.next_state(after, self.dt)
+        ends = self.people.ends_of(gait)
+        if len(self._people_bodies.agent):
             self._embody(before)
             way = (after.position[0] - before.position[0]) / self.dt
-            there = self.walkers.agents
+            there = self.people.agents
             limbs = np.zeros((2, before.shape[1], *ends.shape[1:]))
-            for k, (scene, points) in enumerate(((before, self.walkers.ends), (after, ends))):
-                limbs[k, there] = points - np.tile(_lifted(scene.position[0, there]), 2)[:, None]
-            self._passers.begin(before.position[0], way, limbs[0], limbs[1], self.dt)
+            for k, (scene, points) in enumerate(((before, self.people.ends), (after, ends))):
+                limbs[k, there] = points - np.tile(np.pad(scene.position[0, there], ((0, 0), (0, 1))), 2)[:, None]
+            self._people_bodies.begin(before.position[0], way, limbs[0], limbs[1], self.dt)
         return gait, ends
 
     def _embody(self, scene: Scene) -> None:
         """Give bodies to those who may touch something in this step, the nearest first."""
-        persons = self.walkers.afoot
+        persons = self.people.afoot
         persons = persons[scene.active[0, persons]]
-        nearest = np.full(len(persons), np.inf)
-        mass = np.ones(len(persons))
-        ahead = np.ones(len(persons), dtype=np.bool_)
-        looks = np.stack([np.cos(scene.heading[0, persons]), np.sin(scene.heading[0, persons])], axis=-1)
-        for x, y, radius, weight in self._movers():
-            away = np.array([x, y]) - scene.position[0, persons]
-            gap = np.sqrt(np.sum(away * away, axis=1)) - radius
-            closer = gap < nearest
-            nearest[closer], mass[closer] = gap[closer], weight
-            ahead[closer] = np.sum(away * looks, axis=1)[closer] >= 0.0
-        near = np.flatnonzero(nearest < NEAR + FAST * self.dt)
-        near = near[np.lexsort((persons[near], nearest[near]))]
-        rows = self.walkers.row[persons[near]]
-        self.left_out = self._passers.take(
-            persons[near], self.walkers.people.mass[rows], self.walkers.radius[rows], mass[near], ahead[near]
+        near, mass, ahead = people_near(scene, persons, self._movers(), NEAR + FAST * self.dt)
+        rows = self.people.row[persons[near]]
+        self.skipped_people = self._people_bodies.take(
+            persons[near], self.people.people.mass[rows], self.people.radius[rows], mass[near], ahead[near]
         )
 
     def _movers(self) -> list[tuple[float, float, float, float]]:
         """Return x, y, radius [m] and mass [kg] of what people can run into."""
         found = []
-        for chassis in self.chassis.values():
-            ((x, y),) = chassis.pose.position.tolist()
-            found.append((x, y, chassis.robot.radius, chassis.mass))
+        for robot_bodies in self.robot_bodies.values():
+            ((x, y),) = robot_bodies.pose.position.tolist()
+            found.append((x, y, robot_bodies.robot.radius, robot_bodies.mass))
         for number in self._movable:
             x, y, _ = self.data.body(f"prop{number}").xpos.tolist()
             ring = self.stage.props[number]
@@ -303,15 +357,15 @@ class PhysicsWorld(PlanarWorld):
         return found
 
     def _substep(self, share: float, time: float) -> None:
-        for chassis in self.chassis.values():
-            chassis.drive()
-        self._passers.go(share)
+        for robot_bodies in self.robot_bodies.values():
+            robot_bodies.drive()
+        self._people_bodies.go(share)
         self._mj.mj_step1(self.engine_model, self.data)
-        self._touches.look()
+        self._contact_reader.look()
         self._mj.mj_step2(self.engine_model, self.data)
-        touches = self._touches.read()
-        self._passers.stepped(touches)
-        self._book.add(time, touches)
+        touches = self._contact_reader.read()
+        self._people_bodies.register_contacts(touches)
+        self._contact_tracker.add(time, touches)
         for touch in touches:
             if touch.first.kind == "robot" and touch.second.kind in ("robot", "person"):
                 pair = (touch.first.number, touch.second.number)
@@ -323,42 +377,22 @@ class PhysicsWorld(PlanarWorld):
         self._mj.mj_kinematics(self.engine_model, self.data)
         self._mj.mj_comPos(self.engine_model, self.data)
         self._mj.mj_comVel(self.engine_model, self.data)
-        for agent, chassis in self.chassis.items():
-            pose, twist = chassis.pose, chassis.twist
+        for agent, robot_bodies in self.robot_bodies.items():
+            pose, twist = robot_bodies.pose, robot_bodies.twist
             self.twists[agent] = twist
             position[0, agent], heading[0, agent] = pose.position[0], pose.heading[0]
             velocity[0, agent] = twist.velocity(pose.heading)[0]
             self._at[agent] = (*pose.position[0].tolist(), float(pose.heading[0]))
-        pushed, places, speeds = self._passers.end()
+        pushed, places, speeds = self._people_bodies.end()
         position[0, pushed], velocity[0, pushed] = places, speeds
         return after.replace(position=position, velocity=velocity, heading=heading), len(pushed) > 0
 
-    def _touching(self, before: Scene, after: Scene) -> tuple[Contact, ...]:
+    def _find_contacts(self, before: Scene, after: Scene) -> tuple[Contact, ...]:
         return tuple(sorted(Contact(0, *pair, -depth) for pair, depth in self._touched.items()))
 
-    def _mass_of(self, party: Party) -> float:
+    def _mass_of(self, party: ContactBody) -> float:
         if party.kind == "robot":
-            return self.chassis[party.number].mass
+            return self.robot_bodies[party.number].mass
         if party.kind == "person":
-            return float(self.walkers.people.mass[self.walkers.row[party.number]])
+            return float(self.people.people.mass[self.people.row[party.number]])
         return self.stage.props[party.number].weight if party.kind == "prop" else math.inf
-
-
-def _lifted(place: Floats) -> Floats:
-    return np.column_stack([place, np.zeros(len(place))])
-
-
-def _checked(scene: Scene, robots: Mapping[int, Robot], dt: float, physics_dt: float, slots: int | None) -> None:
-    if scene.shape[0] != 1:
-        raise InputError(f"a physics world has one environment, the scene has {scene.shape[0]}; take PlanarWorld")
-    if not 1e-4 <= physics_dt <= 0.02:
-        raise InputError(f"physics_dt = {physics_dt} s must be from 0.0001 to 0.02 s; 0.005 s is usual")
-    if not math.isfinite(dt) or dt < physics_dt or abs(dt / physics_dt - round(dt / physics_dt)) > 1e-6:
-        raise InputError(f"the time step {dt} s must be a whole number of steps of the engine, {physics_dt} s")
-    if slots is not None and (isinstance(slots, bool) or not isinstance(slots, int) or not 0 <= slots <= 1000):
-        raise InputError(f"slots = {slots!r} must be a whole number from 0 to 1000")
-    for agent, robot in robots.items():
-        if not isinstance(robot, Robot):
-            raise InputError(f"robots[{agent}] is a {type(robot).__name__}; give a Robot, as Robot.load('turtlebot2')")
-        if 0 <= agent < scene.shape[1] and not scene.active[0, agent]:
-            raise InputError(f"robot {robot.name} of agent {agent} is absent (active=False); robots are always there")

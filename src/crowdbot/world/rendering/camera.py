@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, SpatialPose
 from crowdbot.sensors import Lens
 
-__all__ = ["LARGEST", "Camera", "Images", "View"]
+__all__ = ["LARGEST", "CameraImages", "CameraView", "SceneCamera"]
 
 Floats = NDArray[np.float64]
 LARGEST = (1920, 1200)
-Point = tuple[float, float, float]
+PointWaypoint = tuple[float, float, float]
 
 
-class Images(NamedTuple):
+class CameraImages(NamedTuple):
     """What a camera saw; what was not asked for is None.
 
     Fields:
@@ -33,7 +33,7 @@ class Images(NamedTuple):
     segmentation: NDArray[np.int32] | None
 
 
-class View(NamedTuple):
+class CameraView(NamedTuple):
     """Where an ideal camera is, and what of the world goes through it.
 
     Fields:
@@ -56,7 +56,7 @@ class View(NamedTuple):
     height: int
 
     @classmethod
-    def through(cls, lens: Lens, pose: SpatialPose, near: float, far: float) -> View:
+    def through(cls, lens: Lens, pose: SpatialPose, near: float, far: float) -> CameraView:
         """Return what a lens without its distortion sees along the x axis of a pose, E = 1; z is up in the image.
 
         Raises:
@@ -78,7 +78,7 @@ class View(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Camera:
+class SceneCamera:
     """A camera without distortion.
 
     Fields:
@@ -94,12 +94,12 @@ class Camera:
     Raises:
         InputError: a number is not allowed, or the camera looks nowhere.
 
-    >>> Camera((0.0, -5.0, 2.0), (0.0, 0.0, 1.0)).focal_length
+    >>> SceneCamera((0.0, -5.0, 2.0), (0.0, 0.0, 1.0)).focal_length
     415.69...
     """
 
-    position: Point
-    target: Point
+    position: PointWaypoint
+    target: PointWaypoint
     width: int = 640
     height: int = 480
     view: float = math.radians(60.0)
@@ -113,34 +113,40 @@ class Camera:
     def __post_init__(self) -> None:
         _checked_size("Camera", self.width, self.height)
         if not 0.0 < self.view < math.pi:
-            raise InputError(f"Camera: view = {self.view} rad must be above 0 and below pi")
+            raise InputError(f"SceneCamera: view = {self.view} rad must be above 0 and below pi")
         if not 0.0 < self.near < self.far < math.inf:
-            raise InputError(f"Camera: near = {self.near} m must be above 0 and below far = {self.far} m")
+            raise InputError(f"SceneCamera: near = {self.near} m must be above 0 and below far = {self.far} m")
         if self.detail not in (0, 1, 2):
-            raise InputError(f"Camera: detail = {self.detail} must be 0, 1 or 2")
+            raise InputError(f"SceneCamera: detail = {self.detail} must be 0, 1 or 2")
         away = np.subtract(self.target, self.position)
         if away.shape != (3,) or not np.all(np.isfinite(away)) or not np.any(away):
-            raise InputError(f"Camera: position {self.position} and target {self.target} must be two different points")
+            raise InputError(
+                f"SceneCamera: position {self.position} and target {self.target} must be two different points"
+            )
 
     @property
     def focal_length(self) -> float:
         """Focal length [pixels]; the principal point is in the middle of the image."""
         return 0.5 * self.height / math.tan(0.5 * self.view)
 
-    def axes(self, carrier: Floats) -> tuple[Floats, Floats, Floats]:
+    def axes(self, robot_body: Floats) -> tuple[Floats, Floats, Floats]:
         """Return place, forward and up axis ``[3]`` in the world, on a carrier with the frame ``[4, 4]``."""
-        place, aim = (carrier[:3, :3] @ np.asarray(point) + carrier[:3, 3] for point in (self.position, self.target))
+        place, aim = (
+            robot_body[:3, :3] @ np.asarray(point) + robot_body[:3, 3] for point in (self.position, self.target)
+        )
         forward = (aim - place) / np.linalg.norm(aim - place)
-        up = carrier[:3, 2] - (carrier[:3, 2] @ forward) * forward
+        up = robot_body[:3, 2] - (robot_body[:3, 2] @ forward) * forward
         if np.linalg.norm(up) < 1e-6:  # straight up or down: the top of the image is ahead
-            up = carrier[:3, 0] - (carrier[:3, 0] @ forward) * forward
+            up = robot_body[:3, 0] - (robot_body[:3, 0] @ forward) * forward
         return place, forward, up / np.linalg.norm(up)
 
-    def on(self, carrier: Floats) -> View:
+    def on(self, robot_body: Floats) -> CameraView:
         """Return what it sees on a carrier with the frame ``[4, 4]``."""
         high = math.tan(0.5 * self.view)
         wide = high * self.width / self.height
-        return View(*self.axes(carrier), -wide, wide, -high, high, self.near, self.far, self.width, self.height)
+        return CameraView(
+            *self.axes(robot_body), -wide, wide, -high, high, self.near, self.far, self.width, self.height
+        )
 
 
 def _checked_size(what: str, width: int, height: int) -> None:

@@ -13,7 +13,7 @@ from typing import Any
 from crowdbot.core import InputError
 from crowdbot.world.physics.engine import engine
 
-__all__ = ["backend", "canvas", "closed"]
+__all__ = ["backend", "close_gl_context", "create_gl_context"]
 
 KNOWN = ("egl", "osmesa", "glfw", "cgl")
 PROBE = "import mujoco.{name} as way; context = way.GLContext(16, 16); context.make_current(); context.free()"
@@ -49,7 +49,7 @@ def backend() -> str:
     )
 
 
-def canvas(width: int, height: int) -> Any:
+def create_gl_context(width: int, height: int) -> Any:
     """Return a context of OpenGL of this size, made current.
 
     Raises:
@@ -70,7 +70,7 @@ def canvas(width: int, height: int) -> Any:
     return made
 
 
-def closed(context: Any, drawn_by: Any) -> None:
+def close_gl_context(context: Any, drawn_by: Any) -> None:
     """Give a context back, and what draws in it."""
     if context in OPEN:
         OPEN.remove(context)

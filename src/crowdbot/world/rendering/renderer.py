@@ -1,4 +1,4 @@
-"""Studio: draws scenes of any world, robots and people with their bodies; no screen is needed."""
+"""Renderer: draws scenes of any world, robots and people with their bodies; no screen is needed."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene, SpatialPose, did_you_mean
 from crowdbot.sensors import Lens
 from crowdbot.world.physics.engine import engine
-from crowdbot.world.physics.mjcf_model import Built, built
-from crowdbot.world.physics.people_motion import Walkers
+from crowdbot.world.physics.mjcf_model import MjcfModel, build_mjcf_model
+from crowdbot.world.physics.people_motion import PeopleMotion
 from crowdbot.world.physics.stage import PhysicsStage
 from crowdbot.world.robots.robot import Robot
 
-from .camera import Camera, Images, View
-from .visuals import Looks
+from .camera import CameraImages, CameraView, SceneCamera
+from .visuals import Visuals
 
-__all__ = ["Studio"]
+__all__ = ["Renderer"]
 
 Floats = NDArray[np.float64]
 
@@ -41,7 +41,7 @@ class LensCamera(Protocol):
         """What is farther is not drawn [m]."""
 
 
-class Studio:
+class Renderer:
     """Draws what is in a scene, E = 1: floor, walls, props, robots, and people with their skins.
 
     In the plane, robots stand in their posture where the scene has them, and people as their walkers stand. A physics
@@ -52,7 +52,7 @@ class Studio:
         robots: by agent. :meth:`Robot.disc` makes a robot of which only the size is known.
         stage: height of walls, props and lights.
         walkers: people; None: all agents that are no robots, with bodies that are drawn for them. The caller lets them
-            walk (:meth:`Walkers.walk`).
+            walk (:meth:`PeopleMotion.walk`).
         detail: of people's skins in :meth:`render`, 0 (finest) to 2.
 
     Raises:
@@ -60,8 +60,8 @@ class Studio:
         MissingExtra: mujoco is not installed.
 
     >>> scene = Scene.of([[0.0, 0.0], [3.0, 0.0]], external=[True, False])
-    >>> studio = Studio(scene, {0: Robot.load("turtlebot2")})
-    >>> camera = Camera((0.0, 0.0, 1.0), (1.0, 0.0, 0.9), width=64, height=48, robot=0, detail=2)
+    >>> studio = Renderer(scene, {0: Robot.load("turtlebot2")})
+    >>> camera = SceneCamera((0.0, 0.0, 1.0), (1.0, 0.0, 0.9), width=64, height=48, robot=0, detail=2)
     >>> seen = studio.images(camera, rgb=False, segmentation=True)
     >>> sorted(set(seen.segmentation.ravel().tolist()))  # nothing, floor, the person
     [-3, -1, 1]
@@ -72,7 +72,7 @@ class Studio:
         scene: Scene,
         robots: Mapping[int, Robot],
         stage: PhysicsStage | None = None,
-        walkers: Walkers | None = None,
+        motion: PeopleMotion | None = None,
         *,
         detail: int = 1,
     ) -> None:
@@ -81,29 +81,31 @@ class Studio:
             if not 0 <= agent < scene.shape[1]:
                 raise InputError(f"robots: agent {agent} is not in the scene, which has {scene.shape[1]} agents")
         stage = stage or PhysicsStage()
-        if walkers is None:
-            walkers = Walkers(scene, np.array([a for a in range(scene.shape[1]) if a not in robots], dtype=np.int64))
-        self._made(built(scene, stage, robots, 0, posed=True), robots, stage, walkers, detail)
+        if motion is None:
+            motion = PeopleMotion(
+                scene, np.array([a for a in range(scene.shape[1]) if a not in robots], dtype=np.int64)
+            )
+        self._made(build_mjcf_model(scene, stage, robots, 0, posed=True), robots, stage, motion, detail)
         self.show(scene)
 
     @classmethod
-    def of_engine(
-        cls, whole: Built, robots: Mapping[int, Robot], stage: PhysicsStage, walkers: Walkers, scene: Scene
-    ) -> Studio:
+    def of_physics(
+        cls, whole: MjcfModel, robots: Mapping[int, Robot], stage: PhysicsStage, motion: PeopleMotion, scene: Scene
+    ) -> Renderer:
         """Return the studio of a world that the engine moves."""
         found = cls.__new__(cls)
-        found._made(whole, robots, stage, walkers, 1)
+        found._made(whole, robots, stage, motion, 1)
         found._scene = scene
         return found
 
     def _made(
-        self, whole: Built, robots: Mapping[int, Robot], stage: PhysicsStage, walkers: Walkers, detail: int
+        self, whole: MjcfModel, robots: Mapping[int, Robot], stage: PhysicsStage, motion: PeopleMotion, detail: int
     ) -> None:
-        self._whole, self.robots, self.stage, self.walkers, self.detail = whole, dict(robots), stage, walkers, detail
+        self._whole, self.robots, self.stage, self.people, self.detail = whole, dict(robots), stage, motion, detail
         self._joints: Mapping[int, Mapping[str, float]] = {}
         self._coordinates: Floats | None = None
         self._scene: Scene
-        self._looks: Looks | None = None
+        self._visuals: Visuals | None = None
 
     def show(self, scene: Scene, joints: Mapping[int, Mapping[str, float]] | None = None) -> None:
         """Take what is drawn from now on.
@@ -116,7 +118,7 @@ class Studio:
             InputError: the scene has several environments or other agents.
         """
         _checked(scene)
-        if scene.shape[1] != len(self.walkers.row):
+        if scene.shape[1] != len(self.people.row):
             raise InputError(f"studio: the scene has {scene.shape[1]} agents, it was made for {len(self.walkers.row)}")
         self._scene, self._joints, self._coordinates = scene, joints or {}, None
 
@@ -124,7 +126,9 @@ class Studio:
         """Take the scene and the coordinates of the engine."""
         self._scene, self._coordinates = scene, coordinates.copy()
 
-    def images(self, camera: Camera, *, rgb: bool = True, depth: bool = False, segmentation: bool = False) -> Images:
+    def images(
+        self, camera: SceneCamera, *, rgb: bool = True, depth: bool = False, segmentation: bool = False
+    ) -> CameraImages:
         """Return what a camera sees, without distortion.
 
         Raises:
@@ -144,7 +148,7 @@ class Studio:
         Raises:
             InputError: there is no way to draw here, the image is too large, or there are several poses.
         """
-        view = View.through(camera.lens, pose, camera.near, camera.far)
+        view = CameraView.through(camera.lens, pose, camera.near, camera.far)
         seen = self._arranged(self.detail).images(view, self._scene.active[0], True, True, True, False)
         assert seen.rgb is not None
         assert seen.depth is not None
@@ -152,23 +156,23 @@ class Studio:
         who = seen.segmentation.astype(np.int64)[None]
         return {"rgb": seen.rgb[None], "depth": seen.depth[None].astype(np.float64), "hit": who, "part": 0 * who - 1}
 
-    def _arranged(self, detail: int) -> Looks:
+    def _arranged(self, detail: int) -> Visuals:
         """Put everything where it is now."""
-        if self._looks is None or self._looks.detail != detail:
-            self._looks = None  # one is given back before the next is made
-            self._looks = Looks(self._whole, self.walkers, self.stage, detail)
-        model, data = self._looks.model, self._looks.data
+        if self._visuals is None or self._visuals.detail != detail:
+            self._visuals = None  # one is given back before the next is made
+            self._visuals = Visuals(self._whole, self.people, self.stage, detail)
+        model, data = self._visuals.model, self._visuals.data
         if self._coordinates is not None:
             data.qpos[:] = self._coordinates
         else:
             for agent, robot in self.robots.items():
-                self._put(self._looks, agent, robot)
+                self._put(self._visuals, agent, robot)
         mj = engine()
         mj.mj_kinematics(model, data)
         mj.mj_comPos(model, data)
-        return self._looks
+        return self._visuals
 
-    def _put(self, looks: Looks, agent: int, robot: Robot) -> None:
+    def _put(self, looks: Visuals, agent: int, robot: Robot) -> None:
         model, data, prefix = looks.model, looks.data, self._whole.prefixes[agent]
         body = model.body_mocapid[model.body(prefix + robot.model.root).id]
         heading = float(self._scene.heading[0, agent])
@@ -179,7 +183,7 @@ class Studio:
             if joint is not None and robot.model.joints[name].size == 1:
                 data.qpos[joint] = place[0]
 
-    def _carrier(self, camera: Camera, looks: Looks) -> Floats:
+    def _carrier(self, camera: SceneCamera, looks: Visuals) -> Floats:
         found = np.eye(4)
         if camera.robot is None:
             return found

@@ -12,14 +12,14 @@ from crowdbot.core import format_xml
 from crowdbot.humans.asset import shapes
 from crowdbot.humans.wardrobe import region_colors
 from crowdbot.world.physics.engine import engine
-from crowdbot.world.physics.mjcf_model import Built
-from crowdbot.world.physics.people_motion import Walkers
+from crowdbot.world.physics.mjcf_model import MjcfModel
+from crowdbot.world.physics.people_motion import PeopleMotion
 from crowdbot.world.physics.stage import PhysicsStage
 
-from .camera import LARGEST, Images, View
-from .gl_context import canvas, closed
+from .camera import LARGEST, CameraImages, CameraView
+from .gl_context import close_gl_context, create_gl_context
 
-__all__ = ["Looks"]
+__all__ = ["Visuals"]
 
 Floats = NDArray[np.float64]
 SHAPES_MOST = 20_000
@@ -28,7 +28,7 @@ SHADED = 10.0
 NOTHING, WALL, FLOOR, PROP = -1, -2, -3, -4
 
 
-class Looks:
+class Visuals:
     """Draws a world at one level of detail.
 
     Args:
@@ -42,16 +42,16 @@ class Looks:
         joints: where in ``data.qpos`` the position of each joint begins, by name.
     """
 
-    def __init__(self, built: Built, walkers: Walkers, stage: PhysicsStage, detail: int) -> None:
+    def __init__(self, built: MjcfModel, motion: PeopleMotion, stage: PhysicsStage, detail: int) -> None:
         self._mj, self.detail = engine(), detail
-        self._walkers, self._sunny = walkers, not stage.lights
-        self._faces, self._part = walkers.people.faces(detail), walkers.people.worn(detail)
+        self._walkers, self._sunny = motion, not stage.lights
+        self._faces, self._part = motion.people.faces(detail), motion.people.worn(detail)
         self.model = self._painted(built)
         self.data = self._mj.MjData(self.model)
         self.joints = {self.model.joint(k).name: int(self.model.jnt_qposadr[k]) for k in range(self.model.njnt)}
-        self._canvas = canvas(*LARGEST)
+        self._canvas = create_gl_context(*LARGEST)
         self._context = self._mj.MjrContext(self.model, self._mj.mjtFontScale.mjFONTSCALE_100)
-        weakref.finalize(self, closed, self._canvas, self._context).atexit = False
+        weakref.finalize(self, close_gl_context, self._canvas, self._context).atexit = False
         self._mj.mjr_setBuffer(self._mj.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
         self._context.readDepthMap = self._mj.mjtDepthMap.mjDEPTH_ZEROFAR
         self._scene = self._mj.MjvScene(self.model, maxgeom=SHAPES_MOST)
@@ -60,8 +60,8 @@ class Looks:
         self._option.flags[self._mj.mjtVisFlag.mjVIS_STATIC] = 1
 
     def images(
-        self, view: View, active: NDArray[np.bool_], rgb: bool, depth: bool, segmentation: bool, shadows: bool
-    ) -> Images:
+        self, view: CameraView, active: NDArray[np.bool_], rgb: bool, depth: bool, segmentation: bool, shadows: bool
+    ) -> CameraImages:
         """Return what is seen now, with the people who are ``active`` ``[A]``."""
         mj = self._mj
         self._canvas.make_current()
@@ -87,17 +87,17 @@ class Looks:
                 found[1] = np.flipud(_metric(raw, view)).copy()
             if segmentation:
                 found[2] = np.flipud(codes[np.minimum(number, len(codes) - 1)]).astype(np.int32)
-        return Images(*found)
+        return CameraImages(*found)
 
-    def _painted(self, built: Built) -> Any:
+    def _painted(self, built: MjcfModel) -> Any:
         """Return the model of the world with a skin, and its colours, for every person."""
-        mj, walkers = self._mj, self._walkers
+        mj, motion = self._mj, self._walkers
         spec = mj.MjSpec.from_string(format_xml(built.root), assets=built.files)
         names = shapes().regions
         region = shapes().levels[self.detail].face_region
         around = np.stack([(np.arange(len(names)) + 0.5) / len(names), np.full(len(names), 0.5)], axis=1)
-        skin = walkers.gait.skin(walkers.state, self.detail)
-        for k, outfit in enumerate(walkers.people.outfits):
+        skin = motion.gait.skin(motion.state, self.detail)
+        for k, outfit in enumerate(motion.people.outfits):
             worn = self._part[k]
             spec.add_mesh(
                 name=f"skin{k}",
@@ -116,14 +116,14 @@ class Looks:
             material = spec.add_material(name=f"cloth{k}", specular=0.1, shininess=0.1)
             material.textures[mj.mjtTextureRole.mjTEXROLE_RGB] = f"cloth{k}"
         model = spec.compile()
-        self._meshes = np.array([model.mesh(f"skin{k}").id for k in range(len(walkers.people))], dtype=np.int64)
-        self._cloths = [model.material(f"cloth{k}").id for k in range(len(walkers.people))]
+        self._meshes = np.array([model.mesh(f"skin{k}").id for k in range(len(motion.people))], dtype=np.int64)
+        self._cloths = [model.material(f"cloth{k}").id for k in range(len(motion.people))]
         shown = {int(b) for b in model.geom_bodyid[model.geom_group == 2]}
         bare = (model.geom_group == 3) & ~np.isin(model.geom_bodyid, list(shown))
         model.geom_group[bare] = 2  # robots without anything to be seen show what touches
         return model
 
-    def _arranged(self, view: View, active: NDArray[np.bool_]) -> NDArray[np.int64]:
+    def _arranged(self, view: CameraView, active: NDArray[np.bool_]) -> NDArray[np.int64]:
         """Gather everything where it is now, and return what the numbers in an image of numbers stand for."""
         mj, model, data, scene = self._mj, self.model, self.data, self._scene
         if self._sunny:  # the shadows of the sun are sharp about where the middle of the image meets the floor
@@ -146,13 +146,13 @@ class Looks:
         self._people(codes, view, active)
         return codes
 
-    def _people(self, codes: NDArray[np.int64], view: View, active: NDArray[np.bool_]) -> None:
+    def _people(self, codes: NDArray[np.int64], view: CameraView, active: NDArray[np.bool_]) -> None:
         """Add the skins of those who are there and not behind the camera."""
-        mj, model, scene, walkers = self._mj, self.model, self._scene, self._walkers
-        here = active[walkers.agents]
+        mj, model, scene, motion = self._mj, self.model, self._scene, self._walkers
+        here = active[motion.agents]
         if not np.any(here):
             return
-        skin = walkers.gait.skin(walkers.state, self.detail)
+        skin = motion.gait.skin(motion.state, self.detail)
         for k in np.flatnonzero(here):
             ahead = (skin[k] - view.place) @ view.forward
             if ahead.max() < 0.0 or ahead.min() > view.far:
@@ -170,7 +170,7 @@ class Looks:
             geom.dataid, geom.matid, geom.texcoord, geom.segid = 2 * mesh, self._cloths[k], 1, scene.ngeom
             geom.category = mj.mjtCatBit.mjCAT_DYNAMIC
             scene.ngeom += 1
-            codes[geom.segid + 1] = int(walkers.agents[k])
+            codes[geom.segid + 1] = int(motion.agents[k])
 
     def _code(self, name: str) -> int:
         if name.startswith("robot"):
@@ -178,7 +178,7 @@ class Looks:
         return FLOOR if name == "floor" else WALL if name.startswith("wall/") else PROP
 
 
-def _metric(raw: NDArray[np.float32], view: View) -> NDArray[np.float32]:
+def _metric(raw: NDArray[np.float32], view: CameraView) -> NDArray[np.float32]:
     """Return distances along the axis [m] from a depth buffer that is 0 far away."""
     near, far = view.near, view.far
     value = raw.astype(np.float64)

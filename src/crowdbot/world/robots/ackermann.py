@@ -9,7 +9,7 @@ import numpy as np
 
 from crowdbot.core import InputError, Pose, Twist, check_number
 
-from .drive import Drive, Floats, Twists, check_step, moved
+from .drive import Drive, Floats, Twists, check_step, integrate_twist
 
 __all__ = ["AckermannDrive", "SteeredTwists"]
 
@@ -55,7 +55,7 @@ class AckermannDrive(Drive):
     def __post_init__(self) -> None:
         units = {"max_speed": "m/s", "max_acceleration": "m/s2", "max_steering_rate": "rad/s", "wheelbase": "m"}
         for name, unit in units.items():
-            check_number("AckermannDrive", name, getattr(self, name), unit, exclusive_min=0.0)
+            check_number("AckermannDrive", name, getattr(self, name), unit, above=0.0)
         if not 0.0 < self.max_steering < math.pi / 2:
             raise InputError(f"AckermannDrive: max_steering = {self.max_steering} rad must be above 0 and below pi / 2")
 
@@ -82,7 +82,7 @@ class AckermannDrive(Drive):
         forward = np.clip(speed, twist.forward - push, twist.forward + push)
         turn = forward * np.tan(steering) / self.wheelbase
         after = SteeredTwists(forward, turn, np.zeros_like(forward), steering)
-        return moved(pose, after, dt), after
+        return integrate_twist(pose, after, dt), after
 
     def _fitting(self, twist: Twists) -> Floats:
         """Return the steering ``[E]`` [rad] that gives this turn rate at this speed; backwards, it mirrors."""

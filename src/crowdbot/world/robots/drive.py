@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, Pose, Twist, check_number, kernel
 
-__all__ = ["DifferentialDrive", "Drive", "Omnidirectional", "Twists", "check_limits", "check_step", "moved"]
+__all__ = ["DifferentialDrive", "Drive", "Omnidirectional", "Twists", "check_limits", "check_step", "integrate_twist"]
 
 Floats = NDArray[np.float64]
 
@@ -128,7 +128,7 @@ class DifferentialDrive(Drive):
         forward = _towards(twist.forward, wanted.forward, self.max_speed, self.max_acceleration * dt)
         turn = _towards(twist.turn, wanted.turn, self.max_turn_rate, self.max_turn_acceleration * dt)
         after = Twists(forward, turn, np.zeros_like(forward))
-        return moved(pose, after, dt), after
+        return integrate_twist(pose, after, dt), after
 
 
 @dataclass(frozen=True)
@@ -159,13 +159,13 @@ class Omnidirectional(Drive):
         push, slide = _shortened(forward - twist.forward, left - twist.left, self.max_acceleration * dt)
         turn = _towards(twist.turn, wanted.turn, self.max_turn_rate, self.max_turn_acceleration * dt)
         after = Twists(twist.forward + push, turn, twist.left + slide)
-        return moved(pose, after, dt), after
+        return integrate_twist(pose, after, dt), after
 
 
-def moved(pose: Pose, twist: Twists, dt: float) -> Pose:
+def integrate_twist(pose: Pose, twist: Twists, dt: float) -> Pose:
     """Return the pose after ``dt`` [s] at a constant twist, exactly: a circle arc, or a line when it does not turn.
 
-    >>> quarter = moved(Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(1.0, math.pi / 2), 1), 1.0)
+    >>> quarter = integrate_twist(Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(1.0, math.pi / 2), 1), 1.0)
     >>> (quarter.position * math.pi / 2).round(9).tolist(), float(quarter.heading[0]) == math.pi / 2
     ([[1.0, 1.0]], True)
     """
@@ -197,7 +197,7 @@ def check_limits(drive: Drive) -> None:
     """Raise :class:`InputError` unless a drive's speeds and accelerations are finite and above 0."""
     for name in ("max_speed", "max_turn_rate", "max_acceleration", "max_turn_acceleration"):
         unit = ("rad" if "turn" in name else "m") + ("/s2" if "acceleration" in name else "/s")
-        check_number(type(drive).__name__, name, getattr(drive, name), unit, exclusive_min=0.0)
+        check_number(type(drive).__name__, name, getattr(drive, name), unit, above=0.0)
 
 
 def check_step(dt: float) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +13,23 @@ from crowdbot.core import InputError
 from crowdbot.sensors import Sensor
 from crowdbot.world.urdf.transforms import frame, roll_pitch_yaw
 
-__all__ = ["SensorMount"]
+__all__ = ["MountPlacement", "SensorMount"]
 
 Floats = NDArray[np.float64]
+
+
+class MountPlacement(NamedTuple):
+    """Where a sensor is mounted, in two frames.
+
+    Fields:
+        link: name of the link that carries it; empty for the root.
+        origin: ``[4, 4]`` frame of the sensor in the frame of the link.
+        placed: x, y, z [m], roll, pitch, yaw [rad] in the frame of the robot in its posture.
+    """
+
+    link: str
+    origin: Floats
+    placed: tuple[float, float, float, float, float, float]
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, RobotError, SpatialPose, Twist, did_you_mean
-from crowdbot.world.urdf import Cylinder, Inertial, Link, Part, RobotModel
+from crowdbot.world.urdf import Cylinder, Link, LinkInertia, LinkShape, RobotModel
 from crowdbot.world.urdf.transforms import frame, quaternion, turning
 
 from .drive import Drive
@@ -133,8 +133,8 @@ class Robot:
                 raise InputError(f"Robot.disc: {what} = {value} must be finite and above 0")
         origin = frame((0.0, 0.0, 0.5 * height + CLEAR))
         column = Cylinder(radius, height)
-        whole = Inertial(mass, origin[:3, 3], column.solid().inertia(mass))
-        link = Link("base_link", whole, (Part(column, origin),), (Part(column, origin),))
+        whole = LinkInertia(mass, origin[:3, 3], column.solid().inertia(mass))
+        link = Link("base_link", whole, (LinkShape(column, origin),), (LinkShape(column, origin),))
         return cls(name, RobotModel(name, {"base_link": link}, {}, "base_link"), drive, base="planar")
 
     @property

@@ -10,7 +10,7 @@ import numpy as np
 
 from crowdbot.core import InputError, Pose, Twist, check_number
 
-from .drive import Drive, Twists, check_limits, check_step, moved
+from .drive import Drive, Twists, check_limits, check_step, integrate_twist
 
 __all__ = ["CommandDelay", "Pending", "VelocityServo"]
 
@@ -48,7 +48,7 @@ class VelocityServo(Drive):
 
     def __post_init__(self) -> None:
         check_limits(self)
-        check_number("VelocityServo", "time_constant", self.time_constant, "s", exclusive_min=0.0)
+        check_number("VelocityServo", "time_constant", self.time_constant, "s", above=0.0)
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
         """Return pose and twist ``dt`` [s] later; see :class:`VelocityServo`."""
@@ -70,7 +70,7 @@ class VelocityServo(Drive):
         change = self.max_turn_acceleration * dt
         turn = np.where(np.abs(twisting) < NEAR, turning, twist.turn + np.clip(twisting * gain, -change, change))
         after = Twists(np.ascontiguousarray(velocity[:, 0]), turn, np.ascontiguousarray(velocity[:, 1]))
-        return moved(pose, after, dt), after
+        return integrate_twist(pose, after, dt), after
 
 
 class Pending(NamedTuple):

@@ -3,30 +3,30 @@
 from .folders import robot_folder
 from .meshes import with_pieces
 from .mjcf import BaseServo, Mjcf, mjcf
-from .model import JOINT_KINDS, Inertial, Joint, Link, Mimic, Motor, Part, Remark, RobotModel
+from .model import JOINT_KINDS, Joint, Link, LinkInertia, LinkShape, Mimic, Motor, Remark, RobotModel
 from .reading import read_urdf
-from .report import described
-from .shapes import Box, Capsule, Cylinder, Mesh, Piece, Sphere
+from .report import describe
+from .shapes import Box, Capsule, ConvexPiece, Cylinder, Mesh, Sphere
 
 __all__ = [
     "JOINT_KINDS",
     "BaseServo",
     "Box",
     "Capsule",
+    "ConvexPiece",
     "Cylinder",
-    "Inertial",
     "Joint",
     "Link",
+    "LinkInertia",
+    "LinkShape",
     "Mesh",
     "Mimic",
     "Mjcf",
     "Motor",
-    "Part",
-    "Piece",
     "Remark",
     "RobotModel",
     "Sphere",
-    "described",
+    "describe",
     "mjcf",
     "read_urdf",
     "robot_folder",

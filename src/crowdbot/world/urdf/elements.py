@@ -16,7 +16,7 @@ from .model import Remark
 from .shapes import Mesh
 from .transforms import frame, roll_pitch_yaw
 
-__all__ = ["Reader"]
+__all__ = ["UrdfReader"]
 
 Floats = NDArray[np.float64]
 MOST_PROBLEMS = 100
@@ -24,7 +24,7 @@ LARGEST = 1e6
 Color = tuple[float, float, float, float]
 
 
-class Reader:
+class UrdfReader:
     """Collects problems and remarks while a URDF is read.
 
     Args:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Element
 
-from .model import Link, Part, RobotModel
+from .model import Link, LinkShape, RobotModel
 from .shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 from .transforms import quaternion
 
@@ -77,7 +77,7 @@ class Geoms:
         return geoms
 
     def _shape(
-        self, part: Part, matrix: Floats, name: str, values: dict[str, str], wheel: bool = False
+        self, part: LinkShape, matrix: Floats, name: str, values: dict[str, str], wheel: bool = False
     ) -> list[Element]:
         place = matrix @ part.origin
         placed = {"pos": row(place[:3, 3]), "quat": row(quaternion(place[:3, :3]))}
@@ -112,7 +112,7 @@ class Geoms:
         return names
 
 
-def _rolls(part: Part, matrix: Floats, axle: Floats | None) -> bool:
+def _rolls(part: LinkShape, matrix: Floats, axle: Floats | None) -> bool:
     """Return whether a shape is a cylinder about the axle."""
     if axle is None or not isinstance(part.shape, Cylinder):
         return False

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .model import Inertial, Part
+from .model import LinkInertia, LinkShape
 from .shapes import Box, Solid, Sphere, together
 from .transforms import frame, turned
 
-__all__ = ["DENSITY", "doubtful", "mended", "solid_of", "stand_in", "unphysical"]
+__all__ = ["DENSITY", "default_inertia", "find_inertia_problems", "repair_inertia", "solid_of", "unphysical"]
 
 Floats = NDArray[np.float64]
 DENSITY = 1000.0
@@ -38,14 +38,14 @@ def unphysical(tensor: Floats) -> str:
     return ""
 
 
-def solid_of(parts: Sequence[Part]) -> Solid | None:
+def solid_of(parts: Sequence[LinkShape]) -> Solid | None:
     """Return the shapes of a link as one solid of density 1, None when there are none."""
     return together([(part.shape.solid(), part.origin) for part in parts])
 
 
-def mended(
-    mass: float | None, center: Floats | None, tensor: Floats | None, shapes: Sequence[Part]
-) -> tuple[Inertial | None, str]:
+def repair_inertia(
+    mass: float | None, center: Floats | None, tensor: Floats | None, shapes: Sequence[LinkShape]
+) -> tuple[LinkInertia | None, str]:
     """Return a physical inertial, and what was done to get it as the end of a sentence; empty when nothing was.
 
     A missing mass is that of the shapes at the density of water; a missing or unphysical inertia is that of the shapes,
@@ -63,26 +63,28 @@ def mended(
             return None, ""
         weight = DENSITY * solid.volume
         why = "has no inertial" if mass is None else "has no mass"
-        found = Inertial(weight, solid.center, solid.inertia(weight))
+        found = LinkInertia(weight, solid.center, solid.inertia(weight))
         return found, f"{why}; it got {weight:.3g} kg and its inertia from its shape at {DENSITY:g} kg/m3"
     wrong = "it has none" if tensor is None else unphysical(tensor)
     place = np.zeros(3) if center is None else center
     if not wrong:
         assert tensor is not None
-        return Inertial(mass, place, _exact(tensor)), ""
+        return LinkInertia(mass, place, _exact(tensor)), ""
     source = "its shape" if solid is not None else "a ball of water"
     if solid is None:
         solid = Sphere((mass / DENSITY * 3.0 / (4.0 * np.pi)) ** (1.0 / 3.0)).solid()
-    return Inertial(mass, place, solid.inertia(mass)), f"got a new inertia, from {source} at its {mass:g} kg: {wrong}"
+    return LinkInertia(
+        mass, place, solid.inertia(mass)
+    ), f"got a new inertia, from {source} at its {mass:g} kg: {wrong}"
 
 
-def stand_in(inertial: Inertial) -> tuple[Part, str]:
+def default_inertia(inertial: LinkInertia) -> tuple[LinkShape, str]:
     """Return what stands for a link whose shape is lost, and what it is.
 
     It is the homogeneous box that has this inertial; but a cube at the density of water when that box would be lighter
     than a tenth of it, because its inertia is no more than a placeholder then.
 
-    >>> stand_in(Inertial(6000.0, np.zeros(3), 1000.0 * np.eye(3)))[0].shape
+    >>> stand_in(LinkInertia(6000.0, np.zeros(3), 1000.0 * np.eye(3)))[0].shape
     Box(size=(1.0, 1.0, 1.0))
     """
     moments, axes = np.linalg.eigh(inertial.tensor)
@@ -95,10 +97,10 @@ def stand_in(inertial: Inertial) -> tuple[Part, str]:
     else:
         what = "the box of equal inertia"
     size = (float(sides[0]), float(sides[1]), float(sides[2]))
-    return Part(Box(size), frame(inertial.center, axes), name=what), what
+    return LinkShape(Box(size), frame(inertial.center, axes), name=what), what
 
 
-def doubtful(inertial: Inertial, shapes: Sequence[Part]) -> str:
+def find_inertia_problems(inertial: LinkInertia, shapes: Sequence[LinkShape]) -> str:
     """Return the end of a sentence when an inertia belongs to a body several times the size of the shapes."""
     if not shapes:
         return ""

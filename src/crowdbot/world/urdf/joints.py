@@ -8,13 +8,13 @@ import numpy as np
 
 from crowdbot.core import Element
 
-from .elements import Reader
+from .elements import UrdfReader
 from .model import JOINT_KINDS, Joint, Mimic, Motor
 
 __all__ = ["read_joint"]
 
 
-def read_joint(reader: Reader, element: Element) -> Joint | None:
+def read_joint(reader: UrdfReader, element: Element) -> Joint | None:
     """Return the joint that the element describes, None when it has a problem."""
     before = len(reader.found)
     name, kind = element.attributes.get("name", ""), element.attributes.get("type", "")
@@ -47,7 +47,7 @@ def read_joint(reader: Reader, element: Element) -> Joint | None:
     )  # fmt: skip
 
 
-def _link(reader: Reader, element: Element, role: str) -> str:
+def _link(reader: UrdfReader, element: Element, role: str) -> str:
     inner = reader.one(element, role)
     name = inner.attributes.get("link", "") if inner else ""
     if not name:
@@ -55,7 +55,7 @@ def _link(reader: Reader, element: Element, role: str) -> str:
     return name
 
 
-def _axis(reader: Reader, element: Element, kind: str) -> np.ndarray:
+def _axis(reader: UrdfReader, element: Element, kind: str) -> np.ndarray:
     inner = reader.one(element, "axis")
     values = None if inner is None else reader.row(inner, "xyz", 3, (1.0, 0.0, 0.0))
     if inner is None or values is None:
@@ -68,7 +68,7 @@ def _axis(reader: Reader, element: Element, kind: str) -> np.ndarray:
     return np.asarray(values / length)
 
 
-def _limits(reader: Reader, element: Element, name: str, kind: str) -> tuple[float, float, Motor]:
+def _limits(reader: UrdfReader, element: Element, name: str, kind: str) -> tuple[float, float, Motor]:
     """Return the lowest and highest position, and what its motor can do."""
     inner = reader.one(element, "limit")
     commanded = reader.motors.get(name, "")
@@ -90,7 +90,7 @@ def _limits(reader: Reader, element: Element, name: str, kind: str) -> tuple[flo
     return lower, upper, motor
 
 
-def _mimic(reader: Reader, element: Element) -> Mimic | None:
+def _mimic(reader: UrdfReader, element: Element) -> Mimic | None:
     inner = reader.one(element, "mimic")
     if inner is None:
         return None

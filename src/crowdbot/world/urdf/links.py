@@ -6,10 +6,10 @@ import numpy as np
 
 from crowdbot.core import Element
 
-from .elements import Floats, Reader
-from .inertia import doubtful, mended, stand_in
-from .materials import color_of
-from .model import Inertial, Link, Part
+from .elements import Floats, UrdfReader
+from .inertia import default_inertia, find_inertia_problems, repair_inertia
+from .materials import read_color
+from .model import Link, LinkInertia, LinkShape
 from .shapes import Box, Capsule, Cylinder, Mesh, Shape, Sphere
 
 __all__ = ["read_link"]
@@ -17,7 +17,7 @@ __all__ = ["read_link"]
 SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
 
 
-def read_link(reader: Reader, element: Element) -> Link | None:
+def read_link(reader: UrdfReader, element: Element) -> Link | None:
     """Return the link that the element describes, None when it has a problem."""
     before = len(reader.found)
     name = element.attributes.get("name", "")
@@ -28,11 +28,11 @@ def read_link(reader: Reader, element: Element) -> Link | None:
     mass, center, tensor = _inertial(reader, element)
     if len(reader.found) > before:
         return None
-    inertial, done = mended(mass, center, tensor, collisions or visuals)
+    inertial, done = repair_inertia(mass, center, tensor, collisions or visuals)
     if done:
         reader.remark("repaired", element, done)
     elif inertial is not None:
-        doubt = doubtful(inertial, collisions or visuals)
+        doubt = find_inertia_problems(inertial, collisions or visuals)
         if doubt:
             reader.remark("noted", element, doubt)
     if untouched:
@@ -42,9 +42,9 @@ def read_link(reader: Reader, element: Element) -> Link | None:
     return Link(name, inertial, tuple(visuals), tuple(collisions), reader.friction.get(name))
 
 
-def _parts(reader: Reader, element: Element, tag: str) -> tuple[list[Part], list[str]]:
+def _parts(reader: UrdfReader, element: Element, tag: str) -> tuple[list[LinkShape], list[str]]:
     """Return the shapes, and why others cannot be had."""
-    parts: list[Part] = []
+    parts: list[LinkShape] = []
     lost: list[str] = []
     for inner in element.each(tag):
         geometry = reader.one(inner, "geometry")
@@ -53,15 +53,15 @@ def _parts(reader: Reader, element: Element, tag: str) -> tuple[list[Part], list
             continue
         shape = _shape(reader, geometry, touching=tag == "collision")
         origin = reader.origin(inner)
-        color = color_of(reader, inner) if tag == "visual" else None
+        color = read_color(reader, inner) if tag == "visual" else None
         if isinstance(shape, str):
             lost.append(shape)
         elif shape is not None:
-            parts.append(Part(shape, origin, inner.attributes.get("name", ""), color))
+            parts.append(LinkShape(shape, origin, inner.attributes.get("name", ""), color))
     return parts, lost
 
 
-def _shape(reader: Reader, geometry: Element, touching: bool) -> Shape | str | None:
+def _shape(reader: UrdfReader, geometry: Element, touching: bool) -> Shape | str | None:
     """Return the shape, why its mesh cannot be had, or None after saying a problem."""
     inner = [child for child in geometry.children if child.tag in SHAPES]
     if len(inner) != 1:
@@ -89,7 +89,7 @@ def _shape(reader: Reader, geometry: Element, touching: bool) -> Shape | str | N
     return Cylinder(radius, length) if element.tag == "cylinder" else Capsule(radius, length)
 
 
-def _length(reader: Reader, element: Element, key: str) -> float | None:
+def _length(reader: UrdfReader, element: Element, key: str) -> float | None:
     found = reader.needed(element, key)
     if found is not None and found <= 0.0:
         reader.say(element, f'{key}="{element.attributes[key][:40]}" must be above 0')
@@ -97,7 +97,7 @@ def _length(reader: Reader, element: Element, key: str) -> float | None:
     return found
 
 
-def _inertial(reader: Reader, element: Element) -> tuple[float | None, Floats | None, Floats | None]:
+def _inertial(reader: UrdfReader, element: Element) -> tuple[float | None, Floats | None, Floats | None]:
     """Return mass, centre and inertia in the axes of the link, None for what is missing."""
     inner = reader.one(element, "inertial")
     if inner is None:
@@ -116,20 +116,20 @@ def _inertial(reader: Reader, element: Element) -> tuple[float | None, Floats | 
 
 
 def _colliders(
-    reader: Reader,
+    reader: UrdfReader,
     element: Element,
     lost: list[str],
-    collisions: list[Part],
-    visuals: list[Part],
-    inertial: Inertial | None,
-) -> list[Part]:
+    collisions: list[LinkShape],
+    visuals: list[LinkShape],
+    inertial: LinkInertia | None,
+) -> list[LinkShape]:
     """Return the colliders of a link that has lost a mesh, and say what takes its place."""
     if collisions:
         place = "its other colliders stand alone"
     elif visuals:
-        collisions, place = [_touching(reader, part) for part in visuals], "what is seen of it takes its place"
+        collisions, place = [_find_contacts(reader, part) for part in visuals], "what is seen of it takes its place"
     elif inertial is not None:
-        part, what = stand_in(inertial)
+        part, what = default_inertia(inertial)
         collisions, place = [part], f"{what} takes its place"
     else:
         place = "nothing takes its place, the link cannot be touched"
@@ -137,7 +137,9 @@ def _colliders(
     return collisions
 
 
-def _seen(reader: Reader, element: Element, lost: list[str], visuals: list[Part], collisions: list[Part]) -> list[Part]:
+def _seen(
+    reader: UrdfReader, element: Element, lost: list[str], visuals: list[LinkShape], collisions: list[LinkShape]
+) -> list[LinkShape]:
     """Return what is seen of a link that has lost a mesh, and say what takes its place."""
     if collisions:
         place = "its colliders are shown instead"
@@ -147,12 +149,12 @@ def _seen(reader: Reader, element: Element, lost: list[str], visuals: list[Part]
     return [*visuals, *collisions]
 
 
-def _touching(reader: Reader, part: Part) -> Part:
+def _find_contacts(reader: UrdfReader, part: LinkShape) -> LinkShape:
     if not isinstance(part.shape, Mesh) or part.shape.pieces:
         return part
     from .meshes import with_pieces
 
-    return Part(with_pieces(part.shape, reader.colliders)[0], part.origin, part.name, part.color)
+    return LinkShape(with_pieces(part.shape, reader.colliders)[0], part.origin, part.name, part.color)
 
 
 def _listed(lost: list[str]) -> str:

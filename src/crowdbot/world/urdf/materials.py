@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from crowdbot.core import Element
 
-from .elements import Color, Reader
+from .elements import Color, UrdfReader
 
-__all__ = ["color_of", "read_materials"]
+__all__ = ["read_color", "read_materials"]
 
 
-def read_materials(reader: Reader, root: Element) -> dict[str, Color]:
+def read_materials(reader: UrdfReader, root: Element) -> dict[str, Color]:
     """Return the colours of the materials of the robot, and of those that visuals define with a name, by name."""
     inside = [m for link in root.each("link") for visual in link.each("visual") for m in visual.each("material")]
     found: dict[str, Color] = {}
@@ -22,7 +22,7 @@ def read_materials(reader: Reader, root: Element) -> dict[str, Color]:
     return found
 
 
-def color_of(reader: Reader, visual: Element) -> Color | None:
+def read_color(reader: UrdfReader, visual: Element) -> Color | None:
     """Return the colour of a visual; None when it has none, or a texture, which is not read."""
     material = reader.one(visual, "material")
     if material is None:
@@ -40,7 +40,7 @@ def color_of(reader: Reader, visual: Element) -> Color | None:
     return None
 
 
-def _color(reader: Reader, material: Element) -> Color | None:
+def _color(reader: UrdfReader, material: Element) -> Color | None:
     element = next(iter(material.each("color")), None)
     values = None if element is None else reader.row(element, "rgba", 4, None)
     if element is None or values is None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from crowdbot.core import InputError, optional, reject_entities
 
-from .shapes import Mesh, Piece
+from .shapes import ConvexPiece, Mesh
 
 __all__ = ["FORMATS", "read_mesh", "with_pieces"]
 
@@ -116,7 +116,7 @@ def _unit(data: bytes) -> float:
     return value if 1e-6 <= value <= 1e6 else 1.0
 
 
-def _hull(vertices: Any) -> Piece:
+def _hull(vertices: Any) -> ConvexPiece:
     """Return the convex hull; a flat mesh is given the thickness of 1 mm first."""
     from scipy.spatial import ConvexHull, QhullError
 
@@ -128,7 +128,7 @@ def _hull(vertices: Any) -> Piece:
         return _faced(thick, ConvexHull(thick))
 
 
-def _faced(points: Any, hull: Any) -> Piece:
+def _faced(points: Any, hull: Any) -> ConvexPiece:
     """Return the hull's corners and triangles, every triangle turned outwards."""
     used = np.sort(hull.vertices)
     number = np.full(len(points), -1)
@@ -137,10 +137,10 @@ def _faced(points: Any, hull: Any) -> Piece:
     a, b, c = (corners[faces[:, k]] for k in range(3))
     inward = np.einsum("ni,ni->n", np.cross(b - a, c - a), hull.equations[:, :3]) < 0.0
     faces[inward] = faces[inward][:, ::-1]
-    return Piece(corners, faces.astype(np.int64))
+    return ConvexPiece(corners, faces.astype(np.int64))
 
 
-def _decomposed(mesh: Mesh) -> tuple[Piece, ...]:
+def _decomposed(mesh: Mesh) -> tuple[ConvexPiece, ...]:
     """Return convex pieces, none when no library can make them."""
     body = _trimesh().Trimesh(mesh.vertices, mesh.faces, process=True)
     try:

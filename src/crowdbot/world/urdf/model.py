@@ -16,7 +16,7 @@ from crowdbot.core import InputError, did_you_mean
 from .shapes import Shape
 from .transforms import across, frame, from_quaternion, turned, turning
 
-__all__ = ["JOINT_KINDS", "Inertial", "Joint", "Link", "Mimic", "Motor", "Part", "Remark", "RobotModel"]
+__all__ = ["JOINT_KINDS", "Joint", "Link", "LinkInertia", "LinkShape", "Mimic", "Motor", "Remark", "RobotModel"]
 
 Floats = NDArray[np.float64]
 JOINT_KINDS = {"fixed": 0, "revolute": 1, "continuous": 1, "prismatic": 1, "planar": 3, "floating": 7}
@@ -24,7 +24,7 @@ JOINT_KINDS = {"fixed": 0, "revolute": 1, "continuous": 1, "prismatic": 1, "plan
 
 
 @dataclass(frozen=True, eq=False)
-class Inertial:
+class LinkInertia:
     """Mass [kg], its centre ``[3]`` [m], and inertia ``[3, 3]`` [kg m2] about that centre, in the axes of a frame."""
 
     mass: float
@@ -33,7 +33,7 @@ class Inertial:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class LinkShape:
     """A shape of a link: where it is in the link's frame ``[4, 4]``, and its colour (red, green, blue, alpha)."""
 
     shape: Shape
@@ -50,9 +50,9 @@ class Link:
     """
 
     name: str
-    inertial: Inertial | None = None
-    visuals: tuple[Part, ...] = ()
-    collisions: tuple[Part, ...] = ()
+    inertial: LinkInertia | None = None
+    visuals: tuple[LinkShape, ...] = ()
+    collisions: tuple[LinkShape, ...] = ()
     friction: float | None = None
 
 
@@ -236,7 +236,7 @@ class RobotModel:
             found[joint.child] = found[joint.parent] @ joint.origin @ joint.motion(places[joint.name])
         return found
 
-    def inertial(self, positions: Mapping[str, ArrayLike] | None = None) -> Inertial:
+    def inertial(self, positions: Mapping[str, ArrayLike] | None = None) -> LinkInertia:
         """Return mass, centre of mass and inertia of the whole in the root's frame."""
         poses = self.poses(positions)
         bodies = [(link.inertial, poses[name]) for name, link in self.links.items() if link.inertial]
@@ -263,10 +263,10 @@ class RobotModel:
         return outline(self.points(positions)[:, :2])
 
 
-def _joined(bodies: list[tuple[Inertial, Floats]]) -> Inertial:
+def _joined(bodies: list[tuple[LinkInertia, Floats]]) -> LinkInertia:
     mass = sum(inertial.mass for inertial, _ in bodies)
     if mass <= 0.0:
-        return Inertial(0.0, np.zeros(3), np.zeros((3, 3)))
+        return LinkInertia(0.0, np.zeros(3), np.zeros((3, 3)))
     places = [turned(matrix, inertial.center[None])[0] for inertial, matrix in bodies]
     center = sum((b.mass * place for (b, _), place in zip(bodies, places, strict=True)), np.zeros(3)) / mass
     tensor = np.zeros((3, 3))
@@ -274,7 +274,7 @@ def _joined(bodies: list[tuple[Inertial, Floats]]) -> Inertial:
         rotation, shift = matrix[:3, :3], place - center
         tensor += rotation @ inertial.tensor @ rotation.T
         tensor += inertial.mass * (np.eye(3) * (shift @ shift) - np.outer(shift, shift))
-    return Inertial(mass, center, tensor)
+    return LinkInertia(mass, center, tensor)
 
 
 def outline(points: Floats) -> Floats:

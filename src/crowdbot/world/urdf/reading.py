@@ -10,17 +10,17 @@ import numpy as np
 
 from crowdbot.core import Element, InputError, RobotError, parse_xml, read_bytes
 
-from .elements import Reader
+from .elements import UrdfReader
 from .folders import Folders, robot_folder
 from .joints import read_joint
 from .links import read_link
 from .materials import read_materials
-from .model import Inertial, Joint, Link, Remark, RobotModel
+from .model import Joint, Link, LinkInertia, Remark, RobotModel
 
 __all__ = ["read_urdf"]
 
 MOST_LINKS = 2000
-TOKEN = Inertial(0.001, np.zeros(3), np.eye(3) * 1e-7)
+TOKEN = LinkInertia(0.001, np.zeros(3), np.eye(3) * 1e-7)
 """Of a link that moves but has neither mass nor shape: a gram, as a ball of 16 mm."""
 
 
@@ -62,12 +62,12 @@ child; exactly one link must be
         data, place = read_bytes(path, "URDF", RobotError), str(path)
         home, beside = folder or robot_folder(path), path.resolve().parent
     root = parse_xml(data, place, what="URDF", root="robot", refusal=RobotError)
-    reader = Reader(place, Folders(home, packages, beside), colliders)
+    reader = UrdfReader(place, Folders(home, packages, beside), colliders)
     _check_kind(reader, root)
     return _robot(reader, root)
 
 
-def _check_kind(reader: Reader, root: Element) -> None:
+def _check_kind(reader: UrdfReader, root: Element) -> None:
     if any(inner.tag.startswith("xacro:") for inner in root.children):
         line = next(inner.line for inner in root.children if inner.tag.startswith("xacro:"))
         raise RobotError(
@@ -78,7 +78,7 @@ def _check_kind(reader: Reader, root: Element) -> None:
         raise RobotError(f"{reader.place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <robot>")
 
 
-def _robot(reader: Reader, root: Element) -> RobotModel:
+def _robot(reader: UrdfReader, root: Element) -> RobotModel:
     name = root.attributes.get("name", "").strip() or "robot"
     reader.materials = read_materials(reader, root)
     reader.notes(root)
@@ -109,7 +109,7 @@ def _robot(reader: Reader, root: Element) -> RobotModel:
 
 
 def _check_tree(
-    reader: Reader, root: Element, links: dict[str, Link], joints: dict[str, Joint], lines: dict[str, int]
+    reader: UrdfReader, root: Element, links: dict[str, Link], joints: dict[str, Joint], lines: dict[str, int]
 ) -> None:
     """Say what keeps links and joints from being one tree."""
     above: dict[str, Joint] = {}
@@ -143,7 +143,7 @@ def _check_tree(
         reached |= chain.keys()
 
 
-def _check_mimics(reader: Reader, joints: dict[str, Joint], lines: dict[str, int]) -> None:
+def _check_mimics(reader: UrdfReader, joints: dict[str, Joint], lines: dict[str, int]) -> None:
     for joint in joints.values():
         at = Element("joint", {"name": joint.name}, line=lines[joint.name])
         leader, seen = joint, {joint.name}
@@ -161,15 +161,15 @@ def _check_mimics(reader: Reader, joints: dict[str, Joint], lines: dict[str, int
             reader.say(at, f"mimics {leader.name!r}, but only revolute, continuous and prismatic joints can")
 
 
-def _weighed(reader: Reader, links: dict[str, Link], joints: dict[str, Joint]) -> dict[str, Link]:
+def _weighed(reader: UrdfReader, links: dict[str, Link], joints: dict[str, Joint]) -> dict[str, Link]:
     """Return the links, where what moves on a joint and has no mass at all, nor anything fixed to it, got a little."""
-    carrier: dict[str, str] = {}
+    robot_body: dict[str, str] = {}
     heavy: set[str] = set()
     for name, link in links.items():
         above = next((joint for joint in joints.values() if joint.child == name), None)
-        carrier[name] = carrier[above.parent] if above is not None and above.kind == "fixed" else name
+        robot_body[name] = robot_body[above.parent] if above is not None and above.kind == "fixed" else name
         if link.inertial is not None:
-            heavy.add(carrier[name])
+            heavy.add(robot_body[name])
     found = dict(links)
     for joint in joints.values():
         name = joint.child

@@ -11,10 +11,10 @@ import numpy as np
 from .model import RobotModel
 from .shapes import Mesh
 
-__all__ = ["described"]
+__all__ = ["describe"]
 
 
-def described(model: RobotModel, positions: Mapping[str, float] | None = None) -> dict[str, Any]:
+def describe(model: RobotModel, positions: Mapping[str, float] | None = None) -> dict[str, Any]:
     """Return counts, mass, inertia, footprint and remarks of a robot.
 
     Args:
@@ -22,7 +22,7 @@ def described(model: RobotModel, positions: Mapping[str, float] | None = None) -
         positions: of joints, for footprint and inertia; those left out are at rest.
 
     >>> from crowdbot.world import read_urdf
-    >>> found = described(read_urdf("<robot name='r'><link name='a'><visual><geometry><sphere radius='1'/></geometry>"
+    >>> found = describe(read_urdf("<robot name='r'><link name='a'><visual><geometry><sphere radius='1'/></geometry>"
     ...                             "</visual></link></robot>"))
     >>> round(found["mass"]), len(found["repaired"]), found["footprint"]
     (4189, 1, [])

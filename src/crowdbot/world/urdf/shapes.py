@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .transforms import turned
 
-__all__ = ["Box", "Capsule", "Cylinder", "Mesh", "Piece", "Shape", "Solid", "Sphere", "together"]
+__all__ = ["Box", "Capsule", "ConvexPiece", "Cylinder", "Mesh", "Shape", "Solid", "Sphere", "together"]
 
 Floats = NDArray[np.float64]
 ROUND = np.linspace(0.0, 2.0 * math.pi, 64, endpoint=False)
@@ -127,7 +127,7 @@ class Capsule:
         return np.concatenate([ball + (0.0, 0.0, z) for z in (-self.length / 2.0, self.length / 2.0)])
 
 
-class Piece(NamedTuple):
+class ConvexPiece(NamedTuple):
     """A closed convex body: vertices ``[N, 3]`` [m] and triangles ``[M, 3]`` seen counter-clockwise from outside."""
 
     vertices: Floats
@@ -161,7 +161,7 @@ class Mesh:
     source: str
     vertices: Floats
     faces: NDArray[np.int64]
-    pieces: tuple[Piece, ...] = ()
+    pieces: tuple[ConvexPiece, ...] = ()
 
     def solid(self) -> Solid:
         """Return volume, centre and moments of its convex pieces; of none, those of its bounding box."""

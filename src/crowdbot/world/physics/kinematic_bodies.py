@@ -1,0 +1,67 @@
+"""Bodies of people and robots at the poses of a planar scene, for sensors and cameras."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from crowdbot.core import Scene, Walls
+from crowdbot.humans import People
+from crowdbot.world.rendering.renderer import Renderer
+from crowdbot.world.robots.robot import Robot
+
+from .colliders import scene_bodies
+from .people_motion import PeopleMotion
+from .stage import PhysicsStage
+
+__all__ = ["KinematicBodies"]
+
+
+class KinematicBodies:
+    """Bodies that follow a planar scene: nothing pushes them.
+
+    Args:
+        scene: at the beginning, E = 1.
+        robots: by agent.
+        stage: wall height, props and lights.
+        people: bodies of all agents that are not robots, then of riders.
+        riders: agents of the robots that carry a rider.
+        walls: walls without the outlines of props; None: the walls of the scene.
+        seed: of the gaits.
+
+    Attributes:
+        people: bodies of people.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        robots: Mapping[int, Robot],
+        stage: PhysicsStage,
+        people: People,
+        *,
+        riders: Sequence[int] = (),
+        walls: Walls | None = None,
+        seed: int = 0,
+    ) -> None:
+        self.robots, self.stage, self.walls = dict(robots), stage, walls
+        agents = np.array([a for a in range(scene.shape[1]) if a not in self.robots], dtype=np.int64)
+        self.people = PeopleMotion(scene, agents, people, seed, riders)
+        self._renderer: Renderer | None = None
+
+    def scene(self, scene: Scene, skins: int | None) -> Scene:
+        """Return the scene with bodies and wall height, see :meth:`crowdbot.world.World.body_scene`."""
+        found = scene_bodies(scene, self.people, self.robots, self.stage, skins=skins)
+        return scene.replace(bodies=found, walls=self._walls(scene), wall_height=self.stage.wall_height)
+
+    def renderer(self, scene: Scene) -> Renderer:
+        """Return the renderer, set to a scene."""
+        now = scene.replace(walls=self._walls(scene))
+        if self._renderer is None:
+            self._renderer = Renderer(now, self.robots, self.stage, self.people)
+        self._renderer.show(now)
+        return self._renderer
+
+    def _walls(self, scene: Scene) -> Walls:
+        return scene.walls if self.walls is None else self.walls

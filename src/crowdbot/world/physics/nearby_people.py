@@ -1,0 +1,43 @@
+"""People near robots and movable props, who need a body in the engine."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Scene
+
+__all__ = ["people_near"]
+
+Floats = NDArray[np.float64]
+
+
+def people_near(
+    scene: Scene, persons: NDArray[np.int64], movers: Sequence[tuple[float, float, float, float]], reach: float
+) -> tuple[NDArray[np.int64], Floats, NDArray[np.bool_]]:
+    """Return the people near a robot or a movable prop, the nearest first; E = 1.
+
+    Args:
+        scene: with positions and headings.
+        persons: ``[P]`` agents that are people.
+        movers: x, y, radius [m] and mass [kg] of each robot and movable prop.
+        reach: largest distance between a person and the outline of a mover [m].
+
+    Returns:
+        ``[N]`` indices into ``persons``; ``[P]`` mass of the nearest mover [kg]; ``[P]`` whether it is ahead.
+    """
+    nearest = np.full(len(persons), np.inf)
+    mass = np.ones(len(persons))
+    ahead = np.ones(len(persons), dtype=np.bool_)
+    looks = np.stack([np.cos(scene.heading[0, persons]), np.sin(scene.heading[0, persons])], axis=-1)
+    for x, y, radius, weight in movers:
+        away = np.array([x, y]) - scene.position[0, persons]
+        gap = np.sqrt(np.sum(away * away, axis=1)) - radius
+        closer = gap < nearest
+        nearest[closer], mass[closer] = gap[closer], weight
+        ahead[closer] = np.sum(away * looks, axis=1)[closer] >= 0.0
+    near = np.flatnonzero(nearest < reach)
+    near = near[np.lexsort((persons[near], nearest[near]))]
+    return near, mass, ahead
