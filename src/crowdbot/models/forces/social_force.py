@@ -234,8 +234,8 @@ class SocialForce(CrowdModel):
             (a derivative along the line between two; contact instead of force while two discs overlap).
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
 
-    The force does not depend on radii; ``distance`` accounts for them. Adjacent wall segments both repel. If the desired
-    velocity is 0, the field of view follows the velocity.
+    The force does not depend on radii; ``distance`` accounts for them. Adjacent wall segments both repel. If the
+    desired velocity is 0, the field of view follows the velocity.
 
     The default variant is ``gradient``, the force of the paper without its random fluctuations and attractions.
     Differences: limited neighbourhoods and a limit of acceleration.
