@@ -1,4 +1,4 @@
-"""PopulationPrior: how the parameters of people hang together, learned from fits."""
+"""PopulationPrior: joint distribution of the parameters of people, estimated from fits."""
 
 from __future__ import annotations
 
