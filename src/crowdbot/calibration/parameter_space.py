@@ -38,7 +38,7 @@ class ParameterSpace:
         InputError: a name is not a parameter.
 
     >>> from crowdbot.models import ORCA
-    >>> Space(ORCA(), ("radius", "time_horizon")).names
+    >>> ParameterSpace(ORCA(), ("radius", "time_horizon")).names
     ('time_horizon', 'radius')
     """
 

@@ -306,8 +306,7 @@ class VOG(CrowdModel):
     External agents do not give way. Walls are our own law: a velocity that would touch one within the horizon costs the
     speed that is too much. Use :meth:`step`; velocities alone do not remember.
 
-    The default follows the implementation in the CrowdBot simulator. The cost of walls is
-    our own.
+    The default follows the implementation in the CrowdBot simulator; the cost of walls is our own.
 
     Source: Ren, Charalambous, Bruneau, Peng, Pettré 2017, doi:10.1111/cgf.12993, as in the CrowdBot simulator.
 

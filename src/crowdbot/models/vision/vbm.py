@@ -323,8 +323,7 @@ class VBM(CrowdModel):
 
     With ``rng`` the push aside varies by a quarter; without, it has its mean.
 
-    The default variant is ``agents``, which replaces the rendered image of the paper with the angle that each agent
-    fills. Occlusion is simulated by the variant ``crowdbot`` only.
+    The default variant ``agents`` replaces the image of the paper by the angle of each agent, without occlusion.
 
     Source: Dutra, Marques, Cavalcante-Neto, Vidal, Pettré 2017, doi:10.1111/cgf.13130; ``crowdbot`` is the version of
     the CrowdBot simulator.
