@@ -1,4 +1,4 @@
-"""Floor 3: which parameters make a crowd model walk like recorded people; a scheme is model x cost x search x goal."""
+"""Calibration: fit the parameters of crowd models to recorded people; a scheme is model x cost x search x goal."""
 
 from .absolute import Absolute
 from .annealing import Annealing

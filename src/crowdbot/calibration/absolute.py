@@ -1,4 +1,4 @@
-"""Absolute difference: how far simulated people are from where they were seen."""
+"""Absolute: distance between simulated and recorded positions."""
 
 from __future__ import annotations
 

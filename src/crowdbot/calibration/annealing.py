@@ -1,4 +1,4 @@
-"""Annealing: chains that accept worse parameters ever less often, everyone for himself."""
+"""Annealing: simulated annealing with acceptance for each person."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Calibrator: which parameters make a crowd model walk like the people of a recording."""
+"""Calibrator: fit the parameters of a crowd model to recorded people."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Progress = Callable[[float], None]
 Report = Callable[[int], None]
-"""Told how many evaluations (candidates times windows) of a part are done."""
+"""Receives the number of finished evaluations (candidates times windows) of a part."""
 
 AGENTS_AT_ONCE = 200_000
 """About so many agents (candidates x windows x people) are simulated in one batch."""
@@ -48,11 +48,11 @@ class Calibrator:
 
     Fields:
         model, cost, search, goal: values, or their names.
-        budget: how many whole crowds are tried, for each window or, when shared, in all.
+        budget: number of whole-crowd evaluations, for each window or, if shared, in total.
         shared: one set of parameters for everyone.
         free: names of the parameters that are calibrated: of the model, ``radius``, ``preferred_speed`` (not when
             shared); empty means all.
-        prior: what is known of the parameters of a population; unusual people cost more.
+        prior: distribution of the parameters in a population; unusual parameters cost more.
         radius: people's radius before the fit [m].
         substep: longest time step of the simulation [s].
 
@@ -114,8 +114,8 @@ class Calibrator:
             past: windows of at least two rows; their future is not looked at, unless the goal does. A shared fit may
                 be of several recordings.
             seed: of the search.
-            progress: told the share that is done, 0 to 1.
-            start: an earlier fit, of the frame before: its values are tried early.
+            progress: receives the finished share, 0 to 1.
+            start: an earlier fit, for example of the frame before; its values are evaluated early.
 
         Raises:
             InputError: there are too few rows, or nobody can be compared.

@@ -1,4 +1,4 @@
-"""CMAES: everyone's parameters follow a normal distribution that learns its shape, with the library ``cmaes``."""
+"""CMAES: covariance matrix adaptation for each person, with the library ``cmaes``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cooling: how a temperature falls while a search goes on."""
+"""Cooling: schedules of temperature over the budget."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cost: the contract of how far a simulated crowd is from the recorded one."""
+"""Cost: contract of the dissimilarity between a simulated and a recorded crowd."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ METRICS = Paper(
 
 @dataclass(frozen=True)
 class Cost(ABC):
-    """A dissimilarity between what was recorded and what candidates make of it, person by person [m]."""
+    """Dissimilarity between recorded and simulated tracks, for each person [m]."""
 
     paper: ClassVar[Paper] = METRICS
 

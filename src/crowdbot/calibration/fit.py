@@ -1,4 +1,4 @@
-"""Fit: the result of a calibration, ready to predict."""
+"""Fit: the result of a calibration; it predicts."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ class Fit:
         counted: ``[W, A]``, whose cost was measured.
         cost, given_cost: ``[W]`` mean over people with the calibrated and with the given values [m], NaN where nobody
             counted; of a shared fit ``[1]``, the mean over all people.
-        evaluations: ``[W]``, how many whole crowds were tried.
+        evaluations: ``[W]``, number of whole-crowd evaluations.
         history: ``[W, evaluations]``, the smallest cost so far after each of them.
         seconds: time of the search.
-        windows: how many windows were looked at.
+        windows: number of windows.
     """
 
     scheme: str

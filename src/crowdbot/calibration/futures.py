@@ -1,4 +1,4 @@
-"""Several futures of one crowd: people have several destinations, and each future draws one for everybody."""
+"""Futures: samples of a prediction, each with one destination drawn for each person."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Genetic: a pool of crowds, in which everyone's genes are selected, crossed and mutated person by person."""
+"""Genetic: a genetic algorithm with selection, crossover and mutation for each person."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Inter-pedestrian difference: whether simulated people keep the distances among each other that they kept."""
+"""InterPedestrian: difference between simulated and recorded distances of pairs."""
 
 from __future__ import annotations
 

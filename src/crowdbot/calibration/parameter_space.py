@@ -1,4 +1,4 @@
-"""Space: which numbers of a crowd are calibrated, in which box, and how a crowd takes them."""
+"""ParameterSpace: the calibrated parameters, their bounds, and how they are applied to a crowd."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ PREFERRED_SPEED = Parameter("preferred_speed", "m/s", 1.34, 0.0, 2.5, "Weidmann 
 
 @dataclass(frozen=True)
 class ParameterSpace:
-    """D numbers of every person: parameters of a model, then radius and preferred speed.
+    """D parameters of each person: those of a model, then radius and preferred speed.
 
     Fields:
-        model: whose parameters they are; those that are not free keep their values.
+        model: the crowd model; parameters that are not free keep their values.
         free: names of the parameters that are calibrated; empty means all.
         shared: one set for everyone; then the preferred speed stays the observed one of each person.
 
@@ -38,7 +38,7 @@ class ParameterSpace:
         InputError: a name is not a parameter.
 
     >>> from crowdbot.models import ORCA
-    >>> Space(ORCA(), ("radius", "time_horizon")).names
+    >>> ParameterSpace(ORCA(), ("radius", "time_horizon")).names
     ('time_horizon', 'radius')
     """
 

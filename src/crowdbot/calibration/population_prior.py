@@ -1,4 +1,4 @@
-"""PopulationPrior: how the parameters of people hang together, learned from fits."""
+"""PopulationPrior: joint distribution of the parameters of people, estimated from fits."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class PopulationPrior:
     >>> from crowdbot.models import ORCA
     >>> prior = PopulationPrior(("radius",), np.zeros(1), np.eye(1))
     >>> values = np.array([[[0.25]], [[0.39]]])
-    >>> prior.penalty(Space(ORCA(), ("radius",)), values, values).round(4).tolist()
+    >>> prior.penalty(ParameterSpace(ORCA(), ("radius",)), values, values).round(4).tolist()
     [[0.0], [0.5669]]
     """
 

@@ -1,4 +1,4 @@
-"""Progressive difference: how far people are from where they were seen one row after the simulation began."""
+"""Progressive: distance between simulated and recorded positions one row ahead."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""RandomSearch: candidates uniformly at random, the yardstick of the other searches."""
+"""RandomSearch: uniformly random candidates, the baseline of the other searches."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""RecordingCalibration: everyone in a recording calibrated, piece by piece on several workers; what is done is kept."""
+"""RecordingCalibration: calibrate a whole recording in chunks on several workers; finished chunks are kept."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class CalibrationChunk:
 
 @dataclass(frozen=True)
 class RecordingCalibration:
-    """Which recording is calibrated, by which scheme.
+    """The calibration of a recording with a scheme.
 
     Fields:
         recording: its windows; only their past is looked at, unless the goal knows the future.
@@ -69,17 +69,17 @@ class RecordingCalibration:
 
     @property
     def key(self) -> str:
-        """Hash of everything that decides about the result."""
+        """Hash of all inputs that determine the result."""
         content = pickle.dumps((code_digest(), self, self.recording.digest))
         return hashlib.blake2b(content, digest_size=12).hexdigest()
 
     @property
     def past(self) -> Windows:
-        """What is calibrated on."""
+        """The windows used for the calibration."""
         return self.recording.windows[0]
 
     def run(self, workers: int = 1, cluster: str | None = None, keep: Path | None = None) -> Iterator[CalibrationChunk]:
-        """Yield the pieces as they are done; those kept in the folder ``keep`` come first."""
+        """Yield chunks as they finish; chunks kept in the folder ``keep`` come first."""
         past = self.past
         people = int(past.present[:, -1].sum())
         size = max(1, min(len(past) // PIECES, AGENTS * len(past) // max(1, people)))
@@ -89,7 +89,7 @@ class RecordingCalibration:
             yield chunk
 
     def merge(self, chunks: Sequence[CalibrationChunk]) -> Fit:
-        """Return the fit of the whole recording from all its pieces."""
+        """Return the fit of the whole recording from all its chunks."""
         ordered = sorted(chunks, key=lambda chunk: chunk.first)
         calibrator = self.goal_calibrator
         whole = {name: np.concatenate([chunk.arrays[name] for chunk in ordered]) for name in ordered[0].arrays}

@@ -1,4 +1,4 @@
-"""The observed rows of windows, simulated again by many candidates at once."""
+"""Simulation of the observed rows of windows with many candidates at once."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Candidate = Callable[[Rollout, Scene, int], tuple[Rollout, Scene]]
 
 
 class ResimulatedTracks:
-    """What P candidates made of the observed rows of W windows; simulated only when a cost asks for it.
+    """Tracks of P candidates over the observed rows of W windows; simulated on first access.
 
     Fields:
         past: the windows that were simulated again.
@@ -46,7 +46,7 @@ class ResimulatedTracks:
 
 
 class Resimulation:
-    """Windows made ready to be simulated again, many times with different parameters.
+    """Repeated simulation of observed windows with different parameters.
 
     Everyone present at the row where a simulation begins but the robots is simulated until their last observed row;
     robots and people who come later move as they were recorded. Scenes are built once and then copied.

@@ -1,4 +1,4 @@
-"""Run the people of windows forward with a crowd model: what costs compare and what simulated predictions are."""
+"""Rollout: simulate the people of windows with a crowd model, for costs and for predictions."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ STANDING_HASTE = 2.0
 
 @dataclasses.dataclass(frozen=True)
 class Rollout:
-    """How observed people become a crowd that is simulated; W windows are the environments of one scene.
+    """How observed people are simulated; W windows are the environments of one scene.
 
     Fields:
         model: how they walk; its parameters are numbers or ``[W, A]``.
@@ -82,13 +82,15 @@ class Rollout:
         return set_preferred_speed(scene, observed if self.preferred_speed is None else self.preferred_speed)
 
     def predict_positions(self, past: Windows, steps: int, rng: np.random.Generator | None = None) -> Floats:
-        """Return where everyone present at the last row goes: ``[W, steps, A, 2]`` [m]."""
+        """Return the predicted positions of people present at the last row: ``[W, steps, A, 2]`` [m]."""
         if not np.any(past.present[:, -1:]):
             return np.zeros((len(past), steps, *past.position.shape[2:]))
         return self.run(self.scene(past, past.position.shape[1] - 1), past, steps, rng)
 
     def run(self, scene: Scene, past: Windows, steps: int, rng: np.random.Generator | None = None) -> Floats:
-        """Return where a scene goes in ``steps`` rows: ``[E, steps, A, 2]`` [m]; its E are copies of all windows."""
+        """Return the positions in a scene over ``steps`` rows: ``[E, steps, A, 2]`` [m].
+
+        The environments of the scene are copies of all windows."""
         copies = len(scene.position) // max(1, len(past))
         place = np.zeros((*scene.shape[:1], steps, *scene.shape[1:], 2))
         for step in range(steps):

@@ -1,4 +1,4 @@
-"""Parts of a scheme, from themselves or from their names."""
+"""Parts of a scheme (model, goal, cost, search), from instances or names."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ __all__ = ["goal_class", "goal_for", "resolve_cost", "resolve_goal", "resolve_mo
 
 
 def resolve_model(value: CrowdModel | str) -> CrowdModel:
-    """Return a crowd model from itself, its name or its address, with default parameters."""
+    """Return a crowd model from an instance, a name or an address, with default parameters."""
     return cast(CrowdModel, _resolve(value, models, CrowdModel))
 
 
 def resolve_goal(value: Goal | str) -> Goal:
-    """Return a goal from itself, its name or its address, with default parameters."""
+    """Return a goal from an instance, a name or an address, with default parameters."""
     return cast(Goal, _resolve(value, goals, Goal))
 
 
@@ -47,12 +47,12 @@ def goal_for(name: str, recording: Recording) -> Goal:
 
 
 def resolve_cost(value: Cost | str) -> Cost:
-    """Return a cost from itself, its name or its address."""
+    """Return a cost from an instance, a name or an address."""
     return cast(Cost, _resolve(value, sys.modules[__package__ or ""], Cost))
 
 
 def resolve_search(value: Search | str) -> Search:
-    """Return a search from itself, its name or its address, with default parameters."""
+    """Return a search from an instance, a name or an address, with default parameters."""
     return cast(Search, _resolve(value, sys.modules[__package__ or ""], Search))
 
 

@@ -1,7 +1,7 @@
-"""Searches: which values of everyone's parameters, in a box, make a crowd cost least, with a budget of evaluations.
+"""Searches: minimise the cost of a crowd over the parameters of all people, within bounds and a budget of evaluations.
 
-A problem is one window of N people with D parameters each. Many problems are searched in lock-step, so that their
-candidates are simulated as one batch; what is found for one of them does not depend on the others.
+A problem is one window of N people with D parameters each. Many problems are searched in lock-step and their
+candidates are simulated as one batch. The result of a problem does not depend on the others.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ Function = Callable[[Floats, Integers], Floats]
 
 @dataclass(frozen=True)
 class SearchResult:
-    """What a search found in W problems.
+    """The result of a search of W problems.
 
     Fields:
         best: ``[W, N, D]``, the candidates with the smallest cost, evaluated as a whole crowd.
         cost: ``[W]``, their costs: means over the people who count; NaN where nobody does, infinite where no candidate
             has a finite cost. In both cases ``best`` is the first start.
-        evaluations: ``[W]``, how many whole-crowd candidates were evaluated.
-        history: ``[W, budget]``, the smallest cost so far after each evaluation; after a stop its last value goes on.
+        evaluations: ``[W]``, number of whole-crowd candidates evaluated.
+        history: ``[W, budget]``, smallest cost after each evaluation; the last value is repeated after a stop.
     """
 
     best: Floats
@@ -47,12 +47,13 @@ class SearchResult:
 
 @dataclass(frozen=True)
 class Search(ABC):
-    """A way to look for the parameters ``[N, D]`` of a crowd that cost least, for many crowds at once.
+    """Contract of a search for the parameters ``[N, D]`` of a crowd with the smallest cost, for many crowds at once.
 
     Fields:
         tolerance: a problem is done when its smallest cost is at or below this [unit of the cost]; costs that may be
             negative need ``-math.inf``.
-        patience: a problem is done when so many evaluations brought nothing; 0: never. Looked at after each batch.
+        patience: a problem is done after this number of evaluations without improvement, checked after each batch;
+            0: never.
     """
 
     tolerance: float = 0.0
@@ -76,13 +77,13 @@ class Search(ABC):
         """Return the best candidate of every problem among at most ``budget`` evaluations.
 
         Args:
-            function: what everyone costs. People whose cost is NaN in all starts do not count and keep the parameters
-                of the first start; a person who counts and has a cost that is not finite makes a candidate worst.
+            function: cost of each person. People whose cost is NaN in all starts are ignored and keep the parameters of
+                the first start. A cost of another person that is not finite counts as infinite.
             low, high: ``[D]``, the box.
             rngs: one source of randomness for each of W problems.
-            budget: how many whole-crowd candidates may be evaluated in each problem.
-            start: ``[S, W, N, D]``, S >= 1, evaluated first, also when they lie outside the box; what is bred from
-                them lies in it.
+            budget: maximum number of whole-crowd candidates evaluated in each problem.
+            start: ``[S, W, N, D]``, S >= 1, evaluated first, even outside the box; candidates derived from them lie in
+                the box.
 
         Raises:
             InputError: the box is empty or not finite, the budget is below 1, or shapes do not fit.
@@ -100,17 +101,17 @@ class Search(ABC):
 
     @abstractmethod
     def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
-        """Evaluate candidates until nothing is left; the ledger keeps the best.
+        """Evaluate candidates until the budget is spent; the state keeps the best.
 
         Args:
-            ledger: evaluates candidates and knows the box, the streams of randomness and what is left of the budget.
-            pool: ``[S, L, N, D]``, the starts of the L problems that are not done yet.
-            cost: ``[S, L, N]``, what everyone costs there.
+            state: evaluates candidates and knows the box, the random generators and the remaining budget.
+            population: ``[S, L, N, D]``, the starts of the L problems that are not done yet.
+            cost: ``[S, L, N]``, their costs, for each person.
         """
 
 
 def check_box(low: Floats, high: Floats, budget: int) -> None:
-    """Raise :class:`InputError` unless the box has an inside and there is something to spend."""
+    """Raise :class:`InputError` unless the box is finite and not empty and the budget is positive."""
     if budget < 1:
         raise InputError(f"search: budget = {budget} evaluations must be at least 1")
     if low.shape != high.shape or low.ndim != 1 or not np.all(np.isfinite([low, high])):

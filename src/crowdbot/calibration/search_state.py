@@ -1,4 +1,4 @@
-"""The books of a search: who is still searched, what was evaluated, what was best."""
+"""State of a search: unfinished problems, evaluations and best candidates."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Integers = NDArray[np.int64]
 
 
 class SearchState:
-    """Evaluates whole-crowd candidates of W problems and keeps the best of each; used by one search, once.
+    """State of one run of a search: evaluates whole-crowd candidates of W problems and keeps the best of each.
 
     A search holds its state in arrays whose axis 1 is L, the problems that are not done yet: ``live [L]`` are their
     numbers. After each :meth:`evaluate`, :meth:`settle` takes out of the arrays those that are done.
@@ -57,7 +57,9 @@ class SearchState:
         return self.budget - self._spent if len(self.live) else 0
 
     def evaluate(self, candidates: Floats) -> Floats:
-        """Return what everyone costs, ``[P, L, N]``, in candidates ``[P, L, N, D]``; those beyond the budget are cut.
+        """Return the cost of each person, ``[P, L, N]``, in candidates ``[P, L, N, D]``.
+
+        Candidates beyond the budget are dropped.
 
         The cost of people who do not count is 0, and they keep the parameters of the first start; a cost that is not
         finite is infinite.

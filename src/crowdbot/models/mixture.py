@@ -24,11 +24,11 @@ MODEL = "model"
 
 @dataclass(frozen=True)
 class Mixture(CrowdModel):
-    """Several models in one scene: each agent walks by its own and sees everybody.
+    """Several models in one scene: each agent uses its own model, and all agents see each other.
 
     Args:
-        models: of which people walk by one.
-        which: ``[A]`` or ``[E, A]`` int, the index of each agent's model; a number is for all.
+        models: the models, at least one.
+        which: ``[A]`` or ``[E, A]`` int, the index of each agent's model; a number applies to all agents.
 
     People of other models are neighbours like any others: a model that shares the work of avoiding takes it that they
     do their part too. All models choose from the same old scene. Every model is asked for the whole crowd, so that the

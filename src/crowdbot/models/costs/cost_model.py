@@ -43,10 +43,10 @@ STEEPEST = 1e9
 
 @dataclass(frozen=True)
 class CostModel(CrowdModel):
-    """Agents take velocities of low cost; any sum of costs is a model.
+    """Composable model: agents choose the velocity with the lowest sum of costs.
 
     Args:
-        costs: what is disliked, such as ``PreferredVelocity() + 0.3 * Inertia() + PowerLawEnergy()``; see
+        costs: the sum of costs, such as ``PreferredVelocity() + 0.3 * Inertia() + PowerLawEnergy()``; see
             :mod:`crowdbot.models.costs`.
         optimiser: ``gradient`` (one step down the slope, from the present velocity), ``sampling`` (the best of some
             velocities), ``closed-form`` (one cost that knows its best velocity), or ``natural`` (what suits the costs).
@@ -55,16 +55,19 @@ class CostModel(CrowdModel):
         contact_stiffness: acceleration per metre of overlap between bodies, and with walls [1/s^2]; it is not taken
             higher than what ends the overlap in one time step. 62.5 is 5000 kg/s^2 at 80 kg.
         neighbor_distance: neighbours are nearer than this [m].
-        max_neighbors: only so many of them count, the nearest; a fraction is rounded to the nearest whole number.
+        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
         max_acceleration: ``[E, A]`` [m/s^2], contacts apart; None has no limit.
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
         samples: ``polar`` (desired, present and no velocity, and rings about the desired direction), ``umans`` (rings
             from -x on, as in the UMANS library), ``random`` (evenly in the disc of possible speeds).
         speeds, angles: number of rings, and of velocities on each; their product for ``random``.
-        refinements: so often the surroundings of the best sample are searched again, each time half as wide.
+        refinements: number of local searches around the best sample, each half as wide as the one before.
         seed: of ``random`` samples when the step has no stream; then they are the same for all and in every step.
 
-    The walkers are weighed with NumPy, not by a kernel: composing is easy, and slow.
+    Costs are evaluated with NumPy, without a compiled kernel: easy to extend, and slower than the other models.
+
+    The default cost is :class:`~crowdbot.models.costs.HalfPlanes` in closed form, which reproduces ``orca`` in NumPy.
+    The original is the UMANS library; its sampling pattern is ``samples="umans"``.
 
     Source: van Toll, Grzeskowiak, López, Amirian, Berton, Bruneau, Daniel, Jovane, Pettré 2020,
     doi:10.1145/3384382.3384532.

@@ -103,7 +103,7 @@ class NeighborView:
 
     def part(self, begin: int, end: int) -> NeighborView:
         """Return the surroundings of the walkers from ``begin`` to before ``end`` only."""
-        shared = ("segments", "dt", "scene", "random", "answers")
+        shared = ("segments", "dt", "scene", "random", "cache")
         names = [field.name for field in dataclasses.fields(self) if field.name not in shared]
         cut: dict[str, Any] = {name: getattr(self, name)[begin:end] for name in names}
         return dataclasses.replace(self, **cut)

@@ -124,9 +124,9 @@ def suitable_optimiser(cost: VelocityCost) -> str:
     """Return the optimiser that suits a cost: for a sum of several, gradient when all are forces, else sampling.
 
     >>> from crowdbot.models.costs import GoalForce, PowerLawForce, PreferredVelocity
-    >>> suited(GoalForce() + PowerLawForce()), suited(GoalForce() + PreferredVelocity())
+    >>> suitable_optimiser(GoalForce() + PowerLawForce()), suitable_optimiser(GoalForce() + PreferredVelocity())
     ('gradient', 'sampling')
-    >>> suited(2.0 * PreferredVelocity())
+    >>> suitable_optimiser(2.0 * PreferredVelocity())
     'closed-form'
     """
     terms = _terms(cost)

@@ -245,7 +245,7 @@ def _choose_part(
 
 @dataclass(frozen=True)
 class Boids(CrowdModel):
-    """Agents head for their goal and keep apart from where the others will be; alignment and cohesion can be added.
+    """Boids with a goal: agents separate from the predicted positions of others; alignment and cohesion are optional.
 
     Args:
         goal_gain: how fast the desired velocity is taken up [1/s], the inverse of a relaxation time.
@@ -258,7 +258,7 @@ class Boids(CrowdModel):
         cohesion: pull to the mean place of the flock [1/s^2].
         flock_distance: the flock are the neighbours nearer than this [m].
         neighbor_distance: neighbours are nearer than this [m].
-        max_neighbors: only so many of them count, the nearest; a fraction is rounded to the nearest whole number.
+        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
         max_acceleration: limit of the sum of all rules [m/s^2].
         zone_factor: the zone of separation of the ``crowdbot`` variant in own radii [1].
         zone_gain: its push per distance [1/s^2].
@@ -266,6 +266,9 @@ class Boids(CrowdModel):
         variant: ``predictive``, or ``crowdbot``, the law of the CrowdBot simulator's library: one push by the nearest
             body and one by the nearest wall, no prediction. It reads ``goal_gain``, ``zone_factor``, ``zone_gain`` and
             ``max_speed`` only, the other variant all but the zone.
+
+    The default variant is ``predictive``. Unlike the original, separation acts on predicted positions and an attraction
+    to the goal is added; alignment and cohesion are off.
 
     Source: Reynolds 1987, doi:10.1145/37401.37406; goal and prediction as in Wolinski et al. 2014,
     doi:10.1111/cgf.12328, whose constants are not public: ours keep 20 people who change places on a circle apart.

@@ -207,7 +207,7 @@ def _walk_part(
 
 @dataclass(frozen=True)
 class EscapePanic(CrowdModel):
-    """Agents are bodies that repel each other from afar, and press and rub when they touch, each other and walls.
+    """Social force model for panic: repulsion at a distance, body force and sliding friction in contact.
 
     Args:
         strength: of the repulsion at contact [N].
@@ -217,7 +217,7 @@ class EscapePanic(CrowdModel):
         mass: [kg].
         relaxation_time: time [s] in which the desired velocity is taken up again.
         neighbor_distance: neighbours and walls are nearer than this [m], walls measured from the body.
-        max_neighbors: only so many neighbours count, the nearest; a fraction is rounded to the nearest whole number.
+        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene, in ``crowdbot`` 2.5 m/s.
         longest_step: bodies are stiff, so that a longer time step is cut into equal parts [s], at most 1000.
         variant: ``textbook``, or ``crowdbot``, the law of the CrowdBot simulator's library: forces between agents grow
@@ -229,6 +229,9 @@ class EscapePanic(CrowdModel):
     in ``scene.memory["escape-panic"]`` [m/s] for the next step, 0 at first. Friction uses the velocity at the end
     of each part, which is the same law for short steps and cannot overshoot in long ones. A wall made of many segments
     pushes like one wall; who stands inside of a solid wall does not feel it.
+
+    The default variant is ``textbook``, the force of the paper. Differences: substeps, implicit friction, limited
+    neighbourhoods, and walls made of several segments that push once.
 
     Source: Helbing, Farkas, Vicsek 2000, doi:10.1038/35035023.
 

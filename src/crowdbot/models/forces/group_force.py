@@ -226,7 +226,7 @@ def _from_surfaces(
 
 @dataclass(frozen=True)
 class GroupForce(CrowdModel):
-    """Agents brake and turn aside for each other as measured in experiments, and groups keep together and in sight.
+    """Measured pair interactions (braking and turning) with group forces: gaze, cohesion and repulsion.
 
     Args:
         strength: of the force between two agents [m/s^2].
@@ -243,7 +243,7 @@ class GroupForce(CrowdModel):
         repulsion: push between members nearer than ``group_distance`` [m/s^2].
         group_distance: [m].
         neighbor_distance: neighbours and walls are nearer than this [m], walls measured from the body.
-        max_neighbors: only so many neighbours count, the nearest; a fraction is rounded to the nearest whole number.
+        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
         variant: ``moussaid``, or ``pysocialforce``, what version 1.1.2 of that package does. Then the angle between
             direction of interaction and neighbour is not brought to -pi..pi, everyone counts however far, the speed
@@ -253,6 +253,9 @@ class GroupForce(CrowdModel):
 
     Groups are the agents of one environment with the same number in ``scene.group``. There is no contact force: in
     crowds too dense to walk bodies overlap.
+
+    The default variant is ``moussaid``, the law of the papers. Strength, wall force and group distance are those of
+    PySocialForce 1.1.2.
 
     Source: Moussaïd et al. 2010 (groups), Moussaïd et al. 2009, doi:10.1098/rspb.2009.0405 (pairs); strength, walls and
     group distance as in PySocialForce 1.1.2.

@@ -156,7 +156,7 @@ def _choose_part(
 
 @dataclass(frozen=True)
 class PowerLaw(CrowdModel):
-    """Agents are pushed down the slope of an energy that depends only on the time to the next collision.
+    """Power law model: the force is the gradient of an interaction energy that depends only on the time to collision.
 
     Each pair has the energy ``strength t^-exponent exp(-t / time_horizon)``, t its time to collision if both keep
     their velocities; later collisions than ``time_horizon`` do not count. Walls are capsules as wide as the agent with
@@ -168,12 +168,15 @@ class PowerLaw(CrowdModel):
         time_horizon: time [s] over which the energy falls off.
         relaxation_time: time [s] in which the desired velocity is taken up again.
         neighbor_distance: neighbours are nearer than this [m].
-        max_neighbors: only so many of them count, the nearest; a fraction is rounded to the nearest whole number.
+        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
         max_acceleration: limit of the sum of all forces [m/s^2]; just before a grazing collision the law has none.
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
 
     Use steps of at most 0.05 s where exact paths matter; larger ones stay finite and bounded. Exactly head-on pairs
     slow each other down and do not pass: give goals or starts a small offset.
+
+    The default has the exponent of the paper. Differences: a limit of acceleration, a wall force from the same energy,
+    and a contact rule for overlapping bodies.
 
     Source: Karamouzas, Skinner, Guy 2014, doi:10.1103/PhysRevLett.113.238701; the force of walls is derived from the
     same energy. The UMANS library uses ``relaxation_time=0.5, neighbor_distance=5, max_acceleration=5``.

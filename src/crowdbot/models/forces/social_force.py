@@ -216,7 +216,7 @@ def _choose_part(
 
 @dataclass(frozen=True)
 class SocialForce(CrowdModel):
-    """Everyone is pulled towards the desired velocity and pushed away by the next stride of others, and by walls.
+    """Social force model: attraction to the desired velocity, elliptical repulsion by others, repulsion by walls.
 
     Args:
         strength: potential at the centre of another's ellipse [m^2/s^2].
@@ -228,14 +228,17 @@ class SocialForce(CrowdModel):
         view_angle: half angle of the field of view about the desired direction [rad].
         behind: weight of what is out of view.
         neighbor_distance: people and walls beyond do not count [m].
-        max_neighbors: only so many people count, the nearest; a fraction is rounded to the nearest whole number.
+        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
         max_acceleration: of the sum of all [m/s^2].
         variant: ``gradient``, the published force, or ``umans2018``, the answers of the UMANS library of that year
             (a derivative along the line between two; contact instead of force while two discs overlap).
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
 
-    The law has no radii: ``distance`` holds them. Segments that meet push both. A desired velocity of 0 looks along
-    the velocity.
+    The force does not depend on radii; ``distance`` accounts for them. Adjacent wall segments both repel. If the
+    desired velocity is 0, the field of view follows the velocity.
+
+    The default variant is ``gradient``, the force of the paper without its random fluctuations and attractions.
+    Differences: limited neighbourhoods and a limit of acceleration.
 
     Source: Helbing, Molnár 1995, doi:10.1103/PhysRevE.51.4282; van Toll et al. 2020, doi:10.1145/3384382.3384532.
 

@@ -178,7 +178,7 @@ def _choose_part(
 
 @dataclass(frozen=True)
 class AnticipationVelocity(CrowdModel):
-    """People foresee where others will be, turn gradually to the side that will be free, and keep a time gap ahead.
+    """Velocity-based model with anticipation: agents turn towards the side that will be free and keep a time gap ahead.
 
     Args:
         strength: of the influence of a neighbour, against 1 for the desired direction.
@@ -190,12 +190,15 @@ class AnticipationVelocity(CrowdModel):
             the way bends off the wall.
         pushout: there, how much of the direction leads away from the wall.
         neighbor_distance: neighbours and walls are no farther than this [m], and not hidden by a wall.
-        max_neighbors: only so many of them count, the nearest; a fraction is rounded to the nearest whole number.
+        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
 
     The heading is a state of its own (``Scene.heading``) and turns even in those who stand; :meth:`step` writes it.
-    With ``rng``, who is slowed down below 0.01 m/s shuffles forward, backward or not at all, and who meets somebody
-    exactly head on takes a random side; without, nobody shuffles, and all pass on the right.
+    With ``rng``, agents slower than 0.01 m/s shuffle forward, backward or not at all, and agents that meet
+    exactly head on choose a random side. Without it, agents do not shuffle and pass on the right.
+
+    The default follows the implementation in JuPedSim 1.4.2, including its parameters and its wall buffer. Without
+    ``rng`` the model is deterministic.
 
     Source: Xu, Chraibi, Seyfried 2021, doi:10.1016/j.trc.2021.103464, as in JuPedSim 1.4.2.
 

@@ -145,7 +145,7 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Fl
 
 @dataclass(frozen=True)
 class CollisionFreeSpeed(CrowdModel):
-    """People turn away from those near them and walk so fast that they would reach the next one ahead after a time gap.
+    """First-order model: neighbours and walls deflect the direction; the gap ahead and a time gap limit the speed.
 
     Args:
         strength: of the repulsion between people, against 1 for the desired direction.
@@ -154,11 +154,14 @@ class CollisionFreeSpeed(CrowdModel):
         wall_range: over which it falls to 1/e [m].
         time_gap: time to the next one ahead at the chosen speed [s].
         neighbor_distance: neighbours and walls are no farther than this [m], and not hidden by a wall.
-        max_neighbors: only so many of them count, the nearest; a fraction is rounded to the nearest whole number.
+        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
 
-    A model of the first order: no inertia, directions and speeds may jump, and nobody walks backwards. Speeds never
-    lead to contact with whom is straight ahead, but walls only turn the direction.
+    The model has no inertia: direction and speed may jump, and agents never walk backwards. The speed avoids contact
+    with the agent straight ahead; walls change only the direction.
+
+    The default follows version 2 of the model in JuPedSim 1.4.2. Neighbourhoods are
+    limited by distance and by number.
 
     Source: Tordeux, Chraibi, Seyfried 2016, doi:10.1007/978-3-319-33482-0_29, as version 2 of JuPedSim 1.4.2.
 

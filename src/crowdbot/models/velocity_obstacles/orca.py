@@ -91,11 +91,11 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, edges: Ed
 
 @dataclass(frozen=True)
 class ORCA(CrowdModel):
-    """Agents share the least change of velocity that keeps them clear of each other for a while, and give way to walls.
+    """Optimal reciprocal collision avoidance: each pair shares the smallest velocity change that avoids a collision.
 
     Args:
         neighbor_distance: neighbours are nearer than this [m].
-        max_neighbors: only so many of them count, the nearest; a fraction is rounded to the nearest whole number.
+        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
         time_horizon: agents keep clear of each other for this long [s].
         time_horizon_walls: and of walls for this long [s].
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
@@ -103,6 +103,9 @@ class ORCA(CrowdModel):
     External agents do not give way, so that the others take the whole change. A velocity on the right side of all lines
     that is nearest to the desired one is chosen; when there is none, the deepest violation becomes as small as possible
     (walls never give way). Velocities may jump: real robots need a limit of acceleration after it.
+
+    The default reproduces the RVO2 library. Differences: external agents take no share of the avoidance, and
+    overlapping walls and degenerate scenes give bounded velocities.
 
     Source: van den Berg, Guy, Lin, Manocha 2011, doi:10.1007/978-3-642-19457-3_1, as in the RVO2 library.
 

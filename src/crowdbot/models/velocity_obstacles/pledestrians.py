@@ -128,13 +128,13 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, edges: Ed
 
 @dataclass(frozen=True)
 class PLEdestrians(CrowdModel):
-    """People spend the least energy on the way to the goal among the velocities that ORCA permits.
+    """Least-effort model: agents minimise the energy to the goal among the velocities that ORCA permits.
 
     Args:
         planning_time: effort is counted at the new velocity for this long [s], and at the preferred speed on the
             straight way that is left then; the plan ends at the goal at the latest.
         neighbor_distance: neighbours are nearer than this [m].
-        max_neighbors: only so many of them count, the nearest; a fraction is rounded to the nearest whole number.
+        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
         time_horizon: agents keep clear of each other for this long [s].
         time_horizon_walls: and of walls for this long [s].
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
@@ -145,6 +145,9 @@ class PLEdestrians(CrowdModel):
     J/(kg s) and 1.26 J s/(kg m^2) give 1.33 m/s). E is convex, and so are the permitted velocities: what is chosen is
     the true minimum. Against ORCA, who is hindered near the goal rather slows down than turns. Scenes with preferred
     velocities in place of goals have goals infinitely far away, and there both models agree.
+
+    The default follows the paper. Differences: the minimum is exact, and the preferred speed of the scene
+    replaces the ratio of the energy coefficients.
 
     Source: Guy, Chhugani, Curtis, Dubey, Lin, Manocha 2010, doi:10.2312/SCA/SCA10/119-128.
 

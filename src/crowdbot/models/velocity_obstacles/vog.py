@@ -281,7 +281,7 @@ def _slow_down(x: float, y: float, vx: float, vy: float, top: float, calm: float
 
 @dataclass(frozen=True)
 class VOG(CrowdModel):
-    """People choose the best of some sampled velocities: out of the way of others, near their group, along their way.
+    """Velocity obstacles with groups: agents choose the best sampled velocity for avoidance, group and goal.
 
     The cost of a velocity is its depth in the worst velocity obstacle of neighbours and walls, plus the mean violation
     of the constraints to stay with the fellows of the own group (and abreast of them), plus what it lacks to the
@@ -290,7 +290,7 @@ class VOG(CrowdModel):
 
     Args:
         neighbor_distance: neighbours are nearer than this [m].
-        max_neighbors: only so many of them count, the nearest.
+        max_neighbors: maximum number of neighbours, the nearest first.
         time_horizon: no contact with them before this [s].
         wall_horizon: walls are not touched before this [s].
         preference_weight: of the desired velocity.
@@ -305,6 +305,8 @@ class VOG(CrowdModel):
 
     External agents do not give way. Walls are our own law: a velocity that would touch one within the horizon costs the
     speed that is too much. Use :meth:`step`; velocities alone do not remember.
+
+    The default follows the implementation in the CrowdBot simulator; the cost of walls is our own.
 
     Source: Ren, Charalambous, Bruneau, Peng, Pettré 2017, doi:10.1111/cgf.12993, as in the CrowdBot simulator.
 

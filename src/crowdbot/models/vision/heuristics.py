@@ -208,8 +208,7 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Fl
 
 @dataclass(frozen=True)
 class Heuristics(CrowdModel):
-    """Two rules: walk in the direction that leads most directly to the goal in view of what is in the way, and so fast
-    that there is always the same time left to stop.
+    """Two heuristics: the direction that leads closest to the goal, and a speed that leaves a fixed time to stop.
 
     Args:
         field_of_view: directions up to this angle [rad] to each side of the desired one are looked at.
@@ -219,7 +218,7 @@ class Heuristics(CrowdModel):
         contact_stiffness: acceleration per metre of overlap between bodies, and with walls [1/s^2]; it is not taken
             higher than what ends the overlap in one time step.
         neighbor_distance: neighbours are nearer than this [m].
-        max_neighbors: only so many of them count, the nearest; a fraction is rounded to the nearest whole number.
+        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
 
     In direction a, the free way f(a) is what one can walk at the desired speed before touching a wall, or somebody who
@@ -227,6 +226,9 @@ class Heuristics(CrowdModel):
     the desired direction (equal ones: on the side of the present velocity, else on the right), then the speed
     min(desired, free way as all stand now / relaxation time). Chosen here: the field of view is about the desired
     direction, and who touches somebody is hindered only from going nearer.
+
+    The default follows the paper. Differences: the field of view is centred on the desired direction, and agents in
+    contact are blocked only in the direction of contact.
 
     Source: Moussaid, Helbing, Theraulaz 2011, doi:10.1073/pnas.1016507108.
 

@@ -135,7 +135,7 @@ def _change_velocity(
 
 @dataclass(frozen=True)
 class Tangent(CrowdModel):
-    """Walkers who see that they will come too close to another change their velocity as little as passes the other.
+    """Vision-based model: agents that would pass too close choose the smallest velocity change that avoids it.
 
     Velocities that only just pass a neighbour lie on two tangents in velocity space. Who would arrive second at the
     crossing gives way early and passes behind; the first reacts only shortly before contact. Who meets nearly head on,
@@ -151,13 +151,16 @@ class Tangent(CrowdModel):
         time_horizon: no reaction earlier than this before contact [s].
         wall_horizon: walls are not touched before this [s].
         neighbor_distance: neighbours are nearer than this [m].
-        max_neighbors: only so many of them count, the nearest.
+        max_neighbors: maximum number of neighbours, the nearest first.
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
 
     The comfort speed is the preferred speed of the scene, or the length of the preferred velocity. The paper's own law
     of errors is not reproduced: the time of reaction and how much who gives way brakes are fitted to the behaviour of
     the implementation in the CrowdBot simulator. Walls are our own law: towards a wall that would be touched within the
     horizon a walker goes no faster than it takes to reach it just then.
+
+    The default has the geometry of the paper. The reaction time and the braking are fitted to the implementation in the
+    CrowdBot simulator; the paper's law of perception errors is not reproduced.
 
     Source: Pettré, Ondřej, Olivier, Cretual, Donikian 2009, doi:10.1145/1599470.1599495.
 

@@ -294,7 +294,7 @@ def _choose_part(
 
 @dataclass(frozen=True)
 class VBM(CrowdModel):
-    """Agents look at how soon and how near everything in view will pass, and turn and change speed down that slope.
+    """Vision-based model: agents follow the gradient of a cost over time and distance of closest approach.
 
     The cost of a thing in view that comes closest in t [s] at distance c [m] is exp(-((t / time_scale)^2 +
     (c / distance_scale)^2) / 2). Direction and speed go down the mean of it over what is in view (150 degrees), plus a
@@ -304,7 +304,7 @@ class VBM(CrowdModel):
 
     Args:
         neighbor_distance: agents are seen nearer than this [m].
-        max_neighbors: only so many of them are seen, the nearest.
+        max_neighbors: maximum number of visible agents, the nearest first.
         wall_distance: walls are seen nearer than this [m].
         time_scale: spread of the cost over the time of closest approach [s].
         distance_scale: spread of the cost over the distance of closest approach [m].
@@ -322,6 +322,8 @@ class VBM(CrowdModel):
         rays: of the field of view of ``crowdbot``.
 
     With ``rng`` the push aside varies by a quarter; without, it has its mean.
+
+    The default variant ``agents`` replaces the image of the paper by the angle of each agent, without occlusion.
 
     Source: Dutra, Marques, Cavalcante-Neto, Vidal, Pettré 2017, doi:10.1111/cgf.13130; ``crowdbot`` is the version of
     the CrowdBot simulator.
