@@ -56,7 +56,7 @@ def test_weights_are_learned_resumed_and_scored(
              "--check-every", "2", "--set", *TINY]  # fmt: skip
     status, _, err = said([*words, "--updates", "2"], capsys)
     assert status == 0
-    assert "warning: street.txt lasts 24 s; learning asks for recordings of more than 3 minutes" in err
+    assert "warning: street.txt has 24 s; more than 3 minutes are recommended for training" in err
     assert "update 2" in err
     status, _, err = said([*words, "--updates", "4"], capsys)
     assert (status, "holds a training already: go on with --resume" in err) == (2, True)

@@ -103,4 +103,4 @@ def test_what_does_not_fit_together_is_said(files: dict[str, Recording], recordi
     with pytest.raises(InputError, match="there is no recording"):
         Samples.of([])
     assert short_recordings([fine]) == []
-    assert "s; learning asks for recordings of more than 3 minutes" in short_recordings([corridor])[0]
+    assert "s; more than 3 minutes are recommended for training" in short_recordings([corridor])[0]
