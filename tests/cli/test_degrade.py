@@ -161,7 +161,7 @@ def test_degradations_are_listed(capsys):
         (["--by", "gaussian-noise", "--set", "sd"], ("NAME=VALUE",)),
         (["--by", "gaussian-noise", "late-start", "--levels", "1"], ("--levels belong to one degradation, not to 2",)),
         (["--by", "gaussian-noise", "--predictor", "kalmann"], ("did you mean 'kalman'?",)),
-        (["--by", "gaussian-noise", "--predictor", "kalman", "--model", "orca"], ("--model is for predictors that",)),
+        (["--by", "gaussian-noise", "--predictor", "kalman", "--model", "orca"], ("--model requires the predictor simulated",)),
         (["--by", "gaussian-noise", "--protocol", "sgam"], ("did you mean 'sgan'?",)),
         (["--by", "gaussian-noise", "--observe", "40"], ("small.txt: no window of 40 observed",)),
         (["--by", "gaussian-noise", "--draws", "0"], ("draws = 0",)),

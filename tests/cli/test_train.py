@@ -111,7 +111,7 @@ def test_weights_that_do_not_fit_are_said_and_a_baseline_answers(
         (["anchor-net", "--set", "hiden=3"], "has no attribute 'hiden'"),
         (["anchor-net", "--device", "cuda"], "is asked for, but torch sees 0 CUDA devices"),
         (["social-ways", "--device", "cuda:99"], "is asked for, but torch sees"),
-        (["social-ways", "--updates", "1", "--epochs", "1"], "either a number of updates or"),
+        (["social-ways", "--updates", "1", "--epochs", "1"], "either updates or epochs"),
         (["social-ways", "--leave-out", "nowhere"], "no recording is called 'nowhere'"),
         (["social-ways", "--set", "hiden=3"], "has no attribute 'hiden', did you mean 'hidden'"),
         (["social-ways", "--settings", "vareity"], "unknown preset 'vareity', did you mean 'variety'"),

@@ -295,7 +295,7 @@ def test_only_the_past_is_handed_over(recorded: Recorded) -> None:
 
 def test_windows_of_different_people_are_refused(recorded: Recorded) -> None:
     past, future = recorded("biwi_eth").windows(observe=8, predict=12)
-    with pytest.raises(InputError, match="past and future are not windows of the same people"):
+    with pytest.raises(InputError, match="past and future have different people"):
         evaluate(ConstantVelocity(), past[1:], future)
     with pytest.raises(InputError, match="biwi_eth.* has no windows"):
         evaluate(ConstantVelocity(), past[:0], future[:0])

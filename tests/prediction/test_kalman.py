@@ -191,7 +191,7 @@ def test_impossible_parameters_and_empty_training_data_are_refused(windows: Make
         Kalman(measurement=0)
     with pytest.raises(InputError, match="kalman-acceleration: jerk = inf must be finite and above 0"):
         KalmanAcceleration(jerk=math.inf)
-    with pytest.raises(InputError, match="at least one person who is seen at two rows"):
+    with pytest.raises(InputError, match="at least one person who is observed at two rows"):
         Kalman.fit(windows(np.zeros((2, 1, 3, 2))))
-    with pytest.raises(InputError, match="at least one person who is seen at two rows"):
+    with pytest.raises(InputError, match="at least one person who is observed at two rows"):
         Kalman.fit()

@@ -371,7 +371,7 @@ def test_a_robot_with_a_plan_walks_it(social: SocialWays, crowd: Maker) -> None:
 def test_what_does_not_fit_is_said(social: SocialWays, checkpoint: str, crowd: Maker, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="requires time steps of 0.4 s, made has 0.1 s; resample with --step 0.4"):
         social.predict(dataclasses.replace(crowd(), dt=0.1), 3)
-    with pytest.raises(InputError, match="has learned tracks in m, made is in px"):
+    with pytest.raises(InputError, match="requires tracks in m, made is in px"):
         social.predict(dataclasses.replace(crowd(), units="px"), 3)
     with pytest.raises(InputError, match="cannot be read .No such file or directory.; give a file of crowdbot train"):
         SocialWays(str(tmp_path / "none.npz"))

@@ -163,7 +163,7 @@ def test_a_training_that_began_before_a_setting_was_known_goes_on(tmp_path: Path
 
 
 def test_wrong_schedules_and_losses_are_said() -> None:
-    with pytest.raises(InputError, match="either a number of updates or"):
+    with pytest.raises(InputError, match="either updates or epochs"):
         TrainingSchedule()
     with pytest.raises(InputError, match="check every = 0 must be at least 1"):
         TrainingSchedule(updates=1, check_every=0)
