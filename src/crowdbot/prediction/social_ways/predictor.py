@@ -150,8 +150,8 @@ class SocialWays(LearnedPredictor):
 
     With the setting ``frame = person``, forecasts are equivariant to translations and rotations, up to float32 (about
     1e-5 m), but not to reflections. With ``world``, they are valid for the place of the training data only. Missing
-    rows are filled in; people observed once have a constant position. Windows are predicted one by one: forecasts do not
-    depend on the batch, bit for bit.
+    rows are filled in; people observed once have a constant position. Windows are predicted one by one: forecasts do
+    not depend on the batch, bit for bit.
 
     Robots with a plan follow it, and the network reads it. With walls, each draw is the best of three (fewest wall
     crossings), and paths that still cross a wall stop there. If the shipped weights cannot be used (other time steps
