@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crowdbot.benchmark import DegradedTask, plot_degraded, sweep_degradations
+from crowdbot.benchmark import DegradedTask, plot_degradation, sweep_degradations
 from crowdbot.benchmark.prediction.degraded_plot import _figure
 from crowdbot.data import Trajectories
 from crowdbot.data.degrade import GaussianNoise, MissingFrames
@@ -51,7 +51,7 @@ def test_the_same_scores_give_the_same_files(sweeps, tmp_path):
     for name in ("one", "two"):
         folder = tmp_path / name
         folder.mkdir()
-        files = plot_degraded(sweeps, folder, "two people")
+        files = plot_degradation(sweeps, folder, "two people")
         assert [file.name for file in files] == ["degraded.png", "degraded.svg"]
         assert sorted(folder.iterdir()) == files
         kept.append([file.read_bytes() for file in files])

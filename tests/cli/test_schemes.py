@@ -115,7 +115,7 @@ def plaza(tmp_path):
 @pytest.mark.parametrize("workers", ["1", "2"])
 def test_a_stopped_run_goes_on_where_it_was(plaza, tmp_path, workers):
     words = ["predict", "--data", plaza, "--fps", "25", "--predictor", "simulated", "--cost", "progressive"]
-    words += ["--budget", "3000", "--workers", workers]
+    words += ["--budget", "300", "--workers", workers]
     program = [sys.executable, "-m", "crowdbot", *words, "--set", "substep=0.4", "--out", str(tmp_path)]
     running = subprocess.Popen(
         program,

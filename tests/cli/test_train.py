@@ -56,7 +56,7 @@ def test_weights_are_learned_resumed_and_scored(
              "--check-every", "2", "--set", *TINY]  # fmt: skip
     status, _, err = said([*words, "--updates", "2"], capsys)
     assert status == 0
-    assert "warning: street.txt lasts 24 s; learning asks for recordings of more than 3 minutes" in err
+    assert "warning: street.txt has 24 s; more than 3 minutes are recommended for training" in err
     assert "update 2" in err
     status, _, err = said([*words, "--updates", "4"], capsys)
     assert (status, "holds a training already: go on with --resume" in err) == (2, True)
@@ -111,7 +111,7 @@ def test_weights_that_do_not_fit_are_said_and_a_baseline_answers(
         (["anchor-net", "--set", "hiden=3"], "has no attribute 'hiden'"),
         (["anchor-net", "--device", "cuda"], "is asked for, but torch sees 0 CUDA devices"),
         (["social-ways", "--device", "cuda:99"], "is asked for, but torch sees"),
-        (["social-ways", "--updates", "1", "--epochs", "1"], "either a number of updates or"),
+        (["social-ways", "--updates", "1", "--epochs", "1"], "either updates or epochs"),
         (["social-ways", "--leave-out", "nowhere"], "no recording is called 'nowhere'"),
         (["social-ways", "--set", "hiden=3"], "has no attribute 'hiden', did you mean 'hidden'"),
         (["social-ways", "--settings", "vareity"], "unknown preset 'vareity', did you mean 'variety'"),

@@ -21,7 +21,7 @@ _MODULES = {
         "Evaluation",
         "DegradedTask",
         "animate_window",
-        "plot_degraded",
+        "plot_degradation",
         "evaluate",
         "plot_errors",
         "plot_frames",
@@ -60,7 +60,7 @@ if TYPE_CHECKING:
     from .prediction import PredictorResult as PredictorResult
     from .prediction import animate_window as animate_window
     from .prediction import evaluate as evaluate
-    from .prediction import plot_degraded as plot_degraded
+    from .prediction import plot_degradation as plot_degradation
     from .prediction import plot_errors as plot_errors
     from .prediction import plot_frames as plot_frames
     from .prediction import sweep_degradations as sweep_degradations

@@ -230,9 +230,9 @@ def _keep(
         os.replace(draft, file)
         if not plot:
             return [file]
-        from crowdbot.benchmark import plot_degraded
+        from crowdbot.benchmark import plot_degradation
 
-        return [file, *plot_degraded(list(done.values()), options.out, _title(options, task))]
+        return [file, *plot_degradation(list(done.values()), options.out, _title(options, task))]
     except OSError as error:
         raise InputError(f"--out {options.out} cannot be written: {error.strerror or error}") from None
 

@@ -90,7 +90,7 @@ def _resume_hint(evaluation: Evaluation, keep: Path | None) -> str:
     """Return what an interrupted run has stored and how to resume it."""
     if keep is None:
         return "nothing is stored; add --out DIR to make a run that can be resumed"
-    stored, total = evaluation.count_stored(keep), len(evaluation.jobs())
+    stored, total = evaluation.progress(keep), len(evaluation.jobs())
     return f"{stored} of {total} jobs are stored in {keep}; run the same command again to resume"
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = [
     "add_scheme",
     "assignments",
-    "chosen",
+    "build_predictor",
     "crowd_model",
     "frame_line",
     "named_search",
@@ -84,7 +84,9 @@ def predictor_specs(options: argparse.Namespace) -> tuple[PredictorSpec, ...]:
             used = True
             found += _schemes(options, values)
         else:
-            found.append(prediction.PredictorSpec(chosen(name, None, values if len(options.predictor) == 1 else {})))
+            found.append(
+                prediction.PredictorSpec(build_predictor(name, None, values if len(options.predictor) == 1 else {}))
+            )
     given = next((part for part in SCHEME if getattr(options, part)), None)
     if given is not None and not used:
         raise InputError(f"--{given} requires the predictor simulated, not {', '.join(options.predictor)}")
@@ -113,11 +115,11 @@ def _schemes(options: argparse.Namespace, values: Mapping[str, str]) -> list[Pre
     for model, cost, search, goal in itertools.product(*parts):
         calibrated = cost is not None or search is not None
         fields = {"cost": cost, "search": named_search(search, options), **(own if calibrated else {})}
-        predictor = chosen("simulated", model, values, fields)
+        predictor = build_predictor("simulated", model, values, fields)
         kind = goal_class(goal or "current-direction")
         late = kind.knows_future or kind.learns
         if goal is not None and not late:
-            predictor = chosen("simulated", model, values, {**fields, "goal": goal})
+            predictor = build_predictor("simulated", model, values, {**fields, "goal": goal})
         made.append(PredictorSpec(predictor, goal if late else None, learns, options.shared))
     return made
 
@@ -152,7 +154,7 @@ def assignments(words: list[str]) -> dict[str, str]:
     return {name: value for name, _, value in (word.partition("=") for word in words)}
 
 
-def chosen(
+def build_predictor(
     name: str, model: str | None, values: Mapping[str, str], fields: Mapping[str, Any] | None = None
 ) -> Predictor:
     """Return a predictor by name; parameters that it does not have go to its crowd model."""

@@ -50,6 +50,7 @@ def degraded_windows(past: Windows, future: Windows, degraded: DegradedTracks, c
         degraded: the degraded recording.
         carry: maximum number of extrapolated rows.
 
+    >>> from crowdbot.data import Trajectories
     >>> from crowdbot.data.degrade import LateStart
     >>> tracks = Trajectories([7] * 4, range(4), range(4), [0.0] * 4, row_rate=2.5)
     >>> clean = tracks.windows(observe=2, predict=2)

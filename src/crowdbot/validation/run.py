@@ -1,4 +1,4 @@
-"""Run: every check with every model, one file of results a model, so that a rerun goes on where the last one ended."""
+"""Runner of all checks with all models; results are stored in one file per model, and runs can be resumed."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ CHECKS: tuple[Check, ...] = (
 """In the order of the page."""
 
 LEFT_OUT = {
-    "cost-model": "composes models from costs; as it comes it takes the steps of orca, weighed by NumPy, which needs"
-    " two more minutes; --models cost-model runs it",
+    "cost-model": "skipped by default: its default configuration reproduces orca, in slower NumPy code (add"
+    " `--models cost-model` to include it)",
 }
-"""Models that are run only when they are named, and why."""
+"""Models that are skipped by default, and why."""
 
 Progress = Callable[[str, float], None]
 
@@ -63,7 +63,7 @@ class CheckOutcome:
 
 @dataclass(frozen=True)
 class Validation:
-    """Everything that the page tells.
+    """Results of all checks.
 
     Fields:
         outcomes: by model and check.
@@ -112,11 +112,9 @@ def select_models(names: Sequence[str] = ()) -> tuple[dict[str, CrowdModel], dic
             if field.init and field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
         ]
         if needed and names:
-            raise InputError(
-                f"{name} has no default for {', '.join(needed)}, so that it cannot be validated as it comes"
-            )
+            raise InputError(f"{name} has no default for {', '.join(needed)}, it cannot be validated")
         if needed:
-            skipped[name] = f"has no default for {', '.join(needed)}: it is made of other models"
+            skipped[name] = f"has no default for {', '.join(needed)}: it combines other models"
         elif name in LEFT_OUT and not names:
             skipped[name] = LEFT_OUT[name]
         else:

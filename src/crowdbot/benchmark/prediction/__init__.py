@@ -1,7 +1,7 @@
 """Evaluation of predictors on recordings, clean and degraded, and its plots."""
 
 from .degraded import DegradedScore, DegradedTask, sweep_degradations
-from .degraded_plot import plot_degraded
+from .degraded_plot import plot_degradation
 from .evaluation import Evaluation, EvaluationJob, FrameResults, JobResult, PredictorResult
 from .plots import animate_window, plot_errors, plot_frames
 from .predictor_score import evaluate
@@ -16,7 +16,7 @@ __all__ = [
     "PredictorResult",
     "animate_window",
     "evaluate",
-    "plot_degraded",
+    "plot_degradation",
     "plot_errors",
     "plot_frames",
     "sweep_degradations",

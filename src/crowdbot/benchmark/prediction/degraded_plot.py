@@ -11,7 +11,7 @@ from typing import Any
 
 from .degraded import DegradedScore
 
-__all__ = ["plot_degraded"]
+__all__ = ["plot_degradation"]
 
 COLUMNS = 4
 STYLES = (
@@ -26,7 +26,7 @@ SMALLEST = 1e-6
 """Errors below this are none, nothing is measured against them."""
 
 
-def plot_degraded(sweeps: Sequence[Sequence[DegradedScore]], folder: Path, title: str = "") -> list[Path]:
+def plot_degradation(sweeps: Sequence[Sequence[DegradedScore]], folder: Path, title: str = "") -> list[Path]:
     """Write ``degraded.png`` and ``degraded.svg`` and return them; nothing is left half-written.
 
     Each picture has the error (ADE) of every predictor over the level, the band from the lowest to the highest draw,

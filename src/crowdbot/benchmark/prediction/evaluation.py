@@ -204,7 +204,7 @@ class Evaluation:
         for number, part in each_kept(run_job, jobs, files, JobResult.save, JobResult.load, workers, cluster):
             yield jobs[number], part
 
-    def count_stored(self, keep: Path) -> int:
+    def progress(self, keep: Path) -> int:
         """Return the number of jobs whose results are stored in a folder."""
         return sum(file.exists() for file in self._files(keep))
 

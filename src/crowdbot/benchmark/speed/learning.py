@@ -24,7 +24,7 @@ from crowdbot.prediction import (
 
 from .measurement import Gauge, Measurement
 
-__all__ = ["learning"]
+__all__ = ["learning_measurements"]
 
 UPDATES = 4
 SIZES = (1, 1, 2, 2, 3, 3, 4, 5, 8, 20, 35)
@@ -34,10 +34,10 @@ MEMORY = 2000.0
 PEOPLE = 50
 
 
-def learning() -> dict[str, Callable[[], Measurement | Gauge]]:
+def learning_measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
     """Return name -> how to set the measurement up.
 
-    >>> "learn-anchor-net" in learning()
+    >>> "learn-anchor-net" in learning_measurements()
     True
     """
     found: dict[str, Callable[[], Measurement | Gauge]] = {}
@@ -124,8 +124,8 @@ def _memory() -> Gauge:
     synthetic_samples(1)
     program = (
         "import re, resource, sys; from pathlib import Path;"
-        "from crowdbot.benchmark.speed.learning import made_samples, untrained, _updates\n"
-        "_updates(untrained('social-ways', made_samples()), 12)\n"
+        "from crowdbot.benchmark.speed.learning import synthetic_samples, untrained, _updates\n"
+        "_updates(untrained('social-ways', synthetic_samples()), 12)\n"
         "status = Path('/proc/self/status')\n"  # getrusage would count the parent's memory at the fork
         "if status.exists(): print(int(re.search(r'VmHWM:\\s+(\\d+)', status.read_text())[1]) / 2**10)\n"
         "peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"

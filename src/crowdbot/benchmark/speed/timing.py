@@ -21,7 +21,7 @@ import numpy as np
 from crowdbot.core import InputError, MissingExtra, UnknownName
 
 from .calibrated_frames import scheme_frames
-from .learning import learning
+from .learning import learning_measurements
 from .measurement import Gauge, Measurement
 from .workloads import measurements
 
@@ -61,7 +61,7 @@ def measure(
         raise InputError(f"repeats {repeats} is below 1")
     known = (
         measurements()
-        | learning()
+        | learning_measurements()
         | {f"scheme-frame{'-warm' * warm}": functools.partial(scheme_frames, warm, recording) for warm in (False, True)}
     )
     unknown = next((name for name in names if name not in known), None)

@@ -1,4 +1,4 @@
-"""Frames: tracks as everyone sees their own, and what is needed to turn predictions back."""
+"""Tracks in the frame of each agent, and the transformation back to the world."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 MOVED = 0.1
-"""Somebody who moved less than this [m] over some rows has no heading there; more rows are then looked at."""
+"""Minimum displacement for a heading [m]; below it, more rows are used."""
 SPANS = (2, 4)
-"""Displacements that the heading is taken from, before all of them."""
+"""Numbers of displacements for the heading, tried in this order before all rows."""
 
 
 @dataclass(frozen=True)
 class AgentFrames:
-    """Tracks of S scenes in frames of their own.
+    """Tracks of S scenes in agent frames.
 
     Fields:
         local: ``[S, T, A, 2]`` [m] positions in the frame of each person.
-        origin: ``[S, A, 2]`` [m] where these frames stand, from ``centre``.
+        origin: ``[S, A, 2]`` [m] origins of the frames, relative to ``centre``.
         turn: ``[S, A, 2]`` cosine and sine of their headings.
-        centre: ``[S, 1, 2]`` [m] a point amid the people, so that numbers stay small.
+        centre: ``[S, 1, 2]`` [m] mean position of the people, for precision.
     """
 
     local: Floats

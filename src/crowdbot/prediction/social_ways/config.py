@@ -1,4 +1,4 @@
-"""The settings of Social Ways: every option of the report, and what this code adds, in one frozen value."""
+"""Settings of Social Ways: the options of the report and additional ones."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FRAMES = ("person", "world")
 
 @dataclass(frozen=True)
 class SocialWaysConfig:
-    """What is trained, and how. The defaults are those of the report (its table 2 and section 2.2.8).
+    """Settings of the network and its training; the defaults are those of the report (table 2, section 2.2.8).
 
     Fields of table 2:
         unrolling_steps: steps of the discriminator ahead of each step of the generator; 0 is the plain GAN.

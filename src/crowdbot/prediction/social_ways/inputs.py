@@ -1,4 +1,4 @@
-"""From tracks in metres to what the network of Social Ways sees, and the scales that lie between."""
+"""Inputs of the Social Ways network from tracks in metres, and their normalization."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ __all__ = ["Normalization", "scene_input", "states_of"]
 Floats = NDArray[np.float64]
 
 MOST = 2000
-"""So many scenes, evenly over all of them, say what the scales are."""
+"""Maximum number of scenes for the normalization."""
 LEAST = 1e-3
-"""No scale is below this: people who never move would ask for 0."""
+"""Minimum scale, for people who never move."""
 
 
 @dataclass(frozen=True)
 class Normalization:
-    """Normalisation, from training data alone.
+    """Normalization, computed from the training data.
 
     Fields:
         position, velocity, distance: root mean squares: of observed positions in their frames [m], of velocities

@@ -43,7 +43,7 @@ class SceneInput(NamedTuple):
     velocity: Tensor
     place: Tensor
 
-    def drawn(self, draws: int) -> SceneInput:
+    def repeat(self, draws: int) -> SceneInput:
         """Return every scene ``draws`` times: all scenes, then all scenes again."""
         return SceneInput(*(one.repeat(draws, *(1,) * (one.dim() - 1)) for one in self))
 
@@ -78,9 +78,9 @@ class Generator(nn.Module):
             plan: ``[B, T, A, 2]`` [m] where some are known to be, in the own frames; NaN for everyone else.
         """
         draws, scenes, people, _ = noise.shape
-        hidden = self.encoded(sight.state)  # h, c: [B * A, H]
+        hidden = self.encode(sight.state)  # h, c: [B * A, H]
         hidden = (hidden[0].repeat(draws, 1), hidden[1].repeat(draws, 1))  # [K * B * A, H]
-        seen = sight.drawn(draws)  # [K * B, ...]
+        seen = sight.repeat(draws)  # [K * B, ...]
         rows = noise.reshape(draws * scenes * people, -1)  # [K * B * A, M]
         if self.config.code_levels > 0:
             codes, rest = rows[:, : self.config.latent_codes], rows[:, self.config.latent_codes :]
@@ -92,7 +92,7 @@ class Generator(nn.Module):
         place, velocity = seen.place, seen.velocity  # [K * B, A, 2]
         places, states = [], []
         for step in range(steps):
-            pooled = self.pooled(hidden[0], place, velocity, seen)  # [K * B * A, P]
+            pooled = self.pool(hidden[0], place, velocity, seen)  # [K * B * A, P]
             spoken = self.decoder(torch.cat([hidden[0], pooled, rows], dim=1), spoken)
             said = self.say(spoken[0]).view(-1, people, 2) * self.scales[1]  # [K * B, A, 2] m/s
             velocity = seen.velocity + said if self.config.residual else said.float()
@@ -110,7 +110,7 @@ class Generator(nn.Module):
         shape = (draws, scenes, people)
         return tuple(torch.stack(x, dim=1).view(*shape[:2], steps, people, -1) for x in (places, states))  # type: ignore[return-value]
 
-    def encoded(self, state: Tensor) -> tuple[Tensor, Tensor]:
+    def encode(self, state: Tensor) -> tuple[Tensor, Tensor]:
         """Return hidden and cell vectors ``[B * A, H]`` after the observed states ``[B, T, A, 4]``."""
         embedded = self.embed(state).permute(1, 0, 2, 3).flatten(1, 2)  # [T, B * A, H]
         hidden = (torch.zeros_like(embedded[0]), torch.zeros_like(embedded[0]))
@@ -118,7 +118,7 @@ class Generator(nn.Module):
             hidden = self.encoder(row, hidden)
         return hidden
 
-    def pooled(self, hidden: Tensor, place: Tensor, velocity: Tensor, sight: SceneInput) -> Tensor:
+    def pool(self, hidden: Tensor, place: Tensor, velocity: Tensor, sight: SceneInput) -> Tensor:
         """Return what the neighbors mean to everyone ``[B * A, P]``; 0 for who has none.
 
         Args:

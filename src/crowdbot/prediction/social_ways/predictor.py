@@ -1,4 +1,4 @@
-"""Social Ways in use: ``predict(obsv_p, noise, n_next)`` of the report, and a predictor like all others."""
+"""SocialWays: the predictor, and the function ``predict(obsv_p, noise, n_next)`` of the report."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ Floats = NDArray[np.float64]
 
 KIND = "social-ways"
 TRIES = 3
-"""Where there are walls, each draw is the best of so many."""
+"""Number of tries per draw when there are walls."""
 CONTACT = 0.25
-"""People of one draw keep so far apart [m]: attention alone lets more of them collide than constant velocity does."""
+"""Default minimum distance between people of a draw [m]; attention alone does not avoid collisions."""
 AT_ONCE = 4096
-"""So many tracks (people times draws) go through the network together."""
+"""Number of tracks (people times draws) per network evaluation."""
 
 
 @dataclass(frozen=True)
@@ -45,11 +45,11 @@ class SocialWaysNetwork:
     """A trained network of Social Ways.
 
     Fields:
-        config: its settings.
-        generator: with its weights.
-        scales: normalisation, from its training data.
-        facts: what else the checkpoint says: units, names of what it has learned from.
-        device: where it runs.
+        config: settings.
+        generator: generator with its weights.
+        scales: normalization.
+        facts: other values of the checkpoint: units, names of the training recordings.
+        device: PyTorch device.
     """
 
     config: SocialWaysConfig
@@ -63,8 +63,7 @@ class SocialWaysNetwork:
         """Read a checkpoint.
 
         Raises:
-            InputError: the file is damaged, of something else, or its weights do not fit its settings; or the device
-                is not there.
+            InputError: the file is damaged, or is not a checkpoint of this network; or the device does not exist.
             MissingExtra: torch is not installed.
         """
         place = torch_device(device)
@@ -82,12 +81,12 @@ class SocialWaysNetwork:
         return cls(config, generator.to(place).eval(), scales, content["facts"], place)
 
     def predict(self, obsv_p: ArrayLike, noise: ArrayLike, n_next: int) -> Floats:
-        """Return where N people will be ``[N, n_next, 2]`` [m], as the function of this name in the report.
+        """Return the forecast of N people ``[N, n_next, 2]`` [m], as the function of this name in the report.
 
         Args:
-            obsv_p: ``[N, Tobs, 2]`` [m] the rows at which they were seen, the last one is now.
-            noise: ``[M]`` for all, or ``[N, M]`` for each, in 0..1; the latent codes come first.
-            n_next: how many rows ahead.
+            obsv_p: ``[N, Tobs, 2]`` [m] observed positions.
+            noise: ``[M]`` for all people or ``[N, M]``, in 0..1; the latent codes come first.
+            n_next: number of predicted rows.
 
         Raises:
             InputError: a shape or a value is not allowed.
@@ -117,12 +116,12 @@ class SocialWaysNetwork:
         return np.ascontiguousarray(self.scene(past, each, n_next)[0].swapaxes(0, 1))
 
     def scene(self, past: Windows, noise: Floats, steps: int) -> Floats:
-        """Return futures ``[K, steps, A, 2]`` [m] of everyone in one window, who must all be there at its last row.
+        """Return futures ``[K, steps, A, 2]`` [m] of one window; all agents must be present at its last row.
 
         Args:
             past: one window.
             noise: ``[K, A, M]`` in 0..1.
-            steps: rows ahead; robots with a plan walk along it.
+            steps: number of predicted rows; robots with a plan follow it.
         """
         torch = torch_module()
         from .inputs import scene_input
@@ -147,19 +146,19 @@ class SocialWaysNetwork:
 
 @dataclass(frozen=True)
 class SocialWays(LearnedPredictor):
-    """Everyone as the generator of Social Ways draws them, all people of a draw together; samples are real draws.
+    """Random joint futures of the people in a window, drawn by the generator of Social Ways.
 
-    With the setting ``frame = person`` a forecast shifts and turns with the world, up to float32 (about 1e-5 m); with
-    ``world`` it does not, and is for the place of its training data only. A mirrored world has other forecasts. Rows
-    that were not seen are filled in; somebody seen once is taken to have stood. One window after the other is
-    predicted, so that a window alone gives the same bytes as in a batch.
+    With the setting ``frame = person``, forecasts are equivariant to translations and rotations, up to float32 (about
+    1e-5 m), but not to reflections. With ``world``, they are valid for the place of the training data only. Missing
+    rows are filled in; people observed once have a constant position. Windows are predicted one by one: forecasts do
+    not depend on the batch, bit for bit.
 
-    Robots with a plan walk along it, and people see them there. Where the map has walls, every draw is the one of three
-    in which the fewest people walk through a wall, and who still would ends before it. Where the shipped
-    weights do not fit (other steps than 0.4 s, pixels), a baseline answers and a warning says so; own weights raise.
+    Robots with a plan follow it, and the network reads it. With walls, each draw is the best of three (fewest wall
+    crossings), and paths that still cross a wall stop there. If the shipped weights cannot be used (other time steps
+    than 0.4 s, pixels), a baseline is used, with a warning; own weights raise an error.
 
     Fields:
-        contact: people of one draw are moved aside to stay so far apart [m]; 0, as in the report, lets them collide.
+        contact: minimum distance between people of a draw [m]; 0, as in the report, allows collisions.
 
     Paper: Amirian, Hayet, Pettré (2019), doi 10.48550/arXiv.1904.09507.
     """
@@ -186,18 +185,18 @@ class SocialWays(LearnedPredictor):
 
     @property
     def name(self) -> str:
-        """Name on the command line, with what differs from a plain Social Ways."""
+        """Name on the command line, with parameters that differ from their defaults."""
         return super().name + (f"(contact={self.contact:g})" if self.contact != CONTACT else "")
 
     def network(self, source: str = "") -> SocialWaysNetwork:
-        """Return the network with the weights for a recording of this name; read once."""
+        """Return the network for a recording of this name; it is cached."""
         return _network(str(self.file(source)), self.digest, self.device)
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
         """Return the forecast, see :meth:`Predictor.predict`.
 
         Raises:
-            InputError: windows have another time step or other units than what was learned.
+            InputError: the windows have another time step or other units than the training data.
         """
         self.check(past, steps, samples)
         why = self.incompatibility(past)
@@ -218,7 +217,7 @@ class SocialWays(LearnedPredictor):
 
 
 def _drawn(network: SocialWaysNetwork, past: Windows, steps: int, samples: int, rng: np.random.Generator) -> Floats:
-    """Return draws ``[K, T, A, 2]`` [m] of one window, none through a wall of it."""
+    """Return draws ``[K, T, A, 2]`` [m] of one window that do not cross walls."""
     people = np.arange(past.present.shape[2])
     tries = TRIES if past.walls else 1
     noise = rng.random((samples * tries, len(people), network.config.inputs))
@@ -237,7 +236,7 @@ def _network(checkpoint: str, digest: str, device: str) -> SocialWaysNetwork:
 
 
 def _only(past: Windows, people: NDArray[np.int64]) -> Windows:
-    """Return a window with some of its people."""
+    """Return a window with a subset of its agents."""
     import dataclasses
 
     plan = None if past.plan is None else past.plan[:, :, people]

@@ -1,4 +1,4 @@
-"""How Social Ways learns: its losses, the look ahead of the discriminator, and one update after the other."""
+"""Training of Social Ways: losses, unrolled discriminator, updates."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from .network import Discriminator, Generator, SceneInput
 __all__ = ["SocialWaysTraining", "adversarial_loss", "learner", "variety_loss"]
 
 DRAWS, CHECKED = 20, 60
-"""Errors are watched as the best of so many draws on at most so many scenes."""
+"""Number of draws and maximum number of scenes for validation errors."""
 ASIDE = 0.01
-"""The slope of the discriminator is felt so far from a track, in units of the scales."""
+"""Step of the finite difference for the slope of the discriminator, in units of the scales."""
 
 
 def learner(
     settings: str | None, values: Mapping[str, str], samples: Samples, watched: Samples, seed: int, device: str
 ) -> SocialWaysTraining:
-    """Return Social Ways ready to train, as the command line asks for it.
+    """Return a Social Ways network ready to train, from the options of the command line.
 
     Args:
         settings: name of a preset; None is ``report``.
@@ -59,14 +59,14 @@ class SocialWaysTraining(Trainable):
     """Social Ways with its data; see :class:`~crowdbot.prediction.Trainable`.
 
     Args:
-        config: what is trained.
-        samples: what is learned from; the scales come from it alone.
-        watched: what the errors are watched on.
-        seed: of the first weights.
+        config: settings.
+        samples: training data; also the source of the normalization.
+        watched: validation data.
+        seed: seed of the initial weights.
         device: ``cpu`` or ``cuda``.
 
     Raises:
-        InputError: rows of config and samples differ, or the device is not there.
+        InputError: rows of config and samples differ, or the device does not exist.
     """
 
     kind: ClassVar[str] = "social-ways"
@@ -105,7 +105,7 @@ class SocialWaysTraining(Trainable):
         return list(self.samples.batches(rng, self.config.batch))
 
     def update(self, batch: Any, rng: np.random.Generator, number: int, total: int) -> Mapping[str, float]:
-        """Do a step of the discriminator, those it looks ahead, and a step of the generator."""
+        """Run a discriminator step, unrolled discriminator steps, and a generator step."""
         self._rates(number, total)
         lesson = self._lesson(augment(self.samples.batch(batch), self.samples.observe, self.config, rng))
         c = self.config
@@ -180,7 +180,7 @@ class SocialWaysTraining(Trainable):
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Go back to a state."""
+        """Restore a state."""
         kept = to_tensors(dict(state), self.device)
         self.mean = kept.pop("mean")
         for name, value in kept.items():
@@ -282,7 +282,7 @@ class SocialWaysTraining(Trainable):
 
 
 def adversarial_loss(said: Tensor, real: bool, config: SocialWaysConfig) -> Tensor:
-    """Return how far ``[N]`` answers of the discriminator are from ``real``: cross-entropy, or least squares."""
+    """Return the loss of discriminator outputs ``[N]`` for the label ``real``: cross-entropy or least squares."""
     wanted = torch.full_like(said, float(real))
     if config.adversarial == "cross-entropy":
         return nn.functional.binary_cross_entropy_with_logits(said, wanted)
@@ -301,7 +301,7 @@ def variety_loss(drawn: Tensor, true: Tensor) -> Tensor:
 
 
 def augment(scenes: Scenes, observe: int, config: SocialWaysConfig, rng: np.random.Generator) -> Scenes:
-    """Return a batch whose scenes are mirrored, run backwards and stretched at random, as the settings say."""
+    """Return a batch with random reflections, time reversal and scaling, as configured."""
     count = len(scenes.position)
     place, there, scored, here = scenes
     if config.reverse and rng.random() < 0.5 and place.shape[1] >= 2 * observe:

@@ -1,6 +1,6 @@
-"""Checkpoints: weights, settings and the digest of the data in one file that is read without running anything in it.
+"""Checkpoints: weights, settings and the digest of the data in one file that executes no code when read.
 
-The file is a NumPy ``.npz``: the entry ``content`` is JSON, in which ``{"$array": "a3"}`` stands for the entry ``a3``.
+The file is a NumPy ``.npz``: the entry ``content`` is JSON, in which ``{"$array": "a3"}`` refers to the entry ``a3``.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from crowdbot.core import InputError
 __all__ = ["load_checkpoint", "save_checkpoint"]
 
 FORMAT = 1
-"""Files of other formats are refused."""
+"""Version of the file format."""
 ARRAY, PAIRS = "$array", "$pairs"
 
 
 def save_checkpoint(file: Path, kind: str, content: Mapping[str, Any]) -> None:
-    """Write a checkpoint whole or not at all: after a kill at any moment the old file or the new one is there.
+    """Write a checkpoint atomically.
 
     Args:
-        file: where it goes; its folder is made.
-        kind: what it is a checkpoint of, such as ``social-ways``.
-        content: dictionaries, lists, text, numbers, None, arrays and tensors, nested as needed.
+        file: output file; its folder is created if missing.
+        kind: name of the predictor, such as ``social-ways``.
+        content: nested dictionaries, lists, strings, numbers, None, arrays and tensors.
     """
     arrays: dict[str, NDArray[Any]] = {}
     text = json.dumps({"format": FORMAT, "kind": kind, "content": _pack(dict(content), arrays)}, allow_nan=True)
@@ -45,7 +45,7 @@ def save_checkpoint(file: Path, kind: str, content: Mapping[str, Any]) -> None:
 
 
 def load_checkpoint(file: Path | str, kind: str | None = None) -> dict[str, Any]:
-    """Return what :func:`save_checkpoint` wrote, tensors as arrays; nothing in the file is executed.
+    """Return the content of a checkpoint, with tensors as arrays.
 
     Raises:
         InputError: there is no such file, it is damaged or no checkpoint, or one of another kind or format.

@@ -1,8 +1,7 @@
-"""Training: the loop that every learned predictor shares; it can be killed at any moment and goes on exactly.
+"""Training loop of learned predictors; an interrupted training resumes with bitwise identical results.
 
-Nothing random outlives an update: the order of an epoch and the draws of an update come from streams that are named by
-the seed and by their number. So a checkpoint needs the weights, the optimisers and two numbers, and a training that was
-killed ends with the same bytes as one that was not.
+The order of an epoch and the random draws of an update come from streams given by the seed and a number. A checkpoint
+therefore needs the weights, the optimizer states and two counters only.
 """
 
 from __future__ import annotations
@@ -28,21 +27,21 @@ from .checkpoint import load_checkpoint, save_checkpoint
 __all__ = ["BEST", "LAST", "LOG", "LogRow", "Trainable", "TrainingResult", "TrainingSchedule", "train"]
 
 BEST, LAST, LOG = "best.npz", "last.npz", "log.csv"
-"""Files in the folder of a training: the best weights, all that is needed to go on, and the log."""
+"""Files in the folder of a training: best weights, training state, log."""
 
 LogRow = dict[str, float]
-"""A line of the log: update, epoch, means of the losses since the line before, what was watched, seconds."""
+"""A row of the log: update, epoch, mean losses since the previous row, validation errors, seconds."""
 
 
 class Trainable(ABC):
-    """A network with its data and optimisers, as the loop sees it.
+    """A network with its data and optimizers.
 
     Class attribute:
         kind: name of the predictor, written into checkpoints.
     Attributes:
-        config: frozen dataclass of plain values; together with ``data`` it says what is trained on what.
-        data: digest of all that is learned from and watched on.
-        facts: what a predictor needs to know beside the config, plain values (normalisation, time step, names).
+        config: settings, a frozen dataclass of plain values.
+        data: digest of the training and validation data.
+        facts: other values that the predictor needs (normalization, time step, names).
     """
 
     kind: ClassVar[str]
@@ -56,47 +55,47 @@ class Trainable(ABC):
 
     @abstractmethod
     def update(self, batch: Any, rng: np.random.Generator, number: int, total: int) -> Mapping[str, float]:
-        """Do one update and return its losses; all that is random comes from ``rng``.
+        """Run one update and return its losses.
 
         Args:
             batch: one of :meth:`batches`.
-            rng: of this update alone.
-            number: of the update, from 0, for schedules.
-            total: how many updates there will be.
+            rng: random generator of this update.
+            number: number of the update, from 0.
+            total: total number of updates.
         """
 
     @abstractmethod
     def check(self) -> Mapping[str, float]:
-        """Return errors on data that is not learned from, always with the same draws; lower is better."""
+        """Return validation errors, always with the same random draws; lower is better."""
 
     @abstractmethod
     def weights(self) -> Mapping[str, Any]:
-        """Return what a predictor needs: name -> tensor or array."""
+        """Return the weights of the predictor: name -> tensor or array."""
 
     @abstractmethod
     def state(self) -> Mapping[str, Any]:
-        """Return all that changes while training: weights, optimisers, averages."""
+        """Return the training state: weights, optimizers, averages."""
 
     @abstractmethod
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Go back to what :meth:`state` returned; arrays may stand for tensors."""
+        """Restore a result of :meth:`state`; tensors may be given as arrays."""
 
 
 @dataclass(frozen=True)
 class TrainingSchedule:
-    """How long is trained, and what is watched.
+    """Length of a training and its validation.
 
     Fields:
-        updates: at most so many; or
-        epochs: at most so many.
-        check_every: updates between two lines of the log, each with a check.
-        keep_every: updates between two checkpoints; there is always one with a check.
-        watch: the error that decides which weights are the best; with several names their sum decides.
-        patience: stop after so many checks without a better one; None never stops early.
-        seed: of the order and of everything that is drawn.
+        updates: number of updates; or
+        epochs: number of epochs.
+        check_every: updates between validations, each with a row in the log.
+        keep_every: updates between checkpoints; each validation also writes one.
+        watch: validation errors whose sum selects the best weights.
+        patience: number of validations without improvement before the training stops; None disables early stopping.
+        seed: random seed.
 
     Raises:
-        InputError: a number is below 1, or neither or both of updates and epochs are given.
+        InputError: a number is below 1, or not exactly one of updates and epochs is given.
     """
 
     updates: int | None = None
@@ -109,7 +108,7 @@ class TrainingSchedule:
 
     def __post_init__(self) -> None:
         if (self.updates is None) == (self.epochs is None):
-            raise InputError("give either a number of updates or a number of epochs")
+            raise InputError("give either updates or epochs")
         for name in ("updates", "epochs", "check_every", "keep_every", "patience"):
             value = getattr(self, name)
             if value is not None and value < 1:
@@ -118,14 +117,14 @@ class TrainingSchedule:
 
 @dataclass(frozen=True)
 class TrainingResult:
-    """How a training ended.
+    """Result of a training.
 
     Fields:
         rows: the log.
-        best: number of the best line, None when nothing was checked.
-        updates: how many were done, those before a resume included.
-        stopped: whether it stopped early.
-        seconds: that were spent on updates and checks.
+        best: index of the best row, None without validation.
+        updates: total number of updates, including those before a resume.
+        stopped: whether the training stopped early.
+        seconds: time of updates and validations [s].
     """
 
     rows: tuple[LogRow, ...]
@@ -137,7 +136,7 @@ class TrainingResult:
 
 @dataclass
 class _TrainingState:
-    """Where a training stands."""
+    """Progress of a training."""
 
     update: int = 0
     epoch: int = 0
@@ -157,22 +156,22 @@ def train(
     report: Callable[[LogRow], None] | None = None,
     tick: Callable[[int, int], None] | None = None,
 ) -> TrainingResult:
-    """Train a network; the folder holds what is needed to go on, the best weights and the log.
+    """Train a network and write its weights, training state and log to a folder.
 
-    The same model, schedule and data give the same bytes on one machine, whether or not the training was interrupted
-    (the seconds in the log apart). More updates or epochs may be asked for when it goes on.
+    Results are bitwise reproducible on one machine, also after an interruption (except for the seconds in the log). The
+    number of updates or epochs may be increased on resume.
 
     Args:
-        model: what is trained.
-        schedule: how long, and what is watched.
-        folder: where files go; None keeps none.
-        resume: go on from the folder when it holds a training.
-        report: told each line of the log.
-        tick: told the number of updates done and of all.
+        model: the network.
+        schedule: length and validation.
+        folder: output folder; None writes no files.
+        resume: continue the training in the folder, if there is one.
+        report: called with each row of the log.
+        tick: called with the number of completed updates and the total.
 
     Raises:
-        InputError: the folder holds a training and ``resume`` is not set, or one of other settings or data; or a loss
-            is no longer a finite number.
+        InputError: the folder has a training and ``resume`` is not set, or a training with other settings or data; or a
+            loss is not finite.
     """
     course = _begin_or_resume(model, schedule, folder, resume)
     batches = model.batches(stream(schedule.seed, "order", course.epoch))
@@ -236,7 +235,7 @@ def _defaults(config: Any) -> Any:
 
 
 def _plain(values: dict[str, Any]) -> Any:
-    """Return settings as they come back from a file."""
+    """Return settings as read from a file."""
     return json.loads(json.dumps(values))
 
 
@@ -261,7 +260,7 @@ def _add_losses(course: _TrainingState, losses: Mapping[str, float]) -> None:
 
 
 def _checked(model: Trainable, schedule: TrainingSchedule, course: _TrainingState, folder: Path | None) -> None:
-    """Write a line of the log, and keep the weights when they are the best."""
+    """Validate, add a row to the log, and save the weights if they are the best."""
     means = {name: value / course.summed for name, value in course.sums.items()}
     errors = {name: float(value) for name, value in model.check().items()}
     course.rows.append({"update": course.update, "epoch": course.epoch, **means, **errors})
@@ -300,7 +299,7 @@ def _save(model: Trainable, schedule: TrainingSchedule, course: _TrainingState, 
 
 
 def _write_log(course: _TrainingState, folder: Path) -> None:
-    """Write the log anew, so that it never holds a line that the checkpoint does not know."""
+    """Rewrite the log: it has no row beyond the checkpoint."""
     names = list(dict.fromkeys(name for row in course.rows for name in row))
     draft = folder / f"{LOG}.part"
     with draft.open("w", newline="", encoding="utf-8") as file:

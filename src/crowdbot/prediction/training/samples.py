@@ -1,4 +1,4 @@
-"""What is learned from: windows of several recordings, ragged in people, and batches of them with masks."""
+"""Samples: training windows of several recordings, and padded batches of them."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ FOLDS = {
     "zara1": ("crowds_zara01",),
     "zara2": ("crowds_zara02",),
 }
-"""Files that each scene of the leave-one-out protocol leaves out (Gupta et al. 2018); ``uni_examples`` stays."""
+"""Held-out files of each scene of the leave-one-out protocol (Gupta et al. 2018)."""
 ENOUGH = 180.0
-"""The report asks for recordings of more than 3 minutes [s]."""
+"""Minimum duration of a training recording in the report [s]."""
 BUCKET = 16
-"""Scenes of about so many batches are sorted by size before they are cut into batches: little is padded."""
+"""Number of batches whose scenes are sorted by size together, to reduce padding."""
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -159,7 +159,7 @@ class Samples:
 
     @property
     def digest(self) -> str:
-        """Hash of everything that is in the samples."""
+        """Hash of the samples."""
         found = hashlib.blake2b(repr((self.names, self.observe, self.dt, self.units)).encode(), digest_size=12)
         for array in (self.position, self.there, self.scored, self.first, self.source):
             found.update(np.ascontiguousarray(array).tobytes())
@@ -175,7 +175,7 @@ class Samples:
         return dataclasses.replace(self, **arrays, first=first, source=self.source[number])
 
     def subsample(self, most: int) -> Samples:
-        """Return at most so many scenes, evenly over all of them."""
+        """Return at most ``most`` evenly spaced scenes."""
         return self if len(self) <= most else self.select(np.linspace(0, len(self) - 1, most).round().astype(np.int64))
 
     def batch(self, scenes: Integers) -> Scenes:
@@ -206,7 +206,7 @@ class Samples:
 
 
 def leave_out(recordings: Sequence[Recording], name: str) -> tuple[list[Recording], list[Recording]]:
-    """Return the recordings to learn from, and those that a name leaves out.
+    """Return the training recordings and the held-out recordings.
 
     Args:
         recordings: of all scenes.
@@ -238,7 +238,7 @@ def _is_named(text: str, begins: tuple[str, ...]) -> bool:
 
 
 def split_in_time(recordings: Sequence[Recording], share: float) -> tuple[Samples, Samples]:
-    """Return the scenes to learn from and those of the last share of every recording, with no row in both.
+    """Split recordings in time into training scenes and validation scenes without common rows.
 
     Raises:
         InputError: the share is not between 0 and 1.
@@ -259,10 +259,10 @@ def split_in_time(recordings: Sequence[Recording], share: float) -> tuple[Sample
 
 
 def short_recordings(recordings: Sequence[Recording]) -> list[str]:
-    """Return a sentence for each recording that is shorter than the 3 minutes that the report asks for."""
+    """Return a warning for each recording shorter than 3 minutes."""
     found = []
     for one in recordings:
         seconds = float(one.rest.time[-1] - one.rest.time[0])
         if seconds < ENOUGH:
-            found.append(f"{one.name} lasts {seconds:.0f} s; learning asks for recordings of more than 3 minutes")
+            found.append(f"{one.name} has {seconds:.0f} s; more than 3 minutes are recommended for training")
     return found

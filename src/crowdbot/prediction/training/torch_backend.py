@@ -1,4 +1,4 @@
-"""The way to torch: says in one sentence when it is missing, or when a device is not there."""
+"""Access to PyTorch: optional import, devices, threads, tensors."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def torch_module() -> Any:
     """Return torch.
 
     Raises:
-        MissingExtra: it is not installed.
+        MissingExtra: PyTorch is not installed.
     """
     return optional("torch", "learned prediction", "learn")
 
@@ -25,7 +25,7 @@ def torch_device(name: str) -> Any:
 
     Raises:
         MissingExtra: torch is not installed.
-        InputError: there is no such device.
+        InputError: the device does not exist.
     """
     torch = torch_module()
     kind, _, number = name.partition(":")
@@ -40,9 +40,9 @@ def torch_device(name: str) -> Any:
 
 @contextlib.contextmanager
 def torch_threads(count: int = 1) -> Iterator[None]:
-    """Let torch use so many threads inside; with one, sums are made in one order, on every machine.
+    """Set the number of PyTorch threads in a context; with one thread, the summation order is fixed.
 
-    Small networks are no slower for it, and much faster where other work shares the processor.
+    Small networks are as fast with one thread.
     """
     torch = torch_module()
     before = torch.get_num_threads()
@@ -54,9 +54,9 @@ def torch_threads(count: int = 1) -> Iterator[None]:
 
 
 def to_tensors(tree: Any, device: Any = "cpu") -> Any:
-    """Return a tree as :func:`load_checkpoint` gives it with tensors in place of arrays.
+    """Return a tree of :func:`load_checkpoint` with its arrays as tensors.
 
-    >>> tensors({"step": 3})
+    >>> to_tensors({"step": 3})
     {'step': 3}
     """
     if isinstance(tree, dict):
