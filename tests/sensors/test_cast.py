@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core import Bodies, InputError, Pose, Scene, Skins, SpatialPose, stream
 from crowdbot.sensors.beams import beams, cone, fan
-from crowdbot.sensors.cast import cast
+from crowdbot.sensors.ray_casting import cast
 
 AHEAD = np.array([[1.0, 0.0, 0.0]])
 FANS = {

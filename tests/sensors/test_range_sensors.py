@@ -8,6 +8,10 @@ import pytest
 
 from crowdbot.core import Bodies, InputError, Pose, Scene, SpatialPose, stream
 from crowdbot.sensors import (
+    FLOOR,
+    NOTHING,
+    PROP,
+    WALLS,
     DepthCamera,
     Dropout,
     Gaussian,
@@ -18,7 +22,6 @@ from crowdbot.sensors import (
     Ultrasound,
 )
 from crowdbot.sensors.beams import cone
-from crowdbot.sensors.shapes import FLOOR, NOTHING, PROP, WALLS
 from crowdbot.sensors.ultrasound import teardrop
 
 HIGH = SpatialPose.of((0.0, 0.0, 1.0))

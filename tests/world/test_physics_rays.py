@@ -8,7 +8,7 @@ from physics_worlds import alone, crowded
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, Twist
 from crowdbot.models import ORCA
 from crowdbot.sensors.beams import beams, fan
-from crowdbot.sensors.cast import cast
+from crowdbot.sensors.ray_casting import cast
 from crowdbot.world import Robot
 from crowdbot.world.physics import Cube, PhysicsStage, PhysicsWorld, Table, Tree, Walkers, bodies
 

@@ -1,21 +1,21 @@
 """Sensors: what a robot can measure of a scene. Contract :class:`Sensor`; noise is a value attached to it."""
 
 from .bumper import Bumper, Touch
-from .camera import ImageSource, Lens, distorted
-from .depth import DepthCamera, DepthImage
-from .echo import Echo
+from .depth_camera import DepthCamera, DepthImage
+from .ground_truth_people import GroundTruthPeople, Tracked
 from .imu import IMU, ImuState, Inertial
 from .infrared import Infrared
+from .lens import ImageSource, Lens, distorted
 from .lidar import Lidar2D, Scan
 from .lidar3d import Cloud, Lidar3D
 from .noise import Dropout, Gaussian, Noise, Offset, Peak, Quantised, disturbed
 from .odometry import Odometry, OdometryState, WheelOdometry
-from .people import GroundTruthPeople, Tracked
-from .picture import Picture, RGBCamera
 from .presets import PRESETS, Preset, preset
+from .range_reading import Echo
+from .ray_shapes import FLOOR, NOTHING, PROP, WALLS
+from .rgb_camera import Picture, RGBCamera
+from .schedule import Schedule
 from .sensor import Reading, Sensor, planar_pose, spatial_pose
-from .shapes import FLOOR, NOTHING, PROP, WALLS
-from .timing import Schedule
 from .ultrasound import Ultrasound
 from .view import SensorView
 

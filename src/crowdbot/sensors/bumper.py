@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number
 
 from .noise import Randomness, disturbed
+from .ray_shapes import NOTHING, PROP, WALLS
 from .sensor import Reading, Sensor, finite_or_nan, planar_pose, spatial_pose
-from .shapes import NOTHING, PROP, WALLS
 from .view import SensorView
 
 __all__ = ["Bumper", "Touch"]

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 
 from .beams import Beams, beams, cone
-from .echo import Echo, nearest
 from .noise import Randomness
+from .range_reading import Echo, nearest
 from .ranging import Ranging
 from .view import SensorView
 

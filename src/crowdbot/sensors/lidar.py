@@ -13,12 +13,12 @@ from crowdbot.core import InputError, Pose, Scene, SpatialPose, kernel
 from crowdbot.core.geometry import nearest_on_segment, ray_to_disc, ray_to_segment
 
 from .beams import Beams, beams, fan
-from .cast import cast
 from .noise import Randomness
 from .ranging import Ranging, ended, incidence_of, settled
+from .ray_casting import cast
+from .ray_shapes import FLOOR, NOTHING, OVERLAP, PROP, lengthened
+from .ray_shapes import WALLS as WALL
 from .sensor import Reading, spatial_pose
-from .shapes import FLOOR, NOTHING, OVERLAP, PROP, lengthened
-from .shapes import WALLS as WALL
 from .view import SensorView
 
 __all__ = ["FLOOR", "NOTHING", "PROP", "WALL", "Lidar2D", "Scan"]

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 
 from .beams import Beams, beams, fan
-from .cast import cast
 from .lidar import seen_agents
 from .noise import Randomness
 from .ranging import MOST_BEAMS, Ranging, ended, incidence_of, settled
+from .ray_casting import cast
 from .sensor import Reading, spatial_pose
 from .view import SensorView
 

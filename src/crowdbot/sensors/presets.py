@@ -10,7 +10,7 @@ from typing import Any
 
 from crowdbot.core import UnknownName
 
-from .depth import DepthCamera
+from .depth_camera import DepthCamera
 from .infrared import Infrared
 from .lidar import Lidar2D
 from .lidar3d import Lidar3D

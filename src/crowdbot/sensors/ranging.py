@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, SpatialPose, check_number, kernel
 
 from .noise import Randomness, disturbed
+from .ray_shapes import NOTHING
 from .sensor import Sensor
-from .shapes import NOTHING
 
 __all__ = ["Ranging", "ended", "incidence_of", "settled"]
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number
 
-from .camera import ImageSource
+from .lens import ImageSource
 from .noise import Noise, Randomness
 from .view import SensorView
 

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from crowdbot.core import Pose, Scene, SpatialPose
 
 from .beams import Beams
-from .cast import cast
 from .noise import Randomness
 from .ranging import Ranging, settled
+from .ray_casting import cast
+from .ray_shapes import NOTHING
 from .sensor import Reading, spatial_pose
-from .shapes import NOTHING
 
 __all__ = ["Echo", "nearest"]
 

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, SpatialPose
 
-from .camera import Lens, distorted
-from .cast import cast
-from .depth import pixel_beams
+from .depth_camera import pixel_beams
+from .lens import Lens, distorted
 from .noise import Randomness, disturbed
+from .ray_casting import cast
+from .ray_shapes import FLOOR, NOTHING, PROP, WALLS
 from .sensor import Reading, Sensor, spatial_pose
-from .shapes import FLOOR, NOTHING, PROP, WALLS
 from .view import SensorView
 
 __all__ = ["Picture", "RGBCamera"]

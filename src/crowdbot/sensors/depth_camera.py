@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Pose, SpatialPose, check_number
 
 from .beams import Beams, beams
-from .camera import ImageSource, Lens, pixel_directions, stereo_depth
-from .cast import cast
+from .lens import ImageSource, Lens, pixel_directions, stereo_depth
 from .lidar import seen_agents
 from .noise import Randomness, disturbed
+from .ray_casting import cast
+from .ray_shapes import NOTHING
 from .sensor import Reading, Sensor, spatial_pose
-from .shapes import NOTHING
 from .view import SensorView
 
 __all__ = ["DepthCamera", "DepthImage"]

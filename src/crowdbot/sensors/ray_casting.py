@@ -42,7 +42,7 @@ from crowdbot.core.windows import (
 )
 
 from .beams import Beams
-from .shapes import FLOOR, NOTHING, Shapes, gathered
+from .ray_shapes import FLOOR, NOTHING, Shapes, gathered
 
 __all__ = ["Hits", "cast"]
 
@@ -325,7 +325,7 @@ class Hits:
         distance: ``[E, R]`` [m], inf for nothing; 0 when the sensor is inside a shape.
         facing: ``[E, R]`` cosine of the angle between beam and surface normal, 1 for nothing.
         normal: ``[E, R, 3]`` unit normal of the surface in the world, towards the sensor; 0 for nothing.
-        hit: ``[E, R]`` index of an agent or one of the values of :mod:`crowdbot.sensors.shapes`.
+        hit: ``[E, R]`` index of an agent or one of the values of :mod:`crowdbot.sensors.ray_shapes`.
         part: ``[E, R]`` index into ``scene.bodies.parts``, -1 where there is none.
     """
 
