@@ -15,7 +15,6 @@ from crowdbot.sensors import (
     Quantised,
     RGBCamera,
     Schedule,
-    distorted,
     preset,
 )
 from crowdbot.sensors.lens import pixel_directions, stereo_depth
@@ -54,13 +53,13 @@ def test_depth_is_metric_and_along_the_axis():
     np.testing.assert_allclose(image.points(in_world=True)[0][floor][:, 2], 0.0, atol=1e-9)
     person = np.nonzero(image.hit[0] == 0)[1]
     assert person.max() < 40  # he stands to the left
-    assert image.seen(1).tolist() == [[True]]
+    assert image.visible_agents(1).tolist() == [[True]]
 
 
 def test_the_lens_bends_and_straightens():
     lens = Lens.of(320, 240, math.radians(80.0), BENT)
     x, y = np.meshgrid(np.linspace(-0.7, 0.7, 15), np.linspace(-0.5, 0.5, 11))
-    back = lens.straightened(*lens.bent(x, y))
+    back = lens.undistort(*lens.distort(x, y))
     np.testing.assert_allclose(back[0], x, atol=1e-9)
     np.testing.assert_allclose(back[1], y, atol=1e-9)
     directions = pixel_directions(Lens.of(3, 3, math.pi / 2))
@@ -76,7 +75,7 @@ def test_images_are_bent_as_rays_are():
     pose = SpatialPose.of((0.0, 0.0, 1.2))
     scene = Scene.of([[900.0, 0.0]], walls=[[(4.0, -300.0), (4.0, 300.0)]])
     by_rays, ideal = bent.read(scene, pose), plain.read(scene, pose)
-    by_image = distorted(ideal.depth, bent.lens, fill=np.nan)
+    by_image = distort_image(ideal.depth, bent.lens, fill=np.nan)
     same = np.isclose(by_rays.depth, by_image, atol=0.15) | np.isnan(by_image)
     assert np.mean(same) > 0.97
     colours = RGBCamera(width=50, height=20, field_of_view=1.0).read(scene, pose, renderer=Painter()).rgb

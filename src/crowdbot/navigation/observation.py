@@ -124,7 +124,7 @@ class Observation:
             limits: of its drive.
             dt: time until it is asked again [s].
             twist: how it moves; by default from its velocity, not turning.
-            seen: ``[A]`` who is seen, for instance ``scan.seen(A)[0]``; by default everyone.
+            seen: ``[A]`` who is seen, for instance ``scan.visible_agents(A)[0]``; by default everyone.
             sight: nobody farther than this is seen, from centre to centre [m].
             scan: handed on.
             environment: which one.

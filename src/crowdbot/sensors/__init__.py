@@ -1,19 +1,19 @@
 """Sensors: what a robot can measure of a scene. Contract :class:`Sensor`; noise is a value attached to it."""
 
-from .bumper import Bumper, Touch
+from .bumper import Bumper, BumperReading
 from .depth_camera import DepthCamera, DepthImage
-from .ground_truth_people import GroundTruthPeople, Tracked
-from .imu import IMU, ImuState, Inertial
+from .ground_truth_people import GroundTruthPeople, TrackedPeople
+from .imu import IMU, ImuReading, ImuState
 from .infrared import Infrared
-from .lens import ImageSource, Lens, distorted
+from .lens import ImageSource, Lens, distort_image
 from .lidar import Lidar2D, Scan
-from .lidar3d import Cloud, Lidar3D
-from .noise import Dropout, Gaussian, Noise, Offset, Peak, Quantised, disturbed
+from .lidar3d import Lidar3D, PointCloud
+from .noise import Dropout, Gaussian, Noise, Offset, Peak, Quantised, apply_noise
 from .odometry import Odometry, OdometryState, WheelOdometry
 from .presets import PRESETS, Preset, preset
-from .range_reading import Echo
+from .range_reading import RangeReading
 from .ray_shapes import FLOOR, NOTHING, PROP, WALLS
-from .rgb_camera import Picture, RGBCamera
+from .rgb_camera import RGBCamera, RgbImage
 from .schedule import Schedule
 from .sensor import Reading, Sensor, planar_pose, spatial_pose
 from .ultrasound import Ultrasound
@@ -27,16 +27,15 @@ __all__ = [
     "PROP",
     "WALLS",
     "Bumper",
-    "Cloud",
+    "BumperReading",
     "DepthCamera",
     "DepthImage",
     "Dropout",
-    "Echo",
     "Gaussian",
     "GroundTruthPeople",
     "ImageSource",
+    "ImuReading",
     "ImuState",
-    "Inertial",
     "Infrared",
     "Lens",
     "Lidar2D",
@@ -46,21 +45,22 @@ __all__ = [
     "OdometryState",
     "Offset",
     "Peak",
-    "Picture",
+    "PointCloud",
     "Preset",
     "Quantised",
     "RGBCamera",
+    "RangeReading",
     "Reading",
+    "RgbImage",
     "Scan",
     "Schedule",
     "Sensor",
     "SensorView",
-    "Touch",
-    "Tracked",
+    "TrackedPeople",
     "Ultrasound",
     "WheelOdometry",
-    "distorted",
-    "disturbed",
+    "apply_noise",
+    "distort_image",
     "planar_pose",
     "preset",
     "spatial_pose",

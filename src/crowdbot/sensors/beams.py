@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Beams", "beams", "cone", "fan"]
+__all__ = ["Beams", "cone_directions", "sort_beams", "unit_vectors"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -45,10 +45,10 @@ class Beams(NamedTuple):
     up: float
 
 
-def beams(directions: Floats) -> Beams:
+def sort_beams(directions: Floats) -> Beams:
     """Sort unit vectors ``[R, 3]`` into cells.
 
-    >>> found = beams(fan(np.linspace(-1.0, 1.0, 81)))
+    >>> found = sort_beams(unit_vectors(np.linspace(-1.0, 1.0, 81)))
     >>> found.rows, found.columns, found.order[:3].tolist()
     (1, 40, [0, 1, 2])
     """
@@ -86,19 +86,19 @@ def beams(directions: Floats) -> Beams:
     )
 
 
-def fan(azimuth: Floats, elevation: Floats | float = 0.0) -> Floats:
+def unit_vectors(azimuth: Floats, elevation: Floats | float = 0.0) -> Floats:
     """Return the unit vectors ``[..., 3]`` of azimuths and elevations [rad] that broadcast."""
     flat = np.cos(elevation)
     parts = np.broadcast_arrays(flat * np.cos(azimuth), flat * np.sin(azimuth), np.sin(elevation))
     return np.ascontiguousarray(np.stack(parts, axis=-1))
 
 
-def cone(half_angle: float, count: int) -> Floats:
+def cone_directions(half_angle: float, count: int) -> Floats:
     """Return ``count`` unit vectors ``[R, 3]`` spread evenly over the solid angle of a cone about x, the axis first.
 
     A sunflower: the square of the sine of half the angle grows evenly, each beam is turned by the golden angle.
 
-    >>> cone(0.5, 1).tolist()
+    >>> cone_directions(0.5, 1).tolist()
     [[1.0, 0.0, 0.0]]
     """
     share = np.arange(count) / max(1, count - 1)

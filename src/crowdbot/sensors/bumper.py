@@ -10,12 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number
 
-from .noise import Randomness, disturbed
+from .noise import Randomness, apply_noise
 from .ray_shapes import NOTHING, PROP, WALLS
 from .sensor import Reading, Sensor, finite_or_nan, planar_pose, spatial_pose
 from .view import SensorView
 
-__all__ = ["Bumper", "Touch"]
+__all__ = ["Bumper", "BumperReading"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -24,7 +24,7 @@ MOST_SECTORS = 100_000
 
 
 @dataclass(frozen=True)
-class Touch(Reading):
+class BumperReading(Reading):
     """Which sectors of a bumper are pressed, in E environments, K sectors.
 
     Fields:
@@ -81,7 +81,7 @@ class Bumper(Sensor):
         angle = np.arctan2(away[..., 1], away[..., 0]) - place.heading[:, None] - self.first
         return np.asarray(np.minimum((angle % TURN) / TURN * self.sectors, self.sectors - 1).astype(np.int64))
 
-    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Touch, None]:
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[BumperReading, None]:
         """Return what presses the ring; noise acts on the depths that are shown and decides no contact.
 
         Raises:
@@ -100,10 +100,10 @@ class Bumper(Sensor):
                 self._press(centre, size, owner, plane.heading[e], depth[e], hit[e])
         pressed = depth >= 0.0
         shown = self._shown(np.where(pressed, depth, 0.0), rng)
-        return Touch(scene.time, pose, pressed, shown, np.where(pressed, hit, NOTHING)), None
+        return BumperReading(scene.time, pose, pressed, shown, np.where(pressed, hit, NOTHING)), None
 
     def _shown(self, depth: Floats, rng: Randomness | None) -> Floats:
-        return finite_or_nan(disturbed(depth, self.noises, rng))
+        return finite_or_nan(apply_noise(depth, self.noises, rng))
 
     def _press(self, centre: Floats, size: Floats, owner: Ints, heading: float, depth: Floats, hit: Ints) -> None:
         """Press the sectors that discs at ``centre`` ``[N, 2]`` from the ring's own centre reach into."""

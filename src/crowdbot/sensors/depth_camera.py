@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, SpatialPose, check_number
 
-from .beams import Beams, beams
+from .beams import Beams, sort_beams
 from .lens import ImageSource, Lens, pixel_directions, stereo_depth
-from .lidar import seen_agents
-from .noise import Randomness, disturbed
-from .ray_casting import cast
+from .lidar import visible_agents
+from .noise import Randomness, apply_noise
+from .ray_casting import cast_rays
 from .ray_shapes import NOTHING
 from .sensor import Reading, Sensor, spatial_pose
 from .view import SensorView
@@ -53,9 +53,9 @@ class DepthImage(Reading):
         pose = spatial_pose(self.pose)
         return np.asarray(pose.position[:, None, None] + np.einsum("eij,ehwj->ehwi", pose.matrix, away))
 
-    def seen(self, count: int) -> NDArray[np.bool_]:
+    def visible_agents(self, count: int) -> NDArray[np.bool_]:
         """Return which of ``count`` agents are seen in at least one pixel, ``[E, A]``."""
-        return seen_agents(self.hit, count)
+        return visible_agents(self.hit, count)
 
 
 @dataclass(frozen=True)
@@ -140,10 +140,10 @@ class DepthCamera(Sensor):
         self.check(view)
         scene, pose = view.scene, view.pose
         bundle, ahead = pixel_beams(self.lens)
-        hits = cast(
+        hits = cast_rays(
             scene, spatial_pose(pose), bundle, self.range_max / float(ahead.min()), skins=self.skins, normals=False
         )
-        back = hits.facing >= math.cos(self.max_incidence) - 1e-12
+        back = hits.cos_incidence >= math.cos(self.max_incidence) - 1e-12
         shape = (scene.shape[0], self.height, self.width)
         depth = np.where(back, hits.distance * ahead, np.inf).reshape(shape)
         hit, part = hits.hit.reshape(shape), hits.part.reshape(shape)
@@ -168,7 +168,7 @@ class DepthCamera(Sensor):
             focal = self.lens.fx
             measured = stereo_depth(measured, focal, self.baseline, self.disparity_noise, self.disparity_step, rng)
             measured = np.where(depth > 0.0, measured, depth)
-        measured = disturbed(measured, self.noises, rng)
+        measured = apply_noise(measured, self.noises, rng)
         kept = measured < np.inf
         near = kept & (near | (measured < self.range_min))
         far = ~kept | (measured > self.range_max)
@@ -185,4 +185,4 @@ class DepthCamera(Sensor):
 def pixel_beams(lens: Lens) -> tuple[Beams, Floats]:
     """Return the beams of the pixels, row by row, and how far each goes ahead for a metre of its length."""
     directions = pixel_directions(lens).reshape(-1, 3)
-    return beams(directions), np.ascontiguousarray(directions[:, 0])
+    return sort_beams(directions), np.ascontiguousarray(directions[:, 0])

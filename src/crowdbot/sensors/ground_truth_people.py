@@ -12,18 +12,18 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, check_number
 
 from .lidar import Lidar2D
-from .noise import Randomness, disturbed
+from .noise import Randomness, apply_noise
 from .ranging import MOST_BEAMS
 from .sensor import Reading, Sensor, planar_pose
 from .view import SensorView
 
-__all__ = ["GroundTruthPeople", "Tracked"]
+__all__ = ["GroundTruthPeople", "TrackedPeople"]
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Tracked(Reading):
+class TrackedPeople(Reading):
     """Agents around a sensor in E environments; arrays keep the agents' indices, NaN for who is not told of.
 
     Fields:
@@ -81,7 +81,7 @@ class GroundTruthPeople(Sensor):
             )
         check_number("GroundTruthPeople", "rays", self.rays, at_least=1, at_most=MOST_BEAMS, whole=True)
 
-    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Tracked, None]:
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[TrackedPeople, None]:
         """Return who is around; ``rng`` is needed only when there is noise.
 
         Raises:
@@ -97,12 +97,12 @@ class GroundTruthPeople(Sensor):
         bearing = np.abs(np.arctan2(position[..., 1], position[..., 0]))
         present = scene.active & (distance <= self.range_max) & (bearing <= 0.5 * self.field_of_view + 1e-12)
         if self.visible_only:
-            present &= _circle(self.rays, self.range_max).read(scene, pose).seen(scene.shape[1])
-        told = disturbed(np.where(present[..., None], position, np.nan), self.noises, rng)
+            present &= _circle(self.rays, self.range_max).read(scene, pose).visible_agents(scene.shape[1])
+        told = apply_noise(np.where(present[..., None], position, np.nan), self.noises, rng)
         present &= np.isfinite(told).all(axis=-1)
         heading = scene.heading - place.heading[:, None]
         heading = math.pi - (math.pi - np.where(present, heading, 0.0)) % (2.0 * math.pi)
-        reading = Tracked(
+        reading = TrackedPeople(
             scene.time,
             pose,
             present,

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, SpatialPose, check_number, product
 
-from .noise import Randomness, disturbed, normals
+from .noise import Randomness, apply_noise, normals
 from .sensor import Reading, Sensor, finite_or_nan, spatial_pose
 from .view import SensorView
 
-__all__ = ["GRAVITY", "IMU", "ImuState", "Inertial"]
+__all__ = ["GRAVITY", "IMU", "ImuReading", "ImuState"]
 
 Floats = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ GRAVITY = 9.80665
 
 
 @dataclass(frozen=True)
-class Inertial(Reading):
+class ImuReading(Reading):
     """What an inertial unit measured in E environments, in its own frame, and what it needs for the next reading.
 
     Fields:
@@ -98,7 +98,7 @@ class IMU(Sensor):
 
     def measure(
         self, view: SensorView, state: ImuState | None, rng: Randomness | None = None
-    ) -> tuple[Inertial, ImuState]:
+    ) -> tuple[ImuReading, ImuState]:
         """Return specific force and turn rate, and the state for the next measurement.
 
         Raises:
@@ -120,9 +120,9 @@ class IMU(Sensor):
         biases = self._biases(shape, dt, rng, state)
         force = force + biases[0] + self._white(self.acceleration_noise, shape, dt, rng)
         turn = turn + biases[1] + self._white(self.turn_noise, shape, dt, rng)
-        six = finite_or_nan(disturbed(np.concatenate([force, turn], axis=1), self.noises, rng))
+        six = finite_or_nan(apply_noise(np.concatenate([force, turn], axis=1), self.noises, rng))
         force, turn = _limited(six[:, :3], self.max_acceleration), _limited(six[:, 3:], self.max_turn_rate)
-        reading = Inertial(view.time, view.pose, force, turn, velocity, *biases)
+        reading = ImuReading(view.time, view.pose, force, turn, velocity, *biases)
         return reading, ImuState(view.time, view.pose, velocity, *biases)
 
     def _biases(

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .beams import Beams, beams, cone
+from .beams import Beams, cone_directions, sort_beams
 from .noise import Randomness
-from .range_reading import Echo, nearest
+from .range_reading import RangeReading, nearest
 from .ranging import Ranging
 from .view import SensorView
 
@@ -61,7 +61,7 @@ class Infrared(Ranging):
             raise InputError(f"Infrared: dispersion = {self.dispersion} rad must be above 0 and at most pi / 2")
         self.check_ranges()
 
-    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Echo, None]:
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[RangeReading, None]:
         """Return the smallest distance; ``rng`` is needed only when there is noise.
 
         Raises:
@@ -76,5 +76,5 @@ class Infrared(Ranging):
 
 @functools.lru_cache(maxsize=64)
 def _bundle(half_angle: float, rays: int) -> tuple[Beams, Floats]:
-    directions = cone(half_angle, rays)
-    return beams(directions), directions
+    directions = cone_directions(half_angle, rays)
+    return sort_beams(directions), directions

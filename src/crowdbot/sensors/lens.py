@@ -14,7 +14,7 @@ from crowdbot.core import InputError, SpatialPose, check_number
 
 from .noise import Randomness, normals
 
-__all__ = ["ImageSource", "Lens", "distorted", "pixel_directions", "stereo_depth"]
+__all__ = ["ImageSource", "Lens", "distort_image", "pixel_directions", "stereo_depth"]
 
 Floats = NDArray[np.float64]
 MOST_PIXELS = 1 << 24
@@ -74,7 +74,7 @@ class Lens:
         focal = 0.5 * width / math.tan(0.5 * field_of_view)
         return cls(width, height, focal, focal, 0.5 * (width - 1), 0.5 * (height - 1), distortion)  # type: ignore[arg-type]
 
-    def bent(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    def distort(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
         """Return where the lens shows the points ``x`` (right), ``y`` (down) of the plane at distance 1."""
         k1, k2, p1, p2, k3 = self.distortion
         r2 = x * x + y * y
@@ -84,18 +84,18 @@ class Lens:
             y * bend + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y,
         )
 
-    def straightened(self, x: Floats, y: Floats, rounds: int = 40) -> tuple[Floats, Floats]:
-        """Return what :meth:`bent` maps to ``x``, ``y``, by iteration."""
+    def undistort(self, x: Floats, y: Floats, rounds: int = 40) -> tuple[Floats, Floats]:
+        """Return what :meth:`distort` maps to ``x``, ``y``, by iteration."""
         u, v = x.copy(), y.copy()
         for _ in range(rounds if any(self.distortion) else 0):
-            bx, by = self.bent(u, v)
+            bx, by = self.distort(u, v)
             u, v = u + (x - bx), v + (y - by)
         return u, v
 
     def rays(self) -> tuple[Floats, Floats]:
         """Return where the pixels look: right and down ``[H, W]`` at distance 1 ahead."""
         column, row = np.meshgrid(np.arange(self.width, dtype=np.float64), np.arange(self.height, dtype=np.float64))
-        return self.straightened(np.asarray((column - self.cx) / self.fx), np.asarray((row - self.cy) / self.fy))
+        return self.undistort(np.asarray((column - self.cx) / self.fx), np.asarray((row - self.cy) / self.fy))
 
 
 def pixel_directions(lens: Lens) -> Floats:
@@ -109,7 +109,7 @@ def pixel_directions(lens: Lens) -> Floats:
     return np.asarray(ahead / np.sqrt((ahead**2).sum(axis=-1, keepdims=True)))
 
 
-def distorted(image: NDArray[Any], lens: Lens, fill: float = 0.0) -> NDArray[Any]:
+def distort_image(image: NDArray[Any], lens: Lens, fill: float = 0.0) -> NDArray[Any]:
     """Return a pinhole image ``[E, H, W, ...]`` as the lens shows it.
 
     Colours are interpolated (bilinear, rounded for whole numbers); depth and labels must not be mixed across edges,

@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .beams import Beams, beams, fan
-from .lidar import seen_agents
+from .beams import Beams, sort_beams, unit_vectors
+from .lidar import visible_agents
 from .noise import Randomness
-from .ranging import MOST_BEAMS, Ranging, ended, incidence_of, settled
-from .ray_casting import cast
+from .ranging import MOST_BEAMS, Ranging, apply_limits, end_points, incidence_of
+from .ray_casting import cast_rays
 from .sensor import Reading, spatial_pose
 from .view import SensorView
 
-__all__ = ["Cloud", "Lidar3D"]
+__all__ = ["Lidar3D", "PointCloud"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -29,7 +29,7 @@ SIXTEEN_RINGS = tuple(round(math.radians(-15.0 + 2.0 * k), 12) for k in range(16
 
 
 @dataclass(frozen=True)
-class Cloud(Reading):
+class PointCloud(Reading):
     """One turn of a laser scanner in E environments, K rings of R beams (infinities as in ROS REP-117).
 
     Fields:
@@ -37,7 +37,7 @@ class Cloud(Reading):
         elevation: ``[K]`` [rad], positive upward; azimuth: ``[R]`` [rad], counter-clockwise, 0 straight ahead.
         hit: ``[E, K, R]`` what the beam met, as in :class:`Scan`.
         part: ``[E, K, R]`` index into ``scene.bodies.parts``, -1 where there is none.
-        facing: ``[E, K, R]`` cosine of the angle between beam and surface normal, 1 where nothing was met.
+        cos_incidence: ``[E, K, R]`` cosine of the angle between beam and surface normal, 1 where nothing was met.
     """
 
     ranges: Floats
@@ -45,22 +45,22 @@ class Cloud(Reading):
     azimuth: Floats
     hit: Ints
     part: Ints
-    facing: Floats
+    cos_incidence: Floats
 
     @property
     def incidence(self) -> Floats:
         """``[E, K, R]`` angle between beam and surface normal [rad], NaN where nothing returned."""
-        return incidence_of(self.facing, self.hit)
+        return incidence_of(self.cos_incidence, self.hit)
 
     def points(self, *, in_world: bool = False) -> Floats:
         """Return where the beams ended, ``[E, K, R, 3]`` [m] in the sensor's frame, NaN without a finite range."""
-        return ended(
-            spatial_pose(self.pose), fan(self.azimuth, self.elevation[:, None]), self.ranges, in_world=in_world
+        return end_points(
+            spatial_pose(self.pose), unit_vectors(self.azimuth, self.elevation[:, None]), self.ranges, in_world=in_world
         )
 
-    def seen(self, count: int) -> NDArray[np.bool_]:
+    def visible_agents(self, count: int) -> NDArray[np.bool_]:
         """Return which of ``count`` agents returned at least one beam, ``[E, A]``."""
-        return seen_agents(self.hit, count)
+        return visible_agents(self.hit, count)
 
 
 @dataclass(frozen=True)
@@ -138,7 +138,7 @@ class Lidar3D(Ranging):
         full = width >= TURN - 1e-9
         return np.linspace(self.azimuth_from, self.azimuth_to, self.columns, endpoint=not full)
 
-    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Cloud, None]:
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[PointCloud, None]:
         """Return the cloud from ``pose``; ``rng`` is needed only when there is noise.
 
         Raises:
@@ -147,18 +147,20 @@ class Lidar3D(Ranging):
         """
         self.check(view)
         scene, pose = view.scene, view.pose
-        hits = cast(scene, spatial_pose(pose), _made(self), self.range_max, skins=self.skins, normals=False)
-        ranges = settled(self, hits.distance, hits.facing, hits.hit, hits.part, rng)
+        hits = cast_rays(scene, spatial_pose(pose), _made(self), self.range_max, skins=self.skins, normals=False)
+        ranges = apply_limits(self, hits.distance, hits.cos_incidence, hits.hit, hits.part, rng)
         shape = (len(ranges), len(self.elevations), self.columns)
-        ranges, facing = ranges.reshape(shape), hits.facing.reshape(shape)
+        ranges, cos_incidence = ranges.reshape(shape), hits.cos_incidence.reshape(shape)
         hit, part = hits.hit.reshape(shape), hits.part.reshape(shape)
-        return Cloud(scene.time, pose, ranges, np.array(self.elevations), self.azimuth, hit, part, facing), None
+        return PointCloud(
+            scene.time, pose, ranges, np.array(self.elevations), self.azimuth, hit, part, cos_incidence
+        ), None
 
 
 @functools.lru_cache(maxsize=64)
 def _of(elevations: tuple[float, ...], columns: int, first: float, last: float) -> Beams:
     lidar = Lidar3D(elevations, columns, first, last)
-    return beams(fan(lidar.azimuth, np.array(elevations)[:, None]).reshape(-1, 3))
+    return sort_beams(unit_vectors(lidar.azimuth, np.array(elevations)[:, None]).reshape(-1, 3))
 
 
 def _made(lidar: Lidar3D) -> Beams:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, check_number, did_you_mean, kebab
 
-__all__ = ["Dropout", "Gaussian", "Noise", "Offset", "Peak", "Quantised", "Randomness", "disturbed", "normals"]
+__all__ = ["Dropout", "Gaussian", "Noise", "Offset", "Peak", "Quantised", "Randomness", "apply_noise", "normals"]
 
 Floats = NDArray[np.float64]
 Randomness = np.random.Generator | Sequence[np.random.Generator]
@@ -177,7 +177,7 @@ class Quantised(Noise):
         return np.round(values / self.step) * self.step
 
 
-def disturbed(values: Floats, noise: tuple[Noise, ...], rng: Randomness | None) -> Floats:
+def apply_noise(values: Floats, noise: tuple[Noise, ...], rng: Randomness | None) -> Floats:
     """Return ``values`` ``[E, ...]`` with every noise; what is infinite stays infinite.
 
     The number of draws depends on the shape only, never on what was measured.
@@ -185,7 +185,7 @@ def disturbed(values: Floats, noise: tuple[Noise, ...], rng: Randomness | None) 
     Raises:
         InputError: there is noise but no generator, or not one generator for each environment.
 
-    >>> disturbed(np.ones((1, 2)), (Offset(0.5), Offset(1.0)), np.random.default_rng(0)).tolist()
+    >>> apply_noise(np.ones((1, 2)), (Offset(0.5), Offset(1.0)), np.random.default_rng(0)).tolist()
     [[2.5, 2.5]]
     """
     if not noise:
@@ -212,7 +212,7 @@ def normals(shape: tuple[int, ...], rng: Randomness | None) -> Floats:
     Raises:
         InputError: there is no generator, or not one for each environment.
     """
-    return disturbed(np.zeros(shape), (Gaussian(1.0),), rng)
+    return apply_noise(np.zeros(shape), (Gaussian(1.0),), rng)
 
 
 def _made(word: str, inside: str, text: str) -> Noise:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import Pose, SpatialPose, check_number
 
 from .imu import elapsed
-from .noise import Randomness, disturbed, normals
+from .noise import Randomness, apply_noise, normals
 from .sensor import Reading, Sensor, finite_or_nan, planar_pose
 from .view import SensorView
 
@@ -118,7 +118,7 @@ class WheelOdometry(Sensor):
         count = len(here.heading)
         if state is None:
             still = np.zeros((count, 3))
-            shown = finite_or_nan(disturbed(still, self.noises, rng))
+            shown = finite_or_nan(apply_noise(still, self.noises, rng))
             return _with_state(Odometry(view.time, view.pose, here, shown, still, still.astype(np.int64)))
         dt = elapsed(self, view, state)
         forward, left, turn = arc_between(planar_pose(state.pose), here)
@@ -134,7 +134,7 @@ class WheelOdometry(Sensor):
             way = (ticks - state.ticks) * self.tick
         moved, turned, aside = 0.5 * (way[:, 0] + way[:, 1]), (way[:, 1] - way[:, 0]) / self.track, way[:, 2]
         twist = np.stack([moved, turned, aside], axis=1) / dt
-        shown = finite_or_nan(disturbed(twist, self.noises, rng))
+        shown = finite_or_nan(apply_noise(twist, self.noises, rng))
         estimate = along_arc(state.estimate, moved, aside, turned)
         return _with_state(Odometry(view.time, view.pose, estimate, shown, travelled, ticks))
 

@@ -11,19 +11,19 @@ from crowdbot.core import Pose, Scene, SpatialPose
 
 from .beams import Beams
 from .noise import Randomness
-from .ranging import Ranging, settled
-from .ray_casting import cast
+from .ranging import Ranging, apply_limits
+from .ray_casting import cast_rays
 from .ray_shapes import NOTHING
 from .sensor import Reading, spatial_pose
 
-__all__ = ["Echo", "nearest"]
+__all__ = ["RangeReading", "nearest"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
-class Echo(Reading):
+class RangeReading(Reading):
     """The smallest distance within a zone in E environments (infinities as in ROS REP-117).
 
     Fields:
@@ -45,15 +45,15 @@ def nearest(
     pose: Pose | SpatialPose,
     fan: tuple[Beams, Floats, Floats],
     rng: Randomness | None,
-) -> Echo:
+) -> RangeReading:
     """Return the smallest return of a bundle: sorted beams, their directions ``[R, 3]`` and lengths ``[R]`` [m]."""
     bundle, directions, length = fan
-    hits = cast(scene, spatial_pose(pose), bundle, float(length.max()), skins=sensor.skins, normals=False)
-    back = (hits.distance <= length) & (hits.facing >= sensor.least_facing)
+    hits = cast_rays(scene, spatial_pose(pose), bundle, float(length.max()), skins=sensor.skins, normals=False)
+    back = (hits.distance <= length) & (hits.cos_incidence >= sensor.min_cos_incidence)
     best = np.argmin(np.where(back, hits.distance, np.inf), axis=1)
     rows = np.arange(len(best))
     distance = np.where(back, hits.distance, np.inf)[rows, best][:, None]
     hit, part = hits.hit[rows, best][:, None], hits.part[rows, best][:, None]
-    ranges = settled(sensor, distance, np.ones_like(distance), hit, part, rng)[:, 0]
+    ranges = apply_limits(sensor, distance, np.ones_like(distance), hit, part, rng)[:, 0]
     direction = np.where(hit != NOTHING, directions[best], np.nan)
-    return Echo(scene.time, pose, ranges, hit[:, 0], part[:, 0], direction)
+    return RangeReading(scene.time, pose, ranges, hit[:, 0], part[:, 0], direction)

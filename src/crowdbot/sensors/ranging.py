@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, SpatialPose, check_number, kernel
 
-from .noise import Randomness, disturbed
+from .noise import Randomness, apply_noise
 from .ray_shapes import NOTHING
 from .sensor import Sensor
 
-__all__ = ["Ranging", "ended", "incidence_of", "settled"]
+__all__ = ["Ranging", "apply_limits", "end_points", "incidence_of"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -68,15 +68,15 @@ class Ranging(Sensor):
         check_number(owner, name, getattr(self, name), at_least=1, at_most=MOST_BEAMS, whole=True)
 
     @property
-    def least_facing(self) -> float:
+    def min_cos_incidence(self) -> float:
         """Smallest cosine of the incidence that returns; the limit itself does, whatever the rounding."""
         return math.cos(self.max_incidence) - 1e-12 if self.max_incidence < math.pi / 2 else -2.0
 
 
 @kernel
 def _settle(
-    distance: Floats, measured: Floats, facing: Floats, hit: Ints, part: Ints, least: float, low: float, high: float,
-    step: float, ranges: Floats,
+    distance: Floats, measured: Floats, cos_incidence: Floats, hit: Ints, part: Ints, least: float, low: float,
+    high: float, step: float, ranges: Floats,
 ) -> None:  # fmt: skip
     """Write the readings, and in ``hit`` and ``part`` what they are of."""
     first, last = 0.0, 0.0
@@ -85,7 +85,7 @@ def _settle(
     for e in range(distance.shape[0]):
         for k in range(distance.shape[1]):
             true, value = distance[e, k], measured[e, k]
-            back = true <= high and facing[e, k] >= least and value < np.inf
+            back = true <= high and cos_incidence[e, k] >= least and value < np.inf
             if back and (true < low or value < low):
                 ranges[e, k] = -np.inf
             elif back and value <= high:
@@ -96,24 +96,26 @@ def _settle(
                 part[e, k] = -1
 
 
-def settled(sensor: Ranging, distance: Floats, facing: Floats, hit: Ints, part: Ints, rng: Randomness | None) -> Floats:
+def apply_limits(
+    sensor: Ranging, distance: Floats, cos_incidence: Floats, hit: Ints, part: Ints, rng: Randomness | None
+) -> Floats:
     """Return the readings ``[E, R]`` [m] from true distances; ``hit`` and ``part`` lose what does not return."""
     measured = distance
     if sensor.noises:
-        back = (distance <= sensor.range_max) & (facing >= sensor.least_facing)
-        measured = disturbed(np.where(back, distance, np.inf), sensor.noises, rng)
+        back = (distance <= sensor.range_max) & (cos_incidence >= sensor.min_cos_incidence)
+        measured = apply_noise(np.where(back, distance, np.inf), sensor.noises, rng)
     ranges = np.empty(distance.shape)
-    limits = (sensor.least_facing, float(sensor.range_min), float(sensor.range_max), float(sensor.resolution))
-    _settle(distance, measured, facing, hit, part, *limits, ranges)
+    limits = (sensor.min_cos_incidence, float(sensor.range_min), float(sensor.range_max), float(sensor.resolution))
+    _settle(distance, measured, cos_incidence, hit, part, *limits, ranges)
     return ranges
 
 
-def incidence_of(facing: Floats, hit: Ints) -> Floats:
+def incidence_of(cos_incidence: Floats, hit: Ints) -> Floats:
     """Return angles [rad] between beams and surface normals from their cosines, NaN where nothing returned."""
-    return np.asarray(np.where(hit != NOTHING, np.arccos(np.clip(facing, -1.0, 1.0)), np.nan))
+    return np.asarray(np.where(hit != NOTHING, np.arccos(np.clip(cos_incidence, -1.0, 1.0)), np.nan))
 
 
-def ended(pose: SpatialPose, directions: Floats, ranges: Floats, *, in_world: bool) -> Floats:
+def end_points(pose: SpatialPose, directions: Floats, ranges: Floats, *, in_world: bool) -> Floats:
     """Return where beams ``[..., 3]`` of the sensor's frame ended, ``[E, ..., 3]`` [m], NaN without a finite range."""
     away = np.where(np.isfinite(ranges), ranges, np.nan)
     ends = away[..., None] * directions

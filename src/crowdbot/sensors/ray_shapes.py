@@ -1,4 +1,4 @@
-"""Shapes: what rays can meet in a scene, as one list of rows for the kernel."""
+"""RayShapes: what rays can meet in a scene, as one list of rows for the kernel."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import PERSON_HEIGHT, STAGE, Bodies, InputError, Scene, Skins, SpatialPose, kernel
 from crowdbot.core.rays import BOX, CAPSULE, CYLINDER, TRIANGLE, WALL, WIDTH
 
-__all__ = ["FLOOR", "NOTHING", "PROP", "WALLS", "Shapes", "gathered", "lengthened"]
+__all__ = ["FLOOR", "NOTHING", "PROP", "WALLS", "RayShapes", "collect_shapes", "extend_segments"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -35,7 +35,7 @@ NOBODY = Bodies.of()
 BARE = Skins.of(np.zeros((1, 0, 3)), np.zeros((0, 3)), owner=())
 
 
-class Shapes(NamedTuple):
+class RayShapes(NamedTuple):
     """P shapes in E environments; those of kind ``TRIANGLE`` come first and have no rows of their own.
 
     Fields:
@@ -55,7 +55,7 @@ class Shapes(NamedTuple):
     faces: Ints
 
 
-def gathered(scene: Scene, skins: bool) -> Shapes:
+def collect_shapes(scene: Scene, skins: bool) -> RayShapes:
     """Return everything in ``scene`` that a ray can meet.
 
     Raises:
@@ -94,7 +94,7 @@ def gathered(scene: Scene, skins: bool) -> Shapes:
     if skins:
         sound = np.logical_and.reduce(np.isfinite(skin.vertices), axis=-1)
         present[:, skinned] &= sound[:, skin.faces].all(axis=-1)
-    return Shapes(kind, rows, present, owner, part, skin.vertices, skin.faces)
+    return RayShapes(kind, rows, present, owner, part, skin.vertices, skin.faces)
 
 
 def _seen_as(scene: Scene, bodies: Bodies, skinned: Ints) -> tuple[Ints, Ints]:
@@ -193,7 +193,7 @@ def _write_walls(start: Floats, end: Floats, before: Ints, after: Ints, height: 
                 row[e, m, 9] = np.nan
 
 
-def lengthened(walls: Floats) -> Floats:
+def extend_segments(walls: Floats) -> Floats:
     """Return segments ``[N, 4]`` a little longer at both ends."""
     along = walls[:, 2:] - walls[:, :2]
     along = along * (OVERLAP / np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-300))[:, None]

@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene, SpatialPose
 
 from .depth_camera import pixel_beams
-from .lens import Lens, distorted
-from .noise import Randomness, disturbed
-from .ray_casting import cast
+from .lens import Lens, distort_image
+from .noise import Randomness, apply_noise
+from .ray_casting import cast_rays
 from .ray_shapes import FLOOR, NOTHING, PROP, WALLS
 from .sensor import Reading, Sensor, spatial_pose
 from .view import SensorView
 
-__all__ = ["Picture", "RGBCamera"]
+__all__ = ["RGBCamera", "RgbImage"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -30,7 +30,7 @@ AMBIENT = 0.4
 
 
 @dataclass(frozen=True)
-class Picture(Reading):
+class RgbImage(Reading):
     """A colour image in E environments, rows from the top, columns from the left.
 
     Fields:
@@ -93,7 +93,7 @@ class RGBCamera(Sensor):
         """Intrinsics."""
         return Lens.of(self.width, self.height, self.field_of_view, self.distortion or (0.0,) * 5)
 
-    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Picture, None]:
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[RgbImage, None]:
         """Return the image of the renderer of ``view``, or one by rays if there is no renderer.
 
         Raises:
@@ -108,22 +108,22 @@ class RGBCamera(Sensor):
             rgb = np.asarray(images["rgb"])
             hit = np.asarray(images.get("hit", np.full(rgb.shape[:3], NOTHING)))
             if any(self.distortion):
-                rgb, hit = distorted(rgb, lens), distorted(hit, lens, fill=NOTHING)
+                rgb, hit = distort_image(rgb, lens), distort_image(hit, lens, fill=NOTHING)
         if self.noises:
-            values = disturbed(rgb.astype(np.float64), self.noises, rng)
+            values = apply_noise(rgb.astype(np.float64), self.noises, rng)
             rgb = np.round(np.clip(np.where(np.isfinite(values), values, 0.0), 0.0, 255.0))
-        return Picture(view.time, pose, rgb.astype(np.uint8), hit if self.segmentation else None, lens), None
+        return RgbImage(view.time, pose, rgb.astype(np.uint8), hit if self.segmentation else None, lens), None
 
     def _by_rays(self, scene: Scene, pose: SpatialPose) -> tuple[NDArray[np.uint8], Ints]:
         bundle, ahead = pixel_beams(self.lens)
-        hits = cast(scene, pose, bundle, self.far / float(ahead.min()), skins=False, normals=False)
+        hits = cast_rays(scene, pose, bundle, self.far / float(ahead.min()), skins=False, normals=False)
         depth = hits.distance * ahead
         hit = np.where((depth >= self.near) & (depth <= self.far), hits.hit, NOTHING)
         colors = np.empty((*hit.shape, 3))
         colors[:] = np.array(PEOPLE, dtype=np.float64)[hit % len(PEOPLE)]
         for code, color in COLORS.items():
             colors[hit == code] = color
-        light = np.where(hit == NOTHING, 1.0, AMBIENT + (1.0 - AMBIENT) * hits.facing)
+        light = np.where(hit == NOTHING, 1.0, AMBIENT + (1.0 - AMBIENT) * hits.cos_incidence)
         shape = (scene.shape[0], self.height, self.width)
         shown = np.round(colors * light[..., None]).astype(np.uint8)
         return shown.reshape(*shape, 3), hit.reshape(shape)

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from crowdbot.core import check_number
 
-from .beams import Beams, beams, cone
+from .beams import Beams, cone_directions, sort_beams
 from .noise import Randomness
-from .range_reading import Echo, nearest
+from .range_reading import RangeReading, nearest
 from .ranging import Ranging
 from .view import SensorView
 
@@ -81,7 +81,7 @@ class Ultrasound(Ranging):
         """Largest angle between the axis and a direction in which the zone lies [rad]."""
         return math.atan(0.5 * SLIM * self.radius / self.range_max)
 
-    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Echo, None]:
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[RangeReading, None]:
         """Return the smallest distance; ``rng`` is needed only when there is noise.
 
         Raises:
@@ -95,6 +95,6 @@ class Ultrasound(Ranging):
 @functools.lru_cache(maxsize=64)
 def _bundle(radius: float, length: float, rays: int) -> tuple[Beams, Floats, Floats]:
     half = math.atan(0.5 * SLIM * radius / length)
-    directions = cone(half, rays)
+    directions = cone_directions(half, rays)
     angle = np.arctan2(np.hypot(directions[:, 1], directions[:, 2]), directions[:, 0])
-    return beams(directions), directions, teardrop(np.minimum(angle, half), radius, length)
+    return sort_beams(directions), directions, teardrop(np.minimum(angle, half), radius, length)
