@@ -17,7 +17,7 @@ from crowdbot.sensors import (
     Schedule,
     preset,
 )
-from crowdbot.sensors.lens import pixel_directions, stereo_depth
+from crowdbot.sensors.lens import distort_image, pixel_directions, stereo_depth
 
 BENT = (-0.28, 0.09, 0.0008, -0.0004, -0.01)
 

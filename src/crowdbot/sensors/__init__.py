@@ -1,4 +1,4 @@
-"""Sensors: what a robot can measure of a scene. Contract :class:`Sensor`; noise is a value attached to it."""
+"""Sensors of robots. Contract: :class:`Sensor`; input: :class:`SensorView`; output: a :class:`Reading`."""
 
 from .bumper import Bumper, BumperReading
 from .depth_camera import DepthCamera, DepthImage

@@ -1,4 +1,4 @@
-"""Beams: fixed directions in a sensor's frame, sorted into cells so that a shape is tried on few of them."""
+"""Beams: fixed directions in the sensor frame, sorted into cells to test each shape with few beams."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 PER_CELL = 2.0
-"""Beams of a cell on average."""
+"""Mean number of beams per cell."""
 TURN = 2.0 * math.pi
 
 
@@ -23,10 +23,10 @@ class Beams(NamedTuple):
 
     Fields:
         x, y, z: ``[R]``, sorted by row, then by column.
-        order: ``[R]`` index of each sorted beam among those that were given.
+        order: ``[R]`` index of each sorted beam in the input.
         begin: ``[rows * columns + 1]`` index of the first beam of each cell.
-        low, tall: elevation at which row 0 begins and height of a row [rad].
-        left, wide: azimuth at which column 0 begins and width of a column [rad].
+        low, tall: lower elevation of row 0 and height of a row [rad].
+        left, wide: left azimuth of column 0 and width of a column [rad].
         down, up: tangents of the lowest and the highest elevation, at most 0 and at least 0.
     """
 
@@ -46,7 +46,7 @@ class Beams(NamedTuple):
 
 
 def sort_beams(directions: Floats) -> Beams:
-    """Sort unit vectors ``[R, 3]`` into cells.
+    """Return unit vectors ``[R, 3]`` sorted into cells.
 
     >>> found = sort_beams(unit_vectors(np.linspace(-1.0, 1.0, 81)))
     >>> found.rows, found.columns, found.order[:3].tolist()

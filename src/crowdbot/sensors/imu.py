@@ -1,4 +1,4 @@
-"""An inertial measurement unit: specific force and turn rate from successive poses, with drifting biases."""
+"""An inertial measurement unit (IMU): specific force and turn rate from successive poses, with drifting biases."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ GRAVITY = 9.80665
 
 @dataclass(frozen=True)
 class ImuReading(Reading):
-    """What an inertial unit measured in E environments, in its own frame, and what it needs for the next reading.
+    """The reading of an IMU in E environments, in its own frame.
 
     Fields:
         acceleration: ``[E, 3]`` specific force [m/s^2]; at rest and level it is (0, 0, 9.80665).
         turn_rate: ``[E, 3]`` [rad/s].
-        velocity: ``[E, 3]`` [m/s] in the world since the reading before, NaN at the first.
-        acceleration_bias, turn_bias: ``[E, 3]`` biases at this instant, which no real unit knows.
+        velocity: ``[E, 3]`` mean velocity in the world since the reading before [m/s], NaN at the first. Ground truth.
+        acceleration_bias, turn_bias: ``[E, 3]`` biases at this instant. Ground truth.
     """
 
     acceleration: Floats
@@ -62,17 +62,17 @@ class ImuState:
 
 @dataclass(frozen=True)
 class IMU(Sensor):
-    """An inertial unit with white noise and biases that walk (IEEE Std 952-1997; all of it off by default).
+    """An inertial unit with white noise and random-walk biases (IEEE Std 952-1997; off by default).
 
-    The motion comes from the poses of this and the two readings before: the first two take the unit as not
-    accelerating. What ``noise`` holds acts on all six values after that.
+    The motion is the finite difference of the poses of this and the two previous readings; the first two readings have
+    no acceleration. ``noise`` is added to all six values after that.
 
     Fields:
-        acceleration_noise: density of white noise [m/s^2/sqrt(Hz)].
-        turn_noise: density of white noise [rad/s/sqrt(Hz)].
+        acceleration_noise: white noise density [m/s^2/sqrt(Hz)].
+        turn_noise: white noise density [rad/s/sqrt(Hz)].
         acceleration_walk: random walk of the bias [m/s^2/sqrt(s)]; turn_walk: [rad/s/sqrt(s)].
-        acceleration_offset: standard deviation of the bias at the start [m/s^2]; turn_offset: [rad/s].
-        max_acceleration: largest value shown [m/s^2], 0 for no limit; max_turn_rate: [rad/s].
+        acceleration_offset: standard deviation of the initial bias [m/s^2]; turn_offset: [rad/s].
+        max_acceleration: saturation [m/s^2], 0 for none; max_turn_rate: [rad/s].
 
     Raises:
         InputError: a value is not allowed.

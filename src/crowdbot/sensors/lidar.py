@@ -1,4 +1,4 @@
-"""A planar laser scanner: distances to people and walls along evenly spaced beams."""
+"""A planar laser scanner."""
 
 from __future__ import annotations
 
@@ -116,14 +116,14 @@ def _scan(
 
 @dataclass(frozen=True)
 class Scan(Reading):
-    """One turn of a planar laser scanner in E environments, R beams (infinities as in ROS REP-117).
+    """One scan of a planar laser scanner in E environments, R beams (infinities as in ROS REP-117).
 
     Fields:
-        ranges: ``[E, R]`` [m]; ``+inf`` nothing within reach, ``-inf`` something nearer than the smallest distance.
-        angles: ``[R]`` [rad] in the sensor frame, counter-clockwise, 0 straight ahead.
-        hit: ``[E, R]`` what the beam met: index of an agent, :data:`NOTHING` (-1), :data:`WALL` (-2), :data:`FLOOR`
-            (-3) or :data:`PROP` (-4). Ground truth for labels; no real scanner knows it.
-        cos_incidence: ``[E, R]`` cosine of the angle between beam and surface normal, 1 where nothing was met.
+        ranges: ``[E, R]`` [m]; ``+inf`` beyond the range, ``-inf`` below the smallest range.
+        angles: ``[R]`` [rad] in the sensor frame, counter-clockwise, 0 is forward.
+        hit: ``[E, R]`` object hit by the beam: index of an agent, :data:`NOTHING` (-1), :data:`WALL` (-2),
+            :data:`FLOOR` (-3) or :data:`PROP` (-4). Ground truth.
+        cos_incidence: ``[E, R]`` cosine of the angle between beam and surface normal, 1 without a hit.
         part: ``[E, R]`` index into ``scene.bodies.parts``, -1 where there is none.
     """
 
@@ -135,11 +135,11 @@ class Scan(Reading):
 
     @property
     def incidence(self) -> Floats:
-        """``[E, R]`` angle between beam and surface normal [rad], NaN where nothing returned."""
+        """``[E, R]`` angle between beam and surface normal [rad], NaN without a return."""
         return incidence_of(self.cos_incidence, self.hit)
 
     def points(self) -> Floats:
-        """Return where the beams ended in the world, NaN where there is no finite range.
+        """Return the end points of the beams in the world, NaN without a finite range.
 
         ``[E, R, 2]`` [m] for a planar pose, ``[E, R, 3]`` for one in space.
         """
@@ -151,12 +151,12 @@ class Scan(Reading):
         return np.asarray(ends)
 
     def visible_agents(self, count: int) -> NDArray[np.bool_]:
-        """Return which of ``count`` agents returned at least one beam, ``[E, A]``."""
+        """Return which of ``count`` agents were hit by at least one beam, ``[E, A]``."""
         return visible_agents(self.hit, count)
 
 
 def visible_agents(hit: Indices, count: int) -> NDArray[np.bool_]:
-    """Return which of ``count`` agents are named in ``hit`` ``[E, ...]``, as ``[E, A]``."""
+    """Return which of ``count`` agents occur in ``hit`` ``[E, ...]``, as ``[E, A]``."""
     flat = hit.reshape(len(hit), -1)
     marks = np.zeros((len(hit), count), dtype=np.bool_)
     rows, beams_ = np.nonzero(flat >= 0)
@@ -166,25 +166,24 @@ def visible_agents(hit: Indices, count: int) -> NDArray[np.bool_]:
 
 @dataclass(frozen=True)
 class Lidar2D(Ranging):
-    """A planar laser scanner that takes all beams at one instant.
+    """A planar laser scanner. All beams are measured at the same instant.
 
-    It sees active agents (also those that the crowd does not react to), walls, props and, when tilted, the floor. A
-    beam ends at the first surface; when it meets that at more than ``max_incidence`` it returns nothing. Noise is
-    added to true distances within reach, then the limits decide, then the value is rounded to ``resolution``: a
-    finite range is always between ``range_min`` and ``range_max``. From inside a body or on a wall every beam that
-    meets it has distance 0 and reads ``-inf``.
+    It detects active agents, walls, props and, if tilted, the floor. A beam ends at the first surface; beyond
+    ``max_incidence`` there is no return. Noise is added to true distances within the range, then the limits apply, then
+    the value is rounded to ``resolution``: a finite range is always between ``range_min`` and ``range_max``. Inside a
+    body or on a wall the distance is 0 and the range ``-inf``.
 
-    In a scene without bodies a planar pose looks at discs and walls as from above. Otherwise the beams go through
-    space from the height and tilt of the pose (a planar one is level, at the height of a usual mount).
+    With a planar pose and a scene without bodies, beams meet discs and walls in the plane. Otherwise they go through
+    space, from the height and tilt of the pose (a planar pose is level, at the height of a usual mount).
 
     Fields:
         rays: number of beams R.
-        field_of_view: angle covered [rad], evenly from ``-field_of_view / 2`` to ``+field_of_view / 2`` both included;
-            a full circle begins at -pi and does not repeat its first beam; a single beam looks ahead.
-        range_min, range_max: smallest and largest distance that is measured [m].
-        max_incidence: largest angle between beam and surface normal that returns [rad].
-        resolution: step of the returned distances [m], 0 for none.
-        skins: whether agents that have triangle skins are seen by them and not by their limbs.
+        field_of_view: angle covered [rad], from ``-field_of_view / 2`` to ``+field_of_view / 2``, both included; a full
+            circle starts at -pi and does not repeat its first beam; a single beam points forward.
+        range_min, range_max: smallest and largest measured distance [m].
+        max_incidence: largest angle between beam and surface normal that gives a return [rad].
+        resolution: step of the distances [m], 0 for none.
+        skins: whether triangle skins of agents are used instead of their limbs.
 
     Raises:
         InputError: a value is not allowed.
@@ -212,7 +211,7 @@ class Lidar2D(Ranging):
 
     @property
     def step(self) -> float:
-        """Angle between neighbouring beams [rad]."""
+        """Angle between adjacent beams [rad]."""
         if self.field_of_view >= TURN - 1e-9:
             return TURN / self.rays
         return self.field_of_view / max(1, self.rays - 1)
@@ -225,7 +224,7 @@ class Lidar2D(Ranging):
         return np.asarray(-0.5 * min(self.field_of_view, TURN) + self.step * np.arange(self.rays))
 
     def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Scan, None]:
-        """Return the scan from ``pose``; ``rng`` is needed only when there is noise.
+        """Return the scan from the pose of the view.
 
         Raises:
             InputError: the pose does not fit the scene, or noise lacks a generator.

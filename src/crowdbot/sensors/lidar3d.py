@@ -1,4 +1,4 @@
-"""A laser scanner of space: rings of beams over a partial sphere."""
+"""A three-dimensional laser scanner: rings of beams."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ SIXTEEN_RINGS = tuple(round(math.radians(-15.0 + 2.0 * k), 12) for k in range(16
 
 @dataclass(frozen=True)
 class PointCloud(Reading):
-    """One turn of a laser scanner in E environments, K rings of R beams (infinities as in ROS REP-117).
+    """One scan of a 3-D laser scanner in E environments, K rings of R beams (infinities as in ROS REP-117).
 
     Fields:
-        ranges: ``[E, K, R]`` [m]; ``+inf`` nothing within reach, ``-inf`` something nearer than the smallest distance.
-        elevation: ``[K]`` [rad], positive upward; azimuth: ``[R]`` [rad], counter-clockwise, 0 straight ahead.
-        hit: ``[E, K, R]`` what the beam met, as in :class:`Scan`.
+        ranges: ``[E, K, R]`` [m]; ``+inf`` beyond the range, ``-inf`` below the smallest range.
+        elevation: ``[K]`` [rad], positive upward; azimuth: ``[R]`` [rad], counter-clockwise, 0 is forward.
+        hit: ``[E, K, R]`` object hit by the beam, coded as in :class:`Scan`.
         part: ``[E, K, R]`` index into ``scene.bodies.parts``, -1 where there is none.
-        cos_incidence: ``[E, K, R]`` cosine of the angle between beam and surface normal, 1 where nothing was met.
+        cos_incidence: ``[E, K, R]`` cosine of the angle between beam and surface normal, 1 without a hit.
     """
 
     ranges: Floats
@@ -49,35 +49,35 @@ class PointCloud(Reading):
 
     @property
     def incidence(self) -> Floats:
-        """``[E, K, R]`` angle between beam and surface normal [rad], NaN where nothing returned."""
+        """``[E, K, R]`` angle between beam and surface normal [rad], NaN without a return."""
         return incidence_of(self.cos_incidence, self.hit)
 
     def points(self, *, in_world: bool = False) -> Floats:
-        """Return where the beams ended, ``[E, K, R, 3]`` [m] in the sensor's frame, NaN without a finite range."""
+        """Return the end points of the beams ``[E, K, R, 3]`` [m] in the sensor frame, NaN without a finite range."""
         return end_points(
             spatial_pose(self.pose), unit_vectors(self.azimuth, self.elevation[:, None]), self.ranges, in_world=in_world
         )
 
     def visible_agents(self, count: int) -> NDArray[np.bool_]:
-        """Return which of ``count`` agents returned at least one beam, ``[E, A]``."""
+        """Return which of ``count`` agents were hit by at least one beam, ``[E, A]``."""
         return visible_agents(self.hit, count)
 
 
 @dataclass(frozen=True)
 class Lidar3D(Ranging):
-    """A laser scanner with rings of beams that takes all of them at one instant.
+    """A laser scanner with rings of beams, all measured at the same instant.
 
-    Ranges, incidence and noise are as of :class:`Lidar2D`. A planar pose is level, at the height of a usual mount.
+    Ranges, incidence and noise are those of :class:`Lidar2D`. A planar pose is level, at the height of a usual mount.
 
     Fields:
         elevations: of the rings [rad], K numbers, positive upward.
         columns: number of beams R of a ring.
         azimuth_from, azimuth_to: where a ring begins and ends [rad], both included; a full circle does not repeat
             its first beam.
-        range_min, range_max: smallest and largest distance that is measured [m].
-        max_incidence: largest angle between beam and surface normal that returns [rad].
-        resolution: step of the returned distances [m], 0 for none.
-        skins: whether agents that have triangle skins are seen by them and not by their limbs.
+        range_min, range_max: smallest and largest measured distance [m].
+        max_incidence: largest angle between beam and surface normal that gives a return [rad].
+        resolution: step of the distances [m], 0 for none.
+        skins: whether triangle skins of agents are used instead of their limbs.
 
     Raises:
         InputError: a value is not allowed.

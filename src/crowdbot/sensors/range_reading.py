@@ -1,4 +1,4 @@
-"""The reading of sensors that return one distance: the smallest of what their beams meet."""
+"""The reading of sensors that measure a single distance, the smallest within a zone."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ class RangeReading(Reading):
     """The smallest distance within a zone in E environments (infinities as in ROS REP-117).
 
     Fields:
-        ranges: ``[E]`` [m]; ``+inf`` nothing in the zone, ``-inf`` something nearer than the smallest distance.
-        hit: ``[E]`` what it was: index of an agent or -1 nothing, -2 a wall, -3 the floor, -4 a prop.
+        ranges: ``[E]`` [m]; ``+inf`` nothing in the zone, ``-inf`` below the smallest range.
+        hit: ``[E]`` object: index of an agent, -1 nothing, -2 a wall, -3 the floor, -4 a prop.
         part: ``[E]`` index into ``scene.bodies.parts``, -1 where there is none.
-        direction: ``[E, 3]`` unit vector of the beam in the sensor's frame, NaN for nothing. Ground truth.
+        direction: ``[E, 3]`` unit vector of the beam in the sensor frame, NaN without a return. Ground truth.
     """
 
     ranges: Floats
@@ -46,7 +46,7 @@ def nearest(
     fan: tuple[Beams, Floats, Floats],
     rng: Randomness | None,
 ) -> RangeReading:
-    """Return the smallest return of a bundle: sorted beams, their directions ``[R, 3]`` and lengths ``[R]`` [m]."""
+    """Return the smallest distance of a bundle: sorted beams, their directions ``[R, 3]`` and lengths ``[R]`` [m]."""
     bundle, directions, length = fan
     hits = cast_rays(scene, spatial_pose(pose), bundle, float(length.max()), skins=sensor.skins, normals=False)
     back = (hits.distance <= length) & (hits.cos_incidence >= sensor.min_cos_incidence)

@@ -1,8 +1,8 @@
-"""Rays: where beams from a pose meet limbs, discs, walls, props, skins and the floor.
+"""Ray casting: intersections of beams with limbs, discs, walls, props, skins and the floor.
 
-Everything is brought into the sensor's frame. There each shape covers a window of azimuth and elevation, and only the
-beams of the cells in it are tried, as a picture is drawn with a depth buffer. So the time goes with what is seen and
-hardly with the number of shapes times beams. Environments are independent of each other.
+Shapes are transformed to the sensor frame. There each shape covers a window of azimuth and elevation, and only the
+beams of the cells in this window are tested, as in rasterisation with a depth buffer. The run time depends on the
+visible shapes, hardly on the number of shapes times beams. Environments are independent of each other.
 """
 
 from __future__ import annotations
@@ -339,12 +339,12 @@ def _shared(
 
 @dataclass(frozen=True)
 class RayHits:
-    """What R beams met in E environments.
+    """Intersections of R beams in E environments.
 
     Fields:
-        distance: ``[E, R]`` [m], inf for nothing; 0 when the sensor is inside a shape.
-        cos_incidence: ``[E, R]`` cosine of the angle between beam and surface normal, 1 for nothing.
-        normal: ``[E, R, 3]`` unit normal of the surface in the world, towards the sensor; 0 for nothing.
+        distance: ``[E, R]`` [m], inf without a hit; 0 if the sensor is inside a shape.
+        cos_incidence: ``[E, R]`` cosine of the angle between beam and surface normal, 1 without a hit.
+        normal: ``[E, R, 3]`` unit normal of the surface in the world, towards the sensor; 0 without a hit.
         hit: ``[E, R]`` index of an agent or one of the values of :mod:`crowdbot.sensors.ray_shapes`.
         part: ``[E, R]`` index into ``scene.bodies.parts``, -1 where there is none.
     """
@@ -359,13 +359,13 @@ class RayHits:
 def cast_rays(
     scene: Scene, pose: SpatialPose, beams: Beams, limit: float, *, skins: bool = False, normals: bool = True
 ) -> RayHits:
-    """Return what beams from ``pose`` meet within ``limit`` [m].
+    """Return the first intersections of beams from ``pose`` within ``limit`` [m].
 
-    Agents are seen by their limbs, with ``skins`` by their triangle skins; those that have none are upright
-    cylinders. Absent agents are not seen. Without ``normals`` that array is empty, which saves time.
+    Agents are represented by their limbs, with ``skins`` by their triangle skins, otherwise by upright cylinders.
+    Inactive agents are ignored. Without ``normals`` that array is empty, which saves time.
 
     Raises:
-        InputError: ``skins`` is asked for and the scene has none.
+        InputError: ``skins`` is requested and the scene has none.
 
     >>> from crowdbot.sensors.beams import sort_beams, unit_vectors
     >>> scene, ahead = Scene.of([[3.0, 0.0]], radius=0.5), sort_beams(unit_vectors(np.zeros(1)))

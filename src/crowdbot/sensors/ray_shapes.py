@@ -1,4 +1,4 @@
-"""RayShapes: what rays can meet in a scene, as one list of rows for the kernel."""
+"""RayShapes of a scene as rows for the ray casting kernel."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 NOTHING = -1
-"""Value of ``hit`` where a beam returned nothing."""
+"""Value of ``hit`` without a return."""
 WALLS = -2
-"""Value of ``hit`` where a beam met a wall."""
+"""Value of ``hit`` for a wall."""
 FLOOR = -3
-"""Value of ``hit`` where a beam met the floor."""
+"""Value of ``hit`` for the floor."""
 PROP = -4
-"""Value of ``hit`` where a beam met something of the stage that is neither wall nor floor."""
+"""Value of ``hit`` for an object of the stage that is neither wall nor floor."""
 OVERLAP = 1e-9
-"""Walls are this much longer [m] at both ends, so that rounding lets no beam slip through a corner."""
+"""Walls are extended by this length [m] at both ends, against gaps at corners by rounding."""
 TALLEST = 1e4
-"""Walls without end are this high [m]."""
+"""Height of infinitely high walls [m]."""
 KINDS = (TRIANGLE, CAPSULE, BOX, CYLINDER, CYLINDER, WALL)
 """Order of the shapes: skins, limbs, boxes, posts, agents without limbs, walls."""
 NOBODY = Bodies.of()
@@ -42,7 +42,7 @@ class RayShapes(NamedTuple):
         kind: ``[P]`` as in :mod:`crowdbot.core.rays`.
         rows: ``[E, P, 16]`` in the world.
         present: ``[E, P]``.
-        owner, part: ``[P]`` what a hit is called.
+        owner, part: ``[P]`` labels of a hit.
         vertices, faces: of the triangles, ``[E, V, 3]`` and ``[F, 3]``.
     """
 
@@ -56,10 +56,10 @@ class RayShapes(NamedTuple):
 
 
 def collect_shapes(scene: Scene, skins: bool) -> RayShapes:
-    """Return everything in ``scene`` that a ray can meet.
+    """Return all shapes of ``scene``.
 
     Raises:
-        InputError: ``skins`` is asked for and the scene has none.
+        InputError: ``skins`` is requested and the scene has none.
     """
     bodies = scene.bodies or NOBODY
     if skins and bodies.skins is None:
@@ -194,7 +194,7 @@ def _write_walls(start: Floats, end: Floats, before: Ints, after: Ints, height: 
 
 
 def extend_segments(walls: Floats) -> Floats:
-    """Return segments ``[N, 4]`` a little longer at both ends."""
+    """Return segments ``[N, 4]`` extended at both ends."""
     along = walls[:, 2:] - walls[:, :2]
     along = along * (OVERLAP / np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-300))[:, None]
     return np.ascontiguousarray(np.concatenate([walls[:, :2] - along, walls[:, 2:] + along], axis=1))

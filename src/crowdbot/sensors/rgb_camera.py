@@ -1,4 +1,4 @@
-"""A colour camera: pictures of what somebody draws, or of plain shapes by rays."""
+"""A colour camera: rendered images, or plain shapes by ray casting."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ __all__ = ["RGBCamera", "RgbImage"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 COLORS = {NOTHING: (204, 222, 240), WALLS: (219, 214, 204), FLOOR: (190, 190, 186), PROP: (204, 158, 97)}
-"""What shapes look like without a source of images."""
+"""Colours of shapes without a renderer."""
 PEOPLE = ((196, 78, 82), (76, 114, 176), (85, 168, 104), (129, 114, 178), (221, 132, 82), (100, 181, 205))
 AMBIENT = 0.4
 
@@ -35,7 +35,7 @@ class RgbImage(Reading):
 
     Fields:
         rgb: ``[E, H, W, 3]`` red, green, blue from 0 to 255.
-        hit: ``[E, H, W]`` what the pixel shows, as in :class:`Scan`: the segmentation; None unless it was asked for.
+        hit: ``[E, H, W]`` segmentation, coded as in :class:`Scan`; None unless requested.
         lens: the intrinsics.
     """
 
@@ -46,18 +46,18 @@ class RgbImage(Reading):
 
 @dataclass(frozen=True, kw_only=True)
 class RGBCamera(Sensor):
-    """A colour camera that looks along x of its pose, with z up in the image.
+    """A colour camera. It looks along the x axis of its pose, z is up in the image.
 
-    It shows what an :class:`ImageSource` draws, such as a physics world or its studio, with the distortion of its lens.
-    Without a source it shows the plain shapes of the scene by rays, in one colour each, which needs no graphics.
-    Noise is added to the values from 0 to 255; what a dropout loses is 0.
+    The image comes from the renderer of the view, with the distortion of the lens. Without a renderer, the camera casts
+    rays and shows the shapes of the scene in one colour each, which needs no graphics. Noise is added to the values
+    from 0 to 255; dropouts are 0.
 
     Fields:
-        width, height: of the image [pixels].
+        width, height: size of the image [pixels].
         field_of_view: horizontal [rad]; pixels are square.
         distortion: k1, k2, p1, p2, k3 of the lens; empty for none.
-        near, far: limits of what is shown [m].
-        segmentation: whether the picture also tells what each pixel shows.
+        near, far: clipping distances [m].
+        segmentation: whether the image includes the segmentation.
 
     Raises:
         InputError: a value is not allowed.
