@@ -1,4 +1,4 @@
-"""How a robot got through a crowd: outcome, time, path, proximity, contacts, smoothness. Functions of logs only."""
+"""Navigation metrics of a logged episode: outcome, time, path, proximity, contacts, smoothness."""
 
 from __future__ import annotations
 

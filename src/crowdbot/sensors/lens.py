@@ -137,9 +137,9 @@ def stereo_depth(
     """Return the depth ``[E, ...]`` [m] of a stereo pair with noise and resolution of the disparity.
 
     The disparity is ``focal baseline / depth`` [pixels]. Its noise ``sd`` [pixels] causes a depth error of
-    ``depth^2 sd / (focal baseline)``; its ``step`` [pixels] causes depth steps that grow in the same way (Grunnet-Jepsen
-    et al., Subpixel linearity improvement for RealSense D400, revision 1.3). Infinite depths and disparities of at
-    most 0 give inf.
+    ``depth^2 sd / (focal baseline)``; its ``step`` [pixels] causes depth steps that grow in the same way
+    (Grunnet-Jepsen et al., Subpixel linearity improvement for RealSense D400, revision 1.3). Infinite depths and
+    disparities of at most 0 give inf.
 
     >>> stereo_depth(np.array([[2.0]]), 424.0, 0.05, 0.0, 1.0 / 32.0, None).round(4).tolist()
     [[2.0012]]

@@ -1,4 +1,4 @@
-"""Noise is a value attached to a sensor: what happens to every reading, drawn from a given generator."""
+"""Noise of sensors, as values; random numbers come from a given generator."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ __all__ = ["Dropout", "Gaussian", "Noise", "Offset", "Peak", "Quantised", "Rando
 
 Floats = NDArray[np.float64]
 Randomness = np.random.Generator | Sequence[np.random.Generator]
-"""One generator that serves the environments in turn, or one for each environment (alone = in a batch, bitwise)."""
+"""One generator for all environments, or one for each, which gives the same bits alone and in a batch."""
 
 TERM = re.compile(r"\s*([A-Za-z][\w-]*)\s*\(([^()]*)\)\s*[,+]?")
 
 
 @dataclass(frozen=True)
 class Noise(ABC):
-    """Something that is done to what a sensor measures; several act one after the other as a tuple.
+    """Noise of a sensor. A tuple of them is applied one after the other.
 
     >>> Noise.parse("gaussian(0.01) peak(0.001, 1.0)")
     (Gaussian(sd=0.01), Peak(probability=0.001, height=1.0, sd=0.0))
@@ -32,18 +32,18 @@ class Noise(ABC):
 
     @abstractmethod
     def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
-        """Return what is added to readings of ``shape``, in the unit of the reading."""
+        """Return the error of readings of ``shape``, in the unit of the reading."""
 
-    def applied(self, values: Floats, rng: np.random.Generator) -> Floats:
-        """Return the readings ``values`` with the noise; the number of draws follows from their shape only."""
+    def apply(self, values: Floats, rng: np.random.Generator) -> Floats:
+        """Return ``values`` with the noise; the number of draws depends only on their shape."""
         return values + self.draw(values.shape, rng)
 
     @classmethod
     def parse(cls, text: str) -> tuple[Noise, ...]:
-        """Read noise from text, as it stands in a trial file: ``gaussian(0.01) peak(0.001, 1.0)``.
+        """Parse the text of a trial file, such as ``gaussian(0.01) peak(0.001, 1.0)``.
 
         Raises:
-            InputError: a word is not a known noise, or its numbers do not fit.
+            InputError: a noise is unknown, or its numbers are wrong.
         """
         found: list[Noise] = []
         place = 0
@@ -148,7 +148,7 @@ class Dropout(Noise):
 class Quantised(Noise):
     """Rounding to whole multiples of ``step``, in the unit of the reading; half a step goes to the even multiple.
 
-    >>> Quantised(0.25).applied(np.array([0.3, 0.4]), np.random.default_rng(0)).tolist()
+    >>> Quantised(0.25).apply(np.array([0.3, 0.4]), np.random.default_rng(0)).tolist()
     [0.25, 0.5]
     """
 
@@ -172,7 +172,7 @@ class Quantised(Noise):
         """Return zeros: rounding depends on the reading."""
         return np.zeros(shape)
 
-    def applied(self, values: Floats, rng: np.random.Generator) -> Floats:
+    def apply(self, values: Floats, rng: np.random.Generator) -> Floats:
         """Return the rounded readings; what is infinite stays infinite."""
         return np.round(values / self.step) * self.step
 
@@ -198,7 +198,7 @@ def apply_noise(values: Floats, noise: tuple[Noise, ...], rng: Randomness | None
     result = values.copy()
     for number, generator in enumerate(generators):
         for part in noise:
-            result[number] = part.applied(result[number], generator)
+            result[number] = part.apply(result[number], generator)
     return result
 
 

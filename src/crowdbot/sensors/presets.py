@@ -1,4 +1,4 @@
-"""Sensors that can be bought, as named values, each number with where it is from or marked as assumed."""
+"""Presets of commercial sensors. Each value has a source or is marked as assumed."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from .ultrasound import SLIM, Ultrasound
 __all__ = ["PRESETS", "Preset", "preset"]
 
 ASSUMED = "assumed: "
-"""A source that begins so is no source; the number is a plausible one."""
+"""Prefix of the source of an assumed value."""
 
 
 @dataclass(frozen=True)
 class Preset:
-    """A sensor with the values of a product, and where each is from.
+    """A sensor with the values of a product and their sources.
 
     Fields:
-        sensor: the spec, without noise.
-        noisy: the same with the noise of the product.
-        sources: field of the spec -> where its value is from; ``assumed: ...`` where no source was found.
+        sensor: the sensor without noise.
+        noisy: the sensor with the noise of the product.
+        sources: source of the value of each field; ``assumed: ...`` if no source was found.
     """
 
     sensor: Sensor
@@ -48,7 +48,7 @@ def preset(name: str, *, noisy: bool = False) -> Sensor:
     """Return the sensor of a product.
 
     Raises:
-        UnknownName: there is no product of this name.
+        UnknownName: there is no preset of this name.
 
     >>> preset("hokuyo-utm-30lx").range_max
     30.0

@@ -26,8 +26,8 @@ MOST_BEAMS = 1_000_000
 class Ranging(Sensor):
     """A sensor with the fields ``range_min``, ``range_max``, ``max_incidence``, ``resolution`` and ``skins``.
 
-    A beam ends at the first surface. There is no return beyond ``range_max`` or ``max_incidence``. Noise is added to the
-    true distances, then the limits apply: below ``range_min`` (before or after noise) the range is ``-inf``, above
+    A beam ends at the first surface. There is no return beyond ``range_max`` or ``max_incidence``. Noise is added to
+    the true distances, then the limits apply: below ``range_min`` (before or after noise) the range is ``-inf``, above
     ``range_max`` it is ``+inf`` (ROS REP-117). The result is rounded to ``resolution``, inwards at the limits. Both
     limits are inclusive.
     """
@@ -116,7 +116,7 @@ def incidence_of(cos_incidence: Floats, hit: Ints) -> Floats:
 
 
 def end_points(pose: SpatialPose, directions: Floats, ranges: Floats, *, in_world: bool) -> Floats:
-    """Return the end points ``[E, ..., 3]`` [m] of beams ``[..., 3]`` of the sensor frame, NaN without a finite range."""
+    """Return the end points ``[E, ..., 3]`` [m] of beams ``[..., 3]`` in the sensor frame; NaN without a range."""
     away = np.where(np.isfinite(ranges), ranges, np.nan)
     ends = away[..., None] * directions
     if not in_world:

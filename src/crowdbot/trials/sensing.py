@@ -72,7 +72,8 @@ class Probe:
                 f"sensor {type(self.mount.sensor).__name__} {self.mount.name!r}: measure returned a"
                 f" {type(answer).__name__}; it must return (reading, state)"
             )
-        reading, self.state = answer
+        reading: Reading = answer[0]
+        self.state = answer[1]
         return reading
 
     def pose(self, agent: int, around: Surroundings) -> Pose | SpatialPose:
