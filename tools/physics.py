@@ -12,8 +12,7 @@ from matplotlib.image import imsave
 
 from crowdbot.core import Scene, Twist, stream
 from crowdbot.models import ORCA
-from crowdbot.world import Robot, builtin_robots
-from crowdbot.world.physics import Camera, Cube, PhysicsStage, PhysicsWorld, Table, Tree
+from crowdbot.world import Camera, Cube, PhysicsStage, PhysicsWorld, Robot, Table, Tree, builtin_robots
 
 
 def crowd(robot: Robot, people: int) -> PhysicsWorld:

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from crowdbot.core import Twist
 from crowdbot.models import ORCA
 from crowdbot.navigation import Action, Navigator
-from crowdbot.trials import Goal, Robot, Trial, run_batch
+from crowdbot.simulation import run_batch
+from crowdbot.trials import Goal, Robot, Trial
 from crowdbot.world import DifferentialDrive
 
 

@@ -1,0 +1,37 @@
+"""Let the reference show the ``Fields:`` of a docstring as a table (an extension of griffe, used by mkdocs.yml)."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import griffe
+
+HEADING = re.compile(r"^Fields(?: \((?P<about>[^\n]*)\))?:$", flags=re.M)
+DOCTEST = re.compile(r"(^|\n\n)(>>> (?:.|\n(?!\n))*)(?=\n\n|\n?\Z)")
+ROLE = re.compile(r":[a-z]+:`~?([^`]+)`")
+
+
+class Fields(griffe.Extension):
+    """Turn the house's docstrings into those of Google style."""
+
+    def on_instance(self, *, obj: griffe.Object, **kwargs: Any) -> None:
+        """Rewrite the docstring of one object before it is parsed."""
+        if obj.docstring is not None:
+            obj.docstring.value = google(obj.docstring.value)
+
+
+def google(text: str) -> str:
+    """Return a docstring with ``Attributes:`` for ``Fields:``, plain code for roles, and fenced examples.
+
+    >>> print(google("A thing.\\n\\nFields (arrays over E):\\n    x: ``[E]`` [m].\\n"))
+    A thing.
+    <BLANKLINE>
+    Fields: arrays over E.
+    <BLANKLINE>
+    Attributes:
+        x: ``[E]`` [m].
+    <BLANKLINE>
+    """
+    plain = DOCTEST.sub(r"\1```pycon\n\2\n```", ROLE.sub(r"`\1`", text))
+    return HEADING.sub(lambda m: f"Fields: {m['about']}.\n\nAttributes:" if m["about"] else "Attributes:", plain)

@@ -1,0 +1,163 @@
+"""Write the reference of the site while it is built (a hook of mkdocs, used by mkdocs.yml).
+
+One page for each room with every name of its face, from the docstrings, and one page for each command, from argparse.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import inspect
+import os
+import pkgutil
+from collections.abc import Iterator
+from types import ModuleType
+from typing import Any
+
+from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.structure.files import File, Files
+
+import crowdbot
+from crowdbot.cli import COMMANDS
+
+API, CLI = "reference/api", "reference/cli"
+
+
+def on_config(config: MkDocsConfig) -> MkDocsConfig:
+    """Add the pages to the section "Reference"."""
+    assert config.nav is not None
+    reference = next(section["Reference"] for section in config.nav if "Reference" in section)
+    rooms = [{_title(room): f"{API}/{_title(room)}.md"} for room in faces()]
+    commands = [{name: f"{CLI}/{name}.md"} for name in COMMANDS]
+    reference += [
+        {"Command line": [f"{CLI}/index.md", *commands]},
+        {"Python": [f"{API}/index.md", *rooms]},
+    ]
+    return config
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add the generated files."""
+    pages = {f"{API}/index.md": front_door(), f"{CLI}/index.md": all_commands()}
+    pages |= {f"{API}/{_title(room)}.md": face(room) for room in faces()}
+    pages |= {f"{CLI}/{name}.md": command(name) for name in COMMANDS}
+    for path, text in pages.items():
+        files.append(File.generated(config, path, content=text))
+    return files
+
+
+def faces() -> list[ModuleType]:
+    """Return every package that lists public names, the room before what is in it."""
+    names = [m.name for m in pkgutil.walk_packages(crowdbot.__path__, "crowdbot.") if m.ispkg]
+    modules = [importlib.import_module(name) for name in names if ".assets" not in name and name != "crowdbot.cli"]
+    return [module for module in modules if getattr(module, "__all__", ())]
+
+
+def face(module: ModuleType) -> str:
+    """Return the page of one room: its sentence, then its classes, functions and constants."""
+    groups: dict[str, list[str]] = {"Classes": [], "Functions": [], "Constants": []}
+    for name in sorted(module.__all__, key=str.lower):
+        groups[_group(getattr(module, name))].append(name)
+    lines = [f"# {module.__name__}", "", inspect.cleandoc(module.__doc__ or ""), ""]
+    for title, names in groups.items():
+        if names:
+            lines += [f"**{title}**: " + ", ".join(f"[`{n}`][{module.__name__}.{n}]" for n in names), ""]
+    for names in groups.values():
+        for name in names:
+            lines += [f"::: {module.__name__}.{name}", ""]
+    return "\n".join(lines)
+
+
+def front_door() -> str:
+    """Return the page of ``crowdbot`` itself: what it offers, and the rooms."""
+    lines = [
+        "# Python reference",
+        "",
+        "`import crowdbot as cb` gives the names below; each is loaded on first use.",
+        "",
+        "| name | from | |",
+        "|---|---|---|",
+    ]
+    for name in sorted((n for n in crowdbot.__all__ if not n.startswith("_")), key=str.lower):
+        thing = getattr(crowdbot, name)
+        room = ".".join(thing.__module__.split(".")[:2])
+        known = name in getattr(importlib.import_module(room), "__all__", ())
+        link = f"[`cb.{name}`][{room}.{name}]" if known else f"`cb.{name}`"
+        lines.append(f"| {link} | `{room}` | {_sentence(thing)} |")
+    lines += ["", "## Rooms", "", "| package | |", "|---|---|"]
+    lines += [f"| [`{room.__name__}`]({_title(room)}.md) | {_sentence(room)} |" for room in faces()]
+    return "\n".join(lines) + "\n"
+
+
+def all_commands() -> str:
+    """Return the page that lists the commands."""
+    lines = [
+        "# Command line",
+        "",
+        "`crowdbot COMMAND --help` prints the same. The exit status is 0 when a command is done, 1 when a check",
+        "failed, 2 when the input is wrong, and 130 after Ctrl-C.",
+        "",
+        "| command | |",
+        "|---|---|",
+    ]
+    lines += [f"| [`crowdbot {name}`]({name}.md) | {line[0].upper()}{line[1:]}. |" for name, line in COMMANDS.items()]
+    return "\n".join(lines) + "\n"
+
+
+def command(name: str) -> str:
+    """Return the page of one command and of its own commands, such as ``crowdbot experiment run``."""
+    line = COMMANDS[name]
+    os.environ["COLUMNS"] = "100"
+    parser = argparse.ArgumentParser(prog=f"crowdbot {name}", description=f"{line[0].upper()}{line[1:]}.")
+    importlib.import_module(f"crowdbot.cli.{name}").arguments(parser)
+    return "\n".join([f"# crowdbot {name}", "", *_sections(parser)]) + "\n"
+
+
+def _sections(parser: argparse.ArgumentParser) -> Iterator[str]:
+    """Yield what one parser says: a sentence, its usage, a table of arguments, then its own commands."""
+    yield from ([parser.description, ""] if parser.description else [])
+    yield from ["```text", parser.format_usage().removeprefix("usage: ").rstrip(), "```", ""]
+    below: list[argparse._SubParsersAction[Any]] = []
+    for group in parser._action_groups:
+        actions = [a for a in group._group_actions if a.help != argparse.SUPPRESS and a.dest != "help"]
+        below += [a for a in actions if isinstance(a, argparse._SubParsersAction)]
+        rows = [a for a in actions if not isinstance(a, argparse._SubParsersAction)]
+        if rows:
+            yield from [f"**{(group.title or 'options').capitalize()}**", "", "| | |", "|---|---|"]
+            yield from (f"| {_words(action)} | {_help(parser, action)} |" for action in rows)
+            yield ""
+    for action in below:
+        for child, own in action.choices.items():
+            yield from [f"## {parser.prog} {child}", "", *_sections(own)]
+    if parser.epilog:
+        yield from [parser.epilog, ""]
+
+
+def _words(action: argparse.Action) -> str:
+    value = action.metavar or (action.dest.upper() if action.nargs != 0 else "")
+    value = value if isinstance(value, str) else " ".join(value)
+    if not action.option_strings:
+        return f"`{value}`"
+    return ", ".join(
+        f"`{option}{' ' + value if value and action.nargs != 0 else ''}`" for option in action.option_strings
+    )
+
+
+def _help(parser: argparse.ArgumentParser, action: argparse.Action) -> str:
+    text = (action.help or "") % {**vars(action), "prog": parser.prog}
+    return text[:1].upper() + text[1:].replace("|", "\\|")
+
+
+def _group(thing: Any) -> str:
+    if inspect.isclass(thing):
+        return "Classes"
+    return "Functions" if callable(thing) else "Constants"
+
+
+def _sentence(thing: Any) -> str:
+    text = (inspect.getdoc(thing) or "").split("\n\n")[0].replace("\n", " ").replace("|", "\\|")
+    return text.replace("``", "`")
+
+
+def _title(module: ModuleType) -> str:
+    return module.__name__.removeprefix("crowdbot.")
