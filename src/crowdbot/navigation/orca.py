@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from crowdbot import models
 from crowdbot.core import InputError, Paper, Scene, Twist, check_number
 
+from .dynamic_window import reachable
 from .navigator import Navigator
 from .observation import SLOWING_TIME, Observation
-from .reachable import reachable
 
 __all__ = ["ORCA"]
 

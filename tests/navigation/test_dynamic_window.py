@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core import Twist, Walls, stream
 from crowdbot.navigation import Caution, Limits, Observation, People, reachable
-from crowdbot.navigation.reachable import MATCH, STEP, WINDOW, _cost, _people, _Start, _walls
+from crowdbot.navigation.dynamic_window import MATCH, STEP, WINDOW, _cost, _people, _Start, _walls
 
 LIMITS = Limits(1.0, 1.5, 1.0, 3.0)
 few = settings(max_examples=40, deadline=None)
