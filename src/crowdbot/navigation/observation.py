@@ -1,4 +1,4 @@
-"""What a robot knows when its navigator decides."""
+"""Input of navigators: the state of the robot, the visible people and the stage."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ __all__ = ["Limits", "Observation", "People"]
 Floats = NDArray[np.float64]
 
 TURN_GAIN = 3.0
-"""Turn rate [rad/s] asked for each rad of error in direction."""
+"""Turn rate [rad/s] per rad of heading error."""
 SLOWING_TIME = 0.5
-"""Near the goal the speed is at most the distance over this time [s]."""
+"""Near the goal the speed is limited to the distance over this time [s]."""
 
 
 class Limits(NamedTuple):
-    """What a robot's drive can do; an acceleration that nobody knows is ``inf``."""
+    """Limits of a drive; unknown accelerations are ``inf``."""
 
     max_speed: float
     """[m/s]"""
@@ -37,7 +37,7 @@ class Limits(NamedTuple):
 
 @dataclass(frozen=True)
 class People:
-    """The people that a robot sees.
+    """The people visible to a robot.
 
     Fields:
         position: ``[N, 2]`` [m].
@@ -51,28 +51,28 @@ class People:
 
     @classmethod
     def none(cls) -> People:
-        """Return nobody."""
+        """Return no people."""
         return cls(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0))
 
     def __len__(self) -> int:
-        """Return how many there are."""
+        """Return the number of people."""
         return len(self.radius)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Observation:
-    """What one robot in one environment knows when it decides.
+    """Input of a decision of one robot in one environment.
 
     Fields:
         pose: x, y [m] and heading [rad] of the robot.
         goal: x, y [m].
-        radius: of the robot [m].
-        limits: of its drive.
-        twist: how it moves now.
-        people: those its sensors see, other robots among them.
-        walls: of the stage.
-        scan: latest reading of its sensor, None when it has none.
-        dt: time until it is asked again [s].
+        radius: radius of the robot [m].
+        limits: limits of the drive.
+        twist: current velocity.
+        people: visible people and other robots.
+        walls: walls of the stage.
+        scan: latest scan of its first laser scanner, or None.
+        dt: time until the next decision [s].
         time: simulated time [s].
 
     Raises:
@@ -116,18 +116,18 @@ class Observation:
         scan: Reading | None = None,
         environment: int = 0,
     ) -> Observation:
-        """Return what a robot of a scene knows, with the true state of the people it sees.
+        """Return the observation of a robot in a scene, with the true state of the visible people.
 
         Args:
-            scene: now; the robot's goal stands in it.
-            robot: its index.
-            limits: of its drive.
-            dt: time until it is asked again [s].
-            twist: how it moves; by default from its velocity, not turning.
-            seen: ``[A]`` who is seen, for instance ``scan.visible_agents(A)[0]``; by default everyone.
-            sight: nobody farther than this is seen, from centre to centre [m].
-            scan: handed on.
-            environment: which one.
+            scene: current scene with the goal of the robot.
+            robot: index of the robot.
+            limits: limits of its drive.
+            dt: time until the next decision [s].
+            twist: current twist; by default from its velocity, without rotation.
+            seen: ``[A]`` visible agents, such as ``scan.visible_agents(A)[0]``; default all.
+            sight: largest distance of visible agents, centre to centre [m].
+            scan: latest scan.
+            environment: index of the environment.
         """
         e = environment
         place, heading = scene.position[e, robot], float(scene.heading[e, robot])
@@ -153,17 +153,17 @@ class Observation:
 
     @property
     def position(self) -> Floats:
-        """Where the robot is, ``[2]`` [m]."""
+        """Position of the robot, ``[2]`` [m]."""
         return np.array(self.pose[:2], dtype=np.float64)
 
     @property
     def heading(self) -> float:
-        """Where it looks [rad]."""
+        """Heading of the robot [rad]."""
         return self.pose[2]
 
     @property
     def velocity(self) -> Floats:
-        """How it moves in the world, ``[2]`` [m/s]."""
+        """Velocity in the world, ``[2]`` [m/s]."""
         cos, sin = math.cos(self.heading), math.sin(self.heading)
         forward, left = self.twist.forward, self.twist.left
         return np.array([cos * forward - sin * left, sin * forward + cos * left])
@@ -188,28 +188,27 @@ class Observation:
 
     @property
     def nearest(self) -> float:
-        """Clearance to the nearest person [m], ``inf`` when nobody is seen."""
+        """Clearance to the nearest person [m], ``inf`` without people."""
         return float(np.min(self.clearances, initial=math.inf))
 
     def towards_goal(self, speed: float) -> Twist:
         """Return the twist straight to the goal at up to ``speed`` [m/s].
 
-        It turns on the spot while the goal lies more than 60 degrees aside, and slows near the goal so that the drive
-        can stop there.
+        It turns on the spot if the bearing of the goal is above 60 degrees, and slows down to stop at the goal.
         """
         ahead = max(0.0, 2.0 * math.cos(self.bearing) - 1.0)
         top = min(speed, self.limits.max_speed, self.distance / SLOWING_TIME, self.braking_speed(self.distance))
         return Twist(top * ahead, self.turn_by(self.bearing))
 
     def turn_by(self, angle: float) -> float:
-        """Return the turn rate [rad/s] that turns the robot by ``angle`` [rad], soon and without overshoot."""
+        """Return the turn rate [rad/s] that turns the robot by ``angle`` [rad] quickly and without overshoot."""
         size = min(TURN_GAIN * abs(angle), self.limits.max_turn_rate)
         if math.isfinite(self.limits.max_turn_acceleration):
             size = min(size, math.sqrt(1.6 * self.limits.max_turn_acceleration * abs(angle)))
         return math.copysign(size, angle)
 
     def braking_speed(self, distance: float) -> float:
-        """Return the speed [m/s] from which the drive can stop within ``distance`` [m], with a fifth in reserve."""
+        """Return the speed [m/s] from which the drive stops within ``distance`` [m], with 20 % reserve."""
         if math.isinf(self.limits.max_acceleration):
             return math.inf
         return math.sqrt(1.6 * self.limits.max_acceleration * max(0.0, distance))

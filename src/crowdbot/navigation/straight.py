@@ -1,4 +1,4 @@
-"""The simplest navigator: straight to the goal, whoever is in the way."""
+"""A navigator that drives straight to the goal."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ __all__ = ["Straight"]
 
 @dataclass(frozen=True)
 class Straight(Navigator):
-    """Goes straight to the goal, blind to people and walls: the lower end of every comparison.
+    """Drives straight to the goal and ignores people and walls; a baseline for comparisons.
 
-    It turns on the spot while the goal lies aside or behind, and slows near the goal.
+    It turns on the spot if the goal is beside or behind the robot, and slows down near the goal.
 
     Fields:
-        speed: [m/s], cut to what the drive can do.
+        speed: largest speed [m/s], limited by the drive.
 
     Raises:
         InputError: the speed is not finite or not above 0.
