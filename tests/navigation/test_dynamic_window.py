@@ -8,16 +8,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import Twist, Walls, stream
-from crowdbot.navigation import Limits, Observation, People, WindowCosts, dynamic_window_twist
+from crowdbot.navigation import DriveLimits, Observation, VisiblePeople, WindowCosts, dynamic_window_twist
 from crowdbot.navigation.dynamic_window import MATCH, STEP, WINDOW, _cost, _people, _Start, _walls
 
-LIMITS = Limits(1.0, 1.5, 1.0, 3.0)
+LIMITS = DriveLimits(1.0, 1.5, 1.0, 3.0)
 few = settings(max_examples=40, deadline=None)
 
 
 def observed(seed, count=6, twist=None):
     rng = stream(seed, "window")
-    people = People(
+    people = VisiblePeople(
         rng.uniform(-3, 3, (count, 2)) + [2.0, 0.0], rng.normal(0, 1, (count, 2)), rng.uniform(0.2, 0.4, count)
     )
     return Observation(
@@ -78,7 +78,7 @@ def test_the_cost_is_that_of_the_slow_twin(seed, forward, turn, x, y):
 def test_a_contact_costs_the_more_the_sooner():
     costs = []
     for away in (0.8, 1.0, 1.3, 4.0):
-        person = People(np.array([[away, 0.0]]), np.zeros((1, 2)), np.array([0.3]))
+        person = VisiblePeople(np.array([[away, 0.0]]), np.zeros((1, 2)), np.array([0.3]))
         seen = Observation(pose=(0, 0, 0), goal=(9, 0), radius=0.3, limits=LIMITS, dt=0.1, people=person)
         start = _Start(0.0, 1.0, 0.0, 0.3, STEP, 3.0 * STEP)
         costs.append(_cost(1.0, 0.0, start, np.array([1.0, 0.0]), _people(seen), _walls(seen), WindowCosts()))
@@ -115,7 +115,7 @@ def test_it_stops_for_a_wall_and_never_drives_into_it():
     walls = Walls.of([[(1.5, -9.0), (1.5, 9.0)]])
     x, speed = 0.0, 0.0
     for _ in range(100):
-        seen = clear(pose=(x, 0.0, 0.0), twist=Twist(speed), walls=walls, limits=Limits(1.0, 1e-6, 1.0, 3.0))
+        seen = clear(pose=(x, 0.0, 0.0), twist=Twist(speed), walls=walls, limits=DriveLimits(1.0, 1e-6, 1.0, 3.0))
         wanted = dynamic_window_twist(seen, (1.0, 0.0), speed=1.0).forward
         speed += float(np.clip(wanted - speed, -0.1, 0.1))
         x += speed * 0.1
@@ -124,7 +124,7 @@ def test_it_stops_for_a_wall_and_never_drives_into_it():
 
 
 def test_with_unknown_accelerations_it_works_too():
-    twist = dynamic_window_twist(clear(limits=Limits(1.0, 2.0)), (1.0, 0.0), speed=1.0)
+    twist = dynamic_window_twist(clear(limits=DriveLimits(1.0, 2.0)), (1.0, 0.0), speed=1.0)
     assert twist == Twist(1.0, 0.0, 0.0)
 
 

@@ -3,18 +3,18 @@
 from .action import Action
 from .dynamic_window import WindowCosts, dynamic_window_twist
 from .navigator import Navigator
-from .observation import Limits, Observation, People
+from .observation import DriveLimits, Observation, VisiblePeople
 from .orca import ORCA
 from .straight import Straight
 
 __all__ = [
     "ORCA",
     "Action",
-    "Limits",
+    "DriveLimits",
     "Navigator",
     "Observation",
-    "People",
     "Straight",
+    "VisiblePeople",
     "WindowCosts",
     "dynamic_window_twist",
 ]

@@ -129,8 +129,8 @@ def dynamic_window_twist(
         speed: largest speed [m/s].
         caution: weights of the cost.
 
-    >>> from crowdbot.navigation import Limits
-    >>> limits = Limits(max_speed=1.0, max_turn_rate=2.0, max_acceleration=1.0, max_turn_acceleration=3.0)
+    >>> from crowdbot.navigation import DriveLimits
+    >>> limits = DriveLimits(max_speed=1.0, max_turn_rate=2.0, max_acceleration=1.0, max_turn_acceleration=3.0)
     >>> still = Observation(pose=(0.0, 0.0, 0.0), goal=(9.0, 0.0), radius=0.3, limits=limits, dt=0.1)
     >>> dynamic_window_twist(still, (1.0, 0.0), speed=1.0)
     Twist(forward=0.5, turn=0.0, left=0.0)

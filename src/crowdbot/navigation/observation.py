@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene, Twist, Walls, wrap
 from crowdbot.sensors import Reading
 
-__all__ = ["Limits", "Observation", "People"]
+__all__ = ["DriveLimits", "Observation", "VisiblePeople"]
 
 Floats = NDArray[np.float64]
 
@@ -22,8 +22,8 @@ SLOWING_TIME = 0.5
 """Near the goal the speed is limited to the distance over this time [s]."""
 
 
-class Limits(NamedTuple):
-    """Limits of a drive; unknown accelerations are ``inf``."""
+class DriveLimits(NamedTuple):
+    """DriveLimits of a drive; unknown accelerations are ``inf``."""
 
     max_speed: float
     """[m/s]"""
@@ -36,7 +36,7 @@ class Limits(NamedTuple):
 
 
 @dataclass(frozen=True)
-class People:
+class VisiblePeople:
     """The people visible to a robot.
 
     Fields:
@@ -50,7 +50,7 @@ class People:
     radius: Floats
 
     @classmethod
-    def none(cls) -> People:
+    def none(cls) -> VisiblePeople:
         """Return no people."""
         return cls(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0))
 
@@ -78,7 +78,7 @@ class Observation:
     Raises:
         InputError: a number is not finite or a radius, limit or ``dt`` is not above 0.
 
-    >>> here = Observation(pose=(0.0, 0.0, 0.0), goal=(4.0, 0.0), radius=0.3, limits=Limits(1.0, 2.0), dt=0.1)
+    >>> here = Observation(pose=(0.0, 0.0, 0.0), goal=(4.0, 0.0), radius=0.3, limits=DriveLimits(1.0, 2.0), dt=0.1)
     >>> here.nearest, here.distance, here.towards_goal(0.8)
     (inf, 4.0, Twist(forward=0.8, turn=0.0, left=0.0))
     """
@@ -86,10 +86,10 @@ class Observation:
     pose: tuple[float, float, float]
     goal: tuple[float, float]
     radius: float
-    limits: Limits
+    limits: DriveLimits
     dt: float
     twist: Twist = field(default_factory=Twist)
-    people: People = field(default_factory=People.none)
+    people: VisiblePeople = field(default_factory=VisiblePeople.none)
     walls: Walls = field(default_factory=Walls.of)
     scan: Reading | None = None
     time: float = 0.0
@@ -98,7 +98,11 @@ class Observation:
         for name, values in (("pose", self.pose), ("goal", self.goal), ("twist", self.twist)):
             if not all(math.isfinite(value) for value in values):
                 raise InputError(f"observation: {name} = {tuple(map(float, values))} is not finite")
-        for name, value in (("radius", self.radius), ("dt", self.dt), *zip(Limits._fields, self.limits, strict=True)):
+        for name, value in (
+            ("radius", self.radius),
+            ("dt", self.dt),
+            *zip(DriveLimits._fields, self.limits, strict=True),
+        ):
             if not value > 0.0:
                 raise InputError(f"observation: {name} = {value} must be above 0")
 
@@ -107,7 +111,7 @@ class Observation:
         cls,
         scene: Scene,
         robot: int,
-        limits: Limits,
+        limits: DriveLimits,
         *,
         dt: float,
         twist: Twist | None = None,
@@ -145,7 +149,7 @@ class Observation:
             limits=limits,
             dt=dt,
             twist=twist,
-            people=People(scene.position[e, chosen], scene.velocity[e, chosen], scene.radius[e, chosen]),
+            people=VisiblePeople(scene.position[e, chosen], scene.velocity[e, chosen], scene.radius[e, chosen]),
             walls=scene.walls,
             scan=scan,
             time=scene.time,

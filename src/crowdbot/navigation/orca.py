@@ -51,10 +51,10 @@ class ORCA(Navigator):
         InputError: a number is out of its range.
 
     >>> import numpy as np
-    >>> from crowdbot.navigation import Limits, People
-    >>> person = People(np.array([[3.0, 0.1]]), np.array([[-1.0, 0.0]]), np.array([0.25]))
+    >>> from crowdbot.navigation import DriveLimits, VisiblePeople
+    >>> person = VisiblePeople(np.array([[3.0, 0.1]]), np.array([[-1.0, 0.0]]), np.array([0.25]))
     >>> meeting = Observation(
-    ...     pose=(0.0, 0.0, 0.0), goal=(9.0, 0.0), radius=0.3, limits=Limits(1.0, 2.0), dt=0.1, people=person
+    ...     pose=(0.0, 0.0, 0.0), goal=(9.0, 0.0), radius=0.3, limits=DriveLimits(1.0, 2.0), dt=0.1, people=person
     ... )
     >>> ORCA().act(meeting).turn < 0.0
     True

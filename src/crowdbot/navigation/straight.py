@@ -24,8 +24,8 @@ class Straight(Navigator):
     Raises:
         InputError: the speed is not finite or not above 0.
 
-    >>> from crowdbot.navigation import Limits
-    >>> behind = Observation(pose=(0.0, 0.0, 0.0), goal=(-4.0, 0.1), radius=0.3, limits=Limits(1.0, 2.0), dt=0.1)
+    >>> from crowdbot.navigation import DriveLimits
+    >>> behind = Observation(pose=(0.0, 0.0, 0.0), goal=(-4.0, 0.1), radius=0.3, limits=DriveLimits(1.0, 2.0), dt=0.1)
     >>> Straight().act(behind)
     Twist(forward=0.0, turn=2.0, left=0.0)
     """

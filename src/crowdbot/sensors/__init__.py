@@ -10,11 +10,11 @@ from .lidar import Lidar2D, Scan
 from .lidar3d import Lidar3D, PointCloud
 from .noise import Dropout, Gaussian, Noise, Offset, Peak, Quantised, apply_noise
 from .odometry import Odometry, OdometryState, WheelOdometry
-from .presets import PRESETS, Preset, preset
+from .presets import PRESETS, SensorPreset, preset
 from .range_reading import RangeReading
 from .ray_shapes import FLOOR, NOTHING, PROP, WALLS
 from .rgb_camera import RGBCamera, RgbImage
-from .schedule import Schedule
+from .schedule import SensorSchedule
 from .sensor import Reading, Sensor, planar_pose, spatial_pose
 from .ultrasound import Ultrasound
 from .view import SensorView
@@ -46,15 +46,15 @@ __all__ = [
     "Offset",
     "Peak",
     "PointCloud",
-    "Preset",
     "Quantised",
     "RGBCamera",
     "RangeReading",
     "Reading",
     "RgbImage",
     "Scan",
-    "Schedule",
     "Sensor",
+    "SensorPreset",
+    "SensorSchedule",
     "SensorView",
     "TrackedPeople",
     "Ultrasound",

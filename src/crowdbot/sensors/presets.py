@@ -18,14 +18,14 @@ from .noise import Gaussian
 from .sensor import Sensor
 from .ultrasound import SLIM, Ultrasound
 
-__all__ = ["PRESETS", "Preset", "preset"]
+__all__ = ["PRESETS", "SensorPreset", "preset"]
 
 ASSUMED = "assumed: "
 """Prefix of the source of an assumed value."""
 
 
 @dataclass(frozen=True)
-class Preset:
+class SensorPreset:
     """A sensor with the values of a product and their sources.
 
     Fields:
@@ -58,9 +58,9 @@ def preset(name: str, *, noisy: bool = False) -> Sensor:
     return PRESETS[name].noisy if noisy else PRESETS[name].sensor
 
 
-def _made(sensor: Sensor, sources: dict[str, str], noise: float = 0.0, **stereo: Any) -> Preset:
+def _made(sensor: Sensor, sources: dict[str, str], noise: float = 0.0, **stereo: Any) -> SensorPreset:
     changes: dict[str, Any] = stereo or {"noise": Gaussian(noise) if noise else ()}
-    return Preset(sensor, replace(sensor, **changes), MappingProxyType(sources))
+    return SensorPreset(sensor, replace(sensor, **changes), MappingProxyType(sources))
 
 
 SCIP = "Hokuyo, Communication protocol specification for SCIP 2.0, C-42-03320B"
@@ -240,5 +240,5 @@ _PRESETS = {
         },
     ),
 }
-PRESETS: Mapping[str, Preset] = MappingProxyType(_PRESETS)
+PRESETS: Mapping[str, SensorPreset] = MappingProxyType(_PRESETS)
 """Name -> product."""

@@ -8,16 +8,16 @@ from crowdbot.core import Clock, InputError
 
 from .sensor import Sensor
 
-__all__ = ["Schedule"]
+__all__ = ["SensorSchedule"]
 
 
 @dataclass(frozen=True)
-class Schedule:
-    """Schedule of a sensor: it measures at every ``every``-th tick; readings arrive ``late`` ticks later.
+class SensorSchedule:
+    """SensorSchedule of a sensor: it measures at every ``every``-th tick; readings arrive ``late`` ticks later.
 
     >>> from crowdbot.core import FreeClock
     >>> from crowdbot.sensors import Lidar2D
-    >>> plan = Schedule.of(Lidar2D(rate=10.0, delay=0.05), FreeClock(0.05))
+    >>> plan = SensorSchedule.of(Lidar2D(rate=10.0, delay=0.05), FreeClock(0.05))
     >>> [tick for tick in range(6) if plan.measures(tick)], plan.arrives(2)
     ([0, 2, 4], 3)
     """
@@ -26,7 +26,7 @@ class Schedule:
     late: int
 
     @classmethod
-    def of(cls, sensor: Sensor, clock: Clock) -> Schedule:
+    def of(cls, sensor: Sensor, clock: Clock) -> SensorSchedule:
         """Return the schedule of ``sensor``.
 
         Raises:

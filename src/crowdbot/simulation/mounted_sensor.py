@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from crowdbot.core import Clock, InputError, Pose, SpatialPose, stream
 from crowdbot.sensors import (
     Reading,
-    Schedule,
+    SensorSchedule,
     SensorView,
     TrackedPeople,
 )
@@ -51,7 +51,7 @@ class Probe:
 
     mount: Mount
     placed: tuple[float, float, float, float, float, float]
-    schedule: Schedule
+    schedule: SensorSchedule
     rng: np.random.Generator
     space: bool
     state: Any

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from crowdbot.core import Clock, InputError, Scene, TrialError, Twist
 from crowdbot.metrics import wall_clearance
 from crowdbot.metrics.contacts import HOLD
-from crowdbot.navigation import Limits, Observation
+from crowdbot.navigation import DriveLimits, Observation
 from crowdbot.sensors import Reading, Scan
 from crowdbot.trials import Mount, Robot, Trial, cast_of, place
 from crowdbot.world import CommandDelay, Pending, Stepping, Twists, alone
@@ -96,7 +96,7 @@ class Carrier:
 
     robot: Robot
     agent: int
-    limits: Limits
+    limits: DriveLimits
     control_every: int
     probes: tuple[Probe, ...]
     readings: dict[str, Reading] = field(default_factory=dict)
