@@ -73,8 +73,8 @@ class ORCA(Navigator):
 
     def __post_init__(self) -> None:
         for name, unit in UNITS.items():
-            check_number("navigator ORCA", name, getattr(self, name), unit, above=0.0)
-        check_number("navigator ORCA", "safety", self.safety, "m", at_least=0.0)
+            check_number("navigator ORCA", name, getattr(self, name), unit, exclusive_min=0.0)
+        check_number("navigator ORCA", "safety", self.safety, "m", min=0.0)
         if self.share not in (0.5, 1.0):
             raise InputError(f"navigator ORCA: share = {self.share} must be 0.5 or 1")
 

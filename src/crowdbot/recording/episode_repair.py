@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from crowdbot.core import EpisodeError, Walls
-from crowdbot.data import MAGIC, Tape, TapeError, is_whole
+from crowdbot.data import MCAP_MAGIC, McapError, McapReader, has_summary
 from crowdbot.metrics import NavigationMetrics
 from crowdbot.simulation import robot_metrics
 
@@ -87,13 +87,13 @@ def repair(path: Path | str) -> float | None:
     path = Path(path)
     try:
         with path.open("r+b") as stream:
-            if is_whole(stream):
+            if has_summary(stream):
                 return None
             stream.seek(0)
-            if stream.read(len(MAGIC)) != MAGIC:
+            if stream.read(len(MCAP_MAGIC)) != MCAP_MAGIC:
                 raise EpisodeError(f"{path} is not an MCAP file")
             stream.seek(0)
-            tape, ending = Tape(stream), None
+            tape, ending = McapReader(stream), None
             for moment in read_moments(tape):
                 ending = ending or Ending(tape.metadata.get(METADATA, {}))
                 ending.take(moment)
@@ -104,7 +104,7 @@ def repair(path: Path | str) -> float | None:
             return ending.last.time
     except OSError as error:
         raise EpisodeError(f"{path} cannot be repaired: {error.strerror}") from None
-    except (TapeError, KeyError, ValueError, IndexError, AttributeError) as error:
+    except (McapError, KeyError, ValueError, IndexError, AttributeError) as error:
         if isinstance(error, EpisodeError):
             raise
         raise EpisodeError(f"{path} is damaged: {type(error).__name__}: {str(error)[:80]}") from error

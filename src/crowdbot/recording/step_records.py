@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Pose
-from crowdbot.data import Tape
+from crowdbot.data import McapReader
 from crowdbot.messages import COLLISIONS, FORCES, KIND, MAP, REST, Collided, Pushed, collided, pushed, reading_of
 from crowdbot.metrics import AgentStates
 from crowdbot.sensors import Reading, Scan
@@ -106,11 +106,11 @@ class Moment:
         )
 
 
-def read_moments(tape: Tape) -> Iterator[Moment]:
+def read_moments(tape: McapReader) -> Iterator[Moment]:
     """Yield the instants of a file.
 
     Raises:
-        TapeError: the bytes are not those that were written; other errors when they mean nothing.
+        McapError: the bytes are not those that were written; other errors when they mean nothing.
     """
     from crowdbot.messages import Messages
 

@@ -67,8 +67,8 @@ class Bumper(Sensor):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_number("Bumper", "radius", self.radius, "m", above=0.0)
-        check_number("Bumper", "sectors", self.sectors, at_least=1, at_most=MOST_SECTORS, whole=True)
+        check_number("Bumper", "radius", self.radius, "m", exclusive_min=0.0)
+        check_number("Bumper", "sectors", self.sectors, min=1, max=MOST_SECTORS, whole=True)
         if not -TURN <= self.first <= TURN:
             raise InputError(f"Bumper: first = {self.first} rad must be within -2 pi to 2 pi")
         if not -math.inf < self.low <= self.high < math.inf:

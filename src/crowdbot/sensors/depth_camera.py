@@ -113,7 +113,7 @@ class DepthCamera(Sensor):
             )
         for name in ("baseline", "disparity_noise", "disparity_step", "resolution"):
             unit = "m" if name in ("baseline", "resolution") else "pixels"
-            check_number("DepthCamera", name, getattr(self, name), unit, at_least=0.0)
+            check_number("DepthCamera", name, getattr(self, name), unit, min=0.0)
         if self.baseline == 0.0 and (self.disparity_noise or self.disparity_step):
             raise InputError("DepthCamera: disparity noise and steps need a baseline above 0")
         _ = self.lens

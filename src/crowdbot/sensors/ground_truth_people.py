@@ -74,12 +74,12 @@ class GroundTruthPeople(Sensor):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_number("GroundTruthPeople", "range_max", self.range_max, "m", above=0.0)
+        check_number("GroundTruthPeople", "range_max", self.range_max, "m", exclusive_min=0.0)
         if not 0.0 < self.field_of_view <= 2.0 * math.pi + 1e-9:
             raise InputError(
                 f"GroundTruthPeople: field_of_view = {self.field_of_view} rad must be above 0 and at most 2 pi"
             )
-        check_number("GroundTruthPeople", "rays", self.rays, at_least=1, at_most=MOST_BEAMS, whole=True)
+        check_number("GroundTruthPeople", "rays", self.rays, min=1, max=MOST_BEAMS, whole=True)
 
     def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[TrackedPeople, None]:
         """Return the tracked agents.

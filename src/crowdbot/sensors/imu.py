@@ -94,7 +94,7 @@ class IMU(Sensor):
     def __post_init__(self) -> None:
         super().__post_init__()
         for name in FIELDS:
-            check_number("IMU", name, getattr(self, name), at_least=0.0)
+            check_number("IMU", name, getattr(self, name), min=0.0)
 
     def measure(
         self, view: SensorView, state: ImuState | None, rng: Randomness | None = None

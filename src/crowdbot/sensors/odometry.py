@@ -96,9 +96,9 @@ class WheelOdometry(Sensor):
         super().__post_init__()
         for name in ("track", "wheel_radius", "left_scale", "right_scale", "track_scale"):
             unit = "m" if name in ("track", "wheel_radius") else ""
-            check_number("WheelOdometry", name, getattr(self, name), unit, above=0.0)
-        check_number("WheelOdometry", "slip", self.slip, "m", at_least=0.0)
-        check_number("WheelOdometry", "ticks_per_turn", self.ticks_per_turn, at_least=0, whole=True)
+            check_number("WheelOdometry", name, getattr(self, name), unit, exclusive_min=0.0)
+        check_number("WheelOdometry", "slip", self.slip, "m", min=0.0)
+        check_number("WheelOdometry", "ticks_per_turn", self.ticks_per_turn, min=0, whole=True)
 
     @property
     def tick(self) -> float:

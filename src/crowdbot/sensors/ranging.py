@@ -65,7 +65,7 @@ class Ranging(Sensor):
     def check_count(self, name: str) -> None:
         """Raise :class:`InputError` unless the field ``name`` is a whole number from 1 to ``MOST_BEAMS``."""
         owner = type(self).__name__
-        check_number(owner, name, getattr(self, name), at_least=1, at_most=MOST_BEAMS, whole=True)
+        check_number(owner, name, getattr(self, name), min=1, max=MOST_BEAMS, whole=True)
 
     @property
     def min_cos_incidence(self) -> float:

@@ -88,8 +88,8 @@ class Sensor(ABC):
             )
 
     def __post_init__(self) -> None:
-        check_number(type(self).__name__, "rate", self.rate, "Hz", at_least=1e-6)
-        check_number(type(self).__name__, "delay", self.delay, "s", at_least=0.0, at_most=3600.0)
+        check_number(type(self).__name__, "rate", self.rate, "Hz", min=1e-6)
+        check_number(type(self).__name__, "delay", self.delay, "s", min=0.0, max=3600.0)
         parts = (self.noise,) if isinstance(self.noise, Noise) else tuple(self.noise)
         for part in parts:
             if not isinstance(part, Noise):

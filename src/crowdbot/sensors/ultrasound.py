@@ -73,7 +73,7 @@ class Ultrasound(Ranging):
     def __post_init__(self) -> None:
         super().__post_init__()
         self.check_count("rays")
-        check_number("Ultrasound", "radius", self.radius, "m", above=0.0)
+        check_number("Ultrasound", "radius", self.radius, "m", exclusive_min=0.0)
         self.check_ranges()
 
     @property

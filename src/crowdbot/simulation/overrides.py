@@ -40,11 +40,11 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
         seed,
         model=_model(simulation, trial),
         drives={carrier.agent: robot.drive for carrier, robot in zip(simulation.carriers, trial.robots, strict=True)},
-        berth=trial.berth,
+        berth=trial.robot_margin,
         contact=None if trial.contact is None else trial.contact.bodies(),
         limits=None if trial.limits is None else trial.limits.kept(),
         exits=[way.out() for way in trial.exits],
-        symmetry=trial.symmetry,
+        symmetry=trial.heading_jitter,
         substeps=trial.substeps,
         **_router(old, trial),
     )
