@@ -15,7 +15,7 @@ import numpy as np
 import crowdbot as cb
 from crowdbot.core import Bodies, SpatialPose, stream
 from crowdbot.sensors import DepthCamera, Infrared, Lidar2D, Lidar3D, Ultrasound
-from crowdbot.sensors.beams import cone
+from crowdbot.sensors.beams import cone_directions
 from crowdbot.sensors.ultrasound import teardrop
 
 PARTS = ("head", "trunk", "arm", "leg")
@@ -174,7 +174,7 @@ def cones(folder: Path) -> None:
     """How rays fill a zone."""
     figure, (axes, front) = plt.subplots(1, 2, figsize=(12, 4.5))
     sonar = Ultrasound(radius=0.94, range_max=2.5)
-    directions = cone(sonar.half_angle, 400)
+    directions = cone_directions(sonar.half_angle, 400)
     off = np.arctan2(np.hypot(directions[:, 1], directions[:, 2]), directions[:, 0])
     ends = directions * teardrop(np.minimum(off, sonar.half_angle), sonar.radius, sonar.range_max)[:, None]
     axes.scatter(ends[:, 0], ends[:, 1], s=5)

@@ -12,7 +12,7 @@ from crowdbot.metrics import (
     NAVIGATION_METRICS,
     AgentStates,
     NavigationMetrics,
-    Outcome,
+    NavigationOutcome,
     clearance,
     contact_events,
     local_density,
@@ -22,6 +22,7 @@ from crowdbot.metrics import (
     time_to_collision,
     wall_clearance,
 )
+from crowdbot.recording import run
 from crowdbot.trials import Trial, load_trial
 
 R = 0.3
@@ -94,7 +95,9 @@ def test_record_by_record_is_the_same_as_formulas_over_the_whole_log(seed):
     }
     assert {name: found[name] for name in expected} == pytest.approx(expected, abs=1e-12)
     ended = outcome(times, position, radius, active, 0, goal, 0.3, walls=walls)
-    assert ended == (Outcome("collision", hit[0]) if len(hit) else Outcome("timeout", len(times) - 1))
+    assert ended == (
+        NavigationOutcome("collision", hit[0]) if len(hit) else NavigationOutcome("timeout", len(times) - 1)
+    )
 
 
 @pytest.mark.parametrize(
@@ -117,7 +120,7 @@ def test_time_to_collision_counts_below_its_bounds_only(gaps, lowest, below_1s, 
 
 def test_the_outcome_of_the_run_wins_over_that_of_the_records():
     metrics = fed(states(0, (0.0, 0.0)), states(1, (1.0, 0.0)), goal=(1.0, 0.0))
-    assert metrics.outcome == Outcome("success", 1)
+    assert metrics.outcome == NavigationOutcome("success", 1)
     own, told = metrics.result(), metrics.result("collision")
     assert (own["success"], own["collision"], own["time_to_goal"]) == (1.0, 0.0, 1.0)
     assert (told["success"], told["collision"], told["timeout"]) == (0.0, 1.0, 0.0)
@@ -131,21 +134,21 @@ def test_a_contact_that_only_the_world_saw_is_a_collision_and_no_event():
     path = [states(k, (0.1 * k, 0.0), (5.0, 5.0, 0.0, 0.0)) for k in range(4)]
     assert fed(*path).outcome.name == "timeout"
     touched = fed(*path, contacts=(2,))
-    assert touched.outcome == Outcome("collision", 2)
+    assert touched.outcome == NavigationOutcome("collision", 2)
     assert (touched.result()["collision"], touched.result()["contacts"]) == (1.0, 0.0)
 
 
 def test_a_contact_in_the_step_that_reaches_the_goal_comes_first():
     metrics = fed(states(0, (0.0, 0.0)), states(1, (1.0, 0.0)), goal=(1.0, 0.0), contacts=(1,))
-    assert metrics.outcome == Outcome("collision", 1)
+    assert metrics.outcome == NavigationOutcome("collision", 1)
 
 
 def test_nothing_counts_after_the_goal_or_the_time_limit():
     path = [states(k, (0.5 * k, 0.0)) for k in range(8)]
     there = fed(*path, goal=(1.0, 0.0), tolerance=0.1, contacts=(3,))
-    assert (there.outcome, there.result()["duration"]) == (Outcome("success", 2), 2.0)
+    assert (there.outcome, there.result()["duration"]) == (NavigationOutcome("success", 2), 2.0)
     late = fed(*path, goal=(3.0, 0.0), tolerance=0.1, time_limit=3.0)
-    assert (late.outcome, late.result()["duration"]) == (Outcome("timeout", 3), 3.0)
+    assert (late.outcome, late.result()["duration"]) == (NavigationOutcome("timeout", 3), 3.0)
     touching = fed(*path, goal=(1.0, 0.0), tolerance=0.5)
     assert touching.outcome.sample == 2  # the tolerance itself is not near enough
 
@@ -185,7 +188,7 @@ def test_wrong_records_are_rejected():
 def test_metrics_of_a_run_are_those_of_its_log(name):
     """The metrics of an episode, gathered while it ran, are those of its arrays; the outcome is that of the run."""
     trial: Trial = load_trial(name)
-    episode = trial.run(seed=2)
+    episode = run(trial, seed=2)
     robot, goal = episode.robots[0], trial.robots[0].goal
     logged = navigation_metrics(
         episode.times,

@@ -10,13 +10,13 @@ import numpy as np
 from crowdbot import models
 from crowdbot.core import Scene, stream
 from crowdbot.metrics import navigation_metrics
-from crowdbot.navigation import ORCA, Limits, Observation, Straight
+from crowdbot.navigation import ORCA, DriveLimits, Observation, Straight
 from crowdbot.world import DifferentialDrive, PlanarWorld, Twists
 
 WAYS = {"across": ((0.0, 0.6), (0.0, 0.6)), "diagonal": ((-4.0, 0.6), (4.0, 0.6)), "along": ((-8.0, 3.5), (8.0, 3.5))}
 """Start and goal of the robot: x [m], and its distance [m] from the right wall (start) or the left one (goal)."""
 DRIVE = DifferentialDrive(max_speed=1.0, max_turn_rate=1.5, max_acceleration=1.0, max_turn_acceleration=3.0)
-LIMITS = Limits(1.0, 1.5, 1.0, 3.0)
+LIMITS = DriveLimits(1.0, 1.5, 1.0, 3.0)
 CONTROL = 2
 """Time steps for each decision."""
 DT = 0.05

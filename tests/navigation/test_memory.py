@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from crowdbot.core import Twist
 from crowdbot.models import ORCA
 from crowdbot.navigation import Action, Navigator
+from crowdbot.recording import branch, run
 from crowdbot.simulation import run_batch
 from crowdbot.trials import Goal, Robot, Trial
 from crowdbot.world import DifferentialDrive
@@ -30,12 +31,12 @@ def trial(duration=2.0):
 
 
 def test_memory_starts_once_and_goes_on_from_decision_to_decision():
-    commands = trial().run().commands[:, 0, 0]
+    commands = run(trial()).commands[:, 0, 0]
     assert commands[[0, 5, 10, 15]].round(6).tolist() == [0.5, 0.4, 0.32, 0.256]
 
 
 def test_a_branch_and_a_batch_keep_the_memory():
-    whole = trial().run()
+    whole = run(trial())
     assert [one.digest for one in run_batch(trial(), [0, 0, 0])] == [whole.digest] * 3
-    assert whole.branch(1.0).digest == whole.digest
-    assert trial().run().digest == whole.digest
+    assert branch(whole, 1.0).digest == whole.digest
+    assert run(trial()).digest == whole.digest

@@ -9,17 +9,17 @@ import pytest
 
 from crowdbot import models, navigation
 from crowdbot.core import InputError, Twist, Walls, builtin_classes, from_attributes
-from crowdbot.navigation import ORCA, Action, Limits, Navigator, Observation, People, Straight
+from crowdbot.navigation import ORCA, Action, DriveLimits, Navigator, Observation, Straight, VisiblePeople
 
 NAVIGATORS = builtin_classes(navigation, navigation.Navigator)
-LIMITS = Limits(1.0, 1.5, 1.0, 3.0)
+LIMITS = DriveLimits(1.0, 1.5, 1.0, 3.0)
 
 
 def meeting(people=(), **changes):
     """Return what a robot at the origin knows, looking and going along x; people are x, y, vx, vy."""
     rows = np.array(people, dtype=float).reshape(-1, 4)
     known = {"pose": (0.0, 0.0, 0.0), "goal": (9.0, 0.0), "radius": 0.3, "limits": LIMITS, "dt": 0.1}
-    known["people"] = People(rows[:, :2], rows[:, 2:], np.full(len(rows), 0.25))
+    known["people"] = VisiblePeople(rows[:, :2], rows[:, 2:], np.full(len(rows), 0.25))
     return Observation(**(known | changes))
 
 
@@ -47,7 +47,7 @@ class TestEveryNavigator:
         twist = kind(speed=0.4).act(rushing)
         assert 0.0 <= twist.forward <= 0.4
         assert abs(twist.turn) <= LIMITS.max_turn_rate
-        slow = meeting(limits=Limits(0.3, 0.2, 1.0, 3.0), goal=(0.0, 5.0))
+        slow = meeting(limits=DriveLimits(0.3, 0.2, 1.0, 3.0), goal=(0.0, 5.0))
         assert kind().act(slow).forward <= 0.3
         assert abs(kind().act(slow).turn) <= 0.2
 

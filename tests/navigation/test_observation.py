@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from crowdbot.core import InputError, Pose, Scene, Twist
-from crowdbot.navigation import Limits, Observation, People
+from crowdbot.navigation import DriveLimits, Observation, VisiblePeople
 from crowdbot.world import DifferentialDrive, Twists
 
-LIMITS = Limits(1.0, 2.0, 1.0, 3.0)
+LIMITS = DriveLimits(1.0, 2.0, 1.0, 3.0)
 
 
 def alone(**changes):
@@ -91,7 +91,7 @@ def test_the_drive_arrives_and_stops_there(goal):
 
 
 def test_unknown_accelerations_do_not_limit():
-    fast = alone(limits=Limits(1.0, 2.0))
+    fast = alone(limits=DriveLimits(1.0, 2.0))
     assert fast.braking_speed(0.1) == math.inf
     assert fast.turn_by(0.1) == pytest.approx(0.3)
     assert alone().turn_by(-0.001) == pytest.approx(-0.003)
@@ -105,8 +105,8 @@ def test_unknown_accelerations_do_not_limit():
         ({"twist": Twist(math.nan)}, "twist"),
         ({"radius": -0.3}, "radius = -0.3 must be above 0"),
         ({"dt": 0.0}, "dt = 0.0 must be above 0"),
-        ({"limits": Limits(-1.0, 2.0)}, "max_speed = -1.0 must be above 0"),
-        ({"limits": Limits(1.0, math.nan)}, "max_turn_rate = nan must be above 0"),
+        ({"limits": DriveLimits(-1.0, 2.0)}, "max_speed = -1.0 must be above 0"),
+        ({"limits": DriveLimits(1.0, math.nan)}, "max_turn_rate = nan must be above 0"),
     ],
 )
 def test_wrong_values_are_explained(changes, message):
@@ -115,5 +115,5 @@ def test_wrong_values_are_explained(changes, message):
 
 
 def test_nobody_is_an_empty_crowd():
-    assert len(People.none()) == 0
-    assert People.none().position.shape == (0, 2)
+    assert len(VisiblePeople.none()) == 0
+    assert VisiblePeople.none().position.shape == (0, 2)

@@ -26,8 +26,8 @@ from crowdbot.prediction.anchor_net.training_data import (
     NO_AUGMENTATION,
     Augmentation,
     TrainingSet,
-    backwards,
-    batch,
+    make_batch,
+    reverse_time,
     training_set,
     training_set_of,
 )
@@ -47,13 +47,13 @@ def test_everyone_of_the_protocol_is_learned_from_twice(
     material: TrainingSet, recorded: Callable[[str], Trajectories]
 ) -> None:
     assert len(material) == 2 * 1197
-    again = backwards(backwards(recorded("biwi_hotel")))
+    again = reverse_time(reverse_time(recorded("biwi_hotel")))
     assert np.array_equal(again.x, recorded("biwi_hotel").x)
 
 
 def test_without_variation_a_batch_is_what_happened(material: TrainingSet) -> None:
     rows = np.arange(50)
-    plain = batch(material, rows, NO_AUGMENTATION, stream(0))
+    plain = make_batch(material, rows, NO_AUGMENTATION, stream(0))
     assert plain.own.shape == (50, AGENT_FEATURES)
     assert plain.company.shape == (50, NEAR, NEIGHBOR_FEATURES)
     assert np.array_equal(plain.there, material.people.there[:50])
@@ -65,15 +65,15 @@ def test_without_variation_a_batch_is_what_happened(material: TrainingSet) -> No
 
 def test_every_variation_changes_what_is_seen(material: TrainingSet) -> None:
     rows = np.arange(200)
-    plain = batch(material, rows, NO_AUGMENTATION, stream(0))
+    plain = make_batch(material, rows, NO_AUGMENTATION, stream(0))
     for name in ("mirror", "scale", "turn", "jitter", "late", "switched", "unseen"):
-        seen = batch(material, rows, dataclasses.replace(NO_AUGMENTATION, **{name: 0.9}), stream(0))
+        seen = make_batch(material, rows, dataclasses.replace(NO_AUGMENTATION, **{name: 0.9}), stream(0))
         assert not np.array_equal(seen.own, plain.own) or not np.array_equal(seen.company, plain.company), name
         assert np.isfinite(seen.own).all()
         assert np.isfinite(seen.company).all()
-    holes = batch(material, rows, dataclasses.replace(NO_AUGMENTATION, holes=1.0, hole=0.5), stream(0))
+    holes = make_batch(material, rows, dataclasses.replace(NO_AUGMENTATION, holes=1.0, hole=0.5), stream(0))
     assert 0.4 < holes.own[:, -7:].mean() < 0.75
-    planned = batch(material, rows, dataclasses.replace(NO_AUGMENTATION, planned=1.0), stream(0))
+    planned = make_batch(material, rows, dataclasses.replace(NO_AUGMENTATION, planned=1.0), stream(0))
     assert planned.company[..., 9].sum() > 0.0
     assert plain.company[..., 9].sum() == 0.0
 
@@ -82,14 +82,14 @@ def test_bends_are_made_of_six_numbers(material: TrainingSet) -> None:
     shapes = shapes_of(material)
     assert shapes["basis"].shape == (6, 24)
     np.testing.assert_allclose(shapes["basis"] @ shapes["basis"].T, np.eye(6), atol=1e-9)
-    missed = batch(material, np.arange(len(material)), NO_AUGMENTATION, stream(0)).missed.reshape(-1, 24)
+    missed = make_batch(material, np.arange(len(material)), NO_AUGMENTATION, stream(0)).missed.reshape(-1, 24)
     rest = missed - missed @ shapes["basis"].T @ shapes["basis"]
     assert np.linalg.norm(rest.reshape(-1, 12, 2), axis=2).mean() < 0.04
 
 
 def test_predicting_without_torch_gives_what_was_trained(material: TrainingSet) -> None:
     layers = network(TINY)
-    shown = batch(material, np.arange(40), Augmentation(), stream(1))
+    shown = make_batch(material, np.arange(40), Augmentation(), stream(1))
     with torch.no_grad():
         inside = outputs(
             layers, torch.tensor(shown.own).float(), torch.tensor(shown.company).float(), torch.tensor(shown.there)
@@ -103,7 +103,7 @@ def test_predicting_without_torch_gives_what_was_trained(material: TrainingSet) 
 
 def best_of_twenty(numbers: dict[str, np.ndarray], material: TrainingSet) -> float:
     """Return the mean error [m] of the best future of everyone."""
-    own, company, there, missed = batch(material, np.arange(len(material)), NO_AUGMENTATION, stream(0))
+    own, company, there, missed = make_batch(material, np.arange(len(material)), NO_AUGMENTATION, stream(0))
     found = network_output(numbers, own, company, there)[:, :120].reshape(-1, 20, 6)
     bend = (numbers["centres"] + found * numbers["spread"]) @ numbers["basis"]
     away = bend.reshape(-1, 20, 12, 2) - missed[:, None]

@@ -14,10 +14,10 @@ from crowdbot.sensors import (
     Lidar3D,
     Quantised,
     RGBCamera,
-    Schedule,
+    SensorSchedule,
     preset,
 )
-from crowdbot.sensors.camera import distorted, pixel_directions, stereo_depth
+from crowdbot.sensors.lens import distort_image, pixel_directions, stereo_depth
 
 BENT = (-0.28, 0.09, 0.0008, -0.0004, -0.01)
 
@@ -53,13 +53,13 @@ def test_depth_is_metric_and_along_the_axis():
     np.testing.assert_allclose(image.points(in_world=True)[0][floor][:, 2], 0.0, atol=1e-9)
     person = np.nonzero(image.hit[0] == 0)[1]
     assert person.max() < 40  # he stands to the left
-    assert image.seen(1).tolist() == [[True]]
+    assert image.visible_agents(1).tolist() == [[True]]
 
 
 def test_the_lens_bends_and_straightens():
     lens = Lens.of(320, 240, math.radians(80.0), BENT)
     x, y = np.meshgrid(np.linspace(-0.7, 0.7, 15), np.linspace(-0.5, 0.5, 11))
-    back = lens.straightened(*lens.bent(x, y))
+    back = lens.undistort(*lens.distort(x, y))
     np.testing.assert_allclose(back[0], x, atol=1e-9)
     np.testing.assert_allclose(back[1], y, atol=1e-9)
     directions = pixel_directions(Lens.of(3, 3, math.pi / 2))
@@ -75,7 +75,7 @@ def test_images_are_bent_as_rays_are():
     pose = SpatialPose.of((0.0, 0.0, 1.2))
     scene = Scene.of([[900.0, 0.0]], walls=[[(4.0, -300.0), (4.0, 300.0)]])
     by_rays, ideal = bent.read(scene, pose), plain.read(scene, pose)
-    by_image = distorted(ideal.depth, bent.lens, fill=np.nan)
+    by_image = distort_image(ideal.depth, bent.lens, fill=np.nan)
     same = np.isclose(by_rays.depth, by_image, atol=0.15) | np.isnan(by_image)
     assert np.mean(same) > 0.97
     colours = RGBCamera(width=50, height=20, field_of_view=1.0).read(scene, pose, renderer=Painter()).rgb
@@ -127,13 +127,13 @@ def test_stereo_sees_nothing_at_infinity_and_keeps_what_is_too_near():
 
 
 def test_rate_and_delay_are_whole_ticks():
-    plan = Schedule.of(Lidar2D(rate=4.0, delay=0.3), FreeClock(0.05))
+    plan = SensorSchedule.of(Lidar2D(rate=4.0, delay=0.3), FreeClock(0.05))
     assert (plan.every, plan.late) == (5, 6)
     assert [tick for tick in range(16) if plan.measures(tick)] == [0, 5, 10, 15]
     assert [plan.arrives(tick) for tick in (0, 5)] == [6, 11]
     for values, words in (({"rate": 3.0}, "period 0.333"), ({"delay": 0.02}, "delay 0.02 s")):
         with pytest.raises(InputError, match=words):
-            Schedule.of(Lidar2D(**values), FreeClock(0.05))
+            SensorSchedule.of(Lidar2D(**values), FreeClock(0.05))
 
 
 @pytest.mark.parametrize("name", PRESETS)

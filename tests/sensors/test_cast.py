@@ -11,18 +11,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import Bodies, InputError, Pose, Scene, Skins, SpatialPose, stream
-from crowdbot.sensors.beams import beams, cone, fan
-from crowdbot.sensors.cast import cast
+from crowdbot.sensors.beams import cone_directions, sort_beams, unit_vectors
+from crowdbot.sensors.ray_casting import cast_rays
 
 AHEAD = np.array([[1.0, 0.0, 0.0]])
 FANS = {
-    "level": lambda: fan(np.linspace(-math.pi, math.pi, 61, endpoint=False)),
-    "rings": lambda: fan(
+    "level": lambda: unit_vectors(np.linspace(-math.pi, math.pi, 61, endpoint=False)),
+    "rings": lambda: unit_vectors(
         np.linspace(-math.pi, math.pi, 24, endpoint=False), np.linspace(-1.5, 1.5, 7)[:, None]
     ).reshape(-1, 3),
-    "camera": lambda: fan(np.linspace(-0.6, 0.6, 12), np.linspace(-0.4, 0.4, 9)[:, None]).reshape(-1, 3),
-    "cone": lambda: cone(0.8, 80),
-    "all": lambda: cone(math.pi, 150),
+    "camera": lambda: unit_vectors(np.linspace(-0.6, 0.6, 12), np.linspace(-0.4, 0.4, 9)[:, None]).reshape(-1, 3),
+    "cone": lambda: cone_directions(0.8, 80),
+    "all": lambda: cone_directions(math.pi, 150),
     "poles": lambda: np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]]),
 }
 
@@ -32,12 +32,12 @@ FANS = {
 @given(seed=st.integers(0, 10_000))
 def test_equals_every_beam_against_everything(name, seed):
     scene, pose, directions = crowd(seed, people=7, environments=2), somewhere(seed, 2), FANS[name]()
-    hits = cast(scene, pose, beams(directions), 100.0)
+    hits = cast_rays(scene, pose, sort_beams(directions), 100.0)
     distance, hit = brute_force(scene, pose, directions)
     grazed = np.isinf(hits.distance) != np.isinf(distance)
     assert np.mean(grazed) < 0.002
     both = np.isfinite(distance) & ~grazed
-    steep = hits.facing > 1e-3  # what is only grazed is ill-conditioned in the slow way
+    steep = hits.cos_incidence > 1e-3  # what is only grazed is ill-conditioned in the slow way
     np.testing.assert_allclose(hits.distance[both & steep], distance[both & steep], rtol=0, atol=1e-9)
     assert np.mean(hits.hit[~grazed] == hit[~grazed]) > 0.998
 
@@ -55,7 +55,7 @@ def test_a_capsule_far_away_to_1e_9(radius, away, offset, turn):
     place = np.array(
         [-middle * math.cos(turn) + aside * math.sin(turn), -middle * math.sin(turn) - aside * math.cos(turn)]
     )
-    hits = cast(scene, SpatialPose.of((*place, 1.0), 0.0, 0.0, turn), beams(AHEAD), 100.0)
+    hits = cast_rays(scene, SpatialPose.of((*place, 1.0), 0.0, 0.0, turn), sort_beams(AHEAD), 100.0)
     assert hits.distance[0, 0] == pytest.approx(middle - math.sqrt(radius**2 - aside**2), abs=1e-9)
     normal = np.append(place + hits.distance[0, 0] * np.array([math.cos(turn), math.sin(turn)]), 0.0) / radius
     np.testing.assert_allclose(hits.normal[0, 0], normal, atol=1e-7)
@@ -66,9 +66,9 @@ def test_a_capsule_along_the_beam():
         [[0.0, 0.0]], bodies=Bodies.of(start=[[[3.0, 0.0, 1.0]]], end=[[[5.0, 0.0, 1.0]]], radius=[[0.25]], owner=[0])
     )
     for z, chord in ((1.0, 0.25), (1.2, 0.15)):
-        hits = cast(scene, SpatialPose.of((0.0, 0.0, z)), beams(AHEAD), 10.0)
+        hits = cast_rays(scene, SpatialPose.of((0.0, 0.0, z)), sort_beams(AHEAD), 10.0)
         assert hits.distance[0, 0] == pytest.approx(3.0 - chord, abs=1e-12)
-    back = cast(scene, SpatialPose.of((8.0, 0.0, 1.0), yaw=math.pi), beams(AHEAD), 10.0)
+    back = cast_rays(scene, SpatialPose.of((8.0, 0.0, 1.0), yaw=math.pi), sort_beams(AHEAD), 10.0)
     assert back.distance[0, 0] == pytest.approx(2.75, abs=1e-12)
 
 
@@ -85,10 +85,10 @@ def test_walls_floor_posts_and_boxes_by_hand():
         ),
     )  # fmt: skip
     down = math.radians(30.0)
-    beam = fan(np.array([0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi]))
+    beam = unit_vectors(np.array([0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi]))
 
     def met(z, pitch=0.0, yaw=0.0, directions=beam):
-        return cast(scene, SpatialPose.of((0.0, 0.0, z), 0.0, pitch, yaw), beams(directions), 100.0)
+        return cast_rays(scene, SpatialPose.of((0.0, 0.0, z), 0.0, pitch, yaw), sort_beams(directions), 100.0)
 
     low = met(0.7)
     np.testing.assert_allclose(low.distance[0], [4.0, 8.5, 2.75, 2.5], rtol=0, atol=1e-12)
@@ -100,7 +100,7 @@ def test_walls_floor_posts_and_boxes_by_hand():
     floor = met(0.7, pitch=down, directions=AHEAD)
     assert floor.hit.tolist() == [[-3]]
     assert floor.distance[0, 0] == pytest.approx(0.7 / math.sin(down), abs=1e-12)
-    assert floor.facing[0, 0] == pytest.approx(math.sin(down), abs=1e-12)
+    assert floor.cos_incidence[0, 0] == pytest.approx(math.sin(down), abs=1e-12)
     lid = met(1.5, pitch=0.5 * math.pi - math.atan2(3.0, 0.7), yaw=math.pi, directions=AHEAD)
     assert lid.distance[0, 0] == pytest.approx(math.hypot(3.0, 0.7), abs=1e-9)
     np.testing.assert_allclose(lid.normal[0, 0], [0.0, 0.0, 1.0], atol=1e-12)
@@ -114,11 +114,11 @@ def test_limbs_stand_for_the_agent_and_the_cylinder_for_who_has_none():
         start=[[2.0, 0.0, 0.1]], end=[[2.0, 0.0, 0.6]], radius=[0.1], owner=[0], part=[1], parts=("a", "leg")
     )
     scene = Scene.of([[2.0, 0.0], [4.0, 0.0]], radius=0.5, bodies=limb)
-    low = cast(scene, SpatialPose.of((0.0, 0.0, 0.3)), beams(AHEAD), 10.0)
-    high = cast(scene, SpatialPose.of((0.0, 0.0, 1.0)), beams(AHEAD), 10.0)
+    low = cast_rays(scene, SpatialPose.of((0.0, 0.0, 0.3)), sort_beams(AHEAD), 10.0)
+    high = cast_rays(scene, SpatialPose.of((0.0, 0.0, 1.0)), sort_beams(AHEAD), 10.0)
     assert (low.distance.tolist(), low.hit.tolist(), low.part.tolist()) == ([[1.9]], [[0]], [[1]])
     assert (high.distance.tolist(), high.hit.tolist(), high.part.tolist()) == ([[3.5]], [[1]], [[-1]])
-    gone = cast(scene.without(0), SpatialPose.of((0.0, 0.0, 0.3)), beams(AHEAD), 10.0)
+    gone = cast_rays(scene.without(0), SpatialPose.of((0.0, 0.0, 0.3)), sort_beams(AHEAD), 10.0)
     assert gone.hit.tolist() == [[1]]
 
 
@@ -129,9 +129,9 @@ def test_from_inside_everything_is_at_no_distance():
         Bodies.of(post_foot=[[0, 0, 0]], post_radius=[0.3], post_height=[2.0]),
     ):
         scene = Scene.of([[0.1, 0.0]], active=[True], bodies=bodies).replace(position=np.array([[[50.0, 0.0]]]))
-        hits = cast(scene, SpatialPose.of((0.1, 0.0, 1.0)), beams(FANS["all"]()), 10.0)
+        hits = cast_rays(scene, SpatialPose.of((0.1, 0.0, 1.0)), sort_beams(FANS["all"]()), 10.0)
         assert np.all(hits.distance == 0.0)
-        assert np.all(hits.facing == pytest.approx(1.0))
+        assert np.all(hits.cos_incidence == pytest.approx(1.0))
 
 
 def test_what_is_absent_or_not_a_number_is_not_seen():
@@ -146,37 +146,40 @@ def test_what_is_absent_or_not_a_number_is_not_seen():
                      "radius": radius[:, keep], "owner": odd.owner[keep], "part": odd.part[keep]})  # fmt: skip
     pose, directions = somewhere(3), FANS["all"]()
     absent = scene.without(0).without(1)
-    one = cast(absent.replace(bodies=odd), pose, beams(directions), 50.0)
-    two = cast(absent.replace(bodies=less), pose, beams(directions), 50.0)
+    one = cast_rays(absent.replace(bodies=odd), pose, sort_beams(directions), 50.0)
+    two = cast_rays(absent.replace(bodies=less), pose, sort_beams(directions), 50.0)
     assert one.distance.tobytes() == two.distance.tobytes()
     nobody = Scene.of(np.zeros((2, 0, 2)))
-    assert np.isinf(cast(nobody, somewhere(1, 2), beams(FANS["level"]()), 5.0).distance).mean() < 1.0
+    assert np.isinf(cast_rays(nobody, somewhere(1, 2), sort_beams(FANS["level"]()), 5.0).distance).mean() < 1.0
     lost = scene.replace(position=np.where(absent.active[..., None], scene.position, np.nan), active=absent.active)
-    assert cast(lost.replace(bodies=odd), pose, beams(directions), 50.0).distance.tobytes() == one.distance.tobytes()
+    assert (
+        cast_rays(lost.replace(bodies=odd), pose, sort_beams(directions), 50.0).distance.tobytes()
+        == one.distance.tobytes()
+    )
 
 
 def test_turning_and_shifting_the_world_changes_nothing():
     scene, pose = crowd(11, environments=3), somewhere(11, 3)
     there, place = carried_away(scene, pose, 1.1, np.array([7.0, -3.0]))
-    fan_ = beams(FANS["all"]())
-    one, two = cast(scene, pose, fan_, 50.0), cast(there, place, fan_, 50.0)
+    fan_ = sort_beams(FANS["all"]())
+    one, two = cast_rays(scene, pose, fan_, 50.0), cast_rays(there, place, fan_, 50.0)
     same = np.isclose(one.distance, two.distance, rtol=0, atol=1e-8) | (one.distance == two.distance)
     assert np.mean(same) > 0.99
     assert np.mean(one.hit == two.hit) > 0.99
 
 
 def test_batches_threads_and_repeats_give_the_same_bytes():
-    scene, pose, fan_ = crowd(5, environments=6), somewhere(5, 6), beams(FANS["all"]())
+    scene, pose, fan_ = crowd(5, environments=6), somewhere(5, 6), sort_beams(FANS["all"]())
     most = numba.get_num_threads()
     results = []
     for count in (1, min(2, numba.config.NUMBA_NUM_THREADS)):
         numba.set_num_threads(count)
-        results.append(cast(scene, pose, fan_, 50.0))
+        results.append(cast_rays(scene, pose, fan_, 50.0))
     numba.set_num_threads(most)
     for e in range(6):
         place = SpatialPose(pose.position[e : e + 1], pose.rotation[e : e + 1])
-        alone = cast(scene.environments([e]), place, fan_, 50.0)
-        for name in ("distance", "facing", "normal", "hit", "part"):
+        alone = cast_rays(scene.environments([e]), place, fan_, 50.0)
+        for name in ("distance", "cos_incidence", "normal", "hit", "part"):
             assert getattr(alone, name)[0].tobytes() == getattr(results[0], name)[e].tobytes()
             assert getattr(results[1], name)[e].tobytes() == getattr(results[0], name)[e].tobytes()
 
@@ -197,12 +200,12 @@ def test_skins_are_met_as_every_triangle_would_be():
     skins = Skins.of(vertices, faces, owner=np.repeat([0, 1, 2], len(pieces[0][1])))
     scene = scene.replace(bodies=Bodies(**{**vars(scene.bodies), "skins": skins}))
     directions = FANS["all"]()
-    hits = cast(scene, pose, beams(directions), 50.0, skins=True)
+    hits = cast_rays(scene, pose, sort_beams(directions), 50.0, skins=True)
     distance, hit = brute_force(scene, pose, directions, skins=True)
     same = np.isclose(hits.distance, distance, rtol=0, atol=1e-9) | (hits.distance == distance)
     assert np.mean(same) > 0.99
     assert np.mean(hits.hit == hit) > 0.99
-    blind = cast(scene, pose, beams(directions), 50.0)
+    blind = cast_rays(scene, pose, sort_beams(directions), 50.0)
     assert not np.array_equal(blind.distance, hits.distance)
 
 
@@ -213,16 +216,16 @@ def test_no_beam_slips_through_the_edges_of_a_closed_skin():
     pose = SpatialPose.of((0.0, 0.0, 1.0))
     out = vertices - np.array([0.0, 0.0, 1.0])
     edges = out[faces[:, 0]] + out[faces[:, 1]]
-    directions = np.concatenate([cone(math.pi, 3000), out, edges])
+    directions = np.concatenate([cone_directions(math.pi, 3000), out, edges])
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    hits = cast(scene, pose, beams(directions), 50.0, skins=True)
+    hits = cast_rays(scene, pose, sort_beams(directions), 50.0, skins=True)
     assert np.all(hits.distance <= 1.0 + 1e-9)
     assert np.all(hits.hit == -4)
 
 
 def test_skins_that_are_not_there_are_asked_for_in_vain():
     with pytest.raises(InputError, match="no triangle skins"):
-        cast(crowd(0), somewhere(0), beams(AHEAD), 5.0, skins=True)
+        cast_rays(crowd(0), somewhere(0), sort_beams(AHEAD), 5.0, skins=True)
 
 
 def model_of(scene, skin=None):
@@ -283,14 +286,14 @@ def mujoco_cast(model, data, pose, directions):
 def test_equals_mujoco(seed, name):
     scene, directions = crowd(seed, people=14), FANS[name]()
     pose = somewhere(seed + 100)
-    hits = cast(scene, pose, beams(directions), 1e3)
+    hits = cast_rays(scene, pose, sort_beams(directions), 1e3)
     if np.any(hits.distance == 0.0):  # from inside MuJoCo looks for the way out
         pose = somewhere(seed + 200, height=(2.2, 2.5))
-        hits = cast(scene, pose, beams(directions), 1e3)
+        hits = cast_rays(scene, pose, sort_beams(directions), 1e3)
     distance, normal = mujoco_cast(*model_of(scene), pose, directions)
     grazed = np.isinf(distance) != np.isinf(hits.distance[0])
     assert np.mean(grazed) <= 0.01
-    both = np.isfinite(distance) & np.isfinite(hits.distance[0]) & (hits.facing[0] > 0.05)
+    both = np.isfinite(distance) & np.isfinite(hits.distance[0]) & (hits.cos_incidence[0] > 0.05)
     np.testing.assert_allclose(hits.distance[0][both], distance[both], rtol=0, atol=1e-6)
     np.testing.assert_allclose(hits.normal[0][both], normal[both], rtol=0, atol=1e-5)
 
@@ -304,11 +307,11 @@ def test_skins_equal_mujocos_meshes():
     skins = Skins.of(vertices, faces, owner=-1)
     scene = scene.replace(bodies=Bodies.of(skins=skins))
     pose, directions = SpatialPose.of((1.6, 0.4, 1.2), 0.3, 0.1, 3.0), FANS["camera"]()
-    hits = cast(scene, pose, beams(directions), 1e3, skins=True)
+    hits = cast_rays(scene, pose, sort_beams(directions), 1e3, skins=True)
     distance, _ = mujoco_cast(model, data, pose, directions)
     on = hits.hit[0] == -4
     assert on.sum() > 20
-    steep = on & (hits.facing[0] > 0.05)
+    steep = on & (hits.cos_incidence[0] > 0.05)
     np.testing.assert_allclose(hits.distance[0][steep], distance[steep], rtol=0, atol=1e-6)  # MuJoCo keeps float32
 
 

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from crowdbot.core import InputError, Pose, Scene, stream
 from crowdbot.core.geometry import ray_to_disc, ray_to_segment
-from crowdbot.sensors import Gaussian, Lidar2D, Noise, Offset, Peak, Scan
-from crowdbot.sensors.lidar import NOTHING, WALL
-from crowdbot.sensors.shapes import lengthened as _lengthened
+from crowdbot.sensors import NOTHING, Gaussian, Lidar2D, Noise, Offset, Peak, Scan
+from crowdbot.sensors import WALLS as WALL
+from crowdbot.sensors.ray_shapes import extend_segments as _lengthened
 
 ROOM = [(-4.0, -3.0), (-4.0, 3.0), (4.0, 3.0), (4.0, -3.0)]
 """A room 8 m x 6 m, listed clockwise: people are inside."""
@@ -236,7 +236,7 @@ def test_seen_counts_who_returned_a_beam():
     scene = Scene.of([[0.0, 0.0], [2.0, 0.0], [4.0, 0.0], [0.0, 3.0]], radius=0.3)
     scan = Lidar2D().read(scene.without(0), Pose.of((0.0, 0.0), 0.0))
     assert isinstance(scan, Scan)
-    assert scan.seen(4).tolist() == [[False, True, False, True]]
+    assert scan.visible_agents(4).tolist() == [[False, True, False, True]]
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from crowdbot.core import InputError, from_attributes, stream
-from crowdbot.sensors import Dropout, Gaussian, Lidar2D, Noise, Offset, Peak, Quantised, disturbed
+from crowdbot.sensors import Dropout, Gaussian, Lidar2D, Noise, Offset, Peak, Quantised, apply_noise
 
 
 def test_gaussian_has_its_mean_and_standard_deviation():
@@ -31,38 +31,38 @@ def test_peaks_may_spread_and_come_at_their_rate():
 
 
 def test_dropouts_come_at_their_rate_and_end_a_reading():
-    lost = disturbed(np.ones((1, 200_000)), (Dropout(0.02), Gaussian(0.1)), stream(7))
+    lost = apply_noise(np.ones((1, 200_000)), (Dropout(0.02), Gaussian(0.1)), stream(7))
     assert np.mean(np.isinf(lost)) == pytest.approx(0.02, abs=4 * math.sqrt(0.02 * 0.98 / 200_000))
 
 
 def test_quantised_values_are_whole_steps_and_uniformly_wrong():
     values = stream(8).uniform(0.0, 10.0, (1, 200_000))
-    steps = disturbed(values, (Quantised(0.125),), stream(8))
+    steps = apply_noise(values, (Quantised(0.125),), stream(8))
     assert np.all(steps % 0.125 == 0.0)
     error = steps - values
     assert np.abs(error).max() <= 0.0625
     assert abs(error.mean()) < 4 * 0.125 / math.sqrt(12 * 200_000)
     assert error.std() == pytest.approx(0.125 / math.sqrt(12), rel=0.01)
-    assert disturbed(np.array([[np.inf, -np.inf]]), (Quantised(0.1),), stream(0)).tolist() == [[np.inf, -np.inf]]
+    assert apply_noise(np.array([[np.inf, -np.inf]]), (Quantised(0.1),), stream(0)).tolist() == [[np.inf, -np.inf]]
 
 
 def test_bits_give_as_many_values():
     noise = Quantised.bits(4, 0.0, 3.0)
     assert noise.step == 0.2
-    values = disturbed(np.linspace(0.0, 3.0, 1000)[None], (noise,), stream(0))
+    values = apply_noise(np.linspace(0.0, 3.0, 1000)[None], (noise,), stream(0))
     assert len(np.unique(values.round(9))) == 16
     with pytest.raises(InputError, match="bits = 0"):
         Quantised.bits(0, 0.0, 1.0)
 
 
 def test_several_noises_add_up():
-    drawn = disturbed(np.full((1, 100_000), 5.0), (Gaussian(0.1), Offset(0.3), Peak(0.5, 2.0)), stream(3))
+    drawn = apply_noise(np.full((1, 100_000), 5.0), (Gaussian(0.1), Offset(0.3), Peak(0.5, 2.0)), stream(3))
     assert drawn.mean() == pytest.approx(5.0 + 0.3 + 1.0, abs=0.02)
     assert drawn.std() == pytest.approx(math.hypot(0.1, 1.0), rel=0.01)
 
 
 def test_the_infinite_stays_infinite():
-    drawn = disturbed(np.array([[np.inf, -np.inf, 1.0]]), (Gaussian(1.0), Peak(1.0, 3.0)), stream(4))
+    drawn = apply_noise(np.array([[np.inf, -np.inf, 1.0]]), (Gaussian(1.0), Peak(1.0, 3.0)), stream(4))
     assert drawn[0, 0] == np.inf
     assert drawn[0, 1] == -np.inf
     assert np.isfinite(drawn[0, 2])
@@ -71,17 +71,17 @@ def test_the_infinite_stays_infinite():
 def test_each_environment_draws_as_if_alone():
     values = np.arange(12.0).reshape(3, 4)
     noise = (Gaussian(0.1), Peak(0.5, 1.0))
-    together = disturbed(values, noise, [stream(9, "scan", e) for e in range(3)])
+    together = apply_noise(values, noise, [stream(9, "scan", e) for e in range(3)])
     for e in range(3):
-        alone = disturbed(values[e : e + 1], noise, stream(9, "scan", e))
+        alone = apply_noise(values[e : e + 1], noise, stream(9, "scan", e))
         assert alone.tobytes() == together[e : e + 1].tobytes()
 
 
 def test_what_is_measured_does_not_change_the_draws():
     near, far = np.ones((1, 50)), np.full((1, 50), np.inf)
     one, two = stream(5), stream(5)
-    disturbed(near, (Gaussian(0.1), Peak(0.1, 1.0)), one)
-    disturbed(far, (Gaussian(0.1), Peak(0.1, 1.0)), two)
+    apply_noise(near, (Gaussian(0.1), Peak(0.1, 1.0)), one)
+    apply_noise(far, (Gaussian(0.1), Peak(0.1, 1.0)), two)
     assert one.random() == two.random()
 
 
@@ -123,6 +123,6 @@ def test_wrong_text_is_explained(text, message):
 
 def test_noise_needs_a_generator():
     with pytest.raises(InputError, match="needs a generator"):
-        disturbed(np.ones((1, 2)), (Gaussian(0.1),), None)
+        apply_noise(np.ones((1, 2)), (Gaussian(0.1),), None)
     with pytest.raises(InputError, match="2 generators were given for 3 environments"):
-        disturbed(np.ones((3, 2)), (Gaussian(0.1),), [stream(0), stream(1)])
+        apply_noise(np.ones((3, 2)), (Gaussian(0.1),), [stream(0), stream(1)])

@@ -8,6 +8,10 @@ import pytest
 
 from crowdbot.core import Bodies, InputError, Pose, Scene, SpatialPose, stream
 from crowdbot.sensors import (
+    FLOOR,
+    NOTHING,
+    PROP,
+    WALLS,
     DepthCamera,
     Dropout,
     Gaussian,
@@ -17,8 +21,7 @@ from crowdbot.sensors import (
     Offset,
     Ultrasound,
 )
-from crowdbot.sensors.beams import cone
-from crowdbot.sensors.shapes import FLOOR, NOTHING, PROP, WALLS
+from crowdbot.sensors.beams import cone_directions
 from crowdbot.sensors.ultrasound import teardrop
 
 HIGH = SpatialPose.of((0.0, 0.0, 1.0))
@@ -239,7 +242,7 @@ def test_the_cone_of_infrared_turns_with_the_sensor(turn):
 
 
 def test_a_cone_is_covered_evenly():
-    directions = cone(0.5, 20_000)
+    directions = cone_directions(0.5, 20_000)
     assert np.allclose(np.linalg.norm(directions, axis=1), 1.0)
     off = np.arccos(np.clip(directions[:, 0], -1, 1))
     assert off.max() == pytest.approx(0.5, abs=1e-9)

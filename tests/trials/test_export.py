@@ -15,7 +15,7 @@ from trial_texts import FLOW
 from crowdbot.cli import main
 from crowdbot.core import EpisodeError, InputError
 from crowdbot.recording import Recorded, export, read_episode, record
-from crowdbot.sensors import Picture
+from crowdbot.sensors import RgbImage
 from crowdbot.trials import parse_trial
 
 
@@ -78,7 +78,7 @@ def test_pictures_are_rows_and_files(seen: Path, tmp_path: Path, ending: str) ->
     assert set(found["sensor"]) == {"pepper/eyes"}
     assert (set(found["width"]), set(found["height"]), set(found["cx"])) == ({32}, {24}, {15.5})
     for row, picture in zip(found.itertuples(), pictures, strict=True):
-        assert isinstance(picture, Picture)
+        assert isinstance(picture, RgbImage)
         assert picture.hit is not None
         assert np.array_equal(np.asarray(Image.open(tmp_path / str(row.file))), picture.rgb[0])
         assert set(str(row.seen).split()) == {str(who) for who in np.unique(picture.hit) if who >= 0}

@@ -38,14 +38,14 @@ from crowdbot.trials import parse_trial
 
 SENSORS: dict[str, Sensor] = {
     "Scan": sensors.Lidar2D(rays=31, noise=Gaussian(0.01)),
-    "Cloud": sensors.Lidar3D(columns=24, noise=Gaussian(0.01)),
-    "Echo": sensors.Ultrasound(),
+    "PointCloud": sensors.Lidar3D(columns=24, noise=Gaussian(0.01)),
+    "RangeReading": sensors.Ultrasound(),
     "DepthImage": sensors.DepthCamera(width=12, height=9),
-    "Inertial": sensors.IMU(rate=100.0, acceleration_noise=0.01, turn_offset=0.1),
+    "ImuReading": sensors.IMU(rate=100.0, acceleration_noise=0.01, turn_offset=0.1),
     "Odometry": sensors.WheelOdometry(slip=0.01, ticks_per_turn=500),
-    "Picture": sensors.RGBCamera(width=12, height=9, segmentation=True),
-    "Touch": sensors.Bumper(radius=0.9),
-    "Tracked": sensors.GroundTruthPeople(),
+    "RgbImage": sensors.RGBCamera(width=12, height=9, segmentation=True),
+    "BumperReading": sensors.Bumper(radius=0.9),
+    "TrackedPeople": sensors.GroundTruthPeople(),
 }
 """One that gives each class of readings; a new class needs a row here and in ``CODECS``."""
 SCENE = Scene.of([[1.0, 0.2], [2.5, -0.7], [-9.0, 3.0]], [[0.3, 0.1], [0.0, -1.0], [0.0, 0.0]], radius=0.3,
@@ -118,6 +118,23 @@ def back(reading: Reading, sensor: Any) -> Reading:
     return reading_of(whole, found)
 
 
+def test_recordings_keep_the_names_of_kinds_and_fields() -> None:
+    """Names in files do not change with those in Python: older recordings open, older versions read newer ones."""
+    kinds, names = {}, set()
+    for name, sensor in SENSORS.items():
+        reading = sensor.read(SCENE, Pose.of((0.1, 0.0), 0.3), np.random.default_rng(0))
+        whole = dict(said(Messages(), Told(reading, sensor, "robot", "robot/eye")))[REST]
+        kinds[name] = whole.kind
+        names |= {field.name for field in whole.fields}
+    assert kinds == {
+        "Scan": "Scan", "PointCloud": "Cloud", "RangeReading": "Echo", "DepthImage": "DepthImage",
+        "ImuReading": "Inertial", "Odometry": "Odometry", "RgbImage": "Picture", "BumperReading": "Touch",
+        "TrackedPeople": "Tracked",
+    }  # fmt: skip
+    assert "facing" in names
+    assert "cos_incidence" not in names
+
+
 def test_no_class_of_readings_is_forgotten() -> None:
     assert unsaid() == []
     assert {cls.__name__ for cls in READINGS} <= set(SENSORS)
@@ -148,17 +165,17 @@ def test_every_class_of_readings_comes_back(kind: type[Reading], place: str) -> 
 
 def test_a_sensor_of_ones_own_may_give_these_readings(tmp_path: Path) -> None:
     @dataclasses.dataclass(frozen=True)
-    class Warm(sensors.Echo):
+    class Warm(sensors.RangeReading):
         pass
 
     own = types.SimpleNamespace(rate=5.0)
     reading = Warm(1.0, Pose.of((0.0, 0.0), 0.0), np.array([1.5]), np.array([3]), np.array([-1]), np.ones((1, 3)))
-    assert codec_of(Warm) is CODECS[sensors.Echo]
+    assert codec_of(Warm) is CODECS[sensors.RangeReading]
     read = back(reading, own)
-    assert type(read) is sensors.Echo
+    assert type(read) is sensors.RangeReading
     assert read.ranges.tolist() == [1.5]
     with pytest.raises(
-        EpisodeError, match=r"gives a Reading, which has no ROS message; let it give one of Scan, Cloud"
+        EpisodeError, match=r"gives a Reading, which has no ROS message; let it give one of Scan, PointCloud"
     ):
         codec_of(Reading, "robot/eye")
 

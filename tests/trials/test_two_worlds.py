@@ -13,7 +13,7 @@ from test_schema import valid
 
 from crowdbot.core import ExternalClock, InputError, MissingExtra, TrialError
 from crowdbot.recording import branch, opened, read_episode, record, replay, run
-from crowdbot.sensors import Picture, Tracked
+from crowdbot.sensors import RgbImage, TrackedPeople
 from crowdbot.simulation import Running, Simulation, drive
 from crowdbot.trials import (
     Trial,
@@ -95,7 +95,7 @@ def test_readings_of_the_room(world: str) -> None:
     episode = run(parse_trial(room(world)))
     found = episode.readings
     pictures = found["pepper/eyes"]
-    assert isinstance(pictures[0], Picture)
+    assert isinstance(pictures[0], RgbImage)
     assert pictures[0].rgb.shape == (1, 24, 32, 3)
     assert pictures[0].hit is not None
     assert {one for picture in pictures for one in np.unique(picture.hit)} >= {-2, -3, 0}
@@ -104,7 +104,7 @@ def test_readings_of_the_room(world: str) -> None:
     near = found["pepper/depth"][0]
     assert near.pose.position[0, 2] == pytest.approx(1.0, abs=0.01)
     told = found["pepper/people"][-1]
-    assert isinstance(told, Tracked)
+    assert isinstance(told, TrackedPeople)
     assert told.ids() == [0, 1, 2, 3, 4, 6]
     turning = found["pepper/imu"][-1].acceleration  # type: ignore[attr-defined]
     assert np.isfinite(turning).all()

@@ -7,9 +7,18 @@ from physics_worlds import alone, crowded
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, Twist
 from crowdbot.models import ORCA
-from crowdbot.sensors.beams import beams, fan
-from crowdbot.sensors.cast import cast
-from crowdbot.world import CubeBody, PeopleMotion, PhysicsStage, PhysicsWorld, Robot, TableBody, TreeBody, scene_bodies
+from crowdbot.sensors.beams import sort_beams, unit_vectors
+from crowdbot.sensors.ray_casting import cast_rays
+from crowdbot.world import (
+    CubeBody,
+    PeopleMotion,
+    PhysicsStage,
+    PhysicsWorld,
+    Robot,
+    TableBody,
+    TreeBody,
+    scene_bodies,
+)
 
 FAR = 60.0
 ROOM = [[(-7.0, -7.0), (-7.0, 7.0), (7.0, 7.0), (7.0, -7.0)], [(3.0, 3.0), (5.0, 3.0), (5.0, 4.0), (3.0, 4.0)]]
@@ -64,9 +73,9 @@ def test_rays_equal_mujocos_on_people_walls_and_props(world, height):
         world.data.qpos[held._place[slots] + axis] = place[:, axis]
     pose = SpatialPose.of((-0.9, 0.7, height), 0.02, 0.05, 0.3)
     azimuth = np.linspace(-np.pi, np.pi, 400, endpoint=False)
-    directions = fan(azimuth[None], np.radians(np.linspace(-25.0, 20.0, 12))[:, None]).reshape(-1, 3)
+    directions = unit_vectors(azimuth[None], np.radians(np.linspace(-25.0, 20.0, 12))[:, None]).reshape(-1, 3)
     other, names = theirs(world, pose, directions)
-    ours = cast(scene.without(12), pose, beams(directions), FAR)
+    ours = cast_rays(scene.without(12), pose, sort_beams(directions), FAR)
     robot = np.array([name.startswith("robot") for name in names])
     same = ~robot
     assert np.mean(same) > 0.8
@@ -89,8 +98,8 @@ def test_the_robot_is_met_where_its_colliders_are(world):
     x, y = scene.position[0, 12]
     for angle in np.linspace(0.0, 2.0 * np.pi, 9)[:-1]:
         pose = SpatialPose.of((x + 1.5 * np.cos(angle), y + 1.5 * np.sin(angle), 0.6), yaw=angle + np.pi)
-        directions = fan(np.linspace(-0.2, 0.2, 21))
-        ours = cast(empty, pose, beams(directions), FAR)
+        directions = unit_vectors(np.linspace(-0.2, 0.2, 21))
+        ours = cast_rays(empty, pose, sort_beams(directions), FAR)
         other, names = theirs(world, pose, directions, (1, 0, 0, 1, 0, 0))
         column = np.array([name.startswith("robot12/column") for name in names])
         assert column.any()
@@ -108,11 +117,11 @@ def test_skins_and_capsules_are_within_5_cm_of_each_other():
     for _ in range(7):
         scene = scene.replace(position=scene.position + 0.1 * scene.velocity)
         motion.walk(scene, 0.1)
-    seen = scene.replace(scene_bodies=scene_bodies(scene, motion, skins=0))
+    seen = scene.replace(bodies=scene_bodies(scene, motion, skins=0))
     pose = SpatialPose.of((0.0, 0.0, 1.0))
-    directions = fan(np.linspace(-np.pi, np.pi, 720)[None], np.radians(np.linspace(-40.0, 30.0, 60))[:, None])
-    flat = beams(directions.reshape(-1, 3))
-    round_, true = cast(seen, pose, flat, 20.0), cast(seen, pose, flat, 20.0, skins=True)
+    directions = unit_vectors(np.linspace(-np.pi, np.pi, 720)[None], np.radians(np.linspace(-40.0, 30.0, 60))[:, None])
+    flat = sort_beams(directions.reshape(-1, 3))
+    round_, true = cast_rays(seen, pose, flat, 20.0), cast_rays(seen, pose, flat, 20.0, skins=True)
     both = (round_.hit >= 0) & (round_.hit == true.hit)
     assert both.sum() > 2000
     assert set(round_.hit[both]) == {0, 1, 2, 3}
@@ -129,15 +138,15 @@ def test_trees_and_robots_of_all_kinds_have_bodies():
         world = alone(Robot.load(name), stage=stage)
         seen = world.body_scene()
         pose = SpatialPose.of((-3.0, 0.0, 0.15 if name != "turtlebot2" else 0.06))
-        hits = cast(seen, pose, beams(fan(np.linspace(-0.5, 0.5, 101))), FAR)
+        hits = cast_rays(seen, pose, sort_beams(unit_vectors(np.linspace(-0.5, 0.5, 101))), FAR)
         assert 0 in hits.hit
         away = hits.distance[0][hits.hit[0] == 0].min()
         assert away == pytest.approx(3.0 - world.robot_bodies[0].robot.radius, abs=0.35)
-        trunk = cast(seen.without(0), pose, beams(fan(np.zeros(1))), FAR)
+        trunk = cast_rays(seen.without(0), pose, sort_beams(unit_vectors(np.zeros(1))), FAR)
         assert trunk.hit.tolist() == [[-4]]
         assert trunk.distance[0, 0] == pytest.approx(6.0 - 0.15, abs=1e-9)
     crown = SpatialPose.of((0.0, 0.0, 3.2))
-    leaves = cast(seen.without(0), crown, beams(fan(np.zeros(1))), FAR)
+    leaves = cast_rays(seen.without(0), crown, sort_beams(unit_vectors(np.zeros(1))), FAR)
     assert leaves.distance[0, 0] == pytest.approx(2.0, abs=0.06)
 
 
@@ -151,8 +160,11 @@ def test_bodies_follow_the_scene_in_the_plane():
     gone = scene_bodies(scene.without(1), motion, {0: robot}, skins=2)
     assert np.all(gone.radius[0, gone.owner == 1] == 0.0)
     assert np.all(np.isnan(gone.skins.vertices))
-    own = cast(
-        scene.replace(scene_bodies=found).without(0), Pose.of((1.0, 2.0), 0.0).lifted(0.1), beams(fan(np.zeros(8))), 9.0
+    own = cast_rays(
+        scene.replace(bodies=found).without(0),
+        Pose.of((1.0, 2.0), 0.0).lifted(0.1),
+        sort_beams(unit_vectors(np.zeros(8))),
+        9.0,
     )
     assert 0 not in own.hit
     moved = scene_bodies(scene, None, {0: Robot.load("pepper")}, joints={0: {"HeadYaw": 1.0}})

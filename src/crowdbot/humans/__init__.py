@@ -1,4 +1,4 @@
-"""Humans: people that look and walk like people, with capsules for contacts and rays and skins for eyes."""
+"""Human bodies: walking animation, capsules for contacts and range sensors, skins for cameras."""
 
 from .activities import ACTIVITIES
 from .feet import Gaits

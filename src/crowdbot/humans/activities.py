@@ -1,4 +1,4 @@
-"""What people do beside walking and standing, by name."""
+"""Names of the activities of people."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from crowdbot.core import InputError, UnknownName
 __all__ = ["ACTIVITIES", "activity_index"]
 
 ACTIVITIES = ("walk", "talk", "phone", "bottle", "text", "sit")
-"""``walk`` also stands and turns, as the speed asks; all but ``sit`` are done while walking too."""
+"""``walk`` includes standing and turning. All activities except ``sit`` combine with walking."""
 TALK, PHONE, BOTTLE, TEXT, SIT = 1, 2, 3, 4, 5
 
 
 def activity_index(activity: str | Sequence[str] | NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """Return ``[N]``, the place in :data:`ACTIVITIES` of one name for all or a name (or place) for each.
+    """Return ``[N]``, indices into :data:`ACTIVITIES`, from one name for all or a name (or index) for each.
 
     Raises:
         UnknownName: there is no such activity.

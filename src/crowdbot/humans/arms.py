@@ -1,4 +1,4 @@
-"""Arms: they swing against the legs, or talk, hold a phone at the ear, a bottle, a telephone in front, or rest."""
+"""Arm motion: swinging with the gait, talking, phoning, carrying a bottle, looking at a phone, or resting."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _hang(angles: Floats, side: float, R: Floats, axis: Floats, hinge: Floats) -
 
 @kernel
 def _to_ear(head: Floats, turned: Floats, side: float, stature: float, goal: Floats, pole: Floats) -> None:
-    """Write where the wrist is when the hand is at the ear, and to where the elbow points."""
+    """Write the wrist position with the hand at the ear, and the direction of the elbow."""
     ax, ay, az = 0.060 * stature, side * 0.060 * stature, -0.070 * stature
     for r in range(3):
         goal[r] = head[r] + turned[r, 0] * ax + turned[r, 1] * ay + turned[r, 2] * az
@@ -79,7 +79,7 @@ def _to_ear(head: Floats, turned: Floats, side: float, stature: float, goal: Flo
 
 @kernel
 def _to_rest(g: Gaits, i: int, side: float, seat: Floats, goal: Floats, pole: Floats) -> None:
-    """Write where the wrist is on the arm rest of a seat, and to where the elbow points."""
+    """Write the wrist position on the arm rest of a seat, and the direction of the elbow."""
     c, s = math.cos(g.yaw[i]), math.sin(g.yaw[i])
     goal[0] = g.position[i, 0] + c * seat[9] - s * side * seat[10]
     goal[1] = g.position[i, 1] + s * seat[9] + c * side * seat[10]
@@ -91,7 +91,7 @@ def _to_rest(g: Gaits, i: int, side: float, seat: Floats, goal: Floats, pole: Fl
 def _reached(
     shoulder: Floats, goal: Floats, pole: Floats, upper: float, lower: float, axis: Floats, hinge: Floats, aim: Floats
 ) -> float:
-    """Write the arm that brings the wrist to ``goal``, and return the bend of its elbow [rad]."""
+    """Write the arm directions for a wrist at ``goal`` (inverse kinematics); return the elbow flexion [rad]."""
     for r in range(3):
         aim[r] = goal[r] - shoulder[r]
     reach = min(max(unit(aim), abs(upper - lower) + 0.03), 0.995 * (upper + lower))
@@ -108,7 +108,7 @@ def pose_arm(
     g: Gaits, i: int, side: int, vigour: float, sit: float, lengths: Floats, frame: Floats, style: Floats, seat: Floats,
     R: Floats, P: Floats, work: Floats,
 ) -> None:  # fmt: skip
-    """Turn upper arm, forearm, hand and fingers of one side; trunk and shoulder joints are placed already."""
+    """Turn upper arm, forearm, hand and fingers of one side; requires the trunk and shoulder joints."""
     sign = 1.0 - 2.0 * side
     first = 7 + 7 * side
     axis, hinge, axis2, hinge2, lower = work[2], work[3], work[4], work[5], work[6]

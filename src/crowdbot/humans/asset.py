@@ -1,4 +1,4 @@
-"""The file of bodies that ships: rest shapes, skeleton, skin weights and regions, read once."""
+"""The body asset: rest shapes, skeleton, skin weights and regions. The file is read once."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ UNIT = 1e-4
 
 @dataclass(frozen=True)
 class Level:
-    """One level of detail, shared by all bodies but for the rest shape.
+    """One level of detail. Only the rest shape differs between bodies.
 
     Fields: ``rest [P, V, 3]`` [m], ``faces [F, 3]``, ``bones [V, 4]`` and ``weights [V, 4]`` (sum 1), the part and the
     region of every vertex and face as indices into the names of :class:`Shapes`.
@@ -41,7 +41,7 @@ class Level:
 
 @dataclass(frozen=True)
 class Shapes:
-    """All bodies of the file: ``people`` says who they are; ``head`` and ``tail`` are the bones at rest [m]."""
+    """All bodies of the asset; ``head`` and ``tail`` are the ends of the bones at rest [m]."""
 
     people: tuple[dict[str, Any], ...]
     bones: tuple[str, ...]
@@ -59,7 +59,7 @@ class Shapes:
 
 @functools.cache
 def shapes() -> Shapes:
-    """Return the bodies of the file, and as the last one the mannequin: the mean of the adults."""
+    """Return the bodies of the asset; the last one is the mannequin, the mean of the adults."""
     stored = _stored("humans_cc0.npz")
     people = tuple(json.loads(str(stored["people"])))
     adult = np.array([person["years"] >= 18 for person in people])

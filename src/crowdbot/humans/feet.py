@@ -1,4 +1,4 @@
-"""Where the feet go: the step of the walk, person by person, with every plant of a foot held in world coordinates."""
+"""Foot placement: one time step of the gait of each person. Planted feet are fixed in world coordinates."""
 
 from __future__ import annotations
 
@@ -17,31 +17,31 @@ __all__ = ["Gaits", "advance", "foot_now"]
 Floats = NDArray[np.float64]
 
 CREEP = 0.12
-"""Below this speed [m/s] people do not walk but step when a foot stands wrong."""
+"""Below this speed [m/s] people stand, and step only to correct a misplaced foot."""
 FILTER = 0.10
-"""The walk follows speed with this lag [s]; the body itself is where it is said to be at every step."""
+"""Time constant [s] with which the gait follows the speed. The body position is exact at every step."""
 TURN_LAG, TURN_LIMIT = 0.12, 4.0
-"""The trunk follows the heading with this lag [s] and at most so fast [rad/s]."""
+"""Time constant [s] and largest turn rate [rad/s] with which the trunk follows the heading."""
 BLEND_TIME = 0.8
-"""Activities pass into each other in this time [s]."""
+"""Transition time between activities [s]."""
 SITTING = 5
-"""Column of the blend that sits; held to the list of activities by a test."""
+"""Column of ``sit`` in the blend of activities."""
 STEP = 0.02
-"""Longest step [s] of the feet; longer ones are cut."""
+"""Longest time step of the feet [s]; longer steps are subdivided."""
 TWIST = math.radians(80.0)
-"""Most that foot and trunk turn against each other; then the foot pivots on its ball or the tip of its toes."""
+"""Largest yaw between foot and trunk; beyond it the foot pivots on its ball or toes."""
 LOST = 1.4
-"""Feet further from the body than so many leg lengths are set down anew."""
+"""Feet farther from the body than this many leg lengths are repositioned."""
 STEEPEST = math.radians(76.0)
-"""Highest pitch of a foot whose heel is raised so that the leg reaches it."""
+"""Largest heel raise that extends the reach of a leg."""
 HIP_HEIGHT = 0.945
-"""Height of the hips in a walk [leg lengths], for which heels are raised."""
+"""Hip height while walking [leg lengths], used for heel raise."""
 PUSH_SPEED = 0.55
-"""Speed of the ankle when the foot leaves the floor, as a share of the body's."""
+"""Speed of the ankle at toe-off relative to the body speed."""
 
 
 class Gaits(NamedTuple):
-    """How N people walk at one instant, as arrays that can be kept, copied and recorded.
+    """Gait state of N people at one instant, as arrays.
 
     Fields: ``position [N, 2]`` [m]; ``yaw [N]`` of the trunk [rad] and its rate ``turn [N]``; ``drift [N, 2]`` smoothed
     velocity [m/s]; ``phase [N]`` of the cycle, 0 when the left heel strikes; ``moving [N]`` 1 while steps are made;
@@ -69,7 +69,7 @@ class Gaits(NamedTuple):
 
 @kernel
 def _home(g: Gaits, i: int, f: int, x: float, y: float, yaw: float, style: Floats, leg: float, out: Floats) -> None:
-    """Write x, y, yaw of foot ``f`` for a body at x, y, yaw: aside by half the width of the stance, toes outward."""
+    """Write x, y, yaw of foot ``f`` for a body at x, y, yaw: sideways by half the stance width, toes out."""
     side = 1.0 - 2.0 * f
     pace = math.sqrt(g.drift[i, 0] ** 2 + g.drift[i, 1] ** 2)
     width = leg * (0.1 - 0.045 * min(pace, 1.0)) * style[7]
@@ -99,7 +99,7 @@ def _aim(g: Gaits, i: int, f: int, left: float, ahead: float, style: Floats, leg
 
 @kernel
 def _wrong(g: Gaits, i: int, f: int, style: Floats, leg: float) -> float:
-    """Return how wrong foot ``f`` stands for a body at rest: 1 is 0.12 m or 35 degrees."""
+    """Return the placement error of foot ``f`` for a standing body: 1 is 0.12 m or 35 degrees."""
     home = np.empty(3)
     _home(g, i, f, g.position[i, 0], g.position[i, 1], g.yaw[i], style, leg, home)
     away = math.sqrt((g.foot[i, f, 0] - home[0]) ** 2 + (g.foot[i, f, 1] - home[1]) ** 2)
@@ -152,7 +152,7 @@ def _beyond(ahead: float, aside: float, pitch: float, toes: float, size: Floats)
 
 @kernel
 def _settle(g: Gaits, i: int, style: Floats, size: Floats) -> None:
-    """Set both feet as they would be in a steady walk at the present speed, or at rest."""
+    """Place both feet as in steady walking at the current speed, or standing."""
     leg = size[5]
     speed = math.sqrt(g.drift[i, 0] ** 2 + g.drift[i, 1] ** 2)
     time, support, lead, vigour = cycle(g.drift[i, 0], g.drift[i, 1], g.yaw[i], leg, style[1])
@@ -180,7 +180,7 @@ def _settle(g: Gaits, i: int, style: Floats, size: Floats) -> None:
 
 @kernel
 def _begin(g: Gaits, i: int, support: float, style: Floats, leg: float) -> None:
-    """Make the first step with the foot that is most behind."""
+    """Take the first step with the rearmost foot."""
     best, chosen = -1e9, 0
     for f in range(2):
         home = 0.3 * _wrong(g, i, f, style, leg) + 1e-6 * f
@@ -209,7 +209,7 @@ def _pivot(g: Gaits, i: int, f: int, at: float) -> None:
 
 @kernel
 def _haste(g: Gaits, i: int, leg: float) -> float:
-    """Return how much faster than usual the feet go when the body has left them behind or turned away from them."""
+    """Return the cadence factor for feet that lag behind the position or heading of the body."""
     most, sum_, twist = 0.0, 0.0, 0.0
     for f in range(2):
         if g.planted[i, f] > 0.0:
@@ -267,7 +267,7 @@ def _move_feet(g: Gaits, i: int, dt: float, style: Floats, size: Floats) -> None
 def advance(
     g: Gaits, velocity: Floats, position: Floats, heading: Floats, fresh: Floats, dt: float, style: Floats, size: Floats
 ) -> None:
-    """Move everyone in place to ``position [N, 2]`` [m] in ``dt`` [s]; who is ``fresh`` is set down anew there."""
+    """Move all people to ``position [N, 2]`` [m] in ``dt`` [s], in place; ``fresh`` people are repositioned."""
     parts = max(1, math.ceil(dt / STEP - 1e-9))
     h = dt / parts
     for i in range(len(fresh)):
@@ -293,7 +293,7 @@ def advance(
 
 @kernel
 def _follow(g: Gaits, i: int, velocity: Floats, heading: float, h: float) -> None:
-    """Let smoothed velocity, trunk and blend follow for ``h`` [s]."""
+    """Advance the smoothed velocity, trunk heading and activity blend by ``h`` [s]."""
     keep = math.exp(-h / FILTER)
     g.drift[i, 0] = velocity[0] + keep * (g.drift[i, 0] - velocity[0])
     g.drift[i, 1] = velocity[1] + keep * (g.drift[i, 1] - velocity[1])

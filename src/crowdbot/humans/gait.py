@@ -1,4 +1,4 @@
-"""Gait: how N people walk, stand, turn and are busy, as a pure step from state to state."""
+"""Gait of N people: walking, standing, turning and activities, as a pure step from state to state."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ __all__ = ["Gait", "posing_and_skinning"]
 
 Floats = NDArray[np.float64]
 FASTEST = 12.0
-"""Speeds [m/s] above this are an error: nobody walks or runs so fast."""
+"""Largest allowed speed [m/s]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Gait:
-    """The walk of some people: feet are planted in the world, all else follows.
+    """Gait of a group of people. Feet are planted in the world, the body follows.
 
     Args:
         people: who walks.
@@ -66,7 +66,7 @@ class Gait:
     size: Floats = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Draw the styles and lay out the sizes of the legs."""
+        """Draw the walking styles and compute the leg lengths."""
         numbers = range(len(self.people)) if self.ids is None else list(self.ids)
         if len(numbers) != len(self.people):
             raise InputError(f"Gait: {len(numbers)} ids are given for {len(self.people)} people")
@@ -84,7 +84,7 @@ class Gait:
         velocity: ArrayLike | None = None,
         activity: str | Sequence[str] | NDArray[np.int64] = "walk",
     ) -> Gaits:
-        """Return the first state: in mid-walk when ``velocity`` is given, otherwise standing.
+        """Return the initial state: walking if ``velocity`` is given, otherwise standing.
 
         Args:
             position: ``[N, 2]`` [m].
@@ -117,7 +117,7 @@ class Gait:
         dt: float,
         activity: str | Sequence[str] | NDArray[np.int64] | None = None,
     ) -> Gaits:
-        """Return the state ``dt`` [s] later, when everyone has come to ``position`` with ``velocity``.
+        """Return the state ``dt`` [s] later, with everyone at ``position`` with ``velocity``.
 
         Args:
             state: left as it is.
@@ -143,7 +143,7 @@ class Gait:
         return after
 
     def posture(self, state: Gaits) -> Posture:
-        """Return where the bones of everyone are."""
+        """Return the posture of everyone."""
         return posture(state, self.people.measures, self.style, self.size, self.seats)
 
     def limbs(self, state: Gaits) -> Capsules:
@@ -176,7 +176,7 @@ class Gait:
 
 
 def _style(seed: int, number: int) -> list[float]:
-    """One person's way of walking, see the uses of ``style`` in the files of feet, posture and arms."""
+    """Random style parameters of one person, used by feet, posture and arms."""
     draw = stream(seed, "gait", number)
     return [
         float(draw.uniform(0.0, 1.0)),  # 0 phase at the start
@@ -192,7 +192,7 @@ def _style(seed: int, number: int) -> list[float]:
 
 
 def posing_and_skinning(count: int = 100, level: int = 2) -> Callable[[], Floats]:
-    """Return a piece of work to time: pose ``count`` drawn walkers and deform their skins at a level of detail.
+    """Return a benchmark workload: pose ``count`` random walkers and deform their skins at a level of detail.
 
     >>> posing_and_skinning(3)().shape
     (3, 447, 3)

@@ -1,4 +1,4 @@
-"""Limbs: 17 capsules fitted to every body, with what they weigh and which region of the body they belong to."""
+"""Limbs: 17 capsules fitted to every body, with masses and body regions."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ __all__ = ["LIMBS", "REGIONS", "Limb", "fitted", "mass_shares"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 ROUNDS = 12
-"""Steps of the fit; the residual stands still to 0.1 mm after about 10."""
+"""Iterations of the fit; it converges to 0.1 mm after about 10."""
 HOLD = 0.02
-"""Weight of the first guess in the fit: without it a capsule whose end no vertex sees may run away along its axis."""
+"""Weight of the initial guess in the fit. It bounds capsule ends without nearby vertices."""
 
 MASS_SOURCE = Paper(
     "Paolo de Leva",
@@ -32,7 +32,7 @@ MASS_SOURCE = Paper(
 
 
 class Limb(NamedTuple):
-    """One capsule: the bone that carries it, all bones whose skin it stands for, its region and its ends at rest.
+    """One capsule: its bone, the bones whose skin it approximates, its region and its ends at rest.
 
     ``along``: the bone at whose head the capsule ends, or empty for the tail; the trunk's capsules lie across.
     """
@@ -117,7 +117,7 @@ def fitted() -> Floats:
 
 
 def _ends(every: Shapes, limb: Limb) -> tuple[Floats, Floats]:
-    """First guess of both ends, ``[P, 3]``."""
+    """Return the initial guess of both ends, ``[P, 3]``."""
     head, tail = every.head[:, every.bone(limb.bone)], every.tail[:, every.bone(limb.bone)]
     if limb.along == "across":
         middle = _skin_of(every, limb).mean(axis=1)
@@ -137,7 +137,7 @@ def _skin_of(every: Shapes, limb: Limb) -> Floats:
 
 
 def _fit(points: Floats, start: Floats, end: Floats) -> Floats:
-    """Gauss-Newton on ``distance to the axis - radius``, held a little to the first guess; all people at once."""
+    """Fit capsules with Gauss-Newton on ``distance to the axis - radius``, regularised to the initial guess."""
     gap = _along(points, start, end)[1]
     guess = np.concatenate([start, end, np.sqrt((gap**2).sum(-1)).mean(axis=1)[:, None]], axis=1)
     hold = np.diag([HOLD] * 6 + [1e-6])
@@ -157,7 +157,7 @@ def _fit(points: Floats, start: Floats, end: Floats) -> Floats:
 
 
 def _along(points: Floats, start: Floats, end: Floats) -> tuple[Floats, Floats]:
-    """Where on the axis (0 to 1) each point is nearest, and the vector from there to the point."""
+    """Return the nearest place on the axis (0 to 1) and the vector from there to each point."""
     axis = end - start
     length2 = np.maximum((axis**2).sum(-1), 1e-12)
     t = np.clip(np.einsum("pvi,pi->pv", points - start[:, None], axis) / length2[:, None], 0.0, 1.0)

@@ -1,4 +1,4 @@
-"""Lengths of bodies that the walk needs: legs, feet, arms, and the rest frames of the limbs that bend."""
+"""Body measures for the gait: legs, feet, arms, and the rest frames of bending limbs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ENDS = ("calf_l", "calf_r", "foot_l", "foot_r", "lowerarm_l", "lowerarm_r", "han
 
 
 class Measures(NamedTuple):
-    """Lengths of N bodies [m]; left and right of the legs are taken as equal.
+    """Lengths of N bodies [m]; both legs are assumed equal.
 
     Fields: ``leg [N]`` hip joint to floor; ``thigh``, ``shank``, ``ankle`` (its height); ``ball [N, 2]`` and
     ``heel``, ``toe`` ``[N]`` ahead of and above the ankle's foot point; ``arm [N, 2]`` upper and lower arm;
@@ -67,7 +67,7 @@ def measures(body: Ints, scale: Floats, height: Floats) -> Measures:
 
 
 def _sole(body: Ints, scale: Floats) -> tuple[Floats, Floats]:
-    """Where the sole ends behind and in front, ``[N]`` each: the outermost points within 15 mm of the floor."""
+    """Return the rear and front end of the sole, ``[N]`` each: the outermost points within 15 mm of the floor."""
     every = shapes()
     level = every.levels[0]
     main = level.bones[np.arange(len(level.bones)), np.argmax(level.weights, axis=1)]

@@ -1,4 +1,4 @@
-"""People: N persons of the wardrobe with their clothes, capsules and skins."""
+"""A group of N persons with clothes, capsules and skins."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ __all__ = ["Capsules", "People"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 SMALLEST, TALLEST = 0.5, 2.5
-"""Statures [m] that are allowed."""
+"""Allowed statures [m]."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Capsules:
 
 @dataclass(frozen=True, eq=False)
 class People:
-    """N persons, each in a numbered variation of clothes and colours, and scaled to a stature.
+    """N persons, each with a numbered outfit and scaled to a stature.
 
     Fields: ``persons``, ``variation [N]``, ``height [N]`` [m].
 
@@ -129,7 +129,7 @@ class People:
 
     @functools.cached_property
     def outfits(self) -> tuple[Outfit, ...]:
-        """What everyone wears."""
+        """Outfit of each person."""
         return tuple(outfit(p, int(v)) for p, v in zip(self.persons, self.variation, strict=True))
 
     def limbs(self, posture: Posture) -> Capsules:
@@ -145,7 +145,7 @@ class People:
         return Capsules(placed(rest[..., :3]), placed(rest[..., 3:6]), rest[..., 6].copy())
 
     def skin(self, posture: Posture, level: int = 2) -> Floats:
-        """Return the vertices ``[N, V, 3]`` [m] of everyone's skin and clothes, parts that are not worn included.
+        """Return the vertices ``[N, V, 3]`` [m] of skin and clothes, parts that are not worn included.
 
         Args:
             posture: of the same people.

@@ -1,4 +1,4 @@
-"""Who there is: 40 adults, 4 children and a plain mannequin, by name."""
+"""Available persons: 40 adults, 4 children and a mannequin, by name."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ WORD = {("m", True): "man", ("f", True): "woman", ("m", False): "boy", ("f", Fal
 
 @dataclass(frozen=True)
 class Person:
-    """One body of the wardrobe.
+    """One available body.
 
     Fields: ``name`` (sex and age, as ``woman-36``), ``sex`` (``m``, ``f``, or empty for the mannequin), ``years``,
     ``height`` [m], ``mass`` [kg] (volume of the body times the density of water), ``index`` in the file.
@@ -35,7 +35,7 @@ class Person:
 
 @functools.cache
 def persons() -> tuple[Person, ...]:
-    """Return everyone, adults first, the mannequin last.
+    """Return all persons, adults first, the mannequin last.
 
     >>> everyone = persons()
     >>> len(everyone), everyone[0].name, everyone[-1].name, sum(p.sex == "f" and p.years >= 18 for p in everyone)
@@ -58,7 +58,7 @@ def persons() -> tuple[Person, ...]:
 
 
 def names() -> tuple[str, ...]:
-    """Return the names of everyone, as ``man-20`` or ``mannequin``.
+    """Return the names of all persons, such as ``man-20`` or ``mannequin``.
 
     >>> names()[20:23]
     ('woman-20', 'woman-22', 'woman-24')

@@ -1,4 +1,4 @@
-"""Postures: where every bone is, from the state of the walk. Legs reach their feet, arms swing or are busy."""
+"""Posture: position and rotation of every bone from the gait state."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ Ints = NDArray[np.int64]
 
 PELVIS_TURN, PELVIS_ROLL, CHEST_TURN = math.radians(5.0), math.radians(3.0), math.radians(4.0)
 SWAY = 0.022
-"""The pelvis goes so far over the standing leg [leg lengths]."""
+"""Sideways motion of the pelvis over the stance leg [leg lengths]."""
 STRAIGHT = 0.998
-"""Legs are never straighter than this share of their length."""
+"""Largest extension of a leg as a share of its length."""
 BOB = 0.035
-"""Way of the pelvis up and down in a step, over the speed [m per m/s]."""
+"""Vertical motion of the pelvis in a step per speed [m per m/s]."""
 HIGHEST = 0.235
 """Phase at which the pelvis is highest over the left leg; it is lowest a quarter of a cycle later."""
 SOFT = 0.004
@@ -78,7 +78,7 @@ def _hip(head: Floats, b: int, R: Floats, out: Floats) -> None:
 
 @kernel
 def _resting(g: Gaits, i: int, f: int, hip: float, lengths: Floats, size: Floats, seat: Floats, out: Floats) -> None:
-    """Write ankle x, y, z and pitch of foot ``f`` of who sits: on the rest if the leg reaches it, else on the floor."""
+    """Write ankle x, y, z and pitch of foot ``f`` of a sitting person, on the foot rest or the floor."""
     side, thigh, shank = 1.0 - 2.0 * f, lengths[0], lengths[1]
     ahead, aside, pitch = seat[1] + thigh + 0.02, side * 0.11 * size[5], 0.0
     height = max(size[0], hip - shank * 0.995)
@@ -132,7 +132,7 @@ def _swinging(phase: float, speed: float, way: float, vigour: float, length: flo
 
 @kernel
 def _height(hips: Floats, feet: Floats, x: float, y: float, longest: float, tallest: float) -> float:
-    """Return how high [m] the pelvis joint is: softly below what either leg reaches and below ``tallest`` [m]."""
+    """Return the height of the pelvis joint [m]: a smooth minimum of the reach of both legs and ``tallest`` [m]."""
     left, right = _reach(hips[0], feet[0], x, y, longest), _reach(hips[1], feet[1], x, y, longest)
     low = min(left, right, tallest)
     far = math.exp((low - left) / SOFT) + math.exp((low - right) / SOFT) + math.exp((low - tallest) / SOFT)

@@ -1,4 +1,4 @@
-"""Seats: what people sit on, from a plain chair to the wheelchair that ships."""
+"""Seats: a chair and the built-in wheelchair."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Point = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Seat:
-    """A seat, in a frame that lies on the floor at the person's position, x to where the person looks.
+    """A seat, in a frame on the floor at the position of the person, x forward.
 
     Args:
         height: of the seat [m].
@@ -44,7 +44,7 @@ class Seat:
     hands: Point | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is no seat."""
+        """Raise :class:`InputError` for invalid values."""
         if not np.all(np.isfinite(self.row)):
             raise InputError(f"Seat: {self} has a value that is not finite")
         if not 0.2 <= self.height <= 1.2:

@@ -1,4 +1,4 @@
-"""How people walk at a speed: length and time of a cycle, share of support, and the path of a foot through the air.
+"""Gait parameters as functions of speed: cycle time, stride length, duty factor, and the swing path of a foot.
 
 Relations of Boulic, Magnenat-Thalmann & Thalmann 1990, doi:10.1007/BF01901021, in leg lengths; below a relative speed
 of 0.25 the length follows a power of the speed (our choice).
@@ -17,19 +17,19 @@ __all__ = ["LANDED", "STRIKE", "ankle_over", "cycle", "foot_pose", "lowest", "sm
 
 Floats = NDArray[np.float64]
 RESTING_CYCLE = 1.15
-"""Time [s] of a cycle of steps on the spot."""
+"""Cycle time of stepping on the spot [s]."""
 EASY = 0.3
-"""Below this speed [m/s] the cycle time passes over to that of steps on the spot."""
+"""Below this speed [m/s] the cycle time blends to that of stepping on the spot."""
 FASTEST = 0.42
 """Shortest time of a cycle [s]."""
 LONGEST = 2.2
-"""Relative speed from which strides do not lengthen: people would run, here the legs go faster."""
+"""Relative speed above which only the cadence increases (people would run)."""
 LEAD = 0.36
-"""A foot comes down so far ahead of the hip, as a share of the way that the body moves while it stands."""
+"""Distance of the foot ahead of the hip at heel strike, as a share of the body motion during stance."""
 BACKWARD = 0.3
-"""Strides backward are shorter by this share."""
+"""Relative shortening of backward strides."""
 ASIDE = 0.5
-"""Longest way aside in a cycle [leg lengths]; feet do not cross."""
+"""Longest sideways stride [leg lengths]; feet do not cross."""
 STRIKE, PUSH = math.radians(20.0), math.radians(68.0)
 """Toes up when the heel strikes, and heel up when the toes leave, at a relative speed of 0.9."""
 LANDED, ROLLING, TIPPING = 0.19, 0.50, 0.75
@@ -43,7 +43,7 @@ TIPPED = math.radians(35.0)
 
 @kernel
 def smooth(x: float) -> float:
-    """Return the step from 0 to 1 with level ends."""
+    """Return the smooth step from 0 to 1."""
     x = min(max(x, 0.0), 1.0)
     return x * x * (3.0 - 2.0 * x)
 

@@ -1,4 +1,4 @@
-"""Small rotations that the posture is made of; matrices are written into ``out [3, 3]``."""
+"""Rotations used by the posture; matrices are written into ``out [3, 3]``."""
 
 from __future__ import annotations
 

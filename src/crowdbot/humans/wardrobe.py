@@ -22,10 +22,10 @@ SKIN: dict[str, tuple[str, ...]] = {
     "asian": ("eccfa8", "dfb98d", "cda277", "b98a60"),
     "african": ("8d5a3b", "74462c", "5c3723", "472a1c"),
 }
-"""Skin by main ancestry of the shape, light to dark."""
+"""Skin colours by main ancestry of the shape, light to dark."""
 HAIR = ("16110e", "2a1c14", "46301f", "6d4a2b", "99703f", "c9a566", "7d3b1e")
 DARK_HAIR = 3
-"""So many of the first hair colours belong to everyone, the rest to light skins."""
+"""Number of hair colours for all skins; the others are for light skins."""
 GREY = ("8f8f8f", "b5b3b0", "d6d4d0")
 TOPS = (
     "b3252b", "2c6e49", "d9a21b", "23262e", "7a8a99", "6b3f8f", "e7e5df", "1f4f9e", "5b2c1f", "c8663a",
@@ -40,7 +40,7 @@ PLAIN = "b9b4ab"
 
 @dataclass(frozen=True)
 class Outfit:
-    """What a person looks like: colours (red, green, blue, 0 to 1) and the cut of clothes and hair.
+    """Outfit of a person: colours (red, green, blue, 0 to 1) and the cut of clothes and hair.
 
     Fields: ``sleeves`` ``long``, ``short`` or ``none``; ``legs`` ``long`` or ``short`` trousers or ``skirt``; ``style``
     of the hair ``cropped``, ``short`` or ``long``.
@@ -57,7 +57,7 @@ class Outfit:
 
 
 def outfit(person: Person, variation: int = 0) -> Outfit:
-    """Return one of endlessly many outfits of a person; the number draws everything but the range of the skin.
+    """Return an outfit of a person; the number seeds everything except the range of skin colours.
 
     Colours of tops and bottoms do not repeat within ten numbers in a row.
 

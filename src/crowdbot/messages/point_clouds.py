@@ -77,7 +77,7 @@ def _write_cloud(make: Messages, told: Told) -> list[tuple[str, Any]]:
     ends = reading.points()[0]
     for k, axis in enumerate("xyz"):
         rows[axis] = ends[..., k]
-    rows["intensity"], rows["range"], rows["label"] = reading.facing[0], reading.ranges[0], reading.hit[0]
+    rows["intensity"], rows["range"], rows["label"] = reading.cos_incidence[0], reading.ranges[0], reading.hit[0]
     rows["ring"] = np.arange(len(rows))[:, None]
     return [("", _message(make, told, rows))]
 
@@ -87,7 +87,7 @@ def _read_cloud(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str,
     return {
         "ranges": rows["range"].astype(np.float64)[None],
         "hit": rows["label"].astype(np.int64)[None],
-        "facing": rows["intensity"].astype(np.float64)[None],
+        "cos_incidence": rows["intensity"].astype(np.float64)[None],
     }
 
 

@@ -28,17 +28,17 @@ import numpy as np
 
 from crowdbot.core import EpisodeError, Pose, SpatialPose
 from crowdbot.sensors import (
-    Cloud,
+    BumperReading,
     DepthImage,
-    Echo,
-    Inertial,
+    ImuReading,
     Infrared,
     Odometry,
-    Picture,
+    PointCloud,
+    RangeReading,
     Reading,
+    RgbImage,
     Scan,
-    Touch,
-    Tracked,
+    TrackedPeople,
 )
 
 from .codec import Codec, Told, arrays_of, packed
@@ -55,6 +55,24 @@ REST = "/reading"
 """What the topic of the message with the rest of a reading has after that of the sensor."""
 
 
+KIND_NAMES = {
+    "BumperReading": "Touch",
+    "ImuReading": "Inertial",
+    "PointCloud": "Cloud",
+    "RangeReading": "Echo",
+    "RgbImage": "Picture",
+    "TrackedPeople": "Tracked",
+}
+"""Names of classes in recordings, where they differ from those in Python."""
+FIELD_NAMES = {"cos_incidence": "facing"}
+"""Names of fields in recordings, where they differ from those in Python."""
+
+
+def recorded_name(kind: type[Reading]) -> str:
+    """Return the name of a class of readings in recordings."""
+    return KIND_NAMES.get(kind.__name__, kind.__name__)
+
+
 def said(make: Messages, told: Told) -> list[tuple[str, Any]]:
     """Return the messages of a reading, with what their topics have after that of the sensor.
 
@@ -63,13 +81,13 @@ def said(make: Messages, told: Told) -> list[tuple[str, Any]]:
     """
     codec = codec_of(type(told.reading), told.topic)
     reading = told.reading
-    rest = {"pose": reading.pose} | {name: getattr(reading, name) for name in codec.rest}
+    rest = {"pose": reading.pose} | {FIELD_NAMES.get(name, name): getattr(reading, name) for name in codec.rest}
     fields = [
         make.make("crowdbot_msgs/msg/Array", name=name, dtype=kind, shape=shape, data=data)
         for name, kind, shape, data in packed(rest, codec.short)
     ]
     kind = next(cls for cls in type(reading).__mro__ if cls in CODECS)
-    whole = make.make(KIND, header=told.header(make), kind=kind.__name__, fields=fields)
+    whole = make.make(KIND, header=told.header(make), kind=recorded_name(kind), fields=fields)
     return [*codec.write(make, told), (REST, whole)]
 
 
@@ -99,8 +117,9 @@ def reading_of(whole: Any, others: Mapping[str, Any]) -> Reading:
     Raises:
         KeyError, ValueError: they do not belong together.
     """
-    kind = next(cls for cls in CODECS if cls.__name__ == whole.kind)
-    rest = arrays_of(whole.fields)
+    kind = next(cls for cls in CODECS if recorded_name(cls) == whole.kind)
+    names = {recorded: name for name, recorded in FIELD_NAMES.items()}
+    rest = {names.get(name, name): value for name, value in arrays_of(whole.fields).items()}
     pose = rest.pop("pose")
     stamp = whole.header.stamp
     fields = CODECS[kind].read(others, rest) | rest
@@ -238,15 +257,15 @@ def _odometry_frames(robot: str, topic: str) -> list[tuple[str, str, SpatialPose
 
 
 CODECS: dict[type[Reading], Codec] = {
-    Scan: Codec(_write_scan, _read_scan, rest=("facing", "part"), short=("facing",)),
-    Cloud: cloud_codec,
-    Echo: Codec(_write_echo, _read_echo, rest=("hit", "part", "direction")),
+    Scan: Codec(_write_scan, _read_scan, rest=("cos_incidence", "part"), short=("facing",)),
+    PointCloud: cloud_codec,
+    RangeReading: Codec(_write_echo, _read_echo, rest=("hit", "part", "direction")),
     DepthImage: depth_codec,
-    Inertial: Codec(_write_inertial, _read_inertial, rest=("velocity", "acceleration_bias", "turn_bias")),
+    ImuReading: Codec(_write_inertial, _read_inertial, rest=("velocity", "acceleration_bias", "turn_bias")),
     Odometry: Codec(_write_odometry, _read_odometry, rest=("estimate", "travelled", "ticks"), frames=_odometry_frames),
-    Picture: picture_codec,
-    Touch: touch_codec,
-    Tracked: Codec(_write_tracked, _read_tracked, rest=("present",)),
+    RgbImage: picture_codec,
+    BumperReading: touch_codec,
+    TrackedPeople: Codec(_write_tracked, _read_tracked, rest=("present",)),
 }
 """What each class of readings becomes; a subclass is recorded as its parent."""
 

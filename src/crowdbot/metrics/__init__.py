@@ -7,7 +7,7 @@ from .contacts import ContactEvent, cause_of, contact_events
 from .displacement import ade, best_of, distances, fde, miss_rate
 from .earth_mover import earth_mover_distance
 from .energy import energy_score
-from .incremental import NavigationMetrics, Outcome
+from .incremental import NavigationMetrics, NavigationOutcome
 from .interval import Intervals, bootstrap_interval
 from .likelihood import kde_nll
 from .mahalanobis import mahalanobis
@@ -35,7 +35,7 @@ __all__ = [
     "ContactTracker",
     "Intervals",
     "NavigationMetrics",
-    "Outcome",
+    "NavigationOutcome",
     "PersonErrors",
     "Score",
     "accompanied",

@@ -1,4 +1,4 @@
-"""Predicted collisions: who is predicted to walk through another, as predicted or as the other truly walked."""
+"""Predicted collisions of people with other predictions or with the ground truth."""
 
 from __future__ import annotations
 

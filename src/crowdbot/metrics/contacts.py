@@ -1,4 +1,4 @@
-"""Contacts between a robot and people, from logs: events (not samples), who caused them, how hard they were."""
+"""Contact events between a robot and people in logs: cause, depth and impact speed."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ from .proximity import (
     wall_clearance,
 )
 
-__all__ = ["NavigationMetrics", "Outcome"]
+__all__ = ["NavigationMetrics", "NavigationOutcome"]
 
 Floats = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ MOVING = 0.05
 """Above this speed [m/s] the direction of the velocity is a heading."""
 
 
-class Outcome(NamedTuple):
+class NavigationOutcome(NamedTuple):
     """How an episode ended: ``success``, ``collision`` or ``timeout``, and the sample at which that was decided."""
 
     name: str
@@ -88,7 +88,7 @@ class NavigationMetrics:
     ...     at = np.array([[0.5 * k, 0.0]])
     ...     metrics.update(AgentStates(float(k), np.array([0]), at, np.zeros((1, 2)), np.zeros(1), np.array([0.3])))
     >>> metrics.outcome, metrics.result()["path_length"]
-    (Outcome(name='success', sample=2), 1.0)
+    (NavigationOutcome(name='success', sample=2), 1.0)
     """
 
     def __init__(
@@ -107,13 +107,13 @@ class NavigationMetrics:
         self._samples: list[_Sample] = []
         self._contacts = ContactTracker(robot, radius)
         self._before: AgentStates | None = None
-        self._decided: Outcome | None = None
+        self._decided: NavigationOutcome | None = None
         self._finished = False
 
     @property
-    def outcome(self) -> Outcome:
+    def outcome(self) -> NavigationOutcome:
         """The outcome as the records show it; a timeout until it is decided."""
-        return self._decided or Outcome("timeout", len(self._samples) - 1)
+        return self._decided or NavigationOutcome("timeout", len(self._samples) - 1)
 
     def update(self, states: AgentStates, contact: bool = False) -> None:
         """Add a record. Records after the arrival at the goal or after the time limit do not count.
@@ -144,7 +144,7 @@ class NavigationMetrics:
         arrived = bool(np.hypot(away[0], away[1]) < self.tolerance)
         touched = contact or min(sample.swept, sample.wall) < 0.0
         if self._decided is None and (touched or arrived):
-            self._decided = Outcome("collision" if touched else "success", len(self._samples) - 1)
+            self._decided = NavigationOutcome("collision" if touched else "success", len(self._samples) - 1)
         self._finished = arrived
 
     def result(self, outcome: str | None = None) -> dict[str, float]:

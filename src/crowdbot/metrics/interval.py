@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, stream
 
-__all__ = ["Interval", "Intervals", "People", "bootstrap_interval"]
+__all__ = ["Interval", "Intervals", "PersonValues", "bootstrap_interval"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -47,7 +47,7 @@ NAMES = tuple(field.name for field in fields(Intervals))
 
 
 @dataclass(frozen=True)
-class People:
+class PersonValues:
     """Sums over the windows of each of M people: what means are made of, and intervals can be drawn from.
 
     Fields:
@@ -60,7 +60,7 @@ class People:
     count: Floats
 
     @classmethod
-    def of(cls, id: Integers, values: Sequence[Floats]) -> People:
+    def of(cls, id: Integers, values: Sequence[Floats]) -> PersonValues:
         """Add up values ``[N]`` by the person ``[N]`` they belong to; NaN is no value."""
         known, row = np.unique(id, return_inverse=True)
         there = [~np.isnan(value) for value in values]
@@ -71,7 +71,7 @@ class People:
         return cls(known, np.stack(total, axis=1), np.stack(count, axis=1))
 
     @classmethod
-    def joined(cls, parts: Sequence[People]) -> People:
+    def joined(cls, parts: Sequence[PersonValues]) -> PersonValues:
         """Return the people of several recordings together: nobody is in two of them."""
         arrays = ([getattr(part, name) for part in parts] for name in ("id", "total", "count"))
         return cls(*map(np.concatenate, arrays))
@@ -80,7 +80,7 @@ class People:
         """Return the intervals of all means."""
         return Intervals(*_percentiles(_resampled(self.total, self.count, RESAMPLES, 0), self.count, LEVEL))
 
-    def minus(self, other: People, name: str) -> tuple[float, Interval]:
+    def minus(self, other: PersonValues, name: str) -> tuple[float, Interval]:
         """Return the difference of a mean to that of another predictor on the same people, and its interval.
 
         The same people are drawn for both, so that what is hard for everyone cancels out.
@@ -128,7 +128,7 @@ def bootstrap_interval(
     """
     if resamples < 1 or not 0.0 < level < 1.0:
         raise InputError(f"an interval needs at least 1 resample and a level in 0..1, not {resamples} and {level}")
-    people = People.of(person, [values])
+    people = PersonValues.of(person, [values])
     return _percentiles(_resampled(people.total, people.count, resamples, seed), people.count, level)[0]
 
 

@@ -1,4 +1,4 @@
-"""How a robot moved, from logs: path, stops, smoothness.
+"""Motion metrics of a logged robot: path, stops, smoothness.
 
 A log is sampled at ``times [T]`` [s], increasing; ``position [T, 2]`` [m], ``velocity [T, 2]`` [m/s], ``heading [T]``.
 """

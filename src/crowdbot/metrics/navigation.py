@@ -1,4 +1,4 @@
-"""How a robot got through a crowd: outcome, time, path, proximity, contacts, smoothness. Functions of logs only."""
+"""Navigation metrics of a logged episode: outcome, time, path, proximity, contacts, smoothness."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 
 from .agent_states import AgentStates
-from .incremental import NavigationMetrics, Outcome
+from .incremental import NavigationMetrics, NavigationOutcome
 
 __all__ = ["NAVIGATION_METRICS", "navigation_metrics", "outcome"]
 
@@ -65,7 +65,7 @@ def outcome(
     *,
     walls: Floats | None = None,
     time_limit: float = math.inf,
-) -> Outcome:
+) -> NavigationOutcome:
     """Return how an episode ended.
 
     A collision is a clearance below 0 to a person or (when ``walls [N, 4]`` are given) to a wall, on the straight way
@@ -75,7 +75,7 @@ def outcome(
 
     >>> p = np.array([[[0.0, 0.0], [5.0, 5.0]], [[1.0, 0.0], [5.0, 5.0]]])
     >>> outcome(np.arange(2.0), p, np.full(2, 0.3), np.ones((2, 2), bool), 0, np.array([1.1, 0.0]), tolerance=0.2)
-    Outcome(name='success', sample=1)
+    NavigationOutcome(name='success', sample=1)
     """
     still = np.zeros_like(position)
     return _metrics(times, position, still, radius, active, robot, goal, tolerance, None, walls, time_limit).outcome

@@ -1,4 +1,4 @@
-"""How near a robot came to people and walls, from logs: clearances, zones, time to collision, local density.
+"""Proximity metrics of a logged robot: clearance, proxemic zones, time to collision, local density.
 
 All distances are surface to surface unless said otherwise: between centres, less both radii. Arrays of a log are
 ``times [T]``, ``position [T, A, 2]``, ``radius [A]``, ``active [T, A]``; ``robot`` is the index of the robot in A. The

@@ -15,7 +15,7 @@ from crowdbot.core import InputError
 from crowdbot.data import Forecast, Windows
 
 from .displacement import MISS, miss_rate
-from .interval import Interval, Intervals, People
+from .interval import Interval, Intervals, PersonValues
 from .persons import PersonErrors, person_errors
 
 __all__ = ["Score", "score"]
@@ -76,7 +76,7 @@ class Score:
     dense: int = 0
     energy: float = math.nan
     intervals: Intervals = field(default_factory=Intervals)
-    people: People | None = field(default=None, compare=False, repr=False)
+    people: PersonValues | None = field(default=None, compare=False, repr=False)
 
     @classmethod
     def of(cls, errors: PersonErrors, predictor: str, samples: int, future: Windows, best_of: str) -> Score:
@@ -91,7 +91,7 @@ class Score:
         metric = future.units == "m"
         together = errors.together & metric
         accompanied = errors.accompanied & metric
-        people = People.of(errors.person, _values(errors, together, accompanied, metric))
+        people = PersonValues.of(errors.person, _values(errors, together, accompanied, metric))
         return cls(
             predictor=predictor,
             protocol=future.protocol,
@@ -144,7 +144,7 @@ class Score:
         windows = [one.windows for one in scores]
         there = [tuple(one.there) for one in scores]
         known = [one.people for one in scores if one.people is not None]
-        people = People.joined(known) if len(known) == len(scores) else None
+        people = PersonValues.joined(known) if len(known) == len(scores) else None
 
         def mean(name: str, counts: Sequence[int]) -> float:
             return _mean([getattr(one, name) for one in scores], counts)

@@ -1,10 +1,20 @@
 """Navigators steer a robot. Contract: :class:`Navigator`; input: :class:`Observation`; output: :class:`Action`."""
 
 from .action import Action
+from .dynamic_window import WindowCosts, dynamic_window_twist
 from .navigator import Navigator
-from .observation import Limits, Observation, People
+from .observation import DriveLimits, Observation, VisiblePeople
 from .orca import ORCA
-from .reachable import Caution, reachable
 from .straight import Straight
 
-__all__ = ["ORCA", "Action", "Caution", "Limits", "Navigator", "Observation", "People", "Straight", "reachable"]
+__all__ = [
+    "ORCA",
+    "Action",
+    "DriveLimits",
+    "Navigator",
+    "Observation",
+    "Straight",
+    "VisiblePeople",
+    "WindowCosts",
+    "dynamic_window_twist",
+]

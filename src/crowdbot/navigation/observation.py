@@ -1,4 +1,4 @@
-"""What a robot knows when its navigator decides."""
+"""Input of navigators: the state of the robot, the visible people and the stage."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Scene, Twist, Walls, wrap
 from crowdbot.sensors import Reading
 
-__all__ = ["Limits", "Observation", "People"]
+__all__ = ["DriveLimits", "Observation", "VisiblePeople"]
 
 Floats = NDArray[np.float64]
 
 TURN_GAIN = 3.0
-"""Turn rate [rad/s] asked for each rad of error in direction."""
+"""Turn rate [rad/s] per rad of heading error."""
 SLOWING_TIME = 0.5
-"""Near the goal the speed is at most the distance over this time [s]."""
+"""Near the goal the speed is limited to the distance over this time [s]."""
 
 
-class Limits(NamedTuple):
-    """What a robot's drive can do; an acceleration that nobody knows is ``inf``."""
+class DriveLimits(NamedTuple):
+    """DriveLimits of a drive; unknown accelerations are ``inf``."""
 
     max_speed: float
     """[m/s]"""
@@ -36,8 +36,8 @@ class Limits(NamedTuple):
 
 
 @dataclass(frozen=True)
-class People:
-    """The people that a robot sees.
+class VisiblePeople:
+    """The people visible to a robot.
 
     Fields:
         position: ``[N, 2]`` [m].
@@ -50,35 +50,35 @@ class People:
     radius: Floats
 
     @classmethod
-    def none(cls) -> People:
-        """Return nobody."""
+    def none(cls) -> VisiblePeople:
+        """Return no people."""
         return cls(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0))
 
     def __len__(self) -> int:
-        """Return how many there are."""
+        """Return the number of people."""
         return len(self.radius)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Observation:
-    """What one robot in one environment knows when it decides.
+    """Input of a decision of one robot in one environment.
 
     Fields:
         pose: x, y [m] and heading [rad] of the robot.
         goal: x, y [m].
-        radius: of the robot [m].
-        limits: of its drive.
-        twist: how it moves now.
-        people: those its sensors see, other robots among them.
-        walls: of the stage.
-        scan: latest reading of its sensor, None when it has none.
-        dt: time until it is asked again [s].
+        radius: radius of the robot [m].
+        limits: limits of the drive.
+        twist: current velocity.
+        people: visible people and other robots.
+        walls: walls of the stage.
+        scan: latest scan of its first laser scanner, or None.
+        dt: time until the next decision [s].
         time: simulated time [s].
 
     Raises:
         InputError: a number is not finite or a radius, limit or ``dt`` is not above 0.
 
-    >>> here = Observation(pose=(0.0, 0.0, 0.0), goal=(4.0, 0.0), radius=0.3, limits=Limits(1.0, 2.0), dt=0.1)
+    >>> here = Observation(pose=(0.0, 0.0, 0.0), goal=(4.0, 0.0), radius=0.3, limits=DriveLimits(1.0, 2.0), dt=0.1)
     >>> here.nearest, here.distance, here.towards_goal(0.8)
     (inf, 4.0, Twist(forward=0.8, turn=0.0, left=0.0))
     """
@@ -86,10 +86,10 @@ class Observation:
     pose: tuple[float, float, float]
     goal: tuple[float, float]
     radius: float
-    limits: Limits
+    limits: DriveLimits
     dt: float
     twist: Twist = field(default_factory=Twist)
-    people: People = field(default_factory=People.none)
+    people: VisiblePeople = field(default_factory=VisiblePeople.none)
     walls: Walls = field(default_factory=Walls.of)
     scan: Reading | None = None
     time: float = 0.0
@@ -98,7 +98,11 @@ class Observation:
         for name, values in (("pose", self.pose), ("goal", self.goal), ("twist", self.twist)):
             if not all(math.isfinite(value) for value in values):
                 raise InputError(f"observation: {name} = {tuple(map(float, values))} is not finite")
-        for name, value in (("radius", self.radius), ("dt", self.dt), *zip(Limits._fields, self.limits, strict=True)):
+        for name, value in (
+            ("radius", self.radius),
+            ("dt", self.dt),
+            *zip(DriveLimits._fields, self.limits, strict=True),
+        ):
             if not value > 0.0:
                 raise InputError(f"observation: {name} = {value} must be above 0")
 
@@ -107,7 +111,7 @@ class Observation:
         cls,
         scene: Scene,
         robot: int,
-        limits: Limits,
+        limits: DriveLimits,
         *,
         dt: float,
         twist: Twist | None = None,
@@ -116,18 +120,18 @@ class Observation:
         scan: Reading | None = None,
         environment: int = 0,
     ) -> Observation:
-        """Return what a robot of a scene knows, with the true state of the people it sees.
+        """Return the observation of a robot in a scene, with the true state of the visible people.
 
         Args:
-            scene: now; the robot's goal stands in it.
-            robot: its index.
-            limits: of its drive.
-            dt: time until it is asked again [s].
-            twist: how it moves; by default from its velocity, not turning.
-            seen: ``[A]`` who is seen, for instance ``scan.seen(A)[0]``; by default everyone.
-            sight: nobody farther than this is seen, from centre to centre [m].
-            scan: handed on.
-            environment: which one.
+            scene: current scene with the goal of the robot.
+            robot: index of the robot.
+            limits: limits of its drive.
+            dt: time until the next decision [s].
+            twist: current twist; by default from its velocity, without rotation.
+            seen: ``[A]`` visible agents, such as ``scan.visible_agents(A)[0]``; default all.
+            sight: largest distance of visible agents, centre to centre [m].
+            scan: latest scan.
+            environment: index of the environment.
         """
         e = environment
         place, heading = scene.position[e, robot], float(scene.heading[e, robot])
@@ -145,7 +149,7 @@ class Observation:
             limits=limits,
             dt=dt,
             twist=twist,
-            people=People(scene.position[e, chosen], scene.velocity[e, chosen], scene.radius[e, chosen]),
+            people=VisiblePeople(scene.position[e, chosen], scene.velocity[e, chosen], scene.radius[e, chosen]),
             walls=scene.walls,
             scan=scan,
             time=scene.time,
@@ -153,17 +157,17 @@ class Observation:
 
     @property
     def position(self) -> Floats:
-        """Where the robot is, ``[2]`` [m]."""
+        """Position of the robot, ``[2]`` [m]."""
         return np.array(self.pose[:2], dtype=np.float64)
 
     @property
     def heading(self) -> float:
-        """Where it looks [rad]."""
+        """Heading of the robot [rad]."""
         return self.pose[2]
 
     @property
     def velocity(self) -> Floats:
-        """How it moves in the world, ``[2]`` [m/s]."""
+        """Velocity in the world, ``[2]`` [m/s]."""
         cos, sin = math.cos(self.heading), math.sin(self.heading)
         forward, left = self.twist.forward, self.twist.left
         return np.array([cos * forward - sin * left, sin * forward + cos * left])
@@ -188,28 +192,27 @@ class Observation:
 
     @property
     def nearest(self) -> float:
-        """Clearance to the nearest person [m], ``inf`` when nobody is seen."""
+        """Clearance to the nearest person [m], ``inf`` without people."""
         return float(np.min(self.clearances, initial=math.inf))
 
     def towards_goal(self, speed: float) -> Twist:
         """Return the twist straight to the goal at up to ``speed`` [m/s].
 
-        It turns on the spot while the goal lies more than 60 degrees aside, and slows near the goal so that the drive
-        can stop there.
+        It turns on the spot if the bearing of the goal is above 60 degrees, and slows down to stop at the goal.
         """
         ahead = max(0.0, 2.0 * math.cos(self.bearing) - 1.0)
         top = min(speed, self.limits.max_speed, self.distance / SLOWING_TIME, self.braking_speed(self.distance))
         return Twist(top * ahead, self.turn_by(self.bearing))
 
     def turn_by(self, angle: float) -> float:
-        """Return the turn rate [rad/s] that turns the robot by ``angle`` [rad], soon and without overshoot."""
+        """Return the turn rate [rad/s] that turns the robot by ``angle`` [rad] quickly and without overshoot."""
         size = min(TURN_GAIN * abs(angle), self.limits.max_turn_rate)
         if math.isfinite(self.limits.max_turn_acceleration):
             size = min(size, math.sqrt(1.6 * self.limits.max_turn_acceleration * abs(angle)))
         return math.copysign(size, angle)
 
     def braking_speed(self, distance: float) -> float:
-        """Return the speed [m/s] from which the drive can stop within ``distance`` [m], with a fifth in reserve."""
+        """Return the speed [m/s] from which the drive stops within ``distance`` [m], with 20 % reserve."""
         if math.isinf(self.limits.max_acceleration):
             return math.inf
         return math.sqrt(1.6 * self.limits.max_acceleration * max(0.0, distance))

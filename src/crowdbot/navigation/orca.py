@@ -1,4 +1,4 @@
-"""ORCA as a navigator: the model of walking people steers the robot, within the limits of its drive."""
+"""ORCA as a navigator, within the limits of the drive."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from crowdbot import models
 from crowdbot.core import InputError, Paper, Scene, Twist, check_number
 
+from .dynamic_window import dynamic_window_twist
 from .navigator import Navigator
 from .observation import SLOWING_TIME, Observation
-from .reachable import reachable
 
 __all__ = ["ORCA"]
 
@@ -25,26 +25,25 @@ UNITS = {
     "max_neighbors": "",
     "reaction": "s",
 }
-"""Fields that must be above 0."""
+"""Fields that must be positive."""
 
 
 @dataclass(frozen=True)
 class ORCA(Navigator):
-    """Chooses the velocity of reciprocal collision avoidance, then the nearest twist that its drive can reach.
+    """Chooses a velocity with reciprocal collision avoidance, then the best reachable twist.
 
-    The robot takes the people it sees for walkers who go on with their velocity and give way as much as ``share``
-    leaves to them. A drive cannot take the chosen velocity at once. So the twists within reach of its accelerations are
-    tried, and the one is taken that comes nearest to that velocity and touches nobody (:func:`reachable`).
+    The visible people are agents with constant velocity that take their part of the avoidance (``share``). The drive
+    cannot reach the chosen velocity at once: :func:`dynamic_window_twist` selects a twist within its accelerations.
 
     Fields:
-        speed: [m/s], cut to what the drive can do.
-        safety: added to the robot's radius [m].
-        share: part of the avoidance that the robot takes: 0.5 trusts people to do their half, 1 trusts nobody.
-        time_horizon: people are avoided for this long [s].
-        time_horizon_walls: and walls for this long [s].
-        neighbor_distance: people farther than this are not considered [m].
-        max_neighbors: no more than so many are.
-        reaction: time within which a contact that is already there should be undone [s].
+        speed: largest speed [m/s], limited by the drive.
+        safety: margin added to the radius of the robot [m].
+        share: share of the avoidance by the robot: 0.5 (people do the other half) or 1.
+        time_horizon: time horizon for people [s].
+        time_horizon_walls: time horizon for walls [s].
+        neighbor_distance: people farther away than this are ignored [m].
+        max_neighbors: largest number of people considered.
+        reaction: time to resolve an existing contact [s].
 
     Source: van den Berg, Guy, Lin, Manocha 2011, doi:10.1007/978-3-642-19457-3_1.
 
@@ -52,10 +51,10 @@ class ORCA(Navigator):
         InputError: a number is out of its range.
 
     >>> import numpy as np
-    >>> from crowdbot.navigation import Limits, People
-    >>> person = People(np.array([[3.0, 0.1]]), np.array([[-1.0, 0.0]]), np.array([0.25]))
+    >>> from crowdbot.navigation import DriveLimits, VisiblePeople
+    >>> person = VisiblePeople(np.array([[3.0, 0.1]]), np.array([[-1.0, 0.0]]), np.array([0.25]))
     >>> meeting = Observation(
-    ...     pose=(0.0, 0.0, 0.0), goal=(9.0, 0.0), radius=0.3, limits=Limits(1.0, 2.0), dt=0.1, people=person
+    ...     pose=(0.0, 0.0, 0.0), goal=(9.0, 0.0), radius=0.3, limits=DriveLimits(1.0, 2.0), dt=0.1, people=person
     ... )
     >>> ORCA().act(meeting).turn < 0.0
     True
@@ -80,11 +79,11 @@ class ORCA(Navigator):
             raise InputError(f"navigator ORCA: share = {self.share} must be 0.5 or 1")
 
     def act(self, observation: Observation) -> Twist:
-        """Return the twist within reach that comes nearest to the chosen velocity."""
-        return reachable(observation, self.velocity(observation), self.speed)
+        """Return the reachable twist that fits the chosen velocity best."""
+        return dynamic_window_twist(observation, self.velocity(observation), self.speed)
 
     def velocity(self, observation: Observation) -> tuple[float, float]:
-        """Return the velocity [m/s] in the world that a robot without a drive would take."""
+        """Return the velocity [m/s] in the world chosen by ORCA, without the limits of the drive."""
         people = observation.people
         top = min(self.speed, observation.limits.max_speed)
         wish = self._wish(observation, top)

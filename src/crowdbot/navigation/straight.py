@@ -1,4 +1,4 @@
-"""The simplest navigator: straight to the goal, whoever is in the way."""
+"""A navigator that drives straight to the goal."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ __all__ = ["Straight"]
 
 @dataclass(frozen=True)
 class Straight(Navigator):
-    """Goes straight to the goal, blind to people and walls: the lower end of every comparison.
+    """Drives straight to the goal and ignores people and walls; a baseline for comparisons.
 
-    It turns on the spot while the goal lies aside or behind, and slows near the goal.
+    It turns on the spot if the goal is beside or behind the robot, and slows down near the goal.
 
     Fields:
-        speed: [m/s], cut to what the drive can do.
+        speed: largest speed [m/s], limited by the drive.
 
     Raises:
         InputError: the speed is not finite or not above 0.
 
-    >>> from crowdbot.navigation import Limits
-    >>> behind = Observation(pose=(0.0, 0.0, 0.0), goal=(-4.0, 0.1), radius=0.3, limits=Limits(1.0, 2.0), dt=0.1)
+    >>> from crowdbot.navigation import DriveLimits
+    >>> behind = Observation(pose=(0.0, 0.0, 0.0), goal=(-4.0, 0.1), radius=0.3, limits=DriveLimits(1.0, 2.0), dt=0.1)
     >>> Straight().act(behind)
     Twist(forward=0.0, turn=2.0, left=0.0)
     """

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.sensors import Picture
+from crowdbot.sensors import RgbImage
 
 from .reading_tables import READING_TABLES
 from .step_records import Moment
@@ -43,7 +43,7 @@ class ExportedPictures:
         """Write the images of an instant, and return the rows of the table with their files."""
         rows = READING_TABLES["pictures"](moment, bodies)
         files = [
-            self._written(topic, reading) for topic, reading in moment.readings.items() if isinstance(reading, Picture)
+            self._written(topic, reading) for topic, reading in moment.readings.items() if isinstance(reading, RgbImage)
         ]
         return {**rows, "file": np.array(files, dtype=object)}
 
@@ -58,7 +58,7 @@ class ExportedPictures:
         """Remove what is not finished."""
         shutil.rmtree(self.draft, ignore_errors=True)
 
-    def _written(self, topic: str, picture: Picture) -> str:
+    def _written(self, topic: str, picture: RgbImage) -> str:
         """Write an image, named by its sensor and its time [ns], and return its name as seen from the table."""
         from PIL import Image
 

@@ -7,7 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.sensors import Cloud, DepthImage, Echo, Inertial, Odometry, Picture, Reading, Touch, Tracked, spatial_pose
+from crowdbot.sensors import (
+    BumperReading,
+    DepthImage,
+    ImuReading,
+    Odometry,
+    PointCloud,
+    RangeReading,
+    Reading,
+    RgbImage,
+    TrackedPeople,
+    spatial_pose,
+)
 
 from .step_records import Moment
 
@@ -24,7 +35,7 @@ def _points(reading: Any) -> Columns:
     return {
         **{f"point_{axis}": ends[:, k] for k, axis in enumerate("xyz")},
         "range": reading.ranges[0][there],
-        "intensity": reading.facing[0][there],
+        "intensity": reading.cos_incidence[0][there],
         "ring": ring[there],
         "hit": reading.hit[0][there],
     }
@@ -87,12 +98,12 @@ def _tracked(reading: Any) -> Columns:
 WHOLE = ("ring", "hit", "width", "height", "sector", "id")
 TEXT = ("seen",)
 TABLES: dict[str, tuple[type[Reading], Callable[[Any], Columns], tuple[str, ...]]] = {
-    "points": (Cloud, _points, ("point_x", "point_y", "point_z", "range", "intensity", "ring", "hit")),
-    "ranges": (Echo, _ranges, ("range", "hit")),
+    "points": (PointCloud, _points, ("point_x", "point_y", "point_z", "range", "intensity", "ring", "hit")),
+    "ranges": (RangeReading, _ranges, ("range", "hit")),
     "images": (DepthImage, _images, ("width", "height", "nearest", "seen")),
-    "pictures": (Picture, _pictures, ("width", "height", "fx", "fy", "cx", "cy", "seen")),
+    "pictures": (RgbImage, _pictures, ("width", "height", "fx", "fy", "cx", "cy", "seen")),
     "inertial": (
-        Inertial,
+        ImuReading,
         _inertial,
         (*(f"acceleration_{axis}" for axis in "xyz"), *(f"turn_rate_{axis}" for axis in "xyz")),
     ),
@@ -101,9 +112,9 @@ TABLES: dict[str, tuple[type[Reading], Callable[[Any], Columns], tuple[str, ...]
         _odometry,
         ("estimate_x", "estimate_y", "estimate_heading", "forward", "turn", "left"),
     ),
-    "bumpers": (Touch, _bumpers, ("sector", "depth", "hit")),
+    "bumpers": (BumperReading, _bumpers, ("sector", "depth", "hit")),
     "tracked": (
-        Tracked,
+        TrackedPeople,
         _tracked,
         ("id", "ahead", "left", "ahead_speed", "left_speed", "person_heading", "radius"),
     ),

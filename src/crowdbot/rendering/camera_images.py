@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, optional, stream
-from crowdbot.sensors import NOTHING, DepthCamera, RGBCamera, distorted, spatial_pose
+from crowdbot.sensors import NOTHING, DepthCamera, RGBCamera, distort_image, spatial_pose
 from crowdbot.simulation import Carrier, Running, Simulation
 from crowdbot.trials import OVERVIEW, Camera, Mount, Trial, check_trial, overview
 
@@ -200,6 +200,6 @@ class _Lens:
         if not (self.depth or self.segmentation):
             return picture.rgb[0], None, None
         images = studio.render(camera, spatial_pose(pose))
-        depth = distorted(images["depth"], camera.lens, np.inf)[0] if self.depth else None
-        who = distorted(images["hit"], camera.lens, NOTHING)[0] if self.segmentation else None
+        depth = distort_image(images["depth"], camera.lens, np.inf)[0] if self.depth else None
+        who = distort_image(images["hit"], camera.lens, NOTHING)[0] if self.segmentation else None
         return picture.rgb[0], depth, who

@@ -1,21 +1,21 @@
-"""Sensors: what a robot can measure of a scene. Contract :class:`Sensor`; noise is a value attached to it."""
+"""Sensors of robots. Contract: :class:`Sensor`; input: :class:`SensorView`; output: a :class:`Reading`."""
 
-from .bumper import Bumper, Touch
-from .camera import ImageSource, Lens, distorted
-from .depth import DepthCamera, DepthImage
-from .echo import Echo
-from .imu import IMU, ImuState, Inertial
+from .bumper import Bumper, BumperReading
+from .depth_camera import DepthCamera, DepthImage
+from .ground_truth_people import GroundTruthPeople, TrackedPeople
+from .imu import IMU, ImuReading, ImuState
 from .infrared import Infrared
+from .lens import ImageSource, Lens, distort_image
 from .lidar import Lidar2D, Scan
-from .lidar3d import Cloud, Lidar3D
-from .noise import Dropout, Gaussian, Noise, Offset, Peak, Quantised, disturbed
+from .lidar3d import Lidar3D, PointCloud
+from .noise import Dropout, Gaussian, Noise, Offset, Peak, Quantised, apply_noise
 from .odometry import Odometry, OdometryState, WheelOdometry
-from .people import GroundTruthPeople, Tracked
-from .picture import Picture, RGBCamera
-from .presets import PRESETS, Preset, preset
+from .presets import PRESETS, SensorPreset, preset
+from .range_reading import RangeReading
+from .ray_shapes import FLOOR, NOTHING, PROP, WALLS
+from .rgb_camera import RGBCamera, RgbImage
+from .schedule import SensorSchedule
 from .sensor import Reading, Sensor, planar_pose, spatial_pose
-from .shapes import FLOOR, NOTHING, PROP, WALLS
-from .timing import Schedule
 from .ultrasound import Ultrasound
 from .view import SensorView
 
@@ -27,16 +27,15 @@ __all__ = [
     "PROP",
     "WALLS",
     "Bumper",
-    "Cloud",
+    "BumperReading",
     "DepthCamera",
     "DepthImage",
     "Dropout",
-    "Echo",
     "Gaussian",
     "GroundTruthPeople",
     "ImageSource",
+    "ImuReading",
     "ImuState",
-    "Inertial",
     "Infrared",
     "Lens",
     "Lidar2D",
@@ -46,21 +45,22 @@ __all__ = [
     "OdometryState",
     "Offset",
     "Peak",
-    "Picture",
-    "Preset",
+    "PointCloud",
     "Quantised",
     "RGBCamera",
+    "RangeReading",
     "Reading",
+    "RgbImage",
     "Scan",
-    "Schedule",
     "Sensor",
+    "SensorPreset",
+    "SensorSchedule",
     "SensorView",
-    "Touch",
-    "Tracked",
+    "TrackedPeople",
     "Ultrasound",
     "WheelOdometry",
-    "distorted",
-    "disturbed",
+    "apply_noise",
+    "distort_image",
     "planar_pose",
     "preset",
     "spatial_pose",

@@ -1,4 +1,4 @@
-"""Beams: fixed directions in a sensor's frame, sorted into cells so that a shape is tried on few of them."""
+"""Beams: fixed directions in the sensor frame, sorted into cells to test each shape with few beams."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Beams", "beams", "cone", "fan"]
+__all__ = ["Beams", "cone_directions", "sort_beams", "unit_vectors"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 PER_CELL = 2.0
-"""Beams of a cell on average."""
+"""Mean number of beams per cell."""
 TURN = 2.0 * math.pi
 
 
@@ -23,10 +23,10 @@ class Beams(NamedTuple):
 
     Fields:
         x, y, z: ``[R]``, sorted by row, then by column.
-        order: ``[R]`` index of each sorted beam among those that were given.
+        order: ``[R]`` index of each sorted beam in the input.
         begin: ``[rows * columns + 1]`` index of the first beam of each cell.
-        low, tall: elevation at which row 0 begins and height of a row [rad].
-        left, wide: azimuth at which column 0 begins and width of a column [rad].
+        low, tall: lower elevation of row 0 and height of a row [rad].
+        left, wide: left azimuth of column 0 and width of a column [rad].
         down, up: tangents of the lowest and the highest elevation, at most 0 and at least 0.
     """
 
@@ -45,10 +45,10 @@ class Beams(NamedTuple):
     up: float
 
 
-def beams(directions: Floats) -> Beams:
-    """Sort unit vectors ``[R, 3]`` into cells.
+def sort_beams(directions: Floats) -> Beams:
+    """Return unit vectors ``[R, 3]`` sorted into cells.
 
-    >>> found = beams(fan(np.linspace(-1.0, 1.0, 81)))
+    >>> found = sort_beams(unit_vectors(np.linspace(-1.0, 1.0, 81)))
     >>> found.rows, found.columns, found.order[:3].tolist()
     (1, 40, [0, 1, 2])
     """
@@ -86,19 +86,19 @@ def beams(directions: Floats) -> Beams:
     )
 
 
-def fan(azimuth: Floats, elevation: Floats | float = 0.0) -> Floats:
+def unit_vectors(azimuth: Floats, elevation: Floats | float = 0.0) -> Floats:
     """Return the unit vectors ``[..., 3]`` of azimuths and elevations [rad] that broadcast."""
     flat = np.cos(elevation)
     parts = np.broadcast_arrays(flat * np.cos(azimuth), flat * np.sin(azimuth), np.sin(elevation))
     return np.ascontiguousarray(np.stack(parts, axis=-1))
 
 
-def cone(half_angle: float, count: int) -> Floats:
+def cone_directions(half_angle: float, count: int) -> Floats:
     """Return ``count`` unit vectors ``[R, 3]`` spread evenly over the solid angle of a cone about x, the axis first.
 
     A sunflower: the square of the sine of half the angle grows evenly, each beam is turned by the golden angle.
 
-    >>> cone(0.5, 1).tolist()
+    >>> cone_directions(0.5, 1).tolist()
     [[1.0, 0.0, 0.0]]
     """
     share = np.arange(count) / max(1, count - 1)

@@ -10,12 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number
 
-from .noise import Randomness, disturbed
+from .noise import Randomness, apply_noise
+from .ray_shapes import NOTHING, PROP, WALLS
 from .sensor import Reading, Sensor, finite_or_nan, planar_pose, spatial_pose
-from .shapes import NOTHING, PROP, WALLS
 from .view import SensorView
 
-__all__ = ["Bumper", "Touch"]
+__all__ = ["Bumper", "BumperReading"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -24,13 +24,13 @@ MOST_SECTORS = 100_000
 
 
 @dataclass(frozen=True)
-class Touch(Reading):
-    """Which sectors of a bumper are pressed, in E environments, K sectors.
+class BumperReading(Reading):
+    """Pressed sectors of a bumper in E environments, K sectors.
 
     Fields:
         pressed: ``[E, K]``.
-        depth: ``[E, K]`` [m], how far the deepest thing in the sector reaches in; 0 where nothing does.
-        hit: ``[E, K]`` what that is: index of an agent or -1 nothing, -2 a wall, -4 a prop.
+        depth: ``[E, K]`` deepest penetration in the sector [m], 0 without contact.
+        hit: ``[E, K]`` object in contact: index of an agent, -1 nothing, -2 a wall, -4 a prop.
     """
 
     pressed: NDArray[np.bool_]
@@ -40,15 +40,15 @@ class Touch(Reading):
 
 @dataclass(frozen=True)
 class Bumper(Sensor):
-    """A ring of contact switches in equal sectors, the first of which begins at ``first``, counter-clockwise.
+    """A ring of contact switches in equal sectors, counter-clockwise from ``first``.
 
-    In the planar world a sector is pressed where its arc overlaps the disc of an agent, a limb, a post or a wall
-    (touching counts). A world with contacts asks :meth:`sector` where each lies.
+    A sector is pressed if its arc overlaps the disc of an agent, a limb, a post or a wall; a gap of 0 counts as
+    contact.
 
     Fields:
-        radius: of the ring [m].
+        radius: radius of the ring [m].
         sectors: number of sectors K.
-        first: angle at which sector 0 begins, from the sensor's x axis [rad].
+        first: start angle of sector 0 from the x axis of the sensor [rad].
         low, high: lower and upper edge of the ring above the sensor's origin [m], for limbs.
 
     Raises:
@@ -75,14 +75,14 @@ class Bumper(Sensor):
             raise InputError(f"Bumper: low = {self.low} m and high = {self.high} m must be finite and in this order")
 
     def sector(self, points: ArrayLike, pose: Pose | SpatialPose) -> Ints:
-        """Return the sector ``[E, N]`` in whose direction points of the world ``[E, N, 2]`` or ``[E, N, 3]`` lie."""
+        """Return the sector ``[E, N]`` of points ``[E, N, 2]`` or ``[E, N, 3]`` of the world."""
         place = planar_pose(pose)
         away = np.asarray(points, dtype=np.float64)[..., :2] - place.position[:, None]
         angle = np.arctan2(away[..., 1], away[..., 0]) - place.heading[:, None] - self.first
         return np.asarray(np.minimum((angle % TURN) / TURN * self.sectors, self.sectors - 1).astype(np.int64))
 
-    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Touch, None]:
-        """Return what presses the ring; noise acts on the depths that are shown and decides no contact.
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[BumperReading, None]:
+        """Return the pressed sectors. Noise changes the reported depths, not the contacts.
 
         Raises:
             InputError: the pose does not fit the scene, or noise lacks a generator.
@@ -100,10 +100,10 @@ class Bumper(Sensor):
                 self._press(centre, size, owner, plane.heading[e], depth[e], hit[e])
         pressed = depth >= 0.0
         shown = self._shown(np.where(pressed, depth, 0.0), rng)
-        return Touch(scene.time, pose, pressed, shown, np.where(pressed, hit, NOTHING)), None
+        return BumperReading(scene.time, pose, pressed, shown, np.where(pressed, hit, NOTHING)), None
 
     def _shown(self, depth: Floats, rng: Randomness | None) -> Floats:
-        return finite_or_nan(disturbed(depth, self.noises, rng))
+        return finite_or_nan(apply_noise(depth, self.noises, rng))
 
     def _press(self, centre: Floats, size: Floats, owner: Ints, heading: float, depth: Floats, hit: Ints) -> None:
         """Press the sectors that discs at ``centre`` ``[N, 2]`` from the ring's own centre reach into."""

@@ -1,4 +1,4 @@
-"""An inertial measurement unit: specific force and turn rate from successive poses, with drifting biases."""
+"""An inertial measurement unit (IMU): specific force and turn rate from successive poses, with drifting biases."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, SpatialPose, check_number, product
 
-from .noise import Randomness, disturbed, normals
+from .noise import Randomness, apply_noise, normals
 from .sensor import Reading, Sensor, finite_or_nan, spatial_pose
 from .view import SensorView
 
-__all__ = ["GRAVITY", "IMU", "ImuState", "Inertial"]
+__all__ = ["GRAVITY", "IMU", "ImuReading", "ImuState"]
 
 Floats = NDArray[np.float64]
 
@@ -24,14 +24,14 @@ GRAVITY = 9.80665
 
 
 @dataclass(frozen=True)
-class Inertial(Reading):
-    """What an inertial unit measured in E environments, in its own frame, and what it needs for the next reading.
+class ImuReading(Reading):
+    """The reading of an IMU in E environments, in its own frame.
 
     Fields:
         acceleration: ``[E, 3]`` specific force [m/s^2]; at rest and level it is (0, 0, 9.80665).
         turn_rate: ``[E, 3]`` [rad/s].
-        velocity: ``[E, 3]`` [m/s] in the world since the reading before, NaN at the first.
-        acceleration_bias, turn_bias: ``[E, 3]`` biases at this instant, which no real unit knows.
+        velocity: ``[E, 3]`` mean velocity in the world since the reading before [m/s], NaN at the first. Ground truth.
+        acceleration_bias, turn_bias: ``[E, 3]`` biases at this instant. Ground truth.
     """
 
     acceleration: Floats
@@ -62,17 +62,17 @@ class ImuState:
 
 @dataclass(frozen=True)
 class IMU(Sensor):
-    """An inertial unit with white noise and biases that walk (IEEE Std 952-1997; all of it off by default).
+    """An inertial unit with white noise and random-walk biases (IEEE Std 952-1997; off by default).
 
-    The motion comes from the poses of this and the two readings before: the first two take the unit as not
-    accelerating. What ``noise`` holds acts on all six values after that.
+    The motion is the finite difference of the poses of this and the two previous readings; the first two readings have
+    no acceleration. ``noise`` is added to all six values after that.
 
     Fields:
-        acceleration_noise: density of white noise [m/s^2/sqrt(Hz)].
-        turn_noise: density of white noise [rad/s/sqrt(Hz)].
+        acceleration_noise: white noise density [m/s^2/sqrt(Hz)].
+        turn_noise: white noise density [rad/s/sqrt(Hz)].
         acceleration_walk: random walk of the bias [m/s^2/sqrt(s)]; turn_walk: [rad/s/sqrt(s)].
-        acceleration_offset: standard deviation of the bias at the start [m/s^2]; turn_offset: [rad/s].
-        max_acceleration: largest value shown [m/s^2], 0 for no limit; max_turn_rate: [rad/s].
+        acceleration_offset: standard deviation of the initial bias [m/s^2]; turn_offset: [rad/s].
+        max_acceleration: saturation [m/s^2], 0 for none; max_turn_rate: [rad/s].
 
     Raises:
         InputError: a value is not allowed.
@@ -98,7 +98,7 @@ class IMU(Sensor):
 
     def measure(
         self, view: SensorView, state: ImuState | None, rng: Randomness | None = None
-    ) -> tuple[Inertial, ImuState]:
+    ) -> tuple[ImuReading, ImuState]:
         """Return specific force and turn rate, and the state for the next measurement.
 
         Raises:
@@ -120,9 +120,9 @@ class IMU(Sensor):
         biases = self._biases(shape, dt, rng, state)
         force = force + biases[0] + self._white(self.acceleration_noise, shape, dt, rng)
         turn = turn + biases[1] + self._white(self.turn_noise, shape, dt, rng)
-        six = finite_or_nan(disturbed(np.concatenate([force, turn], axis=1), self.noises, rng))
+        six = finite_or_nan(apply_noise(np.concatenate([force, turn], axis=1), self.noises, rng))
         force, turn = _limited(six[:, :3], self.max_acceleration), _limited(six[:, 3:], self.max_turn_rate)
-        reading = Inertial(view.time, view.pose, force, turn, velocity, *biases)
+        reading = ImuReading(view.time, view.pose, force, turn, velocity, *biases)
         return reading, ImuState(view.time, view.pose, velocity, *biases)
 
     def _biases(

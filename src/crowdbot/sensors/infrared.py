@@ -1,4 +1,4 @@
-"""An infrared range finder: the smallest return within a narrow cone."""
+"""An infrared range finder: the smallest distance within a narrow cone."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .beams import Beams, beams, cone
-from .echo import Echo, nearest
+from .beams import Beams, cone_directions, sort_beams
 from .noise import Randomness
+from .range_reading import RangeReading, nearest
 from .ranging import Ranging
 from .view import SensorView
 
@@ -25,17 +25,17 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Infrared(Ranging):
-    """An infrared range finder that looks along x and returns the smallest distance in a cone of its own frame.
+    """An infrared range finder: the smallest distance in a cone around the x axis of its pose.
 
-    The cone is sampled by beams spread evenly over its solid angle, the axis among them; they are the same every time.
+    The cone is sampled by fixed beams, spread evenly over its solid angle. The first beam is the axis.
 
     Fields:
         dispersion: half the opening angle of the cone [rad].
-        rays: beams that sample the cone.
-        range_min, range_max: smallest and largest distance that is measured [m].
-        max_incidence: largest angle between beam and surface normal that returns [rad].
-        resolution: step of the returned distance [m], 0 for none.
-        skins: whether agents that have triangle skins are seen by them and not by their limbs.
+        rays: number of beams.
+        range_min, range_max: smallest and largest measured distance [m].
+        max_incidence: largest angle between beam and surface normal that returns an echo [rad].
+        resolution: step of the distance [m], 0 for none.
+        skins: whether triangle skins of agents are used instead of their limbs.
 
     Raises:
         InputError: a value is not allowed.
@@ -61,8 +61,8 @@ class Infrared(Ranging):
             raise InputError(f"Infrared: dispersion = {self.dispersion} rad must be above 0 and at most pi / 2")
         self.check_ranges()
 
-    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Echo, None]:
-        """Return the smallest distance; ``rng`` is needed only when there is noise.
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[RangeReading, None]:
+        """Return the smallest distance in the zone.
 
         Raises:
             InputError: the pose does not fit the scene, or noise lacks a generator.
@@ -76,5 +76,5 @@ class Infrared(Ranging):
 
 @functools.lru_cache(maxsize=64)
 def _bundle(half_angle: float, rays: int) -> tuple[Beams, Floats]:
-    directions = cone(half_angle, rays)
-    return beams(directions), directions
+    directions = cone_directions(half_angle, rays)
+    return sort_beams(directions), directions

@@ -1,4 +1,4 @@
-"""A planar laser scanner: distances to people and walls along evenly spaced beams."""
+"""A planar laser scanner."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, kernel
 from crowdbot.core.geometry import nearest_on_segment, ray_to_disc, ray_to_segment
 
-from .beams import Beams, beams, fan
-from .cast import cast
+from .beams import Beams, sort_beams, unit_vectors
 from .noise import Randomness
-from .ranging import Ranging, ended, incidence_of, settled
+from .ranging import Ranging, apply_limits, end_points, incidence_of
+from .ray_casting import cast_rays
+from .ray_shapes import FLOOR, NOTHING, OVERLAP, PROP, extend_segments
+from .ray_shapes import WALLS as WALL
 from .sensor import Reading, spatial_pose
-from .shapes import FLOOR, NOTHING, OVERLAP, PROP, lengthened
-from .shapes import WALLS as WALL
 from .view import SensorView
 
 __all__ = ["FLOOR", "NOTHING", "PROP", "WALL", "Lidar2D", "Scan"]
@@ -43,7 +43,7 @@ def _stretches(low: float, width: float, first: float, step: float, count: int) 
 @kernel
 def _see_disc(
     x: float, y: float, first: float, step: float, ux: Floats, uy: Floats,
-    cx: float, cy: float, radius: float, agent: int, distance: Floats, facing: Floats, hit: Indices,
+    cx: float, cy: float, radius: float, agent: int, distance: Floats, cos_incidence: Floats, hit: Indices,
 ) -> None:  # fmt: skip
     count = len(ux)
     away = math.sqrt((cx - x) ** 2 + (cy - y) ** 2)
@@ -57,15 +57,15 @@ def _see_disc(
             if reach < distance[k]:
                 distance[k] = reach
                 hit[k] = agent
-                facing[k] = 1.0
+                cos_incidence[k] = 1.0
                 if reach > 0.0:
-                    facing[k] = ((cx - x - reach * ux[k]) * ux[k] + (cy - y - reach * uy[k]) * uy[k]) / radius
+                    cos_incidence[k] = ((cx - x - reach * ux[k]) * ux[k] + (cy - y - reach * uy[k]) * uy[k]) / radius
 
 
 @kernel
 def _see_wall(
     x: float, y: float, first: float, step: float, ux: Floats, uy: Floats,
-    wall: Floats, limit: float, distance: Floats, facing: Floats, hit: Indices,
+    wall: Floats, limit: float, distance: Floats, cos_incidence: Floats, hit: Indices,
 ) -> None:  # fmt: skip
     ax, ay, bx, by = wall[0], wall[1], wall[2], wall[3]
     nx, ny = nearest_on_segment(x, y, ax, ay, bx, by)
@@ -86,7 +86,7 @@ def _see_wall(
             if reach < distance[k]:
                 distance[k] = reach
                 hit[k] = WALL
-                facing[k] = abs(ux[k] * (by - ay) - uy[k] * (bx - ax)) / length
+                cos_incidence[k] = abs(ux[k] * (by - ay) - uy[k] * (bx - ax)) / length
 
 
 @kernel
@@ -97,7 +97,7 @@ def _scan(
     """Return the distance to the nearest surface, the cosine of the incidence there and what it belongs to."""
     environments, count = len(place), len(angles)
     distance = np.full((environments, count), np.inf)
-    facing = np.ones((environments, count))
+    cos_incidence = np.ones((environments, count))
     hit = np.full((environments, count), NOTHING)
     ux, uy = np.empty(count), np.empty(count)
     for e in range(environments):
@@ -108,55 +108,55 @@ def _scan(
         for a in range(centre.shape[1]):
             cx, cy, r = centre[e, a, 0], centre[e, a, 1], radius[e, a]
             if active[e, a] and (cx - x) ** 2 + (cy - y) ** 2 <= (limit + r) ** 2:
-                _see_disc(x, y, first, step, ux, uy, cx, cy, r, a, distance[e], facing[e], hit[e])
+                _see_disc(x, y, first, step, ux, uy, cx, cy, r, a, distance[e], cos_incidence[e], hit[e])
         for m in range(len(walls)):
-            _see_wall(x, y, first, step, ux, uy, walls[m], limit, distance[e], facing[e], hit[e])
-    return distance, facing, hit
+            _see_wall(x, y, first, step, ux, uy, walls[m], limit, distance[e], cos_incidence[e], hit[e])
+    return distance, cos_incidence, hit
 
 
 @dataclass(frozen=True)
 class Scan(Reading):
-    """One turn of a planar laser scanner in E environments, R beams (infinities as in ROS REP-117).
+    """One scan of a planar laser scanner in E environments, R beams (infinities as in ROS REP-117).
 
     Fields:
-        ranges: ``[E, R]`` [m]; ``+inf`` nothing within reach, ``-inf`` something nearer than the smallest distance.
-        angles: ``[R]`` [rad] in the sensor frame, counter-clockwise, 0 straight ahead.
-        hit: ``[E, R]`` what the beam met: index of an agent, :data:`NOTHING` (-1), :data:`WALL` (-2), :data:`FLOOR`
-            (-3) or :data:`PROP` (-4). Ground truth for labels; no real scanner knows it.
-        facing: ``[E, R]`` cosine of the angle between beam and surface normal, 1 where nothing was met.
+        ranges: ``[E, R]`` [m]; ``+inf`` beyond the range, ``-inf`` below the smallest range.
+        angles: ``[R]`` [rad] in the sensor frame, counter-clockwise, 0 is forward.
+        hit: ``[E, R]`` object hit by the beam: index of an agent, :data:`NOTHING` (-1), :data:`WALL` (-2),
+            :data:`FLOOR` (-3) or :data:`PROP` (-4). Ground truth.
+        cos_incidence: ``[E, R]`` cosine of the angle between beam and surface normal, 1 without a hit.
         part: ``[E, R]`` index into ``scene.bodies.parts``, -1 where there is none.
     """
 
     ranges: Floats
     angles: Floats
     hit: Indices
-    facing: Floats
+    cos_incidence: Floats
     part: Indices
 
     @property
     def incidence(self) -> Floats:
-        """``[E, R]`` angle between beam and surface normal [rad], NaN where nothing returned."""
-        return incidence_of(self.facing, self.hit)
+        """``[E, R]`` angle between beam and surface normal [rad], NaN without a return."""
+        return incidence_of(self.cos_incidence, self.hit)
 
     def points(self) -> Floats:
-        """Return where the beams ended in the world, NaN where there is no finite range.
+        """Return the end points of the beams in the world, NaN without a finite range.
 
         ``[E, R, 2]`` [m] for a planar pose, ``[E, R, 3]`` for one in space.
         """
         if isinstance(self.pose, SpatialPose):
-            return ended(self.pose, fan(self.angles), self.ranges, in_world=True)
+            return end_points(self.pose, unit_vectors(self.angles), self.ranges, in_world=True)
         angle = self.pose.heading[:, None] + self.angles
         away = np.where(np.isfinite(self.ranges), self.ranges, np.nan)
         ends = self.pose.position[:, None] + away[..., None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
         return np.asarray(ends)
 
-    def seen(self, count: int) -> NDArray[np.bool_]:
-        """Return which of ``count`` agents returned at least one beam, ``[E, A]``."""
-        return seen_agents(self.hit, count)
+    def visible_agents(self, count: int) -> NDArray[np.bool_]:
+        """Return which of ``count`` agents were hit by at least one beam, ``[E, A]``."""
+        return visible_agents(self.hit, count)
 
 
-def seen_agents(hit: Indices, count: int) -> NDArray[np.bool_]:
-    """Return which of ``count`` agents are named in ``hit`` ``[E, ...]``, as ``[E, A]``."""
+def visible_agents(hit: Indices, count: int) -> NDArray[np.bool_]:
+    """Return which of ``count`` agents occur in ``hit`` ``[E, ...]``, as ``[E, A]``."""
     flat = hit.reshape(len(hit), -1)
     marks = np.zeros((len(hit), count), dtype=np.bool_)
     rows, beams_ = np.nonzero(flat >= 0)
@@ -166,25 +166,24 @@ def seen_agents(hit: Indices, count: int) -> NDArray[np.bool_]:
 
 @dataclass(frozen=True)
 class Lidar2D(Ranging):
-    """A planar laser scanner that takes all beams at one instant.
+    """A planar laser scanner. All beams are measured at the same instant.
 
-    It sees active agents (also those that the crowd does not react to), walls, props and, when tilted, the floor. A
-    beam ends at the first surface; when it meets that at more than ``max_incidence`` it returns nothing. Noise is
-    added to true distances within reach, then the limits decide, then the value is rounded to ``resolution``: a
-    finite range is always between ``range_min`` and ``range_max``. From inside a body or on a wall every beam that
-    meets it has distance 0 and reads ``-inf``.
+    It detects active agents, walls, props and, if tilted, the floor. A beam ends at the first surface; beyond
+    ``max_incidence`` there is no return. Noise is added to true distances within the range, then the limits apply, then
+    the value is rounded to ``resolution``: a finite range is always between ``range_min`` and ``range_max``. Inside a
+    body or on a wall the distance is 0 and the range ``-inf``.
 
-    In a scene without bodies a planar pose looks at discs and walls as from above. Otherwise the beams go through
-    space from the height and tilt of the pose (a planar one is level, at the height of a usual mount).
+    With a planar pose and a scene without bodies, beams meet discs and walls in the plane. Otherwise they go through
+    space, from the height and tilt of the pose (a planar pose is level, at the height of a usual mount).
 
     Fields:
         rays: number of beams R.
-        field_of_view: angle covered [rad], evenly from ``-field_of_view / 2`` to ``+field_of_view / 2`` both included;
-            a full circle begins at -pi and does not repeat its first beam; a single beam looks ahead.
-        range_min, range_max: smallest and largest distance that is measured [m].
-        max_incidence: largest angle between beam and surface normal that returns [rad].
-        resolution: step of the returned distances [m], 0 for none.
-        skins: whether agents that have triangle skins are seen by them and not by their limbs.
+        field_of_view: angle covered [rad], from ``-field_of_view / 2`` to ``+field_of_view / 2``, both included; a full
+            circle starts at -pi and does not repeat its first beam; a single beam points forward.
+        range_min, range_max: smallest and largest measured distance [m].
+        max_incidence: largest angle between beam and surface normal that gives a return [rad].
+        resolution: step of the distances [m], 0 for none.
+        skins: whether triangle skins of agents are used instead of their limbs.
 
     Raises:
         InputError: a value is not allowed.
@@ -212,7 +211,7 @@ class Lidar2D(Ranging):
 
     @property
     def step(self) -> float:
-        """Angle between neighbouring beams [rad]."""
+        """Angle between adjacent beams [rad]."""
         if self.field_of_view >= TURN - 1e-9:
             return TURN / self.rays
         return self.field_of_view / max(1, self.rays - 1)
@@ -225,7 +224,7 @@ class Lidar2D(Ranging):
         return np.asarray(-0.5 * min(self.field_of_view, TURN) + self.step * np.arange(self.rays))
 
     def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Scan, None]:
-        """Return the scan from ``pose``; ``rng`` is needed only when there is noise.
+        """Return the scan from the pose of the view.
 
         Raises:
             InputError: the pose does not fit the scene, or noise lacks a generator.
@@ -233,13 +232,13 @@ class Lidar2D(Ranging):
         self.check(view)
         scene, pose = view.scene, view.pose
         if isinstance(pose, Pose) and scene.bodies is None and not self.skins:
-            distance, facing, hit = self._from_above(scene, pose)
+            distance, cos_incidence, hit = self._from_above(scene, pose)
             part = np.full(hit.shape, -1)
         else:
-            hits = cast(scene, spatial_pose(pose), _beams(self), self.range_max, skins=self.skins, normals=False)
-            distance, facing, hit, part = hits.distance, hits.facing, hits.hit, hits.part
-        ranges = settled(self, distance, facing, hit, part, rng)
-        return Scan(scene.time, pose, ranges, self.angles, hit, facing, part), None
+            hits = cast_rays(scene, spatial_pose(pose), _beams(self), self.range_max, skins=self.skins, normals=False)
+            distance, cos_incidence, hit, part = hits.distance, hits.cos_incidence, hits.hit, hits.part
+        ranges = apply_limits(self, distance, cos_incidence, hit, part, rng)
+        return Scan(scene.time, pose, ranges, self.angles, hit, cos_incidence, part), None
 
     def _from_above(self, scene: Scene, pose: Pose) -> tuple[Floats, Floats, Indices]:
         return _scan(
@@ -250,7 +249,7 @@ class Lidar2D(Ranging):
             np.ascontiguousarray(scene.position),
             np.ascontiguousarray(scene.radius),
             np.ascontiguousarray(scene.active),
-            lengthened(scene.walls.segments()),
+            extend_segments(scene.walls.segments()),
             self.range_max,
         )
 
@@ -261,4 +260,4 @@ def _beams(lidar: Lidar2D) -> Beams:
 
 @functools.lru_cache(maxsize=64)
 def _made(rays: int, field_of_view: float) -> Beams:
-    return beams(fan(Lidar2D(rays=rays, field_of_view=field_of_view).angles))
+    return sort_beams(unit_vectors(Lidar2D(rays=rays, field_of_view=field_of_view).angles))

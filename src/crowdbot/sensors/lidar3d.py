@@ -1,4 +1,4 @@
-"""A laser scanner of space: rings of beams over a partial sphere."""
+"""A three-dimensional laser scanner: rings of beams."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .beams import Beams, beams, fan
-from .cast import cast
-from .lidar import seen_agents
+from .beams import Beams, sort_beams, unit_vectors
+from .lidar import visible_agents
 from .noise import Randomness
-from .ranging import MOST_BEAMS, Ranging, ended, incidence_of, settled
+from .ranging import MOST_BEAMS, Ranging, apply_limits, end_points, incidence_of
+from .ray_casting import cast_rays
 from .sensor import Reading, spatial_pose
 from .view import SensorView
 
-__all__ = ["Cloud", "Lidar3D"]
+__all__ = ["Lidar3D", "PointCloud"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -29,15 +29,15 @@ SIXTEEN_RINGS = tuple(round(math.radians(-15.0 + 2.0 * k), 12) for k in range(16
 
 
 @dataclass(frozen=True)
-class Cloud(Reading):
-    """One turn of a laser scanner in E environments, K rings of R beams (infinities as in ROS REP-117).
+class PointCloud(Reading):
+    """One scan of a 3-D laser scanner in E environments, K rings of R beams (infinities as in ROS REP-117).
 
     Fields:
-        ranges: ``[E, K, R]`` [m]; ``+inf`` nothing within reach, ``-inf`` something nearer than the smallest distance.
-        elevation: ``[K]`` [rad], positive upward; azimuth: ``[R]`` [rad], counter-clockwise, 0 straight ahead.
-        hit: ``[E, K, R]`` what the beam met, as in :class:`Scan`.
+        ranges: ``[E, K, R]`` [m]; ``+inf`` beyond the range, ``-inf`` below the smallest range.
+        elevation: ``[K]`` [rad], positive upward; azimuth: ``[R]`` [rad], counter-clockwise, 0 is forward.
+        hit: ``[E, K, R]`` object hit by the beam, coded as in :class:`Scan`.
         part: ``[E, K, R]`` index into ``scene.bodies.parts``, -1 where there is none.
-        facing: ``[E, K, R]`` cosine of the angle between beam and surface normal, 1 where nothing was met.
+        cos_incidence: ``[E, K, R]`` cosine of the angle between beam and surface normal, 1 without a hit.
     """
 
     ranges: Floats
@@ -45,39 +45,39 @@ class Cloud(Reading):
     azimuth: Floats
     hit: Ints
     part: Ints
-    facing: Floats
+    cos_incidence: Floats
 
     @property
     def incidence(self) -> Floats:
-        """``[E, K, R]`` angle between beam and surface normal [rad], NaN where nothing returned."""
-        return incidence_of(self.facing, self.hit)
+        """``[E, K, R]`` angle between beam and surface normal [rad], NaN without a return."""
+        return incidence_of(self.cos_incidence, self.hit)
 
     def points(self, *, in_world: bool = False) -> Floats:
-        """Return where the beams ended, ``[E, K, R, 3]`` [m] in the sensor's frame, NaN without a finite range."""
-        return ended(
-            spatial_pose(self.pose), fan(self.azimuth, self.elevation[:, None]), self.ranges, in_world=in_world
+        """Return the end points of the beams ``[E, K, R, 3]`` [m] in the sensor frame, NaN without a finite range."""
+        return end_points(
+            spatial_pose(self.pose), unit_vectors(self.azimuth, self.elevation[:, None]), self.ranges, in_world=in_world
         )
 
-    def seen(self, count: int) -> NDArray[np.bool_]:
-        """Return which of ``count`` agents returned at least one beam, ``[E, A]``."""
-        return seen_agents(self.hit, count)
+    def visible_agents(self, count: int) -> NDArray[np.bool_]:
+        """Return which of ``count`` agents were hit by at least one beam, ``[E, A]``."""
+        return visible_agents(self.hit, count)
 
 
 @dataclass(frozen=True)
 class Lidar3D(Ranging):
-    """A laser scanner with rings of beams that takes all of them at one instant.
+    """A laser scanner with rings of beams, all measured at the same instant.
 
-    Ranges, incidence and noise are as of :class:`Lidar2D`. A planar pose is level, at the height of a usual mount.
+    Ranges, incidence and noise are those of :class:`Lidar2D`. A planar pose is level, at the height of a usual mount.
 
     Fields:
         elevations: of the rings [rad], K numbers, positive upward.
         columns: number of beams R of a ring.
         azimuth_from, azimuth_to: where a ring begins and ends [rad], both included; a full circle does not repeat
             its first beam.
-        range_min, range_max: smallest and largest distance that is measured [m].
-        max_incidence: largest angle between beam and surface normal that returns [rad].
-        resolution: step of the returned distances [m], 0 for none.
-        skins: whether agents that have triangle skins are seen by them and not by their limbs.
+        range_min, range_max: smallest and largest measured distance [m].
+        max_incidence: largest angle between beam and surface normal that gives a return [rad].
+        resolution: step of the distances [m], 0 for none.
+        skins: whether triangle skins of agents are used instead of their limbs.
 
     Raises:
         InputError: a value is not allowed.
@@ -138,7 +138,7 @@ class Lidar3D(Ranging):
         full = width >= TURN - 1e-9
         return np.linspace(self.azimuth_from, self.azimuth_to, self.columns, endpoint=not full)
 
-    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Cloud, None]:
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[PointCloud, None]:
         """Return the cloud from ``pose``; ``rng`` is needed only when there is noise.
 
         Raises:
@@ -147,18 +147,20 @@ class Lidar3D(Ranging):
         """
         self.check(view)
         scene, pose = view.scene, view.pose
-        hits = cast(scene, spatial_pose(pose), _made(self), self.range_max, skins=self.skins, normals=False)
-        ranges = settled(self, hits.distance, hits.facing, hits.hit, hits.part, rng)
+        hits = cast_rays(scene, spatial_pose(pose), _made(self), self.range_max, skins=self.skins, normals=False)
+        ranges = apply_limits(self, hits.distance, hits.cos_incidence, hits.hit, hits.part, rng)
         shape = (len(ranges), len(self.elevations), self.columns)
-        ranges, facing = ranges.reshape(shape), hits.facing.reshape(shape)
+        ranges, cos_incidence = ranges.reshape(shape), hits.cos_incidence.reshape(shape)
         hit, part = hits.hit.reshape(shape), hits.part.reshape(shape)
-        return Cloud(scene.time, pose, ranges, np.array(self.elevations), self.azimuth, hit, part, facing), None
+        return PointCloud(
+            scene.time, pose, ranges, np.array(self.elevations), self.azimuth, hit, part, cos_incidence
+        ), None
 
 
 @functools.lru_cache(maxsize=64)
 def _of(elevations: tuple[float, ...], columns: int, first: float, last: float) -> Beams:
     lidar = Lidar3D(elevations, columns, first, last)
-    return beams(fan(lidar.azimuth, np.array(elevations)[:, None]).reshape(-1, 3))
+    return sort_beams(unit_vectors(lidar.azimuth, np.array(elevations)[:, None]).reshape(-1, 3))
 
 
 def _made(lidar: Lidar3D) -> Beams:

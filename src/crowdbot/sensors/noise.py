@@ -1,4 +1,4 @@
-"""Noise is a value attached to a sensor: what happens to every reading, drawn from a given generator."""
+"""Noise of sensors, as values; random numbers come from a given generator."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, check_number, did_you_mean, kebab
 
-__all__ = ["Dropout", "Gaussian", "Noise", "Offset", "Peak", "Quantised", "Randomness", "disturbed", "normals"]
+__all__ = ["Dropout", "Gaussian", "Noise", "Offset", "Peak", "Quantised", "Randomness", "apply_noise", "normals"]
 
 Floats = NDArray[np.float64]
 Randomness = np.random.Generator | Sequence[np.random.Generator]
-"""One generator that serves the environments in turn, or one for each environment (alone = in a batch, bitwise)."""
+"""One generator for all environments, or one for each, which gives the same bits alone and in a batch."""
 
 TERM = re.compile(r"\s*([A-Za-z][\w-]*)\s*\(([^()]*)\)\s*[,+]?")
 
 
 @dataclass(frozen=True)
 class Noise(ABC):
-    """Something that is done to what a sensor measures; several act one after the other as a tuple.
+    """Noise of a sensor. A tuple of them is applied one after the other.
 
     >>> Noise.parse("gaussian(0.01) peak(0.001, 1.0)")
     (Gaussian(sd=0.01), Peak(probability=0.001, height=1.0, sd=0.0))
@@ -32,18 +32,18 @@ class Noise(ABC):
 
     @abstractmethod
     def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
-        """Return what is added to readings of ``shape``, in the unit of the reading."""
+        """Return the error of readings of ``shape``, in the unit of the reading."""
 
-    def applied(self, values: Floats, rng: np.random.Generator) -> Floats:
-        """Return the readings ``values`` with the noise; the number of draws follows from their shape only."""
+    def apply(self, values: Floats, rng: np.random.Generator) -> Floats:
+        """Return ``values`` with the noise; the number of draws depends only on their shape."""
         return values + self.draw(values.shape, rng)
 
     @classmethod
     def parse(cls, text: str) -> tuple[Noise, ...]:
-        """Read noise from text, as it stands in a trial file: ``gaussian(0.01) peak(0.001, 1.0)``.
+        """Parse the text of a trial file, such as ``gaussian(0.01) peak(0.001, 1.0)``.
 
         Raises:
-            InputError: a word is not a known noise, or its numbers do not fit.
+            InputError: a noise is unknown, or its numbers are wrong.
         """
         found: list[Noise] = []
         place = 0
@@ -148,7 +148,7 @@ class Dropout(Noise):
 class Quantised(Noise):
     """Rounding to whole multiples of ``step``, in the unit of the reading; half a step goes to the even multiple.
 
-    >>> Quantised(0.25).applied(np.array([0.3, 0.4]), np.random.default_rng(0)).tolist()
+    >>> Quantised(0.25).apply(np.array([0.3, 0.4]), np.random.default_rng(0)).tolist()
     [0.25, 0.5]
     """
 
@@ -172,12 +172,12 @@ class Quantised(Noise):
         """Return zeros: rounding depends on the reading."""
         return np.zeros(shape)
 
-    def applied(self, values: Floats, rng: np.random.Generator) -> Floats:
+    def apply(self, values: Floats, rng: np.random.Generator) -> Floats:
         """Return the rounded readings; what is infinite stays infinite."""
         return np.round(values / self.step) * self.step
 
 
-def disturbed(values: Floats, noise: tuple[Noise, ...], rng: Randomness | None) -> Floats:
+def apply_noise(values: Floats, noise: tuple[Noise, ...], rng: Randomness | None) -> Floats:
     """Return ``values`` ``[E, ...]`` with every noise; what is infinite stays infinite.
 
     The number of draws depends on the shape only, never on what was measured.
@@ -185,7 +185,7 @@ def disturbed(values: Floats, noise: tuple[Noise, ...], rng: Randomness | None) 
     Raises:
         InputError: there is noise but no generator, or not one generator for each environment.
 
-    >>> disturbed(np.ones((1, 2)), (Offset(0.5), Offset(1.0)), np.random.default_rng(0)).tolist()
+    >>> apply_noise(np.ones((1, 2)), (Offset(0.5), Offset(1.0)), np.random.default_rng(0)).tolist()
     [[2.5, 2.5]]
     """
     if not noise:
@@ -198,7 +198,7 @@ def disturbed(values: Floats, noise: tuple[Noise, ...], rng: Randomness | None) 
     result = values.copy()
     for number, generator in enumerate(generators):
         for part in noise:
-            result[number] = part.applied(result[number], generator)
+            result[number] = part.apply(result[number], generator)
     return result
 
 
@@ -212,7 +212,7 @@ def normals(shape: tuple[int, ...], rng: Randomness | None) -> Floats:
     Raises:
         InputError: there is no generator, or not one for each environment.
     """
-    return disturbed(np.zeros(shape), (Gaussian(1.0),), rng)
+    return apply_noise(np.zeros(shape), (Gaussian(1.0),), rng)
 
 
 def _made(word: str, inside: str, text: str) -> Noise:

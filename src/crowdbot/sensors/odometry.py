@@ -1,4 +1,4 @@
-"""Wheel odometry: a pose that is added up from what the wheels have turned, and drifts."""
+"""Wheel odometry: a drifting pose integrated from the rotation of the wheels."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import Pose, SpatialPose, check_number
 
 from .imu import elapsed
-from .noise import Randomness, disturbed, normals
+from .noise import Randomness, apply_noise, normals
 from .sensor import Reading, Sensor, finite_or_nan, planar_pose
 from .view import SensorView
 
@@ -22,13 +22,13 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Odometry(Reading):
-    """Where wheels say that a robot is, in E environments.
+    """The pose by wheel odometry in E environments.
 
     Fields:
-        estimate: the pose that the wheels add up to; it begins as the true one.
-        twist: ``[E, 3]`` forward [m/s], turn [rad/s], left [m/s] since the reading before.
-        travelled: ``[E, 3]`` [m] of the left and the right wheel and sideways, errors included.
-        ticks: ``[E, 3]`` counts of the encoders, 0 when they do not count.
+        estimate: integrated pose; starts at the true pose.
+        twist: ``[E, 3]`` forward [m/s], turn [rad/s], left [m/s], mean since the reading before.
+        travelled: ``[E, 3]`` distance of the left and right wheel and sideways, errors included [m].
+        ticks: ``[E, 3]`` counts of the encoders, 0 without encoders.
     """
 
     estimate: Pose
@@ -60,17 +60,17 @@ class OdometryState:
 class WheelOdometry(Sensor):
     """Encoders on the wheels of a differential drive, integrated along arcs (errors are off by default).
 
-    Systematic errors are wheels that are larger or smaller than believed and a wrong track (Borenstein & Feng 1996,
-    doi:10.1109/70.544770); random ones grow with the square root of the way of each wheel. What ``noise`` holds acts
-    on the twist that is shown, not on the pose.
+    Systematic errors are wrong wheel radii and a wrong track width (Borenstein & Feng 1996, doi:10.1109/70.544770).
+    Random errors grow with the square root of the distance of each wheel. ``noise`` is added to the reported twist,
+    not to the pose.
 
     Fields:
-        track: distance between the wheels as believed [m]; wheel_radius: as believed [m].
-        left_scale, right_scale: true over believed radius of the wheels.
-        track_scale: true over believed track.
-        slip: standard deviation of a wheel's way after one metre [m].
-        ticks_per_turn: of the encoders, 0 for no rounding.
-        holonomic: whether it measures going sideways too, as three wheels that roll in all directions do.
+        track: assumed distance between the wheels [m]; wheel_radius: assumed wheel radius [m].
+        left_scale, right_scale: true over assumed radius of the wheels.
+        track_scale: true over assumed track.
+        slip: standard deviation of the distance of a wheel after one metre [m].
+        ticks_per_turn: encoder counts per revolution, 0 for no rounding.
+        holonomic: whether sideways motion is measured too, as with omnidirectional wheels.
 
     Raises:
         InputError: a value is not allowed.
@@ -102,7 +102,7 @@ class WheelOdometry(Sensor):
 
     @property
     def tick(self) -> float:
-        """Way of one count of the encoders [m], 0 without rounding."""
+        """Distance of one encoder count [m], 0 without rounding."""
         return 2.0 * math.pi * self.wheel_radius / self.ticks_per_turn if self.ticks_per_turn else 0.0
 
     def measure(
@@ -118,7 +118,7 @@ class WheelOdometry(Sensor):
         count = len(here.heading)
         if state is None:
             still = np.zeros((count, 3))
-            shown = finite_or_nan(disturbed(still, self.noises, rng))
+            shown = finite_or_nan(apply_noise(still, self.noises, rng))
             return _with_state(Odometry(view.time, view.pose, here, shown, still, still.astype(np.int64)))
         dt = elapsed(self, view, state)
         forward, left, turn = arc_between(planar_pose(state.pose), here)
@@ -134,7 +134,7 @@ class WheelOdometry(Sensor):
             way = (ticks - state.ticks) * self.tick
         moved, turned, aside = 0.5 * (way[:, 0] + way[:, 1]), (way[:, 1] - way[:, 0]) / self.track, way[:, 2]
         twist = np.stack([moved, turned, aside], axis=1) / dt
-        shown = finite_or_nan(disturbed(twist, self.noises, rng))
+        shown = finite_or_nan(apply_noise(twist, self.noises, rng))
         estimate = along_arc(state.estimate, moved, aside, turned)
         return _with_state(Odometry(view.time, view.pose, estimate, shown, travelled, ticks))
 

@@ -1,4 +1,4 @@
-"""Sensors that can be bought, as named values, each number with where it is from or marked as assumed."""
+"""Presets of commercial sensors. Each value has a source or is marked as assumed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 from crowdbot.core import UnknownName
 
-from .depth import DepthCamera
+from .depth_camera import DepthCamera
 from .infrared import Infrared
 from .lidar import Lidar2D
 from .lidar3d import Lidar3D
@@ -18,20 +18,20 @@ from .noise import Gaussian
 from .sensor import Sensor
 from .ultrasound import SLIM, Ultrasound
 
-__all__ = ["PRESETS", "Preset", "preset"]
+__all__ = ["PRESETS", "SensorPreset", "preset"]
 
 ASSUMED = "assumed: "
-"""A source that begins so is no source; the number is a plausible one."""
+"""Prefix of the source of an assumed value."""
 
 
 @dataclass(frozen=True)
-class Preset:
-    """A sensor with the values of a product, and where each is from.
+class SensorPreset:
+    """A sensor with the values of a product and their sources.
 
     Fields:
-        sensor: the spec, without noise.
-        noisy: the same with the noise of the product.
-        sources: field of the spec -> where its value is from; ``assumed: ...`` where no source was found.
+        sensor: the sensor without noise.
+        noisy: the sensor with the noise of the product.
+        sources: source of the value of each field; ``assumed: ...`` if no source was found.
     """
 
     sensor: Sensor
@@ -48,7 +48,7 @@ def preset(name: str, *, noisy: bool = False) -> Sensor:
     """Return the sensor of a product.
 
     Raises:
-        UnknownName: there is no product of this name.
+        UnknownName: there is no preset of this name.
 
     >>> preset("hokuyo-utm-30lx").range_max
     30.0
@@ -58,9 +58,9 @@ def preset(name: str, *, noisy: bool = False) -> Sensor:
     return PRESETS[name].noisy if noisy else PRESETS[name].sensor
 
 
-def _made(sensor: Sensor, sources: dict[str, str], noise: float = 0.0, **stereo: Any) -> Preset:
+def _made(sensor: Sensor, sources: dict[str, str], noise: float = 0.0, **stereo: Any) -> SensorPreset:
     changes: dict[str, Any] = stereo or {"noise": Gaussian(noise) if noise else ()}
-    return Preset(sensor, replace(sensor, **changes), MappingProxyType(sources))
+    return SensorPreset(sensor, replace(sensor, **changes), MappingProxyType(sources))
 
 
 SCIP = "Hokuyo, Communication protocol specification for SCIP 2.0, C-42-03320B"
@@ -240,5 +240,5 @@ _PRESETS = {
         },
     ),
 }
-PRESETS: Mapping[str, Preset] = MappingProxyType(_PRESETS)
+PRESETS: Mapping[str, SensorPreset] = MappingProxyType(_PRESETS)
 """Name -> product."""

@@ -1,4 +1,4 @@
-"""What all range sensors share: their limits, and how a true distance becomes a reading."""
+"""Range limits, incidence limit, noise and resolution of all range sensors."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, SpatialPose, check_number, kernel
 
-from .noise import Randomness, disturbed
+from .noise import Randomness, apply_noise
+from .ray_shapes import NOTHING
 from .sensor import Sensor
-from .shapes import NOTHING
 
-__all__ = ["Ranging", "ended", "incidence_of", "settled"]
+__all__ = ["Ranging", "apply_limits", "end_points", "incidence_of"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 MOST_BEAMS = 1_000_000
-"""Of a sensor: more would not fit into the memory of a usual machine."""
+"""Largest number of beams of a sensor."""
 
 
 class Ranging(Sensor):
     """A sensor with the fields ``range_min``, ``range_max``, ``max_incidence``, ``resolution`` and ``skins``.
 
-    A beam ends at the first surface. It returns nothing when that is beyond ``range_max`` or met at more than
-    ``max_incidence``. Noise is added to the true distances that return, then the limits decide: below ``range_min``
-    (before or after noise) it reads ``-inf``, above ``range_max`` ``+inf`` (ROS REP-117); then it is rounded to
-    ``resolution``, inwards at the limits. Both limits themselves are measured.
+    A beam ends at the first surface. There is no return beyond ``range_max`` or ``max_incidence``. Noise is added to
+    the true distances, then the limits apply: below ``range_min`` (before or after noise) the range is ``-inf``, above
+    ``range_max`` it is ``+inf`` (ROS REP-117). The result is rounded to ``resolution``, inwards at the limits. Both
+    limits are inclusive.
     """
 
     range_min: float
@@ -50,7 +50,7 @@ class Ranging(Sensor):
         return copy
 
     def check_ranges(self) -> None:
-        """Raise :class:`InputError` when limits are not finite, not in order, or too narrow for the resolution."""
+        """Raise :class:`InputError` if the limits are not finite, not in order, or too narrow for the resolution."""
         name = type(self).__name__
         if not 0.0 <= self.range_min < self.range_max < math.inf:
             raise InputError(
@@ -68,24 +68,24 @@ class Ranging(Sensor):
         check_number(owner, name, getattr(self, name), min=1, max=MOST_BEAMS, whole=True)
 
     @property
-    def least_facing(self) -> float:
-        """Smallest cosine of the incidence that returns; the limit itself does, whatever the rounding."""
+    def min_cos_incidence(self) -> float:
+        """Smallest cosine of incidence with a return; the limit is inclusive despite rounding."""
         return math.cos(self.max_incidence) - 1e-12 if self.max_incidence < math.pi / 2 else -2.0
 
 
 @kernel
 def _settle(
-    distance: Floats, measured: Floats, facing: Floats, hit: Ints, part: Ints, least: float, low: float, high: float,
-    step: float, ranges: Floats,
+    distance: Floats, measured: Floats, cos_incidence: Floats, hit: Ints, part: Ints, least: float, low: float,
+    high: float, step: float, ranges: Floats,
 ) -> None:  # fmt: skip
-    """Write the readings, and in ``hit`` and ``part`` what they are of."""
+    """Write the ranges; clear ``hit`` and ``part`` without a return."""
     first, last = 0.0, 0.0
     if step > 0.0:
         first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
     for e in range(distance.shape[0]):
         for k in range(distance.shape[1]):
             true, value = distance[e, k], measured[e, k]
-            back = true <= high and facing[e, k] >= least and value < np.inf
+            back = true <= high and cos_incidence[e, k] >= least and value < np.inf
             if back and (true < low or value < low):
                 ranges[e, k] = -np.inf
             elif back and value <= high:
@@ -96,25 +96,27 @@ def _settle(
                 part[e, k] = -1
 
 
-def settled(sensor: Ranging, distance: Floats, facing: Floats, hit: Ints, part: Ints, rng: Randomness | None) -> Floats:
-    """Return the readings ``[E, R]`` [m] from true distances; ``hit`` and ``part`` lose what does not return."""
+def apply_limits(
+    sensor: Ranging, distance: Floats, cos_incidence: Floats, hit: Ints, part: Ints, rng: Randomness | None
+) -> Floats:
+    """Return the ranges ``[E, R]`` [m] from true distances; clear ``hit`` and ``part`` without a return."""
     measured = distance
     if sensor.noises:
-        back = (distance <= sensor.range_max) & (facing >= sensor.least_facing)
-        measured = disturbed(np.where(back, distance, np.inf), sensor.noises, rng)
+        back = (distance <= sensor.range_max) & (cos_incidence >= sensor.min_cos_incidence)
+        measured = apply_noise(np.where(back, distance, np.inf), sensor.noises, rng)
     ranges = np.empty(distance.shape)
-    limits = (sensor.least_facing, float(sensor.range_min), float(sensor.range_max), float(sensor.resolution))
-    _settle(distance, measured, facing, hit, part, *limits, ranges)
+    limits = (sensor.min_cos_incidence, float(sensor.range_min), float(sensor.range_max), float(sensor.resolution))
+    _settle(distance, measured, cos_incidence, hit, part, *limits, ranges)
     return ranges
 
 
-def incidence_of(facing: Floats, hit: Ints) -> Floats:
-    """Return angles [rad] between beams and surface normals from their cosines, NaN where nothing returned."""
-    return np.asarray(np.where(hit != NOTHING, np.arccos(np.clip(facing, -1.0, 1.0)), np.nan))
+def incidence_of(cos_incidence: Floats, hit: Ints) -> Floats:
+    """Return angles [rad] between beams and surface normals from their cosines, NaN without a return."""
+    return np.asarray(np.where(hit != NOTHING, np.arccos(np.clip(cos_incidence, -1.0, 1.0)), np.nan))
 
 
-def ended(pose: SpatialPose, directions: Floats, ranges: Floats, *, in_world: bool) -> Floats:
-    """Return where beams ``[..., 3]`` of the sensor's frame ended, ``[E, ..., 3]`` [m], NaN without a finite range."""
+def end_points(pose: SpatialPose, directions: Floats, ranges: Floats, *, in_world: bool) -> Floats:
+    """Return the end points ``[E, ..., 3]`` [m] of beams ``[..., 3]`` in the sensor frame; NaN without a range."""
     away = np.where(np.isfinite(ranges), ranges, np.nan)
     ends = away[..., None] * directions
     if not in_world:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number
 
-from .camera import ImageSource
+from .lens import ImageSource
 from .noise import Noise, Randomness
 from .view import SensorView
 
@@ -53,8 +53,8 @@ class Sensor(ABC):
     Fields:
         rate: measurements per second [Hz].
         noise: noise added to every value, one :class:`Noise` or a tuple of them.
-        delay: time from a measurement until its reading is available [s] (:class:`Schedule`). The reading keeps the
-            time of the measurement.
+        delay: time from a measurement until its reading is available [s] (:class:`SensorSchedule`). The reading keeps
+            the time of the measurement.
 
     Class attributes:
         spatial: whether the sensor always measures in space, also where people are discs in the plane.

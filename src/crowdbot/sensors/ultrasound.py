@@ -1,4 +1,4 @@
-"""An ultrasonic range finder: the smallest return within a zone like a teardrop."""
+"""An ultrasonic range finder: the smallest distance within a teardrop-shaped zone."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from crowdbot.core import check_number
 
-from .beams import Beams, beams, cone
-from .echo import Echo, nearest
+from .beams import Beams, cone_directions, sort_beams
 from .noise import Randomness
+from .range_reading import RangeReading, nearest
 from .ranging import Ranging
 from .view import SensorView
 
@@ -26,11 +26,11 @@ SLIM = 16.0 / (3.0 * math.sqrt(3.0))
 
 
 def teardrop(angle: Floats, radius: float, length: float) -> Floats:
-    """Return how far the zone reaches [m] in directions at ``angle`` [rad] from its axis, 0 outside of it.
+    """Return the range of the zone [m] in directions at ``angle`` [rad] from its axis, 0 outside.
 
     The surface has the radius ``radius 16 / (3 sqrt 3) u sqrt(u (1 - u))`` at the distance ``u length`` along the
-    axis; it is widest at ``u = 3/4`` (D4.2 of the CROWDBOT project, section 3.5.4). A direction meets it twice; what
-    lies before the nearer point is in the zone too, since the sound has to pass there.
+    axis; it is widest at ``u = 3/4`` (D4.2 of the CROWDBOT project, section 3.5.4). A direction crosses the
+    surface twice; points before the first crossing belong to the zone too, since the sound passes them.
 
     >>> teardrop(np.array([0.0, math.atan2(1.0, 0.75 * 4.0), 1.0]), 1.0, 4.0).round(6).tolist()
     [4.0, 3.162278, 0.0]
@@ -43,15 +43,15 @@ def teardrop(angle: Floats, radius: float, length: float) -> Floats:
 
 @dataclass(frozen=True)
 class Ultrasound(Ranging):
-    """An ultrasonic range finder that looks along x and returns the smallest distance in its :func:`teardrop`.
+    """An ultrasonic range finder: the smallest distance in a :func:`teardrop` around the x axis of its pose.
 
     Fields:
         radius: widest radius of the zone [m], at three quarters of ``range_max``.
-        rays: beams that search the zone, spread evenly over its solid angle.
-        range_min, range_max: smallest and largest distance that is measured [m].
-        max_incidence: largest angle between beam and surface normal that returns [rad].
-        resolution: step of the returned distance [m], 0 for none.
-        skins: whether agents that have triangle skins are seen by them and not by their limbs.
+        rays: number of beams, spread evenly over the solid angle of the zone.
+        range_min, range_max: smallest and largest measured distance [m].
+        max_incidence: largest angle between beam and surface normal that returns an echo [rad].
+        resolution: step of the distance [m], 0 for none.
+        skins: whether triangle skins of agents are used instead of their limbs.
 
     Raises:
         InputError: a value is not allowed.
@@ -78,11 +78,11 @@ class Ultrasound(Ranging):
 
     @property
     def half_angle(self) -> float:
-        """Largest angle between the axis and a direction in which the zone lies [rad]."""
+        """Largest angle between the axis and a direction inside the zone [rad]."""
         return math.atan(0.5 * SLIM * self.radius / self.range_max)
 
-    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Echo, None]:
-        """Return the smallest distance; ``rng`` is needed only when there is noise.
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[RangeReading, None]:
+        """Return the smallest distance in the zone.
 
         Raises:
             InputError: the pose does not fit the scene, or noise lacks a generator.
@@ -95,6 +95,6 @@ class Ultrasound(Ranging):
 @functools.lru_cache(maxsize=64)
 def _bundle(radius: float, length: float, rays: int) -> tuple[Beams, Floats, Floats]:
     half = math.atan(0.5 * SLIM * radius / length)
-    directions = cone(half, rays)
+    directions = cone_directions(half, rays)
     angle = np.arctan2(np.hypot(directions[:, 1], directions[:, 2]), directions[:, 0])
-    return beams(directions), directions, teardrop(np.minimum(angle, half), radius, length)
+    return sort_beams(directions), directions, teardrop(np.minimum(angle, half), radius, length)

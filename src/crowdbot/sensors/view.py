@@ -8,7 +8,7 @@ import numpy as np
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose
 
-from .camera import ImageSource
+from .lens import ImageSource
 
 __all__ = ["SensorView"]
 

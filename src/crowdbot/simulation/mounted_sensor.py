@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Pose, SpatialPose, stream
 from crowdbot.sensors import (
     Reading,
-    Schedule,
+    SensorSchedule,
     SensorView,
-    Tracked,
+    TrackedPeople,
 )
 from crowdbot.trials import Mount, Robot
 from crowdbot.world import MountPlacement, World
@@ -51,7 +51,7 @@ class Probe:
 
     mount: Mount
     placed: tuple[float, float, float, float, float, float]
-    schedule: Schedule
+    schedule: SensorSchedule
     rng: np.random.Generator
     space: bool
     state: Any
@@ -124,7 +124,7 @@ def named(reading: Reading, ids: Ints) -> Reading:
     """Return a reading in which people are named by who they are, not by their places among the agents."""
     if np.array_equal(ids, np.arange(len(ids))):
         return reading
-    if isinstance(reading, Tracked):
+    if isinstance(reading, TrackedPeople):
         return _tracked(reading, ids)
     hit = getattr(reading, "hit", None)
     if hit is None:
@@ -132,7 +132,7 @@ def named(reading: Reading, ids: Ints) -> Reading:
     return dataclasses.replace(reading, hit=np.where(hit >= 0, ids[np.maximum(hit, 0)], hit))  # type: ignore[call-arg]
 
 
-def _tracked(reading: Tracked, ids: Ints) -> Tracked:
+def _tracked(reading: TrackedPeople, ids: Ints) -> TrackedPeople:
     """Return the rows by ids: row k is that of person k."""
     there = np.flatnonzero(ids >= 0)
     count = int(ids.max(initial=-1)) + 1
@@ -147,9 +147,9 @@ def _tracked(reading: Tracked, ids: Ints) -> Tracked:
 
 def shown(reading: Reading) -> Ints | None:
     """Return the ids of those whom a reading shows; None for readings that cannot show anybody."""
-    if isinstance(reading, Tracked):
+    if isinstance(reading, TrackedPeople):
         return np.flatnonzero(reading.present[0])
     hit = getattr(reading, "hit", None)
-    if hit is None or not hasattr(reading, "seen"):
+    if hit is None or not hasattr(reading, "visible_agents"):
         return None
     return np.asarray(np.unique(hit[hit >= 0]))

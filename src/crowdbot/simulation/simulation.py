@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Clock, InputError, Scene, TrialError, Twist
 from crowdbot.metrics.contacts import HOLD
-from crowdbot.navigation import Limits, Observation
+from crowdbot.navigation import DriveLimits, Observation
 from crowdbot.sensors import Reading, Scan
 from crowdbot.trials import Mount, Robot, Trial, cast_of, place
 from crowdbot.world import StepGenerator, run_step
@@ -94,7 +94,7 @@ class Carrier:
 
     robot: Robot
     agent: int
-    limits: Limits
+    limits: DriveLimits
     control_every: int
     probes: tuple[Probe, ...]
     readings: dict[str, Reading] = field(default_factory=dict)

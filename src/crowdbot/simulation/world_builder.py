@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Scene, TrialError
 from crowdbot.models import CrowdModel, Mixture
-from crowdbot.navigation import Limits
+from crowdbot.navigation import DriveLimits
 from crowdbot.trials import (
     Agent,
     Crowds,
@@ -139,10 +139,10 @@ def start_scene(trial: Trial, people: People, spare: int = 0) -> Scene:
     )
 
 
-def limits_of(drive: Any) -> Limits:
+def limits_of(drive: Any) -> DriveLimits:
     """Return the limits of a drive by the names that drives use; a drive without them is taken as 1 m/s and 1 rad/s."""
-    known = {name: float(getattr(drive, name)) for name in Limits._fields if hasattr(drive, name)}
-    return Limits(**({"max_speed": 1.0, "max_turn_rate": 1.0} | known))
+    known = {name: float(getattr(drive, name)) for name in DriveLimits._fields if hasattr(drive, name)}
+    return DriveLimits(**({"max_speed": 1.0, "max_turn_rate": 1.0} | known))
 
 
 def _spare(trial: Trial, first: int, sources: Sequence[PeopleSource], seed: int) -> int:

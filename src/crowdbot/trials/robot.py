@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from crowdbot import world
 from crowdbot.core import MOUNT_HEIGHT, Clock, InputError, RobotError, did_you_mean
 from crowdbot.navigation import Navigator
-from crowdbot.sensors import Schedule, Sensor
+from crowdbot.sensors import Sensor, SensorSchedule
 from crowdbot.world import Drive, builtin_robots, frame, roll_pitch_yaw
 
 from .fields import Mistake, attribute, check, child, children, mounted, plugged, shown
@@ -228,16 +228,16 @@ class Robot:
         roll, yaw = math.atan2(found[2, 1], found[2, 2]), math.atan2(found[1, 0], found[0, 0])
         return x, y, z, round(roll, 12), round(pitch, 12), round(yaw, 12)
 
-    def schedule(self, mount: Mount, clock: Clock) -> Schedule:
+    def schedule(self, mount: Mount, clock: Clock) -> SensorSchedule:
         """Return when a sensor measures; see the attribute ``rates``.
 
         Raises:
             InputError: its period or its delay is not a whole number of time steps.
         """
         if self.sensor_rates == "exact" or mount not in self.carried:
-            return Schedule.of(mount.sensor, clock)
+            return SensorSchedule.of(mount.sensor, clock)
         period, delay = 1.0 / mount.sensor.rate, mount.sensor.delay
-        return Schedule(max(1, round(period / clock.dt)), round(delay / clock.dt))
+        return SensorSchedule(max(1, round(period / clock.dt)), round(delay / clock.dt))
 
     @property
     def position(self) -> tuple[float, float]:

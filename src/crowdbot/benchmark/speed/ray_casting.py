@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import Bodies, Scene, SpatialPose, optional, stream
-from crowdbot.sensors.beams import fan
+from crowdbot.sensors.beams import unit_vectors
 
 __all__ = ["mujoco_rays", "people_with_limbs"]
 
@@ -56,7 +56,7 @@ def mujoco_rays(scene: Scene, sensor: Any, pose: SpatialPose) -> Callable[[], An
     mujoco.mj_forward(model, data)
     elevations = np.array(getattr(sensor, "elevations", (0.0,)))
     azimuth = sensor.azimuth if hasattr(sensor, "azimuth") else sensor.angles
-    rays = np.ascontiguousarray(fan(azimuth, elevations[:, None]).reshape(-1, 3) @ pose.matrix[0].T).ravel()
+    rays = np.ascontiguousarray(unit_vectors(azimuth, elevations[:, None]).reshape(-1, 3) @ pose.matrix[0].T).ravel()
     count = len(rays) // 3
     which, distance, normal = np.zeros(count, np.int32), np.zeros(count), np.zeros(3 * count)
 

@@ -1,4 +1,4 @@
-"""A depth camera: metric depth and labels of every pixel, by rays or from images that somebody renders."""
+"""A depth camera: metric depth and labels of every pixel, by ray casting or from rendered images."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, SpatialPose, check_number
 
-from .beams import Beams, beams
-from .camera import ImageSource, Lens, pixel_directions, stereo_depth
-from .cast import cast
-from .lidar import seen_agents
-from .noise import Randomness, disturbed
+from .beams import Beams, sort_beams
+from .lens import ImageSource, Lens, pixel_directions, stereo_depth
+from .lidar import visible_agents
+from .noise import Randomness, apply_noise
+from .ray_casting import cast_rays
+from .ray_shapes import NOTHING
 from .sensor import Reading, Sensor, spatial_pose
-from .shapes import NOTHING
 from .view import SensorView
 
 __all__ = ["DepthCamera", "DepthImage"]
@@ -33,8 +33,8 @@ class DepthImage(Reading):
     """Depth and labels of the pixels in E environments, rows from the top, columns from the left.
 
     Fields:
-        depth: ``[E, H, W]`` [m] along the optical axis; ``+inf`` nothing within reach, ``-inf`` too near.
-        hit: ``[E, H, W]`` what the pixel shows, as in :class:`Scan`: the segmentation into agents.
+        depth: ``[E, H, W]`` [m] along the optical axis; ``+inf`` beyond the range, ``-inf`` too near.
+        hit: ``[E, H, W]`` segmentation, coded as in :class:`Scan`.
         part: ``[E, H, W]`` index into ``scene.bodies.parts``, -1 where there is none.
         lens: the intrinsics.
     """
@@ -45,7 +45,7 @@ class DepthImage(Reading):
     lens: Lens
 
     def points(self, *, in_world: bool = False) -> Floats:
-        """Return the points of the pixels ``[E, H, W, 3]`` [m] in the camera's frame (x ahead), NaN without depth."""
+        """Return the points ``[E, H, W, 3]`` [m] in the camera frame (x forward), NaN without depth."""
         ahead = pixel_directions(self.lens)
         away = np.where(np.isfinite(self.depth), self.depth, np.nan)[..., None] * (ahead / ahead[..., :1])
         if not in_world:
@@ -53,27 +53,28 @@ class DepthImage(Reading):
         pose = spatial_pose(self.pose)
         return np.asarray(pose.position[:, None, None] + np.einsum("eij,ehwj->ehwi", pose.matrix, away))
 
-    def seen(self, count: int) -> NDArray[np.bool_]:
-        """Return which of ``count`` agents are seen in at least one pixel, ``[E, A]``."""
-        return seen_agents(self.hit, count)
+    def visible_agents(self, count: int) -> NDArray[np.bool_]:
+        """Return which of ``count`` agents appear in at least one pixel, ``[E, A]``."""
+        return visible_agents(self.hit, count)
 
 
 @dataclass(frozen=True)
 class DepthCamera(Sensor):
-    """A camera that looks along x and measures the depth of every pixel along its optical axis.
+    """A camera that measures the depth of every pixel along its optical axis, the x axis of its pose.
 
-    It casts one ray a pixel. :meth:`from_image` does the same to the depth that an :class:`ImageSource` renders. With a
-    ``baseline`` the error is that of stereo (:func:`stereo_depth`); ``noise`` acts on the depth after that.
+    It casts one ray per pixel. :meth:`from_image` applies the same errors to a rendered depth image. With a
+    ``baseline`` the error is that of stereo (:func:`stereo_depth`); ``noise`` is added after that.
 
     Fields:
-        width, height: of the image [pixels]; field_of_view: horizontal [rad], of the undistorted lens.
+        width, height: size of the image [pixels].
+        field_of_view: horizontal field of view of the undistorted lens [rad].
         distortion: k1, k2, p1, p2, k3, or nothing.
-        range_min, range_max: smallest and largest depth that is measured [m].
-        max_incidence: largest angle between ray and surface normal that is measured [rad], for rays.
-        baseline: of the stereo pair [m], 0 for no stereo error.
+        range_min, range_max: smallest and largest measured depth [m].
+        max_incidence: largest measured angle between ray and surface normal [rad].
+        baseline: distance of the stereo pair [m], 0 for no stereo error.
         disparity_noise: standard deviation of the disparity [pixels]; disparity_step: its subpixel step [pixels].
-        resolution: step of the returned depth [m], 0 for none.
-        skins: whether agents that have triangle skins are seen by them and not by their limbs.
+        resolution: step of the depth [m], 0 for none.
+        skins: whether triangle skins of agents are used instead of their limbs.
 
     Raises:
         InputError: a value is not allowed.
@@ -132,7 +133,7 @@ class DepthCamera(Sensor):
         return Lens.of(self.width, self.height, self.field_of_view, self.distortion or (0.0,) * 5)
 
     def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[DepthImage, None]:
-        """Return depth and labels by rays; ``rng`` is needed only when there is noise.
+        """Return depth and labels by ray casting.
 
         Raises:
             InputError: the pose does not fit the scene, or noise lacks a generator.
@@ -140,10 +141,10 @@ class DepthCamera(Sensor):
         self.check(view)
         scene, pose = view.scene, view.pose
         bundle, ahead = pixel_beams(self.lens)
-        hits = cast(
+        hits = cast_rays(
             scene, spatial_pose(pose), bundle, self.range_max / float(ahead.min()), skins=self.skins, normals=False
         )
-        back = hits.facing >= math.cos(self.max_incidence) - 1e-12
+        back = hits.cos_incidence >= math.cos(self.max_incidence) - 1e-12
         shape = (scene.shape[0], self.height, self.width)
         depth = np.where(back, hits.distance * ahead, np.inf).reshape(shape)
         hit, part = hits.hit.reshape(shape), hits.part.reshape(shape)
@@ -168,7 +169,7 @@ class DepthCamera(Sensor):
             focal = self.lens.fx
             measured = stereo_depth(measured, focal, self.baseline, self.disparity_noise, self.disparity_step, rng)
             measured = np.where(depth > 0.0, measured, depth)
-        measured = disturbed(measured, self.noises, rng)
+        measured = apply_noise(measured, self.noises, rng)
         kept = measured < np.inf
         near = kept & (near | (measured < self.range_min))
         far = ~kept | (measured > self.range_max)
@@ -183,6 +184,6 @@ class DepthCamera(Sensor):
 
 @functools.lru_cache(maxsize=16)
 def pixel_beams(lens: Lens) -> tuple[Beams, Floats]:
-    """Return the beams of the pixels, row by row, and how far each goes ahead for a metre of its length."""
+    """Return the beams of the pixels, row by row, and the cosine of the angle to the optical axis."""
     directions = pixel_directions(lens).reshape(-1, 3)
-    return beams(directions), np.ascontiguousarray(directions[:, 0])
+    return sort_beams(directions), np.ascontiguousarray(directions[:, 0])

@@ -1,4 +1,4 @@
-"""Ground truth of people: who is around, where and how fast, as a perfect tracker would tell."""
+"""A perfect people tracker."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, check_number
 
 from .lidar import Lidar2D
-from .noise import Randomness, disturbed
+from .noise import Randomness, apply_noise
 from .ranging import MOST_BEAMS
 from .sensor import Reading, Sensor, planar_pose
 from .view import SensorView
 
-__all__ = ["GroundTruthPeople", "Tracked"]
+__all__ = ["GroundTruthPeople", "TrackedPeople"]
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Tracked(Reading):
-    """Agents around a sensor in E environments; arrays keep the agents' indices, NaN for who is not told of.
+class TrackedPeople(Reading):
+    """Tracked agents in E environments; arrays keep the indices of the agents, NaN if not tracked.
 
     Fields:
-        present: ``[E, A]`` who is told of.
-        position: ``[E, A, 2]`` [m] in the sensor's frame, x ahead and y to the left.
+        present: ``[E, A]`` whether the agent is tracked.
+        position: ``[E, A, 2]`` [m] in the sensor frame, x forward and y left.
         velocity: ``[E, A, 2]`` [m/s] over the ground, along the axes of the sensor.
         radius: ``[E, A]`` [m].
-        heading: ``[E, A]`` [rad] from the sensor's x axis.
+        heading: ``[E, A]`` [rad] from the x axis of the sensor.
     """
 
     present: NDArray[np.bool_]
@@ -41,22 +41,22 @@ class Tracked(Reading):
     heading: Floats
 
     def ids(self, environment: int = 0) -> list[int]:
-        """Return the indices of the agents that are told of."""
+        """Return the indices of the tracked agents."""
         return [int(a) for a in np.flatnonzero(self.present[environment])]
 
 
 @dataclass(frozen=True)
 class GroundTruthPeople(Sensor):
-    """A perfect tracker of the agents within reach, of all or only of those in sight.
+    """A perfect tracker of all agents within range, or only of the visible ones.
 
-    In sight is who returns at least one of ``rays`` level beams of a full circle at the height of the sensor; people
-    behind others and behind walls are not. Noise acts on positions; a dropout loses the agent.
+    An agent is visible if at least one of ``rays`` level beams of a full circle hits it. Noise is added to positions; a
+    dropout loses the agent.
 
     Fields:
-        range_max: largest distance of an agent's centre [m].
-        field_of_view: angle in which centres are told of [rad], half to each side.
-        visible_only: whether those that are hidden are left out.
-        rays: of the circle of beams that decides.
+        range_max: largest distance to the centre of an agent [m].
+        field_of_view: angle in which agents are tracked [rad], half to each side.
+        visible_only: whether hidden agents are left out.
+        rays: number of beams of the visibility test.
 
     Raises:
         InputError: a value is not allowed.
@@ -81,8 +81,8 @@ class GroundTruthPeople(Sensor):
             )
         check_number("GroundTruthPeople", "rays", self.rays, min=1, max=MOST_BEAMS, whole=True)
 
-    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Tracked, None]:
-        """Return who is around; ``rng`` is needed only when there is noise.
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[TrackedPeople, None]:
+        """Return the tracked agents.
 
         Raises:
             InputError: the pose does not fit the scene, or noise lacks a generator.
@@ -97,12 +97,12 @@ class GroundTruthPeople(Sensor):
         bearing = np.abs(np.arctan2(position[..., 1], position[..., 0]))
         present = scene.active & (distance <= self.range_max) & (bearing <= 0.5 * self.field_of_view + 1e-12)
         if self.visible_only:
-            present &= _circle(self.rays, self.range_max).read(scene, pose).seen(scene.shape[1])
-        told = disturbed(np.where(present[..., None], position, np.nan), self.noises, rng)
+            present &= _circle(self.rays, self.range_max).read(scene, pose).visible_agents(scene.shape[1])
+        told = apply_noise(np.where(present[..., None], position, np.nan), self.noises, rng)
         present &= np.isfinite(told).all(axis=-1)
         heading = scene.heading - place.heading[:, None]
         heading = math.pi - (math.pi - np.where(present, heading, 0.0)) % (2.0 * math.pi)
-        reading = Tracked(
+        reading = TrackedPeople(
             scene.time,
             pose,
             present,

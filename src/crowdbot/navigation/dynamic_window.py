@@ -1,7 +1,7 @@
-"""From a wished velocity to a twist that a drive can reach and that runs into nobody: a dynamic window.
+"""Dynamic window: from a desired velocity to a collision-free twist within the limits of a drive.
 
-Twists within reach of the accelerations are tried; each is followed for a moment, people going on with their velocity
-meanwhile. The best one comes nearest to the wish and keeps clear of people and walls.
+Twists within the acceleration limits are simulated for a short time, people at constant velocity. The cost combines
+the distance to the desired velocity and the clearance to people and walls.
 
 Source of the idea: Fox, Burgard, Thrun 1997, doi:10.1109/100.580977.
 """
@@ -19,47 +19,47 @@ from crowdbot.core.geometry import nearest_on_segment
 
 from .observation import Observation
 
-__all__ = ["Caution", "reachable"]
+__all__ = ["WindowCosts", "dynamic_window_twist"]
 
 Floats = NDArray[np.float64]
 
 STEP = 0.1
-"""Time step of the ways that are tried [s]."""
+"""Time step of the simulated paths [s]."""
 WINDOW = 0.5
-"""Twists that the drive can reach within this time [s] are tried."""
+"""Candidates are the twists that the drive reaches within this time [s]."""
 MATCH = 5
-"""The wish is compared after so many steps."""
+"""Number of steps after which the velocity is compared."""
 SIGHT = 5.0
-"""People and walls farther than this are not considered [m]."""
+"""People and walls farther away than this are ignored [m]."""
 FORWARD, TURNS = 9, 13
-"""Number of speeds and of turn rates that are tried."""
+"""Number of candidate speeds and turn rates."""
 EAGER = 100.0
-"""An acceleration that nobody knows counts as this [m/s2], [rad/s2]."""
+"""Value for unknown accelerations [m/s2], [rad/s2]."""
 
 
-class Caution(NamedTuple):
-    """What a twist costs besides its difference [m/s] from the wish; all but the distances in m/s."""
+class WindowCosts(NamedTuple):
+    """Weights of the cost of a twist, which is its difference from the desired velocity [m/s] plus penalties [m/s]."""
 
     look: float = 1.5
-    """How far ahead ways are followed [s]."""
+    """Simulated time [s]."""
     margin: float = 0.3
-    """Clearance to people below which a way costs [m]."""
+    """Clearance to people below which a penalty applies [m]."""
     near: float = 1.0
-    """Cost of a way that comes to clearance 0, the less the later."""
+    """Penalty at clearance 0; it fades with time."""
     skin: float = 0.05
     """Clearance to people that counts as contact [m]."""
     contact: float = 10.0
-    """Cost of a contact at once, the less the later."""
+    """Penalty of an immediate contact; it fades with time."""
     wall_margin: float = 0.1
-    """Clearance to walls below which a way costs [m]."""
+    """Clearance to walls below which a penalty applies [m]."""
     wall: float = 20.0
-    """Cost of touching a wall."""
+    """Penalty of wall contact."""
     facing: float = 0.5
-    """Cost of not facing the wish, as a share of its speed."""
+    """Penalty of not facing the desired velocity, relative to its speed."""
 
 
 class _Start(NamedTuple):
-    """Where every way begins, and what the drive can do."""
+    """Initial motion and limits of the drive."""
 
     heading: float
     forward: float
@@ -70,8 +70,10 @@ class _Start(NamedTuple):
 
 
 @kernel
-def _cost(forward: float, turn: float, start: _Start, wish: Floats, people: Floats, walls: Floats, c: Caution) -> float:
-    """Return what it costs to ask for a twist; people are rows x, y, vx, vy, radius from the robot's place."""
+def _cost(
+    forward: float, turn: float, start: _Start, wish: Floats, people: Floats, walls: Floats, c: WindowCosts
+) -> float:
+    """Return the cost of a twist; people are rows x, y, vx, vy, radius relative to the robot."""
     x, y, heading, v, w = 0.0, 0.0, start.heading, start.forward, start.turn
     near, contact, touch, miss = 0.0, 0.0, 0.0, 0.0
     steps = max(MATCH, round(c.look / STEP))
@@ -105,7 +107,7 @@ def _cost(forward: float, turn: float, start: _Start, wish: Floats, people: Floa
 
 @kernel
 def _cheapest(
-    forwards: Floats, turns: Floats, start: _Start, wish: Floats, people: Floats, walls: Floats, caution: Caution
+    forwards: Floats, turns: Floats, start: _Start, wish: Floats, people: Floats, walls: Floats, caution: WindowCosts
 ) -> tuple[float, float]:
     best, chosen, turning = np.inf, 0.0, 0.0
     for forward in forwards:
@@ -116,21 +118,21 @@ def _cheapest(
     return chosen, turning
 
 
-def reachable(
-    observation: Observation, wish: tuple[float, float], speed: float, caution: Caution | None = None
+def dynamic_window_twist(
+    observation: Observation, wish: tuple[float, float], speed: float, caution: WindowCosts | None = None
 ) -> Twist:
-    """Return the twist within reach that fits a wished velocity best and keeps clear of people and walls.
+    """Return the reachable twist with the smallest cost.
 
     Args:
         observation: what the robot knows.
-        wish: x, y in the world [m/s].
-        speed: never faster than this [m/s].
-        caution: what nearness costs.
+        wish: desired velocity x, y in the world [m/s].
+        speed: largest speed [m/s].
+        caution: weights of the cost.
 
-    >>> from crowdbot.navigation import Limits
-    >>> limits = Limits(max_speed=1.0, max_turn_rate=2.0, max_acceleration=1.0, max_turn_acceleration=3.0)
+    >>> from crowdbot.navigation import DriveLimits
+    >>> limits = DriveLimits(max_speed=1.0, max_turn_rate=2.0, max_acceleration=1.0, max_turn_acceleration=3.0)
     >>> still = Observation(pose=(0.0, 0.0, 0.0), goal=(9.0, 0.0), radius=0.3, limits=limits, dt=0.1)
-    >>> reachable(still, (1.0, 0.0), speed=1.0)
+    >>> dynamic_window_twist(still, (1.0, 0.0), speed=1.0)
     Twist(forward=0.5, turn=0.0, left=0.0)
     """
     top = min(speed, observation.limits.max_speed)
@@ -144,7 +146,7 @@ def reachable(
     turns = np.linspace(max(-most, turn - spin * WINDOW), min(most, turn + spin * WINDOW), TURNS)
     start = _Start(observation.heading, forward, turn, observation.radius, push * STEP, spin * STEP)
     chosen, turning = _cheapest(
-        forwards, turns, start, np.array(wish), _people(observation), _walls(observation), caution or Caution()
+        forwards, turns, start, np.array(wish), _people(observation), _walls(observation), caution or WindowCosts()
     )
     return Twist(float(chosen), float(turning))
 

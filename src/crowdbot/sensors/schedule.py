@@ -1,4 +1,4 @@
-"""When a sensor measures and when its reading is handed over, in whole ticks of the one clock."""
+"""Measurement times and delays of sensors in ticks of the clock."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from crowdbot.core import Clock, InputError
 
 from .sensor import Sensor
 
-__all__ = ["Schedule"]
+__all__ = ["SensorSchedule"]
 
 
 @dataclass(frozen=True)
-class Schedule:
-    """Ticks of a sensor: it measures every ``every``-th, and each reading arrives ``late`` ticks after.
+class SensorSchedule:
+    """SensorSchedule of a sensor: it measures at every ``every``-th tick; readings arrive ``late`` ticks later.
 
     >>> from crowdbot.core import FreeClock
     >>> from crowdbot.sensors import Lidar2D
-    >>> plan = Schedule.of(Lidar2D(rate=10.0, delay=0.05), FreeClock(0.05))
+    >>> plan = SensorSchedule.of(Lidar2D(rate=10.0, delay=0.05), FreeClock(0.05))
     >>> [tick for tick in range(6) if plan.measures(tick)], plan.arrives(2)
     ([0, 2, 4], 3)
     """
@@ -26,11 +26,11 @@ class Schedule:
     late: int
 
     @classmethod
-    def of(cls, sensor: Sensor, clock: Clock) -> Schedule:
-        """Return the ticks of ``sensor``.
+    def of(cls, sensor: Sensor, clock: Clock) -> SensorSchedule:
+        """Return the schedule of ``sensor``.
 
         Raises:
-            InputError: its period or its delay is not a whole number of time steps.
+            InputError: its period or delay is not a multiple of the time step.
         """
         try:
             late = clock.every(sensor.delay) if sensor.delay > 0.0 else 0
@@ -45,5 +45,5 @@ class Schedule:
         return tick % self.every == 0
 
     def arrives(self, tick: int) -> int:
-        """Return when what was measured at ``tick`` is handed over."""
+        """Return the tick at which a reading of ``tick`` arrives."""
         return tick + self.late

@@ -8,16 +8,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import Twist, Walls, stream
-from crowdbot.navigation import Caution, Limits, Observation, People, reachable
-from crowdbot.navigation.reachable import MATCH, STEP, WINDOW, _cost, _people, _Start, _walls
+from crowdbot.navigation import DriveLimits, Observation, VisiblePeople, WindowCosts, dynamic_window_twist
+from crowdbot.navigation.dynamic_window import MATCH, STEP, WINDOW, _cost, _people, _Start, _walls
 
-LIMITS = Limits(1.0, 1.5, 1.0, 3.0)
+LIMITS = DriveLimits(1.0, 1.5, 1.0, 3.0)
 few = settings(max_examples=40, deadline=None)
 
 
 def observed(seed, count=6, twist=None):
     rng = stream(seed, "window")
-    people = People(
+    people = VisiblePeople(
         rng.uniform(-3, 3, (count, 2)) + [2.0, 0.0], rng.normal(0, 1, (count, 2)), rng.uniform(0.2, 0.4, count)
     )
     return Observation(
@@ -69,7 +69,7 @@ def slow_cost(forward, turn, seen, wish, caution):
 @given(st.integers(0, 10_000), st.floats(0.0, 1.0), st.floats(-1.5, 1.5), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
 def test_the_cost_is_that_of_the_slow_twin(seed, forward, turn, x, y):
     seen, wish = observed(seed), np.array([x, y])
-    caution = Caution(near=1.7, contact=0.0, wall=3.0, facing=0.6)  # the jump at a contact is tested below
+    caution = WindowCosts(near=1.7, contact=0.0, wall=3.0, facing=0.6)  # the jump at a contact is tested below
     start = _Start(seen.heading, seen.twist.forward, seen.twist.turn, 0.3, STEP, 3.0 * STEP)
     fast = _cost(forward, turn, start, wish, _people(seen), _walls(seen), caution)
     assert fast == pytest.approx(slow_cost(forward, turn, seen, wish, caution), abs=0.02)
@@ -78,10 +78,10 @@ def test_the_cost_is_that_of_the_slow_twin(seed, forward, turn, x, y):
 def test_a_contact_costs_the_more_the_sooner():
     costs = []
     for away in (0.8, 1.0, 1.3, 4.0):
-        person = People(np.array([[away, 0.0]]), np.zeros((1, 2)), np.array([0.3]))
+        person = VisiblePeople(np.array([[away, 0.0]]), np.zeros((1, 2)), np.array([0.3]))
         seen = Observation(pose=(0, 0, 0), goal=(9, 0), radius=0.3, limits=LIMITS, dt=0.1, people=person)
         start = _Start(0.0, 1.0, 0.0, 0.3, STEP, 3.0 * STEP)
-        costs.append(_cost(1.0, 0.0, start, np.array([1.0, 0.0]), _people(seen), _walls(seen), Caution()))
+        costs.append(_cost(1.0, 0.0, start, np.array([1.0, 0.0]), _people(seen), _walls(seen), WindowCosts()))
     assert sorted(costs, reverse=True) == costs
     assert costs[0] > 8.0
     assert costs[-1] == pytest.approx(0.0, abs=1e-12)
@@ -90,7 +90,7 @@ def test_a_contact_costs_the_more_the_sooner():
 @few
 @given(st.integers(0, 10_000), st.floats(-2.0, 2.0), st.floats(-2.0, 2.0), st.floats(0.0, 1.0), st.floats(-1.5, 1.5))
 def test_it_asks_for_what_the_drive_can_reach(seed, x, y, forward, turn):
-    twist = reachable(observed(seed, twist=Twist(forward, turn)), (x, y), speed=0.8)
+    twist = dynamic_window_twist(observed(seed, twist=Twist(forward, turn)), (x, y), speed=0.8)
     assert 0.0 <= twist.forward <= 0.8
     assert abs(twist.turn) <= 1.5
     assert abs(twist.forward - min(forward, 0.8)) <= WINDOW * 1.0 + 1e-12
@@ -105,18 +105,18 @@ def clear(**changes):
 
 def test_free_it_takes_the_wish():
     moving = clear(twist=Twist(0.8, 0.0))
-    assert reachable(moving, (0.8, 0.0), speed=1.0).forward == pytest.approx(0.8, abs=0.05)
-    assert reachable(moving, (0.8, 0.0), speed=1.0).turn == 0.0
-    assert reachable(moving, (0.0, 0.8), speed=1.0).turn > 0.5
-    assert reachable(moving, (0.0, -0.8), speed=1.0).turn < -0.5
+    assert dynamic_window_twist(moving, (0.8, 0.0), speed=1.0).forward == pytest.approx(0.8, abs=0.05)
+    assert dynamic_window_twist(moving, (0.8, 0.0), speed=1.0).turn == 0.0
+    assert dynamic_window_twist(moving, (0.0, 0.8), speed=1.0).turn > 0.5
+    assert dynamic_window_twist(moving, (0.0, -0.8), speed=1.0).turn < -0.5
 
 
 def test_it_stops_for_a_wall_and_never_drives_into_it():
     walls = Walls.of([[(1.5, -9.0), (1.5, 9.0)]])
     x, speed = 0.0, 0.0
     for _ in range(100):
-        seen = clear(pose=(x, 0.0, 0.0), twist=Twist(speed), walls=walls, limits=Limits(1.0, 1e-6, 1.0, 3.0))
-        wanted = reachable(seen, (1.0, 0.0), speed=1.0).forward
+        seen = clear(pose=(x, 0.0, 0.0), twist=Twist(speed), walls=walls, limits=DriveLimits(1.0, 1e-6, 1.0, 3.0))
+        wanted = dynamic_window_twist(seen, (1.0, 0.0), speed=1.0).forward
         speed += float(np.clip(wanted - speed, -0.1, 0.1))
         x += speed * 0.1
     assert 0.8 < x < 1.2
@@ -124,10 +124,10 @@ def test_it_stops_for_a_wall_and_never_drives_into_it():
 
 
 def test_with_unknown_accelerations_it_works_too():
-    twist = reachable(clear(limits=Limits(1.0, 2.0)), (1.0, 0.0), speed=1.0)
+    twist = dynamic_window_twist(clear(limits=DriveLimits(1.0, 2.0)), (1.0, 0.0), speed=1.0)
     assert twist == Twist(1.0, 0.0, 0.0)
 
 
 def test_same_input_same_twist():
-    one, two = (reachable(observed(11, count=20), (0.7, 0.4), speed=1.0) for _ in range(2))
+    one, two = (dynamic_window_twist(observed(11, count=20), (0.7, 0.4), speed=1.0) for _ in range(2))
     assert one == two

@@ -1,4 +1,4 @@
-"""Cameras as specs: intrinsics, lens distortion and the law of stereo noise, for images that somebody renders."""
+"""Camera intrinsics, lens distortion and stereo noise."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from crowdbot.core import InputError, SpatialPose, check_number
 
 from .noise import Randomness, normals
 
-__all__ = ["ImageSource", "Lens", "distorted", "pixel_directions", "stereo_depth"]
+__all__ = ["ImageSource", "Lens", "distort_image", "pixel_directions", "stereo_depth"]
 
 Floats = NDArray[np.float64]
 MOST_PIXELS = 1 << 24
-"""Of an image: more would not fit into the memory of a usual machine, with a direction for each."""
+"""Largest number of pixels of an image."""
 
 
 class ImageSource(Protocol):
-    """Who renders: a physics world, a rasteriser."""
+    """A renderer of camera images."""
 
     def render(self, camera: Any, pose: SpatialPose) -> Mapping[str, NDArray[Any]]:
-        """Return images of an ideal pinhole camera with the lens' intrinsics, each with the axis E first.
+        """Return images of an ideal pinhole camera with the intrinsics of ``camera``, axis E first.
 
         ``rgb`` ``[E, H, W, 3]`` uint8; ``depth`` ``[E, H, W]`` [m] along the optical axis, inf for nothing; ``hit``
         and ``part`` ``[E, H, W]`` as in :class:`Scan`. The camera looks along x of its pose, z is up in the image.
@@ -37,9 +37,9 @@ class Lens:
     """Intrinsics of a camera: a pinhole with Brown-Conrady distortion (as in OpenCV and ROS ``plumb_bob``).
 
     Fields:
-        width, height: of the image [pixels].
-        fx, fy: focal lengths [pixels]; cx, cy: principal point [pixels], the middle of the first pixel is (0, 0).
-        distortion: k1, k2, p1, p2, k3.
+        width, height: size of the image [pixels].
+        fx, fy: focal lengths [pixels]; cx, cy: principal point [pixels]; the centre of the first pixel is (0, 0).
+        distortion: coefficients k1, k2, p1, p2, k3.
 
     Raises:
         InputError: a value is not allowed.
@@ -60,7 +60,7 @@ class Lens:
         for name in ("width", "height"):
             check_number("camera", name, getattr(self, name), min=1, max=MOST_PIXELS, whole=True)
         if self.width * self.height > MOST_PIXELS:
-            raise InputError(f"camera: {self.width} x {self.height} pixels must be at most {MOST_PIXELS} together")
+            raise InputError(f"camera: {self.width} x {self.height} pixels exceed the limit of {MOST_PIXELS} pixels")
         for name in ("fx", "fy"):
             check_number("camera", name, getattr(self, name), exclusive_min=0.0)
         if len(self.distortion) != 5 or not all(math.isfinite(k) for k in (*self.distortion, self.cx, self.cy)):
@@ -68,14 +68,14 @@ class Lens:
 
     @classmethod
     def of(cls, width: int, height: int, field_of_view: float, distortion: tuple[float, ...] = (0.0,) * 5) -> Lens:
-        """Return a lens of a horizontal field of view [rad], with square pixels and a principal point in the middle."""
+        """Return a lens with the horizontal field of view [rad], square pixels and a centred principal point."""
         if not 0.0 < field_of_view < math.pi:
             raise InputError(f"camera: field_of_view = {field_of_view} rad must be above 0 and below pi")
         focal = 0.5 * width / math.tan(0.5 * field_of_view)
         return cls(width, height, focal, focal, 0.5 * (width - 1), 0.5 * (height - 1), distortion)  # type: ignore[arg-type]
 
-    def bent(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
-        """Return where the lens shows the points ``x`` (right), ``y`` (down) of the plane at distance 1."""
+    def distort(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+        """Return the distorted coordinates of points ``x`` (right), ``y`` (down) at distance 1."""
         k1, k2, p1, p2, k3 = self.distortion
         r2 = x * x + y * y
         bend = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))
@@ -84,22 +84,22 @@ class Lens:
             y * bend + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y,
         )
 
-    def straightened(self, x: Floats, y: Floats, rounds: int = 40) -> tuple[Floats, Floats]:
-        """Return what :meth:`bent` maps to ``x``, ``y``, by iteration."""
+    def undistort(self, x: Floats, y: Floats, rounds: int = 40) -> tuple[Floats, Floats]:
+        """Return the inverse of :meth:`distort` at ``x``, ``y``, by iteration."""
         u, v = x.copy(), y.copy()
         for _ in range(rounds if any(self.distortion) else 0):
-            bx, by = self.bent(u, v)
+            bx, by = self.distort(u, v)
             u, v = u + (x - bx), v + (y - by)
         return u, v
 
     def rays(self) -> tuple[Floats, Floats]:
-        """Return where the pixels look: right and down ``[H, W]`` at distance 1 ahead."""
+        """Return the viewing rays of the pixels: right and down ``[H, W]`` at distance 1."""
         column, row = np.meshgrid(np.arange(self.width, dtype=np.float64), np.arange(self.height, dtype=np.float64))
-        return self.straightened(np.asarray((column - self.cx) / self.fx), np.asarray((row - self.cy) / self.fy))
+        return self.undistort(np.asarray((column - self.cx) / self.fx), np.asarray((row - self.cy) / self.fy))
 
 
 def pixel_directions(lens: Lens) -> Floats:
-    """Return the unit vectors ``[H, W, 3]`` of the pixels in the camera's frame: x ahead, y left, z up.
+    """Return the viewing directions ``[H, W, 3]`` of the pixels in the camera frame: x forward, y left, z up.
 
     >>> pixel_directions(Lens.of(3, 1, math.pi / 2))[0, 1].tolist()
     [1.0, -0.0, -0.0]
@@ -109,11 +109,11 @@ def pixel_directions(lens: Lens) -> Floats:
     return np.asarray(ahead / np.sqrt((ahead**2).sum(axis=-1, keepdims=True)))
 
 
-def distorted(image: NDArray[Any], lens: Lens, fill: float = 0.0) -> NDArray[Any]:
-    """Return a pinhole image ``[E, H, W, ...]`` as the lens shows it.
+def distort_image(image: NDArray[Any], lens: Lens, fill: float = 0.0) -> NDArray[Any]:
+    """Return a pinhole image ``[E, H, W, ...]`` with the distortion of the lens.
 
-    Colours are interpolated (bilinear, rounded for whole numbers); depth and labels must not be mixed across edges,
-    so two-dimensional images take the nearest pixel. ``fill`` stands where the pinhole image does not reach.
+    Colours are interpolated (bilinear, rounded for integers). Depth and labels take the nearest pixel. Pixels outside
+    the pinhole image are ``fill``.
     """
     right, down = lens.rays()
     column, row = right * lens.fx + lens.cx, down * lens.fy + lens.cy
@@ -134,12 +134,12 @@ def distorted(image: NDArray[Any], lens: Lens, fill: float = 0.0) -> NDArray[Any
 def stereo_depth(
     depth: Floats, focal: float, baseline: float, sd: float, step: float, rng: Randomness | None
 ) -> Floats:
-    """Return the depth ``[E, ...]`` [m] that a stereo pair measures: noise and steps are those of the disparity.
+    """Return the depth ``[E, ...]`` [m] of a stereo pair with noise and resolution of the disparity.
 
-    With the disparity ``focal baseline / depth`` [pixels], its noise ``sd`` [pixels] makes an error of the depth of
-    ``depth^2 sd / (focal baseline)``, and its ``step`` (the subpixel) steps that grow in the same way (Grunnet-Jepsen
-    et al., Subpixel linearity improvement for RealSense D400, revision 1.3). What is infinite or not seen by both
-    (disparity of at most 0) is inf.
+    The disparity is ``focal baseline / depth`` [pixels]. Its noise ``sd`` [pixels] causes a depth error of
+    ``depth^2 sd / (focal baseline)``; its ``step`` [pixels] causes depth steps that grow in the same way
+    (Grunnet-Jepsen et al., Subpixel linearity improvement for RealSense D400, revision 1.3). Infinite depths and
+    disparities of at most 0 give inf.
 
     >>> stereo_depth(np.array([[2.0]]), 424.0, 0.05, 0.0, 1.0 / 32.0, None).round(4).tolist()
     [[2.0012]]

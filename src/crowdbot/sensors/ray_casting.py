@@ -1,8 +1,8 @@
-"""Rays: where beams from a pose meet limbs, discs, walls, props, skins and the floor.
+"""Ray casting: intersections of beams with limbs, discs, walls, props, skins and the floor.
 
-Everything is brought into the sensor's frame. There each shape covers a window of azimuth and elevation, and only the
-beams of the cells in it are tried, as a picture is drawn with a depth buffer. So the time goes with what is seen and
-hardly with the number of shapes times beams. Environments are independent of each other.
+Shapes are transformed to the sensor frame. There each shape covers a window of azimuth and elevation, and only the
+beams of the cells in this window are tested, as in rasterisation with a depth buffer. The run time depends on the
+visible shapes, hardly on the number of shapes times beams. Environments are independent of each other.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ from crowdbot.core.windows import (
 )
 
 from .beams import Beams
-from .shapes import FLOOR, NOTHING, Shapes, gathered
+from .ray_shapes import FLOOR, NOTHING, RayShapes, collect_shapes
 
-__all__ = ["Hits", "cast"]
+__all__ = ["RayHits", "cast_rays"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -124,7 +124,7 @@ def _turned(turn: Floats, x: float, y: float, z: float, out: Floats, at: int) ->
 
 
 @kernel
-def _moved(e: int, kind: int, n: int, shapes: Shapes, place: Floats, turn: Floats, s: Floats, corner: Floats) -> int:
+def _moved(e: int, kind: int, n: int, shapes: RayShapes, place: Floats, turn: Floats, s: Floats, corner: Floats) -> int:
     """Write shape ``n`` of a kind in the sensor's frame: its row and the corners of its hull; return how many."""
     if kind == TRIANGLE:
         for k in range(3):
@@ -187,7 +187,7 @@ def _bring(
 
 @kernel
 def _bring_flat(
-    e: int, shapes: Shapes, place: Floats, turn: Floats, limit: float, down: float, up: float, rows: Floats,
+    e: int, shapes: RayShapes, place: Floats, turn: Floats, limit: float, down: float, up: float, rows: Floats,
     corner: Floats, seen: Ints, nearest: Floats, kept: int,
 ) -> int:  # fmt: skip
     """Do the same for all other shapes."""
@@ -207,7 +207,7 @@ def _bring_flat(
 @kernel
 def _tell(
     kind: Ints, owner: Ints, label: Ints, rows: Floats, place: Floats, turn: Floats, beams: Beams, reach: Floats,
-    which: Ints, distance: Floats, facing: Floats, normal: Floats, hit: Ints, part: Ints,
+    which: Ints, distance: Floats, cos_incidence: Floats, normal: Floats, hit: Ints, part: Ints,
 ) -> None:  # fmt: skip
     """Write what every beam has met, in the order in which the beams were given."""
     ox, oy, oz, height = turn[2, 0], turn[2, 1], turn[2, 2], place[2]
@@ -241,7 +241,7 @@ def _tell(
                     nx, ny, nz = -nx, -ny, -nz
         distance[i] = d
         if d < math.inf:
-            facing[i] = -(nx * x + ny * y + nz * z)
+            cos_incidence[i] = -(nx * x + ny * y + nz * z)
             if told:
                 for c in range(3):
                     normal[i, c] = turn[c, 0] * nx + turn[c, 1] * ny + turn[c, 2] * nz
@@ -249,8 +249,8 @@ def _tell(
 
 @kernel
 def _one(
-    e: int, place: Floats, turn: Floats, shapes: Shapes, beams: Beams, limit: float,
-    distance: Floats, facing: Floats, normal: Floats, hit: Ints, part: Ints,
+    e: int, place: Floats, turn: Floats, shapes: RayShapes, beams: Beams, limit: float,
+    distance: Floats, cos_incidence: Floats, normal: Floats, hit: Ints, part: Ints,
 ) -> None:  # fmt: skip
     count, total = len(beams.x), len(shapes.kind)
     reach, which = np.full(count, np.inf), np.full(count, -1)
@@ -276,7 +276,7 @@ def _one(
         reach,
         which,
         distance,
-        facing,
+        cos_incidence,
         normal,
         hit,
         part,
@@ -297,66 +297,98 @@ def _matrix(rotation: Floats) -> Floats:
 
 @kernel
 def _serial(
-    place: Floats, rotation: Floats, shapes: Shapes, beams: Beams, limit: float,
-    distance: Floats, facing: Floats, normal: Floats, hit: Ints, part: Ints,
+    place: Floats, rotation: Floats, shapes: RayShapes, beams: Beams, limit: float,
+    distance: Floats, cos_incidence: Floats, normal: Floats, hit: Ints, part: Ints,
 ) -> None:  # fmt: skip
     for e in range(len(place)):
         _one(
-            e, place[e], _matrix(rotation[e]), shapes, beams, limit, distance[e], facing[e], normal[e], hit[e], part[e]
+            e,
+            place[e],
+            _matrix(rotation[e]),
+            shapes,
+            beams,
+            limit,
+            distance[e],
+            cos_incidence[e],
+            normal[e],
+            hit[e],
+            part[e],
         )
 
 
 @kernel(parallel=True)
 def _shared(
-    place: Floats, rotation: Floats, shapes: Shapes, beams: Beams, limit: float,
-    distance: Floats, facing: Floats, normal: Floats, hit: Ints, part: Ints,
+    place: Floats, rotation: Floats, shapes: RayShapes, beams: Beams, limit: float,
+    distance: Floats, cos_incidence: Floats, normal: Floats, hit: Ints, part: Ints,
 ) -> None:  # fmt: skip
     for e in numba.prange(len(place)):
         _one(
-            e, place[e], _matrix(rotation[e]), shapes, beams, limit, distance[e], facing[e], normal[e], hit[e], part[e]
+            e,
+            place[e],
+            _matrix(rotation[e]),
+            shapes,
+            beams,
+            limit,
+            distance[e],
+            cos_incidence[e],
+            normal[e],
+            hit[e],
+            part[e],
         )
 
 
 @dataclass(frozen=True)
-class Hits:
-    """What R beams met in E environments.
+class RayHits:
+    """Intersections of R beams in E environments.
 
     Fields:
-        distance: ``[E, R]`` [m], inf for nothing; 0 when the sensor is inside a shape.
-        facing: ``[E, R]`` cosine of the angle between beam and surface normal, 1 for nothing.
-        normal: ``[E, R, 3]`` unit normal of the surface in the world, towards the sensor; 0 for nothing.
-        hit: ``[E, R]`` index of an agent or one of the values of :mod:`crowdbot.sensors.shapes`.
+        distance: ``[E, R]`` [m], inf without a hit; 0 if the sensor is inside a shape.
+        cos_incidence: ``[E, R]`` cosine of the angle between beam and surface normal, 1 without a hit.
+        normal: ``[E, R, 3]`` unit normal of the surface in the world, towards the sensor; 0 without a hit.
+        hit: ``[E, R]`` index of an agent or one of the values of :mod:`crowdbot.sensors.ray_shapes`.
         part: ``[E, R]`` index into ``scene.bodies.parts``, -1 where there is none.
     """
 
     distance: Floats
-    facing: Floats
+    cos_incidence: Floats
     normal: Floats
     hit: Ints
     part: Ints
 
 
-def cast(
+def cast_rays(
     scene: Scene, pose: SpatialPose, beams: Beams, limit: float, *, skins: bool = False, normals: bool = True
-) -> Hits:
-    """Return what beams from ``pose`` meet within ``limit`` [m].
+) -> RayHits:
+    """Return the first intersections of beams from ``pose`` within ``limit`` [m].
 
-    Agents are seen by their limbs, with ``skins`` by their triangle skins; those that have none are upright
-    cylinders. Absent agents are not seen. Without ``normals`` that array is empty, which saves time.
+    Agents are represented by their limbs, with ``skins`` by their triangle skins, otherwise by upright cylinders.
+    Inactive agents are ignored. Without ``normals`` that array is empty, which saves time.
 
     Raises:
-        InputError: ``skins`` is asked for and the scene has none.
+        InputError: ``skins`` is requested and the scene has none.
 
-    >>> from crowdbot.sensors.beams import beams, fan
-    >>> hits = cast(Scene.of([[3.0, 0.0]], radius=0.5), SpatialPose.of((0, 0, 1.0)), beams(fan(np.zeros(1))), 10.0)
+    >>> from crowdbot.sensors.beams import sort_beams, unit_vectors
+    >>> scene, ahead = Scene.of([[3.0, 0.0]], radius=0.5), sort_beams(unit_vectors(np.zeros(1)))
+    >>> hits = cast_rays(scene, SpatialPose.of((0, 0, 1.0)), ahead, 10.0)
     >>> hits.distance.tolist(), hits.normal.tolist(), hits.hit.tolist()
     ([[2.5]], [[[-1.0, 0.0, 0.0]]], [[0]])
     """
-    shapes = gathered(scene, skins)
+    shapes = collect_shapes(scene, skins)
     size = (len(pose.position), len(beams.x))
     normal = np.zeros((size[0], size[1] if normals else 0, 3))
-    hits = Hits(np.empty(size), np.ones(size), normal, np.empty(size, np.int64), np.empty(size, np.int64))
+    hits = RayHits(np.empty(size), np.ones(size), normal, np.empty(size, np.int64), np.empty(size, np.int64))
     place, rotation = np.ascontiguousarray(pose.position), np.ascontiguousarray(pose.rotation)
     work = _serial if size[0] < MANY else _shared
-    work(place, rotation, shapes, beams, float(limit), hits.distance, hits.facing, hits.normal, hits.hit, hits.part)
+    work(
+        place,
+        rotation,
+        shapes,
+        beams,
+        float(limit),
+        hits.distance,
+        hits.cos_incidence,
+        hits.normal,
+        hits.hit,
+        hits.part,
+    )
     return hits

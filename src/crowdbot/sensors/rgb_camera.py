@@ -1,4 +1,4 @@
-"""A colour camera: pictures of what somebody draws, or of plain shapes by rays."""
+"""A colour camera: rendered images, or plain shapes by ray casting."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, SpatialPose
 
-from .camera import Lens, distorted
-from .cast import cast
-from .depth import pixel_beams
-from .noise import Randomness, disturbed
+from .depth_camera import pixel_beams
+from .lens import Lens, distort_image
+from .noise import Randomness, apply_noise
+from .ray_casting import cast_rays
+from .ray_shapes import FLOOR, NOTHING, PROP, WALLS
 from .sensor import Reading, Sensor, spatial_pose
-from .shapes import FLOOR, NOTHING, PROP, WALLS
 from .view import SensorView
 
-__all__ = ["Picture", "RGBCamera"]
+__all__ = ["RGBCamera", "RgbImage"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 COLORS = {NOTHING: (204, 222, 240), WALLS: (219, 214, 204), FLOOR: (190, 190, 186), PROP: (204, 158, 97)}
-"""What shapes look like without a source of images."""
+"""Colours of shapes without a renderer."""
 PEOPLE = ((196, 78, 82), (76, 114, 176), (85, 168, 104), (129, 114, 178), (221, 132, 82), (100, 181, 205))
 AMBIENT = 0.4
 
 
 @dataclass(frozen=True)
-class Picture(Reading):
+class RgbImage(Reading):
     """A colour image in E environments, rows from the top, columns from the left.
 
     Fields:
         rgb: ``[E, H, W, 3]`` red, green, blue from 0 to 255.
-        hit: ``[E, H, W]`` what the pixel shows, as in :class:`Scan`: the segmentation; None unless it was asked for.
+        hit: ``[E, H, W]`` segmentation, coded as in :class:`Scan`; None unless requested.
         lens: the intrinsics.
     """
 
@@ -46,18 +46,18 @@ class Picture(Reading):
 
 @dataclass(frozen=True, kw_only=True)
 class RGBCamera(Sensor):
-    """A colour camera that looks along x of its pose, with z up in the image.
+    """A colour camera. It looks along the x axis of its pose, z is up in the image.
 
-    It shows what an :class:`ImageSource` draws, such as a physics world or its studio, with the distortion of its lens.
-    Without a source it shows the plain shapes of the scene by rays, in one colour each, which needs no graphics.
-    Noise is added to the values from 0 to 255; what a dropout loses is 0.
+    The image comes from the renderer of the view, with the distortion of the lens. Without a renderer, the camera casts
+    rays and shows the shapes of the scene in one colour each, which needs no graphics. Noise is added to the values
+    from 0 to 255; dropouts are 0.
 
     Fields:
-        width, height: of the image [pixels].
+        width, height: size of the image [pixels].
         field_of_view: horizontal [rad]; pixels are square.
         distortion: k1, k2, p1, p2, k3 of the lens; empty for none.
-        near, far: limits of what is shown [m].
-        segmentation: whether the picture also tells what each pixel shows.
+        near, far: clipping distances [m].
+        segmentation: whether the image includes the segmentation.
 
     Raises:
         InputError: a value is not allowed.
@@ -93,7 +93,7 @@ class RGBCamera(Sensor):
         """Intrinsics."""
         return Lens.of(self.width, self.height, self.field_of_view, self.distortion or (0.0,) * 5)
 
-    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Picture, None]:
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[RgbImage, None]:
         """Return the image of the renderer of ``view``, or one by rays if there is no renderer.
 
         Raises:
@@ -108,22 +108,22 @@ class RGBCamera(Sensor):
             rgb = np.asarray(images["rgb"])
             hit = np.asarray(images.get("hit", np.full(rgb.shape[:3], NOTHING)))
             if any(self.distortion):
-                rgb, hit = distorted(rgb, lens), distorted(hit, lens, fill=NOTHING)
+                rgb, hit = distort_image(rgb, lens), distort_image(hit, lens, fill=NOTHING)
         if self.noises:
-            values = disturbed(rgb.astype(np.float64), self.noises, rng)
+            values = apply_noise(rgb.astype(np.float64), self.noises, rng)
             rgb = np.round(np.clip(np.where(np.isfinite(values), values, 0.0), 0.0, 255.0))
-        return Picture(view.time, pose, rgb.astype(np.uint8), hit if self.segmentation else None, lens), None
+        return RgbImage(view.time, pose, rgb.astype(np.uint8), hit if self.segmentation else None, lens), None
 
     def _by_rays(self, scene: Scene, pose: SpatialPose) -> tuple[NDArray[np.uint8], Ints]:
         bundle, ahead = pixel_beams(self.lens)
-        hits = cast(scene, pose, bundle, self.far / float(ahead.min()), skins=False, normals=False)
+        hits = cast_rays(scene, pose, bundle, self.far / float(ahead.min()), skins=False, normals=False)
         depth = hits.distance * ahead
         hit = np.where((depth >= self.near) & (depth <= self.far), hits.hit, NOTHING)
         colors = np.empty((*hit.shape, 3))
         colors[:] = np.array(PEOPLE, dtype=np.float64)[hit % len(PEOPLE)]
         for code, color in COLORS.items():
             colors[hit == code] = color
-        light = np.where(hit == NOTHING, 1.0, AMBIENT + (1.0 - AMBIENT) * hits.facing)
+        light = np.where(hit == NOTHING, 1.0, AMBIENT + (1.0 - AMBIENT) * hits.cos_incidence)
         shape = (scene.shape[0], self.height, self.width)
         shown = np.round(colors * light[..., None]).astype(np.uint8)
         return shown.reshape(*shape, 3), hit.reshape(shape)

@@ -1,4 +1,4 @@
-"""Shapes: what rays can meet in a scene, as one list of rows for the kernel."""
+"""RayShapes of a scene as rows for the ray casting kernel."""
 
 from __future__ import annotations
 
@@ -11,38 +11,38 @@ from numpy.typing import NDArray
 from crowdbot.core import PERSON_HEIGHT, STAGE, Bodies, InputError, Scene, Skins, SpatialPose, kernel
 from crowdbot.core.rays import BOX, CAPSULE, CYLINDER, TRIANGLE, WALL, WIDTH
 
-__all__ = ["FLOOR", "NOTHING", "PROP", "WALLS", "Shapes", "gathered", "lengthened"]
+__all__ = ["FLOOR", "NOTHING", "PROP", "WALLS", "RayShapes", "collect_shapes", "extend_segments"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 NOTHING = -1
-"""Value of ``hit`` where a beam returned nothing."""
+"""Value of ``hit`` without a return."""
 WALLS = -2
-"""Value of ``hit`` where a beam met a wall."""
+"""Value of ``hit`` for a wall."""
 FLOOR = -3
-"""Value of ``hit`` where a beam met the floor."""
+"""Value of ``hit`` for the floor."""
 PROP = -4
-"""Value of ``hit`` where a beam met something of the stage that is neither wall nor floor."""
+"""Value of ``hit`` for an object of the stage that is neither wall nor floor."""
 OVERLAP = 1e-9
-"""Walls are this much longer [m] at both ends, so that rounding lets no beam slip through a corner."""
+"""Walls are extended by this length [m] at both ends, against gaps at corners by rounding."""
 TALLEST = 1e4
-"""Walls without end are this high [m]."""
+"""Height of infinitely high walls [m]."""
 KINDS = (TRIANGLE, CAPSULE, BOX, CYLINDER, CYLINDER, WALL)
 """Order of the shapes: skins, limbs, boxes, posts, agents without limbs, walls."""
 NOBODY = Bodies.of()
 BARE = Skins.of(np.zeros((1, 0, 3)), np.zeros((0, 3)), owner=())
 
 
-class Shapes(NamedTuple):
+class RayShapes(NamedTuple):
     """P shapes in E environments; those of kind ``TRIANGLE`` come first and have no rows of their own.
 
     Fields:
         kind: ``[P]`` as in :mod:`crowdbot.core.rays`.
         rows: ``[E, P, 16]`` in the world.
         present: ``[E, P]``.
-        owner, part: ``[P]`` what a hit is called.
+        owner, part: ``[P]`` labels of a hit.
         vertices, faces: of the triangles, ``[E, V, 3]`` and ``[F, 3]``.
     """
 
@@ -55,11 +55,11 @@ class Shapes(NamedTuple):
     faces: Ints
 
 
-def gathered(scene: Scene, skins: bool) -> Shapes:
-    """Return everything in ``scene`` that a ray can meet.
+def collect_shapes(scene: Scene, skins: bool) -> RayShapes:
+    """Return all shapes of ``scene``.
 
     Raises:
-        InputError: ``skins`` is asked for and the scene has none.
+        InputError: ``skins`` is requested and the scene has none.
     """
     bodies = scene.bodies or NOBODY
     if skins and bodies.skins is None:
@@ -94,7 +94,7 @@ def gathered(scene: Scene, skins: bool) -> Shapes:
     if skins:
         sound = np.logical_and.reduce(np.isfinite(skin.vertices), axis=-1)
         present[:, skinned] &= sound[:, skin.faces].all(axis=-1)
-    return Shapes(kind, rows, present, owner, part, skin.vertices, skin.faces)
+    return RayShapes(kind, rows, present, owner, part, skin.vertices, skin.faces)
 
 
 def _seen_as(scene: Scene, bodies: Bodies, skinned: Ints) -> tuple[Ints, Ints]:
@@ -193,8 +193,8 @@ def _write_walls(start: Floats, end: Floats, before: Ints, after: Ints, height: 
                 row[e, m, 9] = np.nan
 
 
-def lengthened(walls: Floats) -> Floats:
-    """Return segments ``[N, 4]`` a little longer at both ends."""
+def extend_segments(walls: Floats) -> Floats:
+    """Return segments ``[N, 4]`` extended at both ends."""
     along = walls[:, 2:] - walls[:, :2]
     along = along * (OVERLAP / np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-300))[:, None]
     return np.ascontiguousarray(np.concatenate([walls[:, :2] - along, walls[:, 2:] + along], axis=1))
