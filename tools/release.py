@@ -66,7 +66,9 @@ def check(dist: Path) -> int:
     names = [line.split(maxsplit=1)[1] for line in hashes.splitlines()]
     apart = [name for name in names if f"crowdbot/assets/predictors/{name}" not in inside]
     problems = [f"{wheel.name} has {wheel.stat().st_size} bytes"] if wheel.stat().st_size > LARGEST_WHEEL else []
-    problems += [f"{wheel.name} has no {name}" for name in needed_in_wheel(names) if name not in inside]
+    needed = needed_in_wheel(names)
+    problems += [f"{wheel.name} has no {name}" for name in needed if name not in inside]
+    problems += [f"{wheel.name} has {name}" for name in inside - set(needed) if name.startswith("crowdbot/")]
     problems += [f"{wheel.name} has {name}" for name in inside if re.search(r"__pycache__|\.py[co]$|^tests/", name)]
     problems += [f"{sdist.name} has no {name}" for name in tracked() if name not in sources]
     problems += versions_that_differ(str(project()["version"]))
