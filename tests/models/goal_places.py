@@ -59,7 +59,7 @@ def made(kind: type, past: Windows, angle: float = 0.0, shift: tuple[float, floa
 def _learned(angle: float, shift: tuple[float, float]) -> LearnedDestinations:
     tracks = street()
     place = moved(tracks.position, angle, shift)
-    return LearnedDestinations.learned(
+    return LearnedDestinations.learn(
         Trajectories(tracks.id, tracks.frame, place[:, 0], place[:, 1], 1.0 / STEP, frame_step=10)
     )
 

@@ -12,7 +12,7 @@ from crowdbot.data import Trajectories
 from crowdbot.data.degrade import (
     GHOST,
     Chain,
-    Degraded,
+    DegradedTracks,
     FalseTracks,
     GaussianNoise,
     IdentitySwitches,
@@ -34,14 +34,14 @@ def _line(ids=(1, 2), rows=8, gap=2.0, **more):
 def _without(tracks, *gone):
     """The recording without the rows (frame, id)."""
     keep = [(f, i) not in gone for f, i in zip(tracks.frame.tolist(), tracks.id.tolist(), strict=True)]
-    return Degraded.of(tracks).kept(np.array(keep))
+    return DegradedTracks.of(tracks).keep_rows(np.array(keep))
 
 
 @pytest.mark.parametrize("protocol", ["all", "sgan", "partial", "timesplit"])
 def test_what_is_not_degraded_is_seen_as_it_was(recorded, protocol):
     tracks = recorded("crowds_zara01")
     past, future = tracks.windows(8, 12, protocol)
-    seen = seen_windows(past, future, Degraded.of(tracks), carry=2)
+    seen = seen_windows(past, future, DegradedTracks.of(tracks), carry=2)
     assert seen.asked == seen.predictable == future.scored.sum()
     for clean, again in ((past, seen.past), (future, seen.future)):
         assert all(np.array_equal(getattr(clean, name), getattr(again, name)) for name in FIELDS)
@@ -149,7 +149,7 @@ def test_a_switched_track_is_scored_against_who_is_at_its_place_now():
     )
     names = np.where(tracks.frame >= 3, 3 - tracks.id, tracks.id)
     past, future = tracks.windows(4, 4)
-    seen = seen_windows(past, future, Degraded.of(tracks).renamed(names))
+    seen = seen_windows(past, future, DegradedTracks.of(tracks).relabel(names))
     assert seen.predictable == 2
     assert seen.past.position[0, :, 0, 1].tolist() == [0.0, 0.0, 0.0, 0.3]
     assert seen.future.position[0, :, 0, 1].tolist() == [0.3] * 4
@@ -175,7 +175,7 @@ def test_predictors_do_not_see_the_future(recorded):
     later = degraded.tracks.frame > last
     moved = dataclasses.replace(degraded.tracks, x=np.where(later, -3.0, degraded.tracks.x))
     one, other = (
-        seen_windows(past[40:41], future[40:41], seen) for seen in (degraded, Degraded(moved, degraded.truth))
+        seen_windows(past[40:41], future[40:41], seen) for seen in (degraded, DegradedTracks(moved, degraded.truth))
     )
     assert all(np.array_equal(getattr(one.past, name), getattr(other.past, name)) for name in FIELDS)
 

@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from crowdbot.calibration import Calibrator, named_model
+from crowdbot.calibration import Calibrator, resolve_model
 from crowdbot.core import Scene, parameters, stream
 from crowdbot.data import Windows
 from crowdbot.metrics import score
@@ -28,7 +28,7 @@ def sparse_crowd(name: str, W: int = 24, A: int = 8, side: float = 24.0) -> tupl
     angle = rng.uniform(0.0, 2.0 * np.pi, (W, A))
     speed = rng.uniform(0.9, 1.6, (W, A))
     velocity = speed[..., None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    known = named_model(name)
+    known = resolve_model(name)
     values = {p.name: float(np.clip(p.default * rng.uniform(0.8, 1.2), p.low, p.high)) for p in parameters(known)}
     model = dataclasses.replace(known, **values)
     scene = Scene.of(

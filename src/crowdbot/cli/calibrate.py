@@ -11,7 +11,7 @@ from .recordings import add_recordings, recordings, tell_notes
 from .schemes import add_scheme, assignments, crowd_model, frame_line, named_search, prior
 
 if TYPE_CHECKING:
-    from crowdbot.calibration import Calibrator, Fit, FittedPiece
+    from crowdbot.calibration import CalibrationChunk, Calibrator, Fit
     from crowdbot.data import Recording
 
 
@@ -51,9 +51,9 @@ def main(options: argparse.Namespace) -> int:
 
 def _calibrator(options: argparse.Namespace) -> tuple[Calibrator, str | None]:
     """Return what calibrates, and the name of the goal when it needs the recording."""
-    from crowdbot.calibration import Calibrator, kind_of_goal
+    from crowdbot.calibration import Calibrator, goal_class
 
-    kind = kind_of_goal(options.goal or "current-direction")
+    kind = goal_class(options.goal or "current-direction")
     late = kind.knows_future or kind.learns
     parts: dict[str, Any] = {} if late or options.goal is None else {"goal": options.goal}
     parts |= {"cost": options.cost} if options.cost else {}
@@ -72,12 +72,12 @@ def _calibrator(options: argparse.Namespace) -> tuple[Calibrator, str | None]:
 def _each(
     calibrator: Calibrator, goal: str | None, recording: Recording, options: argparse.Namespace, report: Progress
 ) -> Fit:
-    from crowdbot.calibration import Campaign
+    from crowdbot.calibration import RecordingCalibration
     from crowdbot.core import InputError
 
-    campaign = Campaign(recording, calibrator, goal, options.seed)
+    campaign = RecordingCalibration(recording, calibrator, goal, options.seed)
     keep = None if options.out is None else options.out / "parts"
-    pieces: list[FittedPiece] = []
+    pieces: list[CalibrationChunk] = []
     whole, done = len(campaign.past), 0
     report(recording.name, 0.0)
     if not options.json:
@@ -88,7 +88,7 @@ def _each(
         if not options.json:
             _tell(piece)
         report(recording.name, done / whole)
-    fit = campaign.joined(pieces)
+    fit = campaign.merge(pieces)
     if fit.persons == 0:
         raise InputError(
             f"{recording.path}: nobody in {fit.windows} windows can be compared by {fit.scheme.split(', ')[1]};"
@@ -117,7 +117,7 @@ def _shared(
     return calibrator.fit(pasts, options.seed, lambda share: report("shared parameters", share))
 
 
-def _tell(piece: FittedPiece) -> None:
+def _tell(piece: CalibrationChunk) -> None:
     arrays = piece.arrays
     seconds = float(arrays["seconds"].sum()) / max(1, piece.last - piece.first)
     for frame, people, cost, count in zip(
@@ -170,7 +170,7 @@ def _written(folder: Path, fits: dict[str, Fit], shared: bool) -> None:
     names = ["calibration.json"]
     if not shared:
         _people(fits).to_parquet(folder / "parameters.parquet", index=False)
-        PopulationPrior.learned(list(fits.values())).save(folder / "prior.json")
+        PopulationPrior.from_fits(list(fits.values())).save(folder / "prior.json")
         names += ["parameters.parquet", "prior.json"]
     note(f"wrote {', '.join(names)} in {folder}")
 

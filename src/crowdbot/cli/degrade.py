@@ -237,7 +237,7 @@ def _page(
             name: {
                 "level": scores[0].degradation.level,
                 "unit": scores[0].degradation.unit,
-                "parameters": scores[0].degradation.told(level=False),
+                "parameters": scores[0].degradation.describe(level=False),
                 "rows": [score.as_dict() for score in scores],
             }
             for name, scores in done.items()
@@ -256,7 +256,7 @@ def _tables(
     for name, scores in done.items():
         degradation = scores[0].degradation
         unit = "" if degradation.unit in ("1", degradation.level) else f" [{degradation.unit}]"
-        rest = ", ".join(f"{key} = {word}" for key, word in degradation.told(level=False).items())
+        rest = ", ".join(f"{key} = {word}" for key, word in degradation.describe(level=False).items())
         predictors = list(dict.fromkeys(score.predictor for score in scores))
         rows = []
         for level in dict.fromkeys(score.level for score in scores):
@@ -304,7 +304,7 @@ def _write(options: argparse.Namespace, degradations: Sequence[Degradation | Cha
     save(dataclasses.replace(seen.tracks, note="; ".join(filter(None, (clean.note, told)))), options.write)
     counts = {"rows": (len(clean), len(seen.tracks)), "tracks": (len(clean.ids), len(seen.tracks.ids))}
     if options.json:
-        parameters = {"name": degradation.name, "parameters": degradation.told(), "seed": options.seed}
+        parameters = {"name": degradation.name, "parameters": degradation.describe(), "seed": options.seed}
         print_json({"file": str(options.write), "degradation": parameters, **counts})
         return 0
     print(told)

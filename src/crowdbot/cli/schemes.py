@@ -73,7 +73,7 @@ def frame_line(
 
 
 def _schemes(options: argparse.Namespace, values: Mapping[str, str]) -> list[Recipe]:
-    from crowdbot.calibration import kind_of_goal
+    from crowdbot.calibration import goal_class
     from crowdbot.prediction import Recipe
 
     learns = options.prior == "learn"
@@ -85,7 +85,7 @@ def _schemes(options: argparse.Namespace, values: Mapping[str, str]) -> list[Rec
         calibrated = cost is not None or search is not None
         fields = {"cost": cost, "search": named_search(search, options), **(own if calibrated else {})}
         predictor = chosen("simulated", model, values, fields)
-        kind = kind_of_goal(goal or "current-direction")
+        kind = goal_class(goal or "current-direction")
         late = kind.knows_future or kind.learns
         if goal is not None and not late:
             predictor = chosen("simulated", model, values, {**fields, "goal": goal})
@@ -97,7 +97,7 @@ def named_search(name: str | None, options: argparse.Namespace) -> Search | None
     """Return the search by its name, with the tolerance and patience that were given."""
     import dataclasses
 
-    from crowdbot.calibration import named_search as by_name
+    from crowdbot.calibration import resolve_search as by_name
     from crowdbot.core import InputError
 
     given = {key: value for key in ("tolerance", "patience") if (value := getattr(options, key)) is not None}

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.data import Windows
-from crowdbot.data.degrade import GHOST, Degraded
+from crowdbot.data.degrade import GHOST, DegradedTracks
 
 __all__ = ["Seen", "seen_windows"]
 
@@ -35,7 +35,7 @@ class Seen:
     predictable: int
 
 
-def seen_windows(past: Windows, future: Windows, degraded: Degraded, carry: int = 0) -> Seen:
+def seen_windows(past: Windows, future: Windows, degraded: DegradedTracks, carry: int = 0) -> Seen:
     """Return clean windows as they are seen in the degraded recording.
 
     In a window are those people of the clean one who are seen at its last observed row, and every ghost that is. A
@@ -90,7 +90,7 @@ def seen_windows(past: Windows, future: Windows, degraded: Degraded, carry: int 
 class _Table:
     """The rows of a degraded recording, found by frame and id, and the people of clean windows."""
 
-    degraded: Degraded
+    degraded: DegradedTracks
     past: Windows
     frames: Integers
     first: Integers
@@ -98,7 +98,7 @@ class _Table:
     key: Integers
 
     @classmethod
-    def of(cls, past: Windows, degraded: Degraded) -> _Table:
+    def of(cls, past: Windows, degraded: DegradedTracks) -> _Table:
         tracks = degraded.tracks
         frames, first, place = np.unique(tracks.frame, return_index=True, return_inverse=True)
         ids, number = np.unique(tracks.id, return_inverse=True)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
-from crowdbot.data import Windows, bridged
+from crowdbot.data import Windows, fill_gaps
 
 from .predictor import Predictor
 from .pretrained_weights import ALL, AUTO, FOLDS, STEP, fold_of, misfit, shipped
@@ -124,7 +124,7 @@ def whole_tracks(past: Windows, rows: int) -> Floats:
     Holes are bridged by an even walk; before the first row that was seen, people walk backwards with their first
     velocity; who was seen once stood there all the time.
     """
-    known = bridged(past)
+    known = fill_gaps(past)
     have = known.position.shape[1]
     if have < rows:
         pad = ((0, 0), (rows - have, 0), (0, 0))

@@ -106,7 +106,7 @@ class Live:
             position, present, nobody, np.isin(who, sorted(robots))[None], who[None], frame[None], self.dt, "live",
             "live stream", self.walls,
         )  # fmt: skip
-        return past.planned(plans) if plans else past
+        return past.with_plans(plans) if plans else past
 
     def predict(self, steps: int, samples: int = 1, plans: Mapping[int, ArrayLike] | None = None) -> Forecast:
         """Return where everyone in the last row will be, in the order of :attr:`ids`.

@@ -9,7 +9,7 @@ from typing import cast
 
 import numpy as np
 
-from crowdbot.calibration import Calibrator, PopulationPrior, goal_for, kind_of_goal
+from crowdbot.calibration import Calibrator, PopulationPrior, goal_class, goal_for
 from crowdbot.core import InputError, kebab, stream
 from crowdbot.data import Recording, Windows
 from crowdbot.models import Goal
@@ -49,7 +49,7 @@ class Recipe:
             if not isinstance(crowd, Simulated):
                 name = kebab(type(crowd).__name__)
                 raise InputError(f"goals are for predictors that simulate a crowd; {name} has none")
-            kind_of_goal(self.goal)
+            goal_class(self.goal)
         for word in ("prior", "shared"):
             if getattr(self, word) and (not isinstance(crowd, Simulated) or crowd.calibrator is None):
                 raise InputError(f"{word} parameters belong to a calibration: name a cost and a search")
@@ -72,7 +72,7 @@ class Recipe:
         if not isinstance(self.predictor, Simulated):
             return False
         goal = self.predictor.goal
-        return kind_of_goal(self.goal).knows_future if self.goal is not None else bool(cast(Goal, goal).knows_future)
+        return goal_class(self.goal).knows_future if self.goal is not None else bool(cast(Goal, goal).knows_future)
 
     @property
     def label(self) -> str:
@@ -121,14 +121,14 @@ def _prepared(recipe: Recipe, recording: Recording) -> Predictor:
     if not (recipe.prior or recipe.shared):
         return crowd
     calibrator = cast(Calibrator, crowd.calibrator)
-    if kind_of_goal(recipe.goal or "current-direction").knows_future:
+    if goal_class(recipe.goal or "current-direction").knows_future:
         raise InputError(f"{recipe.goal} knows the future of what is predicted only: nothing can be learned with it")
     past = _known(recording)
     if recipe.shared:
         fit = dataclasses.replace(calibrator, shared=True, free=_shareable(calibrator)).fit(past)
         return Simulated.of(fit)
     fit = calibrator.fit_each(past, [stream(0, "prior", window) for window in range(len(past))])
-    return dataclasses.replace(crowd, prior=PopulationPrior.learned(fit))
+    return dataclasses.replace(crowd, prior=PopulationPrior.from_fits(fit))
 
 
 def _known(recording: Recording) -> Windows:

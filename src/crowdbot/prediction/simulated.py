@@ -17,10 +17,10 @@ from crowdbot.calibration import (
     Rollout,
     Search,
     futures,
-    named_cost,
-    named_goal,
-    named_model,
-    named_search,
+    resolve_cost,
+    resolve_goal,
+    resolve_model,
+    resolve_search,
 )
 from crowdbot.data import Forecast, Windows
 from crowdbot.models import ORCA, CrowdModel
@@ -69,11 +69,11 @@ class Simulated(Predictor):
     substep: float = 0.1
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "model", named_model(self.model))
-        object.__setattr__(self, "goal", named_goal(self.goal))
+        object.__setattr__(self, "model", resolve_model(self.model))
+        object.__setattr__(self, "goal", resolve_goal(self.goal))
         if self.cost is not None or self.search is not None:
-            object.__setattr__(self, "cost", named_cost(self.cost or "progressive"))
-            object.__setattr__(self, "search", named_search(self.search or "genetic"))
+            object.__setattr__(self, "cost", resolve_cost(self.cost or "progressive"))
+            object.__setattr__(self, "search", resolve_search(self.search or "genetic"))
             _ = self.calibrator  # says what is wrong
         _ = self.rollout
 

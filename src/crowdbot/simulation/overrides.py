@@ -40,11 +40,11 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
         seed,
         model=_model(simulation, trial),
         drives={carrier.agent: robot.drive for carrier, robot in zip(simulation.carriers, trial.robots, strict=True)},
-        berth=trial.berth,
+        berth=trial.robot_margin,
         contact=None if trial.contact is None else trial.contact.bodies(),
         limits=None if trial.limits is None else trial.limits.kept(),
         exits=[way.out() for way in trial.exits],
-        symmetry=trial.symmetry,
+        symmetry=trial.heading_jitter,
         substeps=trial.substeps,
         **_router(old, trial),
     )
@@ -122,9 +122,12 @@ def _carrier(simulation: Simulation, old: Carrier, robot: Robot, seed: int | Non
     if seed is not None:
         fresh = probes_of(simulation.trial, robot, clock, seed)
         probes = tuple(dataclasses.replace(one, rng=new.rng) for one, new in zip(probes, fresh, strict=True))
+    same = type(old.robot.navigator) is type(robot.navigator)
     return dataclasses.replace(
         old,
         robot=robot,
+        memory=old.memory if same else None,
+        begun=old.begun and same,
         limits=limits_of(robot.drive),
         control_every=clock.every(robot.control_period),
         probes=probes,

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from crowdbot.core import Pose, Scene, Walls
+from crowdbot.core import Pose, Scene, SpatialPose, Walls
 from crowdbot.world import PlanarWorld
 
 if TYPE_CHECKING:
@@ -86,6 +88,14 @@ class Surroundings:
         if self._space is None or self._space[0] is not now:
             self._space = (now, self._posed(now))
         return self._space[1]
+
+    def render(self, camera: Any, pose: SpatialPose) -> Mapping[str, NDArray[Any]]:
+        """Return images of a camera now, as the renderer of a :class:`crowdbot.sensors.SensorView`.
+
+        Raises:
+            MissingExtra: mujoco is not installed.
+        """
+        return self.studio.render(camera, pose)
 
     @property
     def studio(self) -> Studio:

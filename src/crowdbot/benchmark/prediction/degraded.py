@@ -10,7 +10,7 @@ from typing import Any
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories, Windows
-from crowdbot.data.degrade import Chain, Degradation, NobodySeen
+from crowdbot.data.degrade import Chain, Degradation, EmptyRecordingError
 from crowdbot.metrics import Score
 from crowdbot.prediction import Predictor, seen_windows
 
@@ -149,7 +149,7 @@ def _level(
         for tracks, (past, future) in zip(recordings, cuts, strict=True):
             try:
                 degraded = degradation.apply(tracks, stream(task.seed, "degrade", draw))
-            except NobodySeen:  # a score of nobody, not a mistake: the coverage says it
+            except EmptyRecordingError:  # a score of nobody, not a mistake: the coverage says it
                 continue
             seen = seen_windows(past, future, degraded, task.carry)
             if seen.predictable == 0:

@@ -110,7 +110,7 @@ def _panel(panel: Any, scores: Sequence[DegradedScore], styles: dict[str, tuple[
     if first:
         above.set_ylabel(f"mean error (ADE) [{units}]", fontsize=9)
         below.set_ylabel("predicted\n[%]", fontsize=8)
-    rest = ", ".join(f"{name} {value}" for name, value in degradation.told(level=False).items())
+    rest = ", ".join(f"{name} {value}" for name, value in degradation.describe(level=False).items())
     above.set_title("\n".join([degradation.name, *textwrap.wrap(rest, 42)]), fontsize=9)
 
 

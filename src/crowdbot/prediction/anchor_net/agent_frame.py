@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.data import Windows, bridged
+from crowdbot.data import Windows, fill_gaps
 from crowdbot.prediction.pretrained_weights import STEP
 
 __all__ = ["AHEAD", "COMPANY", "GAITS", "INPUTS", "MOMENTS", "NEAR", "ROWS", "People", "completed", "features",
@@ -204,7 +204,7 @@ def _at_steps(past: Windows) -> tuple[Floats, Bools]:
         kept = min(T, ROWS)
         position[:, ROWS - kept :], seen[:, ROWS - kept :] = past.position[:, T - kept :], past.present[:, T - kept :]
         return position, seen
-    known = bridged(past)
+    known = fill_gaps(past)
     for back in range(ROWS):
         row = T - 1 - back * STEP / past.dt
         low = int(np.floor(row + 1e-6))
