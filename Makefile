@@ -1,11 +1,12 @@
 # make demo   install into .venv and run the main job on built-in input
+# make docs   build the documentation as a site into site/; warnings are errors
 # make test   install what the tests need, then lint, types, floors and tests
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 OUT ?= demo
 
-.PHONY: demo test lint picture clean
+.PHONY: demo test lint docs picture clean
 
 demo: $(VENV)/installed
 	$(BIN)/crowdbot demo --out $(OUT)
@@ -22,6 +23,9 @@ lint: $(VENV)/installed-dev
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
+docs: $(VENV)/installed-dev
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
+
 picture: $(VENV)/installed
 	$(BIN)/python tools/picture.py docs/crossing-flows.png
 
@@ -36,4 +40,4 @@ $(VENV)/installed-dev: $(VENV)/installed
 	touch $@
 
 clean:
-	rm -rf $(VENV) build dist $(OUT) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache src/*.egg-info
+	rm -rf $(VENV) build dist site $(OUT) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache src/*.egg-info
