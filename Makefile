@@ -1,12 +1,20 @@
-# make demo   install into .venv and run the main job on built-in input
-# make docs   build the documentation as a site into site/; warnings are errors
-# make test   install what the tests need, then lint, types, floors and tests
+# make demo     install into .venv and run the main job on built-in input
+# make docs     build the documentation as a site into site/; warnings are errors
+# make test     install what the tests need, then lint, types, import layers, tests and doctests
+# make test-room ROOM=core   the tests and doctests of one room
+# make sweeps   the long tests: fuzzing, mutation, killed processes, every built-in trial in both worlds
+# make soak     the tests that take longer than CI allows
+# make smoke    build the wheel and the sdist, and try the wheel in bare environments
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 OUT ?= demo
+ROOM ?= core
+WORKERS ?= auto
+PYTEST := $(BIN)/python -m pytest
+PARALLEL := -n $(WORKERS) --maxprocesses 4
 
-.PHONY: demo test lint docs picture clean
+.PHONY: demo test test-room sweeps soak lint docs picture dist smoke rehearse clean
 
 demo: $(VENV)/installed
 	$(BIN)/crowdbot demo --out $(OUT)
@@ -14,20 +22,43 @@ demo: $(VENV)/installed
 test: $(VENV)/installed-dev
 	tests/system-packages
 	$(MAKE) lint
-	$(BIN)/python -m pytest -n auto --maxprocesses 4
-	$(BIN)/python -m pytest --doctest-modules src/crowdbot
+	$(PYTEST) $(PARALLEL)
+	$(PYTEST) --doctest-modules src/crowdbot
+
+test-room: $(VENV)/installed-dev
+	$(PYTEST) $(PARALLEL) --doctest-modules src/crowdbot/$(ROOM) $(wildcard tests/$(ROOM))
+
+sweeps: $(VENV)/installed-dev
+	tests/system-packages
+	$(PYTEST) $(PARALLEL) -m "sweep and not soak"
+
+soak: $(VENV)/installed-dev
+	tests/system-packages
+	$(PYTEST) $(PARALLEL) -m soak
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check src tests tools
 	$(BIN)/ruff format --check src tests tools
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/python tools/house.py
 
 docs: $(VENV)/installed-dev
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
 
 picture: $(VENV)/installed
 	$(BIN)/python tools/picture.py docs/crossing-flows.png
+
+dist: $(VENV)/installed-dev
+	rm -rf dist
+	$(BIN)/python -m build --outdir dist
+	$(BIN)/python tools/release.py check dist
+
+smoke: dist
+	$(BIN)/python tools/smoke.py dist
+
+rehearse: dist
+	$(BIN)/python tools/release.py rehearse dist
 
 $(VENV)/installed: pyproject.toml constraints.txt
 	tests/system-packages --venv $(PYTHON)

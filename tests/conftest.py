@@ -1,11 +1,20 @@
-"""What tests share: where the real recordings and reference steps lie, and how properties are searched.
+"""Fixtures for inputs that are not part of the repository, and what happens to a test when its input is missing.
 
-Property tests draw the same examples every time, so that a run can be trusted and repeated; ``HUNT=1`` draws new ones.
+A test names its inputs as fixtures: ``recordings``, ``urdf``, ``chromium``, ``drawing``. If an input is missing, the
+tests that need it are deselected, and one line at the end of the run gives their number, the reason and the remedy. If
+the variable ``CI`` is set (and ``ALONE`` is not), nothing is deselected: a missing input is a failure.
+
+Property tests draw the same examples in every run; ``HUNT=1`` draws new ones.
 """
 
 from __future__ import annotations
 
+import functools
 import os
+import shutil
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -15,24 +24,138 @@ settings.register_profile("same", derandomize=True, deadline=None)
 settings.register_profile("hunt", deadline=None)
 settings.load_profile("hunt" if os.environ.get("HUNT") else "same")
 
+ROOT = Path(__file__).parents[1]
+SHARED = Path(os.environ.get("CROWDBOT_SHARED") or ROOT.parent / "shared")
+"""Folder of the inputs that cannot ship: ``data/`` and ``urdf/``. docs/recordings.md lists its content."""
+WORKER_KEY = "deselected_by_input"
 
-def _shared(folder: str) -> Path:
-    root = Path(os.environ.get("CROWDBOT_SHARED", Path(__file__).parents[2] / "shared"))
-    path = root / folder
-    if not path.is_dir():
-        pytest.fail(
-            f"{path} is missing: set CROWDBOT_SHARED to the folder that holds data/ and reference/", pytrace=False
-        )
-    return path
+
+def _set(variable: str) -> bool:
+    return os.environ.get(variable, "").lower() not in ("", "0", "false", "no")
+
+
+STRICT = _set("CI") and not _set("ALONE")
+
+
+@dataclass(frozen=True)
+class Input:
+    """An input that a machine may lack.
+
+    Attributes:
+        what: what the tests need, as the line at the end names it.
+        remedy: how to get it.
+        find: returns where it is, or None.
+    """
+
+    what: str
+    remedy: str
+    find: Callable[[], object | None]
+
+    def get(self) -> object:
+        """Return where it is; the test fails where it is missing."""
+        found = self.find()
+        if found is None:
+            pytest.fail(f"this test needs {self.what}: {self.remedy}", pytrace=False)
+        return found
+
+
+def _folder(name: str) -> Path | None:
+    path = SHARED / name
+    return path if path.is_dir() else None
+
+
+@functools.cache
+def _drawing() -> str | None:
+    from crowdbot.core import CrowdbotError
+    from crowdbot.world.rendering.gl_context import backend
+
+    try:
+        return backend()
+    except CrowdbotError:
+        return None
+
+
+COPY = "docs/recordings.md"
+PACKAGES = "tests/system-packages"
+INPUTS = {
+    "recordings": Input("recordings that cannot ship", COPY, lambda: _folder("data")),
+    "urdf": Input("robot files that cannot ship", COPY, lambda: _folder("urdf")),
+    "chromium": Input("Chromium", PACKAGES, lambda: shutil.which("chromium") or shutil.which("chromium-browser")),
+    "drawing": Input("OpenGL without a screen", PACKAGES, _drawing),
+}
 
 
 @pytest.fixture(scope="session")
 def recordings() -> Path:
     """Folder of real pedestrian recordings in their original formats."""
-    return _shared("data")
+    return INPUTS["recordings"].get()  # type: ignore[return-value]
+
+
+@pytest.fixture(scope="session")
+def urdf() -> Path:
+    """Folder of URDF files of real robots."""
+    return INPUTS["urdf"].get()  # type: ignore[return-value]
+
+
+@pytest.fixture(scope="session")
+def chromium() -> str:
+    """Command of the browser."""
+    return INPUTS["chromium"].get()  # type: ignore[return-value]
+
+
+@pytest.fixture(scope="session")
+def drawing() -> str:
+    """Name of the OpenGL backend that draws without a screen."""
+    return INPUTS["drawing"].get()  # type: ignore[return-value]
 
 
 @pytest.fixture(scope="session")
 def reference() -> Path:
-    """Folder of reference steps of other crowd engines."""
-    return _shared("reference")
+    """Folder of one-step answers of other crowd engines: all frames if available, otherwise those that ship."""
+    return _folder("reference") or ROOT / "tests" / "reference"
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Deselect the tests whose input is missing, and count them."""
+    if STRICT:
+        return
+    needed = {name for item in items for name in getattr(item, "fixturenames", ()) if name in INPUTS}
+    missing = [name for name in INPUTS if name in needed and INPUTS[name].find() is None]
+    first = [next((name for name in missing if name in getattr(item, "fixturenames", ())), None) for item in items]
+    gone = [item for item, name in zip(items, first, strict=True) if name]
+    if not gone:
+        return
+    config.hook.pytest_deselected(items=gone)
+    items[:] = [item for item, name in zip(items, first, strict=True) if not name]
+    counts = dict(Counter(name for name in first if name))
+    if hasattr(config, "workeroutput"):
+        config.workeroutput[WORKER_KEY] = counts
+    config.stash[COUNTS] = counts
+
+
+COUNTS = pytest.StashKey[dict[str, int]]()
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: object) -> None:
+    """Take the count from a worker of pytest-xdist; every worker collects the same tests."""
+    counts = getattr(node, "workeroutput", {}).get(WORKER_KEY)
+    if counts:
+        node.config.stash[COUNTS] = counts  # type: ignore[attr-defined]
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    """Print the line about deselected tests."""
+    counts = config.stash.get(COUNTS, {})
+    if counts:
+        terminalreporter.write_line(summary_line(counts), yellow=True)
+
+
+def summary_line(counts: dict[str, int]) -> str:
+    """Return how many tests were left out, why, and how to run them, in one line."""
+    groups: dict[str, list[str]] = {}
+    for name, count in counts.items():
+        groups.setdefault(INPUTS[name].remedy, []).append(f"{count} need {INPUTS[name].what}")
+    reasons = "; ".join(f"{', '.join(group)} (see {remedy})" for remedy, group in groups.items())
+    return f"{sum(counts.values())} tests left out: {reasons}"

@@ -15,8 +15,7 @@ import numpy as np
 
 from crowdbot.core import Scene, Twist, stream
 from crowdbot.models import ORCA
-from crowdbot.world import BodyContact, Robot
-from crowdbot.world.physics import Cube, PhysicsStage, PhysicsWorld, Table
+from crowdbot.world import BodyContact, Cube, PhysicsStage, PhysicsWorld, Robot, Table
 
 HALF, DT = 12.0, 0.1
 

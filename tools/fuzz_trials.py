@@ -24,7 +24,8 @@ from pathlib import Path
 from types import FrameType
 
 from crowdbot.core import CrowdbotError
-from crowdbot.trials import Trial, builtin_trials, load_trial, opened
+from crowdbot.recording import opened
+from crowdbot.trials import builtin_trials, expand_spawners, expand_sweeps, load_trial, parse_trial, trial_xml
 
 LIMIT = 60
 """No file may take longer than this [s]."""
@@ -105,7 +106,12 @@ def texts(new: bool = False) -> list[str]:
     if new:
         return bodies
     small = [name for name in builtin_trials() if not name.startswith("challenge") and load_trial(name).people < 80]
-    return [EXTRA, *bodies, *(load_trial(name).xml() for name in small), load_trial("frontal").explicit().xml()]
+    return [
+        EXTRA,
+        *bodies,
+        *(trial_xml(load_trial(name)) for name in small),
+        trial_xml(expand_spawners(load_trial("frontal"))),
+    ]
 
 
 def ends() -> Iterator[str]:
@@ -163,15 +169,15 @@ def _typo(word: str, chance: random.Random) -> str:
 def judged(text: str, folder: Path) -> str:
     """Return what became of a file: ``refused``, ``read`` or ``run``; anything but a sentence of ours is raised."""
     try:
-        trial = Trial.parse(text, place="t.xml", folder=folder)
+        trial = parse_trial(text, place="t.xml", folder=folder)
     except CrowdbotError as error:
         sentence = str(error)
         if not sentence.strip() or "Traceback" in sentence or "object at 0x" in sentence:
             raise AssertionError(f"this is no sentence: {sentence!r}") from None
         return "refused"
-    if Trial.parse(trial.xml(), folder=folder) != trial:
+    if parse_trial(trial_xml(trial), folder=folder) != trial:
         raise AssertionError("written and read again it is another trial")
-    one = trial.variants()[0]
+    one = expand_sweeps(trial)[0]
     if one.people > MOST_PEOPLE or (one.capacity or 0) > MOST_PEOPLE:
         return "read"
     try:

@@ -14,10 +14,12 @@ from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
 
 from crowdbot.core import EpisodeError
-from crowdbot.trials import load_trial, read_episode, repair
+from crowdbot.recording import read_episode, repair
+from crowdbot.trials import load_trial
 
 RUN = """import sys
-from crowdbot.trials import load_trial, opened
+from crowdbot.trials import load_trial
+from crowdbot.recording import opened
 with opened(load_trial(sys.argv[1]), out=sys.argv[2]) as running:
     while running.step() is None:
         print(running.simulation.world.clock.time, flush=True)

@@ -15,7 +15,8 @@ import sys
 import time
 from pathlib import Path
 
-from crowdbot.trials import load_trial, record
+from crowdbot.recording import record
+from crowdbot.trials import load_trial
 
 HOME = Path(__file__).parents[1]
 

@@ -18,9 +18,9 @@ import numpy as np
 
 import crowdbot as cb
 from crowdbot import navigation
-from crowdbot.benchmark import measure
+from crowdbot.benchmark import evaluate, measure
 from crowdbot.metrics import Score
-from crowdbot.prediction import evaluate
+from crowdbot.recording import run
 
 FOLDS = {
     "eth": ("biwi_eth",),
@@ -258,7 +258,7 @@ def _navigation() -> None:
 
 
 def _rates(trial: cb.Trial, robot: object) -> list[str]:
-    runs = [dataclasses.replace(trial, robots=(robot,)).run(seed=seed) for seed in SEEDS]
+    runs = [run(dataclasses.replace(trial, robots=(robot,)), seed=seed) for seed in SEEDS]
     ends = Counter(run.outcome for run in runs)
     gap = np.median([run.metrics["min_clearance"] for run in runs])
     took = [run.metrics["time_to_goal"] for run in runs if run.outcome == "success"]

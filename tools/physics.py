@@ -12,8 +12,7 @@ from matplotlib.image import imsave
 
 from crowdbot.core import Scene, Twist, stream
 from crowdbot.models import ORCA
-from crowdbot.world import Robot, builtin_robots
-from crowdbot.world.physics import Camera, Cube, PhysicsStage, PhysicsWorld, Table, Tree
+from crowdbot.world import Camera, Cube, PhysicsStage, PhysicsWorld, Robot, Table, Tree, builtin_robots
 
 
 def crowd(robot: Robot, people: int) -> PhysicsWorld:
@@ -77,7 +76,7 @@ def rays(folder: Path) -> None:
     chassis, seen = world.carrier(robot), world.seen()
     figure = Figure(figsize=(12, 5.2), layout="constrained")
     left, right = figure.subplots(1, 2)
-    scan = chassis.robot.mount("lidar_front").sensor.measure(
+    scan = chassis.robot.mount("lidar_front").sensor.read(
         seen.without(robot), chassis.mounted("lidar_front"), stream(0, "scan")
     )
     ends, hit = scan.points()[0], scan.hit[0]
@@ -97,7 +96,7 @@ def rays(folder: Path) -> None:
     left.set(xlim=(-6, 6), ylim=(-5, 7.5), aspect="equal", xlabel="x [m]", ylabel="y [m]")
     left.set_title("lidar_front of Qolo, 160 degrees")
     left.legend(loc="lower left")
-    cloud = chassis.robot.mount("velodyne_front").sensor.measure(seen.without(robot), chassis.mounted("velodyne_front"))
+    cloud = chassis.robot.mount("velodyne_front").sensor.read(seen.without(robot), chassis.mounted("velodyne_front"))
     points, who = cloud.points(in_world=True)[0].reshape(-1, 3), cloud.hit[0].ravel()
     near = np.isfinite(points[:, 0]) & (np.abs(points[:, 0]) < 8.0) & (np.abs(points[:, 1]) < 8.0)
     view = np.array([0.77, 0.64]) @ points[near, :2].T

@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import crowdbot as cb
+from crowdbot.recording import run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +24,7 @@ EAST, WEST, ROBOT, PATH, TRUTH = "#9ec5e8", "#f0b3a6", "#00796b", "#0072b2", "#3
 
 def draw(path: str) -> None:
     """Run the trial and write the picture."""
-    episode = cb.load_trial("crossing-flows").run()
+    episode = run(cb, cb.load_trial("crossing-flows"))
     past, future = episode.tracks(STEP).windows(OBSERVE, PREDICT, near=NEAR)
     busiest = int(np.argmax(future.scored.sum(axis=1)))
     now = past.dt * (past.frame[busiest, -1] - past.frame[0, 0]) / (past.frame[0, 1] - past.frame[0, 0])

@@ -138,7 +138,9 @@ def _words(action: argparse.Action) -> str:
     value = value if isinstance(value, str) else " ".join(value)
     if not action.option_strings:
         return f"`{value}`"
-    return ", ".join(f"`{option}{' ' + value if value and action.nargs != 0 else ''}`" for option in action.option_strings)
+    return ", ".join(
+        f"`{option}{' ' + value if value and action.nargs != 0 else ''}`" for option in action.option_strings
+    )
 
 
 def _help(parser: argparse.ArgumentParser, action: argparse.Action) -> str:

@@ -10,10 +10,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from crowdbot.benchmark.prediction_plots import plot_errors
+from crowdbot.benchmark import Result, Study, plot_errors
 from crowdbot.data import Recording
 from crowdbot.models.goals import CurrentDirection
-from crowdbot.prediction import ConstantVelocity, Kalman, Recipe, Result, Simulated, Study
+from crowdbot.prediction import ConstantVelocity, Kalman, Recipe, Simulated
 
 MODELS = ("orca", "social-force", "power-law", "boids")
 COSTS = ("absolute", "inter-pedestrian", "progressive")
@@ -95,10 +95,10 @@ def _summary(results: Sequence[Result]) -> list[str]:
 
 PLACES = {
     "eth": ("eth_biwi/seq_eth/obsmat.txt", {"predict": 3}),
-    "hotel": ("eth_ucy_splits/all_data/biwi_hotel.txt", {"fps": 2.5, "predict": 3}),
-    "univ": ("eth_ucy_splits/all_data/students003.txt", {"fps": 2.5, "predict": 3, "every": 4}),
-    "zara1": ("eth_ucy_splits/all_data/crowds_zara01.txt", {"fps": 2.5, "predict": 3}),
-    "zara2": ("eth_ucy_splits/all_data/crowds_zara02.txt", {"fps": 2.5, "predict": 3}),
+    "hotel": ("eth_ucy_splits/all_data/biwi_hotel.txt", {"fps": 25.0, "predict": 3}),
+    "univ": ("eth_ucy_splits/all_data/students003.txt", {"fps": 25.0, "predict": 3, "every": 4}),
+    "zara1": ("eth_ucy_splits/all_data/crowds_zara01.txt", {"fps": 25.0, "predict": 3}),
+    "zara2": ("eth_ucy_splits/all_data/crowds_zara02.txt", {"fps": 25.0, "predict": 3}),
     "corridor, one-way": ("hermes/Corridor-1D/uo-080-240-240.txt", {"step": 0.2, "observe": 5, "predict": 5}),
     "corridor, two-way": ("hermes/Corridor-2D/bo-360-090-090.txt", {"step": 0.2, "observe": 5, "predict": 5}),
     "corridor, bi_corr": (

@@ -20,10 +20,10 @@ import numpy as np
 
 from crowdbot.core import stream
 from crowdbot.data import Trajectories, Windows, load
-from crowdbot.prediction.learned.extra import threads
-from crowdbot.prediction.learned.samples import Samples
-from crowdbot.prediction.learned.social_ways_predictor import SocialWays
-from crowdbot.prediction.learned.training import BEST, Schedule, train
+from crowdbot.prediction import SocialWays
+from crowdbot.prediction.training.loop import BEST, Schedule, train
+from crowdbot.prediction.training.samples import Samples
+from crowdbot.prediction.training.torch_backend import threads
 
 SCALE = 0.0373
 """Metres of a pixel in gates/video2, as estimated_scales.yaml says."""
@@ -42,15 +42,15 @@ def places(options: argparse.Namespace) -> dict[str, Trajectories]:
     """Return both recordings in metres at 0.4 s."""
     raw = load(options.sdd / "gates" / "video2" / "annotations.txt").resample(0.4)
     gates = Trajectories(
-        raw.id, raw.frame, SCALE * raw.x, SCALE * raw.y, frame_rate=1.0 / raw.dt, frame_step=raw.frame_step,
+        raw.id, raw.frame, SCALE * raw.x, SCALE * raw.y, row_rate=1.0 / raw.dt, frame_step=raw.frame_step,
         name="gates-2",
     )  # fmt: skip
-    return {"hyang-6": load(options.trajnet / "Train" / "stanford" / "hyang_6.txt", fps=2.5), "gates-2": gates}
+    return {"hyang-6": load(options.trajnet / "Train" / "stanford" / "hyang_6.txt"), "gates-2": gates}
 
 
 def drawn(options: argparse.Namespace, place: str, method: str, learned: Windowed, asked: Windowed) -> np.ndarray:
     """Return futures ``[N, 128, T, 2]`` [m] of everyone scored."""
-    from crowdbot.prediction.learned.social_ways_training import learner
+    from crowdbot.prediction.social_ways.training import learner
 
     settings, values = METHODS[method]
     samples, folder = Samples.cut(*learned, place), options.out / f"{place}-{method}"

@@ -21,15 +21,16 @@ from pathlib import Path
 
 import numpy as np
 
+from crowdbot.benchmark import evaluate
 from crowdbot.data import Trajectories, Windows, load
 from crowdbot.metrics import Score
-from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, evaluate
-from crowdbot.prediction.learned.anchor_calibration import calibrated
-from crowdbot.prediction.learned.anchor_data import Variation, gathered
-from crowdbot.prediction.learned.anchor_training import UPDATES, AnchorNetTraining, AnchorTraining
-from crowdbot.prediction.learned.extra import threads
-from crowdbot.prediction.learned.training import Schedule, train
-from crowdbot.prediction.places import ALL, FOLDS, kept_out
+from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity
+from crowdbot.prediction.anchor_net.confidence import calibrated
+from crowdbot.prediction.anchor_net.training import UPDATES, AnchorNetTraining, AnchorTraining
+from crowdbot.prediction.anchor_net.training_data import Variation, gathered
+from crowdbot.prediction.pretrained_weights import ALL, FOLDS, kept_out
+from crowdbot.prediction.training.loop import Schedule, train
+from crowdbot.prediction.training.torch_backend import threads
 
 SHOWN = ("ade", "fde", "nll", "energy", "collisions")
 EDGES = np.concatenate([[0.0], np.geomspace(0.005, 1.0, 13)])
@@ -39,7 +40,7 @@ SMALL = ("basis", "centres", "spread", "width", "temperature", "widening")
 
 def recordings(folder: Path, fold: str, left_out: bool = False) -> list[Trajectories]:
     """Return the recordings of a folder that belong to the training of a fold, or those that are left out."""
-    found = [load(path, fps=2.5) for path in sorted(folder.glob("*.txt"))]
+    found = [load(path, fps=25) for path in sorted(folder.glob("*.txt"))]
     return [tracks for tracks in found if kept_out(fold, tracks.name) == left_out]
 
 

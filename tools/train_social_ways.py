@@ -21,15 +21,15 @@ from pathlib import Path
 
 import numpy as np
 
+from crowdbot.benchmark import evaluate
 from crowdbot.data import Trajectories, load
 from crowdbot.metrics import Score
-from crowdbot.prediction import evaluate
-from crowdbot.prediction.learned.checkpoint import load_checkpoint, save_checkpoint
-from crowdbot.prediction.learned.extra import threads
-from crowdbot.prediction.learned.samples import Samples
-from crowdbot.prediction.learned.social_ways_predictor import SocialWays
-from crowdbot.prediction.learned.training import BEST, Row, Schedule, train
-from crowdbot.prediction.places import FOLDS, kept_out
+from crowdbot.prediction import SocialWays
+from crowdbot.prediction.pretrained_weights import FOLDS, kept_out
+from crowdbot.prediction.training.checkpoint import load_checkpoint, save_checkpoint
+from crowdbot.prediction.training.loop import BEST, Row, Schedule, train
+from crowdbot.prediction.training.samples import Samples
+from crowdbot.prediction.training.torch_backend import threads
 
 SHOWN = ("ade", "fde", "nll", "energy", "collisions")
 OBSMAT = {"eth": "eth_biwi/seq_eth", "hotel": "eth_biwi/seq_hotel", "univ": "ucy/students03", "zara1": "ucy/zara01",
@@ -45,7 +45,7 @@ def samples_of(recordings: list[Trajectories], protocol: str = "all") -> Samples
 
 def texts(folder: Path, fold: str, left_out: bool = False) -> list[Trajectories]:
     """Return the recordings of a folder that belong to the training of a fold, or those that are left out."""
-    found = [load(path, fps=2.5) for path in sorted(folder.glob("*.txt"))]
+    found = [load(path, fps=25) for path in sorted(folder.glob("*.txt"))]
     return [one for one in found if kept_out(fold, one.name) == left_out]
 
 
@@ -74,7 +74,7 @@ def trained(
     options: argparse.Namespace, folder: Path, learned: Samples, watched: Samples, seed: int, every: int
 ) -> None:
     """Train, or go on."""
-    from crowdbot.prediction.learned.social_ways_training import learner
+    from crowdbot.prediction.social_ways.training import learner
 
     values = dict(word.split("=", 1) for word in options.set)
     model = learner("variety", values, learned, watched, seed, "cpu")

@@ -16,7 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.trials import Episode, Trial, builtin_trials, load_trial
+from crowdbot.recording import run
+from crowdbot.simulation import Episode
+from crowdbot.trials import Trial, builtin_trials, load_trial, parse_trial, trial_xml
 from crowdbot.trials.scenarios import PRESETS
 
 SECONDS = 20.0
@@ -46,10 +48,10 @@ def draw(trial: Trial, file: Path) -> None:
     import matplotlib.pyplot as plt
     from PIL import Image
 
-    short = trial.xml()
+    short = trial_xml(trial)
     if trial.duration > SECONDS:
         short = re.sub(r'duration="[^"]*"', f'duration="{SECONDS:g}"', short, count=1)
-    episode = Trial.parse(short).run()
+    episode = run(parse_trial(short))
     low, high = extent(trial, episode)
     size = high - low
     width = PIXELS / DPI

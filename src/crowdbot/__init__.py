@@ -33,7 +33,9 @@ _ROOMS = {
         "Simulated",
         "SocialWays",
     ),
-    "trials": ("Episode", "Trial", "load_trial", "replay"),
+    "trials": ("Trial", "load_trial"),
+    "simulation": ("Episode",),
+    "recording": ("branch", "read_episode", "replay", "run"),
     "benchmark": ("cite",),
 }
 _HOME = {name: room for room, names in _ROOMS.items() for name in names}
@@ -76,8 +78,6 @@ if TYPE_CHECKING:
     from .models import SocialForce as SocialForce
     from .navigation import Navigator as Navigator
     from .navigation import Observation as Observation
-    from .prediction import AnchorNet as AnchorNet
-    from .prediction import Anchors as Anchors
     from .prediction import ConstantAcceleration as ConstantAcceleration
     from .prediction import ConstantVelocity as ConstantVelocity
     from .prediction import Kalman as Kalman
@@ -88,10 +88,13 @@ if TYPE_CHECKING:
     from .prediction import SampledConstantVelocity as SampledConstantVelocity
     from .prediction import Simulated as Simulated
     from .prediction import SocialWays as SocialWays
+    from .recording import branch as branch
+    from .recording import read_episode as read_episode
+    from .recording import replay as replay
+    from .recording import run as run
     from .sensors import Lidar2D as Lidar2D
     from .sensors import Sensor as Sensor
-    from .trials import Episode as Episode
+    from .simulation import Episode as Episode
     from .trials import Trial as Trial
     from .trials import load_trial as load_trial
-    from .trials.replay import replay as replay
     from .world import Robot as Robot

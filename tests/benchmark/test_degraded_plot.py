@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from crowdbot.benchmark.degraded_plot import _figure, draw_degraded
+from crowdbot.benchmark import Task, draw_degraded, sweep
+from crowdbot.benchmark.prediction.degraded_plot import _figure
 from crowdbot.data import Trajectories
 from crowdbot.data.degrade import GaussianNoise, MissingFrames
-from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, Kalman, Task, sweep
+from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, Kalman
 
 
 @pytest.fixture(scope="module")

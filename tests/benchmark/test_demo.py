@@ -2,14 +2,13 @@
 
 import json
 import re
-import shutil
 import subprocess
 
 import pytest
 
 from crowdbot.benchmark import run_demo
 from crowdbot.cli import main
-from crowdbot.trials import replay
+from crowdbot.recording import replay
 
 
 @pytest.fixture(scope="module")
@@ -62,18 +61,16 @@ def test_the_page_asks_nothing_from_outside(done):
     assert all("w3.org" in address or "purl.org" in address or "creativecommons.org" in address for address in outside)
 
 
-def test_a_browser_draws_the_page(done, tmp_path):
-    browser = shutil.which("chromium") or shutil.which("chromium-browser")
-    assert browser, "chromium is missing: run tests/system-packages"
+def test_a_browser_draws_the_page(done, tmp_path, chromium):
     flags = [
         "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
         "--disable-background-networking", "--disable-component-update", f"--user-data-dir={tmp_path / 'profile'}",
         "--virtual-time-budget=5000", "--window-size=1280,1500", f"--screenshot={tmp_path / 'page.png'}",
     ]  # fmt: skip
     address = done[0].report_file.resolve().as_uri()
-    shown = subprocess.run([browser, *flags, "--dump-dom", address], capture_output=True, text=True, timeout=120)
+    shown = subprocess.run([chromium, *flags, "--dump-dom", address], capture_output=True, text=True, timeout=120)
     assert 'data-ready="true"' in shown.stdout, shown.stderr[-2000:]
-    drawn = subprocess.run([browser, *flags, address], capture_output=True, text=True, timeout=120)
+    drawn = subprocess.run([chromium, *flags, address], capture_output=True, text=True, timeout=120)
     assert drawn.returncode == 0
     assert "Uncaught" not in shown.stderr + drawn.stderr
     pixels = _pixels(tmp_path / "page.png")

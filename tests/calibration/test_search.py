@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import time
 from collections.abc import Callable
 
 import numpy as np
@@ -294,24 +293,3 @@ def test_a_hot_chain_accepts_more_than_a_cold_one() -> None:
         return float(np.median(np.abs(np.array(watched.asked[0])[400:] - TARGET)))
 
     assert strayed(1.0) > 2.0 * strayed(1e-6)
-
-
-def test_a_genetic_search_of_thirty_people_costs_little_of_its_own() -> None:
-    low, high = -np.ones(7), np.ones(7)
-    inside = 0.0
-
-    def timed(x: np.ndarray, which: np.ndarray) -> np.ndarray:
-        nonlocal inside
-        begun = time.perf_counter()
-        cost = (x**2).sum(axis=-1)
-        inside += time.perf_counter() - begun
-        return np.asarray(cost)
-
-    own = []
-    for _ in range(5):
-        inside = 0.0
-        begun = time.perf_counter()
-        Genetic().minimize(timed, low, high, rngs(1), 2000, np.ones((1, 1, 30, 7)))
-        own.append(time.perf_counter() - begun - inside)
-    print(f"genetic, 2 000 evaluations of 30 people x 7 parameters: {1e3 * min(own):.0f} ms beside the function")
-    assert min(own) < 0.25  # 27 ms on a quiet machine

@@ -13,8 +13,9 @@ import pandas as pd
 import pytest
 
 from crowdbot.cli import main
-from crowdbot.trials import load_trial, read_episode
-from crowdbot.trials.experiment import builtin_experiments
+from crowdbot.experiments import builtin_experiments
+from crowdbot.recording import read_episode, run
+from crowdbot.trials import load_trial
 
 ROOT = Path(__file__).parents[2]
 ANSWERS = {"age": 30, "robots": "never", "comfort": 5, "remarks": '=1+1, "quoted"\nand ünïcode'}
@@ -65,7 +66,7 @@ def test_the_shipped_experiment_from_start_to_table(capsys, tmp_path, answers):
     assert table["opinion.comfort"].isna().tolist() == [True, False, False] * 2
     by_trial = table.groupby("trial")["digest"].nunique()
     assert by_trial.to_dict() == {"alone": 1, "fast": 1, "slow": 1}
-    free = load_trial(builtin_experiments()["robot-speed"] / "fast.xml").run().digest
+    free = run(load_trial(builtin_experiments()["robot-speed"] / "fast.xml")).digest
     assert set(table[table.trial == "fast"].digest) == {free}
     for row in rows:
         episode = read_episode(out / f"participant-00{row['participant']}" / row["folder"] / "episode.mcap")
@@ -170,11 +171,12 @@ class Program:
         self.process.stdin.flush()
 
     def until(self, where, word, count=1):
-        end = time.monotonic() + 120
-        while not (where.exists() and where.read_text().count(word) >= count):
-            assert time.monotonic() < end, self.said.read_text()
+        for _ in range(12_000):
+            if where.exists() and where.read_text().count(word) >= count:
+                return
             assert self.process.poll() is None, self.said.read_text()
             time.sleep(0.01)
+        raise AssertionError(self.said.read_text())
 
     def over(self):
         self.process.stdin.close()
@@ -212,7 +214,7 @@ def test_ctrl_c_holds_a_trial_and_lets_it_go_on_unchanged(tmp_path):
     assert list(left.parent.iterdir()) == [left]
     assert not read_episode(left).complete
     trial = load_trial(folder / "slow.xml")
-    assert _digests(out) == [trial.run(seed=seed).digest for seed in (1, read_seed(out, "002-t-attempt-2"))]
+    assert _digests(out) == [run(trial, seed=seed).digest for seed in (1, read_seed(out, "002-t-attempt-2"))]
 
 
 def read_seed(out, name):

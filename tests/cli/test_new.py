@@ -5,7 +5,7 @@ import json
 import pytest
 
 from crowdbot.cli import main
-from crowdbot.trials import load_trial, schema
+from crowdbot.trials import load_trial, schema, trial_xml
 
 
 def refused(capsys, tmp_path, *words):
@@ -43,7 +43,7 @@ def test_a_trial_is_written_from_a_recording_and_from_an_original_file(tmp_path,
     data.write_text("".join(f"{10 * k}\t{p}\t{0.5 * k}\t{2 * p}\n" for k in range(20) for p in (1, 2)))
     (tmp_path / "out").mkdir()
     file = tmp_path / "out" / "two.xml"
-    words = ["new", "trial", str(file), "--recorded", str(data), "--fps", "2.5", "--reactive", "--replace", "2"]
+    words = ["new", "trial", str(file), "--recorded", str(data), "--fps", "25", "--reactive", "--replace", "2"]
     assert main(words) == 0
     assert "copied two.txt beside it" in capsys.readouterr().err
     assert load_trial(file).recorded[0].mode == "reactive"
@@ -78,10 +78,10 @@ def test_wrong_words_are_told_and_nothing_is_written(tmp_path, capsys, words, se
 
 def test_a_trial_with_sweeps_is_run_by_its_variants(tmp_path, capsys):
     file = tmp_path / "many.xml"
-    text = load_trial("frontal").xml().replace("</trial>", '  <sweep path="seed" values="3 4"/>\n</trial>')
+    text = trial_xml(load_trial("frontal")).replace("</trial>", '  <sweep path="seed" values="3 4"/>\n</trial>')
     file.write_text(text)
     said = refused(capsys, tmp_path, "run", file)
-    assert "stands for 2 trials by its sweeps; run one of them with --variant 1 to 2" in said
+    assert "has 2 variants by its sweeps; run one of them with --variant 1 to 2" in said
     assert "has 2 variants" in refused(capsys, tmp_path, "run", file, "--variant", "3")
     assert main(["run", str(file), "--variant", "2", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["seed"] == 4

@@ -35,7 +35,7 @@ def street(tmp_path_factory: pytest.TempPathFactory) -> str:
             rows.append((person, begin + row, *place))
     id, frame, x, y = np.array(sorted(rows, key=lambda r: (r[1], r[0]))).T
     file = tmp_path_factory.mktemp("data") / "street.csv"
-    save(Trajectories(id.astype(int), frame.astype(int), x, y, frame_rate=2.5), file)
+    save(Trajectories(id.astype(int), frame.astype(int), x, y, row_rate=2.5), file)
     return str(file)
 
 
@@ -219,7 +219,7 @@ def test_schemes_without_a_simulated_crowd_are_refused(capsys, street):
 def test_somebody_alone_cannot_be_compared_with_others(capsys, tmp_path):
     row = np.arange(24)
     file = tmp_path / "alone.csv"
-    save(Trajectories(0 * row, row, 0.4 * row, 0.0 * row, frame_rate=2.5), file)
+    save(Trajectories(0 * row, row, 0.4 * row, 0.0 * row, row_rate=2.5), file)
     words = ["calibrate", "--data", str(file), "--cost", "inter-pedestrian", "--search", "random-search"]
     assert main([*words, "--budget", "5"]) == 2
     assert "and with others where distances between them count" in capsys.readouterr().err

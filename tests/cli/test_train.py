@@ -53,7 +53,7 @@ def test_a_training_that_never_began_is_not_resumed(
 def test_weights_are_learned_resumed_and_scored(
     walks: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = ["train", "social-ways", "--data", *walks, "--fps", "2.5", "--leave-out", "plaza", "--out", str(tmp_path),
+    words = ["train", "social-ways", "--data", *walks, "--fps", "25", "--leave-out", "plaza", "--out", str(tmp_path),
              "--check-every", "2", "--set", *TINY]  # fmt: skip
     status, _, err = said([*words, "--updates", "2"], capsys)
     assert status == 0
@@ -67,7 +67,7 @@ def test_weights_are_learned_resumed_and_scored(
     assert [row["update"] for row in done["log"]] == [2, 4]
     status, out, _ = said(
         ["predict", "--predictor", "social-ways", "--set", f"checkpoint={done['checkpoint']}", "--samples", "3",
-         "--fps", "2.5", "--data", walks[1], "--every", "12", "--json"], capsys,
+         "--fps", "25", "--data", walks[1], "--every", "12", "--json"], capsys,
     )  # fmt: skip
     total = json.loads(out)["results"][0]["total"]
     assert (status, total["samples"]) == (0, 3)
@@ -77,14 +77,14 @@ def test_weights_are_learned_resumed_and_scored(
 def test_the_anchor_network_learns_and_scores_the_same_way(
     walks: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = ["train", "anchor-net", "--data", *walks, "--fps", "2.5", "--leave-out", "plaza", "--out", str(tmp_path),
+    words = ["train", "anchor-net", "--data", *walks, "--fps", "25", "--leave-out", "plaza", "--out", str(tmp_path),
              "--updates", "4", "--check-every", "2", "--set", "width=16", "social=8", "people=16"]  # fmt: skip
     status, out, _ = said([*words, "--json"], capsys)
     done = json.loads(out)
     assert (status, [row["update"] for row in done["log"]]) == (0, [2, 4])
     status, out, _ = said(
         ["predict", "--predictor", "anchor-net", "--set", f"file={done['checkpoint']}", "--samples", "20",
-         "--fps", "2.5", "--data", walks[1], "--every", "12", "--json"], capsys,
+         "--fps", "25", "--data", walks[1], "--every", "12", "--json"], capsys,
     )  # fmt: skip
     total = json.loads(out)["results"][0]["total"]
     assert (status, total["samples"]) == (0, 20)
@@ -94,7 +94,7 @@ def test_the_anchor_network_learns_and_scores_the_same_way(
 def test_weights_that_do_not_fit_are_said_and_a_baseline_answers(
     walks: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = ["predict", "--predictor", "anchor-net", "social-ways", "--samples", "3", "--fps", "1", "--every", "20",
+    words = ["predict", "--predictor", "anchor-net", "social-ways", "--samples", "3", "--fps", "10", "--every", "20",
              "--data", walks[0]]  # fmt: skip
     status, _, err = said(words, capsys)
     assert status == 0
@@ -122,7 +122,7 @@ def test_wrong_words_are_one_sentence(
     walks: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], why: str
 ) -> None:
     status, out, err = said(
-        ["train", *words, "--data", *walks, "--fps", "2.5", "--out", str(tmp_path / "out"), "--json"], capsys
+        ["train", *words, "--data", *walks, "--fps", "25", "--out", str(tmp_path / "out"), "--json"], capsys
     )
     assert (status, out) == (2, "")
     assert why in err
@@ -150,7 +150,7 @@ def test_the_study_trains_measures_and_draws(tmp_path: Path, capsys: pytest.Capt
 def test_without_torch_it_says_what_to_install(capsys, tmp_path, monkeypatch, recordings):
     import sys
 
-    for name in [name for name in sys.modules if name.startswith("crowdbot.prediction.learned.")]:
+    for name in [name for name in sys.modules if name.startswith("crowdbot.prediction.")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "torch", None)
     data = recordings / "eth_ucy_splits" / "all_data" / "crowds_zara01.txt"

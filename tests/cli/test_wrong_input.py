@@ -130,7 +130,7 @@ def test_an_interrupt_is_said_in_one_word(capsys, monkeypatch):
     def interrupted(kind):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(benchmark, "catalogue", interrupted)
+    monkeypatch.setattr(benchmark, "builtin_names", interrupted)
     assert main(["list"]) == 130
     assert capsys.readouterr().err == "crowdbot: interrupted\n"
     assert sys.stdout is not None

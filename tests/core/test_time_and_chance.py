@@ -1,7 +1,6 @@
 """Clocks, streams of randomness, parameters, poses, papers and the error tree."""
 
 import math
-import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,13 +56,18 @@ def test_external_time_never_goes_back():
         clock.due(1)
 
 
-def test_paced_time_does_not_run_ahead():
+def test_paced_time_does_not_run_ahead(monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr("crowdbot.core.clock.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("crowdbot.core.clock.time.sleep", lambda seconds: now.append(now.pop() + seconds))
     clock = PacedClock(0.01, rate=2.0)
-    begin = time.monotonic()
     for _ in range(6):
         clock.advance()
-    assert time.monotonic() - begin >= 0.06 / 2.0 * 0.99
+    assert now[0] - 100.0 == pytest.approx(0.06 / 2.0)
     assert clock.time == 0.06
+    now[0] += 1.0
+    clock.advance()
+    assert now[0] == pytest.approx(101.03)
 
 
 @given(st.integers(-(2**70), 2**70), st.text(max_size=5), st.integers())

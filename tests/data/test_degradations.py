@@ -40,7 +40,7 @@ def _crowd(people=12, rows=40, seed=0, robot=True, dt=0.4):
         a + 1,
         10 * t,
         *place[t, a].T,
-        frame_rate=1.0 / dt,
+        row_rate=1.0 / dt,
         name="made",
         robots=frozenset([people]) if robot else frozenset(),
         labels={1: "Biker"},
@@ -50,7 +50,7 @@ def _crowd(people=12, rows=40, seed=0, robot=True, dt=0.4):
 def _still(people, rows, dt=0.4):
     """People who stand at 0, 0, so that what is seen is the error."""
     t, a = np.divmod(np.arange(people * rows), people)
-    return Trajectories(a, t, np.zeros(len(t)), np.zeros(len(t)), frame_rate=1.0 / dt)
+    return Trajectories(a, t, np.zeros(len(t)), np.zeros(len(t)), row_rate=1.0 / dt)
 
 
 def _same(one, other):
@@ -173,7 +173,7 @@ def test_whole_frames_can_be_missing():
 
 
 def test_late_start_drops_the_first_rows_and_short_tracks():
-    tracks = Trajectories([1, 1, 1, 1, 2, 2], [0, 1, 5, 6, 0, 1], np.arange(6.0), np.zeros(6), frame_rate=2.5)
+    tracks = Trajectories([1, 1, 1, 1, 2, 2], [0, 1, 5, 6, 0, 1], np.arange(6.0), np.zeros(6), row_rate=2.5)
     seen = LateStart(2).apply(tracks)
     assert seen.tracks.id.tolist() == [1, 1]
     assert seen.tracks.frame.tolist() == [5, 6]
@@ -206,7 +206,7 @@ def _crossing(rows=9):
         np.tile(t, 3),
         np.concatenate([t - 4.0, 4.0 - t, 0.0 * t]),
         np.repeat([0.0, 0.4, 30.0], rows),
-        frame_rate=2.5,
+        row_rate=2.5,
     )
 
 
@@ -224,7 +224,7 @@ def test_switches_swap_for_good_where_two_are_nearest():
 
 
 def test_the_share_of_switches_is_their_probability_and_every_row_keeps_its_place(recordings):
-    tracks = load(recordings / "eth_ucy_splits" / "all_data" / "students003.txt", fps=2.5)
+    tracks = load(recordings / "eth_ucy_splits" / "all_data" / "students003.txt", fps=25)
     met = encounters(tracks, 0.6)
     slow = _slow_switches(tracks, met, 0.3)
     seen = IdentitySwitches(0.3, distance=0.6).apply(tracks, stream(5))
@@ -336,11 +336,11 @@ def test_wrong_recordings_are_one_sentence():
         GaussianNoise(0.1).apply(pixels)
     assert len(MissingFrames(0.5).apply(pixels).tracks) < len(pixels)
     with pytest.raises(DataError, match="id -1, which stands for false tracks"):
-        GaussianNoise(0.1).apply(Trajectories([-1], [0], [0.0], [0.0], frame_rate=2.5))
+        GaussianNoise(0.1).apply(Trajectories([-1], [0], [0.0], [0.0], row_rate=2.5))
     with pytest.raises(DataError, match="1 rows, truth has shape"):
-        Degraded(Trajectories([1], [0], [0.0], [0.0], frame_rate=2.5), np.zeros(2, np.int64))
+        Degraded(Trajectories([1], [0], [0.0], [0.0], row_rate=2.5), np.zeros(2, np.int64))
 
 
 def test_labels_and_scenes_of_who_is_gone_are_gone():
-    tracks = Trajectories([1, 1, 2], [0, 1, 1], [0.0] * 3, [0.0] * 3, frame_rate=2.5, labels={1: "Biker", 2: "Cart"})
+    tracks = Trajectories([1, 1, 2], [0, 1, 1], [0.0] * 3, [0.0] * 3, row_rate=2.5, labels={1: "Biker", 2: "Cart"})
     assert LateStart(1).apply(tracks).tracks.labels == {1: "Biker"}

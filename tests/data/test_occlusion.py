@@ -82,7 +82,7 @@ def _row(**more):
     frame = np.repeat([0, 1, 2], 4)
     x = [[5.0, 8.0, 5.0, k] for k in (0.0, 1.0, 2.0)]
     y = [[0.0, 0.0, 3.0, 0.0]] * 3
-    return Trajectories([1, 2, 3, 9] * 3, frame, np.ravel(x), np.ravel(y), frame_rate=2.5, name="row", **more)
+    return Trajectories([1, 2, 3, 9] * 3, frame, np.ravel(x), np.ravel(y), row_rate=2.5, name="row", **more)
 
 
 def _seen(degraded):

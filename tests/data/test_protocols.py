@@ -93,7 +93,7 @@ def crowd(seed=0, people=12, frames=40, step=10, holes=True):
             if not (holes and rng.random() < 0.03):
                 rows.append((person + 3, k * step, *place))
     id, frame, x, y = zip(*rows, strict=True)
-    return Trajectories(id, frame, x, y, frame_rate=2.5, frame_step=step, name="crowd")
+    return Trajectories(id, frame, x, y, row_rate=2.5, frame_step=step, name="crowd")
 
 
 def slow_windows(tracks, observe, predict, protocol):
@@ -171,7 +171,7 @@ def test_nothing_of_the_future_is_in_the_past(protocol, late):
         place = tracks.position
         place[after] = rng.normal(0.0, 1e3, (int(after.sum()), 2))
         spoilt = Trajectories(
-            tracks.id, tracks.frame, place[:, 0], place[:, 1], frame_rate=2.5, frame_step=10, name="crowd"
+            tracks.id, tracks.frame, place[:, 0], place[:, 1], row_rate=2.5, frame_step=10, name="crowd"
         )
         again, garbage = spoilt.windows(4, 5, protocol=protocol, late=late)
         for field in ("position", "present", "scored", "robot", "id", "frame"):
@@ -184,7 +184,7 @@ def test_who_is_company_does_not_depend_on_the_future():
     id = [1] * 20 + [2] * 8
     frame = [*range(20), *range(8)]
     x = [0.1 * k for k in range(20)] + [5.0] * 8
-    past, future = Trajectories(id, frame, x, [0.0] * 28, frame_rate=2.5).windows()
+    past, future = Trajectories(id, frame, x, [0.0] * 28, row_rate=2.5).windows()
     assert past.id.tolist() == [[1, 2]]
     assert future.scored.tolist() == [[True, False]]
     assert not future.present[0, :, 1].any()
@@ -194,7 +194,7 @@ def test_latecomers_are_skipped_or_walked_backwards():
     id = [1] * 20 + [2] * 5 + [3] * 1
     frame = [*range(20), *range(5, 10), 7]
     x = [0.0] * 20 + [2.0, 2.5, 3.5, 4.5, 5.5] + [9.0]
-    tracks = Trajectories(id, frame, x, [1.0] * 26, frame_rate=2.5)
+    tracks = Trajectories(id, frame, x, [1.0] * 26, row_rate=2.5)
     assert tracks.windows(late="skip")[0].id.tolist() == [[1]]
     past, future = tracks.windows(late="extrapolate")
     assert past.id.tolist() == [[1, 2]]
@@ -207,7 +207,7 @@ def test_only_people_near_a_robot_are_scored():
     id = np.repeat([1, 2, 9], 20)
     frame = np.tile(np.arange(20), 3)
     x = np.concatenate([np.full(20, 1.0), np.full(20, 4.0), np.zeros(20)])
-    tracks = Trajectories(id, frame, x, np.zeros(60), frame_rate=2.5, robots=frozenset({9}), name="walk")
+    tracks = Trajectories(id, frame, x, np.zeros(60), row_rate=2.5, robots=frozenset({9}), name="walk")
     past, future = tracks.windows(near=2.0)
     assert future.scored.tolist() == [[True, False, False]]
     assert past.robot.tolist() == [[False, False, True]]
@@ -222,7 +222,7 @@ def test_only_people_near_a_robot_are_scored():
 
 
 def test_frames_of_a_partial_window_go_on_after_the_end_of_the_file():
-    past, future = Trajectories([1] * 10, range(0, 100, 10), range(10), range(10), frame_rate=2.5).windows(
+    past, future = Trajectories([1] * 10, range(0, 100, 10), range(10), range(10), row_rate=2.5).windows(
         protocol="partial"
     )
     assert past.frame[0].tolist() == list(range(0, 80, 10))
@@ -232,7 +232,7 @@ def test_frames_of_a_partial_window_go_on_after_the_end_of_the_file():
 
 def test_a_gap_of_the_whole_file_is_stepped_over_except_by_timesplit():
     frame = [*range(0, 100, 10), *range(200, 300, 10)]
-    tracks = Trajectories([1] * 20, frame, np.arange(20.0), np.zeros(20), frame_rate=2.5)
+    tracks = Trajectories([1] * 20, frame, np.arange(20.0), np.zeros(20), row_rate=2.5)
     assert len(tracks.windows()[0]) == 1
     with pytest.raises(DataError, match=r"longest of 1 tracks has 10 rows without a hole \(20 with holes\)"):
         tracks.windows(protocol="timesplit")
@@ -258,7 +258,7 @@ def test_the_present_can_be_predicted_without_any_future():
 def test_shifting_moves_windows_and_changes_nothing_else(seed, dx, dy, later):
     tracks = crowd(seed, people=15)
     moved = Trajectories(
-        tracks.id, tracks.frame + later * 10, tracks.x + dx, tracks.y + dy, frame_rate=2.5, frame_step=10
+        tracks.id, tracks.frame + later * 10, tracks.x + dx, tracks.y + dy, row_rate=2.5, frame_step=10
     )
     try:
         old = tracks.windows(3, 4)
@@ -284,7 +284,7 @@ def test_renumbering_and_shuffling_change_only_the_numbers(seed, offset):
         tracks.frame[shuffled],
         tracks.x[shuffled],
         tracks.y[shuffled],
-        frame_rate=2.5,
+        row_rate=2.5,
         frame_step=10,
     )
     past, future = tracks.windows(2, 2, protocol="partial")
@@ -296,7 +296,7 @@ def test_renumbering_and_shuffling_change_only_the_numbers(seed, offset):
 
 
 def test_why_no_window_was_found():
-    tracks = Trajectories([1] * 7 + [2], [*range(0, 70, 10), 30], range(8), range(8), frame_rate=2.5, name="short.txt")
+    tracks = Trajectories([1] * 7 + [2], [*range(0, 70, 10), 30], range(8), range(8), row_rate=2.5, name="short.txt")
     with pytest.raises(DataError) as error:
         tracks.windows()
     assert str(error.value) == (
@@ -327,6 +327,6 @@ def test_wrong_arguments_are_named():
 
 
 def test_too_many_windows_are_refused_before_memory_runs_out(monkeypatch):
-    monkeypatch.setattr("crowdbot.data.cut.MAX_BYTES", 10_000)
+    monkeypatch.setattr("crowdbot.data.protocols.MAX_BYTES", 10_000)
     with pytest.raises(DataError, match=r"windows of 4 \+ 5 rows and up to .* GiB; resample to longer steps"):
         crowd(5).windows(4, 5)

@@ -6,109 +6,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mcap.writer import CompressionType, Writer
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from mcap_messages import McapRecording
 
 from crowdbot.core import DataError
 from crowdbot.data import load
 
-PERSON = """string name
-geometry_msgs/Point position
-geometry_msgs/Point velocity
-float64 reliability
-string[] tagnames
-string[] tags
-"""
-PEOPLE = "std_msgs/Header header\npeople_msgs/Person[] people\n"
 WALLS = [[[0.0, 0.0], [4.0, 0.0]], [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]]]
-
-
-def types():
-    """Return a store that knows people_msgs."""
-    store = get_typestore(Stores.ROS2_HUMBLE)
-    store.register(get_types_from_msg(PERSON, "people_msgs/msg/Person"))
-    store.register(get_types_from_msg(PEOPLE, "people_msgs/msg/People"))
-    return store
-
-
-class Recording:
-    """Writes messages as a ROS 2 recorder does."""
-
-    def __init__(self, path, finish=True):
-        self.store, self.path, self.finish = types(), path, finish
-        self.make = lambda kind, **fields: self.store.types[kind](**fields)
-
-    def __enter__(self):
-        self.file = self.path.open("wb")
-        self.writer = Writer(self.file, compression=CompressionType.ZSTD)
-        self.writer.start(profile="ros2", library="test")
-        self.channels = {}
-        return self
-
-    def __exit__(self, *_):
-        if self.finish:
-            self.writer.finish()
-        self.file.close()
-
-    def write(self, topic, message, nanoseconds):
-        kind = message.__msgtype__
-        if topic not in self.channels:
-            text = self.store.generate_msgdef(kind, ros_version=2)[0].encode()
-            self.channels[topic] = self.writer.register_channel(
-                topic, "cdr", self.writer.register_schema(kind, "ros2msg", text)
-            )
-        data = bytes(self.store.serialize_cdr(message, kind))
-        self.writer.add_message(self.channels[topic], nanoseconds, data, nanoseconds)
-
-    def header(self, nanoseconds):
-        sec, nanosec = divmod(nanoseconds, 10**9)
-        stamp = self.make("builtin_interfaces/msg/Time", sec=sec, nanosec=nanosec)
-        return self.make("std_msgs/msg/Header", stamp=stamp, frame_id="map")
-
-    def point(self, x, y):
-        return self.make("geometry_msgs/msg/Point", x=float(x), y=float(y), z=0.0)
-
-    def people(self, nanoseconds, persons):
-        """Write {name: (x, y)}."""
-        everyone = [
-            self.make(
-                "people_msgs/msg/Person",
-                name=str(name),
-                position=self.point(*place),
-                velocity=self.point(0, 0),
-                reliability=1.0,
-                tagnames=[],
-                tags=[],
-            )
-            for name, place in persons.items()
-        ]
-        message = self.make("people_msgs/msg/People", header=self.header(nanoseconds), people=everyone)
-        self.write("/people", message, nanoseconds)
-
-    def odometry(self, nanoseconds, x, y, topic="/robot/odom"):
-        turn = self.make("geometry_msgs/msg/Quaternion", x=0.0, y=0.0, z=0.0, w=1.0)
-        pose = self.make("geometry_msgs/msg/Pose", position=self.point(x, y), orientation=turn)
-        zero = self.make("geometry_msgs/msg/Vector3", x=0.0, y=0.0, z=0.0)
-        message = self.make(
-            "nav_msgs/msg/Odometry",
-            header=self.header(nanoseconds),
-            child_frame_id="robot/base_link",
-            pose=self.make("geometry_msgs/msg/PoseWithCovariance", pose=pose, covariance=np.zeros(36)),
-            twist=self.make(
-                "geometry_msgs/msg/TwistWithCovariance",
-                twist=self.make("geometry_msgs/msg/Twist", linear=zero, angular=zero),
-                covariance=np.zeros(36),
-            ),
-        )
-        self.write(topic, message, nanoseconds)
-
-    def metadata(self, **values):
-        self.writer.add_metadata("crowdbot", values)
 
 
 def write(path, steps=60, period=100_000_000, begin=5 * 10**9, finish=True):
     """Write two people who walk apart, one leaves at half time, and a robot with poses at the same stamps."""
-    with Recording(path, finish) as recording:
+    with McapRecording(path, finish) as recording:
         for k in range(steps):
             now = begin + k * period
             persons = {3: (0.1 * k, 1.0), 12: (-0.1 * k, 2.0)}
@@ -138,7 +46,7 @@ def test_an_episode_becomes_windows_at_the_steps_of_the_field(tmp_path):
 
 
 def test_robots_at_their_own_rate_are_brought_to_the_stamps_of_people(tmp_path):
-    with Recording(tmp_path / "mixed.mcap") as recording:
+    with McapRecording(tmp_path / "mixed.mcap") as recording:
         recording.odometry(0, 9.0, 9.0, topic="/second/odom")
         for k in range(10):
             recording.people(k * 100_000_000, {"4": (k, 0)})
@@ -152,14 +60,14 @@ def test_robots_at_their_own_rate_are_brought_to_the_stamps_of_people(tmp_path):
 
 
 def test_names_that_are_words_are_numbered(tmp_path):
-    with Recording(tmp_path / "words.mcap") as recording:
+    with McapRecording(tmp_path / "words.mcap") as recording:
         recording.people(0, {"ada": (0, 0), "7": (1, 1)})
         recording.people(10**9, {"7": (1, 1)})
     assert load(tmp_path / "words.mcap").id.tolist() == [1, 2, 2]
 
 
 def test_a_recording_without_people_or_robots_in_it(tmp_path):
-    with Recording(tmp_path / "alone.mcap") as recording:
+    with McapRecording(tmp_path / "alone.mcap") as recording:
         for k in range(3):
             recording.people(k * 10**8, {})
             recording.odometry(k * 10**8, k, 0)
@@ -211,7 +119,7 @@ def test_a_damaged_recording_says_so(tmp_path_factory, spot, byte):
 )
 def test_recordings_of_something_else(tmp_path, what, message):
     path = tmp_path / "odd.mcap"
-    with Recording(path) as recording:
+    with McapRecording(path) as recording:
         recording.odometry(0, 0, 0)
         if what != "foreign":
             recording.people(0, {"4": (0, 0), **({"04": (1, 1)} if what == "twice" else {})})

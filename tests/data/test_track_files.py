@@ -21,7 +21,7 @@ def recordings_of_people(draw):
     place = draw(st.lists(st.tuples(finite, finite), min_size=len(keys), max_size=len(keys)))
     frame, id = zip(*[(10 * frame, id) for frame, id in keys], strict=True)
     x, y = zip(*place, strict=True)
-    return Trajectories(id, frame, x, y, frame_rate=draw(st.sampled_from([2.5, 25.0, 29.97, 100 / 3])), frame_step=10)
+    return Trajectories(id, frame, x, y, row_rate=draw(st.sampled_from([2.5, 25.0, 29.97, 100 / 3])), frame_step=10)
 
 
 def same_rows(one, other):
@@ -35,9 +35,9 @@ def same_rows(one, other):
 def test_rows_come_back_exactly(tmp_path_factory, suffix, tracks):
     path = tmp_path_factory.mktemp("tracks") / f"tracks.{suffix}"
     save(tracks, path)
-    back = load(path, fps=tracks.frame_rate if suffix in ("txt", "csv") else None)
+    back = load(path, fps=tracks.fps if suffix in ("txt", "csv") else None)
     assert same_rows(tracks, back)
-    assert back.frame_rate == tracks.frame_rate
+    assert back.row_rate == tracks.row_rate
     assert [file.name for file in path.parent.iterdir()] == [path.name]
 
 
@@ -49,7 +49,7 @@ def rich():
         np.tile(np.arange(rows) * 3, 3),
         np.linspace(0.0, 1.0, 3 * rows) / 3.0,
         np.linspace(5.0, -1.0, 3 * rows) / 7.0,
-        frame_rate=100 / 3,
+        row_rate=100 / 3,
         units="px",
         homography=np.array([[0.1, 0.0, 1.0], [0.0, 0.2, 0.0], [0.0, 0.0, 1.0]]) / 3.0,
         note="a note, with a comma",
@@ -69,7 +69,7 @@ def test_parquet_keeps_everything(tmp_path):
         assert getattr(back, name) == getattr(tracks, name)
     assert back.homography.tobytes() == tracks.homography.tobytes()
     assert [ring.tobytes() for ring in back.walls] == [ring.tobytes() for ring in tracks.walls]
-    assert load(tmp_path / "all.parquet", fps=5.0, units="m").frame_rate == 5.0
+    assert load(tmp_path / "all.parquet", fps=50.0, units="m").row_rate == 5.0
 
 
 def test_csv_keeps_times_labels_robots_and_pixels(tmp_path):
@@ -78,7 +78,7 @@ def test_csv_keeps_times_labels_robots_and_pixels(tmp_path):
     assert (tmp_path / "all.csv").read_text().startswith("id,frame,time,x_px,y_px,label\n4,0,0.0,")
     back = load(tmp_path / "all.csv")
     assert same_rows(tracks, back)
-    assert back.frame_rate == pytest.approx(tracks.frame_rate, rel=1e-12)
+    assert back.row_rate == pytest.approx(tracks.row_rate, rel=1e-12)
     assert (back.units, back.robots, back.labels) == ("px", tracks.robots, tracks.labels)
 
 
@@ -87,8 +87,8 @@ def test_ndjson_keeps_scenes_or_makes_them(tmp_path):
     save(tracks, tmp_path / "kept.ndjson")
     back = load(tmp_path / "kept.ndjson", units="px")
     assert same_rows(tracks, back)
-    assert (back.scenes, back.frame_rate) == (tracks.scenes, tracks.frame_rate)
-    plain = Trajectories(tracks.id, tracks.frame, tracks.x, tracks.y, frame_rate=2.5, robots=frozenset({8}))
+    assert (back.scenes, back.row_rate) == (tracks.scenes, tracks.row_rate)
+    plain = Trajectories(tracks.id, tracks.frame, tracks.x, tracks.y, row_rate=2.5, robots=frozenset({8}))
     save(plain, tmp_path / "made.ndjson")
     assert load(tmp_path / "made.ndjson").scenes == (PrimaryScene(0, 4, 0, 60), PrimaryScene(1, 7, 0, 60))
 
@@ -99,7 +99,7 @@ def test_a_real_recording_survives_every_format(recordings, tmp_path, suffix):
     save(tracks, tmp_path / f"zara.{suffix}")
     back = load(tmp_path / f"zara.{suffix}")
     assert same_rows(tracks, back)
-    assert (back.frame_rate, back.frame_step, back.units) == (2.5, 10, "m")
+    assert (back.row_rate, back.frame_step, back.units) == (2.5, 10, "m")
 
 
 def test_the_format_may_be_given(tmp_path):
@@ -173,7 +173,7 @@ def test_exchanged_columns_are_noticed(tmp_path):
     assert "exchanged" not in load(path).note
     path.write_text("".join(f"{id} {frame} {x} {y}\n" for frame, id, x, y in rows))
     assert "id and frame look exchanged" in load(path, fps=2.5).note
-    right = load(path, format="petrack", fps=2.5, units="m")
+    right = load(path, format="petrack", fps=25, units="m")
     assert (len(right.ids), right.frame_step, right.dt) == (8, 10, 0.4)
 
 

@@ -71,7 +71,7 @@ def test_velocity_does_not_know_the_future():
 
 
 def test_velocity_over_a_hole_takes_the_time_of_the_hole():
-    tracks = Trajectories([1, 1, 1, 1], [0, 10, 20, 50], [0.0, 1.0, 2.0, 5.0], [0.0] * 4, frame_rate=1.0)
+    tracks = Trajectories([1, 1, 1, 1], [0, 10, 20, 50], [0.0, 1.0, 2.0, 5.0], [0.0] * 4, row_rate=1.0)
     assert tracks.velocities()[1:, 0].tolist() == [1.0, 1.0, 1.0]
 
 
@@ -104,7 +104,7 @@ def test_split_by_time():
 def test_split_by_person():
     first, rest = walk(robots=frozenset()).split(0.5, by="person")
     assert (set(first.id), set(rest.id)) == ({1}, {2})
-    with_robot = Trajectories([1, 2, 3], [0, 1, 2], [0.0] * 3, [0.0] * 3, frame_rate=1.0, robots=frozenset({3}))
+    with_robot = Trajectories([1, 2, 3], [0, 1, 2], [0.0] * 3, [0.0] * 3, row_rate=1.0, robots=frozenset({3}))
     parts = with_robot.split(0.5, by="person")
     assert [set(part.id) for part in parts] == [{1, 3}, {2, 3}]
 
@@ -167,7 +167,7 @@ def test_resample_interpolates_inside_and_never_beyond():
 
 
 def test_resample_does_not_bridge_long_holes():
-    tracks = Trajectories([1] * 6, [0, 1, 2, 10, 11, 12], range(6), range(6), frame_rate=10.0)
+    tracks = Trajectories([1] * 6, [0, 1, 2, 10, 11, 12], range(6), range(6), row_rate=10.0)
     assert tracks.resample(0.05).time.tolist() == pytest.approx([0.0, 0.05, 0.1, 0.15, 0.2, 1.0, 1.05, 1.1, 1.15, 1.2])
     assert len(tracks.resample(0.05, gap=1.0)) == 25
     with pytest.raises(InputError, match=r"dt 0\.0 s must be above 0"):
@@ -180,7 +180,7 @@ def test_resample_does_not_bridge_long_holes():
 
 def test_resample_forgets_who_fell_between_the_steps():
     tracks = Trajectories(
-        [1, 1, 2], [0, 10, 3], [0.0] * 3, [0.0] * 3, frame_rate=10.0, robots=frozenset({2}), labels={1: "a", 2: "b"}
+        [1, 1, 2], [0, 10, 3], [0.0] * 3, [0.0] * 3, row_rate=10.0, robots=frozenset({2}), labels={1: "a", 2: "b"}
     )
     new = tracks.resample(1.0)
     assert (set(new.id), new.robots, new.labels) == ({1}, frozenset(), {1: "a"})
@@ -197,7 +197,7 @@ def test_resampling_a_straight_walk_gives_the_same_walk(seed, dt):
         np.concatenate([frame, frame + 7]),
         np.tile(speed[0] * frame, 2),
         np.tile(speed[1] * frame, 2),
-        frame_rate=10.0,
+        row_rate=10.0,
     )
     new = tracks.resample(dt)
     since = new.time * 10.0 + begin

@@ -28,7 +28,7 @@ SDD = '0 1 1 3 3 0 0 0 0 "Biker"\n0 1 1 3 3 1 1 0 0 "Biker"\n'
         ("inf.txt", "# a\n\n0 1 2 3\n10 1 2 -inf\n", "inf.txt line 4: y is -inf for frame 10, id 1"),
         ("twice.txt", "0 1 2 3\n10 1 2 3\n10 1 4 5\n10 1 6 7\n", "line 3: frame 10, id 1 stands there a second time"),
         ("half.txt", "0 1.5 2 3\n", r"half.txt line 1: id is 1\.5, it must be a whole number"),
-        ("step.txt", "0 1 2 3\n1 1 2 3\n", "step.txt does not say its frame rate, and rows 1 frames apart"),
+        ("step.txt", "0 1 2 3\n1 1 2 3\n", "step.txt has no frame rate, and a step of 1 frames is not a convention"),
         ("obsmat.txt", OBSMAT + "11 1 inf 0 1 0 0 0\n", "obsmat.txt line 2: x is inf"),
         ("cut.vsp", VSP[:-30], "cut.vsp ends inside spline 1; the file is cut short"),
         ("few.vsp", VSP.replace("1 - the", "2 - the"), "ends before the number of control points of spline 2"),
@@ -68,7 +68,7 @@ SDD = '0 1 1 3 3 0 0 0 0 "Biker"\n0 1 1 3 3 1 1 0 0 "Biker"\n'
         (
             "s.ndjson",
             '{"scene": {"id": 0, "p": 1, "s": 0, "e": 1}}\n{"track": {"f": 0, "p": 1, "x": 1, "y": 2}}\n',
-            "does not say its frame rate",
+            "has no frame rate",
         ),
         (
             "t.ndjson",
@@ -76,7 +76,7 @@ SDD = '0 1 1 3 3 0 0 0 0 "Biker"\n0 1 1 3 3 1 1 0 0 "Biker"\n'
             "lacks one of the whole",
         ),
         ("u.ndjson", '{"track": {"f": 1e300, "p": 1, "x": 1, "y": 2}}\n', r"f is 1e\+300, it must be a whole number"),
-        ("v.txt", "# PeTrack\n# framerate: fast\n1 0 1 2 3\n", "does not say its frame rate"),
+        ("v.txt", "# PeTrack\n# framerate: fast\n1 0 1 2 3\n", "has no frame rate"),
         ("w.txt", "# framerate: 2.5.1 fps\n1 0 1 2 3\n", r"w.txt: the header's frame rate '2\.5\.1' is not a number"),
         ("x.txt", "# PeTrack\n# framerate: 25 fps\n", "of no known format"),
         ("y.txt", "# framerate: 0 fps\n1 0 1 2 3\n1 1 1 2 3\n", r"fps 0\.0 is not allowed"),
@@ -128,7 +128,7 @@ def test_binary_bytes_after_a_good_beginning(tmp_path):
 def test_arguments_that_are_not_allowed(tmp_path):
     path = tmp_path / "good.txt"
     path.write_text("0 1 2 3\n10 1 2 3\n")
-    assert load(path, fps=5).dt == 0.2
+    assert load(path, fps=50).dt == 0.2
     for fps in (0.0, -1.0, float("nan"), float("inf"), 1e6):
         with pytest.raises(DataError, match="fps .* is not allowed"):
             load(path, fps=fps)

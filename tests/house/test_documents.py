@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 
 from crowdbot.cli import COMMANDS
+from crowdbot.recording import run
+from crowdbot.trials import trial_xml
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
@@ -43,12 +45,12 @@ def test_the_navigator_of_the_guide_steers_a_robot(tmp_path):
 
     (code,) = _blocks(ROOT / "CONTRIBUTING.md", "python")
     (tmp_path / "shy.py").write_text(code, encoding="utf-8")
-    trial = load_trial("frontal").xml()
+    trial = trial_xml(load_trial("frontal"))
     file = tmp_path / "frontal.xml"
     file.write_text(
         re.sub(r"<navigator [^>]*/>", '<navigator type="shy.py:Shy" space="0.8"/>', trial), encoding="utf-8"
     )
-    episode = load_trial(file).run()
+    episode = run(load_trial(file))
     assert episode.outcome in ("success", "timeout", "collision")
     assert type(episode.trial.robots[0].navigator).__name__ == "Shy"
 
@@ -73,7 +75,7 @@ def test_make_knows_the_two_commands():
         )
         assert done.returncode == 0, done.stderr
         assert "crowdbot demo" in done.stdout or "pytest" in done.stdout
-    assert (ROOT / ".ci" / "run").read_text(encoding="utf-8").strip().endswith("exec make test")
+    assert (ROOT / ".ci" / "run").read_text(encoding="utf-8").strip().endswith("make test\nexec make sweeps")
 
 
 def test_the_page_of_models_is_made_from_the_models():

@@ -75,6 +75,7 @@ def test_on_real_streets_it_is_as_good_as_the_best_constant_velocity(recordings,
     assert np.min([error(ways[:, :, k] / goal.horizon) for k in range(3)], axis=0).mean() < 0.93 * one
 
 
+@pytest.mark.soak
 def test_thirty_people_take_less_than_five_milliseconds():
     goal = LearnedDestinations.learned(street(people=200))
     past = crowd(W=1, A=30, holes=0.0)
@@ -175,7 +176,7 @@ def test_what_was_learned_is_the_same_again():
 
 def slow_clock():
     tracks = street()
-    return Trajectories(tracks.id, tracks.frame, tracks.x, tracks.y, frame_rate=1.0, frame_step=10, name="slow")
+    return Trajectories(tracks.id, tracks.frame, tracks.x, tracks.y, row_rate=1.0, frame_step=10, name="slow")
 
 
 @pytest.mark.parametrize(

@@ -61,7 +61,7 @@ def recorded(recordings: Path) -> Callable[[str], Trajectories]:
 
     def read(name: str) -> Trajectories:
         if name not in known:
-            known[name] = load(recordings / "eth_ucy_splits" / "all_data" / f"{name}.txt", fps=2.5)
+            known[name] = load(recordings / "eth_ucy_splits" / "all_data" / f"{name}.txt", fps=25)
         return known[name]
 
     return read

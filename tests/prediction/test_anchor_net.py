@@ -11,13 +11,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from crowdbot.benchmark import evaluate
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Trajectories, Windows
-from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, SampledConstantVelocity, evaluate
-from crowdbot.prediction.anchor_kernels import arrange, attend, crossing, dense, part_ways
-from crowdbot.prediction.anchor_net import NEEDED
-from crowdbot.prediction.own_frame import GAITS
-from crowdbot.prediction.places import FOLDS, learned
+from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, SampledConstantVelocity
+from crowdbot.prediction.anchor_net.agent_frame import GAITS
+from crowdbot.prediction.anchor_net.layers import attend, dense
+from crowdbot.prediction.anchor_net.predictor import NEEDED
+from crowdbot.prediction.joint_kernels import arrange, crossing, part_ways
+from crowdbot.prediction.pretrained_weights import FOLDS, learned
 
 Maker = Callable[..., Windows]
 KINDS = (AnchorNet(), AnchorNet(sample="draws"))

@@ -12,9 +12,9 @@ import torch
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories
-from crowdbot.prediction.anchor_net import NEEDED, network_output
-from crowdbot.prediction.learned.anchor_data import NONE, Material, Variation, backwards, batch, gathered, material_of
-from crowdbot.prediction.learned.anchor_training import (
+from crowdbot.prediction.anchor_net.agent_frame import AHEAD, COMPANY, INPUTS, NEAR
+from crowdbot.prediction.anchor_net.predictor import NEEDED, network_output
+from crowdbot.prediction.anchor_net.training import (
     AnchorNetTraining,
     AnchorTraining,
     learner,
@@ -22,10 +22,18 @@ from crowdbot.prediction.learned.anchor_training import (
     outputs,
     shapes_of,
 )
-from crowdbot.prediction.learned.extra import threads
-from crowdbot.prediction.learned.samples import Samples
-from crowdbot.prediction.learned.training import Schedule, train
-from crowdbot.prediction.own_frame import AHEAD, COMPANY, INPUTS, NEAR
+from crowdbot.prediction.anchor_net.training_data import (
+    NONE,
+    Material,
+    Variation,
+    backwards,
+    batch,
+    gathered,
+    material_of,
+)
+from crowdbot.prediction.training.loop import Schedule, train
+from crowdbot.prediction.training.samples import Samples
+from crowdbot.prediction.training.torch_backend import threads
 
 TINY = AnchorTraining(people=32, width=16, social=8, warm=5)
 

@@ -9,11 +9,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from crowdbot.benchmark import evaluate
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Trajectories, Windows
-from crowdbot.prediction import Anchors, ConstantVelocity, SampledConstantVelocity, evaluate
-from crowdbot.prediction.anchors import centres, residuals, spread_over_time
-from crowdbot.prediction.places import FOLDS, fold_of, kept_out, read_numbers
+from crowdbot.prediction import Anchors, ConstantVelocity, SampledConstantVelocity
+from crowdbot.prediction.anchor_net.anchors import centres, residuals, spread_over_time
+from crowdbot.prediction.pretrained_weights import FOLDS, fold_of, kept_out, read_numbers
 
 Maker = Callable[..., Windows]
 
@@ -30,7 +31,7 @@ def turners(count: int = 60) -> tuple[Windows, Windows]:
     tracks = np.concatenate([back, ahead], axis=1)
     frame = np.tile(np.arange(20), count) + np.repeat(np.arange(count) * 30, 20)
     x, y = tracks.reshape(-1, 2).T
-    return Trajectories(np.repeat(np.arange(count), 20), frame, x, y, frame_rate=2.5).windows()
+    return Trajectories(np.repeat(np.arange(count), 20), frame, x, y, row_rate=2.5).windows()
 
 
 def test_shapes_are_the_ways_people_bend() -> None:

@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 
+from crowdbot.benchmark import Task, evaluate, sweep
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Trajectories
 from crowdbot.data.degrade import (
@@ -19,16 +20,7 @@ from crowdbot.data.degrade import (
     MissingFrames,
     Occlusion,
 )
-from crowdbot.prediction import (
-    ConstantVelocity,
-    Kalman,
-    SampledConstantVelocity,
-    Simulated,
-    Task,
-    evaluate,
-    seen_windows,
-    sweep,
-)
+from crowdbot.prediction import ConstantVelocity, Kalman, SampledConstantVelocity, Simulated, seen_windows
 
 FIELDS = ("position", "present", "scored", "robot", "id", "frame")
 
@@ -36,7 +28,7 @@ FIELDS = ("position", "present", "scored", "robot", "id", "frame")
 def _line(ids=(1, 2), rows=8, gap=2.0, **more):
     """People side by side who walk along x, 0.5 m a row."""
     t, a = np.divmod(np.arange(rows * len(ids)), len(ids))
-    return Trajectories(np.array(ids)[a], t, 0.5 * t, gap * a, frame_rate=2.5, name="line", **more)
+    return Trajectories(np.array(ids)[a], t, 0.5 * t, gap * a, row_rate=2.5, name="line", **more)
 
 
 def _without(tracks, *gone):

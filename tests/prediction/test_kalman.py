@@ -162,7 +162,7 @@ def training(recordings: Path) -> list[Windows]:
         recordings / "eth_ucy_splits" / "train" / f"{name}_train.txt" for name in ("crowds_zara03", "uni_examples")
     ]
     drone = [recordings / "sdd_trajnet" / "Train" / "stanford" / f"hyang_{number}.txt" for number in (4, 5, 6, 7)]
-    return [load(file, fps=2.5).windows()[0] for file in [*train, *drone]]
+    return [load(file).windows()[0] for file in [*train, *drone]]
 
 
 def test_the_defaults_are_the_fit_that_the_docs_name(training: list[Windows]) -> None:

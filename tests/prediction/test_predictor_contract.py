@@ -15,7 +15,7 @@ from crowdbot import prediction
 from crowdbot.core import InputError, builtin_classes, stream
 from crowdbot.data import Forecast, Trajectories, Windows
 from crowdbot.prediction import Predictor
-from crowdbot.prediction.learned.predictor import LearnedPredictor
+from crowdbot.prediction.learned_predictor import LearnedPredictor
 
 Maker = Callable[..., Windows]
 

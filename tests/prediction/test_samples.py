@@ -9,13 +9,13 @@ import pytest
 
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Recording
-from crowdbot.prediction.learned.samples import Samples, leave_out, short_recordings, split_in_time
+from crowdbot.prediction.training.samples import Samples, leave_out, short_recordings, split_in_time
 
 
 @pytest.fixture(scope="module")
 def files(recordings: Path) -> dict[str, Recording]:
     folder = recordings / "eth_ucy_splits" / "train"
-    return {path.stem: Recording(str(path), fps=2.5) for path in sorted(folder.glob("*.txt"))}
+    return {path.stem: Recording(str(path), fps=25) for path in sorted(folder.glob("*.txt"))}
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +84,7 @@ def test_a_split_in_time_shares_no_row(files: dict[str, Recording], tmp_path: Pa
     assert 0.15 < len(late) / len(one.windows[0]) < 0.26
     file = tmp_path / "clock.txt"
     file.write_text("".join(f"{10 * t} {who} {t} {who}\n" for t in range(100) for who in (1, 2)))
-    early, late = split_in_time([Recording(str(file), fps=2.5)], 0.25)
+    early, late = split_in_time([Recording(str(file), fps=25)], 0.25)
     assert early.position[..., 0].max() < late.position[..., 0].min()
     assert (len(early), len(late)) == (41, 21)
     with pytest.raises(InputError, match=r"is 1.5, it must be above 0 and below 1"):
@@ -92,7 +92,7 @@ def test_a_split_in_time_shares_no_row(files: dict[str, Recording], tmp_path: Pa
     file = tmp_path / "short.txt"
     file.write_text("".join(f"{10 * t} 1 {t} 0\n" for t in range(30)))
     with pytest.raises(DataError, match="11 windows are too few to hold back the last 25%"):
-        split_in_time([Recording(str(file), fps=2.5)], 0.25)
+        split_in_time([Recording(str(file), fps=25)], 0.25)
 
 
 def test_what_does_not_fit_together_is_said(files: dict[str, Recording], recordings: Path) -> None:

@@ -15,14 +15,16 @@ import torch
 from crowdbot.core import InputError, stream
 from crowdbot.data import Windows
 from crowdbot.prediction import SocialWays
-from crowdbot.prediction.learned import Samples, load_checkpoint, save_checkpoint
-from crowdbot.prediction.learned.extra import device_of, threads
-from crowdbot.prediction.learned.social_ways import Discriminator, Generator, Sight, social_features
-from crowdbot.prediction.learned.social_ways_config import SocialWaysConfig, config_of, preset
-from crowdbot.prediction.learned.social_ways_predictor import SocialWaysNetwork
-from crowdbot.prediction.learned.social_ways_sight import sight_of
-from crowdbot.prediction.learned.social_ways_training import SocialWaysTraining, augmented, learner, variety_loss
-from crowdbot.prediction.learned.training import BEST, LAST, Schedule, train
+from crowdbot.prediction.social_ways import predictor as module
+from crowdbot.prediction.social_ways.config import SocialWaysConfig, config_of, preset
+from crowdbot.prediction.social_ways.inputs import sight_of
+from crowdbot.prediction.social_ways.network import Discriminator, Generator, Sight, social_features
+from crowdbot.prediction.social_ways.predictor import SocialWaysNetwork
+from crowdbot.prediction.social_ways.training import SocialWaysTraining, augmented, learner, variety_loss
+from crowdbot.prediction.training.checkpoint import load_checkpoint, save_checkpoint
+from crowdbot.prediction.training.loop import BEST, LAST, Schedule, train
+from crowdbot.prediction.training.samples import Samples
+from crowdbot.prediction.training.torch_backend import device_of, threads
 
 Maker = Callable[..., Windows]
 TINY = SocialWaysConfig(hidden=8, pooled=4, noise=3, batch=8, variety_draws=3)
@@ -388,9 +390,8 @@ def test_without_torch_it_says_what_to_install(checkpoint: str, crowd: Maker, mo
     import sys
 
     from crowdbot.core import MissingExtra
-    from crowdbot.prediction.learned import social_ways_predictor
 
-    social_ways_predictor._network.cache_clear()
+    module._network.cache_clear()
     monkeypatch.setitem(sys.modules, "torch", None)
     with pytest.raises(MissingExtra, match=r"pip install 'crowdbot\[learn\]'"):
         SocialWays(checkpoint).predict(crowd(), 3)

@@ -11,8 +11,8 @@ import pytest
 from crowdbot.core import InputError, stream
 from crowdbot.data import Windows
 from crowdbot.prediction import SocialWays
-from crowdbot.prediction.joint import kept_apart
-from crowdbot.prediction.places import FOLDS
+from crowdbot.prediction.joint_futures import kept_apart
+from crowdbot.prediction.pretrained_weights import FOLDS
 
 Maker = Callable[..., Windows]
 ETH = SocialWays("eth")

@@ -14,8 +14,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import InputError
-from crowdbot.prediction.learned import load_checkpoint, save_checkpoint
-from crowdbot.prediction.learned.training import BEST, LAST, LOG, Schedule, Trainable, train
+from crowdbot.prediction.training.checkpoint import load_checkpoint, save_checkpoint
+from crowdbot.prediction.training.loop import BEST, LAST, LOG, Schedule, Trainable, train
 
 
 @dataclass(frozen=True)

@@ -12,15 +12,17 @@ from trial_texts import FLOW
 from crowdbot.core import InputError, Scene
 from crowdbot.models import ORCA, CrowdModel, SocialForce
 from crowdbot.models.mixture import Mixture
-from crowdbot.trials import Trial, load_trial, run_batch
-from crowdbot.world.walk import Walk, alone, together
+from crowdbot.recording import run
+from crowdbot.simulation import run_batch
+from crowdbot.trials import Trial, expand_sweeps, load_trial, parse_trial
+from crowdbot.world import Walk, alone, together
 
 SEEDS = range(8)
 
 
 def short(name: str) -> Trial:
     trial = load_trial(name)
-    first = trial.variants()[0] if trial.sweeps else trial
+    first = expand_sweeps(trial)[0] if trial.sweeps else trial
     return dataclasses.replace(first, duration=1.5)
 
 
@@ -30,21 +32,21 @@ def short(name: str) -> Trial:
 def test_a_batch_of_eight_is_eight_single_runs(name: str) -> None:
     trial = short(name)
     many = run_batch(trial, SEEDS)
-    assert [one.digest for one in many] == [trial.run(seed).digest for seed in SEEDS]
+    assert [one.digest for one in many] == [run(trial, seed).digest for seed in SEEDS]
     assert [one.seed for one in many] == list(SEEDS)
     assert len({one.digest for one in many}) > 1 or name == "frontal"
 
 
 @pytest.mark.parametrize("text", [FLOW, room("physics", LEAN)], ids=["flow", "physics"])
 def test_runs_of_different_lengths_and_worlds(text: str) -> None:
-    trial = Trial.parse(text)
+    trial = parse_trial(text)
     short_one = dataclasses.replace(trial, duration=min(trial.duration, 2.0))
-    assert [one.digest for one in run_batch(short_one, SEEDS)] == [short_one.run(seed).digest for seed in SEEDS]
+    assert [one.digest for one in run_batch(short_one, SEEDS)] == [run(short_one, seed).digest for seed in SEEDS]
 
 
 def test_who_ends_early_leaves_the_others_alone() -> None:
     trial = load_trial("circle-crossing", navigator="straight", reactive=False)
-    singles = [trial.run(seed) for seed in SEEDS]
+    singles = [run(trial, seed) for seed in SEEDS]
     assert len({one.steps for one in singles}) > 1
     assert [one.digest for one in run_batch(trial, SEEDS)] == [one.digest for one in singles]
 

@@ -15,10 +15,10 @@ from trial_texts import FLOW, GOOD
 
 from crowdbot.core import EpisodeError, InputError, TrialError
 from crowdbot.data import Tape
-from crowdbot.trials import Trial, branch, read_episode, record, replay
-from crowdbot.trials.changing import changed
+from crowdbot.recording import branch, read_episode, record, replay, run
+from crowdbot.trials import apply_values, parse_trial
 
-SMALL, FLOWING = Trial.parse(GOOD), Trial.parse(FLOW)
+SMALL, FLOWING = parse_trial(GOOD), parse_trial(FLOW)
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +65,7 @@ def test_people_who_come_ways_journeys_and_chance_go_on_as_they_were(
 
 def test_a_branch_in_the_physics_world_is_the_rest_of_the_original(tmp_path: Path) -> None:
     stands = LEAN.replace('x="6" y="4" goal="1,4" body="woman-36" outfit="3"', 'x="3" y="2.2"')
-    trial = Trial.parse(room("physics", stands).replace('duration="1"', 'duration="2"'))
+    trial = parse_trial(room("physics", stands).replace('duration="1"', 'duration="2"'))
     first = record(trial, out=tmp_path / "whole")
     whole = messages(tmp_path / "whole" / "episode.mcap")
     assert {"/crowdbot/forces", "/crowdbot/contacts"} <= {topic for topic, *_ in whole}, "somebody is run into"
@@ -102,7 +102,7 @@ def test_a_branch_with_changes_differs_from_then_on_and_replays(flowing: Path, t
     assert read.times[1] == 6.2
     speeds = np.hypot(*read.velocity[5:, :4].reshape(-1, 2).T)
     assert speeds.max() < 1.0 + 1e-9
-    assert Trial.parse(read.xml).berth == 0.3
+    assert parse_trial(read.xml).berth == 0.3
     assert replay(tmp_path / "episode.mcap").equal
 
 
@@ -122,14 +122,14 @@ def test_new_chance_and_branches_of_branches(flowing: Path, tmp_path: Path) -> N
 
 def test_a_wall_may_be_put_up(small: Path, tmp_path: Path) -> None:
     xml = GOOD.replace('<wall points="-6,2.9 6,2.9"/>', '<wall points="-6,2.9 6,2.9"/><wall points="2,-3 2,3"/>')
-    done = branch(small, 1.0, trial=Trial.parse(xml.replace('collision="false"', 'collision="true"')), out=tmp_path)
+    done = branch(small, 1.0, trial=parse_trial(xml.replace('collision="false"', 'collision="true"')), out=tmp_path)
     assert done.outcome in ("timeout", "collision")
     assert len(read_episode(tmp_path / "episode.mcap").walls) == 4
     assert replay(tmp_path / "episode.mcap").equal
 
 
 def test_an_episode_in_memory_branches_too() -> None:
-    episode = SMALL.run()
+    episode = run(SMALL)
     later = episode.branch(at=2.0, **{"robot.goal.x": 0.0, "end.collision": True})
     assert later.times[0] == 2.0
     assert np.array_equal(later.position[0], episode.position[20])
@@ -178,12 +178,14 @@ def test_an_episode_that_does_not_replay_is_not_branched(small: Path, tmp_path: 
 
 
 def test_changes_name_things_as_the_xml_does() -> None:
-    new = changed(SMALL, {"crowd.time_horizon": 1, "robot[0].sensor.rays": 30, "spawner[west].speed": "uniform(1, 2)"})
+    new = apply_values(
+        SMALL, {"crowd.time_horizon": 1, "robot[1].sensor.rays": 30, "spawner[west].speed": "uniform(1, 2)"}
+    )
     assert new.crowd.time_horizon == 1  # type: ignore[attr-defined]
     assert new.robots[0].sensors[0].sensor.rays == 30  # type: ignore[attr-defined]
     assert str(new.spawners[1].speed) == "uniform(1, 2)"
-    assert changed(SMALL, {}) is SMALL
+    assert apply_values(SMALL, {}) is SMALL
     slashed = {"crowd/time_horizon": 1, "robot[1]/sensor/rays": 30, "spawner[west]/speed": "uniform(1, 2)"}
-    assert changed(SMALL, slashed) == new
-    assert changed(SMALL, {"spawner[2]/speed": 1}) == changed(SMALL, {"spawner[1].speed": 1})
-    assert changed(SMALL, {"robot.sensor.x": 0.2}).robots[0].sensors[0].x == 0.2
+    assert apply_values(SMALL, slashed) == new
+    assert apply_values(SMALL, {"spawner[2]/speed": 1}) == apply_values(SMALL, {"spawner[2].speed": 1})
+    assert apply_values(SMALL, {"robot.sensor.x": 0.2}).robots[0].sensors[0].x == 0.2

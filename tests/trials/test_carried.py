@@ -16,15 +16,25 @@ from trial_texts import GOOD, SHY
 
 from crowdbot.cli import main
 from crowdbot.core import EpisodeError
-from crowdbot.trials import Trial, branch, carried, load_trial, read_episode, record, repair, replay
-from crowdbot.trials.carried import Carried, LeftOut, named_files
-from crowdbot.trials.recording import Recorder
-from crowdbot.trials.run import opened
+from crowdbot.recording import (
+    Carried,
+    LeftOut,
+    Recorder,
+    attachments,
+    branch,
+    named_files,
+    opened,
+    read_episode,
+    record,
+    repair,
+    replay,
+)
+from crowdbot.trials import Trial, load_trial, parse_trial
 
 HALL = """<trial name="hall" duration="3" seed="1">
   <stage map="maps/hall.yaml" unknown="occupied"/>
   <crowd type="orca"/>
-  <recorded data="people.txt" fps="2.5" mode="reactive" radius="0.2"/>
+  <recorded data="people.txt" fps="25" mode="reactive" radius="0.2"/>
   <agent x="3" y="3" goal="6,3"/>
   <robot name="robot" x="2" y="2" radius="0.3">
     <goal x="7" y="2"/>
@@ -166,7 +176,7 @@ def test_a_killed_run_has_its_files_too(made: Path, tmp_path: Path) -> None:
 
 
 def test_large_files_are_named_and_not_kept(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(carried, "MOST", 200)
+    monkeypatch.setattr(attachments, "MOST", 200)
     with pytest.warns(
         LeftOut, match=r"leaves out 'maps/pictures/hall.pgm', .* \(too large, at most 200 bytes are kept"
     ):
@@ -223,7 +233,7 @@ def test_files_that_were_changed_in_the_episode_are_refused(moved: Path, tmp_pat
 
 
 def test_a_trial_without_files_keeps_none(tmp_path: Path) -> None:
-    record(Trial.parse(GOOD), out=tmp_path)
+    record(parse_trial(GOOD), out=tmp_path)
     assert "files" not in read_episode(tmp_path / "episode.mcap").metadata
 
 
@@ -231,7 +241,7 @@ def test_elements_may_tell_of_their_files(made: Path, tmp_path: Path, monkeypatc
     from crowdbot.trials import Robot
 
     monkeypatch.setattr(Robot, "files", lambda robot: (made / "people.txt",), raising=False)
-    trial = dataclasses.replace(Trial.parse(GOOD), folder=made)
+    trial = dataclasses.replace(parse_trial(GOOD), folder=made)
     assert set(named_files(trial)) == {"people.txt"}
     assert Carried("people.txt", "data", 0, "", True).lies_in(made) is False
     assert Recorder(tmp_path / "x.mcap", _tally(trial)).files[0][0].name == "people.txt"
@@ -285,7 +295,7 @@ def test_an_episode_cannot_pass_code_off_as_data(moved: Path, tmp_path: Path, na
 
 @pytest.mark.parametrize("how", ["trial", "origin", "robot", "sweep"])
 def test_code_of_which_the_episode_does_not_tell_is_not_run(tmp_path: Path, how: str) -> None:
-    record(Trial.parse(GOOD), out=tmp_path / "out")
+    record(parse_trial(GOOD), out=tmp_path / "out")
     (tmp_path / "trap.py").write_text(TRAP.format(mark=str(tmp_path / "ran")))
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "trap.py").write_text(TRAP.format(mark=str(tmp_path / "ran")))
@@ -396,6 +406,6 @@ def test_a_robot_folder_keeps_its_code_as_code_and_no_caches(tmp_path: Path) -> 
 
 
 def _tally(trial: Trial):  # type: ignore[no-untyped-def]
-    from crowdbot.trials.tally import Tally
+    from crowdbot.simulation import Tally
 
     return Tally(trial, 0)

@@ -8,8 +8,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.trials.cdr import Shape, marker_bytes, people_bytes
-from crowdbot.trials.messages import Messages
+from crowdbot.messages import Messages, Shape, marker_bytes, people_bytes
 
 MAKE = Messages()
 NOW = 12_345_678_901

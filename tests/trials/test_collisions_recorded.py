@@ -12,10 +12,9 @@ import pytest
 from rosbags.highlevel import AnyReader
 from trial_texts import GOOD
 
-from crowdbot.trials import Simulation, Trial, export, read_episode
-from crowdbot.trials.recording import Recorder
-from crowdbot.trials.simulation import Frame
-from crowdbot.trials.tally import Digest, Tally
+from crowdbot.recording import Recorder, export, read_episode
+from crowdbot.simulation import Digest, Frame, Simulation, Tally
+from crowdbot.trials import parse_trial
 
 
 class Party(NamedTuple):
@@ -86,7 +85,7 @@ def physical(frame: Frame, **more: Any) -> Physical:
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     path = tmp_path_factory.mktemp("forces") / "episode.mcap"
-    trial = Trial.parse(GOOD)
+    trial = parse_trial(GOOD)
     simulation, tally = Simulation(trial, 3), Tally(trial, 3)
     with Recorder(path, tally) as recorder:
         for k in range(8):
@@ -130,7 +129,7 @@ def test_rosbags_reads_them(recorded: tuple[Path, str]) -> None:
 
 
 def test_they_count_for_the_digest_and_a_world_without_them_is_as_before() -> None:
-    simulation = Simulation(Trial.parse(GOOD), 3)
+    simulation = Simulation(parse_trial(GOOD), 3)
     sums = []
     for more in ({}, {"forces": (FORCE,)}, {"forces": (FORCE._replace(force=85.6),)}, {"collisions": (HIT,)}):
         digest = Digest()

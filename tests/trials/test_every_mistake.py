@@ -11,13 +11,13 @@ from planted import KINDS, RICH, Kind, planted, told_apart
 from trial_texts import FLOW, GOOD
 
 from crowdbot.core import TrialError
-from crowdbot.trials import Trial, load_trial
-from crowdbot.trials.experiment import Experiment
+from crowdbot.experiments import parse_experiment
+from crowdbot.trials import load_trial, parse_trial, trial_xml
 
 
 def problems(text: str) -> list[str]:
     try:
-        Trial.parse(text, place="t.xml")
+        parse_trial(text, place="t.xml")
     except TrialError as error:
         return list(error.problems)
     return []
@@ -100,7 +100,7 @@ NAMES = (
 
 @pytest.mark.parametrize("name", NAMES)
 def test_mistakes_in_trials_that_ship_are_all_told(name: str) -> None:
-    text = load_trial(name).xml()
+    text = trial_xml(load_trial(name))
     for seed in range(4):
         spoilt_text, lines = spoilt(text, random.Random(f"{name} {seed}"))
         told = problems(spoilt_text)
@@ -171,6 +171,6 @@ EXPERIMENT = """<experiment name="e">
 
 def test_no_mistake_hides_another_in_an_experiment() -> None:
     with pytest.raises(TrialError) as found:
-        Experiment.parse(EXPERIMENT, place="e.xml")
+        parse_experiment(EXPERIMENT, place="e.xml")
     lines = [int(one.split(":")[1]) for one in found.value.problems]
     assert lines == [2, 3, 3, 4, 4, 6, 7], found.value.problems

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import random
-import time
 from collections import Counter
 from pathlib import Path
 
@@ -14,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import InputError, TrialError
-from crowdbot.trials.experiment import (
+from crowdbot.experiments import (
     Block,
     Choice,
     Experiment,
@@ -25,17 +24,19 @@ from crowdbot.trials.experiment import (
     Screen,
     TrialEntry,
     builtin_experiments,
+    check_experiment,
+    experiment_xml,
     is_experiment,
     load_experiment,
     orders,
     page_of,
+    parse_experiment,
     plan,
     rows_of,
+    sanitised,
     seed_of,
     williams,
-)  # fmt: skip
-from crowdbot.trials.experiment.page import sanitised
-from crowdbot.trials.experiment.reading import read_experiment
+)
 
 SHIPPED = builtin_experiments()["robot-speed"]
 
@@ -71,16 +72,16 @@ EXPERIMENTS = st.builds(
 @settings(max_examples=60)
 @given(EXPERIMENTS)
 def test_xml_to_experiment_to_xml_is_the_identity(experiment: Experiment) -> None:
-    text = experiment.xml()
-    again = read_experiment(text, whole=False)
+    text = experiment_xml(experiment)
+    again = parse_experiment(text, whole=False)
     assert again == experiment
-    assert again.xml() == text
+    assert experiment_xml(again) == text
 
 
 @pytest.mark.parametrize("name", builtin_experiments())
 def test_what_is_shipped_is_right_and_reads_back(name: str) -> None:
     experiment = load_experiment(name)
-    assert Experiment.parse(experiment.xml(), folder=experiment.folder) == experiment
+    assert parse_experiment(experiment_xml(experiment), folder=experiment.folder) == experiment
     assert is_experiment(name)
     assert is_experiment(SHIPPED)
     assert not is_experiment("crossing-flows")
@@ -118,7 +119,7 @@ def _wrong(tmp_path: Path) -> list[str]:
     (folder / "broken.xml").write_text('<trial name="t" duration="-1">\n<crowd type="orka"/></trial>')
     (folder / "hello.txt").write_text("hello")
     with pytest.raises(TrialError) as found:
-        Experiment.parse(WRONG, place="e.xml", folder=folder)
+        parse_experiment(WRONG, place="e.xml", folder=folder)
     return list(found.value.problems)
 
 
@@ -169,7 +170,7 @@ def test_what_is_wrong_with_the_whole_is_said_too(tmp_path: Path) -> None:
     assert len(found.value.problems) == 5
     many = [TrialEntry(name=f"t{k}", source="frontal") for k in range(11)]
     with pytest.raises(TrialError, match="has 11000 trials for a participant, at most 10000"):
-        Experiment(name="e", blocks=[Block(name="b", repetitions=1000, trials=many)]).check()
+        check_experiment(Experiment(name="e", blocks=[Block(name="b", repetitions=1000, trials=many)]))
 
 
 @pytest.mark.parametrize(
@@ -193,7 +194,7 @@ def test_values_in_python_are_checked(make: object, said: str) -> None:
 )
 def test_what_is_no_experiment_is_refused(text: str | bytes) -> None:
     with pytest.raises(TrialError):
-        Experiment.parse(text, place="e.xml")
+        parse_experiment(text, place="e.xml")
 
 
 def test_missing_and_empty_files_say_so(tmp_path: Path) -> None:
@@ -213,7 +214,6 @@ def test_mutated_files_never_break_the_reader(tmp_path: Path) -> None:
     draw = random.Random(3)
     text = (SHIPPED / "experiment.xml").read_text()
     words = ["<", ">", '"', "=", "&", "/", "-1", "1e999", "../", "file", "é", "\x00", "]]>", "<block", "</block>", " "]
-    begin = time.perf_counter()
     ends = Counter()
     for _ in range(300):
         mutated = text
@@ -221,13 +221,12 @@ def test_mutated_files_never_break_the_reader(tmp_path: Path) -> None:
             at, cut = draw.randrange(len(mutated)), draw.choice([0, 1, 5, 40])
             mutated = mutated[:at] + draw.choice([*words, mutated[at : at + 60]]) + mutated[at + cut :]
         try:
-            Experiment.parse(mutated, folder=SHIPPED)
+            parse_experiment(mutated, folder=SHIPPED)
             ends["right"] += 1
         except TrialError as error:
             ends["wrong" if error.problems else "wordless"] += 1
     assert ends["wrong"] > 150
     assert ends["wordless"] == 0
-    assert time.perf_counter() - begin < 60
 
 
 def test_a_mean_page_does_nothing() -> None:
@@ -296,11 +295,10 @@ def test_pages_are_closed_and_stay_so(parts: list[str]) -> None:
     assert "<script" not in html
 
 
-def test_great_pages_take_no_time() -> None:
-    begin = time.perf_counter()
+def test_great_pages_are_read() -> None:
+    """Work that grew with the square of the length would take hours here."""
     for text in ("<p>" * 60_000, "<pre>" + " " * 199_000 + "x", "</b>" * 40_000, "<script>" * 20_000, "\n \n" * 60_000):
-        sanitised(text)
-    assert time.perf_counter() - begin < 5.0
+        assert len(sanitised(text)[0]) <= len(text)
 
 
 def test_screens_come_from_the_folder_only(tmp_path: Path) -> None:

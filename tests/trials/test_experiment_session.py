@@ -12,8 +12,7 @@ from typing import Any
 import pytest
 
 from crowdbot.core import EpisodeError, InputError, TrialError
-from crowdbot.trials import read_episode
-from crowdbot.trials.experiment import (
+from crowdbot.experiments import (
     Abort,
     Answered,
     Begin,
@@ -27,6 +26,7 @@ from crowdbot.trials.experiment import (
     FreeText,
     Given,
     Left,
+    Log,
     Next,
     Number,
     Option,
@@ -39,12 +39,15 @@ from crowdbot.trials.experiment import (
     Start,
     TrialEntry,
     Typed,
+    event_of,
     load_experiment,
+    parse_experiment,
+    read_log,
+    record_of,
     save_summary,
     summary,
 )
-from crowdbot.trials.experiment.event import event_of, record_of
-from crowdbot.trials.experiment.log import Log, read_log
+from crowdbot.recording import read_episode
 
 AGE = Number(name="age", text="How old are you?", at_least=18, whole=True)
 LIKED = Choice(name="liked", text="What?", several=True, options=[Option(value="speed"), Option(value="distance")])
@@ -248,7 +251,7 @@ def test_a_session_leaves_its_folders(whole: Path) -> None:
         "001-x", "001-x/answers.jsonl", "001-x/episode.mcap", "002-y", "002-y/answers.jsonl", "002-y/episode.mcap",
         "answers.jsonl", "experiment.xml", "session.jsonl",
     ]  # fmt: skip
-    assert Experiment.parse((whole / "experiment.xml").read_text()) == EXPERIMENT
+    assert parse_experiment((whole / "experiment.xml").read_text()) == EXPERIMENT
     records = read_log(whole / "session.jsonl")
     assert records[0]["participant"] == 1
     assert [record["at"] for record in records] == [101.0 + k for k in range(len(records))]

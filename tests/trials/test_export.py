@@ -14,14 +14,15 @@ from trial_texts import FLOW
 
 from crowdbot.cli import main
 from crowdbot.core import EpisodeError, InputError
+from crowdbot.recording import Recorded, export, read_episode, record
 from crowdbot.sensors import Picture
-from crowdbot.trials import Recorded, Trial, export, read_episode, record
+from crowdbot.trials import parse_trial
 
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Recorded]:
     folder = tmp_path_factory.mktemp("flow")
-    record(Trial.parse(FLOW), out=folder)
+    record(parse_trial(FLOW), out=folder)
     return folder / "episode.mcap", read_episode(folder / "episode.mcap")
 
 
@@ -62,9 +63,9 @@ def test_robots_scans_and_contacts(recorded: tuple[Path, Recorded], tmp_path: Pa
 
 
 @pytest.fixture(scope="module")
-def seen(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def seen(drawing: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("seen")
-    record(Trial.parse(room(text=ROOM)), out=folder)
+    record(parse_trial(room(text=ROOM)), out=folder)
     return folder / "episode.mcap"
 
 

@@ -18,12 +18,13 @@ from crowdbot.metrics import NAVIGATION_METRICS
 from crowdbot.models import ORCA, SocialForce
 from crowdbot.models.mixture import Mixture
 from crowdbot.navigation import Navigator, Observation, Straight
+from crowdbot.recording import read_episode, replay, run
 from crowdbot.sensors import Lidar2D
+from crowdbot.simulation import Episode, Simulation
 from crowdbot.trials import (
     Crowds,
     Direction,
     End,
-    Episode,
     Exit,
     Goal,
     Journey,
@@ -31,7 +32,6 @@ from crowdbot.trials import (
     Point,
     Robot,
     Routing,
-    Simulation,
     Source,
     Spawner,
     Stage,
@@ -39,12 +39,11 @@ from crowdbot.trials import (
     Wall,
     Zone,
     load_trial,
-    read_episode,
-    replay,
+    parse_trial,
 )
 from crowdbot.world import DifferentialDrive, PlanarWorld
 
-WHOLE = Trial.parse(FLOW)
+WHOLE = parse_trial(FLOW)
 DOOR = Stage(walls=[Wall([(0, -50), (0, 3)]), Wall([(0, 4.5), (0, 5)])])
 
 
@@ -60,7 +59,7 @@ def trial(**changes: object) -> Trial:
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Episode]:
     """Return a file and the episode it was written from, in which places are used again."""
     folder = tmp_path_factory.mktemp("flow")
-    return folder / "episode.mcap", WHOLE.run(out=folder)
+    return folder / "episode.mcap", run(WHOLE, out=folder)
 
 
 def whole_tracks(episode: Episode) -> bool:
@@ -97,7 +96,7 @@ def test_a_recording_of_a_flow_is_the_episode(recorded: tuple[Path, Episode]) ->
         assert np.array_equal(getattr(read, name), getattr(episode, name)), name
     assert np.allclose(read.velocity, episode.velocity, rtol=0, atol=1e-12)
     assert read.robots == episode.robots
-    assert Trial.parse(read.xml) == WHOLE
+    assert parse_trial(read.xml) == WHOLE
     for one, two in ((read.tracks(), episode.tracks()), (read.tracks(0.1), data.load(path))):
         assert np.array_equal(one.x, two.x)
         assert np.array_equal(one.id, two.id)
@@ -140,8 +139,8 @@ def test_scans_name_whom_they_hit(recorded: tuple[Path, Episode]) -> None:
 
 
 def test_the_report_shows_everybody(recorded: tuple[Path, Episode], tmp_path: Path) -> None:
-    from crowdbot.benchmark.report import Predicted, write_report
-    from crowdbot.prediction import ConstantVelocity, evaluate
+    from crowdbot.benchmark import Predicted, evaluate, write_report
+    from crowdbot.prediction import ConstantVelocity
 
     _, episode = recorded
     past, future = episode.tracks().windows(8, 12, near=8.0)
@@ -152,8 +151,8 @@ def test_the_report_shows_everybody(recorded: tuple[Path, Episode], tmp_path: Pa
 
 def test_people_find_the_door_with_routing_only() -> None:
     walker = Spawner(count=3, zone=box(-4, -2), goal=box(3, -2), speed=1.3)
-    without = trial(stage=DOOR, spawners=[walker]).run()
-    led = trial(stage=DOOR, spawners=[walker], routing=Routing()).run()
+    without = run(trial(stage=DOOR, spawners=[walker]))
+    led = run(trial(stage=DOOR, spawners=[walker], routing=Routing()))
     assert without.active[-1].all()
     assert np.all(without.position[-1, :, 0] < 0.0)
     assert not led.active[-1].any()
@@ -167,7 +166,7 @@ def test_journeys_lead_from_stop_to_stop() -> None:
     away = Journey(name="away", stops=[Direction(np.pi)])
     spawners = [Spawner(count=1, zone=box(0, 0, 0.1, 0.1), journey="around", speed=1.5),
                 Spawner(count=1, zone=box(-2, 0, 0.1, 0.1), journey="away", speed=1.0)]  # fmt: skip
-    episode = trial(journeys=[around, away], spawners=spawners).run()
+    episode = run(trial(journeys=[around, away], spawners=spawners))
     path = episode.position[:, 0]
     reached = [int(np.argmax(np.hypot(*(path - place).T) < 0.5)) for place in ([0, 3], [5, 3], [5, -1])]
     assert 0 < reached[0] < reached[1] < reached[2]
@@ -176,14 +175,14 @@ def test_journeys_lead_from_stop_to_stop() -> None:
     assert episode.position[-1, 1, 0] == pytest.approx(-22.0, abs=0.2)
     assert episode.velocity[0].round(6).tolist()[1] == [-1.0, 0.0]
     leaving = dataclasses.replace(around, then="leave")
-    assert trial(journeys=[leaving, away], spawners=spawners).run().active[-1].tolist() == [False, True]
+    assert run(trial(journeys=[leaving, away], spawners=spawners)).active[-1].tolist() == [False, True]
 
 
 def test_people_leave_by_exits_and_robots_stay() -> None:
     walker = Spawner(count=2, zone=box(0, 0), goal=box(9, 0), speed=1.0)
     bot = Robot(x=3, y=-3, goal=Goal(4, 3), drive=DifferentialDrive(), navigator=Straight(), visible=False)
     way = Exit(zone=box(3, -4, 2, 9))
-    episode = trial(spawners=[walker], robots=[bot], exits=[way], end=End(False, False)).run()
+    episode = run(trial(spawners=[walker], robots=[bot], exits=[way], end=End(False, False)))
     last = [int(np.flatnonzero(episode.active[:, who])[-1]) for who in (0, 1)]
     assert all(2.8 < episode.position[k, who, 0] < 3.0 for who, k in enumerate(last))
     assert episode.active[:, 2].all()
@@ -193,14 +192,14 @@ def test_people_come_in_by_sources() -> None:
     evenly = Source(
         zone=box(0, 0, 1, 4), goal=box(9, 0, 1, 4), rate=0.5, timing="regular", begin=1.0, end=9.5, speed=1.0
     )
-    episode = trial(sources=[evenly]).run()
+    episode = run(trial(sources=[evenly]))
     come = [float(episode.times[np.argmax(column)]) for column in episode.active.T]
     assert come == pytest.approx([1.0, 3.0, 5.0, 7.0, 9.0])
     assert (episode.outcome, episode.robots, episode.ids.tolist()) == ("finished", (), [0, 1, 2, 3, 4])
     assert not episode.active[-1].all()
-    stay = trial(sources=[dataclasses.replace(evenly, arrival="stay", most=2)], duration=15.0).run()
+    stay = run(trial(sources=[dataclasses.replace(evenly, arrival="stay", most=2)], duration=15.0))
     assert stay.active[-1].tolist() == [True, True]
-    nobody = trial(sources=[dataclasses.replace(evenly, most=0)]).run()
+    nobody = run(trial(sources=[dataclasses.replace(evenly, most=0)]))
     assert nobody.position.shape == (201, 0, 2)
 
 
@@ -209,7 +208,7 @@ def test_people_of_a_spawner_and_a_source_do_not_leave_for_one_another() -> None
     first = Spawner(count=1, zone=box(0, 0, 0.1, 0.1), goal=box(2, 0), speed=1.5)
     through = Journey(name="through", then="stay", stops=[Point(6, 0.5)])
     second = Source(zone=box(-1, 0), journey="through", rate=1.0, timing="regular", begin=4.0, most=1, speed=1.5)
-    episode = trial(spawners=[first], sources=[second], journeys=[through], capacity=1, duration=12.0).run()
+    episode = run(trial(spawners=[first], sources=[second], journeys=[through], capacity=1, duration=12.0))
     assert episode.active[-1].tolist() == [False, True]
     assert episode.position[-1, 1] == pytest.approx([6.0, 0.5], abs=0.1)
     assert int(np.argmax(episode.active[:, 1])) == 40
@@ -217,8 +216,8 @@ def test_people_of_a_spawner_and_a_source_do_not_leave_for_one_another() -> None
 
 def test_the_capacity_keeps_people_outside() -> None:
     fast = Source(zone=box(0, 0, 3, 4), goal=box(9, 0, 1, 4), rate=3.0)
-    full = trial(sources=[fast], capacity=4).run()
-    free = trial(sources=[fast]).run()
+    full = run(trial(sources=[fast], capacity=4))
+    free = run(trial(sources=[fast]))
     assert full.active.sum(axis=1).max() == 4
     assert free.active.sum(axis=1).max() > 8
     assert full.position.shape[1] > 8
@@ -235,12 +234,12 @@ def test_people_walk_by_the_model_of_their_crowd() -> None:
     by_hand = PlanarWorld(start, Mixture((ORCA(), SocialForce()), [1, 1, 1, 0, 0, 0]), {}, 0.05)
     for _ in range(40):
         by_hand.step({})
-    episode = both.run()
+    episode = run(both)
     assert np.array_equal(episode.position[-1], by_hand.scene.position[0])
     named = dataclasses.replace(both, spawners=[dataclasses.replace(s, crowd="calm") for s in spawners])
     default = dataclasses.replace(both, spawners=[dataclasses.replace(s, crowd="") for s in spawners])
     alone = dataclasses.replace(default, crowd=ORCA())
-    assert named.run().digest == default.run().digest == alone.run().digest != episode.digest
+    assert run(named).digest == run(default).digest == run(alone).digest != episode.digest
 
 
 def test_people_of_a_source_walk_by_the_model_of_their_crowd() -> None:
@@ -283,7 +282,7 @@ def test_an_old_scan_does_not_show_who_took_the_place_of_somebody() -> None:
     bot = Robot(x=0, y=0, goal=Goal(0, 50), drive=DifferentialDrive(), navigator=Spy(told), sensors=[lidar])
     near = Spawner(count=1, zone=box(2, 0, 0.1, 0.1), goal=box(2, 3), speed=1.5)
     far = Source(zone=box(40, 0), goal=box(60, 0), rate=1.0, timing="regular", most=1, speed=1.0)
-    episode = trial(spawners=[near], sources=[far], robots=[bot], capacity=1, duration=3.9).run()
+    episode = run(trial(spawners=[near], sources=[far], robots=[bot], capacity=1, duration=3.9))
     seen = {len(one.people) for one in told}
     assert seen == {0, 1}
     assert all(np.all(one.people.position[:, 0] < 10.0) for one in told)
@@ -293,7 +292,7 @@ def test_an_old_scan_does_not_show_who_took_the_place_of_somebody() -> None:
 @pytest.mark.parametrize("name", ["bottleneck", "two-crowds"])
 def test_built_in_flows_flow(name: str) -> None:
     given = load_trial(name)
-    episode = given.run()
+    episode = run(given)
     assert (episode.outcome, episode.metrics["success"]) == ("success", 1.0)
     assert len(episode.ids) > given.people + 3
     assert whole_tracks(episode)

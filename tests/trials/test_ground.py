@@ -10,7 +10,8 @@ import pytest
 from trial_texts import written
 
 from crowdbot.core import InputError, TrialError
-from crowdbot.trials import Stage, Trial, load_trial
+from crowdbot.recording import run
+from crowdbot.trials import Stage, load_trial, parse_trial, trial_xml
 
 HOUSE = "POLYGON ((0 0, 10 0, 10 6, 0 6, 0 0), (4 2, 6 2, 6 4, 4 4, 4 2))"
 TEXT = """<trial name="t" duration="2">
@@ -52,10 +53,10 @@ def test_an_area_may_lie_in_a_file(tmp_path: Path, name: str) -> None:
     feature = {"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry": shape}]}
     written(tmp_path, HOUSE if name.endswith("wkt") else json.dumps(feature), name)
     inside = load_trial(written(tmp_path, TEXT.format(stage=f'area="{name}"')))
-    inline = Trial.parse(TEXT.format(stage=f'area="{HOUSE}"'))
-    assert inside.run().digest == inline.run().digest
-    assert Trial.parse(inside.xml(), folder=tmp_path) == inside
-    assert f'area="{name}"' in inside.xml()
+    inline = parse_trial(TEXT.format(stage=f'area="{HOUSE}"'))
+    assert run(inside).digest == run(inline).digest
+    assert parse_trial(trial_xml(inside), folder=tmp_path) == inside
+    assert f'area="{name}"' in trial_xml(inside)
 
 
 @pytest.mark.parametrize(
@@ -101,7 +102,7 @@ def test_wrong_grounds_are_told(tmp_path: Path, stage: str, sentence: str) -> No
     }.items():
         written(tmp_path, data, name)
     with pytest.raises(TrialError) as found:
-        Trial.parse(TEXT.format(stage=stage), place="t.xml", folder=tmp_path)
+        parse_trial(TEXT.format(stage=stage), place="t.xml", folder=tmp_path)
     assert sentence in str(found.value)
 
 
@@ -128,11 +129,11 @@ def test_people_walk_on_a_map(tmp_path: Path) -> None:
     text = TEXT.format(stage='map="map.yaml"').replace('duration="2"', 'duration="12"')
     trial = load_trial(written(tmp_path, text.replace("<crowd", '<routing radius="0.3"/><crowd').replace(
         'count="3"', 'count="3" radius="0.25"')))  # fmt: skip
-    episode = trial.run()
+    episode = run(trial)
     where = episode.position[episode.active]
     assert trial.stage.clearance(where).min() > 0.2
     assert where[:, 0].max() > 6.5
-    assert Trial.parse(trial.xml(), folder=tmp_path) == trial
+    assert parse_trial(trial_xml(trial), folder=tmp_path) == trial
 
 
 def test_slanted_walls_of_a_map_are_straight(tmp_path: Path) -> None:

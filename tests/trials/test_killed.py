@@ -19,11 +19,13 @@ from trial_texts import FLOW, GOOD, changed, written
 
 from crowdbot import data
 from crowdbot.core import EpisodeError
-from crowdbot.trials import Trial, moments, read_episode, repair, replay
+from crowdbot.recording import moments, read_episode, repair, replay, run
+from crowdbot.trials import parse_trial
 
 LONG = changed('duration="4"', 'duration="4000"').replace("<end ", '<end goal="false" ')
 RUN = """import sys
-from crowdbot.trials import Trial, opened
+from crowdbot.trials import Trial
+from crowdbot.recording import opened
 with opened(Trial.parse(sys.stdin.read()), out=sys.argv[1]) as running:
     while running.step() is None:
         print(running.simulation.world.clock.time, flush=True)
@@ -130,7 +132,7 @@ def test_repair_gives_the_file_that_an_interrupt_at_its_last_instant_gives(
 
 
 def test_a_file_that_is_cut_anywhere_opens_or_says_that_nothing_was_recorded(tmp_path: Path) -> None:
-    episode = Trial.parse(FLOW).run(out=tmp_path)
+    episode = run(parse_trial(FLOW), out=tmp_path)
     path, cut = tmp_path / "episode.mcap", tmp_path / "cut.mcap"
     whole = path.read_bytes()
     chance = np.random.default_rng(0)
@@ -165,7 +167,7 @@ def test_a_new_run_takes_the_place_of_an_old_file_only_when_it_has_something(tmp
     def look(share: float) -> None:
         seen.append(len(read_episode(tmp_path / "episode.mcap").times))
 
-    Trial.parse(GOOD).run(out=tmp_path, progress=look)
+    run(parse_trial(GOOD), out=tmp_path, progress=look)
     assert seen[0] == 1
     assert seen == sorted(seen)
     assert seen[-2] > 30

@@ -11,7 +11,8 @@ from trial_texts import written
 
 from crowdbot.core import TrialError
 from crowdbot.models import ORCA, VBM, VOG
-from crowdbot.trials import Crowds, Trial, import_original
+from crowdbot.recording import run
+from crowdbot.trials import Crowds, check_trial, import_original, parse_trial, trial_xml
 
 AGENT = """<agent><TrialRegularAgent mesh="m002" radius="{radius}" heightOffset="0.02">
   <Position x="{x}" y="{y}" z="0"/><Rotation x="0" y="0" z="{turn}"/>
@@ -54,11 +55,11 @@ TRIAL = f"""<?xml version="1.0" encoding="utf-8"?>
 def test_a_trial_is_carried_over(tmp_path: Path) -> None:
     done = import_original(written(tmp_path, TRIAL, "demo.xml"))
     ((name, trial),) = done.trials
-    trial.check()
+    check_trial(trial)
     assert (name, trial.name, trial.duration) == ("demo", "demo", 45.0)
-    assert Trial.parse(trial.xml()) == trial
+    assert parse_trial(trial_xml(trial)) == trial
     assert len(trial.agents) == 5
-    assert trial.run(seed=1).outcome in ("success", "timeout")
+    assert run(trial, seed=1).outcome in ("success", "timeout")
 
 
 def test_axes_and_degrees_are_converted(tmp_path: Path) -> None:

@@ -10,8 +10,8 @@ from trial_texts import written
 
 from crowdbot.cli import main
 from crowdbot.core import TrialError
+from crowdbot.experiments import Experiment, import_experiment, load_experiment, orders, plan
 from crowdbot.trials import import_original
-from crowdbot.trials.experiment import Experiment, import_experiment, load_experiment, orders, plan
 
 TRIAL = """<Trial><scene><endingConditions><condition parameter="time" test="greater" value="{seconds}"/>
   </endingConditions></scene></Trial>"""

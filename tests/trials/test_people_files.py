@@ -11,6 +11,7 @@ from trial_texts import FLOW, GOOD, changed
 
 from crowdbot.core import InputError, TrialError
 from crowdbot.models import ORCA, SocialForce
+from crowdbot.recording import run
 from crowdbot.trials import (
     Agent,
     Crowds,
@@ -23,10 +24,14 @@ from crowdbot.trials import (
     Sweep,
     Trial,
     When,
+    apply_values,
+    expand_spawners,
+    expand_sweeps,
     load_trial,
+    parse_trial,
+    place,
+    trial_xml,
 )
-from crowdbot.trials.spawn import place
-from crowdbot.trials.sweep import changed as with_values
 
 HALL = [(0, 0), (12, 0), (12, 10), (0, 10)]
 FAR = [(20, 0), (22, 0), (22, 10), (20, 10)]
@@ -38,24 +43,24 @@ def trial(**parts: object) -> Trial:
 
 def refused(text: str) -> str:
     with pytest.raises(TrialError) as found:
-        Trial.parse(text, place="t.xml")
+        parse_trial(text, place="t.xml")
     return str(found.value)
 
 
 def test_an_agent_walks_to_its_goal_and_leaves() -> None:
     agent = Agent(name="ann", x=0, y=0, goal="3,0", speed=1.5, radius=0.2)
-    episode = trial(agents=[agent]).run()
+    episode = run(trial(agents=[agent]))
     assert not episode.active[-1, 0]
     assert episode.radius[0] == 0.2
     assert np.allclose(episode.velocity[5, 0], [1.5, 0.0], atol=1e-9)
-    stays = trial(agents=[dataclasses.replace(agent, arrival="stay")]).run()
+    stays = run(trial(agents=[dataclasses.replace(agent, arrival="stay")]))
     assert stays.active[-1, 0]
-    early = trial(agents=[dataclasses.replace(agent, goal_zone="1,-1 4,-1 4,1 1,1")]).run()
+    early = run(trial(agents=[dataclasses.replace(agent, goal_zone="1,-1 4,-1 4,1 1,1")]))
     assert early.active[:, 0].sum() < episode.active[:, 0].sum() - 10
 
 
 def test_an_agent_without_goal_stands_and_looks_where_it_is_told() -> None:
-    episode = trial(agents=[Agent(x=1, y=2, heading=2.0), Agent(x=5, y=5)]).run()
+    episode = run(trial(agents=[Agent(x=1, y=2, heading=2.0), Agent(x=5, y=5)]))
     assert np.allclose(episode.position[-1], [[1, 2], [5, 5]])
     assert np.allclose(episode.heading[-1], [2.0, 0.0])
 
@@ -102,7 +107,7 @@ def test_groups_begin_together_and_share_goal_and_speed() -> None:
 
 def test_people_who_stand_stay() -> None:
     standing = Spawner(count=6, zone=HALL, stands=True, groups=[Group(2)])
-    episode = trial(spawners=[standing]).run()
+    episode = run(trial(spawners=[standing]))
     assert np.allclose(episode.position[0], episode.position[-1], atol=0.01)
     assert len(np.unique(episode.heading[0])) == 6
     both = changed('count="2" zone="-5', 'stands="true" count="2" zone="-5')
@@ -118,10 +123,10 @@ def test_parameters_differ_from_person_to_person() -> None:
     drawn = np.asarray(model.resolved(3, 0, 1000).time_horizon)
     assert drawn.mean() == pytest.approx(2.0, abs=0.05)
     assert drawn.std() == pytest.approx(0.5, abs=0.05)
-    assert 'time-horizon="normal(2, 0.5)"' in one.xml()
-    assert Trial.parse(one.xml()) == one
-    assert one.run().digest != trial(spawners=[spawner]).run().digest
-    assert one.run().digest == one.run().digest
+    assert 'time-horizon="normal(2, 0.5)"' in trial_xml(one)
+    assert parse_trial(trial_xml(one)) == one
+    assert run(one).digest != run(trial(spawners=[spawner])).digest
+    assert run(one).digest == run(one).digest
 
 
 @pytest.mark.parametrize(
@@ -142,47 +147,47 @@ def test_wrong_distributions_of_parameters_are_told(value: str, sentence: str) -
 @pytest.mark.parametrize("text", [GOOD, FLOW], ids=["good", "flow"])
 @pytest.mark.parametrize("seed", [0, 7])
 def test_an_explicit_trial_runs_as_its_original(text: str, seed: int) -> None:
-    given = Trial.parse(text)
-    explicit = given.explicit(seed)
+    given = parse_trial(text)
+    explicit = expand_spawners(given, seed)
     assert (len(explicit.agents), explicit.spawners) == (given.people, ())
-    assert Trial.parse(explicit.xml()) == explicit
-    assert explicit.run().digest == given.run(seed=seed).digest
+    assert parse_trial(trial_xml(explicit)) == explicit
+    assert run(explicit).digest == run(given, seed=seed).digest
 
 
 def test_an_explicit_trial_tells_everybodys_own_parameters() -> None:
     crowd = Crowds((Drawn(ORCA(), {"time_horizon": "uniform(1, 3)"}), SocialForce()), names=("a", "b"))
     spawners = [Spawner(name=name, count=3, zone=HALL, goal=FAR, crowd=name, groups=[Group(3)]) for name in ("b", "a")]
     given = trial(crowd=crowd, spawners=spawners)
-    explicit = given.explicit()
+    explicit = expand_spawners(given)
     assert [len(agent.parameters) for agent in explicit.agents] == [0, 0, 0, 1, 1, 1]
     assert [agent.group for agent in explicit.agents] == [0, 0, 0, 1, 1, 1]
-    assert explicit.run().digest == given.run().digest
+    assert run(explicit).digest == run(given).digest
     agents = [*explicit.agents[:3], *(dataclasses.replace(a, parameters=[Parameter("time-horizon", 2.5)]) for a in
                                       explicit.agents[3:])]  # fmt: skip
     edited = dataclasses.replace(explicit, agents=agents)
-    assert edited.run().digest != given.run().digest
+    assert run(edited).digest != run(given).digest
     fixed = dataclasses.replace(edited, crowd=Crowds((ORCA(time_horizon=2.5), SocialForce()), names=("a", "b")),
                                 agents=[dataclasses.replace(a, parameters=()) for a in agents])  # fmt: skip
-    assert fixed.run().digest == edited.run().digest
+    assert run(fixed).digest == run(edited).digest
 
 
 def test_sweeps_make_variants() -> None:
     text = changed("  <end", '  <sweep path="spawner[west]/count" values="1 2 3"/>\n'
                    '  <sweep path="crowd/time-horizon" values="1 normal(2, 0.1)"/>\n'
                    '  <sweep path="end/goal" values="true false"/>\n  <end')  # fmt: skip
-    many = Trial.parse(text)
-    assert Trial.parse(many.xml()) == many
-    ones = many.variants()
+    many = parse_trial(text)
+    assert parse_trial(trial_xml(many)) == many
+    ones = expand_sweeps(many)
     assert len(ones) == 12
     assert len({one.name for one in ones}) == 12
     assert [one.spawners[1].count for one in ones] == [1] * 4 + [2] * 4 + [3] * 4
     assert isinstance(ones[2].crowd, Drawn)
     assert [one.end.goal for one in ones[:2]] == [True, False]
     assert not any(one.sweeps for one in ones)
-    with pytest.raises(TrialError, match="stands for 12 trials by its sweeps; run one of its variants"):
-        many.run()
-    plain = Trial.parse(GOOD)
-    assert plain.variants() == (plain,)
+    with pytest.raises(TrialError, match="has 12 variants by its sweeps; run one of them"):
+        run(many)
+    plain = parse_trial(GOOD)
+    assert expand_sweeps(plain) == (plain,)
 
 
 @pytest.mark.parametrize(
@@ -209,8 +214,8 @@ def test_wrong_sweeps_are_told_with_their_line(path: str, values: str, sentence:
 
 
 def test_values_are_changed_by_their_paths() -> None:
-    given = Trial.parse(GOOD)
-    other = with_values(given, {"robot/goal/x": "2", "recording/period": "0.2", "robot/navigator/type": "orca"})
+    given = parse_trial(GOOD)
+    other = apply_values(given, {"robot/goal/x": "2", "recording/period": "0.2", "robot/navigator/type": "orca"})
     assert (other.robots[0].goal.x, other.recording.period) == (2.0, 0.2)
     assert load_trial("crossing-flows", **{"crowd/time-horizon": 3}).crowd == dataclasses.replace(
         load_trial("crossing-flows").crowd, time_horizon=3.0
@@ -219,16 +224,16 @@ def test_values_are_changed_by_their_paths() -> None:
 
 
 def test_conditions_end_a_trial() -> None:
-    given = Trial.parse(changed('<end collision="false"/>', '<end collision="false"><when what="x" above="-1"/></end>'))
-    episode = given.run()
+    given = parse_trial(changed('<end collision="false"/>', '<end collision="false"><when what="x" above="-1"/></end>'))
+    episode = run(given)
     assert episode.outcome == "finished"
     assert episode.position[-1, episode.robots[0], 0] == pytest.approx(-1.0, abs=0.15)
-    assert Trial.parse(given.xml()) == given
+    assert parse_trial(trial_xml(given)) == given
     late = dataclasses.replace(given, end=End(collision=False, conditions=[When("time", above=1.0, outcome="timeout")]))
-    assert (late.run().outcome, late.run().times[-1]) == ("timeout", pytest.approx(1.1))
+    assert (run(late).outcome, run(late).times[-1]) == ("timeout", pytest.approx(1.1))
     few = dataclasses.replace(given, duration=30.0, robots=(), end=End(conditions=[When("people", below=3.0)]))
-    assert np.count_nonzero(few.run().active[-1]) < 3
-    empty = dataclasses.replace(few, end=End(empty=True)).run()
+    assert np.count_nonzero(run(few).active[-1]) < 3
+    empty = run(dataclasses.replace(few, end=End(empty=True)))
     assert empty.outcome == "finished"
     assert empty.times[-1] < 20.0
     assert not empty.active[-1].any()
@@ -240,8 +245,8 @@ def test_conditions_end_a_trial() -> None:
 def test_a_trial_with_sources_is_not_empty_before_the_last_has_come() -> None:
     text = FLOW.replace('duration="20"', 'duration="40"').replace("<end ", '<end empty="true" ')
     text = text.replace('most="90"', 'end="6"').replace('end="15"', 'end="9"')
-    given = Trial.parse(text)
-    episode = dataclasses.replace(given, robots=()).run(seed=1)
+    given = parse_trial(text)
+    episode = run(dataclasses.replace(given, robots=()), seed=1)
     assert episode.times[-1] > 9.0 or episode.outcome == "finished"
 
 
@@ -250,16 +255,16 @@ def test_portals_bring_people_back_as_others() -> None:
     <journey name="east"><direction heading="0"/></journey>
     <spawner count="3" zone="-4,-2 4,-2 4,2 -4,2" journey="east" speed="1.5"/>
     <portal name="right" zone="5,-3 8,-3 8,3 5,3" dx="-10"/></trial>"""
-    ring = Trial.parse(text)
-    assert Trial.parse(ring.xml()) == ring
-    episode = ring.run()
+    ring = parse_trial(text)
+    assert parse_trial(trial_xml(ring)) == ring
+    episode = run(ring)
     assert (episode.active.sum(axis=1) == 3).all()
     assert len(episode.ids) > 7
     assert episode.position[episode.active][:, 0].max() < 5.2
     for agent in range(len(episode.ids)):
         way = episode.position[episode.active[:, agent], agent]
         assert np.abs(np.diff(way[:, 0])).max(initial=0.0) < 0.3
-    assert ring.run().digest == episode.digest
+    assert run(ring).digest == episode.digest
     crowded = text.replace('duration="20"', 'duration="86400"').replace('dx="-10"', 'dx="-0.1"')
     assert "places together; take a longer period" in refused(crowded)
     assert "t.xml:4: <portal> needs dx or dy" in refused(text.replace(' dx="-10"', ""))
@@ -270,13 +275,13 @@ def test_a_journey_can_begin_again() -> None:
     text = """<trial name="laps" duration="30"><crowd type="orca"/>
     <journey name="lap" then="again"><point x="0" y="0"/><point x="5" y="0"/></journey>
     <agent x="0" y="0" journey="lap" speed="1.5"/></trial>"""
-    x = Trial.parse(text).run().position[:, 0, 0]
+    x = run(parse_trial(text)).position[:, 0, 0]
     turns = np.flatnonzero(np.diff(np.sign(np.diff(x))) != 0)
     assert len(turns) >= 7
     assert x.max() == pytest.approx(5.0, abs=0.4)
     wander = text.replace('<point x="0" y="0"/><point x="5" y="0"/>',
                           '<zone points="0,0 9,0 9,9 0,9" aim="random"/>')  # fmt: skip
-    places = Trial.parse(wander).run().position[:, 0]
+    places = run(parse_trial(wander)).position[:, 0]
     assert np.ptp(places, axis=0).min() > 3.0
     assert math.isfinite(places.sum())
 

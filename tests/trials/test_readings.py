@@ -16,14 +16,25 @@ from rosbags.highlevel import AnyReader
 
 from crowdbot import sensors
 from crowdbot.core import EpisodeError, Pose, Scene, SpatialPose
+from crowdbot.messages import (
+    CODECS,
+    KIND,
+    REST,
+    Codec,
+    Messages,
+    Told,
+    codec_of,
+    image_in,
+    picture_codec,
+    points_in,
+    reading_of,
+    said,
+    unsaid,
+)
+from crowdbot.recording import READING_TABLES, read_episode, replay, run
 from crowdbot.sensors import Gaussian, Lens, Reading, Sensor
-from crowdbot.trials import Episode, Trial, read_episode, replay
-from crowdbot.trials.messages import Messages
-from crowdbot.trials.reading_clouds import points_in
-from crowdbot.trials.reading_codec import Codec, Told
-from crowdbot.trials.reading_images import image_in, picture_codec
-from crowdbot.trials.reading_tables import READING_TABLES
-from crowdbot.trials.readings import CODECS, KIND, REST, codec_of, reading_of, said, unsaid
+from crowdbot.simulation import Episode
+from crowdbot.trials import parse_trial
 
 SENSORS: dict[str, Sensor] = {
     "Scan": sensors.Lidar2D(rays=31, noise=Gaussian(0.01)),
@@ -118,10 +129,12 @@ def test_no_class_of_readings_is_forgotten() -> None:
 def test_every_class_of_readings_comes_back(kind: type[Reading], place: str) -> None:
     sensor = SENSORS[kind.__name__]
     pose: Any = Pose.of((0.1, 0.0), 0.3)
+    state = sensor.begin()
     for number in range(2):
         if place == "in space":
             pose = Pose.of((0.1 + 0.2 * number, 0.0), 0.3).lifted(0.7, 0.02, 0.1)
-        reading = sensor.measure(SCENE.replace(time=0.05 * number), pose, np.random.default_rng(number))
+        view = sensors.SensorView(SCENE.replace(time=0.05 * number), pose)
+        reading, state = sensor.measure(view, state, np.random.default_rng(number))
         assert type(reading) is kind
         read = back(reading, sensor)
         assert type(read) is kind
@@ -183,7 +196,7 @@ def test_pictures_are_images_with_their_lens(monkeypatch: pytest.MonkeyPatch) ->
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Episode]:
     folder = tmp_path_factory.mktemp("eyes")
-    return folder / "episode.mcap", Trial.parse(TRIAL).run(out=folder)
+    return folder / "episode.mcap", run(parse_trial(TRIAL), out=folder)
 
 
 def test_an_episode_keeps_every_reading(recorded: tuple[Path, Episode]) -> None:
@@ -250,7 +263,7 @@ def test_a_viewer_finds_points_pixels_and_frames(recorded: tuple[Path, Episode])
 
 
 def test_mounts_in_space_are_fixed_frames() -> None:
-    from crowdbot.trials.reading_codec import mounted
+    from crowdbot.messages import mounted
 
     mount = types.SimpleNamespace(x=0.1, y=0.0, z=1.2, roll=0.0, pitch=0.4, heading=0.5)
     robot = types.SimpleNamespace(placed=lambda one: (one.x, one.y, one.z, one.roll, one.pitch, one.heading))
@@ -264,7 +277,7 @@ def test_mounts_in_space_are_fixed_frames() -> None:
 
 
 def test_arrays_that_pretend_to_be_huge_are_refused() -> None:
-    from crowdbot.trials.reading_codec import arrays_of
+    from crowdbot.messages import arrays_of
 
     huge = types.SimpleNamespace(name="x", dtype="<f8", shape=[1 << 20, 1 << 20], data=bytes(8))
     with pytest.raises(ValueError, match="x is an array of <f8 of shape"):
@@ -278,7 +291,7 @@ def test_arrays_that_pretend_to_be_huge_are_refused() -> None:
 def test_tables_of_what_sensors_measured(recorded: tuple[Path, Episode], tmp_path: Path) -> None:
     import pandas as pd
 
-    from crowdbot.trials import export
+    from crowdbot.recording import export
 
     path, episode = recorded
     clouds = episode.readings["robot/cloud"]

@@ -10,7 +10,19 @@ import pytest
 from trial_texts import written
 
 from crowdbot.core import InputError, TrialError
-from crowdbot.trials import Goal, RecordedPeople, Robot, Simulation, Trial, load_trial, recorded_trial
+from crowdbot.recording import run
+from crowdbot.simulation import Simulation
+from crowdbot.trials import (
+    Goal,
+    RecordedPeople,
+    Robot,
+    Trial,
+    expand_spawners,
+    load_trial,
+    parse_trial,
+    recorded_trial,
+    trial_xml,
+)
 
 RECORDINGS = {
     "eth": ("eth_biwi/seq_eth/obsmat.txt", None, 60.0),
@@ -67,7 +79,7 @@ def test_everybody_is_where_the_whole_recording_has_them_at_every_frame(
 
 
 def test_velocity_and_heading_are_those_of_the_recording(track: Path) -> None:
-    simulation = Simulation(recorded_trial(track, fps=2.5), 0)
+    simulation = Simulation(recorded_trial(track, fps=25.0), 0)
     for _ in range(30):
         simulation.step()
     scene = simulation.world.scene
@@ -86,21 +98,21 @@ def robot(x: float, y: float, **more: object) -> Robot:
 
 def with_robot(track: Path, mode: str, **more: object) -> Trial:
     """Return the two people with a robot that hardly moves, in the way of the first."""
-    trial = recorded_trial(track, fps=2.5, mode=mode, near=4.0)
+    trial = recorded_trial(track, fps=25.0, mode=mode, near=4.0)
     return dataclasses.replace(
         trial, robots=[robot(8.0, 0.05, **more)], duration=25.0, end=dataclasses.replace(trial.end, collision=False)
     )
 
 
 def test_scripted_people_go_through_a_robot_and_it_is_judged(track: Path) -> None:
-    episode = with_robot(track, "scripted").run()
+    episode = run(with_robot(track, "scripted"))
     assert episode.metrics["collision"] == 1.0
     assert np.allclose(episode.position[:100:4, 0, 1], 0.0)
 
 
 def test_reactive_people_go_round_the_robot_and_keep_their_destination(track: Path) -> None:
     trial = with_robot(track, "reactive")
-    episode = trial.run()
+    episode = run(trial)
     assert episode.metrics["collision"] == 0.0
     first = episode.position[episode.active[:, 0], 0]
     assert np.abs(first[:, 1]).max() > 0.3
@@ -111,7 +123,7 @@ def test_reactive_people_go_round_the_robot_and_keep_their_destination(track: Pa
 
 
 def test_nobody_reacts_to_a_robot_that_people_do_not_see(track: Path) -> None:
-    episode = with_robot(track, "reactive", visible=False).run()
+    episode = run(with_robot(track, "reactive", visible=False))
     assert np.allclose(episode.position[episode.active[:, 0], 0, 1], 0.0)
 
 
@@ -140,27 +152,27 @@ def test_reactive_people_of_real_recordings_end_where_they_ended(name: str, reco
 
 
 def test_a_robot_takes_the_place_of_somebody(track: Path, recordings: Path) -> None:
-    trial = recorded_trial(track, fps=2.5, replace=3)
+    trial = recorded_trial(track, fps=25.0, replace=3)
     (one,) = trial.robots
     assert (one.x, one.y, one.goal.position) == (3.0, 3.0, (17.5, 3.0))
     assert one.heading == pytest.approx(0.0)
     assert [walk.person for walk in trial.recorded[0].walks(20.0)] == [0]
-    assert trial.run().outcome == "success"
+    assert run(trial).outcome == "success"
     zara = recorded_trial(recordings / RECORDINGS["zara"][0], replace=10)
     begin = zara.recorded[0].begin
     assert begin > 0.0
-    assert zara.run(seed=1).outcome in ("success", "collision", "timeout")
+    assert run(zara, seed=1).outcome in ("success", "collision", "timeout")
     with pytest.raises(InputError, match=r"nobody in track.txt has the id 4; ids go from 0 to 3"):
-        recorded_trial(track, fps=2.5, replace=4)
+        recorded_trial(track, fps=25.0, replace=4)
 
 
 def test_a_trial_of_recorded_people_is_a_file(track: Path) -> None:
-    trial = recorded_trial(track, fps=2.5, replace=3)
-    file = written(track.parent, trial.xml())
+    trial = recorded_trial(track, fps=25.0, replace=3)
+    file = written(track.parent, trial_xml(trial))
     again = load_trial(file)
     assert again == trial
-    assert again.run().digest == trial.run().digest
-    assert trial.explicit() == trial
+    assert run(again).digest == run(trial).digest
+    assert expand_spawners(trial) == trial
 
 
 @pytest.mark.parametrize(
@@ -169,26 +181,26 @@ def test_a_trial_of_recorded_people_is_a_file(track: Path) -> None:
         ("track.txt", "none.txt", "t.xml:3: <recorded> data=\"none.txt\" there is no file 'none.txt'"),
         ("track.txt", "../../etc/passwd", "lies outside"),
         ("track.txt", "bad.txt", "bad.txt"),
-        ('fps="2.5"', 'fps="2.5" without="8"', "without names person 8, who is not in track.txt"),
-        ('fps="2.5"', 'fps="2.5" without="x"', 'without="x" must be whole numbers'),
-        ('fps="2.5"', 'fps="2.5" begin="99"', "has nobody from 99 s on; take an earlier begin"),
-        ('fps="2.5"', 'fps="2.5" mode="reactiv"', "must be scripted or reactive, did you mean 'reactive'?"),
-        ('fps="2.5"', 'fps="2.5" crowd="calm"', 'crowd="calm" is not the name of a crowd'),
+        ('fps="25"', 'fps="25" without="8"', "without names person 8, who is not in track.txt"),
+        ('fps="25"', 'fps="25" without="x"', 'without="x" must be whole numbers'),
+        ('fps="25"', 'fps="25" begin="99"', "has nobody from 99 s on; take an earlier begin"),
+        ('fps="25"', 'fps="25" mode="reactiv"', "must be scripted or reactive, did you mean 'reactive'?"),
+        ('fps="25"', 'fps="25" crowd="calm"', 'crowd="calm" is not the name of a crowd'),
     ],
 )
 def test_wrong_recordings_are_told_with_their_line(track: Path, old: str, new: str, sentence: str) -> None:
     written(track.parent, b"\x00\xff" * 100, "bad.txt")
-    text = '<trial name="t" duration="5">\n<crowd type="orca"/>\n<recorded data="track.txt" fps="2.5"/>\n</trial>'
-    assert Trial.parse(text, folder=track.parent).recorded == (RecordedPeople(data="track.txt", fps=2.5),)
+    text = '<trial name="t" duration="5">\n<crowd type="orca"/>\n<recorded data="track.txt" fps="25"/>\n</trial>'
+    assert parse_trial(text, folder=track.parent).recorded == (RecordedPeople(data="track.txt", fps=25.0),)
     with pytest.raises(TrialError) as found:
-        Trial.parse(text.replace(old, new), place="t.xml", folder=track.parent)
+        parse_trial(text.replace(old, new), place="t.xml", folder=track.parent)
     assert sentence in str(found.value)
 
 
 def test_a_gap_in_a_track_is_an_absence(tmp_path: Path) -> None:
     rows = [k for k in range(40) if not 10 <= k < 20]
     file = written(tmp_path, "".join(f"{10 * k}\t1\t{0.5 * k}\t0\n" for k in rows), "gap.txt")
-    trial = recorded_trial(file, fps=2.5)
+    trial = recorded_trial(file, fps=25.0)
     first, second = trial.recorded[0].walks(20.0)
     assert (first.time[-1], second.time[0]) == (pytest.approx(3.6), pytest.approx(8.0))
     assert farthest(trial)[0] < 1e-9

@@ -20,18 +20,20 @@ from trial_texts import GOOD, changed
 
 import crowdbot
 from crowdbot import data
-from crowdbot.core import EpisodeError, InputError, Pose, Scene
-from crowdbot.sensors import Reading, Sensor
-from crowdbot.trials import Episode, Mount, Recorded, Trial, read_episode
+from crowdbot.core import EpisodeError, InputError
+from crowdbot.recording import Recorded, read_episode, run
+from crowdbot.sensors import Reading, Sensor, SensorView
+from crowdbot.simulation import Episode
+from crowdbot.trials import Mount, parse_trial
 
-TRIAL = Trial.parse(GOOD)
+TRIAL = parse_trial(GOOD)
 
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Episode]:
     """Return a file and the episode it was written from."""
     folder = tmp_path_factory.mktemp("episode")
-    return folder / "episode.mcap", TRIAL.run(out=folder)
+    return folder / "episode.mcap", run(TRIAL, out=folder)
 
 
 def test_the_file_is_the_episode(recorded: tuple[Path, Episode]) -> None:
@@ -47,7 +49,7 @@ def test_the_file_is_the_episode(recorded: tuple[Path, Episode]) -> None:
     assert np.array_equal(read.position[:, 4], episode.position[:, 4])
     assert (read.robots, read.outcome, read.digest, read.seed) == ((4,), episode.outcome, episode.digest, 3)
     assert (read.steps, read.name, read.version) == (episode.steps, "small", crowdbot.__version__)
-    assert Trial.parse(read.xml) == TRIAL
+    assert parse_trial(read.xml) == TRIAL
     assert [ring.tolist() for ring in read.walls] == [ring.tolist() for ring in episode.walls]
     assert read.metrics == pytest.approx(dict(episode.metrics), nan_ok=True)
     assert len(read.scans) == len(episode.scans) == 41
@@ -134,7 +136,7 @@ def test_the_same_run_writes_the_same_file_over_an_old_one(recorded: tuple[Path,
     target = tmp_path / "a" / "b" / "mine.mcap"
     target.parent.mkdir(parents=True)
     target.write_text("old")
-    TRIAL.run(out=target)
+    run(TRIAL, out=target)
     assert target.read_bytes() == recorded[0].read_bytes()
     assert os.listdir(target.parent) == ["mine.mcap"]
 
@@ -144,7 +146,7 @@ def test_ctrl_c_leaves_a_whole_file(tmp_path: Path) -> None:
         if 0.49 < share < 0.505:
             signal.raise_signal(signal.SIGINT)
 
-    episode = TRIAL.run(out=tmp_path / "out", progress=press)
+    episode = run(TRIAL, out=tmp_path / "out", progress=press)
     assert episode.outcome == "interrupted"
     read = read_episode(tmp_path / "out" / "episode.mcap")
     assert (read.outcome, read.steps, read.digest) == ("interrupted", 42, episode.digest)
@@ -182,8 +184,8 @@ def test_ctrl_c_from_the_keyboard_leaves_a_whole_file(tmp_path: Path) -> None:
 class Thermometer(Sensor):
     """Measures something that has no message."""
 
-    def measure(self, scene: Scene, pose: Pose, rng: Any = None) -> Reading:
-        return Reading(scene.time, pose)
+    def measure(self, view: SensorView, state: None, rng: Any = None) -> tuple[Reading, None]:
+        return Reading(view.time, view.pose), None
 
 
 def test_a_run_that_fails_keeps_what_is_done(tmp_path: Path) -> None:
@@ -192,7 +194,7 @@ def test_a_run_that_fails_keeps_what_is_done(tmp_path: Path) -> None:
             raise RuntimeError("a bug")
 
     with pytest.raises(RuntimeError, match="a bug"):
-        TRIAL.run(out=tmp_path / "a" / "b", progress=fail)
+        run(TRIAL, out=tmp_path / "a" / "b", progress=fail)
     assert os.listdir(tmp_path / "a" / "b") == ["episode.mcap"]
     read = read_episode(tmp_path / "a" / "b" / "episode.mcap")
     assert (read.complete, read.outcome) == (False, "interrupted")
@@ -207,7 +209,7 @@ def test_nothing_is_left_behind_before_the_first_instant(tmp_path: Path) -> None
         with pytest.raises(
             EpisodeError, match=r"'robot/warm' gives a Reading, which has no ROS message; let it give one of Scan"
         ):
-            dataclasses.replace(TRIAL, robots=[warm]).run(out=tmp_path / place)
+            run(dataclasses.replace(TRIAL, robots=[warm]), out=tmp_path / place)
     assert os.listdir(tmp_path) == ["kept"]
     assert os.listdir(tmp_path / "kept") == ["episode.mcap"]
     assert (tmp_path / "kept" / "episode.mcap").read_text() == "old"
@@ -220,19 +222,19 @@ def test_a_trial_that_has_no_xml_is_not_recorded(tmp_path: Path) -> None:
 
     local = dataclasses.replace(TRIAL.robots[0], sensors=[Mount(name="warm", sensor=Local())])
     with pytest.raises(InputError, match="Local cannot be named in a trial file: move it to a module"):
-        dataclasses.replace(TRIAL, robots=[local]).run(out=tmp_path / "c")
+        run(dataclasses.replace(TRIAL, robots=[local]), out=tmp_path / "c")
     assert os.listdir(tmp_path) == []
 
 
 def test_a_place_that_cannot_be_written_is_said(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("x")
     with pytest.raises(InputError, match=r"file is a file, so no episode can be written in it; give a folder"):
-        TRIAL.run(out=tmp_path / "file")
+        run(TRIAL, out=tmp_path / "file")
     with pytest.raises(EpisodeError, match=r"episode.mcap cannot be written: Not a directory; give another place"):
-        TRIAL.run(out=tmp_path / "file" / "deeper")
+        run(TRIAL, out=tmp_path / "file" / "deeper")
     (tmp_path / "folder.mcap").mkdir()
     with pytest.raises(InputError, match=r"folder.mcap is a folder; give the name of a file"):
-        TRIAL.run(out=tmp_path / "folder.mcap")
+        run(TRIAL, out=tmp_path / "folder.mcap")
 
 
 def test_files_that_are_no_episodes_are_refused_in_a_sentence(recorded: tuple[Path, Episode], tmp_path: Path) -> None:

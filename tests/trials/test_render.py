@@ -14,21 +14,22 @@ from space_trials import LEAN, ROOM, room
 
 from crowdbot.cli import main
 from crowdbot.core import InputError, MissingExtra
-from crowdbot.trials import Take, Trial, camera_names, load_trial, shots
-from crowdbot.trials.album import Album, painted_segmentation
+from crowdbot.recording import run
+from crowdbot.rendering import Album, Shot, Take, camera_names, painted_segmentation, shots
+from crowdbot.trials import load_trial, parse_trial
 from crowdbot.trials.camera import overview
-from crowdbot.trials.shots import Shot
-from crowdbot.world.physics import drawing
+from crowdbot.world.rendering import gl_context
 
 
 def test_cameras_have_names() -> None:
-    assert camera_names(Trial.parse(ROOM)) == ("door", "head", "overview", "pepper/depth", "pepper/eyes")
+    assert camera_names(parse_trial(ROOM)) == ("door", "head", "overview", "pepper/depth", "pepper/eyes")
     assert camera_names(load_trial("frontal")) == ("overview",)
 
 
+@pytest.mark.usefixtures("drawing")
 @pytest.mark.parametrize("world", ["planar", "physics"])
 def test_every_camera_sees_the_room(world: str) -> None:
-    trial = Trial.parse(room(world))
+    trial = parse_trial(room(world))
     for name in ("door", "head", "pepper/eyes"):
         (shot,) = shots(trial, name, Take(0.2), depth=True, segmentation=True)
         assert shot.time == pytest.approx(0.2)
@@ -66,11 +67,12 @@ def test_the_overview_has_the_whole_stage_in_view_and_the_feet_of_people(name: s
     assert np.degrees(camera.pitch) >= 60.0 - 1e-9
 
 
+@pytest.mark.usefixtures("drawing")
 def test_the_depth_camera_of_pepper_does_not_see_its_own_eye() -> None:
     inside = '<goal x="9" y="0"/><navigator type="straight"/>'
     robot = f'<robot name="pepper" type="pepper" x="0" y="0" rates="nearest">{inside}</robot>'
     stage = '<stage walkable="-2,-4 10,-4 10,4 -2,4"/><crowd type="orca"/>'
-    trial = Trial.parse(f'<trial name="t" duration="1">{stage}{robot}</trial>')
+    trial = parse_trial(f'<trial name="t" duration="1">{stage}{robot}</trial>')
     (shot,) = shots(trial, "pepper/depth", Take(0.0), segmentation=True)
     assert shot.segmentation is not None
     assert set(np.unique(shot.segmentation)) <= {-3, -2, -1}
@@ -84,14 +86,16 @@ def crosses(a: np.ndarray, b: np.ndarray, wall: np.ndarray) -> bool:
     return side(a, b, c) * side(a, b, d) < 0.0 and side(c, d, a) * side(c, d, b) < 0.0
 
 
+@pytest.mark.usefixtures("drawing")
 def test_an_open_place_is_seen_from_near_by() -> None:
     camera = overview(load_trial("circle-crossing").stage, np.array([[-5.0, 0.0], [5.0, 4.0]]))
     assert (round(np.degrees(camera.pitch)), round(np.degrees(camera.field_of_view))) == (60, 60)
     assert camera.x == 0.0
 
 
+@pytest.mark.usefixtures("drawing")
 def test_a_film_is_even_and_the_same_each_time() -> None:
-    trial = Trial.parse(room(text=LEAN))
+    trial = parse_trial(room(text=LEAN))
     films = [list(shots(trial, "door", Take(0.2, 0.6, 12.5))) for _ in range(2)]
     assert [round(shot.time, 2) for shot in films[0]] == [0.2, 0.28, 0.36, 0.44, 0.52, 0.6]
     assert all(np.array_equal(a.rgb, b.rgb) for a, b in zip(*films, strict=True))
@@ -99,13 +103,15 @@ def test_a_film_is_even_and_the_same_each_time() -> None:
     assert len(list(shots(trial, "door", Take(0.0, 0.4)))) == 11
 
 
+@pytest.mark.usefixtures("drawing")
 def test_a_camera_does_not_change_the_run() -> None:
-    trial = Trial.parse(room(text=LEAN))
-    before = trial.run().digest
+    trial = parse_trial(room(text=LEAN))
+    before = run(trial).digest
     list(shots(trial, "door", Take(0.5)))
-    assert trial.run().digest == before
+    assert run(trial).digest == before
 
 
+@pytest.mark.usefixtures("drawing")
 @pytest.mark.parametrize("ending", [".png", ".jpg", ".webp"])
 def test_an_image_is_written(ending: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "deep" / f"door{ending}"
@@ -116,7 +122,7 @@ def test_an_image_is_written(ending: str, tmp_path: Path, capsys: pytest.Capture
     assert (told["camera"], told["images"], told["rate"], told["world"]) == ("door", 1, None, "planar")
     names = [path, path.with_name("door-depth.png"), path.with_name("door-segmentation.png")]
     assert told["files"] == [str(name) for name in names]
-    (shot,) = shots(Trial.parse(LEAN), "door", Take(0.2), depth=True, segmentation=True)
+    (shot,) = shots(parse_trial(LEAN), "door", Take(0.2), depth=True, segmentation=True)
     assert np.asarray(Image.open(path)).shape == (48, 64, 3)
     metres = np.asarray(Image.open(names[1])) / 1000.0
     seen = np.isfinite(shot.depth)
@@ -129,6 +135,7 @@ def test_an_image_is_written(ending: str, tmp_path: Path, capsys: pytest.Capture
     assert sorted(path.parent.iterdir()) == sorted(names)
 
 
+@pytest.mark.usefixtures("drawing")
 @pytest.mark.parametrize("ending", [".gif", ".webp", ".mp4", ""])
 def test_a_film_is_written(ending: str, tmp_path: Path) -> None:
     path = tmp_path / f"film{ending}"
@@ -143,7 +150,7 @@ def test_a_film_is_written(ending: str, tmp_path: Path) -> None:
         with av.open(str(path)) as film:
             images = [frame.to_ndarray(format="rgb24") for frame in film.decode(video=0)]
             assert film.streams.video[0].average_rate == 12.5
-        first = next(shots(Trial.parse(LEAN), "door"))
+        first = next(shots(parse_trial(LEAN), "door"))
         assert len(images) == 6
         assert np.abs(images[0].astype(int) - first.rgb).mean() < 6.0
     else:
@@ -250,12 +257,12 @@ def test_a_mistake_is_said_in_a_sentence(mistake: str, tmp_path: Path, capsys: p
 
 def test_without_a_way_to_draw_nothing_is_written(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("MUJOCO_GL", "disabled")
-    drawing.backend.cache_clear()
+    gl_context.backend.cache_clear()
     try:
         with pytest.raises(InputError, match="MUJOCO_GL = 'disabled' must be one of egl, osmesa"):
             list(shots(load_trial("frontal")))
     finally:
-        drawing.backend.cache_clear()
+        gl_context.backend.cache_clear()
 
 
 def test_without_extras(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

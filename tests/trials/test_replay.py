@@ -13,7 +13,8 @@ from trial_texts import GOOD, SHY, changed, written
 import crowdbot
 from crowdbot import data
 from crowdbot.core import EpisodeError, TrialError
-from crowdbot.trials import Trial, load_trial, read_episode, replay
+from crowdbot.recording import read_episode, replay, run
+from crowdbot.trials import load_trial, parse_trial
 
 
 def rewritten(source: Path, target: Path, **changes: str) -> Path:
@@ -39,7 +40,7 @@ def rewritten(source: Path, target: Path, **changes: str) -> Path:
 
 
 def test_a_replay_gives_the_same_digest(tmp_path: Path) -> None:
-    episode = Trial.parse(GOOD).run(seed=11, out=tmp_path)
+    episode = run(parse_trial(GOOD), seed=11, out=tmp_path)
     shares: list[float] = []
     done = replay(tmp_path / "episode.mcap", progress=shares.append)
     assert done.equal
@@ -58,7 +59,7 @@ def test_an_interrupted_episode_replays_as_far_as_it_went(tmp_path: Path) -> Non
             pressed.append(share)
             signal.raise_signal(signal.SIGINT)
 
-    episode = Trial.parse(GOOD).run(out=tmp_path, progress=press)
+    episode = run(parse_trial(GOOD), out=tmp_path, progress=press)
     assert episode.outcome == "interrupted"
     done = replay(tmp_path / "episode.mcap")
     assert done.equal
@@ -66,7 +67,7 @@ def test_an_interrupted_episode_replays_as_far_as_it_went(tmp_path: Path) -> Non
 
 
 def test_a_difference_is_said_with_the_versions(tmp_path: Path) -> None:
-    Trial.parse(GOOD).run(out=tmp_path)
+    run(parse_trial(GOOD), out=tmp_path)
     other = replay(rewritten(tmp_path / "episode.mcap", tmp_path / "seed.mcap", seed="4"))
     assert not other.equal
     assert str(other).endswith("the versions are the same")
@@ -77,7 +78,7 @@ def test_a_difference_is_said_with_the_versions(tmp_path: Path) -> None:
 
 
 def test_a_trial_of_another_version_that_cannot_be_read_is_said(tmp_path: Path) -> None:
-    Trial.parse(GOOD).run(out=tmp_path)
+    run(parse_trial(GOOD), out=tmp_path)
     strange = GOOD.replace("<crowd ", "<weather/><crowd ")
     path = rewritten(tmp_path / "episode.mcap", tmp_path / "x.mcap", trial=strange, version="9.9")
     with pytest.raises(TrialError, match=r"x.mcap \(trial, written by crowdbot 9.9\):7: <weather> is no element"):
@@ -87,14 +88,14 @@ def test_a_trial_of_another_version_that_cannot_be_read_is_said(tmp_path: Path) 
 def test_code_of_a_recorded_trial_is_loaded_from_its_folder_only(tmp_path: Path) -> None:
     (tmp_path / "shy.py").write_text(SHY)
     trial = load_trial(written(tmp_path, changed('type="straight"', 'type="shy.py:Shy"')))
-    episode = trial.run(out=tmp_path / "out")
+    episode = run(trial, out=tmp_path / "out")
     with pytest.raises(EpisodeError, match=r"needs the code 'shy.py', which does not lie in .*; the episode brings it"):
         replay(tmp_path / "out" / "episode.mcap")
     assert replay(tmp_path / "out" / "episode.mcap", folder=tmp_path).replayed == episode.digest
 
 
 def test_a_truncated_file_replays_as_far_as_it_goes(tmp_path: Path) -> None:
-    Trial.parse(GOOD).run(out=tmp_path)
+    run(parse_trial(GOOD), out=tmp_path)
     path = tmp_path / "episode.mcap"
     whole = path.read_bytes()
     for share in (0.3, 0.5, 0.7):
@@ -109,7 +110,7 @@ def test_a_truncated_file_replays_as_far_as_it_goes(tmp_path: Path) -> None:
 
 
 def test_a_replay_says_from_where_on_it_differs(tmp_path: Path) -> None:
-    Trial.parse(GOOD).run(out=tmp_path)
+    run(parse_trial(GOOD), out=tmp_path)
     assert replay(tmp_path / "episode.mcap").differs is None
     other = changed('tolerance="0.3"', 'tolerance="0.3" ').replace('navigator type="straight"', 'navigator type="orca"')
     path = rewritten(tmp_path / "episode.mcap", tmp_path / "other.mcap", trial=other)
@@ -120,7 +121,7 @@ def test_a_replay_says_from_where_on_it_differs(tmp_path: Path) -> None:
 
 
 def test_an_episode_of_format_1_is_read_and_replayed(tmp_path: Path) -> None:
-    episode = Trial.parse(GOOD).run(out=tmp_path)
+    episode = run(parse_trial(GOOD), out=tmp_path)
     source, target = tmp_path / "episode.mcap", tmp_path / "old.mcap"
     with source.open("rb") as old, target.open("wb") as new:
         reader, writer = make_reader(old), Writer(new)

@@ -8,8 +8,9 @@ import pytest
 
 from crowdbot.core import InputError
 from crowdbot.navigation import Straight
+from crowdbot.recording import run
 from crowdbot.sensors import RGBCamera
-from crowdbot.trials import Goal, Robot, Trial, run
+from crowdbot.trials import Goal, Robot, parse_trial
 
 CAMERAS = {
     "cuybot": ["camera"],
@@ -55,11 +56,12 @@ TRIAL = """<trial name="look" duration="0.2" step="0.1" seed="1" {world}>
 </trial>"""
 
 
+@pytest.mark.usefixtures("drawing")
 @pytest.mark.parametrize("world", ["", 'world="physics"'])
 def test_a_trial_that_asks_has_pictures_and_one_that_does_not_draws_nothing(
     world: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    asked = run(Trial.parse(TRIAL.format(world=world, cameras='cameras="true"')))
+    asked = run(parse_trial(TRIAL.format(world=world, cameras='cameras="true"')))
     pictures = asked.readings["robot/camera"]
     assert len(pictures) == 3
     assert {picture.rgb.shape for picture in pictures} == {(1, 240, 480, 3)}  # type: ignore[attr-defined]
@@ -68,8 +70,8 @@ def test_a_trial_that_asks_has_pictures_and_one_that_does_not_draws_nothing(
     def refuse(*args: object, **more: object) -> None:
         raise AssertionError("nothing is to be drawn")
 
-    monkeypatch.setattr("crowdbot.world.physics.studio.Studio.render", refuse)
-    plain = run(Trial.parse(TRIAL.format(world=world, cameras="")))
+    monkeypatch.setattr("crowdbot.world.rendering.renderer.Studio.render", refuse)
+    plain = run(parse_trial(TRIAL.format(world=world, cameras="")))
     assert "robot/camera" not in plain.readings
     assert set(asked.readings) - set(plain.readings) == {"robot/camera"}
     np.testing.assert_array_equal(plain.position, asked.position)

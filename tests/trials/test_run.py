@@ -18,27 +18,13 @@ from crowdbot.core import InputError, Scene, TrialError, Twist
 from crowdbot.metrics import NAVIGATION_METRICS
 from crowdbot.models import ORCA
 from crowdbot.navigation import Navigator, Observation, Straight
+from crowdbot.recording import read_episode, run
 from crowdbot.sensors import Gaussian, Lidar2D
-from crowdbot.trials import (
-    Episode,
-    Goal,
-    Mount,
-    Robot,
-    Simulation,
-    Spawner,
-    Stage,
-    Trial,
-    Wall,
-    load_trial,
-    read_episode,
-)
-from crowdbot.trials.episode import Log
-from crowdbot.trials.run import Stop, drive
-from crowdbot.trials.simulation import start_scene
-from crowdbot.trials.spawn import place
+from crowdbot.simulation import Episode, Log, Simulation, Stop, drive, start_scene
+from crowdbot.trials import Goal, Mount, Robot, Spawner, Stage, Trial, Wall, load_trial, parse_trial, place
 from crowdbot.world import DifferentialDrive
 
-TINY = Trial.parse(GOOD)
+TINY = parse_trial(GOOD)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -74,7 +60,7 @@ def trial(**changes: object) -> Trial:
 
 
 def test_a_robot_alone_reaches_its_goal() -> None:
-    episode = trial().run()
+    episode = run(trial())
     away = np.hypot(*(episode.position[:, 0] - [2.0, 0.0]).T)
     assert episode.outcome == "success"
     assert away[-1] < 0.3
@@ -89,7 +75,7 @@ def test_a_robot_alone_reaches_its_goal() -> None:
 
 
 def test_time_runs_out() -> None:
-    episode = trial(duration=2.0).run()
+    episode = run(trial(duration=2.0))
     assert (episode.outcome, episode.times[-1], episode.steps) == ("timeout", 2.0, 40)
     assert np.isnan(episode.metrics["time_to_goal"])
 
@@ -98,7 +84,7 @@ def test_a_wall_is_touched_even_by_a_fast_robot() -> None:
     drive = DifferentialDrive(max_speed=60.0, max_acceleration=1e4)
     thin = Stage(walls=[Wall([(0.0, -1.0), (0.0, 1.0)])])
     fast = robot(drive=drive, navigator=Fast(), goal=Goal(40.0, 0.0), radius=0.05)
-    episode = trial(stage=thin, robots=[fast]).run()
+    episode = run(trial(stage=thin, robots=[fast]))
     assert episode.outcome == "collision"
     assert episode.metrics["min_wall_clearance"] < 0.0
 
@@ -111,7 +97,7 @@ class Mute(Navigator):
 
 def test_a_navigator_that_says_nothing_is_named() -> None:
     with pytest.raises(InputError, match="navigator Mute of robot 'robot' gave a NoneType, it must give a Twist"):
-        trial(robots=[robot(navigator=Mute())]).run()
+        run(trial(robots=[robot(navigator=Mute())]))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -123,13 +109,13 @@ class Fast(Navigator):
 def test_a_person_is_touched_and_the_run_ends_or_goes_on() -> None:
     standing = person(0.0, 0.0, (0.0, 0.0), arrival="stay")
     blind = robot(visible=False)
-    first = trial(spawners=[standing], robots=[blind]).run()
+    first = run(trial(spawners=[standing], robots=[blind]))
     assert first.outcome == "collision"
     assert first.metrics["collision"] == 1.0
     assert first.metrics["min_clearance"] < 0.0
     assert first.times[-1] < 3.5
     on = dataclasses.replace(TINY.end, collision=False)
-    second = trial(spawners=[standing], robots=[blind], end=on).run()
+    second = run(trial(spawners=[standing], robots=[blind], end=on))
     assert (second.outcome, second.metrics["success"]) == ("collision", 0.0)
     assert second.times[-1] == 8.0
     assert np.array_equal(second.position[: len(first.times)], first.position)
@@ -138,7 +124,7 @@ def test_a_person_is_touched_and_the_run_ends_or_goes_on() -> None:
 def test_people_walk_leave_or_stay() -> None:
     leaving = person(0.0, 2.0, (3.0, 2.0), speed=1.5)
     staying = person(0.0, -2.0, (3.0, -2.0), speed=1.5, arrival="stay")
-    episode = trial(spawners=[leaving, staying], robots=[], duration=5.0).run()
+    episode = run(trial(spawners=[leaving, staying], robots=[], duration=5.0))
     assert (episode.outcome, episode.robots, episode.metrics) == ("finished", (), {})
     assert episode.active[0].all()
     assert episode.active[-1].tolist() == [False, True]
@@ -154,7 +140,7 @@ def test_people_walk_leave_or_stay() -> None:
 
 def test_an_invisible_robot_changes_nobody_and_a_visible_one_does() -> None:
     walker = person(3.0, 0.1, (-3.0, 0.1), speed=1.2)
-    crowd = [trial(spawners=[walker], robots=bots).run() for bots in ([], [robot(visible=False)], [robot()])]
+    crowd = [run(trial(spawners=[walker], robots=bots)) for bots in ([], [robot(visible=False)], [robot()])]
     count = min(len(episode.times) for episode in crowd)
     alone, unseen, seen = (episode.position[:count, 0] for episode in crowd)
     assert np.array_equal(alone, unseen)
@@ -169,7 +155,7 @@ def test_adding_sensors_and_robots_with_sensors_does_not_change_the_crowd() -> N
             Mount(name="back", heading=3.0, sensor=Lidar2D(rays=20, noise=Gaussian(0.1))),
         ],
     )
-    episodes = [dataclasses.replace(TINY, robots=[bot]).run(seed=5) for bot in (TINY.robots[0], more)]
+    episodes = [run(dataclasses.replace(TINY, robots=[bot]), seed=5) for bot in (TINY.robots[0], more)]
     assert np.array_equal(episodes[0].position, episodes[1].position)
     one, two = (episode.readings["robot/scan"] for episode in episodes)
     assert all(np.array_equal(a.ranges, b.ranges) for a, b in zip(one, two, strict=True))  # type: ignore[attr-defined]
@@ -185,7 +171,7 @@ def test_sensors_navigators_and_recorders_keep_their_rates() -> None:
         goal=Goal(9.0, 0.0),
         sensors=[Mount(sensor=Lidar2D(rate=4.0)), Mount(name="slow", sensor=Lidar2D(rate=1.0))],
     )
-    episode = trial(robots=[bot], duration=3.0, recording=dataclasses.replace(TINY.recording, period=0.15)).run()
+    episode = run(trial(robots=[bot], duration=3.0, recording=dataclasses.replace(TINY.recording, period=0.15)))
     assert np.allclose([seen.time for seen in told], np.arange(16) * 0.2)
     assert np.allclose(episode.times, np.arange(21) * 0.15)
     assert [reading.time for reading in episode.readings["robot/slow"]] == [0.0, 1.0, 2.0, 3.0]
@@ -200,14 +186,14 @@ def test_a_navigator_knows_the_people_its_scan_hit_and_no_others() -> None:
     wall = Stage(walls=[Wall([(1.0, 0.5), (1.0, 3.0)])])
     hidden, open_, far = person(3.0, 1.5, (3.0, 9.0)), person(3.0, -2.0, (3.0, -9.0)), person(30.0, 0.0, (40.0, 0.0))
     bot = robot(navigator=Spy(told), sensors=[Mount(sensor=Lidar2D(rays=720, range_max=10.0), x=0.2)])
-    episode = trial(stage=wall, spawners=[hidden, open_, far], robots=[bot], duration=0.1).run()
+    episode = run(trial(stage=wall, spawners=[hidden, open_, far], robots=[bot], duration=0.1))
     assert set(episode.scans[0].hit.tolist()) == {-2, -1, 1}
     assert np.array_equal(told[0].people.position, episode.position[0, [1]])
     assert np.array_equal(told[0].people.velocity, episode.velocity[0, [1]])
     assert told[0].scan is episode.readings["robot/scan"][0]
     assert episode.scans[0].pose == (-1.8, 0.0, 0.0)
     blind: list[Observation] = []
-    trial(spawners=[open_], robots=[robot(navigator=Spy(blind))], duration=0.1).run()
+    run(trial(spawners=[open_], robots=[robot(navigator=Spy(blind))], duration=0.1))
     assert (len(blind[0].people), blind[0].scan) == (0, None)
 
 
@@ -217,7 +203,7 @@ def test_two_robots_see_each_other_and_share_the_outcome() -> None:
         robot(name="a", sensors=lidar),
         robot(name="b", x=2.0, y=1.5, heading=np.pi, goal=Goal(-2.0, 1.5), sensors=lidar),
     ]
-    episode = trial(robots=bots).run()
+    episode = run(trial(robots=bots))
     assert (episode.outcome, episode.robots) == ("success", (0, 1))
     assert 1 in episode.readings["a/scan"][0].hit  # type: ignore[attr-defined]
     assert episode.metrics["b.path_length"] > 3.0
@@ -230,13 +216,13 @@ def same(one: Episode, two: Episode) -> bool:
 
 
 def test_the_digest_is_that_of_the_bytes() -> None:
-    first, again, other = TINY.run(), TINY.run(seed=3), TINY.run(seed=4)
+    first, again, other = run(TINY), run(TINY, seed=3), run(TINY, seed=4)
     assert same(first, again)
     assert first.digest != other.digest
     assert len(first.digest) == 32
     assert not np.array_equal(first.position, other.position)
     moved = dataclasses.replace(TINY, robots=[dataclasses.replace(TINY.robots[0], x=-2.0 + 1e-15 * 4)])
-    assert moved.run().digest != first.digest
+    assert run(moved).digest != first.digest
 
 
 @pytest.mark.parametrize("threads", ["1", "2"])
@@ -250,19 +236,19 @@ def test_another_process_gives_the_same_digest(threads: str) -> None:
         check=True,
         env={**os.environ, "NUMBA_NUM_THREADS": threads, "PYTHONHASHSEED": threads},
     )
-    assert done.stdout.strip() == TINY.run().digest
+    assert done.stdout.strip() == run(TINY).digest
 
 
 def test_a_trial_stepped_from_outside_gives_the_same_digest() -> None:
     log = Log(TINY, 3)
     simulation = Simulation(TINY, 3)
     assert drive(simulation, [log], Stop()) == log.episode("timeout", 80).outcome
-    assert log.episode("timeout", simulation.tick).digest == TINY.run().digest
+    assert log.episode("timeout", simulation.tick).digest == run(TINY).digest
 
 
 def test_progress_is_told_from_nothing_to_all() -> None:
     shares: list[float] = []
-    TINY.run(progress=shares.append)
+    run(TINY, progress=shares.append)
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
     assert len(shares) > 10
@@ -274,10 +260,10 @@ def test_ctrl_c_keeps_what_is_done() -> None:
             signal.raise_signal(signal.SIGINT)
 
     before = signal.getsignal(signal.SIGINT)
-    episode = TINY.run(progress=press)
+    episode = run(TINY, progress=press)
     assert (episode.outcome, episode.times[-1], episode.steps) == ("interrupted", 2.1, 42)
     assert (episode.metrics["success"], episode.metrics["collision"], episode.metrics["timeout"]) == (0.0, 0.0, 0.0)
-    whole = TINY.run()
+    whole = run(TINY)
     assert np.array_equal(whole.position[:22], episode.position)
     assert signal.getsignal(signal.SIGINT) is before
 
@@ -288,17 +274,17 @@ def test_a_second_ctrl_c_stops_at_once(tmp_path: Path) -> None:
         signal.raise_signal(signal.SIGINT)
 
     with pytest.raises(KeyboardInterrupt):
-        TINY.run(out=tmp_path / "deep" / "out", progress=press)
+        run(TINY, out=tmp_path / "deep" / "out", progress=press)
     assert [path.name for path in (tmp_path / "deep" / "out").iterdir()] == ["episode.mcap"]
     assert not read_episode(tmp_path / "deep" / "out" / "episode.mcap").complete
 
 
 def test_a_run_outside_the_main_thread_leaves_signals_alone() -> None:
     found: list[Episode] = []
-    thread = threading.Thread(target=lambda: found.append(TINY.run()))
+    thread = threading.Thread(target=lambda: found.append(run(TINY)))
     thread.start()
     thread.join()
-    assert found[0].digest == TINY.run().digest
+    assert found[0].digest == run(TINY).digest
 
 
 def test_an_impossible_seed_is_refused_before_anything_is_written(tmp_path: Path) -> None:
@@ -306,12 +292,12 @@ def test_an_impossible_seed_is_refused_before_anything_is_written(tmp_path: Path
     crowded = trial(spawners=[Spawner(name="s", count=5, zone=tight, goal=tight, radius=0.25)], robots=[])
     bad = next(seed for seed in range(500) if place(crowded.stage, crowded.spawners, [], seed)[1])
     with pytest.raises(TrialError, match=r"trial 't': spawner 's' only \d of 5 people fit"):
-        crowded.run(seed=bad, out=tmp_path / "out")
+        run(crowded, seed=bad, out=tmp_path / "out")
     assert list(tmp_path.iterdir()) == []
 
 
 def test_tracks_need_a_multiple_of_the_recording_period() -> None:
-    episode = trial(duration=1.0).run()
+    episode = run(trial(duration=1.0))
     assert episode.tracks(0.2).dt == pytest.approx(0.2)
     with pytest.raises(InputError, match=r"recorded every 0.1 s, dt must be a multiple"):
         episode.tracks(0.25)
@@ -330,13 +316,13 @@ def test_the_scene_begins_with_people_who_walk_to_their_goals() -> None:
 
 @pytest.mark.parametrize("name", ["crossing-flows", "frontal", "empty-corridor"])
 def test_the_robot_succeeds_in_the_built_in_trials(name: str) -> None:
-    episode = load_trial(name).run()
+    episode = run(load_trial(name))
     assert episode.outcome == "success"
     assert episode.metrics["min_clearance"] > 0.02
 
 
 def test_crossing_flows_is_a_two_way_flow_around_the_robot() -> None:
-    episode = load_trial("crossing-flows").run()
+    episode = run(load_trial("crossing-flows"))
     assert episode.position.shape[1] == 41
     assert 15.0 < episode.times[-1] < 35.0
     robot = episode.robots[0]

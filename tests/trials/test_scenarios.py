@@ -12,9 +12,10 @@ import pytest
 from crowdbot.core import TrialError
 from crowdbot.models import SocialForce
 from crowdbot.navigation import Straight
-from crowdbot.trials import Trial, builtin_trials, load_trial
+from crowdbot.recording import run
+from crowdbot.simulation import Simulation
+from crowdbot.trials import builtin_trials, check_trial, load_trial, parse_trial, trial_xml
 from crowdbot.trials.scenarios import DENSITIES, FLOWS, PRESETS, SIZES
-from crowdbot.trials.simulation import Simulation
 
 LISTED = """
     frontal intersection blind-corner doorway elevator overtaking being-overtaken following joining-group leaving-group
@@ -39,16 +40,16 @@ def test_the_list_of_scenarios_is_complete() -> None:
 @pytest.mark.parametrize("name", builtin_trials())
 def test_a_builtin_trial_is_right_and_survives_the_way_through_xml(name: str) -> None:
     trial = load_trial(name)
-    trial.check()
+    check_trial(trial)
     assert (trial.name, bool(trial.about)) == (name, True)
-    assert Trial.parse(trial.xml()) == trial
+    assert parse_trial(trial_xml(trial)) == trial
     assert len(trial.robots) == 1
     assert type(trial.robots[0].navigator).__name__ in ("ORCA", "Straight")
 
 
 @pytest.mark.parametrize("name", QUICK)
 def test_a_scenario_runs_and_is_not_impossible(name: str) -> None:
-    episode = load_trial(name).run()
+    episode = run(load_trial(name))
     assert episode.outcome == ("collision" if name == "dense-circle" else "success")
 
 
@@ -67,7 +68,7 @@ def test_everything_that_is_asked_for_is_done() -> None:
 @pytest.mark.parametrize("delay", [-1.0, 0.0, 1.0])
 def test_people_arrive_at_the_intersection_when_they_are_asked_to(angle: float, delay: float) -> None:
     trial = load_trial("intersection", angle=angle, delay=delay, robot=False)
-    episode = trial.run()
+    episode = run(trial)
     here = episode.active[:, 0]
     away = np.where(here, np.hypot(*episode.position[:, 0].T), np.inf)
     assert episode.times[int(np.argmin(away))] == pytest.approx(6.0 + delay, abs=0.3)
@@ -79,12 +80,12 @@ def test_people_arrive_at_the_intersection_when_they_are_asked_to(angle: float, 
 def test_every_rung_of_the_ladder_has_its_density(density: float) -> None:
     trial = load_trial("density-ladder", density=density)
     assert trial.people == round(density * 100.0)
-    trial.check()
+    check_trial(trial)
 
 
 def test_the_robot_stops_in_front_of_who_takes_something_within_reach() -> None:
     for approach in (-60.0, 0.0, 60.0):
-        episode = load_trial("object-handover", reach=0.8, approach=approach).run()
+        episode = run(load_trial("object-handover", reach=0.8, approach=approach))
         assert episode.outcome == "success"
         person, robot = episode.position[-1]
         assert np.hypot(*(robot - person)) == pytest.approx(0.8, abs=0.2)
@@ -94,16 +95,16 @@ def test_the_robot_stops_in_front_of_who_takes_something_within_reach() -> None:
 
 @pytest.mark.parametrize(("name", "people"), [("pedestrian-obstruction", 1), ("circle-with-standing", 3)])
 def test_who_stands_in_the_way_stays_there(name: str, people: int) -> None:
-    episode = load_trial(name).run()
+    episode = run(load_trial(name))
     standing = episode.position[:, :people]
     assert np.hypot(*(standing - standing[0]).transpose(2, 0, 1)).max() < 0.1
     if name == "pedestrian-obstruction":
-        aside = load_trial(name, gives_way=True).run().position[:, 0]
+        aside = run(load_trial(name, gives_way=True)).position[:, 0]
         assert np.hypot(*(aside - aside[0]).T).max() > 0.2
 
 
 def test_people_come_into_a_delayed_circle_one_after_the_other() -> None:
-    episode = load_trial("delayed-circle", delay=4.0).run()
+    episode = run(load_trial("delayed-circle", delay=4.0))
     people = [a for a in range(len(episode.ids)) if a not in episode.robots]
     begins = sorted(float(episode.times[np.argmax(episode.active[:, a])]) for a in people)
     assert len(begins) == 5
@@ -117,7 +118,7 @@ def test_people_come_into_a_delayed_circle_one_after_the_other() -> None:
 @pytest.mark.parametrize("angle", [45.0, 90.0, 180.0])
 def test_ten_people_cross_at_the_angle_and_when_the_robot_does(angle: float) -> None:
     trial = load_trial("one-against-ten", angle=angle, robot=False)
-    episode = dataclasses.replace(trial, duration=6.5).run()
+    episode = run(dataclasses.replace(trial, duration=6.5))
     start, later = episode.position[0].mean(axis=0), episode.position[60].mean(axis=0)
     assert math.degrees(math.atan2(*(later - start)[::-1])) % 360.0 == pytest.approx(angle, abs=3.0)
     middle = np.hypot(*episode.position.mean(axis=1).T)
@@ -136,7 +137,7 @@ def test_ranks_are_a_metre_apart_and_everyone_has_an_own_goal(people: int) -> No
 
 def test_people_of_a_corridor_without_ends_stay_as_many() -> None:
     trial = load_trial("two-way", density=0.2, groups=0.5, robot=False)
-    episode = Trial.parse(trial.xml().replace('duration="90"', 'duration="20"')).run()
+    episode = run(parse_trial(trial_xml(trial).replace('duration="90"', 'duration="20"')))
     assert (episode.active.sum(axis=1) == trial.people).all()
     assert len(episode.ids) > trial.people
 
@@ -151,7 +152,7 @@ def test_the_challenge_is_that_of_its_files() -> None:
     assert {spawner.speed.extent for spawner in trial.spawners} == {(1.03, 1.63)}
     assert {spawner.radius.extent for spawner in trial.spawners} == {(0.33, 0.33)}
     assert not load_trial("challenge-with-50", reactive=False).robots[0].visible
-    episode = Trial.parse(load_trial("challenge-cross-50").xml().replace('duration="180"', 'duration="15"')).run()
+    episode = run(parse_trial(trial_xml(load_trial("challenge-cross-50")).replace('duration="180"', 'duration="15"')))
     assert (episode.active[:, :50].sum() + episode.active[:, 51:].sum()) == 50 * len(episode.times)
     assert np.abs(episode.position[..., 1]).max() < 9.0
     down = episode.velocity[-1, episode.active[-1], 1]
@@ -164,16 +165,16 @@ def test_nobody_begins_in_the_robot_of_the_challenge() -> None:
         people = Simulation(trial, trial.seed).people
         gap = np.hypot(*(people.position - trial.robots[0].position).T) - people.radius - trial.robots[0].radius
         assert gap.min() > 0.0
-        touched = dataclasses.replace(trial, world="physics", duration=3.0).run()
+        touched = run(dataclasses.replace(trial, world="physics", duration=3.0))
         assert touched.outcome == "timeout"
 
 
 def test_the_long_trial_of_the_documents_has_a_thousand_people_for_ten_minutes() -> None:
     trial = load_trial(Path(__file__).parents[2] / "docs" / "trials" / "thousand.xml")
     assert (trial.people, trial.duration, len(trial.robots), trial.world) == (1000, 600.0, 1, "planar")
-    episode = dataclasses.replace(trial, duration=0.8).run()
+    episode = run(dataclasses.replace(trial, duration=0.8))
     assert episode.active[-1].sum() == 1001
-    assert Trial.parse(trial.xml()) == trial
+    assert parse_trial(trial_xml(trial)) == trial
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from test_reading import MISTAKES, trials
 from trial_texts import FLOW, GOOD
 
 from crowdbot.core import TrialError
-from crowdbot.trials import Trial, builtin_trials, load_trial, schema
+from crowdbot.trials import Trial, builtin_trials, expand_spawners, load_trial, parse_trial, schema, trial_xml
 
 SCHEMA = etree.XMLSchema(etree.fromstring(schema().encode()))
 
@@ -27,8 +27,8 @@ def test_the_schema_that_is_shipped_is_up_to_date() -> None:
 
 @pytest.mark.parametrize("name", builtin_trials())
 def test_builtin_trials_are_valid(name: str) -> None:
-    assert valid(load_trial(name).xml()), SCHEMA.error_log
-    assert valid(load_trial(name).explicit().xml()), SCHEMA.error_log
+    assert valid(trial_xml(load_trial(name))), SCHEMA.error_log
+    assert valid(trial_xml(expand_spawners(load_trial(name)))), SCHEMA.error_log
 
 
 @pytest.mark.parametrize("text", [GOOD, FLOW], ids=["good", "flow"])
@@ -39,7 +39,7 @@ def test_the_trials_of_the_tests_are_valid(text: str) -> None:
 @settings(max_examples=40, deadline=None)
 @given(trials())
 def test_any_trial_is_valid(trial: Trial) -> None:
-    assert valid(trial.xml()), SCHEMA.error_log
+    assert valid(trial_xml(trial)), SCHEMA.error_log
 
 
 ALL = """<trial name="all" duration="5" capacity="20">
@@ -92,7 +92,7 @@ def test_what_is_not_valid_is_not_read() -> None:
         if not good:
             refused += 1
             with pytest.raises(TrialError):
-                Trial.parse(GOOD.replace(old, new, 1))
+                parse_trial(GOOD.replace(old, new, 1))
     assert refused >= 5
 
 

@@ -12,9 +12,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core import InputError, stream
 from crowdbot.navigation import Straight
-from crowdbot.trials import Distribution, Goal, Obstacle, Robot, Spawner, Stage, Wall
-from crowdbot.trials.company import GAP
-from crowdbot.trials.spawn import place
+from crowdbot.trials import GAP, Distribution, Goal, Obstacle, Robot, Spawner, Stage, Wall, place
 from crowdbot.world import DifferentialDrive
 
 SQUARE = [(0, 0), (6, 0), (6, 6), (0, 6)]

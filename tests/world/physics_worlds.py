@@ -7,9 +7,7 @@ import numpy as np
 from crowdbot.core import Scene
 from crowdbot.humans import People
 from crowdbot.models import ORCA
-from crowdbot.world import Omnidirectional, Robot
-from crowdbot.world.physics import PhysicsWorld
-from crowdbot.world.urdf import read_urdf
+from crowdbot.world import Omnidirectional, PhysicsWorld, Robot, read_urdf
 
 
 def ram(mass, height, push=None):

@@ -9,19 +9,9 @@ import pytest
 from crowdbot.core import InputError, Scene, Twist
 from crowdbot.models import ORCA, SocialForce
 from crowdbot.models.mixture import MODEL, Mixture
-from crowdbot.world import (
-    BodyContact,
-    DifferentialDrive,
-    Journey,
-    Journeys,
-    PlanarWorld,
-    Point,
-    Router,
-    Source,
-    Zone,
-)
-from crowdbot.world.journey import JOURNEY, STOP
-from crowdbot.world.routing import CORNER, UNPLANNED, WAY
+from crowdbot.world import BodyContact, DifferentialDrive, Journey, Journeys, PlanarWorld, Point, Router, Source, Zone
+from crowdbot.world.crowd.journey import JOURNEY, STOP
+from crowdbot.world.crowd.routing import CORNER, UNPLANNED, WAY
 
 DOOR = Zone(((0.0, 0.0), (1.0, 0.0), (1.0, 4.0), (0.0, 4.0)))
 FAR = Zone(((9.0, 0.0), (10.0, 0.0), (10.0, 4.0), (9.0, 4.0)), aim="random")

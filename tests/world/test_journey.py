@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from crowdbot.core import InputError, Scene
 from crowdbot.models import ORCA
 from crowdbot.world import Direction, Journey, Journeys, PlanarWorld, Point, Router, Zone
-from crowdbot.world.chance import uniform
-from crowdbot.world.journey import STOP
-from crowdbot.world.stop import Luck
+from crowdbot.world.crowd.journey import STOP
+from crowdbot.world.crowd.person_random import uniform
+from crowdbot.world.crowd.waypoint import Luck
 
 STAR = [(0, 0), (4, 1), (8, 0), (7, 4), (8, 8), (4, 7), (0, 8), (1, 4)]
 HALL = Zone(((10.0, 0.0), (12.0, 0.0), (12.0, 4.0), (10.0, 4.0)))

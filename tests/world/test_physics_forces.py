@@ -8,13 +8,11 @@ import pytest
 from physics_worlds import alone, coasting, facing, ram
 
 from crowdbot.core import InputError, Twist
-from crowdbot.world import Robot
-from crowdbot.world.physics import TISSUES, Cube, PhysicsStage, permitted_speed, region_of, two_body_force
-from crowdbot.world.physics.passers import GIVEN, REACTION
-from crowdbot.world.physics.tissue import reduced_mass, softness
+from crowdbot.world import TISSUES, Cube, PhysicsStage, Robot, frame, permitted_speed, region_of, two_body_force
+from crowdbot.world.physics.body_region_limits import reduced_mass, softness
+from crowdbot.world.physics.people_bodies import GIVEN, REACTION
 from crowdbot.world.urdf.model import Part
 from crowdbot.world.urdf.shapes import Box
-from crowdbot.world.urdf.transforms import frame
 
 
 def weak(beam=False):

@@ -9,8 +9,7 @@ from crowdbot.core import InputError, Pose, Scene, SpatialPose, Twist
 from crowdbot.models import ORCA
 from crowdbot.sensors.beams import beams, fan
 from crowdbot.sensors.cast import cast
-from crowdbot.world import Robot
-from crowdbot.world.physics import Cube, PhysicsStage, PhysicsWorld, Table, Tree, Walkers, bodies
+from crowdbot.world import Cube, PhysicsStage, PhysicsWorld, Robot, Table, Tree, Walkers, bodies
 
 FAR = 60.0
 ROOM = [[(-7.0, -7.0), (-7.0, 7.0), (7.0, 7.0), (7.0, -7.0)], [(3.0, 3.0), (5.0, 3.0), (5.0, 4.0), (3.0, 4.0)]]

@@ -9,8 +9,8 @@ from physics_worlds import alone, facing
 
 from crowdbot.core import InputError, Scene, Twist
 from crowdbot.models import ORCA
-from crowdbot.world import Robot
-from crowdbot.world.physics import Camera, Cube, PhysicsStage, PhysicsWorld, drawing
+from crowdbot.world import Camera, Cube, PhysicsStage, PhysicsWorld, Robot
+from crowdbot.world.rendering import gl_context
 
 
 @pytest.fixture(scope="module")
@@ -23,6 +23,7 @@ def world():
     return PhysicsWorld(scene, ORCA(), {0: Robot.load("turtlebot2")}, 0.1, stage=stage)
 
 
+@pytest.mark.usefixtures("drawing")
 def test_depth_is_metric_and_everyone_is_named(world):
     camera = Camera((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), width=160, height=120, view=math.radians(60.0))
     seen = world.render(camera, rgb=True, depth=True, segmentation=True)
@@ -46,6 +47,7 @@ def test_depth_is_metric_and_everyone_is_named(world):
     assert column.min() > 80  # it lies to the right
 
 
+@pytest.mark.usefixtures("drawing")
 def test_skins_follow_the_walk_and_the_camera_its_robot(world):
     camera = Camera((0.2, 0.0, 0.4), (1.0, 0.0, 0.5), width=80, height=60, robot=0, detail=2)
     first = world.render(camera, segmentation=True, rgb=False)
@@ -65,6 +67,7 @@ def test_skins_follow_the_walk_and_the_camera_its_robot(world):
     assert 1 not in world.render(camera, segmentation=True, rgb=False).segmentation
 
 
+@pytest.mark.usefixtures("drawing")
 def test_the_same_world_gives_the_same_image():
     def image():
         world = facing(Robot.load("turtlebot2"), gap=1.5)
@@ -75,18 +78,20 @@ def test_the_same_world_gives_the_same_image():
     assert one.std() > 10.0
 
 
+@pytest.mark.usefixtures("drawing")
 def test_contexts_are_given_back():
     world = alone(Robot.load("turtlebot2"))
     gc.collect()
-    count = len(drawing.OPEN)
+    count = len(gl_context.OPEN)
     for detail in (2, 1):
         world.render(Camera((-1.0, -1.5, 1.5), (1.0, 0.0, 0.8), width=8, height=8, detail=detail))
-        assert len(drawing.OPEN) == count + 1
+        assert len(gl_context.OPEN) == count + 1
     del world
     gc.collect()
-    assert len(drawing.OPEN) == count
+    assert len(gl_context.OPEN) == count
 
 
+@pytest.mark.usefixtures("drawing")
 def test_what_cannot_be_drawn_is_said(world, monkeypatch):
     for wrong, match in (
         ({"width": 0}, "width = 0 pixels must be from 1 to 1920"),
@@ -101,17 +106,17 @@ def test_what_cannot_be_drawn_is_said(world, monkeypatch):
         world.render(Camera((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), robot=2))
     with pytest.raises(InputError, match="turtlebot2 has no link 'lasr_link', did you mean 'laser_link'"):
         world.render(Camera((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), robot=0, link="lasr_link"))
-    drawing.backend.cache_clear()
+    gl_context.backend.cache_clear()
     monkeypatch.setenv("MUJOCO_GL", "pencil")
     with pytest.raises(InputError, match="MUJOCO_GL = 'pencil' must be one of egl, osmesa"):
-        drawing.backend()
+        gl_context.backend()
     monkeypatch.delenv("MUJOCO_GL")
     monkeypatch.delenv("PYOPENGL_PLATFORM", raising=False)
-    monkeypatch.setattr(drawing, "_works", lambda name: False)
-    monkeypatch.setattr(drawing.sys, "platform", "linux")
+    monkeypatch.setattr(gl_context, "_works", lambda name: False)
+    monkeypatch.setattr(gl_context.sys, "platform", "linux")
     with pytest.raises(InputError, match="neither EGL nor OSMesa works; install one"):
-        drawing.backend()
-    drawing.backend.cache_clear()
+        gl_context.backend()
+    gl_context.backend.cache_clear()
 
 
 def test_a_camera_that_looks_down_has_ahead_on_top():

@@ -8,8 +8,7 @@ from physics_worlds import alone
 from robot_texts import REAL, joint, link, robot
 
 from crowdbot.core import InputError, RobotError, Twist
-from crowdbot.world import AckermannDrive, DifferentialDrive, Omnidirectional, Robot, Wheel
-from crowdbot.world.urdf import read_urdf
+from crowdbot.world import AckermannDrive, DifferentialDrive, Omnidirectional, Robot, Wheel, read_urdf
 
 ROUND = 0.4 * np.stack([np.cos(np.arange(8) * math.pi / 4), np.sin(np.arange(8) * math.pi / 4)], axis=1)
 

@@ -5,12 +5,11 @@ import pytest
 from physics_worlds import alone, facing, ram
 
 from crowdbot.core import Twist
-from crowdbot.world import Robot
-from crowdbot.world.physics import Cube, PhysicsStage, two_body_force
-from crowdbot.world.physics.collisions import CollisionBook
-from crowdbot.world.physics.composed import LIMB_NAMES
-from crowdbot.world.physics.passers import LIFTED, QUICK
-from crowdbot.world.physics.touches import Party, Touch
+from crowdbot.world import Cube, Party, PhysicsStage, Robot, two_body_force
+from crowdbot.world.physics.contact_events import CollisionBook
+from crowdbot.world.physics.contacts import Touch
+from crowdbot.world.physics.mjcf_model import LIMB_NAMES
+from crowdbot.world.physics.people_bodies import LIFTED, QUICK
 
 ROBOT, PERSON = Party("robot", 0), Party("person", 1)
 STEP = 0.005

@@ -15,17 +15,22 @@ from crowdbot.models import ORCA
 from crowdbot.world import (
     AckermannDrive,
     BodyContact,
+    Cube,
     DifferentialDrive,
     Journeys,
+    Light,
+    PhysicsStage,
+    PhysicsWorld,
     PlanarWorld,
     Robot,
     Router,
     Source,
+    Table,
+    Tree,
     World,
     Zone,
     builtin_robots,
 )
-from crowdbot.world.physics import Cube, Light, PhysicsStage, PhysicsWorld, Table, Tree
 
 load = functools.cache(Robot.load)
 

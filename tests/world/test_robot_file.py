@@ -10,8 +10,7 @@ from robot_texts import BALL, joint, link, robot
 from crowdbot.cli import main
 from crowdbot.core import InputError, RobotError
 from crowdbot.sensors import Gaussian, Lidar2D, preset
-from crowdbot.world import AckermannDrive, Robot, SensorMount, VelocityServo, Wheel
-from crowdbot.world.urdf import read_urdf
+from crowdbot.world import AckermannDrive, Robot, SensorMount, VelocityServo, Wheel, read_urdf
 
 URDF = robot(
     link("base", BALL.format(radius=0.3)),

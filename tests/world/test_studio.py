@@ -10,8 +10,7 @@ from physics_worlds import facing
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, Twist
 from crowdbot.models import ORCA
 from crowdbot.sensors import Lens, RGBCamera
-from crowdbot.world import DifferentialDrive, PlanarWorld, Robot
-from crowdbot.world.physics import Camera, Cube, PhysicsStage, Studio, Walkers
+from crowdbot.world import Camera, Cube, DifferentialDrive, PhysicsStage, PlanarWorld, Robot, Studio, Walkers
 
 
 def plain(name="turtlebot2"):
@@ -23,6 +22,7 @@ def plain(name="turtlebot2"):
     return scene, Robot.load(name)
 
 
+@pytest.mark.usefixtures("drawing")
 def test_the_plane_looks_like_the_physics_world():
     """The same scene gives the same image in both, as long as nobody has moved."""
     deep = facing(Robot.load("turtlebot2"), gap=2.0, walls=[[(4.0, -2.0), (4.0, 2.0)]])
@@ -37,6 +37,7 @@ def test_the_plane_looks_like_the_physics_world():
     assert np.mean(np.abs(one.rgb.astype(int) - other.rgb)) < 1.0
 
 
+@pytest.mark.usefixtures("drawing")
 def test_people_walk_and_robots_drive_in_the_plane():
     scene, robot = plain()
     walkers = Walkers(scene, np.array([1]), seed=4)
@@ -56,6 +57,7 @@ def test_people_walk_and_robots_drive_in_the_plane():
     assert 1 not in studio.images(camera, rgb=False, segmentation=True).segmentation
 
 
+@pytest.mark.usefixtures("drawing")
 def test_joints_move_what_is_drawn():
     scene, robot = plain("pepper")
     studio = Studio(scene, {0: robot})
@@ -67,6 +69,7 @@ def test_joints_move_what_is_drawn():
     assert 1 not in aside
 
 
+@pytest.mark.usefixtures("drawing")
 def test_a_robot_of_which_only_the_size_is_known():
     scene, _ = plain()
     puck = Robot.disc("puck", DifferentialDrive(), 0.3, height=0.5)
@@ -87,6 +90,7 @@ class Optics(NamedTuple):
     far: float = 100.0
 
 
+@pytest.mark.usefixtures("drawing")
 @pytest.mark.parametrize("cx", [39.5, 10.0])
 def test_a_lens_puts_points_where_it_should(cx):
     """A cube is drawn where the intrinsics say, also with a principal point that is not in the middle."""
@@ -107,9 +111,10 @@ def test_a_lens_puts_points_where_it_should(cx):
     front = seen["depth"][0][seen["hit"][0] == -4]
     assert front.min() == pytest.approx(x.min(), abs=0.02)
     own = RGBCamera(width=80, height=60)
-    np.testing.assert_array_equal(own.measure(scene, pose, source=studio).rgb, studio.render(own, pose)["rgb"])
+    np.testing.assert_array_equal(own.read(scene, pose, renderer=studio).rgb, studio.render(own, pose)["rgb"])
 
 
+@pytest.mark.usefixtures("drawing")
 def test_the_pose_of_a_sensor_in_both_worlds():
     world = facing(Robot.load("qolo"), gap=3.0)
     robot = world.chassis[0].robot

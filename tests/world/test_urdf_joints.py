@@ -8,7 +8,8 @@ import pytest
 from robot_texts import BALL, joint, link, robot
 
 from crowdbot.core import InputError
-from crowdbot.world.urdf import BaseServo, Motor, mjcf, read_urdf
+from crowdbot.world import read_urdf
+from crowdbot.world.urdf import BaseServo, Motor, mjcf
 
 LIMIT = "<limit lower='-1' upper='1' effort='5' velocity='2'/>"
 ORIGIN = "<origin xyz='0.1 0.2 0.3' rpy='0.4 0.5 0.6'/>"

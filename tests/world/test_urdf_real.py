@@ -8,7 +8,7 @@ import yourdfpy
 from robot_texts import REAL
 
 from crowdbot.core import RobotError
-from crowdbot.world.urdf import read_urdf
+from crowdbot.world import read_urdf
 from crowdbot.world.urdf.inertia import unphysical
 
 models = {}

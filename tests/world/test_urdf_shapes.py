@@ -6,7 +6,8 @@ import trimesh
 from robot_texts import BALL, joint, link, mesh, robot
 
 from crowdbot.core import MissingExtra, RobotError
-from crowdbot.world.urdf import Box, Capsule, Cylinder, Mesh, Sphere, meshes, read_urdf, with_pieces
+from crowdbot.world import read_urdf
+from crowdbot.world.urdf import Box, Capsule, Cylinder, Mesh, Sphere, meshes, with_pieces
 from crowdbot.world.urdf.inertia import unphysical
 
 ROUND = trimesh.creation

@@ -6,7 +6,7 @@ import trimesh
 from robot_texts import joint, link, mesh, robot
 
 from crowdbot.core import InputError, RobotError
-from crowdbot.world.urdf import read_urdf
+from crowdbot.world import read_urdf
 
 A, B, C = link("a"), link("b"), link("c")
 ZERO = "<limit lower='0' upper='1' effort='1' velocity='1'/>"

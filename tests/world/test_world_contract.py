@@ -37,5 +37,5 @@ def test_worlds(kind):
 
 def test_the_room_shows_its_contracts():
     assert set(DRIVES) == {"ackermann-drive", "differential-drive", "omnidirectional", "velocity-servo"}
-    assert set(WORLDS) == {"planar-world"}
+    assert set(WORLDS) == {"physics-world", "planar-world"}
     assert all(hasattr(room, name) for name in room.__all__)

@@ -1,20 +1,77 @@
-"""Floor 5: whole jobs over the rooms below: the catalogue, the demo and its report, and speed."""
+"""Catalogue, demo and report, evaluation of predictors, speed measurements, and the comparison of GANs on toy data.
 
-from .catalogue import catalogue, cite, papers
-from .demo import Demo, run_demo
-from .report import Predicted, write_report
-from .speed import Row, measure
-from .workloads import measurements
+Each name is loaded on first use.
+"""
 
-__all__ = [
-    "Demo",
-    "Predicted",
-    "Row",
-    "catalogue",
-    "cite",
-    "measure",
-    "measurements",
-    "papers",
-    "run_demo",
-    "write_report",
-]
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+_MODULES = {
+    "catalogue": ("builtin_names", "cite", "papers"),
+    "demo": ("Demo", "run_demo"),
+    "report": ("Predicted", "write_report"),
+    "prediction": (
+        "DegradedScore",
+        "Frames",
+        "Part",
+        "Piece",
+        "Result",
+        "Study",
+        "Task",
+        "animate",
+        "draw_degraded",
+        "evaluate",
+        "plot_errors",
+        "plot_frames",
+        "sweep",
+    ),
+    "speed": ("SpeedRow", "measure", "measurements"),
+    "toy_gan": ("METHODS", "Run", "ToyStudy", "plot_measures", "plot_samples", "with_values"),
+}
+_HOME = {name: module for module, names in _MODULES.items() for name in names}
+
+__all__ = [*_HOME]  # noqa: PLE0604
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        return getattr(importlib.import_module(f"{__name__}.{_HOME[name]}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_HOME])
+
+
+if TYPE_CHECKING:
+    from .catalogue import builtin_names as builtin_names
+    from .catalogue import cite as cite
+    from .catalogue import papers as papers
+    from .demo import Demo as Demo
+    from .demo import run_demo as run_demo
+    from .prediction import DegradedScore as DegradedScore
+    from .prediction import Frames as Frames
+    from .prediction import Part as Part
+    from .prediction import Piece as Piece
+    from .prediction import Result as Result
+    from .prediction import Study as Study
+    from .prediction import Task as Task
+    from .prediction import animate as animate
+    from .prediction import draw_degraded as draw_degraded
+    from .prediction import evaluate as evaluate
+    from .prediction import plot_errors as plot_errors
+    from .prediction import plot_frames as plot_frames
+    from .prediction import sweep as sweep
+    from .report import Predicted as Predicted
+    from .report import write_report as write_report
+    from .speed import SpeedRow as SpeedRow
+    from .speed import measure as measure
+    from .speed import measurements as measurements
+    from .toy_gan import METHODS as METHODS
+    from .toy_gan import Run as Run
+    from .toy_gan import ToyStudy as ToyStudy
+    from .toy_gan import plot_measures as plot_measures
+    from .toy_gan import plot_samples as plot_samples
+    from .toy_gan import with_values as with_values

@@ -8,7 +8,7 @@ from typing import Any
 
 from crowdbot.core import InputError, Paper, UnknownName, builtin_classes
 
-__all__ = ["catalogue", "cite", "papers"]
+__all__ = ["builtin_names", "cite", "papers"]
 
 KINDS = {
     "models": ("models", "CrowdModel"),
@@ -37,12 +37,12 @@ PROGRAM = Paper(
 )
 
 
-def catalogue(kind: str | None = None) -> dict[str, dict[str, str]]:
+def builtin_names(kind: str | None = None) -> dict[str, dict[str, str]]:
     """Return name -> one line, for one kind or for all.
 
-    >>> "orca" in catalogue("models")["models"]
+    >>> "orca" in builtin_names("models")["models"]
     True
-    >>> "robot-speed" in catalogue("experiments")["experiments"]
+    >>> "robot-speed" in builtin_names("experiments")["experiments"]
     True
     """
     words = {
@@ -118,7 +118,7 @@ def _trials() -> dict[str, str]:
 
 
 def _experiments() -> dict[str, str]:
-    from crowdbot.trials.experiment import builtin_experiments, load_experiment
+    from crowdbot.experiments import builtin_experiments, load_experiment
 
     return {name: load_experiment(name).about for name in builtin_experiments()}
 

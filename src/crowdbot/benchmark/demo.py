@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from crowdbot.core import kebab
+from crowdbot.recording import run
 
 from .report import Predicted, write_report
 
@@ -16,7 +17,8 @@ if TYPE_CHECKING:
     from crowdbot.calibration import Fit
     from crowdbot.data import Windows
     from crowdbot.metrics import Score
-    from crowdbot.trials import Episode, Trial
+    from crowdbot.simulation import Episode
+    from crowdbot.trials import Trial
 
 __all__ = ["Demo", "run_demo"]
 
@@ -69,7 +71,7 @@ def run_demo(out: Path, seed: int | None = None, progress: Callable[[str, float]
     trial = load_trial(TRIAL)
     out.mkdir(parents=True, exist_ok=True)
     file = out / "episode.mcap"
-    episode = trial.run(seed=seed, out=file, progress=lambda share: report("1 run the trial", share))
+    episode = run(trial, seed=seed, out=file, progress=lambda share: report("1 run the trial", share))
     report("1 run the trial", 1.0)
     fit = _calibrated(trial, episode.seed + OTHER_SEED, lambda share: report("2 calibrate the simulated crowd", share))
     past, future = episode.tracks(STEP).windows(OBSERVE, PREDICT, near=NEAR)
@@ -87,7 +89,7 @@ def _calibrated(trial: Trial, seed: int, progress: Callable[[float], None]) -> F
     """Fit one ORCA parameter set to another crowd of the same trial, so that no scored person is seen."""
     from crowdbot.calibration import Calibrator
 
-    past, _ = trial.run(seed=seed).tracks(STEP).windows(PREDICT, 1)
+    past, _ = run(trial, seed=seed).tracks(STEP).windows(PREDICT, 1)
     calibrator = Calibrator("orca", "absolute", "random-search", budget=BUDGET, shared=True)
     return calibrator.fit(past[::4], seed=seed, progress=progress)
 
@@ -96,7 +98,9 @@ def _predicted(
     fit: Fit, past: Windows, future: Windows, seed: int, progress: Callable[[float], None]
 ) -> list[Predicted]:
     from crowdbot.core import stream
-    from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, Kalman, Simulated, evaluate
+    from crowdbot.prediction import ConstantAcceleration, ConstantVelocity, Kalman, Simulated
+
+    from .prediction import evaluate
 
     found = []
     predictors = (ConstantVelocity(), ConstantAcceleration(), Kalman(), Simulated.of(fit))

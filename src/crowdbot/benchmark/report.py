@@ -20,7 +20,7 @@ import numpy as np
 if TYPE_CHECKING:
     from crowdbot.data import Forecast, Windows
     from crowdbot.metrics import Score
-    from crowdbot.trials import Episode
+    from crowdbot.simulation import Episode
 
 __all__ = ["Predicted", "write_report"]
 

@@ -32,7 +32,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Run the branch."""
-    from crowdbot.trials import branch
+    from crowdbot.recording import branch
 
     begin = time.perf_counter()
     with spoken_warnings(), progress(options.json) as report:

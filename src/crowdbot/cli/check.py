@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from crowdbot.trials import expand_sweeps, trial_remarks
+
 from .output import add_json, print_json
 from .settings import add_settings, settings
 
@@ -69,8 +71,8 @@ def _is_robot(name: str) -> bool:
 
 def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
     from crowdbot.core import InputError, TrialError
+    from crowdbot.experiments import is_experiment, load_experiment
     from crowdbot.trials import load_trial
-    from crowdbot.trials.experiment import is_experiment, load_experiment
 
     try:
         if is_experiment(name):
@@ -81,14 +83,13 @@ def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
         return {"problems": list(error.problems)}
     except InputError as error:
         return {"problems": [str(error)]}
-    variants = [one.name for one in trial.variants()] if trial.sweeps else []
-    return {"problems": [], "remarks": trial.remarks(), "variants": variants}
+    variants = [one.name for one in expand_sweeps(trial)] if trial.sweeps else []
+    return {"problems": [], "remarks": trial_remarks(trial), "variants": variants}
 
 
 def _robot(name: str, trust: bool, packages: dict[str, Path]) -> dict[str, Any]:
     from crowdbot.core import InputError, RobotError
-    from crowdbot.world import Robot
-    from crowdbot.world.urdf import described, read_urdf
+    from crowdbot.world import Robot, described, read_urdf
 
     try:
         if Path(name).suffix in (".urdf", ".xacro"):

@@ -9,13 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, json_text, note, print_json, print_table, progress
-from .recordings import add_recordings, recordings, tell_notes
+from .recordings import add_recordings, horizon, recordings, tell_notes
 from .schemes import add_scheme, assignments, recipes
 
 if TYPE_CHECKING:
+    from crowdbot.benchmark import DegradedScore, Task
     from crowdbot.data import Recording, Trajectories
     from crowdbot.data.degrade import Chain, Degradation
-    from crowdbot.prediction import DegradedScore, Predictor, Task
+    from crowdbot.prediction import Predictor
 
 ALL = "all"
 
@@ -152,11 +153,12 @@ def _predictors(options: argparse.Namespace, found: Sequence[Recording]) -> list
     """Return what is scored; a goal that learns does so from the clean begin of the one recording."""
     from crowdbot import prediction
     from crowdbot.core import InputError, builtin_classes, required_fields
-    from crowdbot.prediction.learned.predictor import LearnedPredictor
 
     known = builtin_classes(prediction, prediction.Predictor)
     plain = (
-        name for name in known if not issubclass(known[name], LearnedPredictor) and not required_fields(known[name])
+        name
+        for name in known
+        if not issubclass(known[name], prediction.LearnedPredictor) and not required_fields(known[name])
     )
     options.predictor = [*dict.fromkeys(options.predictor or plain)]
     options.set = []  # they are parameters of the degradation here
@@ -170,7 +172,7 @@ def _predictors(options: argparse.Namespace, found: Sequence[Recording]) -> list
 
 
 def _task(options: argparse.Namespace) -> Task:
-    from crowdbot.prediction import Task
+    from crowdbot.benchmark import Task
 
     names = ("observe", "predict", "protocol", "near", "samples", "best_of", "seed", "carry", "draws", "every")
     return Task(**{name: getattr(options, name) for name in names})
@@ -186,7 +188,7 @@ def _sweep(
     done: dict[str, list[DegradedScore]],
 ) -> None:
     """Fill ``done``, degradation by degradation, and keep the file up to date."""
-    from crowdbot.prediction import sweep
+    from crowdbot.benchmark import sweep
 
     for found in sweep(recordings, degradations, predictors, options.levels, task, report):
         done.setdefault(found[0].degradation.name, []).extend(found)
@@ -209,7 +211,7 @@ def _keep(
         os.replace(draft, file)
         if not plot:
             return [file]
-        from crowdbot.benchmark.degraded_plot import draw_degraded
+        from crowdbot.benchmark import draw_degraded
 
         return [file, *draw_degraded(list(done.values()), options.out, _title(options, task))]
     except OSError as error:
@@ -248,6 +250,7 @@ def _tables(
 ) -> None:
     names = ", ".join(tracks.name for tracks in recordings)
     units = recordings[0].units
+    rows_and_seconds = horizon([one.dt for one in recordings], task.observe, task.predict)
     best = f", best of {task.samples} per {task.best_of}" if task.samples > 1 else ""
     carried = f", carried {task.carry} rows" if task.carry else ""
     for name, scores in done.items():
@@ -264,7 +267,7 @@ def _tables(
             f"{name}{f' ({rest})' if rest else ''}: ADE / FDE [{units}] of {names}",
             (f"{degradation.level}{unit}", "predicted", *map(_head, predictors)),
             rows,
-            caption=f"protocol {task.protocol}, {task.observe} observed + {task.predict} predicted rows{best};"
+            caption=f"protocol {task.protocol}, {rows_and_seconds}{best};"
             f" {scores[0].asked} persons asked for, means over those who could be predicted;"
             f" {max(score.draws for score in scores)} draws, seed {task.seed}{carried}",
         )

@@ -10,10 +10,13 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from crowdbot.experiments import experiment_xml
+from crowdbot.trials import check_trial, trial_xml
+
 from .output import add_json, note, number, print_json, print_table, spoken_warnings
 
 if TYPE_CHECKING:
-    from crowdbot.trials.experiment import Experiment, Person, Sitting
+    from crowdbot.experiments import Experiment, Person, Sitting
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -74,7 +77,7 @@ def _run_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _run(options: argparse.Namespace) -> int:
     """Run a session; status 0 when it is done, 1 when it was aborted, 130 when it was left."""
-    from crowdbot.trials.experiment import Console, Given, Left, Sitting, Typed, load_experiment
+    from crowdbot.experiments import Console, Given, Left, Sitting, Typed, load_experiment
 
     experiment = load_experiment(options.experiment, trust=options.trust)
     stream = sys.stderr if options.json else sys.stdout
@@ -135,7 +138,7 @@ def _ended(sitting: Sitting, as_json: bool) -> int:
 
 def _order(options: argparse.Namespace) -> int:
     from crowdbot.core import InputError
-    from crowdbot.trials.experiment import load_experiment, plan
+    from crowdbot.experiments import load_experiment, plan
 
     experiment = load_experiment(options.experiment, trust=options.trust)
     count = options.participants if options.participants is not None else experiment.participants or 12
@@ -160,7 +163,7 @@ def _order(options: argparse.Namespace) -> int:
 
 def _balance(experiment: Experiment, count: int) -> list[str]:
     """Return for each Latin square whether it is balanced over so many participants."""
-    from crowdbot.trials.experiment import rows_of
+    from crowdbot.experiments import rows_of
 
     said = []
     for block in experiment.blocks:
@@ -172,7 +175,7 @@ def _balance(experiment: Experiment, count: int) -> list[str]:
 
 
 def _summary(options: argparse.Namespace) -> int:
-    from crowdbot.trials.experiment import save_summary, summary
+    from crowdbot.experiments import save_summary, summary
 
     rows = summary(options.folder)
     if options.out is not None:
@@ -192,7 +195,7 @@ def _summary(options: argparse.Namespace) -> int:
 
 def _new(options: argparse.Namespace) -> int:
     from crowdbot.core import InputError, UnknownName
-    from crowdbot.trials.experiment import builtin_experiments
+    from crowdbot.experiments import builtin_experiments
 
     known = builtin_experiments()
     if options.original is None and options.like not in known:
@@ -222,18 +225,17 @@ def _new(options: argparse.Namespace) -> int:
 def _imported(options: argparse.Namespace) -> tuple[str, ...]:
     """Write an experiment of the original simulator with its trials, and return what is left out and to mend."""
     from crowdbot.core import TrialError
-    from crowdbot.trials.experiment import import_experiment
-    from crowdbot.trials.experiment.loading import FILE
+    from crowdbot.experiments import FILE, import_experiment
 
     done = import_experiment(options.original, participant=options.participant)
-    texts = {name: trial.xml() for name, trial in done.trials} | {FILE: done.experiment.xml()}
+    texts = {name: trial_xml(trial) for name, trial in done.trials} | {FILE: experiment_xml(done.experiment)}
     options.folder.mkdir(parents=True)
     for name, text in texts.items():
         (options.folder / name).write_text(text, encoding="utf-8")
     mend: list[str] = []
     for name, trial in done.trials:
         try:
-            trial.check()
+            check_trial(trial)
         except TrialError as error:
             mend += [f"to mend in {name}: {sentence}" for sentence in error.problems]
     return (*done.left_out, *mend)

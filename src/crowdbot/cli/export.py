@@ -24,8 +24,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Write the table."""
-    from crowdbot.trials import export
-    from crowdbot.trials.exported_pictures import folder_of
+    from crowdbot.recording import export, folder_of
 
     rows = export(options.episode, options.to, options.table)
     drawn = rows > 0 and options.table == "pictures"

@@ -16,11 +16,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Print the names with one line about each."""
-    from crowdbot.benchmark import catalogue
+    from crowdbot.benchmark import builtin_names
 
     if options.name is not None:
         return _parameters(options)
-    kinds = catalogue(options.kind)
+    kinds = builtin_names(options.kind)
     if options.json:
         print_json(kinds)
         return 0

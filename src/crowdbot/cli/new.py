@@ -7,6 +7,8 @@ import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from crowdbot.trials import check_trial, expand_spawners, trial_xml
+
 from .output import note
 from .settings import add_settings, settings
 
@@ -31,7 +33,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--explicit", action="store_true", help="write everybody at the beginning as an agent to edit")
     group.add_argument("--seed", type=int, help="seed by which people are placed (default: the trial's own)")
     group = parser.add_argument_group("a trial of recorded people")
-    group.add_argument("--fps", type=float, help="rows a second, when the recording does not say")
+    group.add_argument("--fps", type=float, help="frames per second of the recording (default: from the file)")
     group.add_argument("--reactive", action="store_true", help="people near the robot walk by a model")
     group.add_argument("--replace", type=int, metavar="ID", help="the robot goes in the place of this person")
 
@@ -54,7 +56,7 @@ def main(options: argparse.Namespace) -> int:
         trial = _recorded(options) if options.recorded is not None else _taken(options)
         if options.seed is not None or options.explicit:
             trial = _placed(trial, options)
-        _write(options.file, trial.xml())
+        _write(options.file, trial_xml(trial))
     return 0
 
 
@@ -68,7 +70,7 @@ def _placed(trial: Trial, options: argparse.Namespace) -> Trial:
     import dataclasses
 
     seed = trial.seed if options.seed is None else options.seed
-    return trial.explicit(seed) if options.explicit else dataclasses.replace(trial, seed=seed)
+    return expand_spawners(trial, seed) if options.explicit else dataclasses.replace(trial, seed=seed)
 
 
 def _recorded(options: argparse.Namespace) -> Trial:
@@ -102,9 +104,9 @@ def _imported(options: argparse.Namespace) -> None:
     for k, (name, trial) in enumerate(done.trials):
         single = len(done.trials) == 1
         file = options.file if single else options.file.with_stem(f"{options.file.stem}-{k + 1:02d}-{Path(name).stem}")
-        _write(file, trial.xml())
+        _write(file, trial_xml(trial))
         try:
-            trial.check()
+            check_trial(trial)
         except TrialError as error:
             problems += [f"{file.name}: {sentence}" for sentence in error.problems]
     for title, rows in (("not carried over", done.left_out), ("to mend", problems)):

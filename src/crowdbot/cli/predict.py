@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, note, print_json, print_table, progress
-from .recordings import add_recordings, recordings, tell_notes
+from .recordings import add_recordings, horizon, recordings, tell_notes
 from .schemes import add_scheme, frame_line, recipes
 
 if TYPE_CHECKING:
+    from crowdbot.benchmark import Part, Piece, Result, Study
     from crowdbot.metrics import Score
-    from crowdbot.prediction import Part, Piece, Result, Study
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -39,8 +39,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Score every predictor on every recording and on all together."""
+    from crowdbot.benchmark import Study
     from crowdbot.core import InputError
-    from crowdbot.prediction import Study
 
     if options.animate is not None and options.out is None:
         raise InputError("--animate writes a file: say where with --out DIR")
@@ -104,18 +104,19 @@ def _tables(options: argparse.Namespace, study: Study, results: list[Result]) ->
 
     best = f", best of {options.samples} per {options.best_of}" if options.samples > 1 else ""
     caption = f"protocol {study.recordings[0].protocol}{best}; means over persons, 95 % by drawing persons"
-    reach = f"{options.observe} observed + {options.predict} predicted rows"
     if len(study.recipes) == 1:
         scores = [result.score for result in results]
         rows = [result.recording.name for result in results]
         if len(scores) > 1:
             scores.append(Score.total(scores))
             rows.append("together")
+        steps = [one.tracks.dt for one in study.recordings]
+        reach = horizon(steps, options.observe, options.predict)
         _table(f"{study.recipes[0].name}, {reach}", "recording", rows, scores, caption)
         return
     for recording in study.recordings:
         own = [result for result in results if result.recording is recording]
-        title = f"{recording.name}, {reach}"
+        title = f"{recording.name}, {horizon([recording.tracks.dt], options.observe, options.predict)}"
         _table(title, "predictor", [result.label for result in own], [r.score for r in own], caption)
 
 
@@ -150,7 +151,7 @@ def as_json(study: Study, results: list[Result]) -> dict[str, Any]:
 
 def _written(options: argparse.Namespace, study: Study, results: list[Result]) -> None:
     """Write the scores, every frame, the plots and, when asked for, the animation."""
-    from crowdbot.benchmark.prediction_plots import animate, plot_errors, plot_frames
+    from crowdbot.benchmark import animate, plot_errors, plot_frames
 
     from .output import json_text
 

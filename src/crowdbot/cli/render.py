@@ -11,8 +11,8 @@ from .output import add_json, number, print_json, print_table, progress
 from .settings import add_settings, add_world, chosen, settings
 
 if TYPE_CHECKING:
+    from crowdbot.rendering import Take
     from crowdbot.trials import Trial
-    from crowdbot.trials.shots import Take
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -46,9 +46,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Make the image or the film."""
+    from crowdbot.rendering import Album, camera_names, shots
     from crowdbot.trials import load_trial
-    from crowdbot.trials.album import Album
-    from crowdbot.trials.shots import camera_names, shots
 
     trial = chosen(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
     if options.list:
@@ -87,7 +86,7 @@ def main(options: argparse.Namespace) -> int:
 
 def _take(options: argparse.Namespace, duration: float) -> Take:
     from crowdbot.core import InputError
-    from crowdbot.trials.shots import Take
+    from crowdbot.rendering import Take
 
     span = [word for word, value in (("--from", options.begin), ("--to", options.end)) if value is not None]
     if options.at is not None and span:
@@ -104,7 +103,7 @@ def _rate(take: Take, step: float) -> float:
     """Return how many images a second of a film are shown."""
     import math
 
-    from crowdbot.trials.shots import SMOOTH
+    from crowdbot.rendering import SMOOTH
 
     return take.rate or 1.0 / (step * max(1, math.ceil(SMOOTH / step - 1e-9)))
 
@@ -115,7 +114,7 @@ def _default(trial: str, camera: str, film: bool) -> Path:
 
 
 def _listed(trial: Trial, as_json: bool) -> int:
-    from crowdbot.trials.shots import camera_names
+    from crowdbot.rendering import camera_names
 
     names = camera_names(trial)
     if as_json:

@@ -16,7 +16,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Repair each file in its place."""
-    from crowdbot.trials import repair
+    from crowdbot.recording import repair
 
     found = {str(path): repair(path) for path in options.episodes}
     if options.json:

@@ -29,7 +29,7 @@ def add_places(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Replay; status 1 when the digests differ."""
-    from crowdbot.trials import replay
+    from crowdbot.recording import replay
 
     with progress(options.json) as report:
         done = replay(

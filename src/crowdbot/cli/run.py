@@ -7,11 +7,13 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from crowdbot.trials import trial_remarks
+
 from .output import add_json, number, print_json, print_metrics, print_table, progress, spoken_warnings
 from .settings import add_settings, add_world, chosen, settings
 
 if TYPE_CHECKING:
-    from crowdbot.trials import Summary
+    from crowdbot.simulation import Summary
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -30,7 +32,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Run the trial."""
     from crowdbot.core import PacedClock
-    from crowdbot.trials import load_trial, record
+    from crowdbot.recording import record
+    from crowdbot.trials import load_trial
 
     trial = chosen(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
     file = None if options.out is None else options.out / "episode.mcap"
@@ -59,5 +62,5 @@ def tell(done: Summary, as_json: bool, wall: float) -> None:
         return
     print_table(f"{done.trial.name}, seed {done.seed}", ("", ""), [(key, number(v)) for key, v in summary.items()])
     print_metrics("navigation", done.metrics)
-    for remark in done.trial.remarks():
+    for remark in trial_remarks(done.trial):
         print(f"note: {remark}")

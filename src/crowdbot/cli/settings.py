@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from crowdbot.trials import expand_sweeps
+
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
@@ -72,10 +74,10 @@ def chosen(trial: Trial, variant: int | None) -> Trial:
 
     if variant is None and not trial.sweeps:
         return trial
-    variants = trial.variants()
+    variants = expand_sweeps(trial)
     if variant is None:
         raise InputError(
-            f"{trial.name} stands for {len(variants)} trials by its sweeps; run one of them with --variant 1 to"
+            f"{trial.name} has {len(variants)} variants by its sweeps; run one of them with --variant 1 to"
             f" {len(variants)} (crowdbot check lists them)"
         )
     if not trial.sweeps or not 1 <= variant <= len(variants):

@@ -10,7 +10,7 @@ from .output import add_json, json_text, note, number, print_json, print_table, 
 from .schemes import assignments
 
 if TYPE_CHECKING:
-    from crowdbot.prediction.learned.toy_study import Run, ToyStudy
+    from crowdbot.benchmark import Run, ToyStudy
 
 STUDIES = ("gan",)
 
@@ -32,9 +32,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Train every method with every seed, measure, and draw."""
+    from crowdbot.benchmark import METHODS, ToyStudy, with_values
     from crowdbot.core import UnknownName
-    from crowdbot.prediction.learned.extra import device_of
-    from crowdbot.prediction.learned.toy_study import METHODS, ToyStudy, with_values
+    from crowdbot.prediction import device_of
 
     if options.what not in STUDIES:
         raise UnknownName("study", options.what, STUDIES)
@@ -54,7 +54,7 @@ def main(options: argparse.Namespace) -> int:
 
 
 def _said(options: argparse.Namespace, study: ToyStudy, runs: list[Run]) -> int:
-    from crowdbot.benchmark.gan_plots import plot_measures, plot_samples
+    from crowdbot.benchmark import plot_measures, plot_samples
 
     ideal = study.ideal()
     found: dict[str, Any] = {

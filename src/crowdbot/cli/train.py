@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import importlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,15 +13,9 @@ from .schemes import assignments
 
 if TYPE_CHECKING:
     from crowdbot.data import Recording
-    from crowdbot.prediction.learned.samples import Samples
-    from crowdbot.prediction.learned.training import Row, Trained
+    from crowdbot.prediction import Row, Samples, Trained
 
-LEARNERS = {
-    "anchor-net": ("crowdbot.prediction.learned.anchor_training", "file"),
-    "social-ways": ("crowdbot.prediction.learned.social_ways_training", "checkpoint"),
-}
-"""Modules with a function ``learner(settings, values, samples, watched, seed, device)`` that makes a Trainable, and
-the parameter of the predictor that takes its weights."""
+LEARNERS = ("anchor-net", "social-ways")
 EPOCHS = 100
 """Epochs when neither these nor updates are given."""
 
@@ -53,9 +46,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Learn, and say where the weights are."""
     from crowdbot.core import InputError, UnknownName
-    from crowdbot.prediction.learned.extra import threads, torch_module
-    from crowdbot.prediction.learned.samples import short_recordings
-    from crowdbot.prediction.learned.training import BEST, LAST, Schedule, train
+    from crowdbot.prediction import BEST, LAST, Schedule, make_learner, short_recordings, threads, torch_module, train
 
     if options.what not in LEARNERS:
         raise UnknownName("learned predictor", options.what, LEARNERS)
@@ -76,8 +67,9 @@ def main(options: argparse.Namespace) -> int:
         for sentence in short_recordings(learned):
             note(f"warning: {sentence}")
     samples, check = watched
-    make = importlib.import_module(LEARNERS[options.what][0]).learner
-    model = make(options.settings, assignments(options.set), samples, check, options.seed, options.device)
+    model = make_learner(
+        options.what, options.settings, assignments(options.set), samples, check, options.seed, options.device
+    )
     if not options.json:
         note(f"{options.what} learns {samples.people} futures in {len(samples)} windows of {len(learned)} recordings")
     with threads(options.threads), _events(options) as written:
@@ -88,7 +80,7 @@ def main(options: argparse.Namespace) -> int:
 
 def _samples(options: argparse.Namespace) -> tuple[tuple[Recording, ...], tuple[Samples, Samples], list[str]]:
     """Return what is learned from, the samples to learn from and to watch, and the files that are left out."""
-    from crowdbot.prediction.learned.samples import Samples, leave_out, split_in_time
+    from crowdbot.prediction import Samples, leave_out, split_in_time
 
     found, left = list(recordings(options)), list[Any]()
     if options.leave_out is not None:
@@ -160,6 +152,8 @@ def _said(options: argparse.Namespace, done: Trained, file: Path, left: list[str
     rows.append(("last", *(number(done.rows[-1].get(name)) for name in ("update", "ade", "fde"))))
     caption = f"{done.updates} updates in {done.seconds:.0f} s{', stopped early' if done.stopped else ''}; on {file}"
     print_table(f"{options.what}, best of 20 on what is watched", ("", "update", "ADE [m]", "FDE [m]"), rows, caption)
+    from crowdbot.prediction import WEIGHTS_FIELDS
+
     data = " ".join(left) or "PATH"
-    said = f"--predictor {options.what} --set {LEARNERS[options.what][1]}={file}"
+    said = f"--predictor {options.what} --set {WEIGHTS_FIELDS[options.what]}={file}"
     note(f"to score it: crowdbot predict {said} --samples 20 --data {data}")

@@ -21,7 +21,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Run the checks, write the page and print the table."""
-    from crowdbot.benchmark.validation import CHECKS, chosen, validate, write_page
+    from crowdbot.validation import CHECKS, chosen, validate, write_page
 
     models, skipped = chosen([name for name in (options.models or "").split(",") if name])
     kept = options.out / "validation"

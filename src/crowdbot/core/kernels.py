@@ -20,11 +20,14 @@ from typing import Any, TypeVar, cast, overload
 import numba
 from numba.core import config
 
+from .threading_layer import ParallelKernel, prefer_safe_layers
+
 __all__ = ["cache_folder", "is_cold", "kernel"]
 
-# GNU OpenMP lets idle threads spin: beside another busy process a step of 1 ms then takes 50 ms (measured). It reads
-# this when the first parallel kernel starts; what the user has set stays.
+# For users who choose GNU OpenMP, whose idle threads spin: beside another busy process a step of 1 ms then takes 50 ms
+# (measured). It reads this when the first parallel kernel starts; a value set by the user stays.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+prefer_safe_layers()
 
 STALE_DAYS = 30
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -51,9 +54,16 @@ def _compiled(function: Function, parallel: bool, inline: bool) -> Function:
     settings.CACHE_DIR = str(cache_folder())
     try:
         jit = numba.njit(cache=True, error_model="numpy", fastmath=False, parallel=parallel, forceinline=inline)
-        return cast(Function, jit(function))
+        compiled = jit(function)
     finally:
         settings.CACHE_DIR = before
+    starts_threads = parallel or any(isinstance(value, ParallelKernel) for value in _global_values(function))
+    return cast(Function, ParallelKernel(compiled) if starts_threads and not settings.DISABLE_JIT else compiled)
+
+
+def _global_values(function: Callable[..., Any]) -> list[Any]:
+    """Return the values of the module that a function refers to, other kernels among them."""
+    return [function.__globals__.get(name) for name in function.__code__.co_names]
 
 
 @functools.cache

@@ -21,7 +21,7 @@ __all__ = [
     "ids",
     "labels",
     "numbers",
-    "rate_of_times",
+    "row_rate_of_times",
 ]
 
 Columns = dict[str, NDArray[Any]]
@@ -98,8 +98,8 @@ def ids(values: NDArray[Any], column: str, name: str, line: Lines) -> tuple[NDAr
     if None not in read:
         return integers(values if values.dtype.kind in "iu" else np.asarray(read, np.float64), column, name, line), ""
     known = {word: number for number, word in enumerate(dict.fromkeys(map(str, values.tolist())), 1)}
-    given = np.asarray([known[str(word)] for word in values.tolist()], dtype=np.int64)
-    return given, f"ids are words: {next(iter(known))[:40]!r} became 1, and so on in the order of appearance"
+    options = np.asarray([known[str(word)] for word in values.tolist()], dtype=np.int64)
+    return options, f"ids are words: {next(iter(known))[:40]!r} became 1, and so on in the order of appearance"
 
 
 def labels(values: NDArray[Any], id: NDArray[np.int64]) -> dict[int, str]:
@@ -111,8 +111,8 @@ def labels(values: NDArray[Any], id: NDArray[np.int64]) -> dict[int, str]:
     return found
 
 
-def rate_of_times(id: NDArray[np.int64], frame: NDArray[np.int64], time: NDArray[np.float64]) -> float | None:
-    """Return the rows of a track a second, from the first and the last frame and their times."""
+def row_rate_of_times(id: NDArray[np.int64], frame: NDArray[np.int64], time: NDArray[np.float64]) -> float | None:
+    """Return rows per second of a track [1/s], from the first and the last frame and their times."""
     known = np.flatnonzero(np.isfinite(time))
     if len(known) == 0:
         return None
@@ -125,10 +125,10 @@ def rate_of_times(id: NDArray[np.int64], frame: NDArray[np.int64], time: NDArray
 def frames_of_times(
     id: NDArray[np.int64], time: NDArray[np.float64], fps: float | None, name: str, line: Lines
 ) -> tuple[NDArray[np.int64], float]:
-    """Return frames numbered from 0, and the rows a second, of rows that have times [s] only.
+    """Return frames numbered from 0, and frames per second [1/s], of rows that have times [s] only.
 
     Raises:
-        DataError: a time is missing, or the times of tracks do not lie on regular steps.
+        DataError: a time is missing, or the times of a track are not regular.
     """
     if len(time) == 0:
         raise DataError(f"{name} holds no row of any track")

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError
 
 from .assemble import assemble
-from .source import Given, Reader, Source, parsing
+from .reader import Reader, ReadOptions
+from .source import Source, parse_errors
 from .tape import Tape, TapeError, Topic, is_whole
 from .trajectories import Trajectories
 
@@ -41,9 +42,9 @@ class _Heard:
     cut: bool = False
 
 
-def read(source: Source, given: Given) -> Trajectories:
+def read(source: Source, options: ReadOptions) -> Trajectories:
     """Read people and robots; robots without an id get one above all people's, in the order of their channels."""
-    with parsing(source, "MCAP"):
+    with parse_errors(source, "MCAP"):
         heard = _listen(source)
     stamps = np.asarray(heard.stamps, dtype=np.int64)
     period, frames = _frames(source.name, stamps)
@@ -54,12 +55,12 @@ def read(source: Source, given: Given) -> Trajectories:
     id, frame, x, y = (np.concatenate(parts) for parts in zip(columns, *robots, strict=True))
     return assemble(
         source,
-        given,
+        options,
         id=id,
         frame=frame,
         x=x,
         y=y,
-        row_fps=SECOND / period,
+        row_rate=SECOND / period,
         frame_step=1,
         note="the run was killed before its end" if heard.cut else "",
         walls=_walls(source.name, heard.walls),

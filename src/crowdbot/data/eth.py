@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError
 
 from .assemble import assemble
-from .source import Given, Reader, Source
+from .reader import Reader, ReadOptions
+from .source import Source
 from .trajectories import Trajectories
 
 __all__ = ["READER", "eth_time_base"]
@@ -31,7 +32,7 @@ def sniff(source: Source) -> bool:
     return source.numeric(8) and all(float(row[3]) == 0.0 for row in source.rows)
 
 
-def read(source: Source, given: Given) -> Trajectories:
+def read(source: Source, options: ReadOptions) -> Trajectories:
     """Read an obsmat; when half of the numbers are above 50 they are taken as pixels."""
     values, line = source.table(8)
     if len(values) == 0:
@@ -40,18 +41,18 @@ def read(source: Source, given: Given) -> Trajectories:
     pixels = bool(np.median(np.abs(values[:, 2:5:2])) > ROOM)
     return assemble(
         source,
-        given,
+        options,
         frame=values[:, 0],
         id=values[:, 1],
         x=x,
         y=y,
         units="px" if pixels else "m",
-        note="large numbers: taken as pixels; units overrides it" if pixels and given.units is None else "",
+        note="large numbers: taken as pixels; units overrides it" if pixels and options.units is None else "",
         line=line,
     )
 
 
-def eth_time_base(values: NDArray[np.float64], given: Given) -> tuple[float | None, str]:
+def eth_time_base(values: NDArray[np.float64], options: ReadOptions) -> tuple[float | None, str]:
     """Return frames a second and a label when ``values`` (frame, id, x, y) are the text of the ETH recording.
 
     The true base says 15 frames a second, so that its rows are 0.667 s apart; the published one says 25, so 0.4 s.
@@ -60,9 +61,9 @@ def eth_time_base(values: NDArray[np.float64], given: Given) -> tuple[float | No
     first = tuple(values[order[0]])
     frames = np.unique(values[:, 0])
     known = first in BEGINS and len(frames) > 1 and np.all(np.diff(frames) % 10 == 0) and frames[-1] <= 12380
-    if not known or given.fps is not None:
+    if not known or options.fps is not None:
         return None, ""
-    if given.time_base == "published":
+    if options.time_base == "published":
         return 25.0, "time base published: 10 frames taken as 0.4 s, truly 0.667 s, so speeds are 1.67 times too high"
     return ETH_VIDEO_FPS, "time base true: 10 frames are 0.667 s; publications take them as 0.4 s (time_base published)"
 

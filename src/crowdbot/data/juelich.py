@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError
 
 from .assemble import assemble
-from .source import MAX_ROWS, Given, Reader, Source, parsing
+from .reader import Reader, ReadOptions
+from .source import MAX_ROWS, Source, parse_errors
 from .trajectories import Trajectories
 
 __all__ = ["HDF5", "SQLITE"]
@@ -21,11 +22,11 @@ COLUMNS = ("id", "frame", "x", "y")
 UNIT = re.compile(r"\[\s*(mm|cm|m)\s*\]")
 
 
-def read_hdf5(source: Source, given: Given) -> Trajectories:
+def read_hdf5(source: Source, options: ReadOptions) -> Trajectories:
     """Read the dataset ``trajectory`` (id, frame, x, y, z; attribute fps) and the walkable area as walls."""
     import h5py
 
-    with parsing(source, "HDF5"), h5py.File(source.path, "r") as file:
+    with parse_errors(source, "HDF5"), h5py.File(source.path, "r") as file:
         if not isinstance(file.get("trajectory"), h5py.Dataset):
             held = ", ".join(sorted(file)) or "nothing"
             raise DataError(f"{source.name} is HDF5 without a table 'trajectory'; it holds {held}")
@@ -42,20 +43,20 @@ def read_hdf5(source: Source, given: Given) -> Trajectories:
         area = file.attrs.get("wkt_geometry")
     return assemble(
         source,
-        given,
+        options,
         **columns,
-        counter_fps=None if fps is None else _number(fps, "fps", source.name),
+        fps=None if fps is None else _number(fps, "fps", source.name),
         units=unit.group(1) if unit else "m",
         walls=_walls(None if area is None else str(area), source.name),
     )
 
 
-def read_sqlite(source: Source, given: Given) -> Trajectories:
+def read_sqlite(source: Source, options: ReadOptions) -> Trajectories:
     """Read the tables ``trajectory_data`` and ``metadata`` of JuPedSim, and its first geometry as walls."""
     import sqlite3
 
     address = f"{source.path.resolve().as_uri()}?mode=ro&immutable=1"
-    with parsing(source, "sqlite"), contextlib.closing(sqlite3.connect(address, uri=True)) as base:
+    with parse_errors(source, "sqlite"), contextlib.closing(sqlite3.connect(address, uri=True)) as base:
         held = {name for (name,) in base.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
         if not {"trajectory_data", "metadata"} <= held:
             raise DataError(
@@ -70,12 +71,12 @@ def read_sqlite(source: Source, given: Given) -> Trajectories:
     fps = told.get("fps")
     return assemble(
         source,
-        given,
+        options,
         id=id,
         frame=frame,
         x=x,
         y=y,
-        counter_fps=None if fps is None else _number(fps, "fps", source.name),
+        fps=None if fps is None else _number(fps, "fps", source.name),
         walls=_walls(area[0] if area else None, source.name),
     )
 

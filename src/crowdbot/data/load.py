@@ -1,4 +1,4 @@
-"""Load a recording: the format is found by content, or given."""
+"""Load a recording; the format is detected from the content."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from pathlib import Path
 from crowdbot.core import DataError, InputError, did_you_mean
 
 from . import episode, eth, juelich, petrack, sdd, sgan, socialways, tables, trajnetpp, ucy
-from .assemble import check_fps, check_units
-from .source import Given, Reader, Source
+from .assemble import check_units
+from .reader import Reader, ReadOptions
+from .source import Source
+from .time_base import check_fps
 from .trajectories import Trajectories
 
 __all__ = ["FORMATS", "TIME_BASES", "load"]
@@ -30,11 +32,11 @@ _READERS: tuple[Reader, ...] = (
 )
 
 FORMATS = {reader.name: reader.about for reader in _READERS}
-"""Formats that can be read, with a line about each."""
+"""Supported formats, each with a line of description."""
 
 TIME_BASES = {
-    "true": "rows are as far apart as they were in the recording",
-    "published": "rows of the ETH text (biwi_eth.txt) are taken as 0.4 s apart, as publications do",
+    "true": "the time step of the recording",
+    "published": "0.4 s per row for the ETH text file (biwi_eth.txt), as in publications; its true step is 0.667 s",
 }
 
 
@@ -48,16 +50,19 @@ def load(
     """Load a recording of people.
 
     Args:
-        path: the file; its content decides about the format, not its name.
-        fps: rows a second of one track [1/s], when the file does not say or is wrong.
-        format: one of ``FORMATS``, when the content should not decide.
-        units: ``m``, ``cm``, ``mm`` or ``px``, of the numbers in the file, when it does not say or is wrong.
-        time_base: ``true``, or ``published`` for the one ETH file that is published with a wrong one.
+        path: the file; the format is detected from its content, not its name.
+        fps: frames per second of the frame counter [1/s] (default: from the file or its convention). Rows of a track
+            are ``frame_step`` frames apart, so the time step is ``frame_step / fps``: the ETH/UCY text files have a
+            step of 10 frames at ``fps=25``, which is 0.4 s. Without a frame column, or where frames number the rows
+            (``social-ways``, ``episode``), ``fps`` is rows per second.
+        format: one of ``FORMATS`` (default: detected).
+        units: units of the coordinates in the file, ``m``, ``cm``, ``mm`` or ``px`` (default: from the file).
+        time_base: ``true``, or ``published`` for the one ETH file that is published with a wrong time step.
 
     Raises:
         InputError: an argument is not allowed.
-        DataError: the file is missing, empty, damaged, too large (2 GiB), of no known format, or holds rows that are
-            not finite or stand twice.
+        DataError: the file is missing, empty, damaged, larger than 2 GiB, or of no supported format; a coordinate is
+            not finite or a row is duplicated; or ``fps`` is a row rate, which makes the speeds impossible for people.
 
     >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
@@ -71,10 +76,10 @@ def load(
         if word is not None and word not in known:
             raise InputError(f"unknown {what} {word!r}{did_you_mean(str(word), known)}; known are {', '.join(known)}")
     check_units(units)
-    given = Given(None if fps is None else check_fps(fps), units, time_base)
+    options = ReadOptions(None if fps is None else check_fps(fps), units, time_base)
     source = Source.of(Path(path))
     reader = next((reader for reader in _READERS if reader.name == format), None) or _sniffed(source)
-    return reader.read(source, given)
+    return reader.read(source, options)
 
 
 def _sniffed(source: Source) -> Reader:

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError
 
 from .assemble import assemble
-from .source import Given, Reader, Source
+from .reader import Reader, ReadOptions
+from .source import Source
 from .trajectories import Trajectories
 
 __all__ = ["READER"]
@@ -35,7 +36,7 @@ def sniff(source: Source) -> bool:
     return source.numeric(5) or (told and source.numeric(4))
 
 
-def read(source: Source, given: Given) -> Trajectories:
+def read(source: Source, options: ReadOptions) -> Trajectories:
     """Read id frame x y and leave out z."""
     header = "\n".join(_header(source))
     if not source.rows:
@@ -45,17 +46,17 @@ def read(source: Source, given: Given) -> Trajectories:
         raise DataError(f"{source.name} has {values.shape[1]} columns, PeTrack has id frame x y and perhaps z")
     fps, unit = FPS.search(header), UNIT.search(header)
     units, guess = (unit.group(1).lower(), "") if unit else _guessed_units(values)
-    notes = [] if given.units else [guess]
-    if fps is None and given.fps is None and not header:
+    notes = [] if options.units else [guess]
+    if fps is None and options.fps is None and not header:
         notes.append("no frame rate in the file: 16 frames a second are assumed, as in HERMES; fps overrides it")
     return assemble(
         source,
-        given,
+        options,
         id=values[:, 0],
         frame=values[:, 1],
         x=values[:, 2],
         y=values[:, 3],
-        counter_fps=_told(fps, source.name) if fps else (None if header else HERMES_FPS),
+        fps=_told(fps, source.name) if fps else (None if header else HERMES_FPS),
         units=units,
         note="; ".join(note for note in notes if note),
         line=line,

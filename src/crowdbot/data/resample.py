@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,23 +12,23 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError, InputError
 
 from .source import MAX_ROWS
+from .track_table import TrackTable
 
-if TYPE_CHECKING:
-    from .trajectories import Trajectories
+__all__ = ["resample"]
 
-__all__ = ["resampled"]
+Tracks = TypeVar("Tracks", bound=TrackTable)
 
 WHOLE = 1e-6
 """A new step this near to a whole number of frames [frames] is one."""
 
 
-def resampled(tracks: Trajectories, dt: float, gap: float | None) -> Trajectories:
+def resample(tracks: Tracks, dt: float, gap: float | None) -> Tracks:
     """Return the tracks at steps of ``dt`` [s]; see :meth:`Trajectories.resample`."""
     for name, value in (("dt", dt), ("gap", gap)):
         if value is not None and not (value > 0.0 and math.isfinite(value)):
             raise InputError(f"resample: {name} {value} s must be above 0 and finite")
-    per_second = tracks.frame_rate * tracks.frame_step
-    step = dt * per_second
+    fps = tracks.fps
+    step = dt * fps
     whole = abs(step - round(step)) < WHOLE and round(step) >= 1
     step = float(round(step)) if whole else step
     bridge = max(dt, tracks.dt) * 1.001 if gap is None else gap
@@ -42,7 +42,7 @@ def resampled(tracks: Trajectories, dt: float, gap: float | None) -> Trajectorie
     parts: list[tuple[NDArray[Any], ...]] = []
     for begin, end in zip(begins, ends, strict=True):
         own = since[begin:end]
-        count = _steps_inside(own, step, bridge * per_second)
+        count = _steps_inside(own, step, bridge * fps)
         place = [np.interp(count * step, own, axis[begin:end]) for axis in (x, y)]
         parts.append((np.full(len(count), id[begin]), count, *place))
     ids, counts, xs, ys = (np.concatenate(column) for column in zip(*parts, strict=True))
@@ -53,7 +53,7 @@ def resampled(tracks: Trajectories, dt: float, gap: float | None) -> Trajectorie
         frame=tracks.frame[0] + counts * int(step) if whole else counts,
         x=xs,
         y=ys,
-        frame_rate=1.0 / dt,
+        row_rate=1.0 / dt,
         frame_step=int(step) if whole else 1,
         robots=tracks.robots & left,
         labels={key: label for key, label in tracks.labels.items() if key in left},

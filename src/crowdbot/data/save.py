@@ -93,7 +93,7 @@ def _write_parquet(tracks: Trajectories, file: IO[bytes]) -> None:
     if labels:
         columns["label"] = [labels.get(id) for id in tracks.id.tolist()]
     beside = {
-        "frame_rate": tracks.frame_rate,
+        "frame_rate": tracks.row_rate,
         "frame_step": tracks.frame_step,
         "units": tracks.units,
         "note": tracks.note,
@@ -109,7 +109,7 @@ def _write_parquet(tracks: Trajectories, file: IO[bytes]) -> None:
 
 def _write_trajnetpp(tracks: Trajectories, file: IO[bytes]) -> None:
     for scene in tracks.scenes or _scenes(tracks):
-        head = {"id": scene.id, "p": scene.person, "s": scene.first, "e": scene.last, "fps": tracks.frame_rate}
+        head = {"id": scene.id, "p": scene.person, "s": scene.first, "e": scene.last, "fps": tracks.row_rate}
         tag = {"tag": [scene.tag[0], list(scene.tag[1:])]} if scene.tag else {}
         file.write(json.dumps({"scene": {**head, **tag}}).encode() + b"\n")
     rows = zip(tracks.frame.tolist(), tracks.id.tolist(), tracks.x.tolist(), tracks.y.tolist(), strict=True)

@@ -8,11 +8,13 @@ from __future__ import annotations
 import re
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crowdbot.core import DataError
 
 from .assemble import assemble
-from .source import Given, Reader, Source
+from .reader import Reader, ReadOptions
+from .source import Source
 from .trajectories import Trajectories
 
 __all__ = ["READER"]
@@ -29,13 +31,14 @@ def sniff(source: Source) -> bool:
     )
 
 
-def read(source: Source, given: Given) -> Trajectories:
+def read(source: Source, options: ReadOptions) -> Trajectories:
     """Read the middle of every box; rows marked lost are left out, labels are kept by id."""
     text = source.text()
     names = sorted(set(LABEL.findall(text)))
     for number, name in enumerate(names):
         text = text.replace(f'"{name}"', str(number))
     values, line = source.table(10, text)
+    _check_labels(source.name, values[:, 9], len(names), line)
     seen = values[:, 6] == 0.0
     if not np.any(seen):
         raise DataError(f"{source.name}: all of its {len(values)} rows are marked lost, nobody is in view")
@@ -44,17 +47,27 @@ def read(source: Source, given: Given) -> Trajectories:
     ids, first = np.unique(values[:, 0], return_index=True)
     return assemble(
         source,
-        given,
+        options,
         id=values[:, 0],
         frame=values[:, 5],
         x=(values[:, 1] + values[:, 3]) / 2.0,
         y=(values[:, 2] + values[:, 4]) / 2.0,
-        counter_fps=VIDEO_FPS,
+        fps=VIDEO_FPS,
         units="px",
         note=f"pixels; {lost} rows marked lost left out",
         line=line,
         labels={int(id): names[int(values[row, 9])] for id, row in zip(ids, first, strict=True)},
     )
+
+
+def _check_labels(name: str, label: NDArray[np.float64], count: int, line: NDArray[np.int64]) -> None:
+    """Raise :class:`DataError` unless every label was quoted: a whole number from 0 to below ``count``."""
+    wrong = ~((label >= 0.0) & (label < count) & (label == np.floor(label)))
+    if np.any(wrong):
+        row = int(np.argmax(wrong))
+        raise DataError(
+            f'{name} line {line[row]}: the label is {label[row]:g}, it must be a quoted word such as "Biker"'
+        )
 
 
 READER = Reader("sdd", "Stanford Drone Dataset annotations.txt: boxes in pixels, with labels", sniff, read)

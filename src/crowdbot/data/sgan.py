@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from .assemble import assemble
 from .eth import eth_time_base
-from .source import Given, Reader, Source
+from .reader import Reader, ReadOptions
+from .source import Source
 from .trajectories import Trajectories
 
 __all__ = ["READER"]
@@ -24,7 +25,7 @@ def sniff(source: Source) -> bool:
     return bool(rows) and all(len(row) == 4 and all(map(_number, row)) for row in rows)
 
 
-def read(source: Source, given: Given) -> Trajectories:
+def read(source: Source, options: ReadOptions) -> Trajectories:
     """Read frame id x y; rows with "?" (the hidden future of TrajNet's test files) are left out and counted."""
     text, note, left_out = source.text(), "", 0
     if HIDDEN in text:
@@ -34,15 +35,15 @@ def read(source: Source, given: Given) -> Trajectories:
         text = "\n".join("" if gone else line for gone, line in zip(hidden, lines, strict=True))
         note = f"{left_out} rows with '?' left out: a test file whose futures are hidden"
     values, line = source.table(4, text)
-    fps, base = eth_time_base(values, given) if len(values) else (None, "")
+    fps, base = eth_time_base(values, options) if len(values) else (None, "")
     return assemble(
         source,
-        given,
+        options,
         frame=values[:, 0],
         id=values[:, 1],
         x=values[:, 2],
         y=values[:, 3],
-        counter_fps=fps,
+        fps=fps,
         note="; ".join(part for part in (note, base, _exchanged(values)) if part),
         line=line,
     )

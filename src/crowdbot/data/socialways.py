@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError
 
 from .assemble import assemble
-from .source import MAX_BYTES, Given, Reader, Source, parsing
+from .reader import Reader, ReadOptions
+from .source import MAX_BYTES, Source, parse_errors
 from .trajectories import Trajectories
 
 __all__ = ["READER"]
@@ -26,7 +27,7 @@ def sniff(source: Source) -> bool:
     return source.kind == "zip" and b".npy" in source.head[:200]
 
 
-def read(source: Source, given: Given) -> Trajectories:
+def read(source: Source, options: ReadOptions) -> Trajectories:
     """Read observed and future rows as one track each; frames count rows from the time of the first."""
     arrays = _arrays(source)
     missing = [name for name in NAMES if name not in arrays]
@@ -46,17 +47,17 @@ def read(source: Source, given: Given) -> Trajectories:
     frame = times.reshape(count, 1).astype(np.float64) + np.arange(rows)
     return assemble(
         source,
-        given,
+        options,
         id=np.repeat(np.arange(1, count + 1), rows),
         frame=frame.ravel(),
         x=place[:, :, 0].ravel(),
         y=place[:, :, 1].ravel(),
-        note="" if given.units else "no unit in the file: taken as m; units overrides it",
+        note="" if options.units else "no unit in the file: taken as m; units overrides it",
     )
 
 
 def _arrays(source: Source) -> dict[str, NDArray[np.generic]]:
-    with parsing(source, "arrays"):
+    with parse_errors(source, "arrays"):
         with zipfile.ZipFile(source.path) as packed:
             size = sum(part.file_size for part in packed.infolist())
         if size > MAX_BYTES:

@@ -4,21 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError, InputError
 
-if TYPE_CHECKING:
-    from .trajectories import Trajectories
-
-__all__ = ["MAX_BYTES", "MAX_ROWS", "Given", "Reader", "Source", "parsing"]
+__all__ = ["MAX_BYTES", "MAX_ROWS", "Source", "parse_errors"]
 
 MAX_BYTES = 2 * 1024**3
 """Larger files are refused: cut them in time first."""
@@ -33,30 +29,6 @@ MAGIC = {
     b"\x89MCAP0\r\n": "mcap",
     b"PK\x03\x04": "zip",
 }
-
-
-@dataclass(frozen=True)
-class Given:
-    """What the user says about a file; it overrides what the file says.
-
-    Fields:
-        fps: rows a second of one track.
-        units: ``m``, ``cm``, ``mm`` or ``px``, of the numbers in the file.
-        time_base: ``true`` or ``published``.
-    """
-
-    fps: float | None = None
-    units: str | None = None
-    time_base: str = "true"
-
-
-class Reader(NamedTuple):
-    """One format: its name, a line about it, whether a file looks like it, and how it is read."""
-
-    name: str
-    about: str
-    sniff: Callable[[Source], bool]
-    read: Callable[[Source, Given], Trajectories]
 
 
 @dataclass(frozen=True)
@@ -154,7 +126,7 @@ class Source:
 
 
 @contextlib.contextmanager
-def parsing(source: Source, kind: str) -> Iterator[None]:
+def parse_errors(source: Source, kind: str) -> Iterator[None]:
     """Turn whatever the parser of a binary format stumbles over into one sentence.
 
     Raises:

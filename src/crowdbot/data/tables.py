@@ -22,10 +22,11 @@ from .columns import (
     ids,
     labels,
     numbers,
-    rate_of_times,
+    row_rate_of_times,
 )
+from .reader import Reader, ReadOptions
 from .rows import integers
-from .source import MAX_ROWS, Given, Reader, Source, parsing
+from .source import MAX_ROWS, Source, parse_errors
 from .trajectories import PrimaryScene, Trajectories
 
 __all__ = ["CSV", "PARQUET", "ROBOT"]
@@ -48,7 +49,7 @@ def sniff_csv(source: Source) -> bool:
     return marked and len(lines) > 1 and len(_words(lines[1])) == len(names)
 
 
-def read_csv(source: Source, given: Given) -> Trajectories:
+def read_csv(source: Source, options: ReadOptions) -> Trajectories:
     """Read a table with a line of names, parted by commas, semicolons, tabs or blanks; "#" begins a comment."""
     head = _uncommented(source)
     if not head:
@@ -73,20 +74,20 @@ def read_csv(source: Source, given: Given) -> Trajectories:
         raise DataError(f"{place} has {len(rows[wrong])} columns, the line of names has {len(names)}")
     cells = zip(*rows, strict=True) if rows else [()] * len(names)
     columns = {name: np.asarray(column, dtype=np.str_) for name, column in zip(names, cells, strict=True)}
-    return _tracks(source, given, columns, {}, np.asarray(lines[1:], dtype=np.int64))
+    return _tracks(source, options, columns, {}, np.asarray(lines[1:], dtype=np.int64))
 
 
-def read_parquet(source: Source, given: Given) -> Trajectories:
+def read_parquet(source: Source, options: ReadOptions) -> Trajectories:
     """Read a Parquet table; one written by crowdbot keeps everything that stands beside its columns."""
     import pyarrow.parquet as pq
 
-    with parsing(source, "Parquet"), pq.ParquetFile(source.path) as file:
+    with parse_errors(source, "Parquet"), pq.ParquetFile(source.path) as file:
         count = file.metadata.num_rows
         if count > MAX_ROWS:
             raise DataError(f"{source.name} has {count} rows, more than the {MAX_ROWS} that are read")
         table = file.read()
         columns = {name: table.column(name).to_numpy() for name in table.column_names}
-    return _tracks(source, given, columns, _told(source.name, table.schema.metadata or {}), None)
+    return _tracks(source, options, columns, _told(source.name, table.schema.metadata or {}), None)
 
 
 def _uncommented(source: Source) -> list[str]:
@@ -101,7 +102,7 @@ def _words(line: str) -> list[str]:
     return [word.strip().strip('"') for word in line.split(_delimiter(line))]
 
 
-def _tracks(source: Source, given: Given, columns: Columns, told: dict[str, Any], line: Lines) -> Trajectories:
+def _tracks(source: Source, options: ReadOptions, columns: Columns, told: dict[str, Any], line: Lines) -> Trajectories:
     name = source.name
     found, units = find_columns(list(columns))
     check_columns(found, list(columns), name)
@@ -110,18 +111,19 @@ def _tracks(source: Source, given: Given, columns: Columns, told: dict[str, Any]
     id, renamed = ids(columns[found["id"]], found["id"], name, line)
     if "frame" in found:
         frame = integers(values["frame"], found["frame"], name, line)
-        rate = rate_of_times(id, frame, values["time"]) if "time" in found else None
+        rate = {"row_rate": row_rate_of_times(id, frame, values["time"]) if "time" in found else None}
     else:
-        frame, rate = frames_of_times(id, values["time"], given.fps, name, line)
+        frame, fps = frames_of_times(id, values["time"], options.fps, name, line)
+        rate = {"fps": fps}
     named = labels(columns[found["label"]], id) if "label" in found else {}
     beside: dict[str, Any] = {
-        "row_fps": rate,
+        **rate,
         "units": units or "m",
         "note": renamed,
         "labels": {key: label for key, label in named.items() if label != ROBOT},
         "robots": frozenset(key for key, label in named.items() if label == ROBOT),
     }
-    return assemble(source, given, id=id, frame=frame, x=values["x"], y=values["y"], line=line, **{**beside, **told})
+    return assemble(source, options, id=id, frame=frame, x=values["x"], y=values["y"], line=line, **{**beside, **told})
 
 
 def _told(name: str, metadata: dict[bytes, bytes]) -> dict[str, Any]:
@@ -131,7 +133,7 @@ def _told(name: str, metadata: dict[bytes, bytes]) -> dict[str, Any]:
         if not told:
             return {}
         return {
-            "row_fps": float(told["frame_rate"]),
+            "row_rate": float(told["frame_rate"]),
             "frame_step": int(told["frame_step"]),
             "units": str(told["units"]),
             "note": str(told["note"]),

@@ -1,26 +1,26 @@
-"""Trajectories: the rows of a recording of people, with all that turns them into metres and seconds."""
+"""Trajectories: the rows of a recording, with everything that can be cut out of them or computed from them."""
 
 from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import DataError, InputError, did_you_mean
 
-from .cut import past_at, windows_of
-from .resample import resampled
-from .rows import check_rows, floats, frame_step, integers, runs
+from .protocols import cut_past, cut_windows
+from .resample import resample
+from .rows import runs
+from .track_table import PrimaryScene, TrackTable
+from .windows import Windows
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from .windows import Windows
 
 __all__ = ["PrimaryScene", "Trajectories"]
 
@@ -28,124 +28,37 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-class PrimaryScene(NamedTuple):
-    """A scene of a TrajNet++ file: the person it is about, its frames, and its categories."""
-
-    id: int
-    person: int
-    first: int
-    last: int
-    tag: tuple[int, ...] = ()
-
-
 @dataclass(frozen=True, eq=False)
-class Trajectories:
-    """The rows of a recording, one per person and frame, sorted by frame, then id; the arrays cannot be written to.
+class Trajectories(TrackTable):
+    """The rows of a recording, one per person and frame, sorted by frame, then id; the arrays are read-only.
+
+    Frames, rows and seconds are different things. ``fps`` is frames per second of the frame counter of the file. The
+    rows of one track are ``frame_step`` frames apart, so ``dt = frame_step / fps = 1 / row_rate``. In files without a
+    frame column, frames number the rows: then ``frame_step`` is 1 and ``fps`` equals ``row_rate``.
 
     Fields (arrays over rows N):
         id: ``[N]`` int64 identity of the person or robot.
         frame: ``[N]`` int64 frame of the file's own counter.
         x, y: ``[N]`` float64 position, in ``units``.
-        frame_rate: rows a second of one track [1/s]; its inverse is ``dt``.
-        frame_step: frames of the counter from one row of a track to the next; 0 finds it.
+        row_rate: rows per second of one track [1/s]; its inverse is ``dt``.
+        frame_step: frames between two rows of a track; 0 (default) takes the most frequent difference.
         units: ``m`` or ``px``.
         homography: ``[3, 3]`` from (x, y, 1) of the file to metres, or None.
         name: name of the recording, for messages and results.
-        note: what a reader of results should know, e.g. the time base.
-        robots: ids that are robots.
-        walls: rings ``[N, 2]`` of what cannot be walked on, as :class:`crowdbot.core.Walls` takes them.
-        labels: what a track is (``Pedestrian``, ``Biker``), by id, where the file says so.
+        note: remarks on the data, for example an assumed time base.
+        robots: ids of robots.
+        walls: rings ``[N, 2]`` around areas that are not walkable, as in :class:`crowdbot.core.Walls`.
+        labels: class of a track (``Pedestrian``, ``Biker``) by id, where the file has one.
         scenes: the scenes of a TrajNet++ file.
 
     Raises:
-        DataError: there is no row, a coordinate is not finite, a (frame, id) pair stands twice, columns differ in
-            length, or the frame rate is not above 0.
+        DataError: there are no rows, a coordinate is not finite, a (frame, id) pair is duplicated, columns differ in
+            length, or ``row_rate`` is not above 0.
 
-    >>> tracks = Trajectories([7, 7, 7], [0, 10, 20], [0.0, 0.5, 1.0], [2.0, 2.0, 2.0], frame_rate=2.5)
-    >>> tracks.dt, tracks.frame_step, tracks.time.tolist()
-    (0.4, 10, [0.0, 0.4, 0.8])
+    >>> tracks = Trajectories([7, 7, 7], [0, 10, 20], [0.0, 0.5, 1.0], [2.0, 2.0, 2.0], row_rate=2.5)
+    >>> tracks.dt, tracks.frame_step, tracks.fps, tracks.time.tolist()
+    (0.4, 10, 25.0, [0.0, 0.4, 0.8])
     """
-
-    id: Integers
-    frame: Integers
-    x: Floats
-    y: Floats
-    frame_rate: float
-    frame_step: int = 0
-    units: str = "m"
-    homography: Floats | None = None
-    name: str = "tracks"
-    note: str = ""
-    robots: frozenset[int] = frozenset()
-    walls: tuple[Floats, ...] = ()
-    labels: Mapping[int, str] = field(default_factory=dict)
-    scenes: tuple[PrimaryScene, ...] = ()
-
-    def __post_init__(self) -> None:
-        columns: dict[str, Any] = {
-            "id": integers(self.id, "id", self.name),
-            "frame": integers(self.frame, "frame", self.name),
-            "x": floats(self.x, "x", self.name),
-            "y": floats(self.y, "y", self.name),
-        }
-        shapes = {name: column.shape for name, column in columns.items()}
-        if any(shape != (len(columns["id"]),) for shape in shapes.values()):
-            raise DataError(f"{self.name}: columns differ in shape, {shapes}; each must be [N]")
-        order = check_rows(**columns, name=self.name)
-        if not (self.frame_rate > 0.0 and math.isfinite(self.frame_rate)):
-            raise DataError(f"{self.name}: frame rate {self.frame_rate} is not above 0, it is the rows a second")
-        if self.units not in ("m", "px"):
-            raise DataError(f"{self.name}: units {self.units!r} are not known, tracks are in 'm' or 'px'")
-        for name, column in columns.items():
-            ordered = column[order]
-            ordered.setflags(write=False)
-            object.__setattr__(self, name, ordered)
-        object.__setattr__(self, "frame_step", int(self.frame_step or frame_step(self.id, self.frame)))
-        object.__setattr__(self, "frame_rate", float(self.frame_rate))
-        object.__setattr__(self, "robots", frozenset(int(robot) for robot in self.robots))
-
-    def __len__(self) -> int:
-        """Return the number of rows."""
-        return len(self.id)
-
-    def __repr__(self) -> str:
-        people = len(self.ids) - len(self.robots)
-        robots = f" and {len(self.robots)} robots" if self.robots else ""
-        return f"<Trajectories {self.name}: {len(self)} rows of {people} people{robots}, dt {self.dt:.4g} s>"
-
-    @property
-    def dt(self) -> float:
-        """Time from one row of a track to the next [s]."""
-        return 1.0 / self.frame_rate
-
-    @property
-    def ids(self) -> Integers:
-        """Every id once, ascending."""
-        return np.unique(self.id)
-
-    @property
-    def time(self) -> Floats:
-        """``[N]`` [s] since the first frame."""
-        return np.asarray((self.frame - self.frame[0]) / self.frame_step / self.frame_rate)
-
-    @property
-    def position(self) -> Floats:
-        """``[N, 2]`` in ``units``."""
-        return np.stack([self.x, self.y], axis=1)
-
-    def velocities(self) -> Floats:
-        """Return ``[N, 2]`` [units/s]: the way from the row before, over the time it took.
-
-        It looks backwards only, so nothing of the future is in it; NaN where a track begins.
-        """
-        order = np.lexsort((self.frame, self.id))
-        before, after = order[:-1], order[1:]
-        same = self.id[before] == self.id[after]
-        before, after = before[same], after[same]
-        velocity = np.full((len(self), 2), np.nan)
-        passed = self.time[after] - self.time[before]
-        velocity[after] = (self.position[after] - self.position[before]) / passed[:, None]
-        return velocity
 
     def track(self, id: int) -> Trajectories:
         """Return the rows of one person or robot.
@@ -240,7 +153,7 @@ class Trajectories:
             InputError: dt or gap is not above 0.
             DataError: the steps are so short that there would be more than 20 million rows.
         """
-        return resampled(self, dt, gap)
+        return resample(self, dt, gap)
 
     def windows(
         self, observe: int = 8, predict: int = 12, protocol: str = "all", near: float | None = None, late: str = "skip"
@@ -261,7 +174,7 @@ class Trajectories:
             InputError: an argument is not allowed.
             DataError: no window was found, and why.
         """
-        return windows_of(self, observe, predict, protocol, near, late)
+        return cut_windows(self, observe, predict, protocol, near, late)
 
     def past(self, observe: int = 8, frame: int | None = None, late: str = "extrapolate") -> Windows:
         """Return one window with everyone at ``frame`` (default: the last), for predicting what nobody has seen yet.
@@ -270,7 +183,7 @@ class Trajectories:
             InputError: an argument is not allowed.
             DataError: the frame does not exist, or nobody there was seen for long enough.
         """
-        return past_at(self, observe, frame, late)
+        return cut_past(self, observe, frame, late)
 
     def summary(self) -> dict[str, float]:
         """Return counts, duration [s], speeds [units/s] and people per frame."""

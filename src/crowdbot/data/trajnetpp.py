@@ -13,8 +13,9 @@ import numpy as np
 from crowdbot.core import DataError
 
 from .assemble import assemble
+from .reader import Reader, ReadOptions
 from .rows import LARGEST
-from .source import Given, Reader, Source
+from .source import Source
 from .trajectories import PrimaryScene, Trajectories
 
 __all__ = ["READER"]
@@ -34,7 +35,7 @@ def sniff(source: Source) -> bool:
     return isinstance(record, dict) and bool({"scene", "track"} & set(record))
 
 
-def read(source: Source, given: Given) -> Trajectories:
+def read(source: Source, options: ReadOptions) -> Trajectories:
     """Read rows and scenes; rows of predictions (with a prediction number) are refused."""
     rows: list[tuple[Any, ...]] = []
     scenes: list[dict[str, Any]] = []
@@ -53,12 +54,12 @@ def read(source: Source, given: Given) -> Trajectories:
     lines, frame, id, x, y = (np.asarray(column) for column in zip(*rows, strict=True))
     return assemble(
         source,
-        given,
+        options,
         id=id,
         frame=frame,
         x=x,
         y=y,
-        row_fps=_row_fps(source.name, scenes, given),
+        row_rate=_row_fps(source.name, scenes, options),
         line=lines,
         scenes=tuple(_scene(source.name, scene) for scene in scenes),
     )
@@ -90,9 +91,9 @@ def _value(record: dict[str, Any], key: str, name: str, number: int) -> float:
     return float(value) if key in "xy" else value
 
 
-def _row_fps(name: str, scenes: list[dict[str, Any]], given: Given) -> float | None:
+def _row_fps(name: str, scenes: list[dict[str, Any]], options: ReadOptions) -> float | None:
     told = sorted({float(s["fps"]) for s in scenes if isinstance(s.get("fps"), int | float)})
-    if len(told) > 1 and given.fps is None:
+    if len(told) > 1 and options.fps is None:
         raise DataError(f"{name}: its scenes tell {len(told)} frame rates, {told[0]} to {told[-1]}; give fps")
     return told[0] if told else None
 

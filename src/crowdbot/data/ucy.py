@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError
 
 from .assemble import assemble
-from .source import MAX_ROWS, Given, Reader, Source
+from .reader import Reader, ReadOptions
+from .source import MAX_ROWS, Source
 from .trajectories import Trajectories
 
 __all__ = ["READER", "TO_METRES"]
@@ -40,7 +41,7 @@ def sniff(source: Source) -> bool:
     return len(lines) == 3 and lines[0].isdecimal() and lines[1].isdecimal() and len(lines[2].split()) == 4
 
 
-def read(source: Source, given: Given) -> Trajectories:
+def read(source: Source, options: ReadOptions) -> Trajectories:
     """Read the splines; the id of a person is the number of the spline, from 1, as in the published text files."""
     splines = _splines(source)
     spans = sum(float(np.ptp(points[:, 2])) for points in splines if len(points))
@@ -51,16 +52,16 @@ def read(source: Source, given: Given) -> Trajectories:
         raise DataError(f"{source.name} holds no control point of any spline")
     id, frame, x, y = (np.concatenate(column) for column in zip(*parts, strict=True))
     fitted = bool(len(splines[0])) and (len(splines), splines[0][0, 0], splines[0][0, 1]) in KNOWN
-    homography = TO_METRES if fitted and given.units is None else None
+    homography = TO_METRES if fitted and options.units is None else None
     note = "pixels, interpolated between control points"
     return assemble(
         source,
-        given,
+        options,
         id=id,
         frame=frame,
         x=x,
         y=y,
-        counter_fps=VIDEO_FPS,
+        fps=VIDEO_FPS,
         units="px",
         note=f"{note}; metres() turns them into the metres of the text files" if fitted else note,
         homography=homography,

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from crowdbot import models
 from crowdbot.core import InputError, Paper, Scene, Twist, check_number
 
-from .navigator import SLOWING_TIME, Navigator, Observation
+from .navigator import Navigator
+from .observation import SLOWING_TIME, Observation
 from .reachable import reachable
 
 __all__ = ["ORCA"]

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from crowdbot.core import Twist, check_number
 
-from .navigator import Navigator, Observation
+from .navigator import Navigator
+from .observation import Observation
 
 __all__ = ["Straight"]
 

@@ -1,43 +1,93 @@
-"""Floor 4: where people will be in the next seconds; predictors, and their scores on recordings."""
+"""Predictors of the next seconds of a crowd, and the training of those that are learned.
 
-from .anchor_net import AnchorNet, Modes
-from .anchors import Anchors
+``SocialWaysTraining`` loads PyTorch on first use and is therefore not in ``__all__``.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from .anchor_net import AnchorNet, Anchors, Modes
 from .constant import ConstantAcceleration, ConstantVelocity, LeastSquares, SampledConstantVelocity
-from .degraded import DegradedScore, Seen, Task, seen_windows, sweep
-from .evaluate import evaluate
+from .degraded import Seen, seen_windows
 from .kalman import Kalman, KalmanAcceleration
-from .learned.social_ways_predictor import SocialWays
+from .learned_predictor import LearnedPredictor
+from .learners import WEIGHTS_FIELDS, make_learner
 from .live import Live
 from .predictor import Predictor, window_streams
-from .recipe import Recipe
+from .predictor_spec import Recipe
 from .simulated import Simulated
-from .study import Frames, Part, Piece, Result, Study
+from .social_ways import PRESETS, STEADY, SocialWays, SocialWaysConfig
+from .training import (
+    BEST,
+    LAST,
+    LOG,
+    Row,
+    Samples,
+    Schedule,
+    Trainable,
+    Trained,
+    device_of,
+    leave_out,
+    load_checkpoint,
+    save_checkpoint,
+    short_recordings,
+    split_in_time,
+    threads,
+    torch_module,
+    train,
+)
+
+if TYPE_CHECKING:
+    from .social_ways.training import SocialWaysTraining as SocialWaysTraining
 
 __all__ = [
+    "BEST",
+    "LAST",
+    "LOG",
+    "PRESETS",
+    "STEADY",
+    "WEIGHTS_FIELDS",
     "AnchorNet",
     "Anchors",
     "ConstantAcceleration",
     "ConstantVelocity",
-    "DegradedScore",
-    "Frames",
     "Kalman",
     "KalmanAcceleration",
+    "LearnedPredictor",
     "LeastSquares",
     "Live",
     "Modes",
-    "Part",
-    "Piece",
     "Predictor",
     "Recipe",
-    "Result",
+    "Row",
     "SampledConstantVelocity",
+    "Samples",
+    "Schedule",
     "Seen",
     "Simulated",
     "SocialWays",
-    "Study",
-    "Task",
-    "evaluate",
+    "SocialWaysConfig",
+    "Trainable",
+    "Trained",
+    "device_of",
+    "leave_out",
+    "load_checkpoint",
+    "make_learner",
+    "save_checkpoint",
     "seen_windows",
-    "sweep",
+    "short_recordings",
+    "split_in_time",
+    "threads",
+    "torch_module",
+    "train",
     "window_streams",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "SocialWaysTraining":
+        from .social_ways.training import SocialWaysTraining
+
+        return SocialWaysTraining
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

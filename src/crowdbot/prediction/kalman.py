@@ -135,7 +135,7 @@ class Kalman(_Filter):
 
     The defaults are the most likely ones for six recordings that are in none of the five ETH/UCY test sets: the
     training parts of zara03 and uni_examples (leave-one-out files), and hyang_4 to hyang_7 of the Stanford Drone
-    Dataset in the TrajNet cut, all by ``Kalman.fit(*[load(file, fps=2.5).windows()[0] for file in files])``. The first
+    Dataset in the TrajNet cut, all by ``Kalman.fit(*[load(file).windows()[0] for file in files])``. The first
     two alone, which are interpolated, give 0.173, 0.0026 and 0.845; the other four 0.328, 0.0543 and 0.783: fit your
     own tracker.
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +37,17 @@ class Ranging(Sensor):
     max_incidence: float
     resolution: float
     skins: bool
+
+    @property
+    def sees_skins(self) -> bool:
+        """Whether the sensor sees people by their triangle skins."""
+        return self.skins
+
+    def with_skins(self) -> Self:
+        """Return a copy that sees people by their triangle skins."""
+        anything: Any = self
+        copy: Self = dataclasses.replace(anything, skins=True)
+        return copy
 
     def check_ranges(self) -> None:
         """Raise :class:`InputError` when limits are not finite, not in order, or too narrow for the resolution."""

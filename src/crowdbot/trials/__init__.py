@@ -1,40 +1,52 @@
-"""Trials: simulations as files, how they run, and their recordings. Contract :class:`Trial`, verb ``run``."""
+"""Trials: simulations as data. The dataclasses, their XML, the checks, built-in scenarios, placement and importers."""
 
 from .agent import Agent, Parameter
-from .batch import run_batch
-from .branch import branch
 from .builtin import builtin_trials, load_trial
-from .camera import Camera
-from .crowd import Contact, Crowd, Crowds, Limits, Routing
+from .camera import OVERVIEW, Camera, overview
+from .code_references import is_code, named_code
+from .crowd import Contact, Crowd, Crowds, Limits, Routing, crowd_names
 from .distribution import Distribution
-from .drawn import Drawn
-from .ending import repair
-from .episode import Episode, ScanRow
-from .experiment import Experiment, Session, load_experiment
-from .explicit import explicit
-from .export import export
-from .from_recording import recorded_trial
+from .fields import UNWRITABLE, attribute, check, children, outline, shown
+from .importers.original import Imported, import_original, plan_of, trials_of
+from .importers.original_order import Plan
+from .importers.recording import recorded_trial
 from .journey import Direction, Exit, Journey, Point, Portal, Zone
-from .moments import Moment
-from .notation import Points
-from .original import Imported, import_original
+from .map_files import is_file_of_area, map_files
+from .notation import Points, plain
+from .parser import check_trial, parse_trial
+from .partial import readable, told
 from .people import Group, Source, Spawner
+from .placement.appearance import Figures, cast_of
+from .placement.expansion import expand_spawners
+from .placement.population import place
+from .placement.spawn_placement import GAP, People
 from .props import Cube, Light, Table, Tree
-from .recorded import Recorded, moments, read_episode
+from .randomized_model import Drawn, own
 from .recorded_people import RecordedPeople
-from .replay import Replay, replay
-from .run import Bridge, Running, opened, record, run
-from .schema import schema
-from .shots import Shot, Take, camera_names, shots
-from .simulation import Simulation, Touch
-from .stage import Obstacle, Stage, Wall
+from .robot import Goal, Mount, Robot
+from .scenarios import PRESETS
+from .scenarios.challenge import FLOWS, SIZES
+from .scenarios.crowds import DENSITIES
+from .stage import Obstacle, Stage, Wall, area
 from .sweep import Sweep
-from .tally import Summary
-from .trial import End, Goal, Mount, Recording, Robot, Trial, When
+from .trial import End, Recording, Trial, When
+from .trial_files import beside
+from .validation.rates import trial_remarks
+from .variants import apply_values, expand_sweeps
+from .xml.document import parse_trial_xml, read_trial_bytes
+from .xml.reader import Reader
+from .xml.writer import element_from, trial_xml
+from .xml.xsd import schema
 
 __all__ = [
+    "DENSITIES",
+    "FLOWS",
+    "GAP",
+    "OVERVIEW",
+    "PRESETS",
+    "SIZES",
+    "UNWRITABLE",
     "Agent",
-    "Bridge",
     "Camera",
     "Contact",
     "Crowd",
@@ -44,63 +56,71 @@ __all__ = [
     "Distribution",
     "Drawn",
     "End",
-    "Episode",
     "Exit",
-    "Experiment",
+    "Figures",
     "Goal",
     "Group",
     "Imported",
     "Journey",
     "Light",
     "Limits",
-    "Moment",
     "Mount",
     "Obstacle",
     "Parameter",
+    "People",
+    "Plan",
     "Point",
     "Points",
     "Portal",
-    "Recorded",
+    "Reader",
     "RecordedPeople",
     "Recording",
-    "Replay",
     "Robot",
     "Routing",
-    "Running",
-    "ScanRow",
-    "Session",
-    "Shot",
-    "Simulation",
     "Source",
     "Spawner",
     "Stage",
-    "Summary",
     "Sweep",
     "Table",
-    "Take",
-    "Touch",
     "Tree",
     "Trial",
     "Wall",
     "When",
     "Zone",
-    "branch",
+    "apply_values",
+    "area",
+    "attribute",
+    "beside",
     "builtin_trials",
-    "camera_names",
-    "explicit",
-    "export",
+    "cast_of",
+    "check",
+    "check_trial",
+    "children",
+    "crowd_names",
+    "element_from",
+    "expand_spawners",
+    "expand_sweeps",
     "import_original",
-    "load_experiment",
+    "is_code",
+    "is_file_of_area",
     "load_trial",
-    "moments",
-    "opened",
-    "read_episode",
-    "record",
+    "map_files",
+    "named_code",
+    "outline",
+    "overview",
+    "own",
+    "parse_trial",
+    "parse_trial_xml",
+    "place",
+    "plain",
+    "plan_of",
+    "read_trial_bytes",
+    "readable",
     "recorded_trial",
-    "repair",
-    "replay",
-    "run",
-    "run_batch",
     "schema",
-    "shots",
+    "shown",
+    "told",
+    "trial_remarks",
+    "trial_xml",
+    "trials_of",
 ]

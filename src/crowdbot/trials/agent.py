@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .attribute import Mistake, attribute, check, children
+from .fields import Mistake, attribute, check, children
+from .human_kinds import ABOUT_ACTIVITY, ABOUT_BODY, check_words, word_problems
 from .notation import Points
-from .words import ABOUT_ACTIVITY, ABOUT_BODY, check_words, word_problems
 
 __all__ = ["Agent", "Parameter"]
 

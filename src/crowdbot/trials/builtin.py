@@ -8,11 +8,12 @@ from typing import Any
 
 from crowdbot.core import TrialError, did_you_mean
 
-from .attribute import outline
-from .markup import read_trial_bytes
+from .fields import outline
+from .parser import parse_trial
 from .scenarios import PRESETS
-from .sweep import changed
 from .trial import Trial
+from .variants import apply_values
+from .xml.document import read_trial_bytes
 
 __all__ = ["builtin_trials", "load_trial"]
 
@@ -58,26 +59,18 @@ def load_trial(source: str | Path, *, trust: bool = False, **values: Any) -> Tri
             f"there is no trial {str(source)!r}{did_you_mean(str(source), known)}: no file has this name,"
             f" and built in are {', '.join(known)}"
         )
-    trial = Trial.parse(read_trial_bytes(path), place=str(path), folder=path.parent, trust=trust)
-    return _with(trial, values, trust)
+    trial = parse_trial(read_trial_bytes(path), place=str(path), folder=path.parent, trust=trust)
+    return apply_values(trial, values, place=trial.name, trust=trust)
 
 
 def _builtin(name: str, trust: bool, values: dict[str, Any]) -> Trial:
     preset = PRESETS.get(name)
     if preset is None:
         inside = importlib.resources.files("crowdbot").joinpath("assets", "trials", f"{name}.xml")
-        return _with(Trial.parse(inside.read_bytes(), place=f"{name}.xml", trust=trust), values, trust)
+        trial = parse_trial(inside.read_bytes(), place=f"{name}.xml", trust=trust)
+        return apply_values(trial, values, place=trial.name, trust=trust)
     plain = {part.word for part in outline(Trial) if part.role == "attribute"} - {*preset.options}
-    paths = {key: value for key, value in values.items() if "/" in key or key.replace("_", "-") in plain}
+    paths = {key: value for key, value in values.items() if set("/.[") & set(key) or key.replace("_", "-") in plain}
     own = {key: value for key, value in values.items() if key not in paths}
-    return _with(preset.trial(**own), paths, trust)
-
-
-def _with(trial: Trial, values: dict[str, Any], trust: bool) -> Trial:
-    texts = {key.replace("_", "-") if "/" not in key else key: text_of(value) for key, value in values.items()}
-    return changed(trial, texts, place=trial.name, trust=trust) if texts else trial
-
-
-def text_of(value: Any) -> str:
-    """Return a value as it stands in a trial file."""
-    return str(value).lower() if isinstance(value, bool) else str(value)
+    trial = preset.trial(**own)
+    return apply_values(trial, paths, place=trial.name, trust=trust)

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .attribute import attribute, check
+from crowdbot import world
+
+from .fields import attribute, check
 from .notation import NAME
 
 if TYPE_CHECKING:
-    from crowdbot.world import physics
-
     from .stage import Stage
 
 __all__ = ["OVERVIEW", "Camera", "overview"]
@@ -56,14 +56,12 @@ class Camera:
     def __post_init__(self) -> None:
         check(self)
 
-    def view(self, agent: int | None) -> physics.Camera:
+    def view(self, agent: int | None) -> world.Camera:
         """Return it for a studio; ``agent`` is the robot that carries it."""
-        from crowdbot.world import physics
-
         flat = math.cos(self.pitch)
         ahead = (flat * math.cos(self.heading), flat * math.sin(self.heading), -math.sin(self.pitch))
         place = (self.x, self.y, self.z)
-        return physics.Camera(
+        return world.Camera(
             place,
             (place[0] + ahead[0], place[1] + ahead[1], place[2] + ahead[2]),
             width=self.width,

@@ -14,7 +14,7 @@ from crowdbot.core import InputError, Walls
 from crowdbot.models import CrowdModel
 from crowdbot.models.mixture import Mixture
 
-from .attribute import attribute, check, mounted
+from .fields import attribute, check, mounted
 from .notation import NAME
 
 __all__ = ["Contact", "Crowd", "Crowds", "Limits", "Routing", "crowd_names"]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from crowdbot import world
 from crowdbot.core import InputError
 
-from .attribute import attribute, check, children
+from .fields import attribute, check, children
 from .notation import NAME, Points
 
 __all__ = ["Direction", "Exit", "Journey", "Point", "Portal", "Zone"]

@@ -9,11 +9,11 @@ from typing import Any
 
 from crowdbot import world
 
-from .attribute import Mistake, attribute, check, children
 from .distribution import Distribution
+from .fields import Mistake, attribute, check, children
+from .human_kinds import ABOUT_ACTIVITY, ABOUT_BODY, check_words, word_problems
 from .journey import Journey
 from .notation import Points
-from .words import ABOUT_ACTIVITY, ABOUT_BODY, check_words, word_problems
 
 __all__ = ["Group", "Source", "Spawner"]
 

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .attribute import attribute, check
+from crowdbot import world
 
-if TYPE_CHECKING:
-    from crowdbot.world import physics
+from .fields import attribute, check
 
 __all__ = ["Cube", "Light", "Prop", "Table", "Tree"]
 
@@ -53,11 +52,9 @@ class Cube:
         """Its outline ``[N, 2]`` [m], counter-clockwise."""
         return _outline(dataclasses.replace(self, fixed=True))
 
-    def prop(self) -> physics.Prop:
+    def prop(self) -> world.Prop:
         """Return it for a world with bodies."""
-        from crowdbot.world import physics
-
-        return physics.Cube(**_values(self))
+        return world.Cube(**_values(self))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,11 +68,9 @@ class Table(_Standing):
     width: float = attribute(0.8, about="of its top", unit="m", above=0.05, at_most=100.0)
     height: float = attribute(0.74, about="above the floor", unit="m", above=0.05, at_most=100.0)
 
-    def prop(self) -> physics.Prop:
+    def prop(self) -> world.Prop:
         """Return it for a world with bodies."""
-        from crowdbot.world import physics
-
-        return physics.Table(**_values(self))
+        return world.Table(**_values(self))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,11 +84,9 @@ class Tree(_Standing):
     trunk: float = attribute(0.15, about="radius of the trunk", unit="m", at_least=0.001, at_most=10.0)
     crown: float = attribute(1.4, about="radius of the crown", unit="m", at_least=0.001, at_most=50.0)
 
-    def prop(self) -> physics.Prop:
+    def prop(self) -> world.Prop:
         """Return it for a world with bodies."""
-        from crowdbot.world import physics
-
-        return physics.Tree(**_values(self))
+        return world.Tree(**_values(self))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,11 +102,9 @@ class Light:
     def __post_init__(self) -> None:
         check(self)
 
-    def light(self) -> physics.Light:
+    def light(self) -> world.Light:
         """Return it for a world with bodies."""
-        from crowdbot.world import physics
-
-        return physics.Light(**_values(self))
+        return world.Light(**_values(self))
 
 
 Prop = Cube | Table | Tree

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import itertools
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,10 +16,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .attribute import Mistake, attribute, check, shown
-from .beside import beside
 from .distribution import Distribution
+from .fields import Mistake, attribute, check, shown
 from .people import BODY_RADIUS
+from .trial_files import beside
 
 if TYPE_CHECKING:
     from crowdbot.data import Trajectories
@@ -49,13 +50,13 @@ class RecordedPeople:
     Raises:
         InputError: a value is not allowed.
 
-    >>> RecordedPeople(data="zara01.txt", fps=2.5, mode="reactive").near
+    >>> RecordedPeople(data="zara01.txt", fps=25.0, mode="reactive").near
     5.0
     """
 
     name: str = attribute("", about="name for messages")
     data: str = attribute(about="file of the recording, in the folder of the trial", pattern=r"[^\x00]{1,500}")
-    fps: float | None = attribute(None, about="rows a second, when the file does not say", unit="1/s", above=0.0)
+    fps: float | None = attribute(None, about="frames per second, when the file does not say", unit="1/s", above=0.0)
     format: str = attribute("", about="format of the file, by default found by its content")
     units: str = attribute("", about="of its numbers, when it does not say", choices=("", "m", "cm", "mm", "px"))
     time_base: str = attribute(
@@ -142,7 +143,11 @@ def _loaded(
     path: Path, changed: int, size: int, fps: float | None, format: str | None, units: str | None, time_base: str
 ) -> Trajectories:
     """Read a recording once for as long as its file stays the same."""
-    from crowdbot.data import load
+    from crowdbot.data import RowRateError, load
 
-    tracks = load(path, fps=fps, format=format, units=units, time_base=time_base)
+    try:
+        tracks = load(path, fps=fps, format=format, units=units, time_base=time_base)
+    except RowRateError as error:  # in older trial files fps was rows per second
+        warnings.warn(f'{path.name}: fps="{fps:g}" is read as rows per second; write fps="{error.fps:g}"', stacklevel=1)
+        tracks = load(path, fps=error.fps, format=format, units=units, time_base=time_base)
     return tracks if tracks.units == "m" and tracks.homography is None else tracks.metres()

@@ -17,13 +17,12 @@ from crowdbot import world
 from crowdbot.core import MOUNT_HEIGHT, Clock, InputError, RobotError, did_you_mean
 from crowdbot.navigation import Navigator
 from crowdbot.sensors import Schedule, Sensor
-from crowdbot.world import Drive, builtin_robots
-from crowdbot.world.urdf.transforms import frame, roll_pitch_yaw
+from crowdbot.world import Drive, builtin_robots, frame, roll_pitch_yaw
 
-from .attribute import Mistake, attribute, check, child, children, mounted, plugged, shown
+from .fields import Mistake, attribute, check, child, children, mounted, plugged, shown
+from .human_kinds import ABOUT_RIDER, rider_problems
 from .notation import NAME
-from .torn import readable
-from .words import ABOUT_RIDER, rider_problems
+from .partial import readable
 
 __all__ = ["Goal", "Mount", "Robot"]
 
@@ -262,8 +261,8 @@ class Robot:
 
 
 def _drawn(mount: Mount | world.SensorMount) -> bool:
-    """Whether a sensor shows what somebody draws: slow, and not to be had on every machine."""
-    return bool(getattr(mount.sensor, "draws", False))
+    """Return whether a sensor needs a renderer, which is slow and needs graphics."""
+    return mount.sensor.renders
 
 
 def _merged(carried: tuple[Mount, ...], own: Any) -> tuple[Mount, ...]:
@@ -307,9 +306,7 @@ def _kind(name: str, folder: Path | None, trust: bool) -> world.Robot:
 
 @functools.cache
 def _built_in(name: str) -> world.Robot:
-    from crowdbot.world.robot_file import read_robot
-
-    return read_robot(_assets(name))
+    return world.Robot.load(_assets(name))
 
 
 def _assets(name: str) -> Path:
@@ -320,10 +317,8 @@ def _assets(name: str) -> Path:
 
 @functools.lru_cache(maxsize=16)
 def _loaded(place: Path, trust: bool, stamp: int) -> world.Robot:
-    from crowdbot.world.robot_file import read_robot
-
     try:
-        return read_robot(place, trust=trust)
+        return world.Robot.load(place, trust=trust)
     except RobotError as error:
         more = f" (and {len(error.problems) - 1} more; see crowdbot check)" if len(error.problems) > 1 else ""
         raise InputError(f"type={shown(place.name)}: {error.problems[0]}{more}") from None

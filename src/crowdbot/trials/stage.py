@@ -14,14 +14,14 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Walls
 
-from .attribute import Mistake, attribute, check, children, shown
-from .ground import area_of, map_of
+from .fields import Mistake, attribute, check, children, shown
+from .map_files import area_of, map_of
 from .notation import Points
+from .partial import readable
 from .props import Cube, Light, Prop, Table, Tree
-from .torn import readable
 
 if TYPE_CHECKING:
-    from crowdbot.world.physics import PhysicsStage
+    from crowdbot.world import PhysicsStage
 
 __all__ = ["Obstacle", "Stage", "Wall", "area"]
 
@@ -130,7 +130,7 @@ class Stage:
 
     def physical(self) -> PhysicsStage:
         """Return what a world with bodies has beside walls."""
-        from crowdbot.world.physics import PhysicsStage
+        from crowdbot.world import PhysicsStage
 
         props, lights = tuple(one.prop() for one in self.props), tuple(one.light() for one in self.lights)
         return PhysicsStage(self.wall_height, self.friction, props, lights)

@@ -4,27 +4,22 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 from crowdbot.core import InputError
 from crowdbot.models import CrowdModel
 
 from .agent import Agent
-from .attribute import attribute, check, child, children
 from .camera import Camera
 from .crowd import Contact, Crowd, Crowds, Limits, Routing
+from .fields import attribute, check, child, children
 from .journey import Exit, Journey, Portal
 from .people import Source, Spawner
 from .recorded_people import RecordedPeople
 from .robot import Goal, Mount, Robot
 from .stage import Stage
 from .sweep import Sweep
-
-if TYPE_CHECKING:
-    from .episode import Episode
 
 __all__ = ["End", "Goal", "Mount", "Recording", "Robot", "Trial", "When"]
 
@@ -83,15 +78,14 @@ class Recording:
 class Trial:
     """One simulation: a stage, people, robots, and when it ends.
 
-    A trial made in Python is checked like one from a file when it runs, or with :meth:`check`.
+    A trial made in Python is checked like one from a file when it runs, or by :func:`crowdbot.trials.check_trial`.
 
     Raises:
         InputError: a value is not allowed.
 
     >>> from crowdbot.models import ORCA
-    >>> trial = Trial(name="alone", duration=2.0, crowd=ORCA())
-    >>> Trial.parse(trial.xml()) == trial
-    True
+    >>> Trial(name="alone", duration=2.0, crowd=ORCA()).ticks
+    40
     """
 
     name: str = attribute(about="name of the trial", pattern=r"\S.{0,79}")
@@ -153,63 +147,6 @@ class Trial:
                 f'step="{self.step:g}" must be a whole number of steps of the physics world, physics-step='
                 f'"{self.physics_step:g}" s'
             )
-
-    @classmethod
-    def load(cls, source: str | Path, *, trust: bool = False, **values: Any) -> Trial:
-        """Read a trial file or a built-in trial; see :func:`crowdbot.trials.load_trial`."""
-        from .builtin import load_trial
-
-        return load_trial(source, trust=trust, **values)
-
-    @classmethod
-    def parse(
-        cls, text: str | bytes, *, place: str = "trial", folder: Path | None = None, trust: bool = False
-    ) -> Trial:
-        """Read a trial from an XML text; see :func:`crowdbot.trials.reading.read_trial`."""
-        from .reading import read_trial
-
-        return read_trial(text, place=place, folder=folder, trust=trust)
-
-    def xml(self) -> str:
-        """Return the XML text of this trial; reading it gives an equal trial."""
-        from .writing import xml
-
-        return xml(self)
-
-    def check(self, seed: int | None = None) -> None:
-        """Raise :class:`TrialError` with everything that is wrong: places, overlaps, people who do not fit, periods."""
-        from .checks import check_trial
-
-        check_trial(self, seed)
-
-    def remarks(self) -> list[str]:
-        """Return what is not wrong but should be known; see :func:`crowdbot.trials.rates.remarks`."""
-        from .rates import remarks
-
-        return remarks(self)
-
-    def run(
-        self,
-        seed: int | None = None,
-        out: Path | str | None = None,
-        progress: Callable[[float], None] | None = None,
-    ) -> Episode:
-        """Run the trial; see :func:`crowdbot.trials.run`."""
-        from .run import run
-
-        return run(self, seed=seed, out=out, progress=progress)
-
-    def explicit(self, seed: int | None = None) -> Trial:
-        """Return the trial with everybody of its spawners as an agent; see :func:`crowdbot.trials.explicit`."""
-        from .explicit import explicit
-
-        return explicit(self, seed)
-
-    def variants(self) -> tuple[Trial, ...]:
-        """Return a trial without sweeps for every combination of their values; see :class:`Sweep`."""
-        from .sweep import variants
-
-        return variants(self)
 
     @property
     def people(self) -> int:

@@ -15,17 +15,17 @@ from crowdbot.metrics import swept_distance
 from crowdbot.models import CrowdModel
 from crowdbot.models.mixture import MODEL, Mixture
 
-from .contact import BodyContact, Surfaces
-from .drive import Drive, Twists
-from .flow import Source
-from .journey import JOURNEY, Journeys
-from .limits import CrowdLimits
-from .portal import Portal, ported
-from .routing import WAY, Router
-from .script import Script
-from .stop import Zone
-from .traffic import Traffic
-from .walk import Stepping, Walk, alone
+from .crowd.contact import BodyContact, Surfaces
+from .crowd.journey import JOURNEY, Journeys
+from .crowd.limits import CrowdLimits
+from .crowd.people_flow import Traffic
+from .crowd.portal import Portal, ported
+from .crowd.replay import Script
+from .crowd.routing import WAY, Router
+from .crowd.source import Source
+from .crowd.walk import Stepping, Walk, alone
+from .crowd.waypoint import Zone
+from .robots.drive import Drive, Twists
 from .world import Contact, World
 
 __all__ = ["PlanarWorld"]
@@ -128,7 +128,7 @@ class PlanarWorld(World):
         return alone(self.stepping(commands))
 
     def stepping(self, commands: Mapping[int, Twist | Twists]) -> Stepping[Scene]:
-        """Go one time step on, and ask somebody else how the crowd walks; see :func:`crowdbot.world.walk.alone`."""
+        """Go one time step on, and ask somebody else how the crowd walks; see :func:`crowdbot.world.alone`."""
         asked = self._checked(commands)
         before = self._held(self.scene)
         self.clock.advance()

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from crowdbot.core import Scene, Twist
 
-from .drive import Twists
+from .robots.drive import Twists
 
 __all__ = ["Contact", "World"]
 

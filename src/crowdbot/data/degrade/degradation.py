@@ -38,7 +38,7 @@ class Degraded:
     Raises:
         DataError: there is not one truth a row.
 
-    >>> tracks = Trajectories([7, 7], [0, 10], [0.0, 0.5], [2.0, 2.0], frame_rate=2.5)
+    >>> tracks = Trajectories([7, 7], [0, 10], [0.0, 0.5], [2.0, 2.0], row_rate=2.5)
     >>> seen = Degraded.of(tracks).renamed([7, 9])
     >>> seen.tracks.id.tolist(), seen.truth.tolist()
     ([7, 9], [7, 7])

@@ -22,7 +22,7 @@ class GaussianNoise(Degradation):
         sd: standard deviation of a coordinate [m]; the level.
 
     >>> from crowdbot.data.trajectories import Trajectories
-    >>> tracks = Trajectories([7, 7], [0, 10], [0.0, 0.5], [2.0, 2.0], frame_rate=2.5)
+    >>> tracks = Trajectories([7, 7], [0, 10], [0.0, 0.5], [2.0, 2.0], row_rate=2.5)
     >>> GaussianNoise(0.0).apply(tracks).tracks is tracks, str(GaussianNoise(0.1))
     (True, 'gaussian-noise(sd=0.1 m)')
     """

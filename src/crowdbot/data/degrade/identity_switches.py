@@ -31,7 +31,7 @@ def encounters(tracks: Trajectories, distance: float) -> list[Encounter]:
 
     A stretch ends where they are apart, or one of them missing, at a frame of the recording.
 
-    >>> tracks = Trajectories([1, 2, 1, 2, 1, 2], [0, 0, 1, 1, 2, 2], [0, 5, 2, 3, 5, 0], [0.0] * 6, frame_rate=2.5)
+    >>> tracks = Trajectories([1, 2, 1, 2, 1, 2], [0, 0, 1, 1, 2, 2], [0, 5, 2, 3, 5, 0], [0.0] * 6, row_rate=2.5)
     >>> encounters(tracks, 1.5)
     [Encounter(frame=1, one=1, other=2)]
     """

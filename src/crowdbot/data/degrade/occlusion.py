@@ -73,7 +73,7 @@ class Occlusion(Degradation):
         reach: how far the eye sees [m].
         eye: a point ``x, y`` [m], or the id of a robot or person who looks; None is the robot of the recording.
 
-    >>> tracks = Trajectories([1, 2], [0, 0], [1.0, 2.0], [0.0, 0.0], frame_rate=2.5)
+    >>> tracks = Trajectories([1, 2], [0, 0], [1.0, 2.0], [0.0, 0.0], row_rate=2.5)
     >>> Occlusion(eye=(0.0, 0.0)).apply(tracks).tracks.id.tolist()
     [1]
     """

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from crowdbot import models, navigation
-from crowdbot.core import find_class
+from crowdbot import navigation
 from crowdbot.models import ORCA
 from crowdbot.sensors import Gaussian, Lidar2D
 from crowdbot.trials.distribution import Distribution
@@ -18,10 +15,7 @@ from crowdbot.trials.stage import Stage, Wall
 from crowdbot.trials.trial import Goal, Mount, Robot, Trial
 from crowdbot.world import DifferentialDrive, Drive
 
-if TYPE_CHECKING:
-    from .preset import Preset
-
-__all__ = ["CROWD", "STILL", "box", "corridor", "finished", "flow", "number", "pairs", "robot", "scenario", "uniform"]
+__all__ = ["CROWD", "STILL", "box", "corridor", "flow", "number", "pairs", "robot", "scenario", "uniform"]
 
 CROWD = ORCA(neighbor_distance=5.0, max_neighbors=10.0, time_horizon=2.0, time_horizon_walls=1.0)
 
@@ -86,21 +80,6 @@ def pairs(share: float) -> tuple[Group, ...]:
 def flow(name: str, count: int, zone: Points, journey: str, **more: Any) -> Spawner:
     """Return people in a zone who go on a journey."""
     return Spawner(name=name, count=count, zone=zone, journey=journey, **more)
-
-
-def finished(trial: Trial, preset: Preset, values: Mapping[str, Any]) -> Trial:
-    """Return a trial with what all presets have in common: model, navigator, robot, seed."""
-    changes: dict[str, Any] = {"name": preset.name, "about": preset.about, "seed": values["seed"]}
-    if values["model"] != "orca":
-        changes["crowd"] = find_class(values["model"], models, models.CrowdModel, trust=False)()
-    robots: Iterable[Robot] = trial.robots if values["robot"] else ()
-    found = find_class(values["navigator"], navigation, navigation.Navigator, trust=False)
-    robots = [
-        one if isinstance(one.navigator, found) else dataclasses.replace(one, navigator=found()) for one in robots
-    ]
-    if not values["reactive"]:
-        robots = [dataclasses.replace(one, visible=False) for one in robots]
-    return dataclasses.replace(trial, **changes, robots=tuple(robots))
 
 
 def uniform(low: float, high: float) -> Distribution:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from crowdbot.core import InputError, TrialError, did_you_mean, parse_number
-from crowdbot.trials.trial import Trial
+from crowdbot import models, navigation
+from crowdbot.core import InputError, TrialError, did_you_mean, find_class, parse_number
+from crowdbot.trials.parser import check_trial
+from crowdbot.trials.trial import Robot, Trial
 
 __all__ = ["Option", "Preset"]
 
@@ -96,8 +99,6 @@ class Preset:
         Raises:
             TrialError: one is unknown or not allowed, each in a sentence; or the trial is impossible with them.
         """
-        from .parts import finished
-
         options = self.options
         values, problems = {name: option.default for name, option in options.items()}, []
         for name, value in given.items():
@@ -114,9 +115,24 @@ class Preset:
             raise TrialError(*problems)
         trial = self.make(**{name: values[name] for name in self.own})
         try:
-            trial = finished(trial, self, values)
+            trial = _with_common_options(trial, self, values)
         except InputError as error:
             raise TrialError(f"{self.name}: {error}") from None
         if given:
-            trial.check()
+            check_trial(trial)
         return trial
+
+
+def _with_common_options(trial: Trial, preset: Preset, values: Mapping[str, Any]) -> Trial:
+    """Return a trial with what all presets have in common: model, navigator, robot, seed."""
+    changes: dict[str, Any] = {"name": preset.name, "about": preset.about, "seed": values["seed"]}
+    if values["model"] != "orca":
+        changes["crowd"] = find_class(values["model"], models, models.CrowdModel, trust=False)()
+    robots: Iterable[Robot] = trial.robots if values["robot"] else ()
+    found = find_class(values["navigator"], navigation, navigation.Navigator, trust=False)
+    robots = [
+        one if isinstance(one.navigator, found) else dataclasses.replace(one, navigator=found()) for one in robots
+    ]
+    if not values["reactive"]:
+        robots = [dataclasses.replace(one, visible=False) for one in robots]
+    return dataclasses.replace(trial, **changes, robots=tuple(robots))

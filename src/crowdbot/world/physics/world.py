@@ -12,24 +12,24 @@ from numpy.typing import NDArray
 from crowdbot.core import Bodies, InputError, Pose, Scene
 from crowdbot.humans import People
 from crowdbot.models import CrowdModel
-from crowdbot.world.drive import Twists
+from crowdbot.world.crowd.walk import Stepping
 from crowdbot.world.planar import PlanarWorld
-from crowdbot.world.robot import Robot
-from crowdbot.world.walk import Stepping
+from crowdbot.world.rendering.camera import Camera, Images
+from crowdbot.world.rendering.renderer import Studio
+from crowdbot.world.robots.drive import Twists
+from crowdbot.world.robots.robot import Robot
 from crowdbot.world.world import Contact
 
-from .camera import Camera, Images
-from .chassis import Chassis
-from .collisions import BodyForce, Collision, CollisionBook
-from .composed import built
+from .colliders import bodies
+from .contact_events import BodyForce, Collision, CollisionBook
+from .contacts import Party, Touches
 from .engine import engine
-from .passers import Passers
+from .mjcf_model import built
+from .people_bodies import Passers
+from .people_motion import Limbs, Walkers
+from .robot_body import Chassis
 from .scenery import joined
-from .solids import bodies
 from .stage import PhysicsStage
-from .studio import Studio
-from .touches import Party, Touches
-from .walkers import Limbs, Walkers
 
 __all__ = ["PhysicsWorld"]
 
@@ -179,7 +179,7 @@ class PhysicsWorld(PlanarWorld):
         >>> from crowdbot.models import ORCA
         >>> from crowdbot.sensors import Lidar2D
         >>> world = PhysicsWorld(start, ORCA(), {0: Robot.load("turtlebot2")}, dt=0.1)
-        >>> scan = Lidar2D(rays=1).measure(world.seen().without(0), world.pose(0).lifted(1.2))
+        >>> scan = Lidar2D(rays=1).read(world.seen().without(0), world.pose(0).lifted(1.2))
         >>> scan.hit.tolist(), bool(1.7 < scan.ranges[0, 0] < 2.0)
         ([[1]], True)
         """

@@ -161,7 +161,7 @@ class RobotModel:
         remarks: what was replaced, repaired or ignored.
         meshes: the files that were read, as the URDF names them, and where they lie.
 
-    >>> from crowdbot.world.urdf import read_urdf
+    >>> from crowdbot.world import read_urdf
     >>> arm = read_urdf(\"\"\"<robot name="arm"><link name="foot"/><link name="arm"><inertial><mass value="2"/>
     ... <origin xyz="1 0 0"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
     ... <joint name="hinge" type="continuous"><parent link="foot"/><child link="arm"/><axis xyz="0 0 1"/></joint>
@@ -255,7 +255,7 @@ class RobotModel:
     def footprint(self, positions: Mapping[str, ArrayLike] | None = None) -> Floats:
         """Return the corners ``[N, 2]`` [m] of the convex outline of all colliders from above, in the root's frame.
 
-        >>> from crowdbot.world.urdf import read_urdf
+        >>> from crowdbot.world import read_urdf
         >>> box = '<collision><geometry><box size="2 1 1"/></geometry></collision>'
         >>> read_urdf(f'<robot name="r"><link name="b">{box}</link></robot>').footprint().tolist()
         [[-1.0, -0.5], [1.0, -0.5], [1.0, 0.5], [-1.0, 0.5]]

@@ -21,7 +21,7 @@ def described(model: RobotModel, positions: Mapping[str, float] | None = None) -
         model: the robot.
         positions: of joints, for footprint and inertia; those left out are at rest.
 
-    >>> from crowdbot.world.urdf import read_urdf
+    >>> from crowdbot.world import read_urdf
     >>> found = described(read_urdf("<robot name='r'><link name='a'><visual><geometry><sphere radius='1'/></geometry>"
     ...                             "</visual></link></robot>"))
     >>> round(found["mass"]), len(found["repaired"]), found["footprint"]

@@ -1,0 +1,175 @@
+"""Evaluation of predictors on degraded recordings: observations as a tracker sees them, ground truth as future."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from crowdbot.core import InputError, stream
+from crowdbot.data import Trajectories, Windows
+from crowdbot.data.degrade import Chain, Degradation, NobodySeen
+from crowdbot.metrics import Score
+from crowdbot.prediction import Predictor, seen_windows
+
+from .predictor_score import evaluate
+
+__all__ = ["DegradedScore", "Task", "sweep"]
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is asked of every predictor at every level.
+
+    Fields:
+        observe, predict, protocol, near: as :meth:`Trajectories.windows` takes them, on the clean recording.
+        samples, best_of, seed: as :func:`evaluate` takes them; the seed is also that of the degradation.
+        carry: rows for which somebody who is not seen any more is walked on, see :func:`seen_windows`.
+        draws: how often the degradation is drawn anew; scores are means over all draws.
+        every: only every such window is predicted.
+    """
+
+    observe: int = 8
+    predict: int = 12
+    protocol: str = "all"
+    near: float | None = None
+    samples: int = 1
+    best_of: str = "person"
+    seed: int = 0
+    carry: int = 0
+    draws: int = 1
+    every: int = 1
+
+    def __post_init__(self) -> None:
+        if self.carry < 0:
+            raise InputError(f"carry = {self.carry} must be a number of rows, at least 0")
+        if self.draws < 1:
+            raise InputError(f"draws = {self.draws} must be at least 1")
+        if self.every < 1:
+            raise InputError(f"every = {self.every} must be at least 1: each, every 2nd, every 3rd window")
+
+
+@dataclass(frozen=True)
+class DegradedScore:
+    """The score of one predictor at one level of a degradation, over all recordings and draws.
+
+    Fields:
+        degradation: at this level.
+        predictor: name of the predictor.
+        level: value of the parameter that is varied.
+        asked: number of scored persons of the clean protocol.
+        draws: how often the degradation was drawn.
+        score: errors of those who could be predicted, in all draws; None when there was nobody.
+        low, high: smallest and largest ADE [m] of the draws, NaN when there was nobody.
+    """
+
+    degradation: Degradation | Chain
+    predictor: str
+    level: float
+    asked: int
+    draws: int
+    score: Score | None
+    low: float
+    high: float
+
+    @property
+    def coverage(self) -> float:
+        """Share of the scored persons who could be predicted."""
+        return (self.score.persons if self.score else 0) / (self.asked * self.draws)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the numbers by their names, for JSON."""
+        own = {
+            name: getattr(self, name) for name in ("predictor", "level", "coverage", "asked", "draws", "low", "high")
+        }
+        return {**own, "score": self.score.as_dict() if self.score else None}
+
+
+def sweep(
+    recordings: Sequence[Trajectories],
+    degradations: Sequence[Degradation | Chain],
+    predictors: Sequence[Predictor],
+    levels: Sequence[float] | None = None,
+    task: Task | None = None,
+    progress: Callable[[str, float], None] | None = None,
+) -> Iterator[list[DegradedScore]]:
+    """Yield, level by level, the score of every predictor, so that what is done stays when the rest is interrupted.
+
+    Who is scored, and where they go, is decided by the protocol on the clean recordings; what predictors see is the
+    degraded one. A level that changes nothing is :func:`evaluate`, and done once for all degradations.
+
+    Args:
+        recordings: clean ones.
+        degradations: what is done to them, each alone.
+        predictors: what is scored.
+        levels: of the degradations; None means those of each.
+        task: what is asked; None means ``Task()``.
+        progress: told the degradation and the share of it that is done, 0 to 1.
+
+    Raises:
+        InputError: a level is not allowed, or a recording cannot be cut or degraded so.
+    """
+    task = task or Task()
+    steps = [(one, [(v, one.at(v)) for v in (one.levels if levels is None else levels)]) for one in degradations]
+    for tracks in recordings:
+        for _, ladder in steps:
+            for _, one in ladder:
+                if not one.neutral:
+                    one.check(tracks)
+    whole = [tracks.windows(task.observe, task.predict, task.protocol, task.near) for tracks in recordings]
+    cuts = [(past[:: task.every], future[:: task.every]) for past, future in whole]
+    clean: list[DegradedScore] = []
+    for degradation, ladder in steps:
+        for done, (level, one) in enumerate(ladder):
+            if progress is not None:
+                progress(degradation.name, done / len(ladder))
+            found = clean if one.neutral else []
+            found = found or _level(one, level, recordings, cuts, predictors, task)
+            if one.neutral:
+                clean = found = [dataclasses.replace(score, degradation=one, level=level) for score in found]
+            yield found
+        if progress is not None:
+            progress(degradation.name, 1.0)
+
+
+def _level(
+    degradation: Degradation | Chain,
+    level: float,
+    recordings: Sequence[Trajectories],
+    cuts: Sequence[tuple[Windows, Windows]],
+    predictors: Sequence[Predictor],
+    task: Task,
+) -> list[DegradedScore]:
+    """Return the scores of all predictors at one level."""
+    draws = 1 if degradation.neutral else task.draws
+    scores: list[list[list[Score]]] = [[[] for _ in range(draws)] for _ in predictors]
+    for draw in range(draws):
+        for tracks, (past, future) in zip(recordings, cuts, strict=True):
+            try:
+                degraded = degradation.apply(tracks, stream(task.seed, "degrade", draw))
+            except NobodySeen:  # a score of nobody, not a mistake: the coverage says it
+                continue
+            seen = seen_windows(past, future, degraded, task.carry)
+            if seen.predictable == 0:
+                continue
+            for predictor, own in zip(predictors, scores, strict=True):
+                score = evaluate(predictor, seen.past, seen.future, task.samples, task.best_of, task.seed)
+                own[draw].append(score)
+    asked = sum(int(future.scored.sum()) for _, future in cuts)
+    return [
+        _joined(degradation, predictor.name, level, asked, own)
+        for predictor, own in zip(predictors, scores, strict=True)
+    ]
+
+
+def _joined(
+    degradation: Degradation | Chain, predictor: str, level: float, asked: int, draws: list[list[Score]]
+) -> DegradedScore:
+    every = [score for draw in draws for score in draw]
+    means = [Score.total(draw).ade for draw in draws if draw]
+    if not every:
+        return DegradedScore(degradation, predictor, level, asked, len(draws), None, math.nan, math.nan)
+    total = dataclasses.replace(Score.total(every), source=" + ".join(dict.fromkeys(s.source for s in every)))
+    return DegradedScore(degradation, predictor, level, asked, len(draws), total, min(means), max(means))

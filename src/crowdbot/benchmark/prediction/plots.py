@@ -1,0 +1,204 @@
+"""Plots of a study: errors of predictors, error and time frame by frame, one window in motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, stream
+from crowdbot.data import Recording, Windows
+from crowdbot.prediction import Recipe
+
+from .evaluation import Result, Study
+
+__all__ = ["animate", "plot_errors", "plot_frames"]
+
+COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c510a", "#525252")
+"""Colours that people with colour blindness can tell apart (Okabe & Ito), then brown and grey."""
+PEOPLE, TRUTH, ORACLE = "#9a9a9a", "#000000", "#f0c987"
+MOST_LINES = len(COLORS)
+"""More predictors than this are not drawn as lines: nobody could tell them apart."""
+SHOWN_ROWS = 80
+FRAMES_A_ROW = 3
+"""An animation shows so many pictures a row of the recording."""
+
+
+def plot_errors(results: Sequence[Result], file: Path) -> None:
+    """Draw the ADE of every predictor with its 95 % interval, one panel a recording, the smallest on top."""
+    from matplotlib.patches import Patch
+
+    panels = _by_recording(results)
+    most = max(len(own) for own in panels.values())
+    figure, axes = _figure(1, len(panels), (1.0 + 5.5 * len(panels), 1.2 + 0.17 * min(most, SHOWN_ROWS)))
+    for axis, (recording, own) in zip(axes[0], panels.items(), strict=True):
+        ranked = sorted(own, key=lambda one: one.score.ade)[:SHOWN_ROWS]
+        for row, one in enumerate(ranked):
+            low, high = one.score.intervals.ade
+            axis.barh(row, one.score.ade, color=_color(one), height=0.7)
+            axis.plot((low, high), (row, row), color="black", linewidth=1)
+        axis.set_yticks(range(len(ranked)), [one.label for one in ranked], fontsize=6)
+        axis.margins(y=0.01)
+        axis.invert_yaxis()
+        axis.set_xlabel(f"ADE [{own[0].score.units}], 95 % by drawing people", fontsize=8)
+        axis.tick_params(axis="x", labelsize=8)
+        left = "" if len(own) <= SHOWN_ROWS else f" (best {SHOWN_ROWS} of {len(own)})"
+        axis.set_title(f"{recording.name}, {recording.predict} rows{left}", fontsize=9, loc="left")
+        axis.grid(axis="x", alpha=0.25, linewidth=0.6)
+    kinds = {"calibrated": COLORS[0], "as given": PEOPLE, "knows the true destinations": ORACLE}
+    handles = [Patch(color=color, label=word) for word, color in kinds.items()]
+    figure.legend(handles=handles, fontsize=7, loc="outside lower center", ncols=3)
+    _written(figure, file)
+
+
+def _color(result: Result) -> str:
+    if result.recipe.knows_future:
+        return ORACLE
+    return COLORS[0] if result.frames.calibrated else PEOPLE
+
+
+def plot_frames(results: Sequence[Result], file: Path) -> None:
+    """Draw error, minimum cost and time over the frames, a row of panels a recording; the first eight predictors."""
+    panels = _by_recording(results)
+    figure, axes = _figure(len(panels), 3, (13, 0.8 + 2.5 * len(panels)))
+    for row, (recording, own) in zip(axes, panels.items(), strict=True):
+        shown = own[:MOST_LINES]
+        for color, one in zip(COLORS, shown, strict=False):
+            frames = one.frames
+            for axis, values in zip(row, (frames.ade, frames.cost, 1e3 * frames.seconds), strict=True):
+                if not np.all(np.isnan(values)):
+                    axis.plot(*_broken(frames.frame, values), color=color, linewidth=0.9, label=one.label)
+        unit = own[0].score.units
+        for axis, name in zip(row, (f"error (ADE) [{unit}]", "minimum cost [m]", "time [ms]"), strict=True):
+            axis.set_title(f"{recording.name}: {name}", fontsize=9)
+            axis.set_xlabel("frame", fontsize=8)
+            axis.tick_params(labelsize=8)
+            axis.grid(alpha=0.25, linewidth=0.6)
+        row[2].set_yscale("log")
+        if not any(one.frames.calibrated for one in shown):
+            row[1].text(0.5, 0.5, "nothing was calibrated", ha="center", transform=row[1].transAxes, fontsize=8)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), fontsize=7, loc="outside lower center", ncols=2)
+    _written(figure, file)
+
+
+def animate(study: Study, frame: int, file: Path) -> Path:
+    """Write an animation of one window: people, what they truly did, and each predictor in its own colour.
+
+    Raises:
+        InputError: no window of the recordings ends at this frame, or there are more than eight predictors.
+    """
+    from matplotlib.animation import FuncAnimation, PillowWriter
+
+    if len(study.recipes) > MOST_LINES:
+        raise InputError(f"an animation shows at most {MOST_LINES} predictors, not {len(study.recipes)}")
+    recording, window = study.window_at(frame)
+    past, future = (one[window : window + 1] for one in recording.windows)
+    labels = study.labels()
+    paths = {labels[recipe.name]: _paths(recipe, recording, past, study) for recipe in study.recipes}
+    figure, axes = _figure(1, 1, (7.5, 7.0))
+    axis = axes[0, 0]
+    _background(axis, past, future, paths)
+    axis.set_title(f"{recording.name}, frame {frame}", fontsize=10)
+    lines = [
+        axis.plot([], [], color=color, linewidth=1.6, label=name)[0] for color, name in zip(COLORS, paths, strict=False)
+    ]
+    discs = axis.scatter([], [], s=60, color=PEOPLE, edgecolor="black", linewidth=0.5, zorder=3)
+    figure.legend(*axis.get_legend_handles_labels(), fontsize=7, loc="outside lower center", ncols=2)
+    steps = recording.predict
+
+    def draw(number: int) -> None:
+        reach = number / FRAMES_A_ROW
+        discs.set_offsets(_at(past, future, reach))
+        for line, tracks in zip(lines, paths.values(), strict=True):
+            line.set_data(*_until(tracks, reach))
+
+    animation = FuncAnimation(figure, draw, frames=steps * FRAMES_A_ROW + 1)
+    animation.save(file, PillowWriter(fps=max(1, round(FRAMES_A_ROW / past.dt))))
+    return file
+
+
+def _paths(recipe: Recipe, recording: Recording, past: Windows, study: Study) -> list[NDArray[np.float64]]:
+    """Return one line ``[T + 1, 2]`` for each person and future that has a weight, from the last observed row on."""
+    predictor = recipe.prepared(recording)
+    forecast = predictor.predict(past, recording.predict, study.samples, stream(study.seed, "animate"))
+    who = np.flatnonzero(past.present[0, -1])
+    futures = np.flatnonzero(forecast.weight[0] > 0.0)
+    return [
+        np.concatenate([past.position[0, -1:, person], forecast.position[0, k, :, person]])
+        for person in who
+        for k in futures
+    ]
+
+
+def _background(axis: Any, past: Windows, future: Windows, paths: dict[str, list[NDArray[np.float64]]]) -> None:
+    for ring in past.walls:
+        axis.plot(*np.vstack([ring, ring[:1]]).T, color="black", linewidth=1)
+    everything = [point for tracks in paths.values() for point in tracks]
+    for person in np.flatnonzero(past.present[0, -1]):
+        seen = past.position[0, past.present[0, :, person], person]
+        later = future.position[0, future.present[0, :, person], person]
+        axis.plot(*seen.T, color=PEOPLE, linewidth=1)
+        axis.plot(*np.vstack([seen[-1:], later]).T, color=TRUTH, linewidth=0.8, linestyle=":")
+        everything += [seen, later]
+    points = np.concatenate(everything) if everything else np.zeros((1, 2))
+    low, high = points.min(axis=0) - 1.0, points.max(axis=0) + 1.0
+    axis.set_xlim(low[0], high[0])
+    axis.set_ylim(low[1], high[1])
+    axis.set_aspect("equal")
+    axis.plot([], [], color=TRUTH, linewidth=0.8, linestyle=":", label="what they did")
+
+
+def _at(past: Windows, future: Windows, reach: float) -> NDArray[np.float64]:
+    """Return where people truly are ``reach`` rows after the last observed one."""
+    path = np.concatenate([past.position[0, -1:], future.position[0]])
+    here = np.concatenate([past.present[0, -1:], future.present[0]])
+    row = min(int(reach), len(path) - 1)
+    after = min(row + 1, len(path) - 1)
+    known = here[row] & here[after]
+    place = path[row] + (reach - row) * (path[after] - path[row])
+    return np.asarray(place[known])
+
+
+def _until(tracks: list[NDArray[np.float64]], reach: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the lines up to ``reach`` rows ahead as one line with gaps."""
+    if not tracks:
+        return np.zeros(0), np.zeros(0)
+    row = int(reach)
+    pieces = []
+    for track in tracks:
+        after = min(row + 1, len(track) - 1)
+        tip = track[min(row, len(track) - 1)] + (reach - row) * (track[after] - track[min(row, len(track) - 1)])
+        pieces.append(np.vstack([track[: row + 1], tip, [np.nan, np.nan]]))
+    joined = np.concatenate(pieces)
+    return joined[:, 0], joined[:, 1]
+
+
+def _broken(frame: NDArray[np.int64], values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return a line over the frames that has a gap where frames are missing."""
+    jumps = np.flatnonzero(np.diff(frame) > 2 * np.median(np.diff(frame))) + 1 if len(frame) > 1 else np.zeros(0, int)
+    return np.insert(frame.astype(float), jumps, np.nan), np.insert(values, jumps, np.nan)
+
+
+def _by_recording(results: Sequence[Result]) -> dict[Recording, list[Result]]:
+    found: dict[Recording, list[Result]] = {}
+    for result in results:
+        found.setdefault(result.recording, []).append(result)
+    return found
+
+
+def _figure(rows: int, columns: int, size: tuple[float, float]) -> tuple[Any, Any]:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=size, dpi=110, layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure, figure.subplots(rows, columns, squeeze=False)
+
+
+def _written(figure: Any, file: Path) -> None:
+    fresh = file.with_suffix(".part")
+    figure.savefig(fresh, format="png")
+    fresh.replace(file)

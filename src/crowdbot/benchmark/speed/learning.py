@@ -1,0 +1,137 @@
+"""Learning and learned predictors in ``crowdbot bench``: windows a second, seconds an epoch, memory, and live speed."""
+
+from __future__ import annotations
+
+import functools
+import subprocess
+import sys
+from collections.abc import Callable
+
+import numpy as np
+
+from crowdbot.core import InputError, stream
+from crowdbot.data import Windows
+from crowdbot.prediction import (
+    AnchorNet,
+    Predictor,
+    Samples,
+    SocialWays,
+    Trainable,
+    make_learner,
+    threads,
+    torch_module,
+)
+
+from .measurement import Gauge, Measurement
+
+__all__ = ["learning"]
+
+UPDATES = 4
+SIZES = (1, 1, 2, 2, 3, 3, 4, 5, 8, 20, 35)
+"""People in the made scenes: most windows of recordings hold a few, those of a busy square dozens."""
+MEMORY = 2000.0
+"""Learning takes less than this [MB]."""
+PEOPLE = 50
+
+
+def learning() -> dict[str, Callable[[], Measurement | Gauge]]:
+    """Return name -> how to set the measurement up.
+
+    >>> "learn-anchor-net" in learning()
+    True
+    """
+    found: dict[str, Callable[[], Measurement | Gauge]] = {}
+    for name in ("anchor-net", "social-ways"):
+        found[f"learn-{name}"] = functools.partial(_learning, name)
+        found[f"epoch-{name}"] = functools.partial(_epoch, name)
+        found[f"predict-{name}-{PEOPLE}"] = functools.partial(_live, name)
+    if sys.platform != "win32":  # which does not tell a process its peak
+        found["learn-memory"] = _memory
+    return found
+
+
+def made_samples(scenes: int = 440) -> Samples:
+    """Return windows of 8 + 12 rows with people who turn a little, as many as in usual recordings."""
+    torch_module()  # says how to install it, when it is missing
+    rng = stream(0, "learning")
+    count = np.tile(SIZES, -(-scenes // len(SIZES)))[:scenes]
+    people, first = int(count.sum()), np.concatenate([[0], np.cumsum(count)])
+    angle = rng.uniform(-np.pi, np.pi, (people, 1)) + np.cumsum(rng.normal(0.0, 0.1, (people, 20)), axis=1)
+    step = 0.4 * rng.normal(1.2, 0.3, (people, 1, 1)) * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    place = rng.uniform(-6.0, 6.0, (people, 1, 2)) + np.cumsum(step, axis=1)
+    yes = np.ones((people, 20), dtype=bool)
+    return Samples(place, yes, yes[:, 0], first, np.zeros(scenes, dtype=np.int64), ("made",), 8, 0.4)
+
+
+def untrained(name: str, samples: Samples) -> Trainable:
+    """Return a network ready to train with the settings of the shipped weights."""
+    settings: tuple[str | None, dict[str, str]] = (None, {})
+    if name == "social-ways":
+        settings = "variety", {"variety-draws": "6"}
+    return make_learner(name, *settings, samples, samples.thinned(20))
+
+
+def _learning(name: str) -> Measurement:
+    samples = made_samples()
+    model = untrained(name, samples)
+    share = UPDATES / len(model.batches(stream(0, "order")))
+    words = f"an epoch of 3000 windows a minute; one torch thread, {len(samples)} windows of 1 to {max(SIZES)} people"
+    return Measurement("windows/s", share * len(samples), functools.partial(_updates, model, UPDATES), words, 50.0)
+
+
+def _epoch(name: str) -> Gauge:
+    """Time one epoch of the made windows; real ones have other numbers of people."""
+    import time
+
+    samples = made_samples()
+    model = untrained(name, samples)
+    _updates(model, 1)
+    begin = time.perf_counter()
+    _updates(model, len(model.batches(stream(0, "order"))))
+    words = f"60 s for {len(samples)} windows with {samples.people} futures"
+    return Gauge("s/epoch", time.perf_counter() - begin, words, 60.0)
+
+
+def _updates(model: Trainable, count: int) -> None:
+    with threads():
+        batches = model.batches(stream(0, "order"))
+        for number in range(count):
+            model.update(batches[number % len(batches)], stream(0, "update", number), number, 1000)
+
+
+def _live(name: str) -> Measurement:
+    """Predict one window of fifty people, 20 futures each."""
+    past = _square()
+    predictor: Predictor = AnchorNet() if name == "anchor-net" else SocialWays()
+    if name == "social-ways":
+        torch_module()
+    words = f"20 ms for a window of {PEOPLE} people with 20 futures of 12 rows"
+    return Measurement("windows/s", 1.0, lambda: predictor.predict(past, 12, 20), words, 50.0)
+
+
+def _square() -> Windows:
+    rng = stream(0, "square")
+    place = rng.uniform(-6.0, 6.0, (1, PEOPLE, 2)) + 0.4 * np.arange(8.0)[:, None, None] * rng.normal(
+        0.0, 0.9, (1, PEOPLE, 2)
+    )
+    here, nobody = np.ones((1, 8, PEOPLE), dtype=bool), np.zeros((1, PEOPLE), dtype=bool)
+    id, frame = np.arange(PEOPLE)[None], np.arange(8)[None]
+    return Windows(place[None], here, nobody, nobody, id, frame, 0.4, "all", "square")
+
+
+def _memory() -> Gauge:
+    """Read the peak memory of a process of its own that learns Social Ways."""
+    made_samples(1)
+    program = (
+        "import re, resource, sys; from pathlib import Path;"
+        "from crowdbot.benchmark.speed.learning import made_samples, untrained, _updates\n"
+        "_updates(untrained('social-ways', made_samples()), 12)\n"
+        "status = Path('/proc/self/status')\n"  # getrusage would count the parent's memory at the fork
+        "if status.exists(): print(int(re.search(r'VmHWM:\\s+(\\d+)', status.read_text())[1]) / 2**10)\n"
+        "peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
+        "if not status.exists(): print(peak / (2**20 if sys.platform == 'darwin' else 2**10))"
+    )
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)  # noqa: S603
+    if run.returncode:
+        raise InputError(f"learning in a process of its own failed: {run.stderr.strip().splitlines()[-1]}")
+    return Gauge("MB", float(run.stdout), f"{MEMORY:.0f} MB while Social Ways learns", MEMORY)

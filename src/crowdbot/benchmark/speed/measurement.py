@@ -1,0 +1,34 @@
+"""What a benchmark returns: timed work, or a value that is read once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+__all__ = ["Gauge", "Measurement"]
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A piece of work to time: ``work()`` does ``amount`` units; the ratio is to ``reference`` units a second.
+
+    When ``other`` is given, it does ``other_amount`` of the same units in another way, and its speed is the reference.
+    """
+
+    unit: str
+    amount: float
+    work: Callable[[], object]
+    against: str
+    reference: float = 0.0
+    other: Callable[[], object] | None = None
+    other_amount: float = 0.0
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """Something that is read once and not timed; the ratio is ``value / reference``."""
+
+    unit: str
+    value: float
+    against: str
+    reference: float

@@ -1,0 +1,258 @@
+"""Workloads: what ``crowdbot bench`` times, and against what."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import subprocess
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core import Scene, parameters, stream
+from crowdbot.recording import run
+
+from .measurement import Gauge, Measurement
+from .ray_casting import mujoco_rays, people_with_limbs
+from .reference_engines import JUPEDSIM, jupedsim_step, power_law_in_numpy
+from .skinning import posing_and_skinning
+
+__all__ = ["crowd", "measurements"]
+
+DENSITY = 0.5
+"""People per square metre in the crowds that are timed."""
+DT = 0.1
+NEIGHBORS, REACH = 10, 5.0
+"""Every model that looks for neighbours takes the 10 nearest within 5 m."""
+LARGE = ("orca", "power-law", "social-force")
+"""Models that are timed with 100 000 people too."""
+COMPARED = ("collision-free-speed", "social-force", "power-law", "orca")
+"""Models that are timed against JuPedSim."""
+JUPEDSIM_DT = 0.01
+
+
+def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
+    """Return name -> how to set the measurement up, in the order in which they are run.
+
+    >>> "orca-1000" in measurements()
+    True
+    """
+    from crowdbot import models
+    from crowdbot.core import builtin_classes, kebab
+
+    kinds = builtin_classes(models, models.CrowdModel)
+    found: dict[str, Callable[[], Measurement | Gauge]] = {}
+    del kinds["mixture"]  # costs what its models cost
+    for name, kind in kinds.items():
+        found[f"{name}-1000"] = functools.partial(_crowd_of, kind, 1000)
+        if name != "cost-model":
+            found[f"{name}-10000"] = functools.partial(_crowd_of, kind, 10_000)
+            found[f"{name}-batch"] = functools.partial(_batch_of, kind)
+    for name in LARGE:
+        if name in kinds:
+            found[f"{name}-100000"] = functools.partial(_crowd_of, kinds[name], 100_000)
+            found[f"{name}-growth"] = functools.partial(_growth, kinds[name])
+    for name in COMPARED:
+        if name in kinds:
+            found[f"{name}-jupedsim"] = functools.partial(_against_jupedsim, kinds[name])
+    found["collision-free-speed-same-step"] = functools.partial(
+        _against_jupedsim, kinds["collision-free-speed"], JUPEDSIM[1], JUPEDSIM_DT
+    )
+    if "power-law" in kinds:
+        found["power-law-numpy"] = functools.partial(_against_numpy, kinds["power-law"])
+    if sys.platform != "win32":  # which does not tell a process its peak
+        found["orca-memory"] = _memory
+    found |= {"orca-alone": _alone, "lidar-720": _lidar, "trial": _trial}
+    found |= {f"physics-{people}": functools.partial(_physics, people) for people in (50, 200)}
+    found["camera-50"] = _camera
+    found["lidar2d-1080-limbs"] = _rays_of_limbs
+    found["lidar3d-16x1800-limbs"] = functools.partial(_rays_of_limbs, rings=16)
+    found["posing-and-skinning"] = posing_and_skinning
+    for predictor in ("ConstantVelocity", "Kalman", "Simulated"):
+        found[f"predict-{kebab(predictor)}"] = functools.partial(_predictor, predictor)
+    return found
+
+
+def crowd(agents: int, environments: int = 1, seed: int = 0) -> Scene:
+    """Return people on a jittered grid at 0.5 per square metre with goals at random, walking at 1.3 m/s."""
+    random = stream(seed, "speed")
+    side = (agents / DENSITY) ** 0.5
+    count = int(np.ceil(agents**0.5))
+    grid = (np.stack(np.meshgrid(np.arange(count), np.arange(count)), axis=-1).reshape(-1, 2)[:agents] + 0.5) / count
+    place = side * grid + random.uniform(-0.2, 0.2, (environments, agents, 2))
+    goal = random.uniform(0.0, side, (environments, agents, 2))
+    away = goal - place
+    velocity = 1.3 * away / np.linalg.norm(away, axis=-1, keepdims=True)
+    order = random.permutation(agents)  # as crowds come: the index says nothing about the place
+    return Scene.of(place[:, order], velocity[:, order], goal=goal[:, order], max_speed=1.8)
+
+
+def _made(kind: type) -> Any:
+    names = {row.name for row in parameters(kind)}
+    given = {"max_neighbors": float(NEIGHBORS), "neighbor_distance": REACH}
+    return kind(**{name: value for name, value in given.items() if name in names})
+
+
+def _crowd_of(kind: type, agents: int) -> Measurement:
+    model, scene = _made(kind), crowd(agents)
+    real = f"real time ({agents} people, step {DT} s)"
+    return Measurement("agent-steps/s", agents, lambda: model.step(scene, DT), real, agents / DT)
+
+
+def _batch_of(kind: type) -> Measurement:
+    model, scene = _made(kind), crowd(32, environments=1024)
+    real = f"real time (1024 scenes of 32 people, step {DT} s)"
+    agents = scene.shape[0] * scene.shape[1]
+    return Measurement("agent-steps/s", agents, lambda: model.step(scene, DT), real, agents / DT)
+
+
+def _growth(kind: type) -> Measurement:
+    model, large, small = _made(kind), crowd(100_000), crowd(1000)
+    words = "the same model with 1000 people, per agent"
+    return Measurement(
+        "agent-steps/s", 1e5, lambda: model.step(large, DT), words,
+        other=lambda: [model.step(small, DT) for _ in range(20)], other_amount=2e4,
+    )  # fmt: skip
+
+
+def _against_jupedsim(kind: type, theirs: str = JUPEDSIM[0], dt: float = DT) -> Measurement:
+    """Compare the simulated time of all agents: ours takes steps of ``dt``, JuPedSim its own of 0.01 s."""
+    model, scene = _made(kind), crowd(10_000)
+    step = jupedsim_step(theirs, scene)
+    words = f"JuPedSim {theirs}, 10000 people, step {JUPEDSIM_DT} s (ours {dt} s)"
+    return Measurement(
+        "agent-s/s", 1e4 * dt, lambda: model.step(scene, dt), words,
+        other=lambda: [step() for _ in range(5)], other_amount=5e4 * JUPEDSIM_DT,
+    )  # fmt: skip
+
+
+def _against_numpy(kind: type) -> Measurement:
+    model, scene = _made(kind), crowd(1000)
+    words = "the same law in NumPy, all pairs at once, 1000 people"
+    return Measurement(
+        "agent-steps/s", 20e3, lambda: [model.step(scene, DT) for _ in range(20)], words,
+        other=lambda: power_law_in_numpy(scene), other_amount=1e3,
+    )  # fmt: skip
+
+
+def _alone() -> Measurement:
+    from crowdbot.models import ORCA
+
+    model, many = ORCA(), crowd(32, environments=256)
+    single = [
+        Scene.of(many.position[e], many.velocity[e], goal=many.goal[e], max_speed=1.8) for e in range(many.shape[0])
+    ]
+    agents = many.shape[0] * many.shape[1]
+    words = "the same 256 scenes of 32 people one after the other"
+    return Measurement(
+        "agent-steps/s", agents, lambda: model.step(many, DT), words,
+        other=lambda: [model.step(scene, DT) for scene in single], other_amount=agents,
+    )  # fmt: skip
+
+
+def _memory() -> Gauge:
+    """Read the peak memory of a process of its own that steps 100 000 people three times."""
+    program = (
+        "import re, resource, sys; from pathlib import Path;"
+        "from crowdbot.benchmark.speed.workloads import crowd; from crowdbot.models import ORCA;"
+        "scene = crowd(100_000)\nfor _ in range(3): scene = ORCA().step(scene, 0.1)\n"
+        "status = Path('/proc/self/status')\n"  # getrusage would count the parent's memory at the fork
+        "if status.exists(): print(int(re.search(r'VmHWM:\\s+(\\d+)', status.read_text())[1]) / 2**10)\n"
+        "peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
+        "if not status.exists(): print(peak / (2**20 if sys.platform == 'darwin' else 2**10))"
+    )
+    said = ""
+    for _ in range(2):  # the first may have to compile, which takes more memory than the crowd
+        run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
+        said = run.stdout
+    return Gauge("MB", float(said), "500 MB for 100000 people", 500.0)
+
+
+def _lidar() -> Measurement:
+    from crowdbot.core import Pose
+    from crowdbot.sensors import Lidar2D
+
+    sensor, scene = Lidar2D(rays=720), crowd(50)
+    pose = Pose.of((5.0, 5.0), 0.0)
+    return Measurement("scans/s", 20, lambda: [sensor.read(scene, pose) for _ in range(20)], "a 10 Hz sensor", 10.0)
+
+
+def _rays_of_limbs(rings: int = 0) -> Measurement:
+    """Compare scans among 50 people of 15 limbs with MuJoCo's rays on the same capsules, walls and floor."""
+    from crowdbot.core import Pose
+    from crowdbot.sensors import Lidar2D, Lidar3D
+
+    scene, pose = people_with_limbs(50), Pose.of((5.0, 5.0), 0.3).lifted()
+    sensor: Any = Lidar3D(columns=1800) if rings else Lidar2D(rays=1080, field_of_view=1.5 * np.pi, range_max=30.0)
+    theirs = mujoco_rays(scene, sensor, pose)
+    words = "mj_multiRay of MuJoCo, the same 750 capsules as moving bodies, 4 walls and the floor"
+    ours, others = (40, 1) if rings else (300, 10)  # about as long, so that the load of the machine meets both alike
+    return Measurement(
+        "scans/s", ours, lambda: [sensor.read(scene, pose) for _ in range(ours)], words,
+        other=lambda: [theirs() for _ in range(others)], other_amount=others,
+    )  # fmt: skip
+
+
+def _predictor(name: str) -> Measurement:
+    from crowdbot import prediction
+    from crowdbot.trials import load_trial
+
+    predictor = getattr(prediction, name)()
+    past, _ = run(load_trial("crossing-flows")).tracks(0.4).windows(8, 12)
+    live = "2.5 windows/s of a live stream"
+    return Measurement("windows/s", len(past), lambda: predictor.predict(past, 12), live, 2.5)
+
+
+def _physics(people: int) -> Measurement:
+    """Time one robot among people in steps of 5 ms, with its odometry and a laser that sees limbs, both at 10 Hz."""
+    from crowdbot.core import Twist
+    from crowdbot.sensors import Lidar2D, SensorView
+
+    world, robot = _bodies(people)
+    laser, chassis = Lidar2D(rays=1080), world.carrier(robot)
+    wheels = chassis.robot.mount("odometry").sensor
+    _, state = wheels.measure(SensorView(world.scene, world.pose(robot)), wheels.begin())
+
+    def work() -> None:
+        nonlocal state
+        for _ in range(20):
+            world.step({robot: Twist(0.5, 0.3)})
+            _, state = wheels.measure(SensorView(world.scene, world.pose(robot)), state)
+            laser.read(world.seen().without(robot), chassis.mounted("laser"))
+
+    return Measurement("simulated s/s", 20 * DT, work, "real time", 1.0)
+
+
+def _camera() -> Measurement:
+    """Time images of 640 x 480 with depth."""
+    from crowdbot.world import Camera
+
+    world, _ = _bodies(50)
+    camera = Camera((-2.0, -2.0, 3.0), (5.0, 5.0, 0.8), detail=2)
+    return Measurement("images/s", 1, lambda: world.render(camera, depth=True), "a camera of 10 Hz", 10.0)
+
+
+def _bodies(people: int) -> tuple[Any, int]:
+    """Return a physics world with a robot in the middle of a crowd, and the agent that it is."""
+    from crowdbot.models import ORCA
+    from crowdbot.world import PhysicsWorld, Robot
+
+    robot, some = Robot.load("differential"), crowd(people)
+    middle = some.position[0].mean(axis=0)
+    scene = Scene.of(
+        np.vstack([some.position[0], middle]), goal=np.vstack([some.goal[0], middle]), max_speed=1.8,
+        radius=np.append(np.full(people, 0.25), robot.radius), external=np.append(np.zeros(people, dtype=bool), True),
+        active=np.append(np.hypot(*(some.position[0] - middle).T) > robot.radius + 0.5, True),
+    )  # fmt: skip
+    return PhysicsWorld(scene, ORCA(), {people: robot}, DT), people
+
+
+def _trial() -> Measurement:
+    from crowdbot.trials import load_trial
+
+    trial = load_trial("crossing-flows")
+    trial = dataclasses.replace(trial, duration=10.0)
+    seconds = float(run(trial).times[-1])
+    return Measurement("simulated s/s", seconds, lambda: run(trial), "real time", 1.0)

@@ -1,0 +1,137 @@
+"""The GAN study of the report: methods against mode collapse on the toy set, over updates and several seeds."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, each, stream
+from crowdbot.prediction import Schedule, SocialWaysConfig, threads, train
+
+from .methods import METHODS
+from .toy_data import Toy
+
+__all__ = ["MEASURES", "Run", "ToyStudy", "with_values"]
+
+MEASURES = ("nearest_neighbor", "emd", "modes", "coverage", "whole", "nearest_neighbor_20", "emd_20")
+"""What is measured, see :func:`~crowdbot.benchmark.toy_gan.training.compared`."""
+SHOWN = 128
+"""Paths of each group that are kept for pictures."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """One method with one seed.
+
+    Fields:
+        method, seed: which.
+        update: ``[C]`` the updates at which it was measured.
+        measures: name -> ``[C]``, see ``MEASURES``.
+        drawn: ``[groups, draws, T, 2]`` [m] futures that the last weights draw.
+    """
+
+    method: str
+    seed: int
+    update: NDArray[np.int64]
+    measures: Mapping[str, NDArray[np.float64]]
+    drawn: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ToyStudy:
+    """Which methods are trained on the toy set, how long, and how often they are measured.
+
+    Fields:
+        methods: names, see ``METHODS``.
+        seeds: of weights, order, noise and set; each method is trained with each.
+        updates: of every training.
+        check_every: updates between measurements.
+        toy: the set.
+        values: settings for all methods, such as learning rates or a smaller network.
+        device: ``cpu`` or ``cuda``.
+
+    Raises:
+        InputError: there is no method or seed.
+    """
+
+    methods: tuple[str, ...] = tuple(METHODS)
+    seeds: tuple[int, ...] = (0, 1, 2)
+    updates: int = 20_000
+    check_every: int = 500
+    toy: Toy = field(default_factory=Toy)
+    values: Mapping[str, Any] = field(default_factory=dict)
+    device: str = "cpu"
+
+    def __post_init__(self) -> None:
+        if not self.methods or not self.seeds:
+            raise InputError("a GAN study needs at least one method and one seed")
+
+    def run(self, folder: Path | None = None, workers: int = 1) -> Iterator[Run]:
+        """Yield the runs as they are done, seed by seed; what the folder holds of them is not done again."""
+        jobs = [
+            (self, method, seed, None if folder is None else folder / f"{method}-{seed}")
+            for seed in self.seeds
+            for method in self.methods
+        ]
+        for _, run in each(_trained, jobs, workers):
+            yield run
+
+    def real_futures(self) -> NDArray[np.float64]:
+        """Return real futures ``[groups, draws, T, 2]`` [m], for pictures."""
+        return self._real(0)[:, :SHOWN]
+
+    def ideal(self, repeats: int = 20) -> dict[str, float]:
+        """Return the measures of fresh real paths against real paths: what nothing can beat but by chance."""
+        from .training import compared
+
+        found = [compared(self.toy, self._real(2 * n), self._real(2 * n + 1)) for n in range(repeats)]
+        return {name: float(np.mean([one[name] for one in found])) for name in MEASURES}
+
+    def _real(self, number: int) -> NDArray[np.float64]:
+        from .training import real_paths
+
+        return real_paths(self.toy, stream(number, "ideal"))
+
+    @staticmethod
+    def rows(runs: Sequence[Run]) -> list[dict[str, Any]]:
+        """Return a line for each method: means over the last quarter of the measurements of each seed, and their sd."""
+        found = []
+        for method in dict.fromkeys(run.method for run in runs):
+            own = [run for run in runs if run.method == method]
+            row: dict[str, Any] = {"method": method, "seeds": len(own), "updates": int(own[0].update[-1])}
+            last = max(1, len(own[0].update) // 4)
+            for name in MEASURES:
+                ends = [float(run.measures[name][-last:].mean()) for run in own]
+                row[name], row[f"{name}_sd"] = float(np.mean(ends)), float(np.std(ends))
+            found.append(row)
+        return found
+
+
+def _trained(job: tuple[ToyStudy, str, int, Path | None]) -> Run:
+    """Train one method with one seed, or go on where it stopped."""
+
+    from .training import ToyTraining, sample_futures, toy_config
+
+    study, method, seed, folder = job
+    with threads(1):
+        model = ToyTraining(study.toy, toy_config(method, study.toy, study.values), seed, study.device)
+        schedule = Schedule(study.updates, None, study.check_every, study.check_every, ("emd",), None, seed)
+        done = train(model, schedule, folder, resume=True)
+        drawn = sample_futures(model, SHOWN, stream(seed, "shown"))
+    update = np.array([row["update"] for row in done.rows], dtype=np.int64)
+    return Run(method, seed, update, {n: np.array([row[n] for row in done.rows]) for n in MEASURES}, drawn)
+
+
+def with_values(study: ToyStudy, values: Mapping[str, str]) -> ToyStudy:
+    """Return the study with settings for all methods, given as text."""
+    from crowdbot.core import from_attributes
+
+    read = from_attributes(SocialWaysConfig, dict(values))
+    names = [name.replace("-", "_") for name in values]
+    return dataclasses.replace(study, values={name: getattr(read, name) for name in names})

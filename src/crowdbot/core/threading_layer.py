@@ -1,0 +1,113 @@
+"""The threads of parallel kernels: safe after ``fork`` and from several Python threads at once.
+
+numba's default on Linux, GNU OpenMP, hangs in a child process that was forked after the first parallel kernel. Its
+``workqueue`` survives a fork but aborts if two Python threads enter it. oneTBB allows both, so it comes first where its
+wheel exists; elsewhere ``workqueue`` runs behind one lock. The environment variable ``NUMBA_THREADING_LAYER`` overrides
+this choice.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import importlib.metadata
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from numba.core import compiler_lock, config
+from numba.np.ufunc.parallel import threading_layer
+
+__all__ = ["ParallelKernel", "prefer_safe_layers"]
+
+LIBRARY = {"win32": "tbb12.dll", "darwin": "libtbb.12.dylib"}.get(sys.platform, "libtbb.so.12")
+PATIENCE = 10.0
+"""A fork waits this long [s] for kernels that run in other threads."""
+
+_entry = threading.RLock()
+_compiling: Any = compiler_lock.global_compiler_lock
+_running: set[object] = set()
+
+
+def prefer_safe_layers() -> None:
+    """Make numba try oneTBB first, then ``workqueue``, and let it find the library of the ``tbb`` wheel."""
+    settings: Any = config
+    if "NUMBA_THREADING_LAYER_PRIORITY" not in os.environ:
+        settings.THREADING_LAYER_PRIORITY = ["tbb", "workqueue", "omp"]
+    _load_tbb()
+
+
+def _load_tbb() -> None:
+    """Load the library of the ``tbb`` wheel, which is outside the search path; numba then finds it by its name."""
+    try:
+        files = importlib.metadata.files("tbb") or []
+    except importlib.metadata.PackageNotFoundError:
+        return
+    for file in files:
+        if file.name.lower() == LIBRARY:
+            try:
+                ctypes.CDLL(os.fspath(file.locate().resolve()))  # type: ignore[attr-defined]
+            except OSError:  # built for another system: numba takes the next layer
+                return
+
+
+class ParallelKernel:
+    """A compiled parallel kernel that several Python threads may call at once.
+
+    Other kernels can call it as well: the compiler sees the compiled function inside.
+    """
+
+    def __init__(self, compiled: Callable[..., Any]) -> None:
+        functools.update_wrapper(self, compiled)
+        self.compiled: Any = compiled
+
+    @property
+    def _numba_type_(self) -> Any:
+        return self.compiled._numba_type_
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Run the kernel, after all others if the threading layer runs only one at a time."""
+        if not _is_thread_safe():
+            with _entry:
+                return self.compiled(*arguments)
+        call = object()
+        with _entry:  # waits while another thread forks
+            _running.add(call)
+        try:
+            return self.compiled(*arguments)
+        finally:
+            _running.discard(call)
+
+
+def _is_thread_safe() -> bool:
+    """Return whether numba has started its threads, on a layer that several Python threads may enter."""
+    try:
+        return bool(threading_layer() != "workqueue")  # type: ignore[no-untyped-call]
+    except ValueError:  # not started yet
+        return False
+
+
+def _before_fork() -> None:
+    """Wait until no other thread runs or compiles a kernel: in the child nobody would finish it."""
+    _entry.acquire()
+    end = time.monotonic() + PATIENCE
+    while _running and time.monotonic() < end:
+        time.sleep(0.0005)
+    _compiling.acquire()
+
+
+def _after_fork_in_parent() -> None:
+    _compiling.release()
+    _entry.release()
+
+
+def _after_fork_in_child() -> None:
+    _running.clear()
+    _after_fork_in_parent()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(before=_before_fork, after_in_parent=_after_fork_in_parent, after_in_child=_after_fork_in_child)

@@ -1,0 +1,119 @@
+"""Time base of a recording: frames per second, rows per second, and whether people can move at the resulting speeds.
+
+``fps`` is frames per second of the frame counter. Rows of one track are ``step`` frames apart, so a row lasts
+``step / fps`` seconds.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from crowdbot.core import DataError
+
+from .reader import ReadOptions
+from .trajectories import Trajectories
+
+__all__ = ["RowRateError", "check_fps", "check_speeds", "row_rate_of"]
+
+CONVENTIONAL_FPS = {6: 15.0, 10: 25.0, 12: 30.0}
+"""fps by frame step of files with rows of 0.4 s: ETH, UCY and the leave-one-out files, and SDD in the TrajNet cut."""
+MAX_FPS = 10_000.0
+LONG_ROW, LONGEST_ROW = 1.0, 2.0
+"""Time step [s] above which the speed decides whether ``fps`` is a row rate, and above which it always is one."""
+SLOWEST, FASTEST = 0.02, 5.0
+"""Range of the median speed of people [m/s]."""
+
+
+class RowRateError(DataError):
+    """``fps`` is given in rows per second; the attribute ``fps`` has it in frames per second [1/s]."""
+
+    def __init__(self, message: str, fps: float) -> None:
+        self.fps = fps
+        super().__init__(message)
+
+
+def check_fps(fps: float, name: str = "") -> float:
+    """Return ``fps`` [1/s] as a float.
+
+    Raises:
+        DataError: it is not above 0 and at most 10000.
+    """
+    if not 0.0 < fps <= MAX_FPS or not math.isfinite(fps):
+        place = f"{name}: " if name else ""
+        raise DataError(
+            f"{place}fps {fps} is not allowed, it is the number of frames per second: above 0, at most {MAX_FPS:g}"
+        )
+    return float(fps)
+
+
+def row_rate_of(
+    step: int, options: ReadOptions, name: str, fps: float | None, row_rate: float | None
+) -> tuple[float, str]:
+    """Return rows per second of a track [1/s], and a note if the value is assumed.
+
+    The option ``fps`` wins over the ``fps`` of the file, that over its ``row_rate``, and that over the conventions.
+
+    Args:
+        step: frames between two rows of a track.
+        options: options of the user.
+        name: name of the file, for messages.
+        fps: frames per second according to the file or its format.
+        row_rate: rows per second according to the file.
+
+    Raises:
+        DataError: a rate is not allowed, or there is none.
+    """
+    if options.fps is not None:
+        return check_fps(options.fps) / step, ""
+    if fps is not None:
+        return check_fps(fps / step, name), ""
+    if row_rate is not None:
+        return check_fps(row_rate, name), ""
+    if step in CONVENTIONAL_FPS:
+        note = f"no frame rate in the file: {step} frames are taken as 0.4 s, as in ETH/UCY"
+        return CONVENTIONAL_FPS[step] / step, note
+    raise DataError(
+        f"{name} has no frame rate, and a step of {step} frames is not a convention of the field;"
+        f" give fps, the frames per second (rows of a track are then {step} / fps seconds apart)"
+    )
+
+
+def check_speeds(tracks: Trajectories, options: ReadOptions) -> str:
+    """Return a warning if the median speed is impossible for people, else an empty text.
+
+    Raises:
+        RowRateError: the time step is above 2 s with ``options.fps`` as frames per second, or above 1 s at an
+            impossible speed, and the same number is possible as rows per second.
+    """
+    speed = _median_speed(tracks)
+    fps, step = options.fps, tracks.frame_step
+    if fps is not None and step > 1:
+        slow = tracks.dt > LONG_ROW and _impossible(speed) and not _impossible(speed * step)
+        if 1.0 / fps <= LONGEST_ROW and (tracks.dt > LONGEST_ROW or slow):
+            moved = "" if math.isnan(speed) else f" and the median speed {speed:.2g} m/s"
+            raise RowRateError(
+                f"{tracks.name}: fps {fps:g} makes the time step {tracks.dt:.4g} s ({step} frames per row){moved};"
+                f" fps is frames per second, for {fps:g} rows per second give fps {fps * step:g}",
+                fps * step,
+            )
+    if speed > FASTEST or (fps is not None and speed < SLOWEST):
+        return f"warning: the median speed {speed:.2g} m/s is impossible for people, check fps and units"
+    return ""
+
+
+def _median_speed(tracks: Trajectories) -> float:
+    """Return the median speed of people [m/s]; NaN if no one has two rows, or the units are pixels."""
+    if tracks.units != "m":
+        return math.nan
+    people = ~np.isin(tracks.id, np.asarray(sorted(tracks.robots), dtype=np.int64))
+    with np.errstate(over="ignore", invalid="ignore"):
+        velocity = tracks.velocities()[people]
+        speed = np.hypot(velocity[:, 0], velocity[:, 1])
+    known = speed[~np.isnan(speed)]
+    return float(np.median(known)) if len(known) else math.nan
+
+
+def _impossible(speed: float) -> bool:
+    return speed < SLOWEST or speed > FASTEST

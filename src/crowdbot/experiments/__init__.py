@@ -1,0 +1,68 @@
+"""Experiments: sequences of trials for participants, with screens, questions and answers."""
+
+from .console import Console, Left
+from .event import Abort, Answered, Begin, Event, Fail, Finish, Next, Pause, Repeat, Resume, Start, event_of, record_of
+from .experiment import Block, Experiment, Screen, TrialEntry
+from .loading import FILE, builtin_experiments, is_experiment, load_experiment
+from .log import Log, read_log
+from .order import orders, rows_of, seed_of, williams
+from .original import import_experiment
+from .page import page_of, sanitised
+from .parser import check_experiment, experiment_xml, parse_experiment
+from .person import Given, Person, Typed
+from .plan import plan
+from .question import Choice, FreeText, Number, Option, Scale
+from .session import Session
+from .sitting import Sitting
+from .summary import save_summary, summary
+
+__all__ = [
+    "FILE",
+    "Abort",
+    "Answered",
+    "Begin",
+    "Block",
+    "Choice",
+    "Console",
+    "Event",
+    "Experiment",
+    "Fail",
+    "Finish",
+    "FreeText",
+    "Given",
+    "Left",
+    "Log",
+    "Next",
+    "Number",
+    "Option",
+    "Pause",
+    "Person",
+    "Repeat",
+    "Resume",
+    "Scale",
+    "Screen",
+    "Session",
+    "Sitting",
+    "Start",
+    "TrialEntry",
+    "Typed",
+    "builtin_experiments",
+    "check_experiment",
+    "event_of",
+    "experiment_xml",
+    "import_experiment",
+    "is_experiment",
+    "load_experiment",
+    "orders",
+    "page_of",
+    "parse_experiment",
+    "plan",
+    "read_log",
+    "record_of",
+    "rows_of",
+    "sanitised",
+    "save_summary",
+    "seed_of",
+    "summary",
+    "williams",
+]

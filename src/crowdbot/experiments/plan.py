@@ -1,0 +1,74 @@
+"""Plan: every screen and trial of one participant, in order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from .experiment import Block, Experiment, Screen, TrialEntry
+from .order import check_participant, orders
+
+__all__ = ["Step", "plan"]
+
+
+@dataclass(frozen=True)
+class Step:
+    """A screen or a trial.
+
+    Fields:
+        role: ``instructions``, ``before``, ``trial``, ``after``, ``transition`` or ``ending``.
+        screen: what is shown; None for a trial.
+        block: name of its block; empty outside of blocks.
+        entry: the trial, for itself and the screens right before and after it; otherwise None.
+        number: of that trial in the session, from 1; otherwise 0.
+        repetition: of its block, from 0.
+        seeds: when crowds are drawn anew, see :class:`crowdbot.experiments.Block`.
+    """
+
+    role: str
+    screen: Screen | None = None
+    block: str = ""
+    entry: TrialEntry | None = None
+    number: int = 0
+    repetition: int = 0
+    seeds: str = "same"
+
+    @property
+    def name(self) -> str:
+        """Name of the screen or the trial."""
+        thing = self.screen or self.entry
+        return thing.name if thing else ""
+
+
+def plan(experiment: Experiment, participant: int) -> tuple[Step, ...]:
+    """Return what a participant goes through; the same for the same participant every time.
+
+    Raises:
+        InputError: the participant is not one of the experiment.
+
+    >>> from crowdbot.experiments import load_experiment
+    >>> [step.name for step in plan(load_experiment("robot-speed"), 2) if step.role == "trial"]
+    ['alone', 'fast', 'slow']
+    """
+    check_participant(experiment, participant)
+    steps = [*_screens("instructions", experiment.instructions)]
+    number = 0
+    for block in experiment.blocks:
+        steps += _screens("instructions", block.instructions, block.name)
+        for repetition, order in enumerate(orders(experiment, block, participant)):
+            for place, index in enumerate(order):
+                number += 1
+                if repetition or place:
+                    steps += _screens("transition", block.transitions, block.name)
+                steps += _around(block, block.trials[index], number, repetition)
+    return (*steps, *_screens("ending", experiment.endings))
+
+
+def _screens(role: str, screens: Iterable[Screen], block: str = "") -> Iterator[Step]:
+    return (Step(role, screen, block) for screen in screens)
+
+
+def _around(block: Block, entry: TrialEntry, number: int, repetition: int) -> Iterator[Step]:
+    rows: list[tuple[str, Screen | None]] = [("before", screen) for screen in (*block.before, *entry.before)]
+    rows += [("trial", None), *(("after", screen) for screen in (*entry.after, *block.after))]
+    return (Step(role, screen, block.name, entry, number, repetition, block.seeds) for role, screen in rows)

@@ -1,0 +1,198 @@
+"""Session: one participant's way through an experiment, as a pure state machine.
+
+States and the events that lead on::
+
+    ready    start -> screen or trial
+    screen   answered -> screen, next -> the following screen or trial, or done
+    trial    begin -> running
+    running  finish -> the following screen or trial, or done; fail -> pause
+    pause    resume -> where it waited; after a failed trial: next -> the following screen or trial
+    done, aborted
+
+``pause`` and ``abort`` are possible before the end, ``repeat`` once a trial has begun. A session is a value: an event
+makes another one, so that a console, a browser, a headset and the reader of a log all go the same way.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from crowdbot.core import InputError, kebab
+
+from .event import Abort, Answered, Begin, Event, Fail, Finish, Next, Pause, Repeat, Resume, Start
+from .experiment import Experiment
+from .plan import Step, plan
+from .question import Answer, Question
+
+__all__ = ["Result", "Session"]
+
+
+@dataclass(frozen=True)
+class Result:
+    """What came of a trial: the last attempt counts.
+
+    ``outcome`` is that of its episode; ``failed`` when it could not be run, and the reason says why.
+    """
+
+    seed: int
+    folder: str
+    attempt: int
+    outcome: str = ""
+    digest: str = ""
+    metrics: Mapping[str, Any] = field(default_factory=dict)
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Session:
+    """Where a participant is.
+
+    Fields:
+        steps: the plan of this participant.
+        phase: ``ready``, ``screen``, ``trial`` (about to begin), ``running``, ``pause``, ``done`` or ``aborted``.
+        index: of the step.
+        waiting: the phase that a pause interrupts; ``failed`` after a trial that failed.
+        reason: why it is paused or was aborted.
+        answers: by index of the step and name of the question.
+        attempts: how often each trial was begun, by index of the step.
+        results: of trials that ended, by index of the step.
+
+    >>> from crowdbot.experiments import load_experiment
+    >>> session = Session.of(load_experiment("robot-speed"), participant=1).after(Start())
+    >>> session.phase, session.step.name, [question.name for question in session.open]
+    ('screen', 'welcome', ['age', 'robots'])
+    >>> session.after(Next())
+    Traceback (most recent call last):
+    crowdbot.core.errors.InputError: the screen 'welcome' still asks 'age', 'robots'; answer before you go on
+    """
+
+    steps: tuple[Step, ...]
+    phase: str = "ready"
+    index: int = 0
+    waiting: str = ""
+    reason: str = ""
+    answers: Mapping[int, Mapping[str, Answer]] = field(default_factory=dict)
+    attempts: Mapping[int, int] = field(default_factory=dict)
+    results: Mapping[int, Result] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, experiment: Experiment, participant: int) -> Session:
+        """Return the session of a participant before its start."""
+        return cls(plan(experiment, participant))
+
+    @property
+    def step(self) -> Step:
+        """The screen or trial that it is at; the last one at the end."""
+        return self.steps[min(self.index, len(self.steps) - 1)]
+
+    @property
+    def open(self) -> tuple[Question, ...]:
+        """The questions of this screen that have not been answered."""
+        known = self.answers.get(self.index, {})
+        screen = self.step.screen if self.phase == "screen" else None
+        return tuple(question for question in screen.questions if question.name not in known) if screen else ()
+
+    @property
+    def over(self) -> bool:
+        """Whether nothing can happen any more."""
+        return self.phase in ("done", "aborted")
+
+    @property
+    def allowed(self) -> tuple[str, ...]:
+        """The words of the events that are possible now; what a front end offers."""
+        again = ("repeat",) if self._latest() is not None else ()
+        return {
+            "ready": ("start", "abort"),
+            "screen": ("answered", "next", "pause", *again, "abort"),
+            "trial": ("begin", "pause", *again, "abort"),
+            "running": ("finish", "fail", "pause", "repeat", "abort"),
+            "pause": ("next" if self.waiting == "failed" else "resume", *again, "abort"),
+        }.get(self.phase, ())
+
+    def after(self, event: Event) -> Session:
+        """Return the session after an event.
+
+        Raises:
+            InputError: the event is not possible now, or the answer is not allowed; what is, is said.
+        """
+        word = kebab(type(event).__name__)
+        if word not in self.allowed:
+            known = ", ".join(self.allowed) or "nothing"
+            raise InputError(f"{word!r} is not possible {self._where()}; possible is {known}")
+        match event:
+            case Start():
+                return self._at(0)
+            case Next():
+                return self._next()
+            case Answered(name, value):
+                return self._answered(name, value)
+            case Begin(seed, folder):
+                attempt = self.attempts.get(self.index, 0) + 1
+                return self._running(Result(seed, folder, attempt), phase="running")
+            case Finish(outcome, digest, metrics):
+                ended = self._ended(outcome=outcome, digest=digest, metrics=metrics)
+                return self._running(ended)._at(self.index + 1)
+            case Fail(reason):
+                ended = self._ended(outcome="failed", reason=reason)
+                return self._running(ended, phase="pause", waiting="failed", reason=reason)
+            case Pause(reason):
+                return dataclasses.replace(self, phase="pause", waiting=self.phase, reason=reason)
+            case Resume():
+                return dataclasses.replace(self, phase=self.waiting, waiting="", reason="")
+            case Repeat():
+                return self._again()
+            case Abort(reason):
+                return dataclasses.replace(self, phase="aborted", waiting="", reason=reason)
+
+    def through(self, events: Iterable[Event]) -> Session:
+        """Return the session after several events."""
+        session = self
+        for event in events:
+            session = session.after(event)
+        return session
+
+    def _where(self) -> str:
+        place = f" at {self.step.role} {self.step.name!r}" if self.phase in ("screen", "trial", "running") else ""
+        return f"while the session is {self.phase!r}{place}"
+
+    def _at(self, index: int) -> Session:
+        phase = "done" if index >= len(self.steps) else "screen" if self.steps[index].screen else "trial"
+        return dataclasses.replace(self, phase=phase, index=index, waiting="", reason="")
+
+    def _next(self) -> Session:
+        left = [question.name for question in self.open if question.required]
+        if left:
+            names = ", ".join(map(repr, left))
+            raise InputError(f"the screen {self.step.name!r} still asks {names}; answer before you go on")
+        return self._at(self.index + 1)
+
+    def _answered(self, name: str, value: Any) -> Session:
+        assert self.step.screen is not None
+        questions = {question.name: question for question in self.step.screen.questions}
+        if name not in questions:
+            known = ", ".join(questions) or "nothing"
+            raise InputError(f"the screen {self.step.name!r} does not ask {name[:40]!r}; it asks {known}")
+        here = {**self.answers.get(self.index, {}), name: questions[name].take(value)}
+        return dataclasses.replace(self, answers={**self.answers, self.index: here})
+
+    def _running(self, result: Result, **changes: Any) -> Session:
+        attempts = {**self.attempts, self.index: result.attempt}
+        results = {**self.results, self.index: result}
+        return dataclasses.replace(self, attempts=attempts, results=results, **changes)
+
+    def _ended(self, **changes: Any) -> Result:
+        return dataclasses.replace(self.results[self.index], **changes)
+
+    def _latest(self) -> int | None:
+        """Return the step of the latest trial that was begun, on the way here."""
+        return max((index for index in self.attempts if index <= self.index), default=None)
+
+    def _again(self) -> Session:
+        latest = self._latest()
+        assert latest is not None
+        answers = {index: kept for index, kept in self.answers.items() if index < latest}
+        results = {index: kept for index, kept in self.results.items() if index < latest}
+        return dataclasses.replace(self, answers=answers, results=results)._at(latest)

@@ -1,0 +1,242 @@
+"""Sitting: a session with its folder, its log and its clock. A front end tells it what happens."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core import EpisodeError, InputError
+from crowdbot.recording import as_json, versions
+from crowdbot.simulation import Episode
+from crowdbot.trials import Trial, trial_xml
+
+from .event import Answered, Begin, Event, Finish, Repeat, Resume, event_of, record_of
+from .experiment import Experiment, Screen
+from .log import Log
+from .order import seed_of
+from .page import Page, page_of
+from .parser import check_experiment, experiment_xml
+from .session import Session
+from .trial_source import trial_of
+
+__all__ = ["ANSWERS", "COPY", "LOG", "Sitting", "folder_of"]
+
+LOG, COPY, ANSWERS = "session.jsonl", "experiment.xml", "answers.jsonl"
+
+Clock = Callable[[], float]
+
+
+def folder_of(out: Path, participant: int) -> Path:
+    """Return the folder of a participant."""
+    return out / f"participant-{participant:03d}"
+
+
+class Sitting:
+    """One participant's session as it happens.
+
+    Everything is on the disk before it counts, so that a crash loses nothing but a trial that was running. The folder
+    of the participant holds the log, a copy of the experiment, the answers, and a folder for each trial.
+
+    Args:
+        experiment: checked.
+        participant: number, from 1.
+        out: folder of all participants.
+        clock: returns the time [s], written to every record; nothing else reads a clock.
+        resume: go on with a session that was begun, instead of beginning one.
+        trust: whether trials may lie, and load code from, elsewhere.
+
+    Raises:
+        InputError: there is no such participant.
+        EpisodeError: there is a session already, none to resume, or the experiment has changed since it began.
+        TrialError: everything that is wrong with the experiment.
+    """
+
+    def __init__(
+        self,
+        experiment: Experiment,
+        participant: int,
+        out: Path,
+        clock: Clock,
+        *,
+        resume: bool = False,
+        trust: bool = False,
+    ) -> None:
+        check_experiment(experiment, trust=trust)
+        self.experiment, self.participant, self.clock = experiment, participant, clock
+        self.session = Session.of(experiment, participant)
+        self.folder = folder_of(out, participant)
+        entries = {step.entry.source: step.entry for step in self.session.steps if step.entry}
+        self.trials: dict[str, Trial] = {s: trial_of(e.source, experiment.folder, trust) for s, e in entries.items()}
+        self.pages: dict[Screen, Page] = {
+            step.screen: page_of(step.screen, experiment.folder) for step in self.session.steps if step.screen
+        }
+        self._times: dict[tuple[int, str], float] = {}
+        head = {
+            "experiment": experiment.name,
+            "participant": participant,
+            "digest": self._digest(),
+            "at": clock(),
+            **versions(),
+        }
+        self.log: Log
+        if resume:
+            self._resumed(head)
+        else:
+            self._begun(head)
+
+    def do(self, event: Event) -> Session:
+        """Let something happen, write it down and return where that leads.
+
+        Raises:
+            InputError: it is not possible now; nothing is written then.
+        """
+        after, at, index = self.session.after(event), self.clock(), self.session.index
+        if isinstance(event, Answered):
+            event = Answered(event.question, after.answers[index][event.question])
+        self.log.append({"at": at, **record_of(event)})
+        self.session = after
+        if isinstance(event, Answered):
+            self._times[index, event.question] = at
+            self._write_answers(self.session.steps[index].number)
+        return after
+
+    def shown(self, text: str) -> None:
+        """Write down what a screen has shown, in the words that the participant saw."""
+        step = self.session.step
+        source = self.pages[step.screen].digest if step.screen else ""
+        self.log.append({"at": self.clock(), "shown": step.name, "role": step.role, "source": source, "text": text})
+
+    @property
+    def page(self) -> Page | None:
+        """What the screen shows; None at a trial."""
+        screen = self.session.step.screen
+        return self.pages[screen] if screen else None
+
+    def begin(self) -> tuple[Trial, int, Path]:
+        """Begin the trial; return it, its seed and the folder for its episode."""
+        step, index = self.session.step, self.session.index
+        if step.entry is None:
+            raise InputError(f"{step.role} {step.name!r} is a screen, no trial can begin there")
+        trial = self.trials[step.entry.source]
+        base = trial.seed if step.entry.seed is None else step.entry.seed
+        seed = seed_of(base, step.seeds, self.participant, step.repetition)
+        attempt = self.session.attempts.get(index, 0) + 1
+        name = f"{step.number:03d}-{step.name}" + (f"-attempt-{attempt}" if attempt > 1 else "")
+        self.do(Begin(seed, name))
+        folder = self.folder / name
+        try:
+            folder.mkdir(exist_ok=True)
+        except OSError as error:
+            raise EpisodeError(f"{folder} cannot be made: {error.strerror}") from None
+        self._write_answers(step.number)
+        return trial, seed, folder
+
+    def finish(self, episode: Episode) -> None:
+        """End the trial with its episode."""
+        self.do(Finish(episode.outcome, episode.digest, json.loads(as_json(episode.metrics))))
+
+    def close(self) -> None:
+        """Close the log."""
+        self.log.close()
+
+    def _begun(self, head: dict[str, Any]) -> None:
+        path = self.folder / LOG
+        if path.exists():
+            raise EpisodeError(
+                f"participant {self.participant} has a session in {self.folder} already; go on with it (--resume), or"
+                " choose another participant or folder"
+            )
+        self.log = Log.create(path, head)
+        try:
+            self._copy()
+        except BaseException:
+            self.close()
+            raise
+
+    def _resumed(self, head: dict[str, Any]) -> None:
+        path = self.folder / LOG
+        if not path.exists():
+            raise EpisodeError(f"participant {self.participant} has no session in {self.folder.parent} to resume")
+        self.log, records = Log.open(path)
+        try:
+            if (records[0].get("experiment"), records[0].get("digest")) != (head["experiment"], head["digest"]):
+                raise EpisodeError(
+                    f"{path} was begun with another state of the experiment (its screens and trials belong to it);"
+                    " bring that back, or begin another session"
+                )
+            for number, record in enumerate(records[1:], 2):
+                self._again(path, number, record)
+            self.log.append({"resumed": True, "at": head["at"], **versions()})
+            self._copy()
+            for number in {step.number for step in self.session.steps}:
+                self._write_answers(number)
+            self._lost()
+        except BaseException:
+            self.close()
+            raise
+
+    def _copy(self) -> None:
+        if not (self.folder / COPY).exists():
+            _write(self.folder / COPY, experiment_xml(self.experiment))
+
+    def _again(self, path: Path, number: int, record: dict[str, Any]) -> None:
+        if "event" not in record:
+            return
+        try:
+            event, index = event_of(record), self.session.index
+            self.session = self.session.after(event)
+        except InputError as error:
+            raise EpisodeError(f"{path}:{number}: {error}") from None
+        if isinstance(event, Answered):
+            self._times[index, event.question] = float(record.get("at") or 0.0)
+
+    def _lost(self) -> None:
+        """Go on where somebody paused, and begin a trial anew that was running when the program ended.
+
+        Each event by itself leads to a state from which this can be done again, should the program end in between.
+        """
+        if self.session.phase == "pause" and self.session.waiting != "failed":
+            self.do(Resume())
+        if self.session.phase == "running":
+            self.do(Repeat())
+
+    def _digest(self) -> str:
+        """Return the hash of the experiment, its screens and its trials."""
+        pages = [page.digest for page in self.pages.values()]
+        trials = [trial_xml(trial) for trial in self.trials.values()]
+        whole = json.dumps([experiment_xml(self.experiment), pages, trials])
+        return hashlib.blake2b(whole.encode(), digest_size=16).hexdigest()
+
+    def _write_answers(self, number: int) -> None:
+        """Write the answers that belong to a trial into its folder, those that belong to none beside the log."""
+        folder = self.folder
+        if number:
+            trial = next(
+                k for k, step in enumerate(self.session.steps) if step.number == number and step.screen is None
+            )
+            if trial not in self.session.results:
+                return
+            folder /= self.session.results[trial].folder
+        rows = [
+            {"at": self._times.get((index, name)), "screen": step.name, "question": name, "answer": value}
+            for index, step in enumerate(self.session.steps)
+            if step.number == number
+            for name, value in self.session.answers.get(index, {}).items()
+        ]
+        if rows or (folder / ANSWERS).exists():
+            _write(folder / ANSWERS, "".join(json.dumps(row, ensure_ascii=False) + "\n" for row in rows))
+
+
+def _write(path: Path, text: str) -> None:
+    """Write a whole file or none."""
+    draft = path.with_name(f".{path.name}.part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        draft.write_text(text, encoding="utf-8")
+        os.replace(draft, path)
+    except OSError as error:
+        raise EpisodeError(f"{path} cannot be written: {error.strerror}") from None

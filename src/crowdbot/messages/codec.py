@@ -1,0 +1,125 @@
+"""Codec: how one class of readings becomes messages and back, and arrays that no standard message has a place for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Pose, SpatialPose
+
+if TYPE_CHECKING:
+    from .message_store import Messages
+
+__all__ = ["Codec", "Told", "arrays_of", "mounted", "packed"]
+
+MOST = 1 << 27
+"""No array may have more numbers: a few bytes can pretend to hold any amount."""
+
+
+class Told(NamedTuple):
+    """A reading that is to be recorded.
+
+    Fields:
+        reading: E is 1.
+        sensor: who measured it.
+        robot: name of its robot.
+        topic: ``robot/sensor``, which is the name of its frame too.
+    """
+
+    reading: Any
+    sensor: Any
+    robot: str
+    topic: str
+
+    @property
+    def nanoseconds(self) -> int:
+        """When it was measured [ns]."""
+        return round(float(self.reading.time) * 1e9)
+
+    def header(self, make: Messages, ending: str = "") -> Any:
+        """Return the header of its messages; some frames have an ending."""
+        return make.header(self.nanoseconds, self.topic + ending)
+
+
+Rows = list[tuple[str, Any]]
+
+
+def _no_frames(robot: str, topic: str) -> list[tuple[str, str, SpatialPose]]:
+    return []
+
+
+@dataclass(frozen=True)
+class Codec:
+    """How one class of readings becomes messages and back.
+
+    Fields:
+        write: returns standard messages, each with what its topic has after that of the sensor.
+        read: returns the fields that standard messages, by these endings, hold; it is given the rest too.
+        rest: fields that these have no place for.
+        short: those of the rest that are kept in 32 bits.
+        frames: fixed frames that the messages need: parent, child, and where the child is in it, by robot and topic.
+    """
+
+    write: Callable[[Messages, Told], Rows]
+    read: Callable[[Mapping[str, Any], Mapping[str, Any]], dict[str, Any]]
+    rest: tuple[str, ...] = ()
+    short: tuple[str, ...] = ()
+    frames: Callable[[str, str], list[tuple[str, str, SpatialPose]]] = _no_frames
+
+
+def packed(
+    fields: Mapping[str, Any], short: Sequence[str] = ()
+) -> Iterator[tuple[str, str, NDArray[np.uint32], NDArray[np.uint8]]]:
+    """Yield name, type, shape and bytes of arrays and poses; an array of one number over and over keeps it once.
+
+    >>> [(name, kind, len(data)) for name, kind, _, data in packed({"part": np.full((1, 360), -1)})]
+    [('part', '<i8', 8)]
+    """
+    for name, value in fields.items():
+        if isinstance(value, SpatialPose):
+            yield from packed({f"{name}.position": value.position, f"{name}.rotation": value.rotation})
+        elif isinstance(value, Pose):
+            yield from packed({f"{name}.position": value.position, f"{name}.heading": value.heading})
+        else:
+            array = np.ascontiguousarray(value, dtype=np.float32 if name in short else None)
+            flat = array.reshape(-1)
+            same = flat.size > 1 and flat[:1].tobytes() * flat.size == flat.tobytes()
+            data = np.frombuffer((flat[:1] if same else flat).tobytes(), dtype=np.uint8)
+            yield name, array.dtype.str, np.array(array.shape, dtype=np.uint32), data
+
+
+def arrays_of(fields: Iterable[Any]) -> dict[str, Any]:
+    """Return the arrays and poses of ``crowdbot_msgs/Array`` messages by name.
+
+    Raises:
+        ValueError: one is not what it says.
+    """
+    found: dict[str, Any] = {}
+    for field in fields:
+        kind = np.dtype(field.dtype)
+        shape = tuple(int(size) for size in field.shape)
+        if kind.kind not in "fiub" or math.prod(shape) > MOST:
+            raise ValueError(f"{field.name} is an array of {field.dtype} of shape {shape}")
+        flat = np.frombuffer(bytes(field.data), dtype=kind)
+        if kind.kind == "f":
+            flat = flat.astype(np.float64)
+        many = len(flat) != 1 or math.prod(shape) == 1
+        found[field.name] = flat.reshape(shape) if many else np.broadcast_to(flat[0], shape)
+    for name in [name.removesuffix(".position") for name in found if name.endswith(".position")]:
+        place = found.pop(f"{name}.position")
+        turn, heading = found.pop(f"{name}.rotation", None), found.pop(f"{name}.heading", None)
+        found[name] = Pose(place, heading) if turn is None else SpatialPose(place, turn)
+    return found
+
+
+def mounted(robot: Any, mount: Any) -> SpatialPose:
+    """Return where a sensor sits on its robot, which may know that from its own links."""
+    if hasattr(robot, "placed"):
+        x, y, z, roll, pitch, yaw = robot.placed(mount)
+        return SpatialPose.of((x, y, z), roll, pitch, yaw)
+    return SpatialPose.of((mount.x, mount.y, 0.0), yaw=mount.heading)

@@ -1,0 +1,127 @@
+"""Contacts with forces, as the physics world knows them: who pushed whom where and how hard, and whole collisions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from .message_store import Messages
+
+__all__ = ["COLLISIONS", "FORCES", "Collided", "Pushed", "collided", "pushed", "pushes"]
+
+FORCES = "/crowdbot/forces"
+"""Topic of the forces of each step."""
+COLLISIONS = "/crowdbot/collisions"
+"""Topic of the collisions that are over."""
+
+
+class Pushed(NamedTuple):
+    """What two did to each other in one step: see ``crowdbot.world.BodyForce``.
+
+    Fields:
+        time: end of the step [s].
+        first, second: who: the name of a robot, the id of a person, ``wall``, or ``prop`` with its number.
+        first_part: the link of a robot; limb, part: of the person, empty without one.
+        force: [N]; vector: from the first on the second [N]; depth: overlap [m]; point: where [m].
+    """
+
+    time: float
+    first: str
+    second: str
+    first_part: str
+    limb: str
+    part: str
+    force: float
+    vector: tuple[float, float, float]
+    depth: float
+    point: tuple[float, float, float]
+
+
+class Collided(NamedTuple):
+    """From the first touch of two to their parting: see ``crowdbot.world.Collision``; times in [s]."""
+
+    first: str
+    second: str
+    begin: float
+    end: float
+    duration: float
+    cause: str
+    impact_speed: float
+    depth: float
+    impulse: float
+    limb: str
+    part: str
+    region: str
+    peak_force: float
+    steady_force: float
+    steady_region: str
+    simulated_peak: float
+    severity: float
+
+
+def pushes(make: Messages, now: int, frame: Any, names: Mapping[int, str]) -> Iterator[tuple[str, Any]]:
+    """Yield topic and message of the forces and collisions of an instant, if there are any.
+
+    Args:
+        make: messages.
+        now: simulated time [ns].
+        frame: has ``forces`` and ``collisions`` when its world knows them.
+        names: of robots, by their ids.
+    """
+    ids = frame.ids.tolist()
+
+    def called(party: Any) -> str:
+        kind, number = party
+        who = ids[number] if kind in ("robot", "person") else number
+        return {"robot": names.get(who, str(who)), "person": str(who), "wall": "wall"}.get(kind, f"{kind} {number}")
+
+    forces = [_force(make, one, called) for one in getattr(frame, "forces", ())]
+    if forces:
+        yield FORCES, make.make("crowdbot_msgs/msg/Forces", header=make.header(now), forces=forces)
+    collisions = [_collision(make, one, called) for one in getattr(frame, "collisions", ())]
+    if collisions:
+        yield COLLISIONS, make.make("crowdbot_msgs/msg/Collisions", header=make.header(now), collisions=collisions)
+
+
+def _force(make: Messages, one: Any, called: Callable[[Any], str]) -> Any:
+    return make.make(
+        "crowdbot_msgs/msg/Force",
+        first=called(one.first),
+        second=called(one.second),
+        first_part=one.first_part,
+        limb=one.limb,
+        part=one.part,
+        force=float(one.force),
+        vector=make.vector(*map(float, one.vector)),
+        depth=float(one.depth),
+        point=make.point(*one.point),
+    )
+
+
+def _collision(make: Messages, one: Any, called: Callable[[Any], str]) -> Any:
+    words = ("cause", "limb", "part", "region", "steady_region")
+    numbers = [name for name in Collided._fields if name not in ("first", "second", *words)]
+    return make.make(
+        "crowdbot_msgs/msg/Collision",
+        first=called(one.first),
+        second=called(one.second),
+        **{name: str(getattr(one, name)) for name in words},
+        **{name: float(getattr(one, name)) for name in numbers},
+    )
+
+
+def pushed(time: float, message: Any) -> list[Pushed]:
+    """Return the forces of a message."""
+    return [
+        Pushed(
+            time, one.first, one.second, one.first_part, one.limb, one.part, one.force,
+            (one.vector.x, one.vector.y, one.vector.z), one.depth, (one.point.x, one.point.y, one.point.z),
+        )
+        for one in message.forces
+    ]  # fmt: skip
+
+
+def collided(message: Any) -> list[Collided]:
+    """Return the collisions of a message."""
+    return [Collided(*(getattr(one, name) for name in Collided._fields)) for one in message.collisions]

@@ -1,0 +1,128 @@
+"""Images: depth and colour as ``sensor_msgs/Image`` with ``sensor_msgs/CameraInfo``, and back.
+
+An image is on ``<robot>/<sensor>/image``, its intrinsics on ``camera_info`` and whom each pixel shows on ``labels``,
+all in the optical frame of REP-103 (z ahead, x to the right, y down), which hangs on the frame of the sensor. Colours
+are raw rgb8: chunks of the file are compressed anyway, without loss, and every viewer reads them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import SpatialPose
+from crowdbot.sensors import Lens
+
+from .codec import Codec, Told
+
+if TYPE_CHECKING:
+    from .message_store import Messages
+
+__all__ = ["depth_codec", "image_in", "lens_in", "picture_codec"]
+
+OPTICAL = "_optical"
+KINDS = {"32FC1": ("<f4", 1), "32SC1": ("<i4", 1), "rgb8": ("|u1", 3)}
+"""Type and number of channels of each encoding that is written here."""
+
+
+def _image(make: Messages, told: Told, encoding: str, pixels: NDArray[Any]) -> Any:
+    kind, channels = KINDS[encoding]
+    rows = np.ascontiguousarray(pixels, dtype=kind)
+    return make.make(
+        "sensor_msgs/msg/Image",
+        header=told.header(make, OPTICAL),
+        height=rows.shape[0],
+        width=rows.shape[1],
+        encoding=encoding,
+        is_bigendian=0,
+        step=rows.shape[1] * channels * rows.dtype.itemsize,
+        data=np.frombuffer(rows.tobytes(), dtype=np.uint8),
+    )
+
+
+def image_in(message: Any) -> NDArray[Any]:
+    """Return the pixels ``[H, W]`` or ``[H, W, 3]`` of a ``sensor_msgs/Image``.
+
+    Raises:
+        KeyError, ValueError: the encoding is another one, or it does not hold as many as it says.
+    """
+    kind, channels = KINDS[message.encoding]
+    shape = (message.height, message.width) if channels == 1 else (message.height, message.width, channels)
+    return np.frombuffer(bytes(message.data), dtype=kind).reshape(shape)
+
+
+def _camera_info(make: Messages, told: Told, lens: Lens) -> Any:
+    k = np.array([lens.fx, 0.0, lens.cx, 0.0, lens.fy, lens.cy, 0.0, 0.0, 1.0])
+    region = make.make("sensor_msgs/msg/RegionOfInterest", x_offset=0, y_offset=0, height=0, width=0, do_rectify=False)
+    return make.make(
+        "sensor_msgs/msg/CameraInfo",
+        header=told.header(make, OPTICAL),
+        height=int(lens.height),
+        width=int(lens.width),
+        distortion_model="plumb_bob",
+        d=np.array(lens.distortion, dtype=np.float64),
+        k=k,
+        r=np.eye(3).ravel(),
+        p=np.column_stack([k.reshape(3, 3), np.zeros(3)]).ravel(),
+        binning_x=0,
+        binning_y=0,
+        roi=region,
+    )
+
+
+def lens_in(message: Any) -> Lens:
+    """Return the lens of a ``sensor_msgs/CameraInfo``."""
+    fx, _, cx, _, fy, cy = (float(value) for value in message.k[:6])
+    return Lens(message.width, message.height, fx, fy, cx, cy, tuple(float(value) for value in message.d))  # type: ignore[arg-type]
+
+
+def _labels(make: Messages, told: Told) -> list[tuple[str, Any]]:
+    hit = getattr(told.reading, "hit", None)
+    return [] if hit is None else [("/labels", _image(make, told, "32SC1", hit[0]))]
+
+
+def _write_depth(make: Messages, told: Told) -> list[tuple[str, Any]]:
+    return [
+        ("/image", _image(make, told, "32FC1", told.reading.depth[0])),
+        *_labels(make, told),
+        ("/camera_info", _camera_info(make, told, told.reading.lens)),
+    ]
+
+
+def _read_depth(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        "depth": image_in(others["/image"]).astype(np.float64)[None],
+        "hit": image_in(others["/labels"]).astype(np.int64)[None],
+        "lens": lens_in(others["/camera_info"]),
+    }
+
+
+def _write_picture(make: Messages, told: Told) -> list[tuple[str, Any]]:
+    return [
+        ("/image", _image(make, told, "rgb8", told.reading.rgb[0])),
+        *_labels(make, told),
+        ("/camera_info", _camera_info(make, told, told.reading.lens)),
+    ]
+
+
+def _read_picture(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str, Any]:
+    labels = others.get("/labels")
+    return {
+        "rgb": image_in(others["/image"])[None],
+        "hit": None if labels is None else image_in(labels).astype(np.int64)[None],
+        "lens": lens_in(others["/camera_info"]),
+    }
+
+
+def _frames(robot: str, topic: str) -> list[tuple[str, str, SpatialPose]]:
+    """The optical frame: z of it looks along x of the sensor, x to its right."""
+    return [(topic, topic + OPTICAL, SpatialPose.of((0.0, 0.0, 0.0), -0.5 * math.pi, 0.0, -0.5 * math.pi))]
+
+
+depth_codec = Codec(_write_depth, _read_depth, rest=("part",), frames=_frames)
+picture_codec = Codec(_write_picture, _read_picture, frames=_frames)
+"""For readings with ``rgb`` ``[E, H, W, 3]`` uint8 and a ``lens``; ``hit`` ``[E, H, W]`` or None."""

@@ -1,0 +1,224 @@
+"""ROS 2 messages: what crowdbot knows, in the types of ROS 2 Humble and people_msgs, as CDR bytes.
+
+Frames follow REP-103 and REP-105: ``map``, ``<robot>/base_link``, ``<robot>/<sensor>``. Ranges follow REP-117.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+from crowdbot.core import Scene, SpatialPose
+
+from .cdr import MAP, people_bytes
+
+__all__ = ["Messages"]
+
+PERSON = """string name
+geometry_msgs/Point position
+geometry_msgs/Point velocity
+float64 reliability
+string[] tagnames
+string[] tags
+"""
+PEOPLE = "std_msgs/Header header\npeople_msgs/Person[] people\n"
+CONTACT = "string robot\nstring other\nfloat64 clearance\n"
+CONTACTS = "std_msgs/Header header\ncrowdbot_msgs/Contact[] contacts\n"
+ARRAY = "string name\nstring dtype\nuint32[] shape\nuint8[] data\n"
+READING = "std_msgs/Header header\nstring kind\ncrowdbot_msgs/Array[] fields\n"
+FORCE = """string first
+string second
+string first_part
+string limb
+string part
+float64 force
+geometry_msgs/Vector3 vector
+float64 depth
+geometry_msgs/Point point
+"""
+FORCES = "std_msgs/Header header\ncrowdbot_msgs/Force[] forces\n"
+COLLISION = """string first
+string second
+float64 begin
+float64 end
+float64 duration
+string cause
+float64 impact_speed
+float64 depth
+float64 impulse
+string limb
+string part
+string region
+float64 peak_force
+float64 steady_force
+string steady_region
+float64 simulated_peak
+float64 severity
+"""
+COLLISIONS = "std_msgs/Header header\ncrowdbot_msgs/Collision[] collisions\n"
+OWN = {
+    "people_msgs/msg/Person": PERSON,
+    "people_msgs/msg/People": PEOPLE,
+    "crowdbot_msgs/msg/Contact": CONTACT,
+    "crowdbot_msgs/msg/Contacts": CONTACTS,
+    "crowdbot_msgs/msg/Array": ARRAY,
+    "crowdbot_msgs/msg/Reading": READING,
+    "crowdbot_msgs/msg/Force": FORCE,
+    "crowdbot_msgs/msg/Forces": FORCES,
+    "crowdbot_msgs/msg/Collision": COLLISION,
+    "crowdbot_msgs/msg/Collisions": COLLISIONS,
+}
+"""Types that ROS 2 Humble does not bring; the text of each stands in the file."""
+
+
+@functools.cache
+def _store() -> Any:
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    for name, text in OWN.items():
+        store.register(get_types_from_msg(text, name))
+    return store
+
+
+class Messages:
+    """Makes messages and their bytes."""
+
+    def __init__(self) -> None:
+        self.store = _store()
+
+    def definition(self, kind: str) -> str:
+        """Return the text of a message type with everything it is made of, as ``ros2msg`` schemas hold it."""
+        return str(self.store.generate_msgdef(kind, ros_version=2)[0])
+
+    def encoded(self, message: Any) -> bytes:
+        """Return the CDR bytes of a message."""
+        return bytes(self.store.serialize_cdr(message, message.__msgtype__))
+
+    def decoded(self, data: bytes, kind: str) -> Any:
+        """Return the message that CDR bytes hold."""
+        return self.store.deserialize_cdr(data, kind)
+
+    def make(self, kind: str, /, **fields: Any) -> Any:
+        """Return a message of a type such as ``geometry_msgs/msg/Point``."""
+        return self.store.types[kind](**fields)
+
+    def header(self, nanoseconds: int, frame: str = MAP) -> Any:
+        """Return a header."""
+        return self.make("std_msgs/msg/Header", stamp=self.stamp(nanoseconds), frame_id=frame)
+
+    def stamp(self, nanoseconds: int) -> Any:
+        """Return a time."""
+        seconds, rest = divmod(nanoseconds, 1_000_000_000)
+        return self.make("builtin_interfaces/msg/Time", sec=seconds, nanosec=rest)
+
+    def clock(self, nanoseconds: int) -> Any:
+        """Return ``rosgraph_msgs/Clock``."""
+        return self.make("rosgraph_msgs/msg/Clock", clock=self.stamp(nanoseconds))
+
+    def text(self, words: str) -> Any:
+        """Return ``std_msgs/String``."""
+        return self.make("std_msgs/msg/String", data=words)
+
+    def contacts(self, nanoseconds: int, rows: Iterable[tuple[str, str, float]]) -> Any:
+        """Return ``crowdbot_msgs/Contacts`` of rows: the robot, whom it touched, the smallest clearance [m]."""
+        found = [
+            self.make("crowdbot_msgs/msg/Contact", robot=robot, other=other, clearance=float(gap))
+            for robot, other, gap in rows
+        ]
+        return self.make("crowdbot_msgs/msg/Contacts", header=self.header(nanoseconds), contacts=found)
+
+    def people(self, nanoseconds: int, scene: Scene, ids: NDArray[np.int64]) -> bytes:
+        """Return the bytes of ``people_msgs/People``: who is there; radius [m] and heading [rad] are tags."""
+        there = np.flatnonzero(scene.active[0] & ~scene.external[0])
+        there = there[np.argsort(ids[there])]
+        rows = (scene.position, scene.velocity, scene.radius, scene.heading)
+        return people_bytes(nanoseconds, ids[there], *(row[0, there] for row in rows))
+
+    def odometry(
+        self, nanoseconds: int, name: str, x: float, y: float, heading: float, twist: Sequence[float], frame: str = MAP
+    ) -> Any:
+        """Return ``nav_msgs/Odometry``: a pose in a frame, and the twist forward, turn, left in the robot's own."""
+        forward, turn, left = map(float, twist)
+        return self.make(
+            "nav_msgs/msg/Odometry",
+            header=self.header(nanoseconds, frame),
+            child_frame_id=f"{name}/base_link",
+            pose=self.make(
+                "geometry_msgs/msg/PoseWithCovariance", pose=self.pose(x, y, heading), covariance=np.zeros(36)
+            ),
+            twist=self.make(
+                "geometry_msgs/msg/TwistWithCovariance",
+                twist=self.twist(forward, turn, left),
+                covariance=np.zeros(36),
+            ),
+        )
+
+    def transforms(self, nanoseconds: int, rows: Iterable[tuple[str, str, float, float, float]]) -> Any:
+        """Return ``tf2_msgs/TFMessage`` of rows: parent frame, child frame, x, y [m], heading [rad]."""
+        return self._transforms(
+            nanoseconds,
+            ((parent, child, (x, y, 0.0), self.quaternion(heading)) for parent, child, x, y, heading in rows),
+        )
+
+    def fixed(self, nanoseconds: int, rows: Iterable[tuple[str, str, SpatialPose]]) -> Any:
+        """Return ``tf2_msgs/TFMessage`` of rows: parent frame, child frame, where the child is in its parent."""
+        return self._transforms(
+            nanoseconds,
+            (
+                (parent, child, tuple(pose.position[0].tolist()), self.rotation(pose.rotation[0]))
+                for parent, child, pose in rows
+            ),
+        )
+
+    def _transforms(self, nanoseconds: int, rows: Iterable[tuple[str, str, tuple[float, ...], Any]]) -> Any:
+        return self.make(
+            "tf2_msgs/msg/TFMessage",
+            transforms=[
+                self.make(
+                    "geometry_msgs/msg/TransformStamped",
+                    header=self.header(nanoseconds, parent),
+                    child_frame_id=child,
+                    transform=self.make(
+                        "geometry_msgs/msg/Transform",
+                        translation=self.vector(*place),
+                        rotation=turn,
+                    ),
+                )
+                for parent, child, place, turn in rows
+            ],
+        )
+
+    def twist(self, forward: float, turn: float, left: float) -> Any:
+        """Return ``geometry_msgs/Twist``."""
+        return self.make(
+            "geometry_msgs/msg/Twist",
+            linear=self.vector(float(forward), float(left), 0.0),
+            angular=self.vector(0.0, 0.0, float(turn)),
+        )
+
+    def point(self, x: float, y: float, z: float = 0.0) -> Any:
+        """Return a point."""
+        return self.make("geometry_msgs/msg/Point", x=float(x), y=float(y), z=float(z))
+
+    def vector(self, x: float, y: float, z: float) -> Any:
+        """Return a vector."""
+        return self.make("geometry_msgs/msg/Vector3", x=x, y=y, z=z)
+
+    def quaternion(self, heading: float) -> Any:
+        """Return the rotation about z."""
+        half = 0.5 * heading
+        return self.make("geometry_msgs/msg/Quaternion", x=0.0, y=0.0, z=math.sin(half), w=math.cos(half))
+
+    def rotation(self, quaternion: NDArray[np.float64]) -> Any:
+        """Return a rotation from w, x, y, z."""
+        w, x, y, z = quaternion.tolist()
+        return self.make("geometry_msgs/msg/Quaternion", x=x, y=y, z=z, w=w)
+
+    def pose(self, x: float, y: float, heading: float, z: float = 0.0) -> Any:
+        """Return a pose."""
+        return self.make("geometry_msgs/msg/Pose", position=self.point(x, y, z), orientation=self.quaternion(heading))

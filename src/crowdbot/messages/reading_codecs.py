@@ -1,0 +1,260 @@
+"""Readings as messages and back: one table says what each reading of a sensor becomes in a recording.
+
+A reading becomes messages of standard ROS types, and one ``crowdbot_msgs/Reading`` beside them, which holds its kind,
+the exact pose and what the standard types have no place for (labels of body parts, biases, true velocities). Numbers
+that a standard type holds in 32 bits are read back with these.
+
+=============== =======================================================================================================
+``Scan``        ``sensor_msgs/LaserScan``; intensities hold whom each beam hit
+``Cloud``       ``sensor_msgs/PointCloud2``: x, y, z, intensity (cosine of incidence), range, label (whom it hit), ring
+``Echo``        ``sensor_msgs/Range``
+``DepthImage``  ``sensor_msgs/Image`` 32FC1 on ``image`` and 32SC1 (who is seen) on ``labels``, ``CameraInfo``
+``Inertial``    ``sensor_msgs/Imu``
+``Odometry``    ``nav_msgs/Odometry``, in the frame ``<robot>/odom``
+``Touch``       ``sensor_msgs/PointCloud2``, one point a sector, NaN where nothing presses: ROS has no type for
+                bumpers, and this is the one that navigation takes (as of ``kobuki_bumper2pc``)
+``Tracked``     ``people_msgs/People`` in the frame of the sensor
+=============== =======================================================================================================
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from crowdbot.core import EpisodeError, Pose, SpatialPose
+from crowdbot.sensors import (
+    Cloud,
+    DepthImage,
+    Echo,
+    Inertial,
+    Infrared,
+    Odometry,
+    Picture,
+    Reading,
+    Scan,
+    Touch,
+    Tracked,
+)
+
+from .codec import Codec, Told, arrays_of, packed
+from .images import depth_codec, picture_codec
+from .point_clouds import cloud_codec, touch_codec
+
+if TYPE_CHECKING:
+    from .message_store import Messages
+
+__all__ = ["CODECS", "KIND", "REST", "codec_of", "reading_of", "said"]
+
+KIND = "crowdbot_msgs/msg/Reading"
+REST = "/reading"
+"""What the topic of the message with the rest of a reading has after that of the sensor."""
+
+
+def said(make: Messages, told: Told) -> list[tuple[str, Any]]:
+    """Return the messages of a reading, with what their topics have after that of the sensor.
+
+    Raises:
+        EpisodeError: the reading is of a kind that the table does not have.
+    """
+    codec = codec_of(type(told.reading), told.topic)
+    reading = told.reading
+    rest = {"pose": reading.pose} | {name: getattr(reading, name) for name in codec.rest}
+    fields = [
+        make.make("crowdbot_msgs/msg/Array", name=name, dtype=kind, shape=shape, data=data)
+        for name, kind, shape, data in packed(rest, codec.short)
+    ]
+    kind = next(cls for cls in type(reading).__mro__ if cls in CODECS)
+    whole = make.make(KIND, header=told.header(make), kind=kind.__name__, fields=fields)
+    return [*codec.write(make, told), (REST, whole)]
+
+
+def codec_of(kind: type[Reading], topic: str = "") -> Codec:
+    """Return how readings of a class are recorded: as the nearest of its parents that is in the table.
+
+    Raises:
+        EpisodeError: there is none.
+    """
+    for cls in kind.__mro__:
+        if cls in CODECS:
+            return CODECS[cls]
+    known = ", ".join(cls.__name__ for cls in CODECS)
+    raise EpisodeError(
+        f"sensor {topic!r} gives a {kind.__name__}, which has no ROS message; let it give one of {known}, or run"
+        " without out"
+    )
+
+
+def reading_of(whole: Any, others: Mapping[str, Any]) -> Reading:
+    """Return the reading that messages hold.
+
+    Args:
+        whole: ``crowdbot_msgs/Reading``.
+        others: the standard messages by what their topics have after that of the sensor.
+
+    Raises:
+        KeyError, ValueError: they do not belong together.
+    """
+    kind = next(cls for cls in CODECS if cls.__name__ == whole.kind)
+    rest = arrays_of(whole.fields)
+    pose = rest.pop("pose")
+    stamp = whole.header.stamp
+    fields = CODECS[kind].read(others, rest) | rest
+    made: Reading = kind((stamp.sec * 1_000_000_000 + stamp.nanosec) / 1e9, pose, **fields)
+    return made
+
+
+def _write_scan(make: Messages, told: Told) -> list[tuple[str, Any]]:
+    reading, sensor = told.reading, told.sensor
+    angles = reading.angles
+    step = getattr(sensor, "step", float(angles[1] - angles[0]) if len(angles) > 1 else 0.0)
+    scan = make.make(
+        "sensor_msgs/msg/LaserScan",
+        header=told.header(make),
+        angle_min=float(angles[0]),
+        angle_max=float(angles[-1]),
+        angle_increment=float(step),
+        time_increment=0.0,
+        scan_time=1.0 / float(sensor.rate),
+        range_min=float(getattr(sensor, "range_min", 0.0)),
+        range_max=float(getattr(sensor, "range_max", math.inf)),
+        ranges=reading.ranges[0].astype(np.float32),
+        intensities=reading.hit[0].astype(np.float32),
+    )
+    return [("", scan)]
+
+
+def _read_scan(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str, Any]:
+    scan = others[""]
+    return {
+        "ranges": scan.ranges.astype(np.float64)[None],
+        "angles": scan.angle_min + scan.angle_increment * np.arange(len(scan.ranges)),
+        "hit": scan.intensities.astype(np.int64)[None],
+    }
+
+
+def _write_echo(make: Messages, told: Told) -> list[tuple[str, Any]]:
+    sensor = told.sensor
+    infrared = isinstance(sensor, Infrared)
+    half = getattr(sensor, "dispersion" if infrared else "half_angle", 0.0)
+    echo = make.make(
+        "sensor_msgs/msg/Range",
+        header=told.header(make),
+        radiation_type=int(infrared),
+        field_of_view=2.0 * float(half),
+        min_range=float(getattr(sensor, "range_min", 0.0)),
+        max_range=float(getattr(sensor, "range_max", math.inf)),
+        range=float(told.reading.ranges[0]),
+    )
+    return [("", echo)]
+
+
+def _read_echo(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str, Any]:
+    return {"ranges": np.array([others[""].range], dtype=np.float64)}
+
+
+def _write_inertial(make: Messages, told: Told) -> list[tuple[str, Any]]:
+    reading, sensor = told.reading, told.sensor
+    unknown = np.zeros(9)
+    unknown[0] = -1.0  # as the type says: there is no estimate of the orientation
+    imu = make.make(
+        "sensor_msgs/msg/Imu",
+        header=told.header(make),
+        orientation=make.quaternion(0.0),
+        orientation_covariance=unknown,
+        angular_velocity=make.vector(*reading.turn_rate[0].tolist()),
+        angular_velocity_covariance=_variance(sensor, "turn_noise"),
+        linear_acceleration=make.vector(*reading.acceleration[0].tolist()),
+        linear_acceleration_covariance=_variance(sensor, "acceleration_noise"),
+    )
+    return [("", imu)]
+
+
+def _variance(sensor: Any, density: str) -> Any:
+    """Return the covariance of white noise of a density at the rate of the sensor."""
+    return (np.eye(3) * float(getattr(sensor, density, 0.0)) ** 2 * float(sensor.rate)).ravel()
+
+
+def _read_inertial(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str, Any]:
+    force, turn = others[""].linear_acceleration, others[""].angular_velocity
+    return {
+        "acceleration": np.array([[force.x, force.y, force.z]]),
+        "turn_rate": np.array([[turn.x, turn.y, turn.z]]),
+    }
+
+
+def _write_odometry(make: Messages, told: Told) -> list[tuple[str, Any]]:
+    reading = told.reading
+    (x, y), heading = reading.estimate.position[0].tolist(), float(reading.estimate.heading[0])
+    odometry = make.odometry(told.nanoseconds, told.robot, x, y, heading, reading.twist[0], frame=f"{told.robot}/odom")
+    return [("", odometry)]
+
+
+def _read_odometry(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str, Any]:
+    twist = others[""].twist.twist
+    return {"twist": np.array([[twist.linear.x, twist.angular.z, twist.linear.y]])}
+
+
+def _write_tracked(make: Messages, told: Told) -> list[tuple[str, Any]]:
+    reading = told.reading
+    people = []
+    for who in np.flatnonzero(reading.present[0]).tolist():
+        (x, y), (vx, vy) = reading.position[0, who].tolist(), reading.velocity[0, who].tolist()
+        people.append(
+            make.make(
+                "people_msgs/msg/Person",
+                name=str(who),
+                position=make.point(x, y),
+                velocity=make.point(vx, vy),
+                reliability=1.0,
+                tagnames=["radius", "heading"],
+                tags=[repr(float(reading.radius[0, who])), repr(float(reading.heading[0, who]))],
+            )
+        )
+    return [("", make.make("people_msgs/msg/People", header=told.header(make), people=people))]
+
+
+def _read_tracked(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str, Any]:
+    shape = rest["present"].shape
+    flat = np.full((*shape, 6), np.nan)
+    for person in others[""].people:
+        place, moving = person.position, person.velocity
+        flat[0, int(person.name)] = place.x, place.y, moving.x, moving.y, *map(float, person.tags)
+    return {
+        "position": flat[..., 0:2],
+        "velocity": flat[..., 2:4],
+        "radius": flat[..., 4],
+        "heading": flat[..., 5],
+    }
+
+
+def _odometry_frames(robot: str, topic: str) -> list[tuple[str, str, SpatialPose]]:
+    """The estimate begins as the true pose, so the odometry frame lies where the map does."""
+    return [("map", f"{robot}/odom", Pose.of((0.0, 0.0), 0.0).lifted(0.0))]
+
+
+CODECS: dict[type[Reading], Codec] = {
+    Scan: Codec(_write_scan, _read_scan, rest=("facing", "part"), short=("facing",)),
+    Cloud: cloud_codec,
+    Echo: Codec(_write_echo, _read_echo, rest=("hit", "part", "direction")),
+    DepthImage: depth_codec,
+    Inertial: Codec(_write_inertial, _read_inertial, rest=("velocity", "acceleration_bias", "turn_bias")),
+    Odometry: Codec(_write_odometry, _read_odometry, rest=("estimate", "travelled", "ticks"), frames=_odometry_frames),
+    Picture: picture_codec,
+    Touch: touch_codec,
+    Tracked: Codec(_write_tracked, _read_tracked, rest=("present",)),
+}
+"""What each class of readings becomes; a subclass is recorded as its parent."""
+
+
+def unsaid() -> list[type[Reading]]:
+    """Return the classes of readings of ``crowdbot.sensors`` that the table lacks."""
+    from crowdbot import sensors
+
+    classes = [getattr(sensors, name) for name in sensors.__all__]
+    own = [cls for cls in classes if isinstance(cls, type) and issubclass(cls, Reading) and cls is not Reading]
+    return [cls for cls in own if dataclasses.is_dataclass(cls) and cls not in CODECS]

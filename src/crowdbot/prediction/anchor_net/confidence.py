@@ -1,0 +1,76 @@
+"""Probabilities and spreads of the anchor network say how often things happen, on people not learned from."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import stream
+
+from .agent_frame import AHEAD, GAITS, gait
+from .predictor import network_output
+from .training_data import NONE, Material, batch
+
+__all__ = ["calibrated"]
+
+Floats = NDArray[np.float64]
+Numbers = dict[str, NDArray[Any]]
+
+TEMPERATURES = np.exp(np.linspace(-3.0, 1.5, 91))
+WIDENINGS = np.exp(np.linspace(-2.5, 1.5, 81))
+FEW = 200
+"""With fewer people than this of one gait, those of all gaits are asked."""
+WORST = -50.0
+"""Logarithms of densities are not let below this, so that one strange person does not decide."""
+
+
+def calibrated(numbers: Numbers, material: Material) -> Numbers:
+    """Return the numbers with ``temperature`` and ``widening``, one for each gait from still to fast.
+
+    Probabilities are sharpened or softened by the temperature, spreads are multiplied by the widening, so that people
+    who were not learned from are most likely: the nearest future among all, and the truth around its futures.
+    """
+    held = {name: np.asarray(values, dtype=np.float64) for name, values in numbers.items()}
+    own, company, there, missed = batch(material, np.arange(len(material)), NONE, stream(0, "calibrated"))
+    out = network_output(held, own, company, there)
+    K, D = held["centres"].shape
+    bend = held["centres"] + out[:, : D * K].reshape(-1, K, D) * held["spread"]
+    score, spread = out[:, D * K : D * K + K], np.clip(held["width"] + out[:, None, -D:], -6.0, 2.0)
+    nearest = np.array([_nearest(one @ held["basis"], truth) for one, truth in zip(bend, missed, strict=True)])
+    truth = missed.reshape(len(missed), -1) @ held["basis"].T
+    z2 = ((truth[:, None] - bend) / held["spread"] * np.exp(-spread)) ** 2
+    kind = gait(material.people.past)
+    temperature, widening = [], []
+    for bin_ in range(len(GAITS) + 1):
+        who = np.flatnonzero(kind == bin_)
+        who = who if len(who) >= FEW else np.arange(len(kind))
+        warmth = _temperature(score[who], nearest[who])
+        temperature.append(warmth)
+        widening.append(_widening(_log_share(score[who] / warmth), z2[who], spread[who]))
+    return numbers | {"temperature": np.asarray(temperature), "widening": np.asarray(widening)}
+
+
+def _nearest(path: Floats, truth: Floats) -> int:
+    away = path.reshape(-1, AHEAD, 2) - truth
+    return int(np.argmin(np.sqrt((away**2).sum(axis=2)).mean(axis=1)))
+
+
+def _temperature(score: Floats, nearest: NDArray[np.int64]) -> float:
+    row = np.arange(len(score))
+    return float(min(TEMPERATURES, key=lambda t: -_log_share(score / t)[row, nearest].mean()))
+
+
+def _widening(log_share: Floats, z2: Floats, spread: Floats) -> float:
+    def surprise(width: float) -> float:
+        each = log_share - (0.5 * z2 / width**2 + spread + np.log(width)).sum(axis=2)
+        top = each.max(axis=1)
+        return float(-np.maximum(top + np.log(np.exp(each - top[:, None]).sum(axis=1)), WORST).mean())
+
+    return float(min(WIDENINGS, key=surprise))
+
+
+def _log_share(score: Floats) -> Floats:
+    top = score.max(axis=1, keepdims=True)
+    return np.asarray(score - top - np.log(np.exp(score - top).sum(axis=1, keepdims=True)))

@@ -1,0 +1,293 @@
+"""Training of the anchor network: a minute on one core, the same bits for the same seed, stopped and gone on with.
+
+The numbers that come out are those that :class:`~crowdbot.prediction.AnchorNet` reads.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, did_you_mean, from_attributes, stream
+from crowdbot.prediction.pretrained_weights import STEP
+from crowdbot.prediction.training.loop import Trainable
+from crowdbot.prediction.training.samples import Samples
+from crowdbot.prediction.training.torch_backend import device_of, tensors
+
+from .agent_frame import AHEAD, COMPANY, INPUTS, forward, turned
+from .anchors import centres
+from .confidence import calibrated
+from .predictor import network_output
+from .training_data import NONE, Batch, Material, Variation, material_of
+from .training_data import batch as batch_of
+
+__all__ = ["UPDATES", "AnchorNetTraining", "AnchorTraining", "learner", "network", "outputs", "shapes_of"]
+
+Floats = NDArray[np.float64]
+Numbers = dict[str, NDArray[Any]]
+
+UPDATES = 4000
+"""Steps of the optimiser behind the shipped weights; the last weights are taken, averaged, none is picked."""
+RANK = 6
+"""Numbers that a bend is made of; they reconstruct what constant velocity misses to about 2 cm."""
+
+
+@dataclasses.dataclass(frozen=True)
+class AnchorTraining:
+    """How the anchor network is trained.
+
+    Fields:
+        people: in one batch.
+        width, social: numbers in a hidden layer, and about a neighbour.
+        count: futures.
+        rate, decay, warm: learning rate, weight decay, updates until the full rate.
+        average: of the weights.
+        apart: weight of the mean error of all futures at the begin, falling to 0; it keeps every future alive.
+        choice: weight of the cross-entropy of the probabilities against a soft nearest future.
+        single: weight of the error of the single answer.
+        likely: weight of the likelihood under the mixture, which trains probabilities and spreads only.
+        seed: of everything that is drawn.
+        variation: of the people.
+    """
+
+    people: int = 256
+    width: int = 256
+    social: int = 64
+    count: int = 20
+    rate: float = 1e-3
+    decay: float = 1e-4
+    warm: int = 200
+    average: float = 0.999
+    apart: float = 0.05
+    choice: float = 0.1
+    single: float = 0.5
+    likely: float = 0.02
+    seed: int = 0
+    variation: Variation = dataclasses.field(default_factory=Variation)
+
+
+def learner(
+    settings: str | None, values: Mapping[str, str], samples: Samples, watched: Samples, seed: int, device: str
+) -> AnchorNetTraining:
+    """Return the anchor network ready to train, as the command line asks for it.
+
+    Args:
+        settings: there is one kind, ``shipped``, that of the shipped weights.
+        values: settings that differ, as text; those of the variation too.
+        samples, watched, seed, device: as of :class:`AnchorNetTraining`.
+
+    Raises:
+        InputError: a name or value is not known, or rows are not 8 + 12 at 0.4 s in metres.
+    """
+    if settings not in (None, "shipped"):
+        raise InputError(f"anchor-net: unknown settings {settings!r}{did_you_mean(str(settings), ['shipped'])}; there"
+                         " is shipped")  # fmt: skip
+    varied = {field.name for field in dataclasses.fields(Variation)}
+    plain = {name.replace("-", "_"): value for name, value in values.items()}
+    variation = from_attributes(Variation, {name: value for name, value in plain.items() if name in varied})
+    how = from_attributes(AnchorTraining, {name: value for name, value in plain.items() if name not in varied})
+    how = dataclasses.replace(how, seed=seed, variation=variation)
+    return AnchorNetTraining(how, material_of(samples), material_of(watched, reverse=False), samples.names, device)
+
+
+def shapes_of(material: Material, count: int = 20, seed: int = 0) -> Numbers:
+    """Return ``basis [6, 24]``, ``centres [count, 6]`` and ``spread [6]`` of what constant velocity misses."""
+    if len(material) < count:
+        raise InputError(f"{len(material)} people are too few to learn {count} futures from")
+    past = material.people.past
+    step = past[:, -1] - past[:, -2]
+    missed = turned(material.ahead - step[:, None] * np.arange(1.0, AHEAD + 1.0)[:, None], forward(past))
+    both = np.concatenate([missed, missed * np.array([1.0, -1.0])]).reshape(-1, 2 * AHEAD)
+    _, vectors = np.linalg.eigh(both.T @ both)
+    basis = vectors[:, ::-1][:, :RANK].T
+    basis = basis * np.where(basis[np.arange(RANK), np.abs(basis).argmax(axis=1)] < 0.0, -1.0, 1.0)[:, None]
+    points = both @ basis.T
+    found, _ = centres(points, count, seed)
+    return {"basis": basis, "centres": found, "spread": points.std(axis=0)}
+
+
+def network(how: AnchorTraining) -> Any:
+    """Return the layers, a torch module; what they give is turned into futures by :func:`_losses`."""
+    W, S, K = how.width, how.social, how.count
+    with torch.random.fork_rng(devices=[]):
+        torch.manual_seed(how.seed)
+        layers = _layers(W, S, K)
+    with torch.no_grad():
+        layers["out"].weight.mul_(0.1)
+        layers["out"].bias.zero_()
+    return layers
+
+
+def _layers(W: int, S: int, K: int) -> Any:
+    layers: Any = torch.nn.ModuleDict(
+        {
+            "own_1": torch.nn.Linear(INPUTS, W), "own_2": torch.nn.Linear(W, W),
+            "query": torch.nn.Linear(W, S), "near_1": torch.nn.Linear(COMPANY, S), "near_2": torch.nn.Linear(S, S),
+            "both_1": torch.nn.Linear(W + S, W), "both_2": torch.nn.Linear(W, W),
+            "out": torch.nn.Linear(W, RANK * K + K + 2 * RANK),
+        }
+    )  # fmt: skip
+    layers.register_parameter("nobody", torch.nn.Parameter(torch.zeros(S)))
+    layers.register_parameter("alone", torch.nn.Parameter(torch.zeros(S)))
+    layers.register_parameter("width", torch.nn.Parameter(torch.full((K, RANK), -1.0)))
+    return layers
+
+
+def outputs(layers: Any, own: Any, company: Any, there: Any) -> Any:
+    """Return ``[N, 20 * 6 + 20 + 6 + 6]``: bends of all futures, their scores, the single bend, and spreads."""
+    hidden = torch.relu(layers["own_2"](torch.relu(layers["own_1"](own))))
+    near = torch.relu(layers["near_2"](torch.relu(layers["near_1"](company))))  # [N, M, S]
+    query = layers["query"](hidden)
+    score = (near * query[:, None]).sum(2) / near.shape[2] ** 0.5
+    score = torch.where(there, score, -torch.inf)
+    empty = (query * layers.nobody).sum(1, keepdim=True) / near.shape[2] ** 0.5
+    share = torch.softmax(torch.cat([score, empty], 1), 1)
+    seen = (share[:, :-1, None] * near).sum(1) + share[:, -1:] * layers.alone
+    both = torch.relu(layers["both_1"](torch.cat([hidden, seen], 1)))
+    return layers["out"](torch.relu(layers["both_2"](both)))
+
+
+class AnchorNetTraining(Trainable):
+    """The anchor network with its people; see :class:`~crowdbot.prediction.Trainable`.
+
+    The last weights, averaged, are as good as any: with ``check_every`` as large as the number of updates none is
+    picked. Probabilities and spreads are calibrated on who is watched, whenever weights are given out.
+
+    Args:
+        config: how it is trained.
+        material: people to learn from.
+        watched: people on whom errors are watched and probabilities calibrated.
+        names: of the recordings that are learned from.
+        device: ``cpu`` or ``cuda``.
+    """
+
+    kind: ClassVar[str] = "anchor-net"
+
+    def __init__(
+        self, config: AnchorTraining, material: Material, watched: Material, names: Sequence[str] = (),
+        device: str = "cpu",
+    ) -> None:  # fmt: skip
+        self.device = device_of(device)
+        self.config, self.material, self.watched = config, material, watched
+        self.data = f"{material.digest}-{watched.digest}"
+        self.facts = {"dt": STEP, "units": "m", "learned": list(names)}
+        self.shapes = shapes_of(material, config.count, config.seed)
+        self.fixed = {
+            name: torch.tensor(values, dtype=torch.float32, device=self.device) for name, values in self.shapes.items()
+        }
+        self.layers = network(config).to(self.device)
+        self.mean = {name: value.detach().clone() for name, value in self.layers.state_dict().items()}
+        self.optimiser = torch.optim.AdamW(self.layers.parameters(), lr=config.rate, weight_decay=config.decay)
+
+    def batches(self, rng: np.random.Generator) -> list[Any]:
+        """Return as many batches as it takes to see about everyone once; each update draws its own people."""
+        del rng
+        return [None] * -(-len(self.material) // self.config.people)
+
+    def update(self, batch: Any, rng: np.random.Generator, number: int, total: int) -> Mapping[str, float]:
+        """Do one update; people and how they are varied come from a stream named by seed and number."""
+        del batch, rng
+        how, own = self.config, stream(self.config.seed, "batch", number)
+        shown = batch_of(self.material, own.integers(0, len(self.material), how.people), how.variation, own)
+        for group in self.optimiser.param_groups:
+            group["lr"] = how.rate * _pace(number, total, how)
+        loss = _loss(self.layers, self.fixed, shown, how, 1.0 - number / total)
+        self.optimiser.zero_grad()
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(self.layers.parameters(), 1.0)
+        self.optimiser.step()
+        share = min(how.average, (1.0 + number) / (10.0 + number))
+        with torch.no_grad():
+            for name, value in self.layers.state_dict().items():
+                self.mean[name].lerp_(value, 1.0 - share)
+        return {"loss": float(loss.detach())}
+
+    def check(self) -> Mapping[str, float]:
+        """Return ADE and FDE [m] of the nearest of the fixed futures, and ADE of the single answer."""
+        numbers = self.numbers()
+        own, company, there, missed = batch_of(self.watched, np.arange(len(self.watched)), NONE, stream(0, "check"))
+        found = network_output(numbers, own, company, there)
+        K = self.config.count
+        bend = numbers["centres"] + found[:, : RANK * K].reshape(-1, K, RANK) * numbers["spread"]
+        lone = found[:, RANK * K + K : RANK * K + K + RANK] * numbers["spread"]
+        paths = np.concatenate([bend, lone[:, None]], axis=1) @ numbers["basis"]
+        away = np.linalg.norm(paths.reshape(len(missed), K + 1, AHEAD, 2) - missed[:, None], axis=3)
+        ade, fde = away.mean(axis=2), away[:, :, -1]
+        nearest = {"ade": ade[:, :K].min(axis=1), "fde": fde[:, :K].min(axis=1), "single": ade[:, K]}
+        return {name: float(values.mean()) for name, values in nearest.items()}
+
+    def numbers(self) -> Numbers:
+        """Return the averaged numbers, not calibrated."""
+        return self.shapes | _plain(self.mean)
+
+    def weights(self) -> Mapping[str, Any]:
+        """Return the averaged numbers, calibrated on who is watched."""
+        return calibrated(self.numbers(), self.watched)
+
+    def state(self) -> Mapping[str, Any]:
+        """Return layers, optimiser and average."""
+        return {
+            "layers": dict(self.layers.state_dict()), "optimiser": self.optimiser.state_dict(), "mean": self.mean,
+        }  # fmt: skip
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Go back to a state."""
+        kept = tensors(dict(state), self.device)
+        self.layers.load_state_dict(kept["layers"])
+        self.optimiser.load_state_dict(kept["optimiser"])
+        self.mean = kept["mean"]
+
+
+def _pace(update: int, total: int, how: AnchorTraining) -> float:
+    if update < how.warm:
+        return (update + 1) / how.warm
+    done = (update - how.warm) / max(1, total - how.warm)
+    return float(0.5 + 0.5 * np.cos(np.pi * done))
+
+
+def _loss(layers: Any, fixed: dict[str, Any], shown: Batch, how: AnchorTraining, early: float) -> Any:
+    """Return the loss of one batch; ``early`` falls from 1 to 0 over the training."""
+    K = how.count
+    device = fixed["basis"].device
+    own, company, missed = (torch.from_numpy(np.ascontiguousarray(v)).float().to(device)
+                            for v in (shown.own, shown.company, shown.missed))  # fmt: skip
+    found = outputs(layers, own, company, torch.from_numpy(shown.there).to(device))
+    N = len(found)
+    bend = fixed["centres"] + found[:, : RANK * K].reshape(N, K, RANK) * fixed["spread"]
+    score, single, wide = found[:, RANK * K :].split([K, RANK, RANK], dim=1)
+    away = (bend @ fixed["basis"]).reshape(N, K, AHEAD, 2) - missed[:, None]
+    distance = (away.square().sum(3) + 1e-8).sqrt()
+    mean, end = distance.mean(2), distance[:, :, -1]
+    error = mean + 0.5 * end
+    best = mean.min(1).values + 0.5 * end.min(1).values
+    with torch.no_grad():
+        warmth = 0.1 + 0.2 * error.min(1, keepdim=True).values
+        target = torch.softmax(-error / warmth, 1)
+        truth = missed.reshape(N, 2 * AHEAD) @ fixed["basis"].T
+    log_share = torch.log_softmax(score, 1)
+    one = ((single * fixed["spread"]) @ fixed["basis"]).reshape(N, AHEAD, 2) - missed
+    lone = (one.square().sum(2) + 1e-8).sqrt()
+    log_spread = (layers.width + wide[:, None]).clamp(-6.0, 2.0)
+    z = (truth[:, None] - bend.detach()) / fixed["spread"] * torch.exp(-log_spread)
+    density = torch.logsumexp(log_share - (0.5 * z.square() + log_spread).sum(2), 1)
+    return (
+        best.mean()
+        + how.apart * early * error.mean()
+        - how.choice * (target * log_share).sum(1).mean()
+        + how.single * (lone.mean(1) + 0.5 * lone[:, -1]).mean()
+        - how.likely * density.clamp(min=-50.0).mean()
+    )
+
+
+def _plain(mean: dict[str, Any]) -> Numbers:
+    """Return the layers as arrays; the weight of a layer is ``[inputs, outputs]``."""
+    found = {}
+    for name, value in mean.items():
+        array = value.cpu().numpy().astype(np.float64)
+        found[name.replace(".", "_")] = array.T.copy() if name.endswith(".weight") else array
+    return found

@@ -1,0 +1,214 @@
+"""Kernels of joint futures: assignment of futures to samples, separation of paths, wall crossings.
+
+Every sum has a fixed order that is independent of the number of people.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import kernel
+
+__all__ = ["arrange", "crossing", "part_ways"]
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+FLAT = 1e-9
+
+
+@kernel
+def _boxes(path: Floats, room: float) -> Floats:  # pragma: no cover - compiled
+    """Return ``[A, K + 1, 4]``: least x, y and largest x, y [m] of every path, grown by ``room``; last those of all."""
+    A, K, T, _ = path.shape
+    box = np.empty((A, K + 1, 4))
+    for a in range(A):
+        for c in range(2):
+            box[a, K, c], box[a, K, 2 + c] = math.inf, -math.inf
+            for k in range(K):
+                low, high = math.inf, -math.inf
+                for t in range(T):
+                    low, high = min(low, path[a, k, t, c]), max(high, path[a, k, t, c])
+                box[a, k, c], box[a, k, 2 + c] = low - room, high + room
+                box[a, K, c], box[a, K, 2 + c] = min(box[a, K, c], low - room), max(box[a, K, 2 + c], high + room)
+    return box
+
+
+@kernel
+def _apart(one: Floats, other: Floats) -> bool:  # pragma: no cover - compiled
+    return bool(one[2] < other[0] or other[2] < one[0] or one[3] < other[1] or other[3] < one[1])
+
+
+@kernel
+def _meeting(
+    path: Floats, a: int, b: int, box: Floats, limit: float, hit: Bools
+) -> bool:  # pragma: no cover - compiled
+    """Write ``[K, K]`` whether two people collide in each pair of their futures; return whether they do in any."""
+    K, T = path.shape[1], path.shape[2]
+    found = False
+    for k in range(K):
+        for j in range(K):
+            hit[k, j] = False
+            if _apart(box[a, k], box[b, j]):
+                continue
+            for t in range(T):
+                dx, dy = path[a, k, t, 0] - path[b, j, t, 0], path[a, k, t, 1] - path[b, j, t, 1]
+                if dx * dx + dy * dy < limit * limit:
+                    hit[k, j] = True
+                    found = True
+                    break
+    return found
+
+
+@kernel
+def arrange(path: Floats, limit: float, order: float, sweeps: int) -> Integers:  # pragma: no cover - compiled
+    """Return ``[A, K]``: which own future each of A people takes in each of K joint futures, each exactly once.
+
+    The futures ``[A, K, T, 2]`` [m] stand sorted, the likeliest first. People who would come nearer than ``limit`` [m]
+    to others exchange two of their own futures between two joint ones, one person after the other, as long as that
+    makes fewer collisions; leaving the order costs ``order`` times the square of how far, in shares of K.
+    """
+    A, K = path.shape[0], path.shape[1]
+    box = _boxes(path, 0.5 * limit)
+    choice = np.empty((A, K), dtype=np.int64)
+    for a in range(A):
+        for k in range(K):
+            choice[a, k] = k
+    one, other = np.empty(A * A, dtype=np.int64), np.empty(A * A, dtype=np.int64)
+    count = 0
+    for a in range(A):
+        for b in range(a + 1, A):
+            if not _apart(box[a, K], box[b, K]):
+                one[count], other[count] = a, b
+                count += 1
+    hit = np.zeros((count, K, K), dtype=np.bool_)
+    meet = np.zeros(count, dtype=np.bool_)
+    for p in range(count):
+        meet[p] = _meeting(path, one[p], other[p], box, limit, hit[p])
+    cost = np.empty((K, K))
+    for _ in range(sweeps):
+        changed = False
+        for a in range(A):
+            clash = False
+            for m in range(K):
+                for k in range(K):
+                    cost[m, k] = order * ((m - k) / K) ** 2
+            for p in range(count):
+                if meet[p] and (one[p] == a or other[p] == a):
+                    for k in range(K):
+                        for m in range(K):
+                            first = one[p] == a
+                            if hit[p, m, choice[other[p], k]] if first else hit[p, choice[one[p], k], m]:
+                                cost[m, k] += 1.0
+                                clash = True
+            if clash and _exchanged(choice[a], cost):
+                changed = True
+        if not changed:
+            break
+    return choice
+
+
+@kernel
+def _exchanged(choice: Integers, cost: Floats) -> bool:  # pragma: no cover - compiled
+    """Exchange futures of one person while it pays, ``cost[future, joint]``; return whether there was one."""
+    K = len(choice)
+    changed = False
+    for _ in range(K):
+        any_better = False
+        for k in range(K):
+            best, partner = -FLAT, -1
+            for j in range(K):
+                gain = cost[choice[k], j] + cost[choice[j], k] - cost[choice[k], k] - cost[choice[j], j]
+                if gain < best:
+                    best, partner = gain, j
+            if partner >= 0:
+                choice[k], choice[partner] = choice[partner], choice[k]
+                any_better = True
+        if not any_better:
+            break
+        changed = True
+    return changed
+
+
+@kernel
+def part_ways(path: Floats, fixed: Bools, limit: float, rounds: int) -> Floats:  # pragma: no cover - compiled
+    """Return the paths ``[A, T, 2]`` [m] of one joint future with people who come too near moved aside.
+
+    Two people nearer than ``limit`` [m] at their closest step give way in opposite directions, half of what is missing
+    each; it grows evenly from now to that step, and stays. Who is ``fixed`` stays on the path. All give way at once,
+    again and again, so that the order of people does not matter.
+    """
+    A, T, _ = path.shape
+    out = path.copy()
+    for _ in range(rounds):
+        push = np.zeros((A, T, 2))
+        found = False
+        for a in range(A):
+            for b in range(a + 1, A):
+                if fixed[a] and fixed[b]:
+                    continue
+                when, least = -1, limit * limit
+                for t in range(T):
+                    dx, dy = out[a, t, 0] - out[b, t, 0], out[a, t, 1] - out[b, t, 1]
+                    if dx * dx + dy * dy < least:
+                        when, least = t, dx * dx + dy * dy
+                if when < 0:
+                    continue
+                found = True
+                dx, dy = out[a, when, 0] - out[b, when, 0], out[a, when, 1] - out[b, when, 1]
+                away = math.sqrt(least)
+                if away < FLAT:  # head to head: each to the side of the other's way
+                    dy, dx = out[a, T - 1, 0] - out[a, 0, 0], out[a, 0, 1] - out[a, T - 1, 1]
+                    away = max(math.sqrt(dx * dx + dy * dy), FLAT)
+                    least = 0.0
+                part = 1.0 if fixed[a] or fixed[b] else 0.5
+                size = part * (1.02 * limit - math.sqrt(least)) / away
+                for t in range(T):
+                    grown = size * min(1.0, (t + 1.0) / (when + 1.0))
+                    if not fixed[a]:
+                        push[a, t, 0] += grown * dx
+                        push[a, t, 1] += grown * dy
+                    if not fixed[b]:
+                        push[b, t, 0] -= grown * dx
+                        push[b, t, 1] -= grown * dy
+        if not found:
+            break
+        for a in range(A):
+            for t in range(T):
+                for c in range(2):
+                    out[a, t, c] += push[a, t, c]
+    return out
+
+
+@kernel
+def crossing(start: Floats, path: Floats, one: Floats, other: Floats) -> Integers:  # pragma: no cover - compiled
+    """Return ``[N, K]`` the first step in which paths ``start [N, 2] + path [N, K, T, 2]`` cross a segment, T if none.
+
+    The segments go from ``one`` to ``other`` ``[M, 2]`` [m].
+    """
+    N, K, T, _ = path.shape
+    found = np.full((N, K), T, dtype=np.int64)
+    for n in range(N):
+        for k in range(K):
+            x, y = start[n, 0], start[n, 1]
+            for t in range(T):
+                u, v = start[n, 0] + path[n, k, t, 0], start[n, 1] + path[n, k, t, 1]
+                for m in range(len(one)):
+                    ax, ay, bx, by = one[m, 0], one[m, 1], other[m, 0], other[m, 1]
+                    if max(ax, bx) < min(x, u) or max(x, u) < min(ax, bx):
+                        continue
+                    side_1 = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
+                    side_2 = (bx - ax) * (v - ay) - (by - ay) * (u - ax)
+                    side_3 = (u - x) * (ay - y) - (v - y) * (ax - x)
+                    side_4 = (u - x) * (by - y) - (v - y) * (bx - x)
+                    if side_1 * side_2 < 0.0 and side_3 * side_4 < 0.0:
+                        found[n, k] = t
+                        break
+                if found[n, k] < T:
+                    break
+                x, y = u, v
+    return found

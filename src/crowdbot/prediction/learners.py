@@ -1,0 +1,50 @@
+"""Learned predictors by name, ready to train."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from crowdbot.core import UnknownName
+
+from .training import Samples, Trainable
+
+__all__ = ["WEIGHTS_FIELDS", "make_learner"]
+
+WEIGHTS_FIELDS = {"anchor-net": "file", "social-ways": "checkpoint"}
+"""Learned predictor -> the parameter that takes the file of its weights."""
+
+
+def make_learner(
+    name: str,
+    settings: str | None,
+    values: Mapping[str, str],
+    samples: Samples,
+    watched: Samples,
+    seed: int = 0,
+    device: str = "cpu",
+) -> Trainable:
+    """Return a network with random weights, ready for :func:`~crowdbot.prediction.train`.
+
+    Args:
+        name: ``anchor-net`` or ``social-ways``.
+        settings: name of a preset; None means the default preset.
+        values: settings that differ from the preset, as text.
+        samples: training data.
+        watched: validation data.
+        seed: seed of the weights and of all random draws.
+        device: ``cpu``, ``cuda`` or ``cuda:N``.
+
+    Raises:
+        UnknownName: the name is unknown.
+        InputError: a setting is unknown or not allowed, or the samples have other rows.
+        MissingExtra: PyTorch is not installed.
+    """
+    if name not in WEIGHTS_FIELDS:
+        raise UnknownName("learned predictor", name, WEIGHTS_FIELDS)
+    if name == "anchor-net":
+        from .anchor_net import training as anchor_net
+
+        return anchor_net.learner(settings, values, samples, watched, seed, device)
+    from .social_ways import training as social_ways
+
+    return social_ways.learner(settings, values, samples, watched, seed, device)

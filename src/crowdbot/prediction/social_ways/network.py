@@ -1,0 +1,193 @@
+"""Social Ways, the network: a generator of futures with attention over neighbours, and its discriminator.
+
+Axes: B scenes (draws of one scene are B apart), A people, T rows, H = 128 hidden, P = 64 pooled, M = 64 noise.
+States are (x, y, vx, vy) in the frame of each person, divided by scales of the training data.
+
+Where the report leaves something open: attention scores are divided by the root of P, as usual; the values are a linear
+map of the hidden vectors to the 64 numbers that the text gives the pooled vector; the social features are observed, no
+gradient goes through them (the angle of somebody who stands has none); the sizes that the text gives the layers between
+LSTMs and heads of the discriminator do not fit together, here they are 128 x 64 each, then 128 x 64.
+
+Paper: Amirian, Hayet, Pettré (2019), Social Ways, CVPR Workshops, doi 10.48550/arXiv.1904.09507.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import torch
+from torch import Tensor, nn
+
+from .config import SocialWaysConfig
+
+__all__ = ["Discriminator", "Generator", "Sight", "social_features"]
+
+SMALL = 1e-6
+
+
+class Sight(NamedTuple):
+    """What the generator sees of B scenes, as tensors.
+
+    Fields:
+        state: ``[B, T, A, 4]`` observed states.
+        here: ``[B, A]`` bool.
+        origin, turn: ``[B, A, 2]`` [m] and cosine, sine: the frames of the people.
+        velocity: ``[B, A, 2]`` [m/s] the last seen velocity, in the own frame.
+        place: ``[B, A, 2]`` [m] the last seen position, in the own frame.
+    """
+
+    state: Tensor
+    here: Tensor
+    origin: Tensor
+    turn: Tensor
+    velocity: Tensor
+    place: Tensor
+
+    def drawn(self, draws: int) -> Sight:
+        """Return every scene ``draws`` times: all scenes, then all scenes again."""
+        return Sight(*(one.repeat(draws, *(1,) * (one.dim() - 1)) for one in self))
+
+
+class Generator(nn.Module):
+    """Draws futures of everyone in a scene; what is drawn for one person is seen by the others."""
+
+    def __init__(self, config: SocialWaysConfig, dt: float, scales: tuple[float, float, float]) -> None:
+        """Make it with random weights; scales are those of position [m], velocity [m/s] and distance [m]."""
+        super().__init__()
+        c = self.config = config
+        self.dt, self.scales = dt, scales
+        self.embed = nn.Linear(4, c.hidden)  # mu
+        self.encoder = nn.LSTMCell(c.hidden, c.hidden)  # LSTM-E
+        self.features = nn.Sequential(nn.Linear(3, c.pooled), nn.LeakyReLU(c.slope))  # phi
+        self.keys = nn.Linear(c.hidden, c.pooled, bias=False)  # W sigma
+        self.values = nn.Linear(c.hidden, c.pooled, bias=False)
+        self.decoder = nn.LSTMCell(c.hidden + c.pooled + c.inputs, c.hidden)  # LSTM-D
+        self.say = nn.Sequential(
+            nn.Linear(c.hidden, 64), nn.LeakyReLU(c.slope), nn.Linear(64, 32), nn.LeakyReLU(c.slope), nn.Linear(32, 2)
+        )
+
+    def forward(self, sight: Sight, noise: Tensor, steps: int, plan: Tensor | None = None) -> tuple[Tensor, Tensor]:
+        """Return positions [m] and states of the future in the own frames, ``[K, B, T, A, 2]`` and ``[..., 4]``.
+
+        Args:
+            sight: B scenes.
+            noise: ``[K, B, A, M]`` in 0..1, K draws; the codes come first.
+            steps: rows ahead.
+            plan: ``[B, T, A, 2]`` [m] where some are known to be, in the own frames; NaN for everyone else.
+        """
+        draws, scenes, people, _ = noise.shape
+        hidden = self.encoded(sight.state)  # h, c: [B * A, H]
+        hidden = (hidden[0].repeat(draws, 1), hidden[1].repeat(draws, 1))  # [K * B * A, H]
+        seen = sight.drawn(draws)  # [K * B, ...]
+        rows = noise.reshape(draws * scenes * people, -1)  # [K * B * A, M]
+        if self.config.code_levels > 0:
+            codes, rest = rows[:, : self.config.latent_codes], rows[:, self.config.latent_codes :]
+            levels = self.config.code_levels  # noise of exactly 1 belongs to the last step
+            rows = torch.cat([((codes * levels).floor().clamp(max=levels - 1) + 0.5) / levels, rest], dim=1)
+        if self.config.noise_gain > 0.0:
+            rows = (rows - 0.5) * self.config.noise_gain
+        spoken = (torch.zeros_like(hidden[0]), torch.zeros_like(hidden[0]))  # k: [K * B * A, H]
+        place, velocity = seen.place, seen.velocity  # [K * B, A, 2]
+        places, states = [], []
+        for step in range(steps):
+            pooled = self.pooled(hidden[0], place, velocity, seen)  # [K * B * A, P]
+            spoken = self.decoder(torch.cat([hidden[0], pooled, rows], dim=1), spoken)
+            said = self.say(spoken[0]).view(-1, people, 2) * self.scales[1]  # [K * B, A, 2] m/s
+            velocity = seen.velocity + said if self.config.residual else said.float()
+            moved = place + self.dt * velocity
+            if plan is not None:
+                known = plan[:, step].repeat(draws, 1, 1)
+                moved = torch.where(torch.isnan(known), moved, known)
+                velocity = (moved - place) / self.dt
+            place = moved
+            state = torch.cat([place / self.scales[0], velocity / self.scales[1]], dim=-1)  # [K * B, A, 4]
+            if step + 1 < steps:
+                hidden = self.encoder(self.embed(state).flatten(0, 1), hidden)  # h goes on with what was said
+            places.append(place)
+            states.append(state)
+        shape = (draws, scenes, people)
+        return tuple(torch.stack(x, dim=1).view(*shape[:2], steps, people, -1) for x in (places, states))  # type: ignore[return-value]
+
+    def encoded(self, state: Tensor) -> tuple[Tensor, Tensor]:
+        """Return hidden and cell vectors ``[B * A, H]`` after the observed states ``[B, T, A, 4]``."""
+        embedded = self.embed(state).permute(1, 0, 2, 3).flatten(1, 2)  # [T, B * A, H]
+        hidden = (torch.zeros_like(embedded[0]), torch.zeros_like(embedded[0]))
+        for row in embedded:
+            hidden = self.encoder(row, hidden)
+        return hidden
+
+    def pooled(self, hidden: Tensor, place: Tensor, velocity: Tensor, sight: Sight) -> Tensor:
+        """Return what the neighbours mean to everyone ``[B * A, P]``; 0 for who has none.
+
+        Args:
+            hidden: ``[B * A, H]`` encoded tracks up to now.
+            place, velocity: ``[B, A, 2]`` [m] and [m/s] in the own frames.
+            sight: whose frames these are, and who is there.
+        """
+        count, people, _ = place.shape
+        if not self.config.social or people == 1:
+            return hidden.new_zeros(count * people, self.config.pooled)
+        pairs = sight.here[:, :, None] & sight.here[:, None, :]  # [B, A, A]
+        pairs = pairs & ~torch.eye(people, dtype=torch.bool, device=pairs.device)
+        with torch.no_grad():
+            delta = social_features(sight.origin + _turned(place, sight.turn), _turned(velocity, sight.turn))
+            delta = delta / delta.new_tensor([self.scales[2], 1.0, self.scales[2]])
+            delta = torch.where(pairs[..., None], delta, 0.0).transpose(1, 2).contiguous()  # [B, j, i, 3]
+        mapped = hidden.view(count, people, -1)
+        keys, values = self.keys(mapped), self.values(mapped)  # [B, A, P]
+        score = (self.features(delta) @ keys[..., None])[..., 0].transpose(1, 2) / self.config.pooled**0.5  # [B, i, j]
+        weight = torch.softmax(score.float().masked_fill(~pairs, -1e9), dim=-1) * pairs  # [B, A, A]
+        return torch.bmm(weight, values).flatten(0, 1)
+
+
+def social_features(place: Tensor, velocity: Tensor) -> Tensor:
+    """Return distance [m], bearing angle [rad] and distance of closest approach [m] of all pairs, ``[B, A, A, 3]``.
+
+    The bearing of j from i is between the velocity of i and the way from i to j, positive to the left. The closest
+    approach is that of two who keep their velocities, now or later, never before.
+
+    Args:
+        place, velocity: ``[B, A, 2]`` [m] and [m/s].
+    """
+    way = place[:, None] - place[:, :, None]  # [B, i, j, 2]: from i to j
+    distance = torch.linalg.vector_norm(way, dim=-1)
+    vx, vy = velocity[:, :, None, 0], velocity[:, :, None, 1]  # of i
+    bearing = torch.atan2(vx * way[..., 1] - vy * way[..., 0], vx * way[..., 0] + vy * way[..., 1])
+    apart = velocity[:, None] - velocity[:, :, None]  # velocity of j seen from i
+    time = -(way * apart).sum(-1) / ((apart * apart).sum(-1) + SMALL)
+    closest = torch.linalg.vector_norm(way + apart * time.clamp(min=0.0)[..., None], dim=-1)
+    return torch.stack([distance, bearing, closest], dim=-1)
+
+
+def _turned(vector: Tensor, turn: Tensor) -> Tensor:
+    cos, sin = turn[..., 0], turn[..., 1]
+    x, y = vector[..., 0], vector[..., 1]
+    return torch.stack([cos * x - sin * y, sin * x + cos * y], dim=-1)
+
+
+class Discriminator(nn.Module):
+    """Says of tracks whether their future is real, and which latent codes made it."""
+
+    def __init__(self, config: SocialWaysConfig) -> None:
+        """Make it with random weights."""
+        super().__init__()
+        c = config
+        self.observed = nn.LSTM(4, c.hidden, batch_first=True)  # LSTM-OE
+        self.future = nn.LSTM(4, c.hidden, batch_first=True)  # LSTM-PE
+        self.of_observed = nn.Sequential(nn.Linear(c.hidden, 64), nn.LeakyReLU(c.slope))
+        self.of_future = nn.Sequential(nn.Linear(c.hidden, 64), nn.LeakyReLU(c.slope))
+        self.joined = nn.Sequential(nn.Linear(128, 64), nn.LeakyReLU(c.slope))
+        self.real = nn.Linear(64, 1)  # D
+        self.codes = nn.Linear(64, max(1, c.latent_codes))  # Q
+
+    def forward(self, observed: Tensor, future: Tensor) -> tuple[Tensor, Tensor]:
+        """Return how real tracks are ``[N]`` (before the sigmoid), and their codes ``[N, 2]``.
+
+        Args:
+            observed, future: ``[N, T, 4]`` states.
+        """
+        _, (past, _) = self.observed(observed)  # [1, N, H]
+        _, (ahead, _) = self.future(future)  # [1, N, H]
+        both = torch.cat([self.of_observed(past[0]), self.of_future(ahead[0])], dim=1)  # [N, 128]
+        told = self.joined(both)  # [N, 64]
+        return self.real(told)[:, 0], self.codes(told)

@@ -1,0 +1,86 @@
+"""Files of pretrained weights.
+
+The weights for new places are part of the package. The leave-one-out weights, each trained without one of the five
+ETH/UCY places, are part of the source distribution and of the archive ``crowdbot-weights`` of a release, but not of the
+wheel. ``assets/predictors/SHA256SUMS`` lists the SHA-256 of every file; files from outside the package must match it.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import importlib.resources
+import os
+import sys
+from pathlib import Path
+
+from crowdbot.core import DataError
+
+__all__ = ["VARIABLE", "find_weights", "weight_hashes", "weights_folder"]
+
+VARIABLE = "CROWDBOT_WEIGHTS"
+"""Environment variable with the folder of the leave-one-out weights."""
+
+
+def weights_folder() -> Path:
+    """Return the folder where weights outside the package are looked for."""
+    chosen = os.environ.get(VARIABLE)
+    if chosen:
+        return Path(chosen)
+    home = Path.home()
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", home / "AppData" / "Local")) / "crowdbot" / "weights"
+    if sys.platform == "darwin":
+        return home / "Library" / "Application Support" / "crowdbot" / "weights"
+    return Path(os.environ.get("XDG_DATA_HOME", home / ".local" / "share")) / "crowdbot" / "weights"
+
+
+@functools.cache
+def weight_hashes() -> dict[str, str]:
+    """Return the SHA-256 of every file of pretrained weights by name.
+
+    >>> len(weight_hashes()["anchor-net-all.npz"])
+    64
+    """
+    lines = (_package_folder() / "SHA256SUMS").read_text(encoding="utf-8").splitlines()
+    return {name: digest for digest, name in (line.split(maxsplit=1) for line in lines)}
+
+
+def find_weights(kind: str, fold: str) -> Path:
+    """Return the file of the weights that a predictor learned without a place.
+
+    Args:
+        kind: name of the predictor.
+        fold: name of the place, or ``all``.
+
+    Raises:
+        DataError: the file is not installed, or is not the one of this version.
+
+    >>> find_weights("anchor-net", "all").name
+    'anchor-net-all.npz'
+    """
+    name = f"{kind}-{fold}.npz"
+    shipped, extra = _package_folder() / name, weights_folder() / name
+    if shipped.is_file():
+        return shipped
+    if not extra.is_file():
+        raise DataError(
+            f"{name} is not installed, since the wheel has no leave-one-out weights: unpack crowdbot-weights.zip of the"
+            f" release into {extra.parent}, or set {VARIABLE} to a folder that has it"
+        )
+    _check_hash(extra)
+    return extra
+
+
+@functools.cache
+def _check_hash(path: Path) -> None:
+    found = hashlib.sha256(path.read_bytes()).hexdigest()
+    expected = weight_hashes().get(path.name)
+    if found != expected:
+        raise DataError(
+            f"{path} has SHA-256 {found[:16]}..., not {str(expected)[:16]}...: it is damaged or of another version"
+        )
+
+
+def _package_folder() -> Path:
+    return Path(str(importlib.resources.files("crowdbot").joinpath("assets", "predictors")))

@@ -1,0 +1,213 @@
+"""Branch: go on from an instant of a recorded episode, with the same or with other values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, overload
+
+from crowdbot.core import EpisodeError, InputError
+from crowdbot.simulation import (
+    Digest,
+    Episode,
+    Log,
+    Simulation,
+    Sink,
+    Stop,
+    Summary,
+    Tally,
+    apply_overrides,
+    drive,
+    stopping,
+)
+from crowdbot.trials import Trial, apply_values, trial_xml
+
+from .attachments import unpacked
+from .episode_reader import Recorded, read_metadata
+from .episode_writer import Recorder
+from .provenance import Comparison, Course, Part, digests
+from .recorded_run import target
+
+__all__ = ["branch"]
+
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class _Options:
+    """What a branch does differently, and where it is recorded."""
+
+    seed: int | None
+    changes: Mapping[str, Any]
+    trial: Trial | None
+    out: Path | str | None
+    progress: Progress | None
+
+
+@overload
+def branch(
+    source: Episode, at: float, *, seed: int | None = None, changes: Mapping[str, Any] | None = None,
+    trial: Trial | None = None, out: Path | str | None = None, progress: Progress | None = None,
+) -> Episode: ...  # fmt: skip
+@overload
+def branch(
+    source: Path | str | Recorded, at: float, *, seed: int | None = None, changes: Mapping[str, Any] | None = None,
+    trial: Trial | None = None, out: Path | str | None = None, folder: Path | None = None, trust: bool = False,
+    progress: Progress | None = None,
+) -> Summary: ...  # fmt: skip
+def branch(
+    source: Path | str | Recorded | Episode,
+    at: float,
+    *,
+    seed: int | None = None,
+    changes: Mapping[str, Any] | None = None,
+    trial: Trial | None = None,
+    out: Path | str | None = None,
+    folder: Path | None = None,
+    trust: bool = False,
+    progress: Progress | None = None,
+) -> Summary | Episode:
+    """Continue an episode from a recorded instant, with the same or with other values.
+
+    The trial runs again, without recording, up to the instant; its digest is compared with the recorded digest at
+    every instant on the way. A branch therefore starts in exactly the recorded state, including everything that people,
+    sensors and random streams remember; this takes as long as the original run up to the instant. Without changes,
+    every message and the final digest equal those of the original.
+
+    Args:
+        source: an episode file (also a branch, or the file of a killed run), or an episode in memory.
+        at: a recorded instant [s].
+        seed: new random streams from then on; None continues the old ones.
+        changes: other values by path, as in :class:`crowdbot.trials.Sweep`; they apply from the next step.
+        trial: the trial to continue with; ``changes`` apply to it.
+        out: file to record to, or a folder for ``episode.mcap``.
+        folder, trust: as in :func:`replay`, for files only.
+        progress: called with the completed share, 0 to 1.
+
+    Returns:
+        An :class:`Episode` for an episode in memory, otherwise a :class:`Summary`.
+
+    Raises:
+        EpisodeError: the file cannot be read, has no such instant, or does not replay to the same bytes.
+        InputError: a change that only applies at the start.
+
+    >>> from crowdbot.models import ORCA
+    >>> from crowdbot.simulation import simulate
+    >>> episode = simulate(Trial(name="empty", duration=2.0, crowd=ORCA()))
+    >>> later = branch(episode, at=1.5, changes={"duration": 3})
+    >>> float(later.times[0]), float(later.times[-1]), branch(episode, at=1.0).digest == episode.digest
+    (1.5, 3.0, True)
+    """
+    options = _Options(seed, changes or {}, trial, out, progress)
+    if isinstance(source, Episode):
+        return _branch_of_episode(source, at, options)
+    path = source.path if isinstance(source, Recorded) else Path(source)
+    return _branch_of_file(path, at, folder, trust, options)
+
+
+def _branch_of_file(source: Path, at: float, folder: Path | None, trust: bool, options: _Options) -> Summary:
+    out = options.out
+    if out is not None and target(out).exists() and target(out).resolve() == source.resolve():
+        raise InputError(f"{source} is the episode to branch from; record the branch to another place")
+    with unpacked(source, read_metadata(source), folder, trust) as place:
+        course = Course.of(source, place.folder, trust)
+        tally, outcome, steps = _run(course, at, digests(source), options, Tally, str(source))
+    summary: Summary = tally.summary(outcome, steps, None if out is None else target(out))
+    return summary
+
+
+def _branch_of_episode(episode: Episode, at: float, options: _Options) -> Episode:
+    if episode.times[0] > 0.0:
+        raise InputError("this episode is a branch; record the first one and branch from the files")
+    course = Course((Part(0, episode.trial, episode.seed),))
+    log, outcome, steps = _run(course, at, {}, options, Log, f"episode {episode.trial.name!r}")
+    after: Episode = log.episode(outcome, steps)
+    return after
+
+
+def _run(
+    course: Course, at: float, wanted: Mapping[int, str], options: _Options, kind: type[Any], name: str
+) -> tuple[Any, str, int]:
+    last = course.parts[-1]
+    old = last.trial if options.trial is None else options.trial
+    new = apply_values(old, options.changes, place=f"trial {old.name!r} with changes")
+    if options.out is not None:
+        trial_xml(new)  # raises now if the trial cannot be recorded
+    with stopping() as stop:
+        comparison = Comparison(Digest(), dict(wanted))
+        simulation = _there(course, at, comparison, stop, options.progress, name, max(wanted, default=None))
+        apply_overrides(simulation, new, options.seed)
+        _check_period(simulation, new, at)
+        part = Part(simulation.tick, new, last.seed if options.seed is None else int(options.seed))
+        tally = kind(new, part.seed, comparison.digest)
+        parts = (*course.parts, part)
+        return tally, *_recorded(simulation, tally, comparison, parts, options.out, stop, options.progress)
+
+
+def _there(
+    course: Course,
+    at: float,
+    comparison: Comparison,
+    stop: Stop,
+    progress: Progress | None,
+    name: str,
+    latest: int | None,
+) -> Simulation:
+    """Return the simulation at the instant to branch from."""
+    last = course.parts[-1]
+    tick = _tick(last, at, name, latest)
+    half = None if progress is None else lambda share: progress(0.5 * share)
+    simulation = course.begun(comparison, stop, half, until=tick)
+    if comparison.differs is not None:
+        raise EpisodeError(
+            f"{name} does not replay to the same bytes from {comparison.differs:g} s on, so there is no state to"
+            " branch from; crowdbot replay tells the versions"
+        )
+    return simulation
+
+
+def _tick(last: Part, at: float, name: str, latest: int | None) -> int:
+    """Return the tick of an instant; ``latest`` is the last one that was recorded [ns]."""
+    period, step = round(last.trial.recording.period * 1e9), round(last.trial.step * 1e9)
+    nanoseconds = round(at * 1e9)
+    first, end = last.tick * step, last.trial.ticks * step
+    end = end if latest is None else max(first, min(end, latest))
+    if not first <= nanoseconds <= end:
+        raise EpisodeError(f"{name} has no instant at {at:g} s; it lasts from {first / 1e9:g} s to {end / 1e9:g} s")
+    if nanoseconds % period:
+        near = round(nanoseconds / period) * period / 1e9
+        raise EpisodeError(
+            f"{name} has no instant at {at:g} s: it was recorded every {period / 1e9:g} s; the nearest is {near:g} s"
+        )
+    return nanoseconds // step
+
+
+def _check_period(simulation: Simulation, new: Trial, at: float) -> None:
+    if simulation.tick % simulation.world.clock.every(new.recording.period):
+        raise InputError(f"a recording period of {new.recording.period:g} s has no instant at {at:g} s")
+
+
+def _recorded(
+    simulation: Simulation,
+    tally: Any,
+    comparison: Comparison,
+    parts: tuple[Part, ...],
+    out: Path | str | None,
+    stop: Stop,
+    progress: Progress | None,
+) -> tuple[str, int]:
+    """Record the instant itself and everything after; return outcome and steps."""
+    frame = comparison.latest
+    assert frame is not None
+    tally.keep(frame)
+    rest = None if progress is None else lambda share: progress(0.5 + 0.5 * share)
+    sinks: list[Sink] = [tally]
+    if out is None:
+        return drive(simulation, sinks, stop, rest), simulation.tick
+    course, earlier = Course(parts), [part.trial for part in parts[:-1]]
+    with Recorder(target(out), tally, course.origin, begin=parts[-1].tick, earlier=earlier) as recorder:
+        recorder.take(frame)
+        outcome = drive(simulation, [tally, recorder], stop, rest)
+        recorder.complete(outcome, simulation.tick)
+    return outcome, simulation.tick

@@ -1,0 +1,233 @@
+"""Export: an episode file as a table, Parquet or CSV, instant by instant, so that files of any length fit."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, get_type_hints
+
+import numpy as np
+
+from crowdbot.core import EpisodeError, InputError, did_you_mean
+from crowdbot.messages import Collided, Pushed
+
+from .episode_reader import moments, read_metadata
+from .image_export import ExportedPictures
+from .reading_tables import READING_TABLES
+from .step_records import Moment
+
+__all__ = ["TABLES", "export"]
+
+Columns = dict[str, Any]
+ROWS = 100_000
+"""So many rows are written at once."""
+
+
+def export(path: Path | str, to: Path | str, table: str = "people") -> int:
+    """Write a table of an episode file; the ending of the name says how: ``.parquet`` or ``.csv``.
+
+    Tables, each with the time [s] and one row for each instant and
+
+    * ``people``: everybody, robots too: id, robot (its name or empty), x, y [m], vx, vy [m/s], heading [rad] and
+      radius [m];
+    * ``robots``: each robot: its name, x, y, heading, the twist forward [m/s], turn [rad/s] and left [m/s], and what
+      it is asked for (command_forward, ...);
+    * ``scans``: each beam: the sensor, x, y, heading of it in the world, angle [rad], range [m], and hit: the id of who
+      was hit, -1 nothing, -2 a wall;
+    * ``contacts``: each contact in each time step: robot, other, clearance [m];
+    * ``forces`` and ``collisions``, of the physics world: who with whom, where on the body, force [N], ...;
+    * what other sensors measured, with the sensor and its x, y, z [m] and heading [rad] in the world: ``points`` of
+      clouds (where each beam ended in the world, range, intensity, ring, hit), ``ranges`` of ultrasound and infrared,
+      ``inertial``, ``odometry``, ``bumpers`` (each pressed sector), ``tracked`` (each person told of);
+    * ``pictures`` of colour cameras: size, fx, fy, cx, cy of the lens [pixels], the ids that are seen when the camera
+      tells, and the file of the image, a PNG in the folder ``NAME-images`` next to the table ``NAME``;
+    * ``images`` of depth cameras: size, the nearest depth [m] and the ids that are seen; the pixels of depth and of
+      labels are in the episode file itself.
+
+    Returns:
+        The number of rows.
+
+    Raises:
+        InputError: there is no such table, or no such ending.
+        EpisodeError: the episode cannot be read, or the table not written.
+    """
+    path, to = Path(path), Path(to)
+    if table not in TABLES:
+        raise InputError(f"there is no table {table!r}{did_you_mean(table, TABLES)}; tables are {', '.join(TABLES)}")
+    if to.suffix not in (".parquet", ".csv"):
+        raise InputError(f"{to} ends in {to.suffix or 'nothing'}; give a name that ends in .parquet or .csv")
+    bodies = _bodies(path)
+    pictures = ExportedPictures(to)
+    make = pictures.columns if table == "pictures" else TABLES[table]
+    batches = (make(moment, bodies) for moment in moments(path))
+    draft = to.with_name(f".{to.name}.{os.getpid()}.part")
+    try:
+        to.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            count = _write(batches, draft, to.suffix)
+            pictures.finish()
+            os.replace(draft, to)
+        finally:
+            draft.unlink(missing_ok=True)
+            pictures.drop()
+    except OSError as error:
+        raise EpisodeError(f"{to} cannot be written: {error.strerror}") from None
+    return count
+
+
+def _bodies(path: Path) -> dict[str, tuple[int, float]]:
+    import json
+
+    try:
+        robots = json.loads(read_metadata(path)["robots"])
+        return {one["name"]: (int(one["id"]), float(one["radius"])) for one in robots}
+    except (ValueError, KeyError, TypeError) as error:
+        raise EpisodeError(f"{path} does not say which robots it has: {error}") from None
+
+
+def _write(batches: Iterator[Columns], draft: Path, suffix: str) -> int:
+    import pyarrow as pa
+    import pyarrow.csv
+    import pyarrow.parquet
+
+    writer: Any = None
+    count = 0
+    try:
+        for columns in _gathered(batches):
+            rows = pa.table(columns)
+            if writer is None:
+                kind = pyarrow.parquet.ParquetWriter if suffix == ".parquet" else pyarrow.csv.CSVWriter
+                writer = kind(str(draft), rows.schema)
+            writer.write_table(rows)
+            count += len(rows)
+    finally:
+        if writer is not None:
+            writer.close()
+    return count
+
+
+def _gathered(batches: Iterator[Columns]) -> Iterator[Columns]:
+    """Yield the columns of many instants together; at least once, if only with no rows."""
+    held: list[Columns] = []
+    rows, told = 0, False
+    for batch in batches:
+        size = len(next(iter(batch.values())))
+        if size or not (held or told):
+            held.append(batch)
+            rows += size
+        if rows >= ROWS:
+            yield _together(held)
+            held, rows, told = [], 0, True
+    if held:
+        yield _together(held)
+
+
+def _together(batches: list[Columns]) -> Columns:
+    return {name: np.concatenate([np.asarray(batch[name]) for batch in batches]) for name in batches[0]}
+
+
+def _people(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
+    names = {number: name for name, (number, _) in bodies.items()}
+    if moment.people is None:
+        return _people(_nobody(moment), bodies)
+    now = moment.everyone(bodies)
+    return {
+        "time": np.full(len(now.ids), moment.time),
+        "id": now.ids,
+        "robot": np.array([names.get(who, "") if names else "" for who in now.ids.tolist()], dtype=object),
+        "x": now.position[:, 0],
+        "y": now.position[:, 1],
+        "vx": now.velocity[:, 0],
+        "vy": now.velocity[:, 1],
+        "heading": now.heading,
+        "radius": now.radius,
+    }
+
+
+def _nobody(moment: Moment) -> Moment:
+    from crowdbot.metrics import AgentStates
+
+    none = np.zeros((0, 2))
+    return Moment(
+        moment.nanoseconds, AgentStates(moment.time, np.zeros(0, np.int64), none, none, none[:, 0], none[:, 0])
+    )
+
+
+def _robots(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
+    there = [name for name in bodies if name in moment.robots]
+    states = [moment.robots[name] for name in there]
+    words = ("forward", "turn", "left")
+    return {
+        "time": np.full(len(there), moment.time),
+        "robot": np.array(there, dtype=object),
+        **{name: np.array([getattr(state, name) for state in states], float) for name in ("x", "y", "heading")},
+        **{word: np.array([state.twist[k] for state in states], float) for k, word in enumerate(words)},
+        **{
+            f"command_{word}": np.array([moment.commands[name][k] for name in there], float)
+            for k, word in enumerate(words)
+        },
+    }
+
+
+def _scans(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
+    rows = [(name, scan, len(scan.ranges)) for name, scan in moment.scans.items()]
+
+    def joined(parts: list[Any], kind: Any) -> Any:
+        return np.concatenate([np.zeros(0, kind), *parts]).astype(kind)
+
+    return {
+        "time": np.full(sum(beams for *_, beams in rows), moment.time),
+        "sensor": np.array([name for name, _, beams in rows for _ in range(beams)], dtype=object),
+        **{
+            word: joined([np.full(beams, scan.pose[k]) for _, scan, beams in rows], float)
+            for k, word in enumerate(("x", "y", "heading"))
+        },
+        "angle": joined([scan.angles for _, scan, _ in rows], float),
+        "range": joined([scan.ranges for _, scan, _ in rows], float),
+        "hit": joined([scan.hit for _, scan, _ in rows], np.int64),
+    }
+
+
+def _contacts(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
+    rows = moment.contacts
+    return {
+        "time": np.array([row.time for row in rows], float),
+        "robot": np.array([row.robot for row in rows], dtype=object),
+        "other": np.array([row.other for row in rows], dtype=object),
+        "clearance": np.array([row.clearance for row in rows], float),
+    }
+
+
+def _named(kind: type[Any], rows: list[Any], wide: tuple[str, ...] = ()) -> Columns:
+    """Return a column for each field of rows, three for fields with an x, y and z."""
+    columns: Columns = {}
+    hints = get_type_hints(kind)
+    for name in kind._fields:
+        values = [getattr(row, name) for row in rows]
+        if name in wide:
+            table = np.array(values, dtype=np.float64).reshape(-1, 3)
+            columns |= {f"{name}_{axis}": table[:, k] for k, axis in enumerate("xyz")}
+        else:
+            columns[name] = np.array(values, dtype=object if hints[name] is str else np.float64)
+    return columns
+
+
+def _forces(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
+    return _named(Pushed, moment.forces, ("vector", "point"))
+
+
+def _collisions(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
+    times = {"time": np.full(len(moment.collisions), moment.time)}
+    return times | _named(Collided, moment.collisions)
+
+
+TABLES: dict[str, Callable[[Moment, dict[str, tuple[int, float]]], Columns]] = {
+    "people": _people,
+    "robots": _robots,
+    "scans": _scans,
+    "contacts": _contacts,
+    "forces": _forces,
+    "collisions": _collisions,
+    **READING_TABLES,
+}

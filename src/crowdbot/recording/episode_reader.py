@@ -1,0 +1,292 @@
+"""Recorded: an episode as it is read from its file, without running anything."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, BinaryIO, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import EpisodeError
+from crowdbot.data import MAGIC, Tape, Trajectories
+from crowdbot.messages import Collided, Pushed
+from crowdbot.metrics import AgentStates
+from crowdbot.sensors import Reading
+from crowdbot.simulation import ScanRow, tracks_of
+
+from .episode_repair import Ending
+from .metadata import END_KEYS, ENDING, KEYS, METADATA, from_json
+from .step_records import Moment, Touched, read_moments
+
+__all__ = ["Recorded", "moments", "read_episode", "read_metadata"]
+
+Floats = NDArray[np.float64]
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, eq=False)
+class Recorded:
+    """What an episode file holds; the fields of :class:`Episode` that a file keeps, under the same names.
+
+    Fields:
+        path: the file.
+        metadata: the records ``crowdbot`` and ``crowdbot.end`` as text: trial (XML), seed, versions, digest, ...
+        complete: whether the run came to its end; otherwise it was killed, and the outcome is ``interrupted``.
+        times: ``[T]`` [s].
+        position, velocity: ``[T, A, 2]`` [m], [m/s]; 0 for who is not there.
+        heading: ``[T, A]`` [rad].
+        radius: ``[A]`` [m].
+        active: ``[T, A]``.
+        ids: ``[A]``.
+        robots: indices of the robots.
+        commands: ``[T, R, 3]`` forward [m/s], turn [rad/s], left [m/s].
+        readings: by ``robot/sensor``, everything that was measured; numbers have the 32 bits of those messages that
+            have no more (:mod:`crowdbot.messages.reading_codecs`).
+        scans_by_topic: those of planar laser scanners, by ``robot/sensor``.
+        walls: rings ``[N, 2]`` [m].
+        metrics: by name.
+        contacts: of robots, in every time step.
+        forces, collisions: of the physics world, with whom, where on the body, and how hard.
+        digests: ``[T]`` of the episode up to each instant, as if it had been interrupted there.
+    """
+
+    path: Path
+    metadata: Mapping[str, str]
+    complete: bool
+    times: Floats
+    position: Floats
+    velocity: Floats
+    heading: Floats
+    radius: Floats
+    active: NDArray[np.bool_]
+    ids: NDArray[np.int64]
+    robots: tuple[int, ...]
+    commands: Floats
+    scans_by_topic: Mapping[str, tuple[ScanRow, ...]]
+    walls: tuple[Floats, ...]
+    metrics: Mapping[str, float]
+    contacts: tuple[Touched, ...]
+    digests: tuple[str, ...]
+    readings: Mapping[str, tuple[Reading, ...]] = field(default_factory=dict)
+    forces: tuple[Pushed, ...] = ()
+    collisions: tuple[Collided, ...] = ()
+
+    @property
+    def xml(self) -> str:
+        """The trial as XML."""
+        return self.metadata["trial"]
+
+    @property
+    def name(self) -> str:
+        """Name of the trial."""
+        return self.metadata["trial_name"]
+
+    @property
+    def seed(self) -> int:
+        """Seed of the run."""
+        return int(self.metadata["seed"])
+
+    @property
+    def steps(self) -> int:
+        """Number of time steps done."""
+        return int(self.metadata["steps"])
+
+    @property
+    def outcome(self) -> str:
+        """How the run ended."""
+        return self.metadata["outcome"]
+
+    @property
+    def digest(self) -> str:
+        """Hash of the episode as it was run, up to its last recorded instant when the run was killed."""
+        return self.metadata["digest"]
+
+    @property
+    def version(self) -> str:
+        """Version of crowdbot that ran it."""
+        return self.metadata["version"]
+
+    @property
+    def scans(self) -> tuple[ScanRow, ...]:
+        """What the first laser scanner of the first robot measured."""
+        return next(iter(self.scans_by_topic.values()), ())
+
+    def tracks(self, dt: float = 0.4) -> Trajectories:
+        """Return people and robots every ``dt`` [s] as trajectories, as :meth:`Episode.tracks` does."""
+        return tracks_of(self, self.name, dt)
+
+
+def read_episode(path: Path | str) -> Recorded:
+    """Read an episode file, also of a run that was killed or is still going on.
+
+    Raises:
+        EpisodeError: the file is missing, damaged, or no episode of crowdbot.
+    """
+    path = Path(path)
+    with _opened(path) as stream:
+        tape = Tape(stream)
+        with _sentences(path):
+            found = list(read_moments(tape))
+        known = _known(path, tape.metadata)
+    with _sentences(path, f"does not hold what its record {METADATA!r} says"):
+        return _assembled(path, known, found)
+
+
+def read_metadata(path: Path | str) -> dict[str, str]:
+    """Return what an episode file says of itself, without its messages; see :attr:`Recorded.metadata`.
+
+    What only the end of a run can tell (outcome, digest, ...) is missing when the run was killed.
+
+    Raises:
+        EpisodeError: as of :func:`read_episode`.
+    """
+    path = Path(path)
+    with _opened(path) as stream, _sentences(path):
+        tape = Tape(stream)
+        for _ in tape.records():
+            pass
+    return _known(path, tape.metadata)
+
+
+def moments(path: Path | str) -> Iterator[Moment]:
+    """Yield what is recorded instant by instant, so that a file of any length fits into memory.
+
+    Raises:
+        EpisodeError: as of :func:`read_episode`.
+    """
+    path = Path(path)
+    with _opened(path) as stream, _sentences(path):
+        tape = Tape(stream)
+        yield from read_moments(tape)
+    _known(path, tape.metadata)
+
+
+@contextlib.contextmanager
+def _opened(path: Path) -> Iterator[BinaryIO]:
+    if not path.exists():
+        raise EpisodeError(f"there is no episode file {path}")
+    if not path.is_file():
+        raise EpisodeError(f"{path} is not a file; give the episode.mcap itself")
+    try:
+        stream = path.open("rb")
+    except OSError as error:
+        raise EpisodeError(f"{path} cannot be read: {error.strerror}") from None
+    with stream:
+        head = stream.read(len(MAGIC))
+        if not head:
+            raise EpisodeError(f"{path} is empty")
+        if head != MAGIC:
+            raise EpisodeError(f"{path} is not an MCAP file: it begins with {head!r}")
+        stream.seek(0)
+        yield stream
+
+
+@contextlib.contextmanager
+def _sentences(path: Path, what: str = "is damaged") -> Iterator[None]:
+    """Say in one sentence what is wrong; bytes that are damaged make their readers fail in many ways."""
+    try:
+        yield
+    except (EpisodeError, OSError):
+        raise
+    except Exception as error:
+        raise EpisodeError(f"{path} {what}: {type(error).__name__}: {str(error)[:80] or 'no details'}") from error
+
+
+def _known(path: Path, records: Mapping[str, dict[str, str]]) -> dict[str, str]:
+    known = {**records.get(METADATA, {}), **records.get(ENDING, {})}
+    if any(key not in known for key in KEYS):
+        raise EpisodeError(f"{path} is an MCAP file but not an episode of crowdbot: it has no record {METADATA!r}")
+    return known
+
+
+def _by_topic(found: Iterable[Mapping[str, T]]) -> dict[str, list[T]]:
+    rows: dict[str, list[T]] = {}
+    for one in found:
+        for topic, row in one.items():
+            rows.setdefault(topic, []).append(row)
+    return rows
+
+
+def _assembled(path: Path, known: dict[str, str], found: Sequence[Moment]) -> Recorded:
+    due = [(moment, moment.people) for moment in found if moment.people is not None]
+    complete = all(key in known for key in END_KEYS)
+    if not due and not complete:
+        raise EpisodeError(f"{path} holds no recorded instant: the run was killed before it began")
+    robots = json.loads(known["robots"])
+    places = [int(robot["id"]) for robot in robots]
+    if complete:
+        count = int(known["people"]) + len(robots)
+    else:
+        count = 1 + max([-1, *places, *(who for moment in found for who in moment.named())])
+    arrays = _Arrays.of(len(due), count)
+    commands = np.zeros((len(due), len(robots), 3))
+    for k, (moment, people) in enumerate(due):
+        arrays.put(k, people)
+        for r, robot in enumerate(robots):
+            arrays.put_robot(k, places[r], float(robot["radius"]), moment.robots[robot["name"]])
+            commands[k, r] = moment.commands[robot["name"]]
+    scans: dict[str, list[ScanRow]] = _by_topic(moment.scans for moment in found)
+    readings: dict[str, list[Reading]] = _by_topic(moment.readings for moment in found)
+    times = np.array([moment.time for moment, _ in due])
+    if not complete:
+        ending = Ending(known)
+        for moment in found:
+            ending.take(moment)
+        known = known | ending.metadata()
+    return Recorded(
+        path,
+        known,
+        complete,
+        times,
+        arrays.position,
+        arrays.velocity,
+        arrays.heading,
+        arrays.radius,
+        arrays.active,
+        np.arange(count, dtype=np.int64),
+        tuple(places),
+        commands,
+        {topic: tuple(rows) for topic, rows in scans.items()},
+        tuple(np.array(ring, dtype=np.float64) for ring in json.loads(known["walls"])),
+        from_json(known["metrics"]),
+        tuple(contact for moment in found for contact in moment.contacts),
+        tuple(moment.digest for moment, _ in due),
+        {topic: tuple(rows) for topic, rows in readings.items()},
+        tuple(force for moment in found for force in moment.forces),
+        tuple(collision for moment in found for collision in moment.collisions),
+    )
+
+
+@dataclass
+class _Arrays:
+    position: Floats
+    velocity: Floats
+    heading: Floats
+    radius: Floats
+    active: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, count: int, agents: int) -> _Arrays:
+        """Return empty arrays."""
+        shape = (count, agents)
+        return cls(
+            np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(shape), np.zeros(agents), np.zeros(shape, dtype=bool)
+        )
+
+    def put(self, k: int, people: AgentStates) -> None:
+        """Put people in at an instant."""
+        if np.any(people.ids < 0):
+            raise ValueError(f"a person has the id {people.ids.min()}")
+        self.position[k, people.ids], self.velocity[k, people.ids] = people.position, people.velocity
+        self.heading[k, people.ids], self.radius[people.ids] = people.heading, people.radius
+        self.active[k, people.ids] = True
+
+    def put_robot(self, k: int, place: int, radius: float, state: Any) -> None:
+        """Put a robot in at an instant."""
+        self.position[k, place], self.velocity[k, place] = (state.x, state.y), (state.vx, state.vy)
+        self.heading[k, place], self.radius[place], self.active[k, place] = state.heading, radius, True

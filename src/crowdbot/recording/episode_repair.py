@@ -1,0 +1,110 @@
+"""Ending: what a run that was killed could not write any more, from what it did write; and the summary of its file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from crowdbot.core import EpisodeError, Walls
+from crowdbot.data import MAGIC, Tape, TapeError, is_whole
+from crowdbot.metrics import NavigationMetrics
+from crowdbot.simulation import robot_metrics
+
+from .mcap_writer import finish
+from .metadata import END_KEYS, ENDING, METADATA, as_json
+from .step_records import Moment, read_moments
+
+__all__ = ["Ending", "repair"]
+
+
+class Ending:
+    """Gathers what the record at the end would say of a run that was interrupted at its last recorded instant.
+
+    Args:
+        known: the record at the beginning.
+    """
+
+    def __init__(self, known: Mapping[str, str]) -> None:
+        self.known = known
+        self.robots = json.loads(known["robots"])
+        rings = [np.array(ring, dtype=np.float64) for ring in json.loads(known["walls"])]
+        walls = Walls.of(rings).segments()
+        self.travels = [
+            NavigationMetrics(
+                int(one["id"]),
+                float(one["radius"]),
+                (one["goal"][0], one["goal"][1]),
+                float(one["tolerance"]),
+                walls=walls,
+            )
+            for one in self.robots
+        ]
+        self.bodies = {one["name"]: (int(one["id"]), float(one["radius"])) for one in self.robots}
+        self.count = 1 + max([-1, *(travel.robot for travel in self.travels)])
+        self.last: Moment | None = None
+        self.touching: set[int] = set()
+
+    def take(self, moment: Moment) -> None:
+        """Take an instant."""
+        self.count = max(self.count, *(1 + who for who in moment.named()), 0)
+        names = {name for one in moment.contacts for name in (one.robot, one.other)}
+        self.touching |= {body[0] for name, body in self.bodies.items() if name in names}
+        if moment.people is not None:
+            self.last = moment
+            if self.travels:
+                now = moment.everyone(self.bodies)
+                for travel in self.travels:
+                    travel.update(now, travel.robot in self.touching)
+            self.touching = set()
+
+    def metadata(self) -> dict[str, str]:
+        """Return the record."""
+        assert self.last is not None
+        names = [one["name"] for one in self.robots]
+        return {
+            "digest": self.last.digest,
+            "outcome": "interrupted",
+            "steps": str(self.last.nanoseconds // int(self.known["step_ns"])),
+            "people": str(self.count - len(self.robots)),
+            "metrics": as_json(robot_metrics(self.travels, names, "interrupted")),
+        }
+
+
+def repair(path: Path | str) -> float | None:
+    """Give the file of a run that was killed its end: what the run would have written when interrupted, and a summary.
+
+    Nothing that was recorded is changed; a torn record at the end is cut off.
+
+    Returns:
+        The time [s] of the last recorded instant; None when the file has its end and nothing was done.
+
+    Raises:
+        EpisodeError: the file is damaged, no episode of crowdbot, or cannot be written.
+    """
+    path = Path(path)
+    try:
+        with path.open("r+b") as stream:
+            if is_whole(stream):
+                return None
+            stream.seek(0)
+            if stream.read(len(MAGIC)) != MAGIC:
+                raise EpisodeError(f"{path} is not an MCAP file")
+            stream.seek(0)
+            tape, ending = Tape(stream), None
+            for moment in read_moments(tape):
+                ending = ending or Ending(tape.metadata.get(METADATA, {}))
+                ending.take(moment)
+            if ending is None or ending.last is None:
+                raise EpisodeError(f"{path} holds no recorded instant: the run was killed before it began")
+            added = {} if END_KEYS[0] in tape.metadata.get(ENDING, {}) else {ENDING: ending.metadata()}
+            finish(stream, added)
+            return ending.last.time
+    except OSError as error:
+        raise EpisodeError(f"{path} cannot be repaired: {error.strerror}") from None
+    except (TapeError, KeyError, ValueError, IndexError, AttributeError) as error:
+        if isinstance(error, EpisodeError):
+            raise
+        raise EpisodeError(f"{path} is damaged: {type(error).__name__}: {str(error)[:80]}") from error

@@ -1,0 +1,256 @@
+"""Recorder: an episode as one MCAP file of ROS 2 messages that also holds the trial, the seed and the versions."""
+
+from __future__ import annotations
+
+import dataclasses
+import errno
+import os
+import warnings
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from crowdbot.core import EpisodeError
+from crowdbot.messages import MAP, Messages, Told, codec_of, markers, mounted, pushes, said
+from crowdbot.messages.marker_array import KIND as MARKERS
+from crowdbot.simulation import WALL, Frame, Tally
+from crowdbot.trials import Trial, trial_xml
+
+from .attachments import LeftOut, carried, left_out
+from .mcap_writer import TapeWriter
+from .metadata import CONTACTS, DIGEST, ENDING, FORMAT, METADATA, as_json, versions
+
+__all__ = ["Recorder"]
+
+FOREVER = "{sec: 2147483647, nsec: 4294967295}"
+LATCHED = (
+    "- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n"
+    f"  deadline: {FOREVER}\n  lifespan: {FOREVER}\n"
+    f"  liveliness: 1\n  liveliness_lease_duration: {FOREVER}\n  avoid_ros_namespace_conventions: false\n"
+)
+"""Quality of service of fixed frames, so that ROS hands them to who listens later, too (rosbag2 reads this)."""
+APART = 500_000_000
+"""The file grows every so many nanoseconds of simulated time: its bytes do not depend on the wall clock."""
+
+
+class Recorder:
+    """Writes what a run tells it to a file that can be read at any moment, also after the run was killed.
+
+    Topics: ``/clock``, ``/tf`` (``map`` to each robot), ``/tf_static`` (each robot to its sensors), ``/people``,
+    ``/crowd/markers``, ``/crowdbot/digest``, for each robot ``/<robot>/odom``, ``/<robot>/cmd_vel`` and
+    ``/<robot>/<sensor>`` (which message for which sensor: :mod:`crowdbot.messages`), and ``/crowdbot/contacts``
+    whenever a robot touches somebody or a wall; in the physics world ``/crowdbot/forces`` and
+    ``/crowdbot/collisions`` too. Every stamp is simulated time.
+
+    The file appears with the first recorded instant, in place of one that was there, and grows every half second of
+    simulated time. Use as a context: when it ends without :meth:`complete`, the file is left as a killed run leaves
+    it; before the first instant nothing is left behind, not even folders it made.
+
+    Args:
+        path: of the file.
+        tally: of the run; it is told each instant before the recorder.
+        origin: what the run branched from, as the metadata keeps it.
+        begin: tick of the first instant.
+        earlier: the trials that it branched from, whose files it keeps too.
+
+    Raises:
+        InputError: the trial cannot be written as XML.
+        EpisodeError: the file cannot be written.
+
+    Warns:
+        LeftOut: files that the trial names are not kept.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        tally: Tally,
+        origin: Sequence[Mapping[str, Any]] = (),
+        begin: int = 0,
+        earlier: Sequence[Trial] = (),
+    ) -> None:
+        self.path, self.tally, self.origin, self.begin = path, tally, origin, begin
+        self.trial, self.seed = tally.trial, tally.seed
+        self.xml = trial_xml(self.trial)
+        self.files = carried([self.trial, *earlier])
+        if sentence := left_out(file for file, _ in self.files):
+            warnings.warn(sentence, LeftOut, stacklevel=2)
+        self.messages = Messages()
+        self.channels: dict[str, int] = {}
+        self.made: list[Path] = []
+        self.tape: TapeWriter | None = None
+        self.last = (0, "")
+        """Steps until the last recorded instant, and the digest of an episode that ends there."""
+        self._markers_every = round(self.trial.recording.markers * 1e9)
+        start = begin * round(self.trial.step * 1e9)
+        self._markers_due = -(-start // self._markers_every) * self._markers_every
+        self._write_due = start
+        self._names = {self.trial.people + k: robot.name for k, robot in enumerate(self.trial.robots)}
+        self._goals = [(one.goal.x, one.goal.y, one.goal.tolerance) for one in self.trial.robots]
+        self._mounts = [
+            (f"{robot.name}/base_link", f"{robot.name}/{mount.name}", mounted(robot, mount))
+            for robot in self.trial.robots
+            for mount in robot.sensors
+        ]
+
+    def __enter__(self) -> Recorder:
+        """Make the folder."""
+        try:
+            self._make_folder(self.path.parent)
+            if not os.access(self.path.parent, os.W_OK):
+                raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+        except OSError as error:
+            self._clear()
+            raise EpisodeError(f"{self.path} cannot be written: {error.strerror}; give another place") from None
+        self.tape = TapeWriter(self.path, "ros2", f"crowdbot {versions()['version']}")
+        self.tape.metadata(METADATA, self._metadata())
+        for file, place in self.files:
+            if file.kept:
+                self.tape.attachment(file.name, place.read_bytes())
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Leave what has been written; remove what is empty."""
+        if self.tape is not None:
+            self.tape.close(finished=False)
+        self._clear()
+
+    def take(self, frame: Frame) -> None:
+        """Write an instant."""
+        first = self.trial.people
+        now, make = frame.nanoseconds, self.messages
+        self._write("/clock", make.clock(now), now)
+        if self.trial.robots:
+            self._write("/tf", make.transforms(now, self._poses(frame, first)), now)
+        self._fixed(frame)
+        for robot, mount, reading in frame.readings:
+            told = Told(reading, mount.sensor, robot.name, f"{robot.name}/{mount.name}")
+            for ending, message in said(make, told):
+                self._write(f"/{told.topic}{ending}", message, now)
+        if frame.touches:
+            self._write(CONTACTS, make.contacts(now, self._touches(frame)), now)
+        for topic, message in pushes(make, now, frame, self._names):
+            self._write(topic, message, now)
+        if frame.due:
+            self._scene(frame, first)
+            self.last = frame.tick, self.tally.digest.ended("interrupted")
+            self._write(DIGEST, make.text(self.last[1]), now)
+        assert self.tape is not None
+        if (frame.due and now >= self._write_due) or self.tape.large:
+            self._write_due = now - now % APART + APART
+            self._flush()
+
+    def complete(self, outcome: str, steps: int) -> None:
+        """Write how it ended, and finish the file; who is interrupted ends at the last recorded instant."""
+        assert self.tape is not None
+        interrupted = outcome == "interrupted"
+        ending = {
+            "digest": self.last[1] if interrupted else self.tally.digest.ended(outcome),
+            "outcome": outcome,
+            "steps": str(self.last[0] if interrupted else steps),
+            "people": str(self.tally.agents - len(self.trial.robots)),
+            "metrics": as_json(self.tally.metrics(outcome)),
+        }
+        self.tape.metadata(ENDING, ending)
+        self._flush()
+        try:
+            self.tape.close(finished=True)
+        except OSError as error:
+            raise EpisodeError(f"{self.path} cannot be written: {error.strerror}") from None
+        self.tape = None
+
+    def _scene(self, frame: Frame, first: int) -> None:
+        now, make, scene = frame.nanoseconds, self.messages, frame.scene
+        self._put("/people", "people_msgs/msg/People", make.people(now, scene, frame.ids), now)
+        for k, (_, _, x, y, heading) in enumerate(self._poses(frame, first)):
+            name = self.trial.robots[k].name
+            self._write(f"/{name}/odom", make.odometry(now, name, x, y, heading, frame.twists[k]), now)
+            self._write(f"/{name}/cmd_vel", make.twist(*frame.commands[k]), now)
+        if now >= self._markers_due:
+            self._markers_due = now - now % self._markers_every + self._markers_every
+            self._put("/crowd/markers", MARKERS, markers(now, scene, frame.ids, self._goals), now)
+
+    def _fixed(self, frame: Frame) -> None:
+        """Write where sensors sit, at every instant, so that each tells by itself where everything was."""
+        rows = list(self._mounts)
+        for robot, mount, reading in frame.readings:
+            topic = f"{robot.name}/{mount.name}"
+            rows += codec_of(type(reading), topic).frames(robot.name, topic)
+        if rows:
+            self._write("/tf_static", self.messages.fixed(frame.nanoseconds, rows), frame.nanoseconds)
+
+    def _poses(self, frame: Frame, first: int) -> list[tuple[str, str, float, float, float]]:
+        scene = frame.scene
+        return [
+            (
+                MAP,
+                f"{robot.name}/base_link",
+                float(scene.position[0, first + k, 0]),
+                float(scene.position[0, first + k, 1]),
+                float(scene.heading[0, first + k]),
+            )
+            for k, robot in enumerate(self.trial.robots)
+        ]
+
+    def _touches(self, frame: Frame) -> list[tuple[str, str, float]]:
+        names = self._names | {WALL: "wall"}
+        return [(names[one.robot], names.get(one.other, str(one.other)), one.clearance) for one in frame.touches]
+
+    def _write(self, topic: str, message: Any, nanoseconds: int) -> None:
+        self._put(topic, message.__msgtype__, self.messages.encoded(message), nanoseconds)
+
+    def _put(self, topic: str, kind: str, data: bytes, nanoseconds: int) -> None:
+        assert self.tape is not None
+        if topic not in self.channels:
+            schema = self.tape.schema(kind, self.messages.definition(kind))
+            self.channels[topic] = self.tape.channel(topic, schema, LATCHED if topic == "/tf_static" else "")
+        try:
+            self.tape.message(self.channels[topic], nanoseconds, data)
+        except OSError as error:
+            raise EpisodeError(f"{self.path} cannot be written: {error.strerror}") from None
+
+    def _flush(self) -> None:
+        assert self.tape is not None
+        try:
+            self.tape.flush()
+        except OSError as error:
+            raise EpisodeError(f"{self.path} cannot be written: {error.strerror}") from None
+
+    def _metadata(self) -> dict[str, str]:
+        robots = [
+            {
+                "name": robot.name,
+                "id": self.trial.people + k,
+                "radius": robot.radius,
+                "goal": list(robot.goal.position),
+                "tolerance": robot.goal.tolerance,
+                "sensors": [mount.name for mount in robot.sensors],
+            }
+            for k, robot in enumerate(self.trial.robots)
+        ]
+        return {
+            "format": FORMAT,
+            "trial": self.xml,
+            "trial_name": self.trial.name,
+            "seed": str(self.seed),
+            **versions(),
+            "step_ns": str(round(self.trial.step * 1e9)),
+            "walls": as_json([ring.tolist() for ring in self.trial.stage.rings]),
+            "robots": as_json(robots),
+            **({"files": as_json([dataclasses.asdict(file) for file, _ in self.files])} if self.files else {}),
+            **({"origin": as_json(list(self.origin)), "begin": str(self.begin)} if self.origin else {}),
+        }
+
+    def _make_folder(self, folder: Path) -> None:
+        missing = [place for place in (folder, *folder.parents) if not place.exists()]
+        for place in reversed(missing):
+            place.mkdir(exist_ok=True)
+            self.made.append(place)
+
+    def _clear(self) -> None:
+        for folder in reversed(self.made):
+            if not any(folder.iterdir()):
+                folder.rmdir()

@@ -1,0 +1,149 @@
+"""Run a trial and record it: to an episode in memory, to a file, or both; free, or stepped from outside."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+from crowdbot.core import Clock, InputError
+from crowdbot.simulation import (
+    Bridge,
+    Episode,
+    Log,
+    Running,
+    Simulation,
+    Sink,
+    Summary,
+    Tally,
+    drive,
+    simulate,
+    stopping,
+)
+from crowdbot.trials import Trial, check_trial
+
+from .episode_writer import Recorder
+
+__all__ = ["opened", "record", "run", "target"]
+
+Progress = Callable[[float], None]
+T = TypeVar("T", bound=Tally)
+
+
+def run(
+    trial: Trial,
+    seed: int | None = None,
+    out: Path | str | None = None,
+    progress: Progress | None = None,
+    clock: Clock | None = None,
+) -> Episode:
+    """Run a trial; see :mod:`crowdbot.simulation.simulation` for the order of a step.
+
+    Contacts and arrivals are judged in every step; the run then ends at the next recorded instant, so that instants
+    are evenly spaced. The first Ctrl-C ends it there too: the episode so far has the outcome ``interrupted`` and is
+    kept, in the file too. A second one raises :class:`KeyboardInterrupt` and leaves the file as ``kill`` does: it
+    opens, and at most the last second of simulated time is missing.
+
+    Args:
+        trial: what to run.
+        seed: of everything random; None is the trial's own.
+        out: file to record to, or a folder for ``episode.mcap``; it can be read while the run goes on.
+        progress: called with the share of the duration that is done, 0 to 1.
+        clock: :class:`~crowdbot.core.PacedClock` for real time; None runs as fast as it can.
+
+    Raises:
+        TrialError: the trial is impossible; every problem is named, and nothing is written.
+
+    >>> from crowdbot.models import ORCA
+    >>> episode = run(Trial(name="empty", duration=1.0, crowd=ORCA()))
+    >>> episode.outcome, episode.steps, len(episode.times)
+    ('finished', 20, 11)
+    """
+    if out is None:
+        return simulate(trial, seed, progress, clock)
+    log, outcome, steps = _driven(Log, trial, seed, out, progress, clock)
+    return log.episode(outcome, steps)
+
+
+def record(
+    trial: Trial,
+    seed: int | None = None,
+    out: Path | str | None = None,
+    progress: Progress | None = None,
+    clock: Clock | None = None,
+) -> Summary:
+    """Run a trial as :func:`run` does, but keep no arrays: memory does not grow with the length of the run.
+
+    >>> from crowdbot.models import ORCA
+    >>> record(Trial(name="empty", duration=1.0, crowd=ORCA())).outcome
+    'finished'
+    """
+    tally, outcome, steps = _driven(Tally, trial, seed, out, progress, clock)
+    return tally.summary(outcome, steps, None if out is None else target(out))
+
+
+def _driven(
+    kind: type[T],
+    trial: Trial,
+    seed: int | None,
+    out: Path | str | None,
+    progress: Progress | None,
+    clock: Clock | None,
+) -> tuple[T, str, int]:
+    chosen = trial.seed if seed is None else int(seed)
+    check_trial(trial, chosen)
+    tally = kind(trial, chosen)
+    simulation = Simulation(trial, chosen, clock)
+    with contextlib.ExitStack() as stack:
+        stop = stack.enter_context(stopping())
+        sinks: list[Sink] = [tally]
+        if out is None:
+            return tally, drive(simulation, sinks, stop, progress), simulation.tick
+        recorder = stack.enter_context(Recorder(target(out), tally))
+        outcome = drive(simulation, [tally, recorder], stop, progress)
+        recorder.complete(outcome, simulation.tick)
+        return tally, outcome, simulation.tick
+
+
+@contextlib.contextmanager
+def opened(
+    trial: Trial,
+    seed: int | None = None,
+    out: Path | str | None = None,
+    clock: Clock | None = None,
+    bridges: Sequence[Bridge] = (),
+) -> Iterator[Running]:
+    """Open a trial to be stepped from outside; when the context ends before the run does, it was interrupted.
+
+    >>> from crowdbot.models import ORCA
+    >>> with opened(Trial(name="empty", duration=1.0, crowd=ORCA())) as running:
+    ...     while running.outcome is None:
+    ...         _ = running.step()
+    >>> running.outcome
+    'finished'
+    """
+    chosen = trial.seed if seed is None else int(seed)
+    check_trial(trial, chosen)
+    tally = Tally(trial, chosen)
+    with contextlib.ExitStack() as stack:
+        sinks: list[Sink] = [tally]
+        recorder = None
+        if out is not None:
+            recorder = stack.enter_context(Recorder(target(out), tally))
+            sinks.append(recorder)
+        running = Running(Simulation(trial, chosen, clock), sinks, bridges)
+        yield running
+        if recorder is not None:
+            recorder.complete(running.outcome or "interrupted", running.simulation.tick)
+
+
+def target(out: Path | str) -> Path:
+    """Return the file to write: ``out`` itself when it is called .mcap, otherwise episode.mcap in it."""
+    path = Path(out)
+    file = path if path.suffix == ".mcap" else path / "episode.mcap"
+    if file.is_dir():
+        raise InputError(f"{file} is a folder; give the name of a file, or of the folder for episode.mcap")
+    if file.parent.exists() and not file.parent.is_dir():
+        raise InputError(f"{file.parent} is a file, so no episode can be written in it; give a folder")
+    return file

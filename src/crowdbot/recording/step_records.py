@@ -1,0 +1,211 @@
+"""Moments: what an episode file holds, instant by instant."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Pose
+from crowdbot.data import Tape
+from crowdbot.messages import COLLISIONS, FORCES, KIND, MAP, REST, Collided, Pushed, collided, pushed, reading_of
+from crowdbot.metrics import AgentStates
+from crowdbot.sensors import Reading, Scan
+from crowdbot.simulation import ScanRow, scan_row
+
+from .metadata import CONTACTS, DIGEST, heading_of
+
+__all__ = ["Moment", "RobotState", "Touched", "read_moments"]
+
+Floats = NDArray[np.float64]
+
+
+class Touched(NamedTuple):
+    """A contact: when [s], the robot, whom it touched (an id, a robot or ``wall``), the smallest clearance [m]."""
+
+    time: float
+    robot: str
+    other: str
+    clearance: float
+
+
+class RobotState(NamedTuple):
+    """A robot: place [m], heading [rad], velocity [m/s] in the world, and the twist in its own frame."""
+
+    x: float
+    y: float
+    heading: float
+    vx: float
+    vy: float
+    twist: tuple[float, float, float]
+
+
+@dataclass
+class Moment:
+    """One instant of a file.
+
+    Fields:
+        nanoseconds: simulated time.
+        people: who is there, without robots; None when only readings or contacts were due.
+        robots: by name.
+        commands: by name of the robot: forward [m/s], turn [rad/s], left [m/s].
+        readings: by ``robot/sensor``; none in files of crowdbot 0.4 and before.
+        scans: those of planar laser scanners, by ``robot/sensor``.
+        forces, collisions: of the physics world: of the step that ended at this instant, and those that are over.
+        contacts: of the step that ended at this instant.
+        digest: of the episode up to here, as if it were interrupted here; empty in files of format 1.
+    """
+
+    nanoseconds: int
+    people: AgentStates | None = None
+    robots: dict[str, RobotState] = field(default_factory=dict)
+    commands: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+    readings: dict[str, Reading] = field(default_factory=dict)
+    scans: dict[str, ScanRow] = field(default_factory=dict)
+    forces: list[Pushed] = field(default_factory=list)
+    collisions: list[Collided] = field(default_factory=list)
+    contacts: list[Touched] = field(default_factory=list)
+    digest: str = ""
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return self.nanoseconds / 1e9
+
+    def named(self) -> set[int]:
+        """Return the largest id of people that this instant names, if any."""
+        seen = [] if self.people is None else [int(self.people.ids.max(initial=-1))]
+        hits = [getattr(reading, "hit", None) for reading in self.readings.values()]
+        hits += [scan.hit for scan in self.scans.values()]
+        return {*seen, *(int(hit.max(initial=-1)) for hit in hits if hit is not None)}
+
+    def everyone(self, robots: Mapping[str, tuple[int, float]]) -> AgentStates:
+        """Return people and robots together.
+
+        Args:
+            robots: id and radius [m] by name.
+        """
+        people = self.people
+        assert people is not None
+        states = [(robots[name], state) for name, state in self.robots.items()]
+        rows = np.array([(s.x, s.y, s.vx, s.vy, s.heading, own[1]) for own, s in states]).reshape(-1, 6)
+        ids = np.concatenate([people.ids, np.array([own[0] for own, _ in states], dtype=np.int64)])
+        order = np.argsort(ids)
+        return AgentStates(
+            self.time,
+            ids[order],
+            np.concatenate([people.position, rows[:, 0:2]])[order],
+            np.concatenate([people.velocity, rows[:, 2:4]])[order],
+            np.concatenate([people.heading, rows[:, 4]])[order],
+            np.concatenate([people.radius, rows[:, 5]])[order],
+        )
+
+
+def read_moments(tape: Tape) -> Iterator[Moment]:
+    """Yield the instants of a file.
+
+    Raises:
+        TapeError: the bytes are not those that were written; other errors when they mean nothing.
+    """
+    from crowdbot.messages import Messages
+
+    messages = Messages()
+    for stamp, group in itertools.groupby(tape.messages(), key=lambda heard: heard.stamp):
+        decoded = [
+            (heard.topic.topic, messages.decoded(heard.data, heard.topic.kind))
+            for heard in group
+            if heard.topic.topic != "/crowd/markers" and heard.topic.kind in messages.store.types
+        ]
+        yield _moment(stamp, decoded)
+
+
+def _moment(stamp: int, messages: list[tuple[str, Any]]) -> Moment:
+    moment = Moment(stamp)
+    topics = dict(messages)
+    sensors = {topic.removesuffix(REST) for topic, message in messages if message.__msgtype__ == KIND}
+    for topic in sorted(sensors):
+        others = {name.removeprefix(topic): one for name, one in topics.items() if name.startswith(topic)}
+        reading = reading_of(topics[topic + REST], others)
+        moment.readings[topic.strip("/")] = reading
+        if isinstance(reading, Scan):
+            moment.scans[topic.strip("/")] = scan_row(reading)
+    poses: dict[str, tuple[str, float, float, float]] = {}
+    for topic, message in messages:
+        _take(moment, poses, topic, message, sensors)
+    for topic, message in messages:
+        if message.__msgtype__ == "sensor_msgs/msg/LaserScan" and topic not in sensors:
+            name = topic.strip("/")
+            moment.scans[name] = _scan(poses, name, moment.time, message)
+    return moment
+
+
+def _take(
+    moment: Moment, poses: dict[str, tuple[str, float, float, float]], topic: str, message: Any, sensors: set[str]
+) -> None:
+    """Take a message that is no reading."""
+    robot = topic.strip("/").rpartition("/")[0]
+    kind = message.__msgtype__
+    if topic == "/people":
+        moment.people = _people(moment.time, message.people)
+    elif topic == DIGEST:
+        moment.digest = str(message.data)
+    elif topic == CONTACTS:
+        moment.contacts = [Touched(moment.time, c.robot, c.other, c.clearance) for c in message.contacts]
+    elif topic == FORCES:
+        moment.forces = pushed(moment.time, message)
+    elif topic == COLLISIONS:
+        moment.collisions = collided(message)
+    elif kind == "tf2_msgs/msg/TFMessage":
+        for row in message.transforms:
+            shift = row.transform.translation
+            poses[row.child_frame_id] = row.header.frame_id, shift.x, shift.y, heading_of(row.transform.rotation)
+    elif kind == "nav_msgs/msg/Odometry" and topic not in sensors:
+        moment.robots[robot] = _robot(message)
+    elif kind == "geometry_msgs/msg/Twist":
+        moment.commands[robot] = message.linear.x, message.angular.z, message.linear.y
+
+
+def _people(time: float, people: Any) -> AgentStates:
+    numbers = np.empty((len(people), 6))
+    ids = np.empty(len(people), dtype=np.int64)
+    for k, person in enumerate(people):
+        tags = dict(zip(person.tagnames, person.tags, strict=True))
+        place, moving = person.position, person.velocity
+        ids[k] = int(person.name)
+        numbers[k] = place.x, place.y, moving.x, moving.y, float(tags["heading"]), float(tags["radius"])
+    return AgentStates(time, ids, numbers[:, 0:2], numbers[:, 2:4], numbers[:, 4], numbers[:, 5])
+
+
+def _robot(message: Any) -> RobotState:
+    pose, twist = message.pose.pose, message.twist.twist
+    heading = heading_of(pose.orientation)
+    cos, sin = math.cos(heading), math.sin(heading)
+    forward, left = twist.linear.x, twist.linear.y
+    return RobotState(
+        pose.position.x,
+        pose.position.y,
+        heading,
+        cos * forward - sin * left,
+        sin * forward + cos * left,
+        (forward, twist.angular.z, left),
+    )
+
+
+def _scan(poses: dict[str, tuple[str, float, float, float]], topic: str, time: float, message: Any) -> ScanRow:
+    carrier, *mount = poses[topic]
+    parent, *place = poses[carrier]
+    if parent != MAP:
+        raise ValueError(f"frame {carrier!r} is not in {MAP!r}")
+    pose = Pose.of(place[:2], place[2]).mounted(*mount)
+    return ScanRow(
+        time,
+        (float(pose.position[0, 0]), float(pose.position[0, 1]), float(pose.heading[0])),
+        message.angle_min + message.angle_increment * np.arange(len(message.ranges)),
+        message.ranges.astype(np.float64),
+        message.intensities.astype(np.int64),
+    )

@@ -1,0 +1,205 @@
+"""Shots: what a camera sees while a trial runs, as images."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, did_you_mean, optional, stream
+from crowdbot.sensors import NOTHING, DepthCamera, RGBCamera, distorted, spatial_pose
+from crowdbot.simulation import Carrier, Running, Simulation
+from crowdbot.trials import OVERVIEW, Camera, Mount, Trial, check_trial, overview
+
+__all__ = ["Shot", "Take", "camera_names", "shots"]
+
+SMOOTH = 0.04
+"""Films have an image about as often [s] unless told otherwise."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shot:
+    """One image.
+
+    Fields:
+        time: simulated [s].
+        rgb: ``[H, W, 3]`` red, green, blue from 0 to 255.
+        depth: ``[H, W]`` [m] along the axis of the camera, infinite for nothing; None unless asked for.
+        segmentation: ``[H, W]`` id of the person or robot; -1 nothing, -2 wall, -3 floor, -4 prop; None unless asked
+            for.
+    """
+
+    time: float
+    rgb: NDArray[np.uint8]
+    depth: NDArray[np.float64] | None = None
+    segmentation: NDArray[np.int64] | None = None
+
+
+class Take(NamedTuple):
+    """When images are made: from ``begin`` to ``end`` [s], ``rate`` for each second [Hz].
+
+    Without an end there is one image; without a rate about 25 a second, as the time step allows.
+    """
+
+    begin: float = 0.0
+    end: float | None = None
+    rate: float | None = None
+
+
+def camera_names(trial: Trial) -> tuple[str, ...]:
+    """Return the cameras of a trial: its own, ``overview``, and those of its robots as ``robot/sensor``.
+
+    >>> from crowdbot.trials import load_trial
+    >>> camera_names(load_trial("frontal"))
+    ('overview',)
+    """
+    own = [camera.name for camera in trial.cameras]
+    carried = [f"{robot.name}/{mount.name}" for robot in trial.robots for mount in robot.sensors if _looks(mount)]
+    return (*own, *([] if OVERVIEW in own else [OVERVIEW]), *carried)
+
+
+def shots(
+    trial: Trial,
+    camera: str | None = None,
+    take: Take = Take(),  # noqa: B008
+    *,
+    seed: int | None = None,
+    depth: bool = False,
+    segmentation: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> Iterator[Shot]:
+    """Run a trial and yield what a camera sees.
+
+    Args:
+        trial: without sweeps.
+        camera: see :func:`camera_names`; None is the first of the trial, or the overview.
+        take: when.
+        seed: of everything random; None is the trial's own.
+        depth, segmentation: whether these are made too.
+        progress: called with the share that is done.
+
+    Raises:
+        InputError: there is no such camera or no way to draw, or the run is over before the first image.
+        MissingExtra: mujoco is not installed.
+
+    >>> from crowdbot.trials import load_trial
+    >>> [shot.rgb.shape for shot in shots(load_trial("frontal"), take=Take(1.0))]
+    [(600, 960, 3)]
+    """
+    chosen = trial.seed if seed is None else int(seed)
+    check_trial(trial, chosen)
+    name = camera or camera_names(trial)[0]
+    if name not in camera_names(trial):
+        known = camera_names(trial)
+        raise InputError(f"{trial.name} has no camera {name!r}{did_you_mean(name, known)}; it has {', '.join(known)}")
+    _check_drawing()
+    simulation = Simulation(trial, chosen, posed=True)
+    first, last, every = _ticks(simulation, take)
+    running = Running(simulation)
+    lens = _Lens(simulation, name, chosen, depth, segmentation)
+    for tick in range(first, last + 1, every):
+        while simulation.tick < tick and running.outcome is None:
+            running.step()
+            if progress is not None:
+                progress(simulation.tick / max(1, last))
+        if simulation.tick < tick:
+            break
+        yield lens.shot()
+    if simulation.tick < first:
+        time = simulation.world.clock.time
+        raise InputError(f"{trial.name} was over at {time:g} s ({running.outcome}); take an earlier time than"
+                         f" {take.begin:g} s")  # fmt: skip
+    if progress is not None:
+        progress(1.0)
+
+
+def _ticks(simulation: Simulation, take: Take) -> tuple[int, int, int]:
+    clock, lasts = simulation.world.clock, simulation.trial.duration
+    for value in (take.begin, take.begin if take.end is None else take.end):
+        if not 0.0 <= value <= lasts:
+            raise InputError(
+                f"there is no image at {value:g} s: {simulation.trial.name} lasts from 0 to {lasts:g} s; give a time"
+                " in between"
+            )
+    first = round(take.begin / clock.dt)
+    if take.end is None:
+        return first, first, 1
+    if take.end < take.begin:
+        raise InputError(f"the film ends at {take.end:g} s, before it begins at {take.begin:g} s; give a later end")
+    if take.rate is None:
+        return first, round(take.end / clock.dt), max(1, math.ceil(SMOOTH / clock.dt - 1e-9))
+    if not 0.0 < take.rate < math.inf:
+        raise InputError(f"{take.rate:g} images a second must be finite and above 0")
+    try:
+        return first, round(take.end / clock.dt), clock.every(1.0 / take.rate)
+    except InputError:
+        steps = max(1, round(1.0 / (take.rate * clock.dt)))
+        raise InputError(
+            f"{take.rate:g} images a second: {1.0 / take.rate:g} s is not a whole number of time steps of"
+            f" {clock.dt:g} s; the nearest that is one is {1.0 / (steps * clock.dt):g} images a second"
+        ) from None
+
+
+def _check_drawing() -> None:
+    """Say at once, and not after the run, that nothing can be drawn."""
+    optional("mujoco", "an image of a trial", "sim")
+
+
+def _looks(mount: Mount) -> bool:
+    return isinstance(mount.sensor, RGBCamera | DepthCamera)
+
+
+class _Lens:
+    """A camera at work."""
+
+    def __init__(self, simulation: Simulation, name: str, seed: int, depth: bool, segmentation: bool) -> None:
+        self.simulation, self.depth, self.segmentation = simulation, depth, segmentation
+        self.rng = stream(seed, "render", name)
+        self.carrier: Carrier | None = None
+        own = {camera.name: camera for camera in simulation.trial.cameras}
+        robot, _, self.sensor = name.partition("/")
+        if self.sensor:
+            self.carrier = next(one for one in simulation.carriers if one.robot.name == robot)
+            return
+        scene = simulation.world.scene
+        self.camera: Camera = own[name] if name in own else overview(
+            simulation.trial.stage, scene.position[0, scene.active[0]])  # fmt: skip
+        self.agent = next((c.agent for c in simulation.carriers if c.robot.name == self.camera.robot), None)
+
+    def shot(self) -> Shot:
+        """Return what it sees now."""
+        rgb, depth, who = self._by_sensor() if self.carrier else self._standing()
+        ids = self.simulation.ids
+        named = None if who is None else np.where(who >= 0, ids[np.maximum(who, 0)], who)
+        return Shot(self.simulation.world.clock.time, rgb, depth, named)
+
+    def _standing(self) -> tuple[Any, Any, Any]:
+        view = self.camera.view(self.agent)
+        images = self.simulation.around.studio.images(view, depth=self.depth, segmentation=self.segmentation)
+        return (
+            images.rgb,
+            None if images.depth is None else images.depth.astype(np.float64),
+            None if images.segmentation is None else images.segmentation.astype(np.int64),
+        )
+
+    def _by_sensor(self) -> tuple[Any, Any, Any]:
+        assert self.carrier is not None
+        around = self.simulation.around
+        probe = next(one for one in self.carrier.probes if one.mount.name == self.sensor)
+        sensor: Any = probe.mount.sensor
+        camera = sensor if isinstance(sensor, RGBCamera) else RGBCamera(
+            width=sensor.width, height=sensor.height, field_of_view=sensor.field_of_view, distortion=sensor.distortion,
+            near=max(0.05, 0.25 * sensor.range_min),  # without the shell of the head around the lens
+        )  # fmt: skip
+        pose, studio = probe.pose(self.carrier.agent, around), around.studio
+        picture = camera.read(around.flat, pose, self.rng, studio)
+        if not (self.depth or self.segmentation):
+            return picture.rgb[0], None, None
+        images = studio.render(camera, spatial_pose(pose))
+        depth = distorted(images["depth"], camera.lens, np.inf)[0] if self.depth else None
+        who = distorted(images["hit"], camera.lens, NOTHING)[0] if self.segmentation else None
+        return picture.rgb[0], depth, who

@@ -1,0 +1,168 @@
+"""Album: images and films as files: PNG, GIF, WebP, MP4, or a folder of numbered PNGs."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError
+
+from .camera_images import Shot
+from .video_writer import av_module, reel
+
+__all__ = ["FILMS", "IMAGES", "Album", "painted_depth", "painted_segmentation"]
+
+IMAGES = (".png", ".jpg", ".webp")
+FILMS = (".mp4", ".gif", ".webp")
+FARTHEST = 20.0
+"""Films of depth are black from here on [m]."""
+LABELS = {-1: 0, -2: 1, -3: 2, -4: 3}
+"""Numbers in the PNG of a segmentation: nothing, wall, floor, prop; then 4 and the id of people and robots."""
+
+
+class Album:
+    """Writes shots to files; what is written appears whole or not at all.
+
+    Args:
+        path: a file with one of the endings :data:`IMAGES` (one shot) or :data:`FILMS`, or a folder.
+        film: whether there are several shots.
+        rate: of a film [Hz].
+
+    Raises:
+        InputError: the ending is unknown, or there is no such place.
+        MissingExtra: an MP4 is asked for and av is not installed.
+    """
+
+    def __init__(self, path: Path, film: bool, rate: float = 20.0) -> None:
+        self.path, self.film, self.rate = path, film, rate
+        known = FILMS if film else IMAGES
+        self.folder = path.suffix == "" or path.is_dir()
+        if not self.folder and path.suffix.lower() not in known:
+            raise InputError(
+                f"{path} must end in {', '.join(known)} for {'a film' if film else 'an image'}, or be a folder"
+            )
+        if not self.folder and path.parent.exists() and not path.parent.is_dir():
+            raise InputError(f"{path.parent} is a file; give another place for {path.name}")
+        if self.folder and path.is_file():
+            raise InputError(f"{path} is a file without an ending that is known; give {', '.join(known)}, or a folder")
+        if path.suffix.lower() == ".mp4":
+            av_module()
+
+    def write(self, shots: Iterable[Shot]) -> tuple[list[Path], int]:
+        """Write the shots, and return the files and how many shots there were.
+
+        Raises:
+            InputError: a file cannot be written.
+        """
+        shots = iter(shots)
+        first = next(shots)
+        kinds = ["rgb", *(name for name in ("depth", "segmentation") if getattr(first, name) is not None)]
+        every = itertools.chain([first], shots)
+        try:
+            (self.path if self.folder else self.path.parent).mkdir(parents=True, exist_ok=True)
+            if self.folder:
+                return self._numbered(every, kinds)
+            if not self.film:
+                return [_saved(first, kind, self._named(kind)) for kind in kinds], 1
+            return self._films(every, kinds)
+        except OSError as error:
+            raise InputError(f"{self.path} cannot be written: {error.strerror or error}; give another place") from None
+
+    def _named(self, kind: str) -> Path:
+        more = "" if kind == "rgb" else f"-{kind}"
+        other = kind != "rgb" and not self.film
+        return self.path.with_name(f"{self.path.stem}{more}{'.png' if other else self.path.suffix}")
+
+    def _numbered(self, shots: Iterator[Shot], kinds: list[str]) -> tuple[list[Path], int]:
+        files: list[Path] = []
+        count = 0
+        for shot in shots:
+            files += [_saved(shot, kind, self.path / f"{kind}-{count:05d}.png") for kind in kinds]
+            count += 1
+        return files, count
+
+    def _films(self, shots: Iterator[Shot], kinds: list[str]) -> tuple[list[Path], int]:
+        reels = [reel(self._named(kind), self.rate) for kind in kinds]
+        count = 0
+        try:
+            for shot in shots:
+                count += 1
+                for kind, one in zip(kinds, reels, strict=True):
+                    one.add(_painted(shot, kind))
+            return [one.finished() for one in reels], count
+        finally:
+            for one in reels:
+                one.abandoned()
+
+
+def _saved(shot: Shot, kind: str, path: Path) -> Path:
+    """Write one image: depth in millimetres with 16 bits, a segmentation by numbers with a palette."""
+    from PIL import Image
+
+    if kind == "rgb":
+        image = Image.fromarray(shot.rgb)
+    elif kind == "depth":
+        assert shot.depth is not None
+        metres = np.where(np.isfinite(shot.depth), shot.depth, 0.0)
+        image = Image.fromarray(np.clip(np.round(1000.0 * metres), 0, 65_535).astype(np.uint16))
+    else:
+        assert shot.segmentation is not None
+        image = Image.fromarray(_numbers(shot.segmentation), mode="P")
+        image.putpalette(_palette().ravel().tolist())
+    part = path.with_name(f".{path.name}.part")
+    kinds = {".png": "PNG", ".jpg": "JPEG", ".webp": "WEBP"}
+    try:
+        image.save(part, format=kinds[path.suffix.lower()])
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+    return path
+
+
+def _painted(shot: Shot, kind: str) -> NDArray[np.uint8]:
+    if kind == "rgb":
+        return shot.rgb
+    if kind == "depth":
+        assert shot.depth is not None
+        return painted_depth(shot.depth)
+    assert shot.segmentation is not None
+    return painted_segmentation(shot.segmentation)
+
+
+def painted_depth(depth: NDArray[np.float64]) -> NDArray[np.uint8]:
+    """Return depth ``[H, W]`` [m] as a grey image ``[H, W, 3]``: near is white, 20 m and nothing are black.
+
+    >>> painted_depth(np.array([[0.0, 10.0, np.inf]]))[0, :, 0].tolist()
+    [255, 128, 0]
+    """
+    grey = np.round(255.0 * (1.0 - np.clip(np.where(np.isfinite(depth), depth, FARTHEST) / FARTHEST, 0.0, 1.0)))
+    return np.repeat(grey.astype(np.uint8)[..., None], 3, axis=-1)
+
+
+def painted_segmentation(who: NDArray[np.int64]) -> NDArray[np.uint8]:
+    """Return a segmentation ``[H, W]`` as an image ``[H, W, 3]``: everybody in an own colour, nothing black.
+
+    >>> painted_segmentation(np.array([[-1, -3, 5]])).shape
+    (1, 3, 3)
+    """
+    return _palette()[_numbers(who)]
+
+
+def _numbers(who: NDArray[np.int64]) -> NDArray[np.uint8]:
+    found = 4 + who % 252
+    for code, number in LABELS.items():
+        found = np.where(who == code, number, found)
+    return found.astype(np.uint8)
+
+
+def _palette() -> NDArray[np.uint8]:
+    """Return ``[256, 3]``: black, then greys, then hues that differ from one number to the next."""
+    hue = (np.arange(252) * 0.618034) % 1.0
+    turn = (hue[:, None] * 6.0 + np.array([0.0, 4.0, 2.0])) % 6.0
+    bright = np.clip(np.abs(turn - 3.0) - 1.0, 0.0, 1.0)
+    people = np.round(255.0 * (0.25 + 0.75 * bright))
+    return np.concatenate([[[0, 0, 0], [150, 150, 150], [90, 90, 90], [200, 170, 120]], people]).astype(np.uint8)

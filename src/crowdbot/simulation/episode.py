@@ -1,0 +1,198 @@
+"""Episode: what happened in one run of a trial, as arrays over recorded instants."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError
+from crowdbot.data import Trajectories
+from crowdbot.sensors import Reading, Scan, planar_pose
+from crowdbot.trials import Trial
+
+from .simulation import Frame
+from .statistics import Digest, Tally, present
+
+__all__ = ["Digest", "Episode", "Log", "ScanRow", "scan_row", "tracks_of"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ScanRow:
+    """One scan of one sensor.
+
+    Fields:
+        time: [s].
+        pose: x, y [m] and heading [rad] of the sensor in the world.
+        angles, ranges: ``[R]`` [rad], [m]; ranges as in :class:`crowdbot.sensors.Scan`.
+        hit: ``[R]`` index of the agent that was hit, -1 nothing, -2 a wall.
+    """
+
+    time: float
+    pose: tuple[float, float, float]
+    angles: Floats
+    ranges: Floats
+    hit: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Episode:
+    """What happened in one run: T recorded instants, A agents, R robots.
+
+    Agents are everybody who was ever there: people at the beginning first, then robots, then people in the order in
+    which they came in. Each has a column of the arrays and the own id.
+
+    Fields:
+        trial, seed: what was run.
+        outcome: ``success``, ``collision`` or ``timeout``; ``finished`` when there was no robot, ``interrupted`` when
+            it was stopped from outside.
+        steps: number of time steps done.
+        times: ``[T]`` [s].
+        position, velocity: ``[T, A, 2]`` [m], [m/s]; 0 for who is not there.
+        heading: ``[T, A]`` [rad].
+        radius: ``[A]`` [m]; 0 for who was there between two recorded instants only.
+        active: ``[T, A]`` who is there.
+        ids: ``[A]`` identity in recordings and tracks.
+        robots: indices of the robots, in the order of the trial.
+        twists, commands: ``[T, R, 3]`` forward [m/s], turn [rad/s], left [m/s]: how each robot moves, and what it is
+            asked to do from this instant on.
+        readings: by ``robot/sensor``, everything that was measured.
+        metrics: of the first robot; those of others are called ``name.metric``. See ``NAVIGATION_METRICS``.
+        digest: hash of every recorded array, reading, command and the outcome; equal exactly when these are.
+    """
+
+    trial: Trial
+    seed: int
+    outcome: str
+    steps: int
+    times: Floats
+    position: Floats
+    velocity: Floats
+    heading: Floats
+    radius: Floats
+    active: NDArray[np.bool_]
+    ids: NDArray[np.int64]
+    robots: tuple[int, ...]
+    twists: Floats
+    commands: Floats
+    readings: Mapping[str, tuple[Reading, ...]]
+    metrics: Mapping[str, float]
+    digest: str
+
+    @property
+    def walls(self) -> tuple[Floats, ...]:
+        """Rings ``[N, 2]`` [m] of the stage."""
+        return self.trial.stage.rings
+
+    @property
+    def scans(self) -> tuple[ScanRow, ...]:
+        """What the first laser scanner of the first robot measured."""
+        for readings in self.readings.values():
+            rows = tuple(scan_row(reading) for reading in readings if isinstance(reading, Scan))
+            if rows:
+                return rows
+        return ()
+
+    def tracks(self, dt: float = 0.4) -> Trajectories:
+        """Return people and robots every ``dt`` [s] as trajectories; frame k is at k times ``dt``.
+
+        Raises:
+            InputError: ``dt`` is not a whole number of recording periods.
+        """
+        return tracks_of(self, self.trial.name, dt)
+
+
+def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
+    """Return the trajectories of an episode, run or read."""
+    wanted = np.arange(math.floor(float(view.times[-1]) / dt + 1e-9) + 1) * dt
+    rows = np.clip(np.searchsorted(view.times, wanted - 1e-6), 0, len(view.times) - 1)
+    if np.any(np.abs(view.times[rows] - wanted) > 1e-6):
+        period = float(view.times[1] - view.times[0])
+        raise InputError(f"tracks every {dt} s: the episode was recorded every {period:g} s, dt must be a multiple")
+    frame, agent = np.nonzero(view.active[rows])
+    place = view.position[rows[frame], agent]
+    return Trajectories(
+        view.ids[agent],
+        frame,
+        place[:, 0],
+        place[:, 1],
+        row_rate=1.0 / dt,
+        frame_step=1,
+        name=name,
+        note="simulated",
+        robots=frozenset(int(view.ids[robot]) for robot in view.robots),
+        walls=tuple(view.walls),
+    )
+
+
+class Log(Tally):
+    """Keeps what an episode is made of while it runs.
+
+    Args:
+        trial, seed, digest: as of :class:`Tally`.
+    """
+
+    def __init__(self, trial: Trial, seed: int, digest: Digest | None = None) -> None:
+        super().__init__(trial, seed, digest)
+        self.frames: list[tuple[NDArray[Any], ...]] = []
+        self.times: list[float] = []
+        self.bodies: dict[int, float] = {}
+        self.readings: dict[str, list[Reading]] = {}
+
+    def keep(self, frame: Frame) -> None:
+        """Keep an instant that the digest has already."""
+        super().keep(frame)
+        for robot, mount, reading in frame.readings:
+            self.readings.setdefault(f"{robot.name}/{mount.name}", []).append(reading)
+        if frame.due:
+            self.times.append(frame.nanoseconds / 1e9)
+            here = frame.scene.active[0]
+            self.bodies |= zip(frame.ids[here].tolist(), frame.scene.radius[0, here].tolist(), strict=True)
+            self.frames.append((frame.ids, *present(frame), frame.twists, frame.commands))
+
+    def episode(self, outcome: str, steps: int) -> Episode:
+        """Return the episode."""
+        ids, *arrays, twists, commands = ([*column] for column in zip(*self.frames, strict=True))
+        first = self.trial.people
+        robots = tuple(range(first, first + len(self.trial.robots)))
+        position, velocity, heading, active = (_by_person(column, ids, self.agents) for column in arrays)
+        return Episode(
+            self.trial,
+            self.seed,
+            outcome,
+            steps,
+            np.array(self.times),
+            position,
+            velocity,
+            heading,
+            np.array([self.bodies.get(who, 0.0) for who in range(self.agents)]),
+            active,
+            np.arange(self.agents, dtype=np.int64),
+            robots,
+            np.stack(twists),
+            np.stack(commands),
+            {name: tuple(rows) for name, rows in self.readings.items()},
+            self.metrics(outcome),
+            self.digest.ended(outcome),
+        )
+
+
+def _by_person(rows: Sequence[NDArray[Any]], ids: Sequence[NDArray[np.int64]], agents: int) -> NDArray[Any]:
+    """Return ``[T, agents, ...]``, a column for every id, of rows ``[A, ...]`` whose places belong to ``ids``."""
+    out = np.zeros((len(rows), agents, *rows[0].shape[1:]), dtype=rows[0].dtype)
+    for k, (row, who) in enumerate(zip(rows, ids, strict=True)):
+        out[k, who[who >= 0]] = row[who >= 0]
+    return out
+
+
+def scan_row(scan: Scan) -> ScanRow:
+    """Return a scan of one environment as a row."""
+    pose = planar_pose(scan.pose)
+    (x, y), heading = pose.position[0], pose.heading[0]
+    return ScanRow(scan.time, (float(x), float(y), float(heading)), scan.angles, scan.ranges[0], scan.hit[0])

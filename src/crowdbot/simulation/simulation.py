@@ -1,0 +1,373 @@
+"""Simulation: a trial that is running, one step of time at a time.
+
+The order of a step, from tick k to tick k + 1 (docs/concepts/steps.md tells why):
+
+1. **time**: the clock allows the step: at once (free), when it is due (paced), or when it is told (external);
+2. **crowd**: people walk, from the scene of tick k;
+3. **robots**: drives follow the commands the robots hold, from the same scene of tick k;
+4. **physics**: bodies that overlap are pushed apart; contacts are found, swept over the step; the scene is at k + 1;
+5. **people's bodies**: who has arrived or is in an exit leaves, others come in; contacts and arrivals are judged;
+6. **sensors** that are due measure the new scene, then navigators that are due decide; commands are held meanwhile;
+7. **bridges** pass on what was measured and may give robots other commands;
+8. **recorders** write what is due: scene, readings, contacts and commands.
+
+At tick 0 only 6 to 8 happen. A sensor, a navigator and a recorder are due every n-th tick, n being whole.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Clock, InputError, Scene, TrialError, Twist
+from crowdbot.metrics import wall_clearance
+from crowdbot.metrics.contacts import HOLD
+from crowdbot.navigation import Limits, Observation
+from crowdbot.sensors import Reading, Scan
+from crowdbot.trials import Mount, Robot, Trial, cast_of, place
+from crowdbot.world import CommandDelay, Pending, Stepping, Twists, alone
+
+from .mounted_sensor import Probe, probes_of
+from .sensor_view import Surroundings
+from .termination import ended, ways_out
+from .world_builder import limits_of, start_scene, world_of
+
+if TYPE_CHECKING:
+    from crowdbot.world import BodyForce, Collision, Party
+
+__all__ = ["Carrier", "Frame", "Simulation", "Touch", "start_scene"]
+
+INSTANT = 1e-9
+"""Times [s] that differ by less are the same."""
+ARRIVED = 0.3
+"""People also leave this near [m] to their own point of the goal zone."""
+
+
+WALL = -2
+"""A wall, where otherwise the id of somebody who was touched stands; as in scans."""
+
+
+class Touch(NamedTuple):
+    """A robot and what it touched during a step: their ids (-2: a wall) and the smallest clearance [m], negative."""
+
+    robot: int
+    other: int
+    clearance: float
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What is recorded at one instant.
+
+    Fields:
+        tick: number of steps since the beginning.
+        nanoseconds: simulated time [ns].
+        scene: people who were there at the beginning, robots, and who came in or left; E is 1.
+        ids: ``[A]`` who is who in the scene; a place may be taken by one person after the other.
+        twists, commands: ``[R, 3]`` forward [m/s], turn [rad/s], left [m/s] of each robot: as it moves, as it is asked.
+        readings: what was measured at this instant, with who measured it; scans hit people by their ids.
+        due: whether the scene is to be recorded; otherwise only the readings and contacts are.
+        touches: the contacts of the step that ended now.
+        forces: in the physics world what bodies did to each other in that step.
+        collisions: in the physics world those that have come to an end since the last frame.
+    """
+
+    tick: int
+    nanoseconds: int
+    scene: Scene
+    ids: NDArray[np.int64]
+    twists: NDArray[np.float64]
+    commands: NDArray[np.float64]
+    readings: tuple[tuple[Robot, Mount, Reading], ...]
+    due: bool
+    touches: tuple[Touch, ...] = ()
+    forces: tuple[BodyForce, ...] = ()
+    collisions: tuple[Collision, ...] = ()
+
+
+@dataclass
+class Carrier:
+    """A robot that is running: its place among the agents, what its sensors said last and what it is asked to do."""
+
+    robot: Robot
+    agent: int
+    limits: Limits
+    control_every: int
+    probes: tuple[Probe, ...]
+    readings: dict[str, Reading] = field(default_factory=dict)
+    seen: dict[str, NDArray[np.int64]] = field(default_factory=dict)
+    """Ids of those whom each sensor showed last."""
+    command: Twist = field(default_factory=Twist)
+    memory: Any = None
+    """Memory of the navigator, once it has begun."""
+    begun: bool = False
+    arrived: bool = False
+    pending: tuple[Pending, ...] = ()
+    in_force: Twist | Twists = field(default_factory=Twist)
+    """Of a drive with latency in the plane: commands on their way, and the one that the wheels follow."""
+
+    def obeyed(self, dt: float) -> Twist | Twists:
+        """Return the command that the wheels follow in the next step; the physics world delays it by itself."""
+        if self.robot.latency == 0.0:
+            return self.command
+        delay = CommandDelay(self.robot.latency)
+        self.pending, self.in_force = delay.step(self.pending, self.in_force, self.command, dt)
+        return self.in_force
+
+
+class Simulation:
+    """A trial that is running.
+
+    Args:
+        trial, seed: what runs.
+        clock: who allows the steps, at tick 0 and with the time step of the trial; None: a free clock.
+        posed: whether people have bodies although no sensor looks at them, for who draws them.
+
+    Attributes:
+        around: the world as sensors and cameras see it.
+        world: who moves people and robots, and counts the time.
+        carriers: the robots.
+        event: ``success`` or ``collision`` once that has happened, whichever came first.
+        touches: contacts of the latest step.
+        begun: whether the parts 6 to 8 of tick 0 are done.
+        ended: the outcome once another condition of the trial for its end holds.
+
+    Raises:
+        TrialError: people do not fit with this seed.
+        InputError: the clock has other steps, or has run before.
+
+    >>> from crowdbot.models import ORCA
+    >>> simulation = Simulation(Trial(name="empty", duration=1.0, crowd=ORCA()), seed=0)
+    >>> simulation.step()
+    >>> simulation.frame().nanoseconds
+    50000000
+    """
+
+    def __init__(self, trial: Trial, seed: int, clock: Clock | None = None, *, posed: bool = False) -> None:
+        self.trial = trial
+        self.seed = seed
+        recorded = [(one, one.walks(trial.duration)) for one in trial.recorded]
+        people, problems = place(trial.stage, trial.spawners, trial.robots, seed, trial.agents, recorded)
+        if problems:
+            what = ((type(one).__name__.lower(), one.name, sentence) for one, sentence in problems)
+            raise TrialError(*(f"trial {trial.name!r}: {word} {name!r}: {sentence}" for word, name, sentence in what))
+        self.people = people
+        self.world, figures = world_of(trial, people, seed)
+        if posed and figures is None:
+            figures = cast_of(trial, people, self.world.scene.shape[1], seed)
+        skins = trial.bodies == "skins" or any(m.sensor.sees_skins for r in trial.robots for m in r.sensors)
+        self.around = Surroundings(trial, self.world, figures, seed, skins)
+        self.carriers = [self._carrier(robot, len(people) + k) for k, robot in enumerate(trial.robots)]
+        self.event: str | None = None
+        self.touches: tuple[Touch, ...] = ()
+        self.begun = False
+        if clock is not None:
+            self._keep_time(clock)
+        self.ended: str | None = None
+        self._segments = trial.stage.as_walls().segments()
+        self._ways_out = ways_out(people)
+        self._told = 0
+
+    def step(self) -> None:
+        """Go one step on: parts 1 to 5 of the order."""
+        alone(self.stepping())
+
+    def stepping(self) -> Stepping[None]:
+        """Go one step on, and ask somebody else how the crowd walks: see :func:`crowdbot.simulation.run_batch`."""
+        before, ids = self.world.scene, self.ids.copy()
+        physics = self.trial.world == "physics"
+        yield from self.world.stepping(
+            {c.agent: c.command if physics else c.obeyed(self.world.dt) for c in self.carriers}
+        )
+        self._let_leave()
+        self.around.moved()
+        self._judge(before, ids)
+
+    def sense(self) -> tuple[tuple[Robot, Mount, Reading], ...]:
+        """Let the sensors that are due measure, and return what arrives now: the first half of part 6."""
+        new = []
+        for carrier in self.carriers:
+            for probe in carrier.probes:
+                name = probe.mount.name
+                for told in probe.work(self.tick, carrier.agent, self.around, self.ids):
+                    carrier.readings[name] = told.reading
+                    if told.seen is not None:
+                        carrier.seen[name] = told.seen
+                    new.append((carrier.robot, probe.mount, told.reading))
+        return tuple(new)
+
+    def decide(self) -> None:
+        """Ask the navigators that are due: the second half of part 6."""
+        for carrier in self.carriers:
+            if self.tick % carrier.control_every == 0:
+                self._decide(carrier)
+
+    def _decide(self, carrier: Carrier) -> None:
+        navigator, observation = carrier.robot.navigator, self.observation(carrier)
+        if not carrier.begun:
+            carrier.memory, carrier.begun = navigator.begin(observation), True
+        action, carrier.memory = navigator.decide(observation, carrier.memory, robot=carrier.robot.name)
+        carrier.command = action.twist
+
+    def observation(self, carrier: Carrier) -> Observation:
+        """Return what a robot knows: of the people, those whom its sensors showed last, as by one beam of a scan.
+
+        These it knows by their true positions and velocities, as from a perfect tracker.
+        """
+        scene = self.around.flat
+        seen = np.zeros(scene.shape[1], dtype=np.bool_)
+        for hit in carrier.seen.values():
+            seen |= np.isin(self.ids, hit)
+        scans = [reading for reading in carrier.readings.values() if isinstance(reading, Scan)]
+        return Observation.of(
+            scene,
+            carrier.agent,
+            carrier.limits,
+            dt=carrier.robot.control_period,
+            twist=self.world.twists[carrier.agent].at(0),
+            seen=seen,
+            scan=scans[0] if scans else None,
+        )
+
+    def frame(
+        self, readings: tuple[tuple[Robot, Mount, Reading], ...] = (), due: bool = True, last: bool = False
+    ) -> Frame:
+        """Return what is to be recorded of this instant: part 8; the ``last`` one has collisions that go on."""
+        twists = [self.world.twists[carrier.agent].at(0) for carrier in self.carriers]
+        return Frame(
+            self.tick,
+            self.world.clock.nanoseconds,
+            self.world.scene,
+            self.ids.copy(),
+            _rows(twists),
+            _rows([carrier.command for carrier in self.carriers]),
+            readings,
+            due,
+            self.touches,
+            self.forces,
+            self._collisions(last),
+        )
+
+    @property
+    def forces(self) -> tuple[BodyForce, ...]:
+        """What bodies of the physics world did to each other in the latest step; none in the plane."""
+        return tuple(getattr(self.world, "forces", ()))
+
+    @property
+    def eventful(self) -> bool:
+        """Whether something has happened that is recorded even when no scene is due."""
+        return bool(self.touches or self.forces)
+
+    def _collisions(self, last: bool) -> tuple[Collision, ...]:
+        """Return the collisions that have ended since they were asked for before, by their ends."""
+        world: Any = self.world
+        if self.trial.world != "physics":
+            return ()
+        now = self.world.clock.time
+        over = [one for one in world.collisions if last or now - one.end > HOLD + INSTANT]
+        over.sort(key=lambda one: (one.end, one.begin, one.first, one.second))
+        new, self._told = over[self._told :], len(over)
+        return tuple(new)
+
+    def turn_to(self, trial: Trial, seed: int) -> None:
+        """Go on by another trial; see :func:`crowdbot.simulation.overrides.turn_to`, which changes the world first."""
+        self.trial, self.seed = trial, seed
+        self.around.trial = trial
+        self._segments = trial.stage.as_walls().segments()
+
+    def ask(self, robot: str, command: Twist) -> None:
+        """Give a robot another command, which it holds until its navigator decides again: for bridges, part 7.
+
+        Raises:
+            InputError: there is no robot of this name.
+        """
+        for carrier in self.carriers:
+            if carrier.robot.name == robot:
+                carrier.command = Twist(*map(float, command))
+                return
+        known = ", ".join(carrier.robot.name for carrier in self.carriers) or "none"
+        raise InputError(f"there is no robot {robot!r}; the trial has {known}")
+
+    @property
+    def tick(self) -> int:
+        """Number of steps since the beginning."""
+        return self.world.clock.tick
+
+    @property
+    def ids(self) -> NDArray[np.int64]:
+        """Who is who ``[A]``."""
+        return np.asarray(self.world.ids[0])
+
+    def _carrier(self, robot: Robot, agent: int) -> Carrier:
+        every = self.world.clock.every
+        return Carrier(
+            robot,
+            agent,
+            limits_of(robot.drive),
+            every(robot.control_period),
+            probes_of(self.trial, robot, self.world.clock, self.seed),
+        )
+
+    def _keep_time(self, clock: Clock) -> None:
+        own = self.world.clock
+        if clock.tick or clock.step_ns != own.step_ns:
+            raise InputError(
+                f"the clock is at tick {clock.tick} with steps of {clock.dt} s, but the trial begins at tick 0 with"
+                f" steps of {own.dt} s"
+            )
+        self.world.clock = clock
+
+    def _let_leave(self) -> None:
+        import shapely
+
+        scene = self.world.scene
+        gone = np.zeros(scene.shape[1], dtype=np.bool_)
+        for members, zone in self._ways_out:
+            there = members[scene.active[0, members] & (self.ids[members] == members)]
+            if len(there):
+                x, y = scene.position[0, there].T
+                away = np.hypot(*(scene.goal[0, there] - scene.position[0, there]).T)
+                gone[there] = shapely.contains_xy(zone, x, y) | (away < ARRIVED)
+        if np.any(gone):
+            self.world.scene = scene.replace(active=scene.active & ~gone)
+
+    def _judge(self, before: Scene, ids: NDArray[np.int64]) -> None:
+        """Find contacts and arrivals; ``ids`` are from before the step, since the place of who left may be taken."""
+        now = self.world.scene
+        touches = [Touch(int(ids[one.robot]), int(ids[one.other]), one.clearance) for one in self.world.contacts]
+        for carrier in self.carriers:
+            path = np.stack([before.position[0, carrier.agent], now.position[0, carrier.agent]])
+            gap = self._wall_gap(carrier, path)
+            if gap < 0.0:
+                touches.append(Touch(int(ids[carrier.agent]), WALL, gap))
+            away = float(np.hypot(*(path[1] - np.array(carrier.robot.goal.position))))
+            carrier.arrived |= away < carrier.robot.goal.tolerance
+        self.touches = tuple(touches)
+        collided = bool(touches)
+        if self.event is None and collided:
+            self.event = "collision"
+        elif self.event is None and self.carriers and all(carrier.arrived for carrier in self.carriers):
+            self.event = "success"
+        if self.ended is None:
+            self.ended = ended(self)
+
+    def _wall_gap(self, carrier: Carrier, path: NDArray[np.float64]) -> float:
+        """Return the clearance [m] of a robot to what stands fast, below 0 when they touch."""
+        if self.trial.world != "physics":
+            return float(wall_clearance(path, carrier.robot.radius, self._segments)[1])
+        depth = [one.depth for one in self.forces if one.first == ("robot", carrier.agent) and self._fast(one.second)]
+        return -max(*depth, 1e-9) if depth else math.inf
+
+    def _fast(self, party: Party) -> bool:
+        if party.kind == "prop":
+            return not self.trial.stage.props[party.number].prop().movable
+        return party.kind == "wall"
+
+
+def _rows(twists: Sequence[Twist]) -> NDArray[np.float64]:
+    return np.array([tuple(twist) for twist in twists], dtype=np.float64).reshape(-1, 3)

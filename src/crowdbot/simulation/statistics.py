@@ -1,0 +1,179 @@
+"""Tally: what is known of an episode without keeping it: its digest, who was there, the metrics of its robots."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Pose, SpatialPose
+from crowdbot.metrics import AgentStates, NavigationMetrics
+from crowdbot.trials import Trial
+
+from .simulation import Frame
+
+__all__ = ["Digest", "Summary", "Tally", "present", "robot_metrics"]
+
+
+@dataclass(frozen=True)
+class Summary:
+    """How a run went, without its arrays.
+
+    Fields:
+        trial, seed: what was run.
+        outcome, steps, digest, metrics: as those of :class:`Episode`.
+        begin, end: times of the first and the last recorded instant [s].
+        agents: how many people and robots there ever were.
+        path: the recording, if there is one.
+    """
+
+    trial: Trial
+    seed: int
+    outcome: str
+    steps: int
+    begin: float
+    end: float
+    agents: int
+    metrics: Mapping[str, float]
+    digest: str
+    path: Path | None = None
+
+
+class Digest:
+    """The hash of an episode, made while it runs."""
+
+    def __init__(self) -> None:
+        self._sum = hashlib.blake2b(digest_size=16)
+
+    def take(self, frame: Frame) -> None:
+        """Add an instant: every array of its readings, then, when it is due, of its scene, then forces."""
+        for robot, mount, reading in frame.readings:
+            self._sum.update(f"reading {frame.nanoseconds} {robot.name}/{mount.name}\n".encode())
+            for field in dataclasses.fields(reading):
+                self._sum.update(_bytes(getattr(reading, field.name)))
+        if frame.due:
+            self._sum.update(f"frame {frame.nanoseconds}\n".encode())
+            who = [] if np.array_equal(frame.ids, np.arange(len(frame.ids))) else [frame.ids]
+            for array in (*who, *present(frame), frame.twists, frame.commands):
+                self._sum.update(_bytes(array))
+        for force in frame.forces:
+            self._sum.update(f"force {tuple(force)!r}\n".encode())
+        for collision in frame.collisions:
+            self._sum.update(f"collision {dataclasses.astuple(collision)!r}\n".encode())
+
+    def ended(self, outcome: str) -> str:
+        """Return the hash of everything so far and the outcome."""
+        whole = self._sum.copy()
+        whole.update(f"outcome {outcome}\n".encode())
+        return whole.hexdigest()
+
+
+class Tally:
+    """Counts and measures while an episode runs.
+
+    Args:
+        trial, seed: what runs.
+        digest: that of the time before the first instant, None when there is none.
+    """
+
+    def __init__(self, trial: Trial, seed: int, digest: Digest | None = None) -> None:
+        self.trial, self.seed = trial, seed
+        self.digest = digest or Digest()
+        self.agents = trial.people + len(trial.robots)
+        self.begin = self.end = math.nan
+        self._touching: set[int] = set()
+        walls = trial.stage.as_walls().segments()
+        self.travels = [
+            NavigationMetrics(trial.people + k, robot.radius, robot.goal.position, robot.goal.tolerance, walls=walls)
+            for k, robot in enumerate(trial.robots)
+        ]
+
+    def take(self, frame: Frame) -> None:
+        """Take an instant."""
+        self.digest.take(frame)
+        self.keep(frame)
+
+    def keep(self, frame: Frame) -> None:
+        """Take an instant that the digest has already."""
+        self.agents = max(self.agents, 1 + int(frame.ids.max(initial=-1)))
+        self._touching |= {who for one in frame.touches for who in (one.robot, one.other)}
+        if frame.due:
+            self.end = frame.nanoseconds / 1e9
+            self.begin = self.end if math.isnan(self.begin) else self.begin
+            if self.travels:
+                now = _instant(frame)
+                for travel in self.travels:
+                    travel.update(now, travel.robot in self._touching)
+            self._touching = set()
+
+    def metrics(self, outcome: str) -> dict[str, float]:
+        """Return the metrics of every robot."""
+        return robot_metrics(self.travels, [robot.name for robot in self.trial.robots], outcome)
+
+    def summary(self, outcome: str, steps: int, path: Path | None = None) -> Summary:
+        """Return how the run went."""
+        return Summary(
+            self.trial,
+            self.seed,
+            outcome,
+            steps,
+            self.begin,
+            self.end,
+            self.agents,
+            self.metrics(outcome),
+            self.digest.ended(outcome),
+            path,
+        )
+
+
+def robot_metrics(travels: Sequence[NavigationMetrics], names: Iterable[str], outcome: str) -> dict[str, float]:
+    """Return the metrics of every robot; the outcome of a single one is that of the run, judged in every time step."""
+    found: dict[str, float] = {}
+    for number, (travel, name) in enumerate(zip(travels, names, strict=True)):
+        values = travel.result(outcome if len(travels) == 1 else None)
+        found |= {(key if number == 0 else f"{name}.{key}"): value for key, value in values.items()}
+    return found
+
+
+def present(frame: Frame) -> tuple[NDArray[Any], ...]:
+    """Return position, velocity, heading and active of E = 1, 0 for who is not there."""
+    scene = frame.scene
+    here = scene.active[0]
+    return (
+        np.where(here[:, None], scene.position[0], 0.0),
+        np.where(here[:, None], scene.velocity[0], 0.0),
+        np.where(here, scene.heading[0], 0.0),
+        here.copy(),
+    )
+
+
+def _instant(frame: Frame) -> AgentStates:
+    scene = frame.scene
+    there = np.flatnonzero(scene.active[0])
+    there = there[np.argsort(frame.ids[there])]
+    return AgentStates(
+        frame.nanoseconds / 1e9,
+        frame.ids[there],
+        scene.position[0, there],
+        scene.velocity[0, there],
+        scene.heading[0, there],
+        scene.radius[0, there],
+    )
+
+
+def _bytes(value: Any) -> bytes:
+    if isinstance(value, Pose):
+        value = np.column_stack([value.position, value.heading])
+    elif isinstance(value, SpatialPose):
+        value = np.column_stack([value.position, value.rotation])
+    elif dataclasses.is_dataclass(value):
+        return b"".join(_bytes(getattr(value, field.name)) for field in dataclasses.fields(value))
+    array = np.ascontiguousarray(value)
+    return repr(value).encode() if array.dtype.hasobject else array.tobytes()

@@ -1,0 +1,219 @@
+"""Opening: the world of a trial before its first step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Scene, TrialError
+from crowdbot.models import CrowdModel, Mixture
+from crowdbot.navigation import Limits
+from crowdbot.trials import (
+    Agent,
+    Crowds,
+    Figures,
+    People,
+    RecordedPeople,
+    Robot,
+    Trial,
+    cast_of,
+    crowd_names,
+    expand_sweeps,
+    own,
+)
+from crowdbot.world import Journeys, PlanarWorld, Router, Script, Source, Track
+
+from .mounted_sensor import bodies_for, spatial
+
+__all__ = ["limits_of", "start_scene", "world_of"]
+
+
+def world_of(trial: Trial, people: People, seed: int) -> tuple[PlanarWorld, Figures | None]:
+    """Return the world of a trial at the beginning: people, robots, then free places for who comes in.
+
+    With it come the bodies of people, when the world has bodies or a sensor looks at them.
+
+    People are numbered first, then robots, then everybody who comes in, so that whoever is there at the beginning has
+    the number of the own place. Free places have numbers below 0.
+    """
+    if trial.sweeps:
+        count = len(expand_sweeps(trial))
+        raise TrialError(f"trial {trial.name!r} has {count} variants by its sweeps; run one of them")
+    sources = [source.source(trial.journeys, crowd_names(trial.crowd)) for source in trial.sources]
+    first = len(people)
+    scene = start_scene(trial, people, spare := _spare(trial, first, sources, seed))
+    there = first + len(trial.robots)
+    router = None if trial.routing is None else trial.routing.router(scene.walls)
+    figures = cast_of(trial, people, scene.shape[1], seed) if _embodied(trial) else None
+    journeys = _journeys(trial, people, scene.shape[1])
+    whole: dict[str, Any] = {
+        "dt": trial.step,
+        "seed": seed,
+        "berth": trial.berth,
+        "router": router,
+        "contact": None if trial.contact is None else trial.contact.bodies(),
+        "limits": None if trial.limits is None else trial.limits.kept(),
+        "journeys": journeys,
+        "sources": sources,
+        "exits": [way.out() for way in trial.exits],
+        "portals": [portal.gate() for portal in trial.portals],
+        "script": _script(people),
+        "symmetry": trial.symmetry,
+        "substeps": trial.substeps,
+        "ids": np.concatenate([np.arange(there), -1 - np.arange(spare)]),
+    }
+    model = _model(trial, people, scene.shape[1], seed)
+    robots = {first + k: robot for k, robot in enumerate(trial.robots)}
+    if trial.world == "physics":
+        world = _with_bodies(trial, scene, model, robots, figures, whole)
+    else:
+        world = PlanarWorld(scene, model, {agent: robot.drive for agent, robot in robots.items()}, **whole)
+    walkers = first - len(people.walks)
+    if walkers and (router or journeys):
+        world.scene = _setting_off(world.scene, walkers, router, journeys, people.heading)
+    return world, figures
+
+
+def _embodied(trial: Trial) -> bool:
+    """Whether anything needs the bodies of people."""
+    if trial.world == "physics":
+        return True
+    kind = bodies_for(trial)
+    return any(spatial(robot, mount, kind) for robot in trial.robots for mount in robot.sensors)
+
+
+def _with_bodies(
+    trial: Trial, scene: Scene, model: CrowdModel, robots: Mapping[int, Robot], figures: Any, whole: dict[str, Any]
+) -> PlanarWorld:
+    from crowdbot.world import PhysicsWorld
+
+    stage = trial.stage
+    return PhysicsWorld(
+        scene.replace(walls=stage.as_walls(props=False), wall_height=stage.wall_height),
+        model,
+        {agent: robot.body for agent, robot in robots.items()},
+        stage=stage.physical(),
+        people=figures.people,
+        riders=figures.riders,
+        physics_dt=trial.physics_step,
+        **whole,
+    )
+
+
+def start_scene(trial: Trial, people: People, spare: int = 0) -> Scene:
+    """Return the scene at the beginning, E = 1: people walking towards their goals, standing robots, free places."""
+    robots = trial.robots
+    away = people.goal - people.position
+    distance = np.hypot(away[:, 0], away[:, 1])
+    moving = away * (people.speed / np.maximum(distance, 1e-9))[:, None]
+    ahead = np.arctan2(moving[:, 1], moving[:, 0])
+    places = np.array([robot.position for robot in robots], dtype=np.float64).reshape(-1, 2)
+    goals = np.array([robot.goal.position for robot in robots], dtype=np.float64).reshape(-1, 2)
+    tops = np.array([limits_of(robot.drive).max_speed for robot in robots])
+    agent = np.arange(len(people) + len(robots) + spare)
+    is_robot = (agent >= len(people)) & (agent < len(people) + len(robots))
+
+    def row(crowd: Any, own: Any, free: float) -> NDArray[np.float64]:
+        return np.concatenate([crowd, own, np.full((spare, *np.shape(crowd)[1:]), free)])
+
+    return Scene.of(
+        row(people.position, places, 0.0),
+        row(moving, np.zeros((len(robots), 2)), 0.0),
+        heading=row(
+            np.where(np.isnan(people.heading), ahead, people.heading), [robot.heading for robot in robots], 0.0
+        ),
+        radius=row(people.radius, [robot.radius for robot in robots], 0.25),
+        goal=row(people.goal, goals, 0.0),
+        preferred_speed=row(people.speed, tops, 0.0),
+        max_speed=row(1.3 * people.speed, tops, 0.0),
+        active=agent < len(people) + len(robots),
+        visible=row(np.ones(len(people)), [robot.visible for robot in robots], 1.0).astype(bool),
+        external=is_robot,
+        group=row(people.group, np.full(len(robots), -1), -1.0).astype(np.int64),
+        walls=trial.stage.as_walls(),
+    )
+
+
+def limits_of(drive: Any) -> Limits:
+    """Return the limits of a drive by the names that drives use; a drive without them is taken as 1 m/s and 1 rad/s."""
+    known = {name: float(getattr(drive, name)) for name in Limits._fields if hasattr(drive, name)}
+    return Limits(**({"max_speed": 1.0, "max_turn_rate": 1.0} | known))
+
+
+def _spare(trial: Trial, first: int, sources: Sequence[Source], seed: int) -> int:
+    """Return how many free places are needed: as many as people ever come in, up to the capacity."""
+    end = trial.ticks * trial.step
+    come = sum(source.come_by(end, seed, number) for number, source in enumerate(sources))
+    return come if trial.capacity is None else min(come, max(0, trial.capacity - first))
+
+
+def _model(trial: Trial, people: People, agents: int, seed: int) -> CrowdModel:
+    """Return by what everybody walks: with several crowds a mixture in which each person has a place."""
+    if not isinstance(trial.crowd, Crowds):
+        return own(trial.crowd, seed, 0, agents, _values(people, range(len(people))))
+    which = _chosen(people, agents, "crowd", trial.crowd.names, 0)
+    models = [
+        own(model, seed, k, agents, _values(people, np.flatnonzero(which == k).tolist()))
+        for k, model in enumerate(trial.crowd.models)
+    ]
+    return Mixture(tuple(models), which)
+
+
+def _values(people: People, members: Iterable[int]) -> dict[int, dict[str, float]]:
+    """Return the own parameters of those of some people who have any."""
+    found = {}
+    for a in members:
+        owner = people.owners[people.owner[a]] if a < len(people) else None
+        if isinstance(owner, Agent) and owner.parameters:
+            found[a] = {one.name.replace("-", "_"): one.value for one in owner.parameters}
+    return found
+
+
+def _script(people: People) -> Script | None:
+    """Return the recordings that people follow."""
+    if not people.walks:
+        return None
+    first = len(people) - len(people.walks)
+    owners = [people.owners[k] for k in people.owner[first:].tolist()]
+    release = [one.near if isinstance(one, RecordedPeople) and one.mode == "reactive" else 0.0 for one in owners]
+    tracks = [Track(first + k, walk.time, walk.position) for k, walk in enumerate(people.walks)]
+    return Script(tracks, release)
+
+
+def _journeys(trial: Trial, people: People, agents: int) -> Journeys | None:
+    which = _chosen(people, agents, "journey", tuple(journey.name for journey in trial.journeys), -1)
+    if np.all(which < 0):
+        return None
+    return Journeys(tuple(journey.journey() for journey in trial.journeys), which)
+
+
+def _chosen(people: People, agents: int, word: str, names: tuple[str, ...], otherwise: int) -> NDArray[np.int64]:
+    """Return ``[A]`` the index of the journey or crowd that everybody's agent, spawner or recording names."""
+
+    def index(owner: Any) -> int:
+        name = getattr(owner, word, "")
+        return names.index(name) if name else otherwise
+
+    whole = np.full(agents, otherwise, dtype=np.int64)
+    whole[: len(people)] = np.array([index(owner) for owner in people.owners], dtype=np.int64)[people.owner]
+    return whole
+
+
+def _setting_off(
+    scene: Scene, first: int, router: Router | None, journeys: Journeys | None, given: NDArray[np.float64]
+) -> Scene:
+    """Return the scene in which the ``first`` people walk on their ways, around walls and to their first stops."""
+    position, aim = scene.position[0, :first], scene.goal[0, :first].copy()
+    if router is not None:
+        led = np.ones(first, dtype=np.bool_) if journeys is None else journeys.routed(scene)[0, :first]
+        aim[led] = router.towards(position[led], aim[led])
+    away = aim - position
+    distance = np.hypot(away[:, 0], away[:, 1])
+    velocity, heading = scene.velocity.copy(), scene.heading.copy()
+    velocity[0, :first] = away * (scene.preferred_speed[0, :first] / np.maximum(distance, 1e-9))[:, None]
+    ahead = np.arctan2(away[:, 1], away[:, 0])
+    heading[0, :first] = np.where(np.isnan(given[:first]), ahead, given[:first])
+    return scene.replace(velocity=velocity, heading=heading)

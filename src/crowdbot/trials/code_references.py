@@ -1,0 +1,71 @@
+"""Named code: the Python files that the trial of an episode would run, found without running any."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path, PurePosixPath
+
+from crowdbot.core import Element, InputError, parse_xml, read_bytes
+
+from .xml.document import parse_trial_xml
+
+__all__ = ["is_code", "named_code"]
+
+ENDINGS = (".py", ".pyc", ".pyo", ".pyw", ".pyd", ".so")
+ADDRESS = re.compile(r"([^\s,;|\"']+\.py):")
+
+
+def is_code(name: str) -> bool:
+    """Whether Python may take a file of this name for code, on any system.
+
+    >>> is_code("shy.py"), is_code("mine/SHY.PY"), is_code("__pycache__/shy.cpython-312.pyc"), is_code("hall.pgm")
+    (True, True, True, False)
+    """
+    plain = name.lower().rstrip(". ")  # as Windows reads names
+    return plain.endswith(ENDINGS) or "__pycache__" in PurePosixPath(plain).parts
+
+
+def named_code(known: Mapping[str, str], folder: Path) -> list[str]:
+    """Return the Python files that the trials of an episode name, and those that their robot folders name.
+
+    Args:
+        known: metadata of the episode.
+        folder: where the trial lies; robot folders are looked up there.
+    """
+    found: list[str] = []
+    for text in _trials(known):
+        try:
+            root = parse_trial_xml(text.encode("utf-8", "replace"), "trial", "utf-8")
+            for element in _all(root):
+                found += _files(element)
+                robot = folder / element.attributes.get("type", "") / "robot.xml"
+                if element.tag == "robot" and robot.is_file():
+                    parts = _all(parse_xml(read_bytes(robot), str(robot)))
+                    found += [f"{element.attributes['type']}/{name}" for part in parts for name in _files(part)]
+        except (InputError, OSError, ValueError):
+            continue  # so nothing of it runs, and who reads it next says why
+    return sorted(set(found))
+
+
+def _trials(known: Mapping[str, str]) -> Iterator[str]:
+    yield known["trial"]
+    try:
+        yield from (str(one["trial"]) for one in json.loads(known.get("origin", "[]")))
+    except (ValueError, TypeError, KeyError):
+        return  # who reads it next says that it is damaged
+
+
+def _all(element: Element) -> Iterator[Element]:
+    yield element
+    for child in element.children:
+        yield from _all(child)
+
+
+def _files(element: Element) -> list[str]:
+    """Return the Python files that stand in addresses of an element, or among the values of a sweep."""
+    if element.tag == "sweep":
+        return [name for text in element.attributes.values() for name in ADDRESS.findall(text)]
+    place = element.attributes.get("type", "").rpartition(":")[0]
+    return [place] if place.endswith(".py") else []

@@ -1,0 +1,326 @@
+"""The grammar of trials: what a field of the tree is called in XML, what it may be, and what it means.
+
+Trials are frozen dataclasses whose fields are made by the functions below. The reader, the writer and the checks walk
+over :func:`outline` and know nothing else, so that a new element is a new dataclass and nothing more.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import importlib
+import math
+import re
+import types
+import typing
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from crowdbot.core import Bounds, InputError, did_you_mean
+
+from .partial import is_torn
+
+__all__ = [
+    "Mistake",
+    "Part",
+    "Plug",
+    "Rule",
+    "attribute",
+    "check",
+    "child",
+    "children",
+    "mounted",
+    "outline",
+    "plugged",
+    "shown",
+]
+
+Mistake = tuple[Collection[str], str]
+"""What ``mistakes(values)`` of an element finds, whatever else is wrong in it: fields that nobody can use, and why."""
+LARGEST = 1e6
+"""No number in a trial may be larger than this, whatever its unit."""
+
+UNWRITABLE = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What one attribute may be; ``unit`` and ``about`` are for people."""
+
+    about: str
+    unit: str = ""
+    at_least: float | None = None
+    above: float | None = None
+    at_most: float | None = None
+    choices: tuple[str, ...] = ()
+    pattern: str = ""
+    points: int = 0
+
+    def problem(self, value: Any) -> str:
+        """Return what is wrong with a value as the end of a sentence, empty when it is right.
+
+        >>> Rule("number of people", at_least=0).problem(-3)
+        'must be at least 0 and at most 1000000'
+        >>> Rule("time step", unit="s", above=0.0, at_most=1.0).problem(2.5)
+        'must be at most 1 s and above 0 s'
+        """
+        if isinstance(value, str):
+            return self._wrong_word(value)
+        if isinstance(value, bool) or value is None:
+            return ""
+        if isinstance(value, tuple):
+            return self._wrong_points(value)
+        low, high = getattr(value, "extent", (value, value))
+        if not (math.isfinite(low) and math.isfinite(high)):
+            return "is not finite"
+        if self.bounds.holds(low) and self.bounds.holds(high):
+            return ""
+        too_high = dataclasses.replace(self.bounds, at_most=None).holds(low)
+        return f"must be {self.bounds.allowed(too_high)}{self._reach(low, high)}"
+
+    @functools.cached_property
+    def bounds(self) -> Bounds:
+        """What a number may be."""
+        lowest = -LARGEST if self.at_least is None and self.above is None else self.at_least
+        return Bounds(self.unit, lowest, self.above, LARGEST if self.at_most is None else self.at_most)
+
+    def _wrong_word(self, value: str) -> str:
+        if UNWRITABLE.search(value):
+            return "holds a character that XML cannot hold"
+        if self.choices and value not in self.choices:
+            return f"must be {' or '.join(self.choices)}{did_you_mean(value, self.choices)}"
+        if self.pattern and not re.fullmatch(self.pattern, value):
+            return f"must match {self.pattern} (a letter, then letters, digits or underscores)"
+        return ""
+
+    def _wrong_points(self, value: tuple[tuple[float, float], ...]) -> str:
+        if len(set(value)) < self.points:
+            return f"must be at least {self.points} different points, such as 0,0 4,0 4,2"
+        if not all(math.isfinite(number) for point in value for number in point):
+            return "is not finite"
+        if any(abs(number) > LARGEST for point in value for number in point):
+            return f"must lie within {LARGEST:.7g} {self.unit} of the origin"
+        return ""
+
+    def _reach(self, low: float, high: float) -> str:
+        return "" if low == high else f", and it reaches from {low:g} to {high:g}"
+
+
+@dataclass(frozen=True)
+class Plug:
+    """The room and the contract of a part that users can bring: the XML says ``type="..."``."""
+
+    room: str
+    contract: str
+    drawn: bool = False
+    """Whether its attributes may be distributions."""
+
+    def places(self) -> tuple[types.ModuleType, type]:
+        """Return the room and the contract class."""
+        room = importlib.import_module(f"crowdbot.{self.room}")
+        return room, getattr(room, self.contract)
+
+
+@dataclass(frozen=True)
+class Part:
+    """One field of an element.
+
+    Fields:
+        name: in Python.
+        word: in XML: of the attribute, or of the child element.
+        role: ``attribute``, ``child``, ``children``, ``plugged`` (a child element that is a plug) or ``mounted``
+            (a plug whose attributes stand in this element).
+        kind: type of the value, of children of one of them.
+        required: whether it must be given.
+        default: when it is not.
+        rule: of an attribute.
+        plug: of a plug.
+        about: one line for people.
+        at_most: largest number of child elements.
+        elements: the child elements that it takes, by word.
+        into: what makes one value of all children and the reverse, see :func:`children`.
+        optional: whether the value may be None.
+    """
+
+    name: str
+    word: str
+    role: str
+    kind: Any
+    required: bool
+    default: Any
+    rule: Rule | None
+    plug: Plug | None
+    about: str
+    at_most: int = 1
+    elements: Mapping[str, Any] = field(default_factory=dict)
+    into: Any = None
+    optional: bool = False
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """The child elements that it takes."""
+        return (self.word,) if self.role == "plugged" else tuple(self.elements)
+
+    def wrong(self, value: Any) -> str:
+        """Return what is wrong with a value as the end of a sentence; a default is always right."""
+        is_default = not self.required and value == self.default
+        return "" if self.rule is None or is_default else self.rule.problem(value)
+
+
+def attribute(
+    default: Any = dataclasses.MISSING,
+    *,
+    about: str,
+    unit: str = "",
+    at_least: float | None = None,
+    above: float | None = None,
+    at_most: float | None = None,
+    choices: tuple[str, ...] = (),
+    pattern: str = "",
+    points: int = 0,
+) -> Any:
+    """Make a field that is an XML attribute: a number, a word, true or false, points, a distribution."""
+    rule = Rule(about, unit, at_least, above, at_most, choices, pattern, points)
+    return dataclasses.field(default=default, metadata={"role": "attribute", "rule": rule, "about": about})
+
+
+def child(factory: Any = dataclasses.MISSING, *, about: str) -> Any:
+    """Make a field that is one child element; with None as its factory it may be left out, and is None then."""
+    row = {"role": "child", "about": about}
+    if factory is None:
+        return dataclasses.field(default=None, metadata=row)
+    return dataclasses.field(default_factory=factory, metadata=row)
+
+
+def children(
+    words: str | Mapping[str, type], *, about: str, at_least: int = 0, at_most: int = 10_000, into: Any = None
+) -> Any:
+    """Make a field that is any number of child elements, from ``at_least`` (0 or 1) to ``at_most``, in their order.
+
+    Args:
+        words: what each is called; several kinds are given with their classes.
+        about: one line for people.
+        at_least: whether there must be one.
+        at_most: how many there may be.
+        into: makes one value of them: ``into.gathered(children)`` is the value, ``into.spread(value)`` the children,
+            ``into.problems(children)`` yields the index of every child that does not fit to the others, and why.
+    """
+    row = {"role": "children", "words": words, "about": about, "at_most": at_most, "into": into}
+    return dataclasses.field(metadata=row) if at_least else dataclasses.field(default=(), metadata=row)
+
+
+def plugged(room: str, contract: str, *, about: str, default: Any = dataclasses.MISSING) -> Any:
+    """Make a field that is a child element with a ``type`` from a room, or with an address."""
+    row = {"role": "plugged", "plug": Plug(room, contract), "about": about}
+    return dataclasses.field(default=default, metadata=row)
+
+
+def mounted(room: str, contract: str, *, about: str, drawn: bool = False) -> Any:
+    """Make a field whose ``type`` and attributes, ``drawn`` from distributions, stand in the element itself."""
+    return dataclasses.field(metadata={"role": "mounted", "plug": Plug(room, contract, drawn), "about": about})
+
+
+@functools.cache
+def outline(cls: type) -> tuple[Part, ...]:
+    """Return the fields of an element in the order in which they are written."""
+    hints = typing.get_type_hints(cls)
+    return tuple(_part(field, hints[field.name]) for field in dataclasses.fields(cls) if "role" in field.metadata)
+
+
+def _part(field: dataclasses.Field[Any], hint: Any) -> Part:
+    row = field.metadata
+    several = row["role"] == "children" and row["into"] is None
+    kind = typing.get_args(hint)[0] if several else _without_none(hint)
+    words = row.get("words", field.name.replace("_", "-"))
+    elements = dict(words) if isinstance(words, Mapping) else {words: kind}
+    default = field.default if field.default_factory is dataclasses.MISSING else field.default_factory()
+    return Part(
+        field.name,
+        next(iter(elements)),
+        row["role"],
+        kind,
+        default is dataclasses.MISSING,
+        default,
+        row.get("rule"),
+        row.get("plug"),
+        row["about"],
+        row.get("at_most", 1),
+        elements if row["role"] in ("child", "children") else {},
+        row.get("into"),
+        type(None) in typing.get_args(hint),
+    )
+
+
+def _without_none(hint: Any) -> Any:
+    """Return the type of a value that may be left out."""
+    options = [option for option in typing.get_args(hint) if option is not type(None)]
+    return options[0] if isinstance(hint, types.UnionType) and len(options) == 1 else hint
+
+
+def check(element: Any) -> None:
+    """Bring the fields of an element to their types and raise :class:`InputError` when a value is not allowed.
+
+    To be called in ``__post_init__``. Lists become tuples, and a number becomes a distribution where one is due. Of a
+    torn element everything that could be read was judged already.
+    """
+    cls: type = type(element)
+    if is_torn(element):
+        return
+    for part in outline(cls):
+        value = getattr(element, part.name)
+        if part.role == "attribute":
+            value = _brought(element, part, value)
+        elif part.role == "children" and part.into is None:
+            value = _listed(element, part, value)
+        elif not (isinstance(value, _contract(part)) or (value is None and not part.required)):
+            raise InputError(
+                f"{cls.__name__}: {part.name} is a {type(value).__name__}, it must be a {_contract(part).__name__}"
+            )
+        object.__setattr__(element, part.name, value)
+        wrong = part.wrong(value)
+        if wrong:
+            raise InputError(f"{cls.__name__}: {part.name}={shown(value)} {wrong}")
+
+
+def _contract(part: Part) -> type:
+    return part.plug.places()[1] if part.plug else part.kind
+
+
+def _listed(element: Any, part: Part, value: Any) -> tuple[Any, ...]:
+    name = type(element).__name__
+    if not isinstance(value, list | tuple):
+        raise InputError(f"{name}: {part.name} is a {type(value).__name__}, it must be a list")
+    if len(value) > part.at_most:
+        raise InputError(f"{name}: {len(value)} {part.name} are too many, at most {part.at_most}")
+    if part.required and not value:
+        raise InputError(f"{name}: {part.name} is empty; it must hold at least one: {part.about}")
+    kinds = tuple(part.elements.values())
+    for one in value:
+        if not isinstance(one, kinds):
+            known = " or ".join(kind.__name__ for kind in kinds)
+            raise InputError(f"{name}: {part.name} holds a {type(one).__name__}, it takes {known}")
+    return tuple(value)
+
+
+def _brought(element: Any, part: Part, value: Any) -> Any:
+    if value is None and part.default is None:
+        return value
+    try:
+        if hasattr(part.kind, "of"):
+            return part.kind.of(value)
+        if part.kind in (int, float) and not isinstance(value, bool | str):
+            exact = part.kind(value)
+            if exact == value or math.isnan(value):
+                return exact
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InputError(f"{type(element).__name__}: {part.name}={shown(value)} {error}") from None
+    if type(value) is part.kind:
+        return value
+    raise InputError(f"{type(element).__name__}: {part.name}={shown(value)} is not a {part.kind.__name__}")
+
+
+def shown(value: Any, limit: int = 60) -> str:
+    """Return a value in quotes for a message, cut when it is long."""
+    text = str(value)
+    return f'"{text if len(text) <= limit else text[: limit - 3] + "..."}"'

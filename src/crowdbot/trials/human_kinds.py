@@ -1,0 +1,69 @@
+"""Words about people: the bodies and activities that their elements name."""
+
+from __future__ import annotations
+
+from crowdbot import humans
+from crowdbot.core import InputError, did_you_mean
+
+from .fields import shown
+
+__all__ = ["ABOUT_ACTIVITY", "ABOUT_BODY", "ABOUT_RIDER", "KINDS", "check_words", "rider_problems", "word_problems"]
+
+KINDS = {
+    "man": ("man",),
+    "woman": ("woman",),
+    "boy": ("boy",),
+    "girl": ("girl",),
+    "adult": ("man", "woman"),
+    "child": ("boy", "girl"),
+    "mannequin": ("mannequin",),
+}
+ABOUT_BODY = (
+    "name of a body (woman-36) or kind (man, woman, adult, boy, girl, child, mannequin); of several one is drawn"
+)
+ABOUT_RIDER = "who sits in it, as body of a person; by default nobody, and only the type wheelchair has a seat"
+ABOUT_ACTIVITY = "walk, talk, phone, bottle, text or sit; of several one is drawn"
+
+
+def check_words(body: str, activity: str) -> None:
+    """Raise unless every word is a body or an activity.
+
+    Raises:
+        InputError: one is not.
+
+    >>> check_words("woman-36 child", "talk phone")
+    >>> check_words("womn", "")
+    Traceback (most recent call last):
+    crowdbot.core.errors.InputError: body="womn" has 'womn', did you mean 'woman'?; it takes man, woman, boy, girl, \
+adult, child, mannequin or a name from crowdbot list humans
+    """
+    for problem in word_problems(body, activity):
+        raise InputError(problem)
+
+
+def word_problems(body: str, activity: str) -> list[str]:
+    """Return a sentence for every word that is no body or no activity."""
+    bodies = (*KINDS, *humans.names())
+    takes = f"{', '.join(KINDS)} or a name from crowdbot list humans"
+    wrong = [(word, "body", body, bodies, takes) for word in body.split() if word not in bodies]
+    acts = ", ".join(humans.ACTIVITIES)
+    wrong += [
+        (word, "activity", activity, humans.ACTIVITIES, acts)
+        for word in activity.split()
+        if word not in humans.ACTIVITIES
+    ]
+    return [
+        f"{what}={shown(text)} has {word[:40]!r}{did_you_mean(word, known)}; it takes {takes}"
+        for word, what, text, known, takes in wrong
+    ]
+
+
+def rider_problems(rider: str, kind: str) -> list[str]:
+    """Return what is wrong with who sits in a robot of a type.
+
+    >>> rider_problems("woman-36", "wheelchair"), rider_problems("woman", "pepper")
+    ([], ['rider="woman" needs type="wheelchair": nothing else has a seat; leave it out'])
+    """
+    if rider and kind != "wheelchair":
+        return [f'rider={shown(rider)} needs type="wheelchair": nothing else has a seat; leave it out']
+    return [problem.replace("body=", "rider=", 1) for problem in word_problems(rider, "")]

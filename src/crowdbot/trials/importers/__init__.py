@@ -1,0 +1,1 @@
+"""Trials from other sources: the original simulator, recordings of people."""

@@ -1,0 +1,126 @@
+"""From a recording to a trial: its people as the crowd, and the robot in the place of one of them."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from crowdbot import navigation
+from crowdbot.core import InputError
+from crowdbot.models import ORCA
+from crowdbot.sensors import Gaussian, Lidar2D
+from crowdbot.trials.recorded_people import RecordedPeople, Walk
+from crowdbot.trials.robot import Goal, Mount, Robot
+from crowdbot.trials.trial import Recording, Trial
+from crowdbot.world import DifferentialDrive
+
+if TYPE_CHECKING:
+    from crowdbot.data import Trajectories
+
+__all__ = ["recorded_trial"]
+
+TICK = 0.05
+"""Steps of a world are no longer than this [s], and a whole number of them lies between two rows of a recording."""
+SHORTEST = 0.01
+"""No step is made shorter than this [s] to hit frames of a counter that is finer."""
+LATER = 30.0
+"""A robot has twice as long as the person it replaces, and this much more [s]."""
+AHEAD = 1.0
+
+
+def recorded_trial(
+    path: str | Path,
+    *,
+    fps: float | None = None,
+    format: str = "",
+    units: str = "",
+    mode: str = "scripted",
+    near: float = 5.0,
+    replace: int | None = None,
+    name: str = "",
+) -> Trial:
+    """Return a trial whose crowd are the people of a recording.
+
+    Args:
+        path: of the recording; the trial names it without its folder, so it must lie beside the trial file.
+        fps, format, units: of the file, as in :func:`crowdbot.load` (default: from the file).
+        mode: ``scripted``, or ``reactive``: people nearer to the robot than ``near`` walk by a model.
+        near: [m].
+        replace: id of the person in whose place, from whose start to whose goal and at whose time a robot goes.
+        name: of the trial, by default that of the file.
+
+    Raises:
+        InputError: nobody has this id, or he or she stands still.
+        DataError: the file cannot be read.
+    """
+    path = Path(path)
+    crowd = RecordedPeople(
+        data=path.name, fps=fps, format=format, units=units, mode=mode, near=near, folder=path.parent
+    )
+    tracks = crowd.tracks()
+    step = _step(tracks)
+    period = step * round(tracks.dt / step) if tracks.dt <= 0.5 else step * max(1, round(0.1 / step))
+    recording = Recording(period=period, markers=period * math.ceil(0.5 / period - 1e-9))
+    whole = max(step, float(tracks.time[-1]))
+    robots: tuple[Robot, ...] = ()
+    if replace is not None:
+        walk = _walk_of(crowd, replace, whole)
+        crowd = RecordedPeople(
+            data=path.name, fps=fps, format=format, units=units, mode=mode, near=near, folder=path.parent,
+            begin=float(walk.time[0]), without=str(replace),
+        )  # fmt: skip
+        robots = (_robot(walk, step),)
+        whole = 2.0 * float(walk.time[-1] - walk.time[0]) + LATER
+    return Trial(
+        name=(name or path.stem)[:80] or "recorded",
+        about=f"The people of {path.name[:60]}, {mode}.",
+        duration=min(whole, 86_400.0),
+        step=step,
+        crowd=ORCA(),
+        recorded=(crowd,),
+        robots=robots,
+        recording=recording,
+        folder=path.parent,
+    )
+
+
+def _step(tracks: Trajectories) -> float:
+    """Return a time step [s] of which a whole number passes between any two frames, also across gaps of any length."""
+    shared = int(np.gcd.reduce(np.diff(np.unique(tracks.frame)), initial=tracks.frame_step))
+    base = tracks.dt * shared / tracks.frame_step
+    base = base if base >= SHORTEST else tracks.dt
+    return round(base / math.ceil(base / TICK - 1e-9), 9)
+
+
+def _walk_of(crowd: RecordedPeople, person: int, duration: float) -> Walk:
+    walks = [walk for walk in crowd.walks(duration) if walk.person == person]
+    if not walks:
+        ids = sorted({walk.person for walk in crowd.walks(duration)})
+        raise InputError(f"nobody in {crowd.data} has the id {person}; ids go from {ids[0]} to {ids[-1]}")
+    walk = max(walks, key=lambda one: float(one.time[-1] - one.time[0]))
+    if float(np.hypot(*(walk.position[-1] - walk.position[0]))) < 1.0:
+        raise InputError(f"person {person} of {crowd.data} ends less than 1 m from the start, which is no way to go")
+    return walk
+
+
+def _robot(walk: Walk, step: float) -> Robot:
+    """Return a robot from the start to the end of a walk, about as fast."""
+    way = np.hypot(*np.diff(walk.position, axis=0).T)
+    speed = float(np.clip(way.sum() / (walk.time[-1] - walk.time[0]), 0.3, 3.0))
+    later = walk.position[min(int(np.searchsorted(walk.time, walk.time[0] + AHEAD)), len(walk.time) - 1)]
+    ahead = later - walk.position[0]
+    control = step * max(1, round(0.1 / step))
+    (x, y), (goal_x, goal_y) = walk.position[[0, -1]].tolist()
+    return Robot(
+        x=x,
+        y=y,
+        heading=float(np.arctan2(ahead[1], ahead[0])),
+        control_period=control,
+        goal=Goal(goal_x, goal_y, 0.3),
+        drive=DifferentialDrive(max_speed=max(1.0, speed), max_turn_rate=1.5),
+        navigator=navigation.ORCA(speed=speed),
+        sensors=(Mount(sensor=Lidar2D(rays=360, range_max=10.0, rate=1.0 / control, noise=Gaussian(0.01))),),
+    )

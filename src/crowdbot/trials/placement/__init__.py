@@ -1,0 +1,1 @@
+"""Placement: who stands where at the beginning, with which body."""

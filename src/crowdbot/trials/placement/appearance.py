@@ -1,0 +1,116 @@
+"""Figures: who people are and what they do beside walking, as their elements say it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from crowdbot import humans
+from crowdbot.core import stream
+from crowdbot.trials.agent import Agent
+from crowdbot.trials.human_kinds import KINDS
+from crowdbot.trials.people import Spawner
+
+from .spawn_placement import People
+
+if TYPE_CHECKING:
+    from crowdbot.trials.trial import Trial
+
+__all__ = ["Figure", "Figures", "cast_of", "drawn"]
+
+OUTFITS = 1000
+
+
+class Figure(NamedTuple):
+    """One person: name of the body, number of the outfit, and activity; empty and -1 for what was not said."""
+
+    body: str
+    outfit: int
+    activity: str
+
+
+class Figures(NamedTuple):
+    """Everybody who has a place, robots apart, then who rides in a robot.
+
+    Fields:
+        people: bodies of them all; activity: of those who do not ride.
+        riders: the agents of the robots in which somebody sits.
+    """
+
+    people: humans.People
+    activity: tuple[str, ...]
+    riders: tuple[int, ...] = ()
+
+
+def pool(text: str) -> tuple[str, ...]:
+    """Return the names of the bodies that ``body`` names, one by one or by kind.
+
+    >>> len(pool("man")), pool("woman-36 mannequin")
+    (20, ('woman-36', 'mannequin'))
+    """
+    everyone = humans.names()
+    found: list[str] = []
+    for word in text.split():
+        kinds = KINDS.get(word, ())
+        found += [name for name in everyone if name == word or name.split("-")[0] in kinds]
+    return tuple(dict.fromkeys(found))
+
+
+def drawn(people: People, seed: int) -> list[Figure]:
+    """Return who the people at the beginning are, in the order of their places."""
+    found: list[Figure] = []
+    agents = sum(isinstance(one, Agent) for one in people.owners)
+    counts = np.bincount(people.owner, minlength=len(people.owners)).tolist()
+    for k, (owner, count) in enumerate(zip(people.owners, counts, strict=True)):
+        keys: tuple[Any, ...] = ("agent", k) if k < agents else ("spawner", k - agents)
+        if isinstance(owner, Agent | Spawner):
+            outfit = getattr(owner, "outfit", None)
+            found += _some(owner.body, owner.activity, count, (seed, *keys), outfit)
+        else:
+            found += [Figure("", -1, "")] * count
+    return found
+
+
+def cast_of(trial: Trial, people: People, agents: int, seed: int) -> Figures:
+    """Return bodies and activities of everybody of ``agents`` who is no robot, and of riders.
+
+    Who is not told of is an adult, drawn as a world draws people. People of sources take free places in any order, so
+    what several sources say of bodies and activities is mixed.
+    """
+    count = agents - len(trial.robots)
+    default = humans.People.drawn(count, stream(seed, "people"))
+    said = drawn(people, seed)
+    bodies = " ".join(source.body for source in trial.sources)
+    busy = " ".join(source.activity or "walk" for source in trial.sources) if any(
+        source.activity for source in trial.sources) else ""  # fmt: skip
+    said += _some(bodies, busy, count - len(said), (seed, "sources"), None)
+    names = [figure.body or one.name for figure, one in zip(said, default.persons, strict=True)]
+    outfits = [
+        figure.outfit if figure.outfit >= 0 else int(own) for figure, own in zip(said, default.variation, strict=True)
+    ]
+    carriers = [k for k, robot in enumerate(trial.robots) if robot.rider]
+    for k in carriers:
+        (figure,) = _some(trial.robots[k].rider, "", 1, (seed, "rider", k), None)
+        names.append(figure.body)
+        outfits.append(figure.outfit)
+    busy_with = tuple(figure.activity or "walk" for figure in said)
+    return Figures(humans.People.of(names, outfits), busy_with, tuple(len(people) + k for k in carriers))
+
+
+def _some(body: str, activity: str, count: int, keys: tuple[Any, ...], outfit: int | None) -> list[Figure]:
+    """Draw ``count`` figures; each kind of draw has a stream of its own."""
+    names, busy = pool(body), activity.split()
+    seed, *rest = keys
+    clothes = stream(seed, *rest, "body")
+    who = clothes.integers(len(names), size=count).tolist() if names else [-1] * count
+    worn = clothes.integers(OUTFITS, size=count).tolist() if names else [-1] * count
+    doing = stream(seed, *rest, "activity").integers(len(busy), size=count).tolist() if busy else [-1] * count
+    return [
+        Figure(
+            names[who[k]] if names else "",
+            (worn[k] if outfit is None else outfit) if names else (-1 if outfit is None else outfit),
+            busy[doing[k]] if busy else "",
+        )
+        for k in range(count)
+    ]

@@ -1,0 +1,101 @@
+"""Explicit: a trial in which everybody who is there at the beginning stands as an agent that can be edited."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from crowdbot.core import TrialError
+from crowdbot.trials.agent import Agent, Parameter
+from crowdbot.trials.crowd import Crowds, crowd_names
+from crowdbot.trials.notation import Points
+from crowdbot.trials.people import Spawner
+from crowdbot.trials.randomized_model import Drawn
+
+from .appearance import Figure, drawn
+from .population import place
+
+if TYPE_CHECKING:
+    from crowdbot.models import CrowdModel
+    from crowdbot.trials.trial import Trial
+
+__all__ = ["expand_spawners"]
+
+
+def expand_spawners(trial: Trial, seed: int | None = None) -> Trial:
+    """Return the trial with everybody of its spawners as an agent, as this seed places them.
+
+    It runs exactly as the trial does with this seed, which becomes its own. Sources and recorded people stay as they
+    are, for they come in while the trial runs.
+
+    Args:
+        trial: without sweeps.
+        seed: places people; None is the trial's own.
+
+    Raises:
+        TrialError: people do not fit with this seed, or the trial has sweeps.
+
+    >>> from crowdbot.models import ORCA
+    >>> from crowdbot.trials import Spawner, Trial
+    >>> square = [(0, 0), (2, 0), (2, 2), (0, 2)]
+    >>> trial = Trial(name="t", duration=1.0, crowd=ORCA(), spawners=[Spawner(count=2, zone=square, goal=square)])
+    >>> one = expand_spawners(trial, seed=3)
+    >>> len(one.agents), len(one.spawners), one.seed, one.run().digest == trial.run(seed=3).digest
+    (2, 0, 3, True)
+    """
+    if trial.sweeps:
+        raise TrialError(f"trial {trial.name!r} has sweeps; take one of its variants")
+    chosen = trial.seed if seed is None else int(seed)
+    people, problems = place(trial.stage, trial.spawners, trial.robots, chosen, trial.agents)
+    if problems:
+        raise TrialError(*(f"trial {trial.name!r}: {sentence}" for _, sentence in problems))
+    agents = []
+    for a, figure in enumerate(drawn(people, chosen)):
+        owner = people.owners[int(people.owner[a])]
+        agent = _dressed(owner if isinstance(owner, Agent) else _agent(people, a, owner), figure)
+        agents.append(_with_own(trial, agent, a, chosen))
+    return dataclasses.replace(trial, agents=tuple(agents), spawners=(), seed=chosen)
+
+
+def _agent(people: Any, a: int, spawner: Any) -> Agent:
+    assert isinstance(spawner, Spawner)
+    heading = float(people.heading[a])
+    x, y = people.position[a].tolist()
+    return Agent(
+        name=f"{spawner.name}{a + 1}" if spawner.name else "",
+        x=x,
+        y=y,
+        heading=None if np.isnan(heading) else heading,
+        goal=Points.of([people.goal[a].tolist()] if spawner.goal else []),
+        goal_zone=spawner.goal if spawner.arrival == "leave" else Points(),
+        journey=spawner.journey,
+        speed=float(people.speed[a]),
+        radius=float(people.radius[a]),
+        arrival=spawner.arrival,
+        crowd=spawner.crowd,
+        group=int(people.group[a]),
+    )
+
+
+def _dressed(agent: Agent, figure: Figure) -> Agent:
+    outfit = figure.outfit if figure.outfit >= 0 else None
+    return dataclasses.replace(agent, body=figure.body, outfit=outfit, activity=figure.activity)
+
+
+def _with_own(trial: Trial, agent: Agent, a: int, seed: int) -> Agent:
+    """Return the agent with the values that are drawn for it from the distributions of its crowd."""
+    names = crowd_names(trial.crowd)
+    k = names.index(agent.crowd) if agent.crowd else 0
+    model: CrowdModel = trial.crowd.models[k] if isinstance(trial.crowd, Crowds) else trial.crowd
+    if not isinstance(model, Drawn):
+        return agent
+    given = {one.name.replace("-", "_") for one in agent.parameters}
+    whole = model.resolved(seed, k, a + 1)
+    new = [
+        Parameter(name.replace("_", "-"), float(getattr(whole, name)[a]))
+        for name, _ in model.draws
+        if name not in given
+    ]
+    return dataclasses.replace(agent, parameters=(*agent.parameters, *new))

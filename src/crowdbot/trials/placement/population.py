@@ -1,0 +1,125 @@
+"""Placing people: at random in a zone, clear of walls, robots and each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core import stream
+from crowdbot.trials.agent import Agent
+from crowdbot.trials.people import Spawner
+from crowdbot.trials.recorded_people import RecordedPeople, Walk
+from crowdbot.trials.robot import Robot
+from crowdbot.trials.stage import Stage, area
+
+from .spawn_placement import Company, People, Taken
+
+__all__ = ["place"]
+
+MOST_PROBLEMS = 100
+EXACT = 1e-9
+
+
+def place(
+    stage: Stage,
+    spawners: Sequence[Spawner],
+    robots: Sequence[Robot],
+    seed: int,
+    agents: Sequence[Agent] = (),
+    recorded: Sequence[tuple[RecordedPeople, Sequence[Walk]]] = (),
+) -> tuple[People, list[tuple[Any, str]]]:
+    """Return the people of a trial at its beginning, and whatever could not be placed with a sentence each.
+
+    Spawner k draws from ``stream(seed, "spawner", k, ...)`` only: places, goals, speeds and radii have a stream each.
+    Later spawners keep clear of the people of earlier ones, all of them of agents, robots and recorded people.
+
+    >>> zone = [(0, 0), (2, 0), (2, 2), (0, 2)]
+    >>> people, problems = place(Stage(), [Spawner(count=50, zone=zone, goal=zone, radius=0.3)], [], seed=0)
+    >>> len(people) < 50, problems[0][1][:20]
+    (True, 'only 12 of 50 people')
+    """
+    widest = [s.radius.extent[1] for s in spawners] + [one.radius.extent[1] for one, _ in recorded]
+    widest += [robot.radius for robot in robots] + [agent.radius for agent in agents]
+    taken = Taken(2.0 * max(widest, default=1.0))
+    for robot in robots:
+        taken.add(robot.x, robot.y, robot.radius)
+    problems: list[tuple[Any, str]] = [*_standing(stage, agents, taken)]
+    replayed = [_replayed(one, walks, k, seed) for k, (one, walks) in enumerate(recorded)]
+    for _, walks in recorded:
+        for walk in walks:
+            if walk.time[0] <= 0.0:
+                taken.add(*_begin(walk), 0.3)
+    groups = [_explicit(agents)]
+    for index, spawner in enumerate(spawners):
+        if len(problems) >= MOST_PROBLEMS:
+            break
+        company = Company(stage, spawner, index, taken, seed)
+        group = company.people(1 + max((int(g.group.max(initial=-1)) for g in groups), default=-1))
+        groups.append(group)
+        if len(group) < spawner.count:
+            problems.append((spawner, _too_many(spawner, len(group))))
+    walks = tuple(walk for _, walks in recorded for walk in walks)
+    owners = (*agents, *spawners[: len(groups) - 1], *(one for one, _ in recorded))
+    sizes = [len(agents), *(1 for _ in groups[1:]), *(1 for _ in replayed)]
+    return People.joined([*groups, *replayed], sizes, owners, walks), problems
+
+
+def _standing(stage: Stage, agents: Sequence[Agent], taken: Taken) -> Iterator[tuple[Agent, str]]:
+    """Yield agents that stand in something, and take the places of the others."""
+    if not agents:
+        return
+    room = stage.clearance([agent.position for agent in agents])
+    for agent, free in zip(agents, room.tolist(), strict=True):
+        where = f"at {agent.x:g},{agent.y:g}"
+        if free < agent.radius - EXACT:
+            yield agent, f"stands {where}, {free:.2f} m from a wall, and the radius is {agent.radius:g} m"
+        elif not taken.free(agent.x, agent.y, agent.radius - EXACT, gap=0.0):
+            yield agent, f"stands {where} in somebody else; move one of them"
+        taken.add(agent.x, agent.y, agent.radius)
+
+
+def _explicit(agents: Sequence[Agent]) -> People:
+    place = np.array([agent.position for agent in agents], dtype=np.float64).reshape(-1, 2)
+    goal = np.array([agent.goal[0] if agent.goal else agent.position for agent in agents], dtype=np.float64)
+    return People(
+        place,
+        goal.reshape(-1, 2),
+        np.array([agent.radius for agent in agents], dtype=np.float64),
+        np.array([agent.speed for agent in agents], dtype=np.float64),
+        np.array([agent.facing for agent in agents], dtype=np.float64),
+        np.array([agent.group for agent in agents], dtype=np.int64),
+        np.arange(len(agents)),
+    )
+
+
+def _replayed(one: RecordedPeople, walks: Sequence[Walk], index: int, seed: int) -> People:
+    count = len(walks)
+    last = np.array([walk.position[-1] for walk in walks], dtype=np.float64).reshape(-1, 2)
+    return People(
+        np.array([_begin(walk) for walk in walks], dtype=np.float64).reshape(-1, 2),
+        last,
+        one.radius.draw(stream(seed, "recorded", index, "radius"), count),
+        np.full(count, 1.34),
+        np.full(count, np.nan),
+        np.full(count, -1, dtype=np.int64),
+        np.zeros(count, dtype=np.int64),
+    )
+
+
+def _begin(walk: Walk) -> tuple[float, float]:
+    """Return where somebody is at the beginning of the trial, or comes in later."""
+    return tuple(float(np.interp(max(0.0, walk.time[0]), walk.time, walk.position[:, k])) for k in (0, 1))  # type: ignore[return-value]
+
+
+def _too_many(spawner: Spawner, fit: int) -> str:
+    if fit == 0:
+        return (
+            f"spawn zone of {area(spawner.zone).area:.2f} m2 leaves no room for a single body beside walls, robots and"
+            " other people; move it, or make it larger"
+        )
+    return (
+        f"only {fit} of {spawner.count} people fit into the spawn zone of {area(spawner.zone).area:.2f} m2 beside"
+        " walls, robots and each other; make it larger, or take fewer or smaller people"
+    )

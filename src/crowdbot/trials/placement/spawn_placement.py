@@ -1,0 +1,283 @@
+"""Company: the people of one spawner, each at a random place of its zone, clear of walls and of each other."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import stream
+from crowdbot.trials.agent import Agent
+from crowdbot.trials.notation import Points
+from crowdbot.trials.people import Spawner
+from crowdbot.trials.recorded_people import RecordedPeople, Walk
+from crowdbot.trials.stage import Stage, area
+
+__all__ = ["Company", "People", "Taken", "points_in"]
+
+Floats = NDArray[np.float64]
+
+GAP = 0.01
+"""Two discs begin at least this far apart [m]."""
+TRIES = 2000
+"""A zone is full when a person finds no place in this many points of it."""
+BATCH = 64
+EMPTY_BATCHES = 5000
+"""A zone of which this many batches of points in its bounding box hit nothing is too thin to stand in."""
+MEMBERS = 200
+"""A place for a group is given up when a member finds none near it in this many tries."""
+PLACES = 50
+"""And the zone is full when so many places for a group were given up."""
+
+
+@dataclass(frozen=True)
+class People:
+    """Where N people begin and want to go: agents, then the people of spawners, then recorded ones.
+
+    Fields:
+        position, goal: ``[N, 2]`` [m]; who goes on a journey has no goal yet but the own place.
+        radius: ``[N]`` [m].
+        speed: ``[N]`` preferred speed [m/s].
+        heading: ``[N]`` [rad], NaN for who looks where he goes.
+        group: ``[N]`` number of the group, -1 alone.
+        owner: ``[N]`` index of the one of ``owners`` they belong to.
+        owners: agents, spawners, recorded people.
+        walks: of the recorded people, who are the last of all.
+    """
+
+    position: Floats
+    goal: Floats
+    radius: Floats
+    speed: Floats
+    heading: Floats
+    group: NDArray[np.int64]
+    owner: NDArray[np.int64]
+    owners: tuple[Agent | Spawner | RecordedPeople, ...] = ()
+    walks: tuple[Walk, ...] = ()
+
+    def __len__(self) -> int:
+        """Return N."""
+        return len(self.position)
+
+    @property
+    def spawner(self) -> NDArray[np.int64]:
+        """``[N]`` index of the spawner, below 0 for who has none."""
+        first = sum(isinstance(one, Agent) for one in self.owners)
+        last = first + sum(isinstance(one, Spawner) for one in self.owners)
+        return np.where(self.owner < last, self.owner - first, -1)
+
+    @classmethod
+    def joined(
+        cls, groups: Sequence[People], owners_of: Sequence[int], owners: tuple[Any, ...], walks: tuple[Walk, ...]
+    ) -> People:
+        """Return the people of all groups, of which each has so many owners."""
+        first = np.cumsum([0, *owners_of]).tolist()
+
+        def whole(name: str, empty: Any) -> Any:
+            return np.concatenate([empty, *(getattr(group, name) for group in groups)])
+
+        none, no = np.zeros(0), np.zeros(0, dtype=np.int64)
+        return cls(
+            whole("position", np.zeros((0, 2))),
+            whole("goal", np.zeros((0, 2))),
+            whole("radius", none),
+            whole("speed", none),
+            whole("heading", none),
+            whole("group", no),
+            np.concatenate([no, *(k + group.owner for k, group in zip(first, groups, strict=False))]),
+            owners,
+            walks,
+        )
+
+
+def points_in(zone: Points, rng: np.random.Generator) -> Iterator[Floats]:
+    """Yield uniformly distributed points of a zone, ``[N, 2]`` at a time, until the zone turns out too thin."""
+    import shapely
+
+    polygon = area(zone)
+    shapely.prepare(polygon)
+    low = np.array(polygon.bounds[:2])
+    size = np.array(polygon.bounds[2:]) - low
+    empty = 0
+    while empty < EMPTY_BATCHES:
+        points = low + rng.random((BATCH, 2)) * size
+        inside = points[shapely.contains_xy(polygon, points[:, 0], points[:, 1])]
+        empty = 0 if len(inside) else empty + 1
+        if len(inside):
+            yield inside
+
+
+class Company(NamedTuple):
+    """Who draws the people of a spawner: number ``number`` of a trial, among those whose places are ``taken``."""
+
+    stage: Stage
+    spawner: Spawner
+    number: int
+    taken: Taken
+    seed: int
+
+    def stream(self, word: str) -> np.random.Generator:
+        """Return the randomness of one thing that is drawn."""
+        return stream(self.seed, "spawner", self.number, word)
+
+    def people(self, first_group: int) -> People:
+        """Return the people of whom a place was found; their groups are numbered from ``first_group``."""
+        spawner = self.spawner
+        radius = spawner.radius.draw(self.stream("radius"), spawner.count)
+        speed = spawner.speed.draw(self.stream("speed"), spawner.count)
+        sizes = self._sizes()
+        position = self._together(radius, sizes) if sizes else self._scattered(radius)
+        count = len(position)
+        where = np.array(position, dtype=np.float64).reshape(-1, 2)
+        goal = _goals(self.stage, spawner, radius[:count], self.stream("goal")) if spawner.goal else where.copy()
+        group = np.full(count, -1, dtype=np.int64)
+        at = 0
+        for number, size in enumerate(sizes):
+            mates = slice(at, min(at + size, count))
+            if size > 1 and at < count:
+                group[mates] = first_group + number
+                speed[mates] = speed[at]
+                goal[mates] = goal[at] if spawner.goal else goal[mates]
+            at += size
+        return People(
+            where, goal, radius[:count], speed[:count], self._heading(count), group, np.zeros(count, dtype=np.int64)
+        )
+
+    def _heading(self, count: int) -> Floats:
+        if self.spawner.heading is not None:
+            return np.full(count, self.spawner.heading)
+        if self.spawner.stands:
+            return self.stream("heading").uniform(-math.pi, math.pi, count)
+        return np.full(count, np.nan)
+
+    def _sizes(self) -> list[int]:
+        """Return the sizes of groups, the largest first, as the shares have it; none when nobody walks in a group."""
+        spawner, sizes, left = self.spawner, [], self.spawner.count
+        shares = np.array([group.share for group in spawner.groups])
+        rng = self.stream("groups")
+        while len(shares) and left > 0:
+            size = spawner.groups[int(rng.choice(len(shares), p=shares / shares.sum()))].size
+            sizes.append(min(size, left))
+            left -= sizes[-1]
+        return sorted(sizes, reverse=True)
+
+    def _scattered(self, radius: Floats) -> list[tuple[float, float]]:
+        places = _clear_points(self.stage, self.spawner.zone, self.stream("place"))
+        position: list[tuple[float, float]] = []
+        for r in radius:
+            found = next(((x, y) for x, y, room in _some(places) if room >= r and self.taken.free(x, y, r)), None)
+            if found is None:
+                break
+            self.taken.add(*found, float(r))
+            position.append(found)
+        return position
+
+    def _together(self, radius: Floats, sizes: Sequence[int]) -> list[tuple[float, float]]:
+        places = _clear_points(self.stage, self.spawner.zone, self.stream("place"))
+        rng, position = self.stream("member"), list[tuple[float, float]]()
+        for size in sizes:
+            bodies = radius[len(position) : len(position) + size].tolist()
+            found = self._group(bodies, places, rng)
+            if not found:
+                break
+            for (x, y), r in zip(found, bodies, strict=True):
+                self.taken.add(x, y, r)
+            position += found
+        return position
+
+    def _group(self, bodies: Sequence[float], places: Any, rng: np.random.Generator) -> list[tuple[float, float]]:
+        """Return places of a group near each other, none when nowhere is room for all."""
+        free = self.taken.free
+        for _ in range(PLACES):
+            begin = next(((x, y) for x, y, room in _some(places) if room >= bodies[0] and free(x, y, bodies[0])), None)
+            if begin is None:
+                return []
+            members = [begin]
+            for r in bodies[1:]:
+                found = self._member(begin, members, bodies, r, rng)
+                if found is None:
+                    break
+                members.append(found)
+            if len(members) == len(bodies):
+                return members
+        return []
+
+    def _member(
+        self,
+        begin: tuple[float, float],
+        members: Sequence[tuple[float, float]],
+        bodies: Sequence[float],
+        radius: float,
+        rng: np.random.Generator,
+    ) -> tuple[float, float] | None:
+        """Return a place near the first of a group, in a disc that grows a little with every try."""
+        import shapely
+
+        zone = area(self.spawner.zone)
+        for k in range(MEMBERS):
+            far = (bodies[0] + radius) * (1.0 + k / 20.0)
+            angle, away = rng.uniform(-math.pi, math.pi), far * math.sqrt(rng.random())
+            x, y = begin[0] + away * math.cos(angle), begin[1] + away * math.sin(angle)
+            alone = all(
+                (x - a) ** 2 + (y - b) ** 2 >= (radius + r + GAP) ** 2
+                for (a, b), r in zip(members, bodies, strict=False)
+            )
+            clear = alone and self.taken.free(x, y, radius) and shapely.contains_xy(zone, x, y)
+            if clear and float(self.stage.clearance([(x, y)])[0]) >= radius:
+                return x, y
+        return None
+
+
+def _clear_points(stage: Stage, zone: Points, rng: np.random.Generator) -> Iterator[tuple[float, float, float]]:
+    """Yield points of the zone x, y [m] with the room around them up to the next wall [m]."""
+    for points in points_in(zone, rng):
+        for (x, y), room in zip(points.tolist(), stage.clearance(points).tolist(), strict=True):
+            yield x, y, room
+
+
+def _some(points: Iterator[tuple[float, float, float]]) -> Iterator[tuple[float, float, float]]:
+    for _ in range(TRIES):
+        point = next(points, None)
+        if point is None:
+            return
+        yield point
+
+
+def _goals(stage: Stage, spawner: Spawner, radius: Floats, rng: np.random.Generator) -> Floats:
+    """Return a point ``[N, 2]`` of the goal zone for everyone, clear of walls where there is room for that."""
+    places = _clear_points(stage, spawner.goal, rng)
+    goals = []
+    for r in radius:
+        best = (-1.0, 0.0, 0.0)
+        for x, y, room in _some(places):
+            best = max(best, (min(room, float(r)), x, y), key=lambda one: one[0])
+            if room >= r:
+                break
+        goals.append(best[1:])
+    return np.array(goals, dtype=np.float64).reshape(-1, 2)
+
+
+@dataclass
+class Taken:
+    """Discs that stand already, in a grid of cells that are as wide as the largest disc."""
+
+    cell: float
+    discs: dict[tuple[int, int], list[tuple[float, float, float]]] = field(default_factory=dict)
+
+    def add(self, x: float, y: float, radius: float) -> None:
+        """Put a disc somewhere."""
+        self.discs.setdefault(self._at(x, y), []).append((x, y, radius))
+
+    def free(self, x: float, y: float, radius: float, gap: float = GAP) -> bool:
+        """Return whether a disc has room, with a gap around it [m]."""
+        i, j = self._at(x, y)
+        near = (self.discs.get((i + di, j + dj), ()) for di in (-1, 0, 1) for dj in (-1, 0, 1))
+        return all((x - a) ** 2 + (y - b) ** 2 >= (radius + r + gap) ** 2 for cell in near for a, b, r in cell)
+
+    def _at(self, x: float, y: float) -> tuple[int, int]:
+        width = self.cell + GAP
+        return math.floor(x / width), math.floor(y / width)

@@ -1,0 +1,1 @@
+"""Checks of a whole trial: places, overlaps, flows, rates."""

@@ -1,0 +1,133 @@
+"""The parts of a trial that checks look at, whether it was made in Python or could be read only in part."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from crowdbot.core import InputError, nearest_name
+from crowdbot.trials.agent import Agent
+from crowdbot.trials.crowd import Crowd
+from crowdbot.trials.fields import outline
+from crowdbot.trials.partial import Unread, kind_of, readable, rest, torn
+from crowdbot.trials.people import Source, Spawner
+from crowdbot.trials.stage import Stage
+from crowdbot.trials.trial import Trial
+from crowdbot.world import Router
+
+__all__ = ["Checked", "Names", "Problems"]
+
+Problems = Iterator[tuple[Any, str]]
+"""Elements that have a problem, each with the end of a sentence about it."""
+
+
+class Names(NamedTuple):
+    """The names of all elements of a kind, readable or not.
+
+    Fields:
+        known: as they stand there.
+        doubtful: those that have to change, and None for each that is missing.
+    """
+
+    known: list[str]
+    doubtful: list[str | None]
+
+    @classmethod
+    def of(cls, things: Sequence[Any]) -> Names:
+        """Return the names of elements."""
+        known, doubtful = list[str](), list[str | None]()
+        for thing in things:
+            part = next(part for part in outline(kind_of(thing)) if part.name == "name")
+            name = next((name for _, name in readable([thing], "name") if name), None)
+            if name is None or name in known or part.wrong(name):
+                doubtful.append(name)
+            known += [name] if name else []
+        return cls(known, doubtful)
+
+    def lack(self, name: str) -> bool:
+        """Whether nothing has a name, and nothing that has to change its own can be what it means."""
+        sure = [one for one in self.known if one not in self.doubtful]
+        return name not in self.known and (not self.doubtful or bool(nearest_name(name, sure)))
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A trial, torn where something of it could not be read, and its crowds as they stand in its file."""
+
+    trial: Trial
+    crowds: Sequence[Crowd]
+    given_seed: int | None = None
+
+    @property
+    def seed(self) -> int:
+        """Seed of what is drawn, 0 for one that could not be read."""
+        if self.given_seed is not None:
+            return self.given_seed
+        return next((seed for _, seed in readable([self.trial], "seed")), 0)
+
+    @property
+    def people(self) -> tuple[Agent | Spawner | Source, ...]:
+        """Where people come from."""
+        return (*self.trial.agents, *self.trial.spawners, *self.trial.sources)
+
+    @property
+    def crowd_names(self) -> Names:
+        """Names of the crowds; a single one needs none."""
+        if len(self.crowds) == 1 and not self.crowds[0].name:
+            return Names([], [])
+        return Names.of(self.crowds) if self.crowds else Names([], [None])
+
+    @functools.cached_property
+    def stage(self) -> Stage:
+        """The stage without what could not be read of it: whatever is wrong there is wrong on the whole one, too."""
+        return rest(self.trial.stage)
+
+    @property
+    def router(self) -> Router | None:
+        """Who leads people around the walls of the stage, None without routing.
+
+        Raises:
+            Unread: nobody can.
+        """
+        if self.trial.routing is None:
+            return None
+        if isinstance(self._routing, str):
+            raise Unread(self._routing)
+        return self._routing
+
+    @property
+    def no_routing(self) -> str:
+        """Why nobody can lead people around the walls of the stage, empty when somebody can."""
+        return self._routing if self.trial.routing is not None and isinstance(self._routing, str) else ""
+
+    @functools.cached_property
+    def _routing(self) -> Router | str:
+        assert self.trial.routing is not None
+        try:
+            return self.trial.routing.router(self.stage.as_walls())
+        except InputError as error:
+            return str(error).removeprefix("Router: ")
+
+    def without(self, wrong: Mapping[int, set[str]]) -> Checked:
+        """Return what is left when fields of elements, given by their ``id``, turn out wrong."""
+        return dataclasses.replace(self, trial=_without(self.trial, wrong)) if wrong else self
+
+
+def _without(thing: Any, wrong: Mapping[int, set[str]]) -> Any:
+    """Return an element, or a torn copy of it when something in it is wrong."""
+    if isinstance(thing, tuple):
+        new = tuple(_without(one, wrong) for one in thing)
+        return thing if all(a is b for a, b in zip(thing, new, strict=True)) else new
+    if thing is None:
+        return None
+    cls, lost = kind_of(thing), wrong.get(id(thing), set())
+    nested = [part.name for part in outline(cls) if part.role in ("child", "children") and part.into is None]
+    values = {f.name: value for f in dataclasses.fields(cls) for _, value in readable([thing], f.name)}
+    inner = {name: _without(values[name], wrong) for name in nested if name in values}
+    if not lost and all(values[name] is value for name, value in inner.items()):
+        return thing
+    kept = {name: value for name, value in (values | inner).items() if name not in lost}
+    return torn(cls, kept, {field.name for field in dataclasses.fields(cls)} - {*kept}, origin=thing)

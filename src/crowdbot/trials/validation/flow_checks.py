@@ -1,0 +1,259 @@
+"""What makes the ways of people impossible: names that nothing has, goals nobody reaches, zones without room."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, did_you_mean, stream
+from crowdbot.trials.agent import Agent, Parameter
+from crowdbot.trials.distribution import Distribution
+from crowdbot.trials.fields import shown
+from crowdbot.trials.journey import Direction, Exit, Point, Zone
+from crowdbot.trials.notation import Points
+from crowdbot.trials.partial import readable, whole
+from crowdbot.trials.people import Source, Spawner
+from crowdbot.trials.placement.spawn_placement import points_in
+from crowdbot.trials.randomized_model import Drawn
+from crowdbot.trials.stage import Stage, area
+from crowdbot.trials.trial import Trial
+from crowdbot.world import Router
+
+from .context import Checked, Names, Problems
+
+__all__ = ["astray", "expected", "flows", "names", "taken"]
+
+Floats = NDArray[np.float64]
+
+BATCHES = 30
+"""So many batches of points of a zone are tried for one where a body has room."""
+SPOTS = 6
+"""So many points of a zone stand for all."""
+OVERLAP = 1e-9
+"""Zones that share less than this [m2] touch only."""
+
+
+def expected(trial: Trial) -> int:
+    """Return about how many people come in."""
+    return round(sum(source.expected(trial.duration) for source in trial.sources))
+
+
+def names(checked: Checked) -> Iterator[Problems]:
+    """Yield checks of names that are taken or that nothing has, and of people who have no way to go or two."""
+    trial = checked.trial
+    yield taken(trial.journeys, "journey")
+    yield from (_endless(stops) for _, stops in readable(trial.journeys, "stops"))
+    yield _more_than_fit(trial)
+    for one in checked.people:
+        yield _goals(one)
+        yield _arrival(one)
+        yield _named(one, "journey", Names.of(trial.journeys))
+        yield _named(one, "crowd", checked.crowd_names)
+        if isinstance(one, Source):
+            yield _begins(one)
+        if isinstance(one, Agent):
+            yield from (_own(checked, one, parameter) for parameter in one.parameters)
+    yield from (_named(one, "crowd", checked.crowd_names) for one in trial.recorded)
+
+
+def taken(things: Sequence[Any], others: str) -> Problems:
+    """Yield everything whose name an earlier one has."""
+    known: set[str] = set()
+    for k, name in readable(things, "name"):
+        if name in known:
+            yield things[k], f"name {name!r} is taken by another {others}; give each its own"
+        known.add(name)
+
+
+def flows(checked: Checked) -> Iterator[Problems]:
+    """Yield checks of zones without room and of ways that lead nowhere."""
+    trial = checked.trial
+    yield _routed(checked)
+    yield from (_entrance(checked.stage, source) for source in trial.sources)
+    for _, stops in readable(trial.journeys, "stops"):
+        yield from (_stop(checked, stop) for stop in stops)
+    coming: tuple[Spawner | Source, ...] = (*trial.spawners, *trial.sources)
+    yield from (_straight_out(one, k, way) for one in coming for k, way in enumerate(trial.exits, 1))
+    yield from (_first_leg(checked, one) for one in checked.people)
+    for _, stops in readable(trial.journeys, "stops"):
+        yield from (_leg(checked, k, *pair) for k, pair in enumerate(itertools.pairwise(stops), 2))
+
+
+def _routed(checked: Checked) -> Problems:
+    if why := checked.no_routing:
+        yield checked.trial.routing, f"is impossible on this stage: {why}"
+
+
+def _named(one: Any, word: str, names: Names) -> Problems:
+    """Yield a name that nothing has."""
+    if (name := getattr(one, word)) and names.lack(name):
+        there = f"there are {', '.join(names.known)}" if names.known else f"no {word} has a name here"
+        yield one, f"{word}={shown(name)} is not the name of a {word}{did_you_mean(name, names.known)}; {there}"
+
+
+def _goals(one: Agent | Spawner | Source) -> Problems:
+    stands = isinstance(one, Agent) or getattr(one, "stands", False)
+    if one.goal and one.journey:
+        yield one, 'has both a goal and a journey; give one of them: goal="x,y x,y x,y" or journey="name"'
+    elif stands and isinstance(one, Spawner) and (one.goal or one.journey):
+        yield one, 'has people who stand, and a goal or a journey; leave out stands="true", or where they go'
+    elif not (one.goal or one.journey or stands):
+        yield one, 'needs a goal zone or a journey: goal="x,y x,y x,y" or journey="name"'
+
+
+def _arrival(one: Agent | Spawner | Source) -> Problems:
+    if one.journey and one.arrival != "leave" and not one.goal and not getattr(one, "stands", False):
+        yield one, f'arrival="{one.arrival}" goes with a goal zone; for a journey say then="{one.arrival}" in it'
+
+
+def _begins(source: Source) -> Problems:
+    if source.begin >= source.end:
+        yield source, f"begin {source.begin:g} s must be before end {source.end:g} s"
+
+
+def _more_than_fit(trial: Trial) -> Problems:
+    if trial.capacity is None:
+        return
+    first = len(trial.agents) + sum(spawner.count for spawner in trial.spawners)
+    if first > trial.capacity:
+        last = (*trial.agents, *trial.spawners)[-1]
+        yield last, f"makes {first} people at the beginning, more than the capacity {trial.capacity}"
+
+
+def _own(checked: Checked, agent: Agent, parameter: Parameter) -> Problems:
+    """Yield a parameter that the model of a person does not have, or cannot take."""
+    crowds = [crowd for crowd in checked.crowds if crowd.name == agent.crowd or not agent.crowd]
+    if not crowds:
+        return
+    model = whole(crowds[0].model)
+    draws = {parameter.name.replace("-", "_"): Distribution.of(parameter.value)}
+    for sentence in Drawn.problems(model.model if isinstance(model, Drawn) else model, draws):
+        yield parameter, sentence.replace("drawn", "given", 1)
+
+
+def _endless(stops: Sequence[Any]) -> Problems:
+    for k, stop in enumerate(stops[:-1]):
+        if isinstance(stop, Direction):
+            yield stop, f"is stop {k + 1} of {len(stops)} and has no end; a direction must be the last stop"
+
+
+def _entrance(stage: Stage, source: Source) -> Problems:
+    for label, zones in (("zone", readable([source], "zone")), ("goal zone", readable([source], "goal"))):
+        for _, points in zones:
+            if points and (block := stage.block_in(area(points), OVERLAP)):
+                yield source, f"{label} reaches into {block}; move it, or cut it there"
+                return
+    radius = source.radius.extent[1]
+    batches = itertools.islice(points_in(source.zone, stream(0, "check", "source")), BATCHES)
+    if not any(np.any(stage.clearance(points) >= radius) for points in batches):
+        yield (
+            source,
+            f"zone of {area(source.zone).area:.2f} m2 leaves no room for a body of radius {radius:g} m beside walls;"
+            " move it, or make it larger",
+        )
+
+
+def astray(checked: Checked, stop: Point | Direction | Zone) -> Iterator[tuple[Any, str, str]]:
+    """Yield a stop at a point where nobody can be: the stop, its field, and the end of a sentence."""
+    import shapely
+
+    if isinstance(stop, Point):
+        point = shapely.Point(stop.x, stop.y)
+        if not checked.stage.holds(point):
+            yield stop, "x", f"at {stop.x:g},{stop.y:g} lies outside the walkable area"
+        elif block := checked.stage.block_around(point):
+            yield stop, "x", f"at {stop.x:g},{stop.y:g} lies inside {block}"
+
+
+def _stop(checked: Checked, stop: Point | Direction | Zone) -> Problems:
+    stage = checked.stage
+    if isinstance(stop, Zone):
+        if stop.aim == "nearest" or checked.router is None:
+            if block := stage.block_in(area(stop.points), OVERLAP):
+                yield stop, f"zone reaches into {block}; move it, or cut it there"
+        elif not len(_spots(checked.router, stop.points)):
+            radius = checked.router.radius
+            yield stop, f"zone leaves no room for a body of radius {radius:g} m, which routing asks for"
+
+
+def _straight_out(one: Spawner | Source, number: int, way: Exit) -> Problems:
+    """Yield those who would leave where they come in."""
+    if area(one.zone).intersection(area(way.zone)).area > OVERLAP:
+        called = repr(way.name) if way.name else str(number)
+        yield one, f"zone overlaps exit {called}, where people would leave at once; move one of them"
+
+
+class _Place(NamedTuple):
+    """Where a way begins or ends; ``anywhere`` in it, or where it suits the person best."""
+
+    points: Points
+    anywhere: bool = True
+
+    @classmethod
+    def of(cls, stop: Point | Direction | Zone) -> _Place | None:
+        """Return the place of a stop; None of a direction."""
+        if isinstance(stop, Point):
+            return cls(Points.of([(stop.x, stop.y)]))
+        return cls(stop.points, stop.aim == "random") if isinstance(stop, Zone) else None
+
+
+def _first_leg(checked: Checked, one: Agent | Spawner | Source) -> Problems:
+    """Yield who finds no way around walls into the own journey or to the own goal."""
+    router = checked.router
+    if router is None or router.unreachable != "error" or not (one.goal or one.journey):
+        return
+    journey = next((journey for journey in checked.trial.journeys if journey.name == one.journey), None)
+    first = _Place(one.goal) if one.goal else journey and _Place.of(journey.stops[0])
+    what = (
+        ("the goal" if isinstance(one, Agent) else "the goal zone")
+        if one.goal
+        else f"the first stop of journey {one.journey!r}"
+    )
+    start, word = (one.zone, "zone") if not isinstance(one, Agent) else (Points.of([one.position]), "place")
+    if first and not _leads(router, _Place(start), first):
+        yield one, f"no way leads from its {word} to {what} for a body of radius {router.radius:g} m"
+
+
+def _leg(checked: Checked, number: int, here: Any, there: Any) -> Problems:
+    """Yield a stop to which no way around walls leads from the one before."""
+    router = checked.router
+    if router is None or router.unreachable != "error":
+        return
+    begin, end = _Place.of(here), _Place.of(there)
+    if begin and end and not _leads(router, begin, end):
+        yield there, f"no way leads to stop {number} from the one before for a body of radius {router.radius:g} m"
+
+
+def _leads(router: Router, begin: _Place, end: _Place) -> bool:
+    begins, ends = _any(router, begin.points), _any(router, end.points)
+    every, last = (all if begin.anywhere else any), (all if end.anywhere else any)
+    return every(last(_reached(router, here, there) for there in ends) for here in begins)
+
+
+def _reached(router: Router, here: Floats, there: Floats) -> bool:
+    try:
+        router.towards(here, there)
+    except InputError:
+        return False
+    return True
+
+
+def _any(router: Router, points: Points) -> Sequence[Floats]:
+    """Return a few points of a zone, where a body has room if there are any; the point itself of a single one."""
+    if len(points) == 1:
+        return [np.array(points[0])]
+    return _spots(router, points) or [*itertools.islice(_points(points), SPOTS)]
+
+
+def _spots(router: Router, points: Points) -> Sequence[Floats]:
+    """Return a few points of a zone at which a body has room."""
+    return [*itertools.islice((point for point in _points(points) if router.holds(point[None])[0]), SPOTS)]
+
+
+def _points(zone: Points) -> Iterator[Floats]:
+    batches = itertools.islice(points_in(zone, stream(0, "check", "spot")), BATCHES)
+    return (point for batch in batches for point in batch)

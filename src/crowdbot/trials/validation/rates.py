@@ -1,0 +1,75 @@
+"""Rates: which sensors of a type of robot do not fit the time step of a trial, and what becomes of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from crowdbot.core import FreeClock, InputError
+from crowdbot.trials.robot import Mount, Robot
+from crowdbot.trials.trial import Trial
+
+__all__ = ["fitting", "misfits", "trial_remarks"]
+
+
+def fitting(periods: Sequence[float]) -> float:
+    """Return a time step of at most 0.1 s [s] of which all periods [s] are whole numbers, 0 when it would be too short.
+
+    >>> fitting([0.16, 0.1, 0.02]), fitting([0.1, 0.0123])
+    (0.02, 0.0)
+    """
+    step = math.gcd(*(round(period * 1e9) for period in periods)) / 1e9
+    if step < 0.005:
+        return 0.0
+    while step > 0.1:
+        step /= 2.0
+    return step
+
+
+def misfits(robot: Robot, step: float) -> list[Mount]:
+    """Return the sensors of a robot's type whose period or delay is not a whole number of time steps [s]."""
+    clock, found = FreeClock(step), []
+    carried = robot.carried
+    for mount in robot.sensors:
+        if mount in carried:
+            try:
+                for period in _periods(mount):
+                    clock.every(period)
+            except InputError:
+                found.append(mount)
+    return found
+
+
+def trial_remarks(trial: Trial) -> list[str]:
+    """Return a sentence for every robot whose sensors measure at other times than its type says.
+
+    >>> from crowdbot.models import ORCA
+    >>> from crowdbot.navigation import Straight
+    >>> from crowdbot.trials import Goal
+    >>> pepper = Robot(type="pepper", x=0, y=0, goal=Goal(5, 0), navigator=Straight())
+    >>> [sentence[-36:] for sentence in trial_remarks(Trial(name="t", duration=1, crowd=ORCA(), robots=[pepper]))]
+    ['step="0.01" all would be as they are']
+    """
+    found = []
+    clock = FreeClock(trial.step)
+    for robot in trial.robots:
+        rows: dict[str, list[str]] = {}
+        others = misfits(robot, trial.step)
+        for mount in others:
+            plan, sensor = robot.schedule(mount, clock), mount.sensor
+            late = f" and {plan.late * trial.step:g} s late, not {sensor.delay:g} s" if sensor.delay > 0.0 else ""
+            row = f"every {plan.every * trial.step:g} s, not {1.0 / sensor.rate:g} s{late}"
+            rows.setdefault(row, []).append(mount.name)
+        if others:
+            words = "; ".join(f"{' and '.join(names)} {row}" for row, names in rows.items())
+            step = fitting([period for mount in others for period in _periods(mount)])
+            exact = f'; with step="{step:g}" all would be as they are' if step else ""
+            found.append(
+                f"robot {robot.name!r} of type {robot.type!r} measures as often as the time step of {trial.step:g} s"
+                f" allows: {words}{exact}"
+            )
+    return found
+
+
+def _periods(mount: Mount) -> list[float]:
+    return [1.0 / mount.sensor.rate, *([mount.sensor.delay] if mount.sensor.delay > 0.0 else [])]

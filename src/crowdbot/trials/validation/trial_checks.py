@@ -1,0 +1,266 @@
+"""What makes a trial impossible although every value is allowed: places, overlaps, people who do not fit, periods."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from crowdbot.core import FreeClock, InputError, did_you_mean
+from crowdbot.trials.camera import Camera
+from crowdbot.trials.crowd import Crowd
+from crowdbot.trials.fields import shown
+from crowdbot.trials.notation import Points
+from crowdbot.trials.partial import Unread, origin, readable, rest, told
+from crowdbot.trials.people import Spawner
+from crowdbot.trials.placement.population import place
+from crowdbot.trials.recorded_people import RecordedPeople
+from crowdbot.trials.robot import Goal, Mount, Robot
+from crowdbot.trials.stage import Stage
+from crowdbot.trials.trial import Trial
+
+from .context import Checked, Names, Problems
+from .flow_checks import astray, expected, flows, names, taken
+from .rates import fitting, misfits
+from .zones import areas, crooked
+
+__all__ = ["problems_of"]
+
+MOST_VALUES = 100_000_000
+"""An episode is held in memory: recorded scenes times agents must not exceed this."""
+MOST_ARRIVALS = 100_000
+NOBODY = Spawner(count=0, zone=Points.parse("0,0 1,0 0,1"))
+"""Stands in for a spawner whose people cannot be placed, so that those of others are drawn as ever."""
+WALKING = 1.6
+"""About how fast [m/s] people go from portal to portal."""
+
+
+def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) -> list[tuple[Any, str]]:
+    """Return every problem: the element that has it, and the end of a sentence about it.
+
+    Args:
+        trial: torn where something of it could not be read.
+        crowds: as they stand in its file.
+        seed: places people with it; None is the trial's own.
+    """
+    checked = Checked(trial, crowds, seed)
+    too_large = [*told(*_size(checked))]
+    found = [
+        *told(_periods(checked), *(_exact(trial, robot) for robot in trial.robots), *_names(checked), *names(checked)),
+        *too_large,
+    ]
+    shapes = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.crooked())]
+    shapes += _stage_shapes(trial.stage)
+    checked = checked.without(_by_thing(shapes))
+    lost = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.misplaced(checked.stage))]
+    lost += [
+        row for _, stops in readable(trial.journeys, "stops") for row in told(*(astray(checked, s) for s in stops))
+    ]
+    checked = checked.without(_by_thing(lost))
+    found += [(thing, sentence) for thing, _, sentence in (*shapes, *lost)]
+    found += [*told(*_robots(checked.stage, checked.trial.robots), *flows(checked))]
+    found += [*told(*(_recording(checked, one) for one in trial.recorded))]
+    if not too_large:
+        found += _places(checked)
+    return [(origin(thing), sentence) for thing, sentence in found]
+
+
+def _by_thing(rows: Sequence[tuple[Any, str, str]]) -> dict[int, set[str]]:
+    """Return the fields of elements that have a problem, by the ``id`` of the element."""
+    found: dict[int, set[str]] = {}
+    for thing, name, _ in rows:
+        found.setdefault(id(thing), set()).add(name)
+    return found
+
+
+def _places(checked: Checked) -> list[tuple[Any, str]]:
+    """Return who finds no place: without those who could not be read, and without groups, there is only more room."""
+    trial = checked.trial
+    spawners = [_or(spawner, NOBODY, "zone", "count", "radius", groups=()) for spawner in trial.spawners]
+    agents = [_or(agent, None, "x", "y", "radius") for agent in trial.agents]
+    robots = [robot for robot in trial.robots if all(readable([robot], name) for name in ("x", "y", "radius"))]
+    walks = []
+    for one in trial.recorded:
+        with contextlib.suppress(Unread, InputError):
+            walks.append((rest(one, "data"), one.walks(trial.duration)))
+    there = [agent for agent in agents if agent is not None]
+    return place(checked.stage, spawners, robots, checked.seed, there, walks)[1]
+
+
+def _or(thing: Any, other: Any, *needs: str, **instead: Any) -> Any:
+    """Return what :func:`rest` does, something other when what is needed could not be read."""
+    try:
+        return rest(thing, *needs, **instead)
+    except Unread:
+        return other
+
+
+def _recording(checked: Checked, one: RecordedPeople) -> Problems:
+    """Yield why a recording cannot be replayed."""
+    try:
+        durations = [duration for _, duration in readable([checked.trial], "duration")]
+        walks = one.walks(*durations) if durations else one.walks(0.0) or ("unknown",)
+    except InputError as error:
+        yield one, f"data={shown(one.data)} {error}"
+        return
+    if not walks:
+        yield one, f"data={shown(one.data)} has nobody from {one.begin:g} s on; take an earlier begin"
+
+
+def _periods(checked: Checked) -> Problems:
+    trial = checked.trial
+    clock = FreeClock(trial.step)
+    periods = [*told(*_due(trial))]
+    step = fitting([period for _, _, period in periods])
+    fits = f'; with step="{step:g}" all are' if step else ""
+    for thing, name, period in periods:
+        try:
+            clock.every(period)
+        except InputError:
+            yield thing, f"{name} {period:g} s is not a whole number of time steps of {trial.step:g} s{fits}"
+
+
+def _due(trial: Trial) -> Iterator[Iterator[tuple[Any, str, float]]]:
+    """Yield what happens again and again: whose it is, what it is called, and after how long [s]."""
+    yield _period(trial.recording, "period", "recording period")
+    yield _period(trial.recording, "markers", "recording markers")
+    for robot in trial.robots:
+        yield _period(robot, "control_period", "control-period")
+        yield from (_measuring(robot, mount) for _, mounts in readable([robot], "sensors") for mount in mounts)
+
+
+def _period(thing: Any, name: str, called: str) -> Iterator[tuple[Any, str, float]]:
+    yield thing, called, getattr(thing, name)
+
+
+def _measuring(robot: Robot, mount: Mount) -> Iterator[tuple[Any, str, float]]:
+    if mount in robot.carried:
+        return
+    yield mount, f"rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate
+    if mount.sensor.delay > 0.0:
+        yield mount, "delay", mount.sensor.delay
+
+
+def _exact(trial: Trial, robot: Robot) -> Problems:
+    """Yield a robot with sensors of its type that do not fit the time step although they must."""
+    if robot.rates == "exact" and (others := misfits(robot, trial.step)):
+        rates = ", ".join(f"{mount.name} {mount.sensor.rate:g} Hz" for mount in others)
+        step = fitting([trial.recording.period, robot.control_period, *(1.0 / mount.sensor.rate for mount in others)])
+        take = f'take step="{step:g}", or leave out' if step else "leave out"
+        yield (
+            robot,
+            f"has sensors of its type that do not measure after whole time steps of {trial.step:g} s: {rates}; {take}"
+            ' rates="exact" to let them measure as often as the step allows',
+        )
+
+
+def _names(checked: Checked) -> Iterator[Problems]:
+    yield taken(checked.trial.robots, "robot")
+    for _, mounts in readable(checked.trial.robots, "sensors"):
+        yield taken(mounts, "sensor of this robot")
+    yield taken(checked.trial.cameras, "camera")
+    yield from (_camera(checked.trial.robots, camera) for camera in checked.trial.cameras)
+
+
+def _camera(robots: Sequence[Robot], camera: Camera) -> Problems:
+    if not camera.robot:
+        if camera.link:
+            yield camera, f"link={shown(camera.link)} needs robot: the name of the robot whose link it is"
+        return
+    names = Names.of(robots)
+    bodies = {name: robots[k] for k, name in readable(robots, "name")}
+    if names.lack(camera.robot):
+        near = did_you_mean(camera.robot, bodies)
+        yield camera, f"robot={shown(camera.robot)} is no robot{near}; there are {', '.join(bodies) or 'none'}"
+    elif camera.robot not in bodies:
+        return
+    elif camera.link and camera.link not in (links := bodies[camera.robot].body.model.links):
+        near = did_you_mean(camera.link, links)
+        yield camera, f"link={shown(camera.link)} is no link of robot {camera.robot!r}{near}"
+
+
+def _size(checked: Checked) -> Iterator[Problems]:
+    yield _too_long(checked.trial)
+    yield _too_many(checked)
+    yield _too_large(checked)
+
+
+def _too_long(trial: Trial) -> Problems:
+    if trial.recording.period > trial.duration:
+        yield (
+            trial.recording,
+            f"recording period {trial.recording.period:g} s is longer than the duration of {trial.duration:g} s",
+        )
+
+
+def _too_many(checked: Checked) -> Problems:
+    coming = expected(checked.trial)
+    if coming > MOST_ARRIVALS:
+        yield (
+            checked.trial.sources[0],
+            f"lets people in, about {coming} together with other sources, more than {MOST_ARRIVALS}; take a lower rate,"
+            " an earlier end or fewer at most",
+        )
+
+
+def _too_large(checked: Checked) -> Problems:
+    trial = checked.trial
+    first = len(trial.agents) + sum(spawner.count for spawner in trial.spawners)
+    coming = expected(trial)
+    agents = first + coming + len(trial.robots) + _through(trial, first + coming)
+    scenes = trial.duration / trial.recording.period
+    if scenes * agents > MOST_VALUES:
+        yield (
+            trial.recording,
+            f"recording period {trial.recording.period:g} s makes {scenes:.0f} scenes of {agents} agents, more than"
+            f" {MOST_VALUES} places together; take a longer period, a shorter duration or fewer people",
+        )
+
+
+def _through(trial: Trial, people: int) -> int:
+    """Return about how many people at most come out of portals as new ones."""
+    if not trial.portals:
+        return 0
+    shortest = min(math.hypot(portal.dx, portal.dy) for portal in trial.portals)
+    return round(people * trial.duration * WALKING / max(shortest, 0.1))
+
+
+def _stage_shapes(stage: Stage) -> list[tuple[Any, str, str]]:
+    """Return what of a stage has no shape: the element, the field, and why as the end of a sentence."""
+    obstacles = [(stage.obstacles[k], "points", crooked(points)) for k, points in readable(stage.obstacles, "points")]
+    ground = [(stage, "walkable", crooked(points)) for _, points in readable([stage], "walkable") if points]
+    return [(thing, name, f"{name} {wrong}") for thing, name, wrong in (*obstacles, *ground) if wrong]
+
+
+def _robots(stage: Stage, robots: Sequence[Robot]) -> Iterator[Problems]:
+    for k, robot in enumerate(robots):
+        yield _standing(stage, robot, "starts", robot)
+        yield from (_standing(stage, robot, "has its goal", goal) for _, goal in readable([robot], "goal"))
+        yield from (_apart(robot, other) for other in robots[:k])
+
+
+def _standing(stage: Stage, robot: Robot, word: str, there: Robot | Goal) -> Problems:
+    import shapely
+
+    spot, reach = there.position, there.tolerance if isinstance(there, Goal) else 0.0
+    room = float(stage.clearance([spot])[0])
+    block = stage.block_around(shapely.Point(spot))
+    if not stage.holds(shapely.Point(spot)):
+        yield robot, f"{word} at {spot[0]:g},{spot[1]:g} outside the walkable area"
+    elif block:
+        yield robot, f"{word} at {spot[0]:g},{spot[1]:g} inside {block}"
+    elif room + reach < robot.radius:
+        yield robot, f"{word} {room:.2f} m from a wall, and its radius is {robot.radius:g} m"
+
+
+def _apart(robot: Robot, other: Robot) -> Problems:
+    away = float(np.hypot(robot.x - other.x, robot.y - other.y))
+    if away < robot.radius + other.radius:
+        yield (
+            robot,
+            f"starts {away:.2f} m from robot {other.name!r}, and their radii add up to"
+            f" {robot.radius + other.radius:g} m",
+        )

@@ -1,0 +1,84 @@
+"""Variants: a trial with other values at some paths, and all variants of a trial with sweeps."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from crowdbot.core import InputError, TrialError, format_xml
+
+from .parser import parse_trial
+from .sweep import MOST_VARIANTS
+from .trial import Trial
+from .value_path import set_values, text_of
+from .xml.writer import element_of
+
+__all__ = ["apply_values", "expand_sweeps"]
+
+
+def apply_values(trial: Trial, values: Mapping[str, Any], *, place: str = "variant", trust: bool = True) -> Trial:
+    """Return the trial with other values at some paths, read and checked like a file.
+
+    Args:
+        trial: the trial to begin with.
+        values: by path, as in :class:`Sweep`; texts, numbers or booleans.
+        place: name for messages.
+        trust: whether code from outside the folder of the trial may be loaded.
+
+    Raises:
+        TrialError: a path leads nowhere, or a value is not allowed.
+
+    >>> from crowdbot.models import ORCA
+    >>> from crowdbot.trials import Trial
+    >>> trial = Trial(name="t", duration=2.0, crowd=ORCA())
+    >>> apply_values(trial, {"crowd/time-horizon": 3, "end/goal": False}).crowd.time_horizon
+    3.0
+    """
+    if not values:
+        return trial
+    root = element_of(trial)
+    try:
+        set_values(root, Trial, {path: text_of(value) for path, value in values.items()})
+    except InputError as error:
+        raise TrialError(f"{trial.name}: {error}") from None
+    return parse_trial(format_xml(root), place=place, folder=trial.folder, trust=trust)
+
+
+def expand_sweeps(trial: Trial, trust: bool = True) -> tuple[Trial, ...]:
+    """Return a trial without sweeps for every combination of values; the trial itself when it has none.
+
+    Their names tell the values: ``doors [door 1.2, seed 3]``.
+
+    Raises:
+        TrialError: a path leads nowhere, a value is not allowed, there are too many combinations.
+
+    >>> from crowdbot.models import ORCA
+    >>> from crowdbot.trials import Sweep, Trial
+    >>> many = Trial(name="t", duration=2.0, crowd=ORCA(), sweeps=[Sweep("crowd/time-horizon", "1 2"),
+    ...     Sweep("seed", "0:3")])
+    >>> variants = expand_sweeps(many)
+    >>> [one.name for one in variants][:2], variants[4].crowd.time_horizon
+    (['t [time-horizon 1, seed 0]', 't [time-horizon 1, seed 1]'], 2.0)
+    """
+    if not trial.sweeps:
+        return (trial,)
+    rows = _combined(trial)
+    return tuple(_variant(trial, row, trust) for row in rows)
+
+
+def _combined(trial: Trial) -> list[tuple[str, ...]]:
+    count = math.prod(len(sweep.each) for sweep in trial.sweeps)
+    if count > MOST_VARIANTS:
+        raise TrialError(f"trial {trial.name!r}: its sweeps make {count} variants, at most {MOST_VARIANTS}")
+    return list(itertools.product(*(sweep.each for sweep in trial.sweeps)))
+
+
+def _variant(trial: Trial, values: tuple[str, ...], trust: bool) -> Trial:
+    plain = dataclasses.replace(trial, sweeps=())
+    pairs = {sweep.path: value for sweep, value in zip(trial.sweeps, values, strict=True)}
+    words = ", ".join(f"{path.rpartition('/')[2]} {value}" for path, value in pairs.items())
+    one = apply_values(plain, pairs, trust=trust)
+    return dataclasses.replace(one, name=f"{trial.name[:30]} [{words[:46]}]")

@@ -1,0 +1,1 @@
+"""The XML of trials: reader, writer, schema."""

@@ -1,0 +1,123 @@
+"""From a trial to XML: reading the text gives an equal trial."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+from crowdbot.core import Element, InputError, builtin_classes, format_xml, kebab
+from crowdbot.trials.fields import Part, outline
+from crowdbot.trials.notation import plain
+from crowdbot.trials.randomized_model import Drawn
+
+__all__ = ["element_from", "element_of", "trial_xml"]
+
+
+def trial_xml(trial: Any) -> str:
+    """Return the XML text of a trial.
+
+    Raises:
+        InputError: a part of the trial cannot be written, such as a model with a different value for each agent.
+
+    >>> from crowdbot.models import ORCA
+    >>> from crowdbot.trials import Trial
+    >>> print(trial_xml(Trial(name="alone", duration=2.0, crowd=ORCA(time_horizon=3))), end="")
+    <?xml version="1.0" encoding="UTF-8"?>
+    <trial name="alone" duration="2">
+      <crowd type="orca" time-horizon="3"/>
+    </trial>
+    """
+    return format_xml(element_of(trial))
+
+
+def element_of(trial: Any) -> Element:
+    """Return the tree that :func:`xml` writes."""
+    return element_from("trial", trial, trial.folder)
+
+
+def element_from(tag: str, thing: Any, folder: Path | None) -> Element:
+    """Return the element of a tree of attributes and children; addresses are as seen from ``folder``."""
+    element = Element(tag)
+    cls: type = type(thing)
+    usual = getattr(thing, "usual", {})
+    for part in outline(cls):
+        value = getattr(thing, part.name)
+        if part.role == "children" and part.name in usual:
+            value = tuple(one for one in value if one not in usual[part.name])
+        if not part.required and value == usual.get(part.name, part.default):
+            continue
+        _add(element, part, value, folder)
+    return element
+
+
+def _add(element: Element, part: Part, value: Any, folder: Path | None) -> None:
+    if part.role == "attribute":
+        element.attributes[part.word] = _text(value, part.word)
+    elif part.role in ("child", "children"):
+        ones = part.into.spread(value) if part.into else (value if part.role == "children" else (value,))
+        element.children += [element_from(_word(part, one), one, folder) for one in ones]
+    elif part.role == "plugged":
+        element.children.append(Element(part.word, _plug(part, value, folder)))
+    else:
+        element.attributes |= _plug(part, value, folder)
+
+
+def _word(part: Part, value: Any) -> str:
+    return next(word for word, kind in part.elements.items() if isinstance(value, kind))
+
+
+def _plug(part: Part, value: Any, folder: Path | None) -> dict[str, str]:
+    if isinstance(value, Drawn):
+        draws = {name.replace("_", "-"): str(drawn) for name, drawn in value.draws}
+        return _plug(part, value.model, folder) | draws
+    words = {"type": _type(part, value, folder)}
+    for field in dataclasses.fields(value):
+        inner = getattr(value, field.name)
+        if field.init and not _is_default(field, inner):
+            word = field.name.replace("_", "-")
+            words[word] = _text(inner, f"{type(value).__name__} {word}")
+    return words
+
+
+def _type(part: Part, value: Any, folder: Path | None) -> str:
+    """Return the built-in name of a part, or the address of its class as seen from the folder of the trial."""
+    assert part.plug is not None
+    cls = type(value)
+    room, contract = part.plug.places()
+    if builtin_classes(room, contract).get(kebab(cls.__name__)) is cls:
+        return kebab(cls.__name__)
+    module = sys.modules[cls.__module__]
+    if cls.__module__.startswith("crowdbot_plug_") and module.__file__:
+        file = Path(module.__file__)
+        place = file.name if folder is None else Path(os.path.relpath(file, folder.resolve())).as_posix()
+        return f"{place}:{cls.__qualname__}"
+    if "<locals>" in cls.__qualname__ or cls.__module__ == "__main__":
+        raise InputError(f"{cls.__name__} cannot be named in a trial file: move it to a module or a file of its own")
+    return f"{cls.__module__}:{cls.__qualname__}"
+
+
+def _is_default(field: dataclasses.Field[Any], value: Any) -> bool:
+    default = field.default
+    if field.default_factory is not dataclasses.MISSING:
+        default = field.default_factory()
+    try:
+        return bool(value == default)
+    except ValueError:
+        return False
+
+
+def _text(value: Any, what: str) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int | str):
+        return str(value)
+    if isinstance(value, float):
+        return plain(value)
+    if hasattr(type(value), "parse"):
+        return str(value)
+    if isinstance(value, tuple):
+        return " ".join(_text(one, what) for one in value)
+    raise InputError(f"{what} = {str(value)[:60]!r} cannot be written as an attribute of a trial file")

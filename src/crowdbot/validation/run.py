@@ -1,0 +1,230 @@
+"""Run: every check with every model, one file of results a model, so that a rerun goes on where the last one ended."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import hashlib
+import json
+import os
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from crowdbot import models as room
+from crowdbot.core import CrowdbotError, InputError, builtin_classes, find_class, kebab
+from crowdbot.models import CrowdModel
+
+from .bottleneck import BOTTLENECK
+from .corridor import CORRIDOR
+from .evacuation import DOORS, LONG_CORNER, TWO_ROOMS
+from .lanes import LANES, NARROW
+from .recording import measured
+from .rimea import CORNER, CORRIDOR_TIME, FREE_SPEEDS
+from .scenario import Check, Verdict
+from .single_file import SINGLE_FILE
+
+__all__ = ["CHECKS", "Outcome", "Validation", "chosen", "validate"]
+
+CHECKS: tuple[Check, ...] = (
+    SINGLE_FILE,
+    CORRIDOR,
+    LANES,
+    NARROW,
+    BOTTLENECK,
+    CORRIDOR_TIME,
+    CORNER,
+    FREE_SPEEDS,
+    DOORS,
+    TWO_ROOMS,
+    LONG_CORNER,
+)
+"""In the order of the page."""
+
+LEFT_OUT = {
+    "cost-model": "composes models from costs; as it comes it takes the steps of orca, weighed by NumPy, which needs"
+    " two more minutes; --models cost-model runs it",
+}
+"""Models that are run only when they are named, and why."""
+
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What one check found about one model: numbers, verdict and the seconds that it took."""
+
+    result: dict[str, Any]
+    verdict: Verdict
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Validation:
+    """Everything that the page tells.
+
+    Fields:
+        outcomes: by model and check.
+        skipped: models that were not run, and why.
+        people: what the recordings say, or None without recordings.
+        quick: whether runs were shortened: then verdicts mean little.
+    """
+
+    outcomes: dict[str, dict[str, Outcome]]
+    skipped: dict[str, str]
+    people: dict[str, Any] | None
+    quick: bool
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what ``crowdbot validate --json`` prints."""
+        return {
+            "quick": self.quick,
+            "models": {
+                model: {
+                    name: {**one.verdict._asdict(), "seconds": one.seconds, "result": one.result}
+                    for name, one in checks.items()
+                }
+                for model, checks in self.outcomes.items()
+            },
+            "skipped": self.skipped,
+            "people": self.people,
+        }
+
+
+def chosen(names: Sequence[str] = ()) -> tuple[dict[str, CrowdModel], dict[str, str]]:
+    """Return the named models, or all that are built in, with their default parameters; and who is left out, and why.
+
+    Raises:
+        UnknownName, InputError: a name means no model, or one that has no defaults.
+    """
+    if names:
+        classes = {kebab(cls.__name__): cls for cls in (find_class(name, room, CrowdModel) for name in names)}
+    else:
+        classes = builtin_classes(room, CrowdModel)
+    known: dict[str, CrowdModel] = {}
+    skipped = {}
+    for name, cls in classes.items():
+        needed = [
+            field.name
+            for field in dataclasses.fields(cls)
+            if field.init and field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
+        ]
+        if needed and names:
+            raise InputError(
+                f"{name} has no default for {', '.join(needed)}, so that it cannot be validated as it comes"
+            )
+        if needed:
+            skipped[name] = f"has no default for {', '.join(needed)}: it is made of other models"
+        elif name in LEFT_OUT and not names:
+            skipped[name] = LEFT_OUT[name]
+        else:
+            known[name] = cls()
+    return known, skipped
+
+
+def validate(
+    models: Mapping[str, CrowdModel],
+    out: Path,
+    data: Path | None = None,
+    quick: bool = False,
+    progress: Progress | None = None,
+    skipped: Mapping[str, str] | None = None,
+) -> Validation:
+    """Run all checks with all models; what has been done before with the same code and settings is read, not run.
+
+    Args:
+        models: by the name that the page calls them.
+        out: folder of the results, one JSON file a model, written after every check: an interrupted run goes on.
+        data: folder of the recordings; without it, the page compares with published curves only.
+        quick: few and short runs, to see that everything works.
+        progress: called with what is being done and the share that is done.
+        skipped: models that are not run, and why; they are named on the page.
+
+    Raises:
+        DataError: the folder of recordings holds none.
+    """
+    report = progress or (lambda what, share: None)
+    out.mkdir(parents=True, exist_ok=True)
+    people = None
+    if data is not None:
+        report("recordings", 0.0)
+        people = measured(data, lambda share: report("recordings", share))
+        _write(out / "people.json", people)
+    key = _key(quick)
+    outcomes = {}
+    for name, model in models.items():
+        outcomes[name] = _checked(name, model, out / f"{name}.json", key, quick, report)
+    return Validation(outcomes, dict(skipped or {}), people, quick)
+
+
+def _checked(name: str, model: CrowdModel, file: Path, key: str, quick: bool, report: Progress) -> dict[str, Outcome]:
+    settings = f"{key} {model!r}"
+    kept = _read(file)
+    done: dict[str, Any] = kept["checks"] if kept.get("settings") == settings else {}
+    for k, check in enumerate(CHECKS):
+        if check.name not in done:
+            begin = time.perf_counter()
+            result = _run(check, model, quick, functools.partial(_part, report, name, k))
+            done[check.name] = {"seconds": round(time.perf_counter() - begin, 2), "result": _rounded(result)}
+            _write(file, {"settings": settings, "checks": done})
+        report(name, (k + 1) / len(CHECKS))
+    outcomes = {}
+    for check in CHECKS:
+        result = done[check.name]["result"]
+        outcomes[check.name] = Outcome(result, _judged(check, result), done[check.name]["seconds"])
+    return outcomes
+
+
+def _part(report: Progress, name: str, k: int, share: float) -> None:
+    report(name, (k + share) / len(CHECKS))
+
+
+def _run(check: Check, model: CrowdModel, quick: bool, report: Callable[[float], None]) -> dict[str, Any]:
+    try:
+        return check.run(model, quick, report)
+    except CrowdbotError as error:
+        return {"failed": str(error)}
+
+
+def _judged(check: Check, result: dict[str, Any]) -> Verdict:
+    if "failed" in result:
+        return Verdict("error", False, f"{check.title} ends with an error: {result['failed']}")
+    return check.judge(result)
+
+
+def _key(quick: bool) -> str:
+    """Return a hash of all code that decides about results: the core, the models and the checks."""
+    sum_ = hashlib.blake2b(b"quick" if quick else b"full", digest_size=8)
+    package = Path(__file__).parents[1]
+    telling = ("__init__", "page", "plots", "recording", "run")
+    here = [path for path in Path(__file__).parent.glob("*.py") if path.stem not in telling]
+    for path in sorted([*package.glob("core/*.py"), *package.glob("models/*.py"), *here]):
+        sum_.update(path.name.encode() + b"\0" + path.read_bytes())
+    return sum_.hexdigest()
+
+
+def _read(file: Path) -> dict[str, Any]:
+    try:
+        kept = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}  # nothing there, or half a file: begin anew
+    return kept if isinstance(kept, dict) and isinstance(kept.get("checks"), dict) else {}
+
+
+def _write(file: Path, value: Any) -> None:
+    draft = file.with_suffix(".part")
+    draft.write_text(json.dumps(_rounded(value)) + "\n", encoding="utf-8")
+    os.replace(draft, file)
+
+
+def _rounded(value: Any) -> Any:
+    """Return numbers with four decimals, so that the first run and one that reads them say the same."""
+    if isinstance(value, float):
+        return round(value, 4)
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_rounded(item) for item in value]
+    return value

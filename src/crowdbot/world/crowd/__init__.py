@@ -1,0 +1,1 @@
+"""People: routing, journeys, sources, speed limits, contacts between discs and replay of recordings."""

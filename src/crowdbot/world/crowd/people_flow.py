@@ -1,0 +1,171 @@
+"""Traffic: where everybody in a world wants to go next, who comes in, and who goes out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Scene
+from crowdbot.models import CrowdModel, Mixture
+from crowdbot.models.mixture import MODEL
+
+from .journey import Journeys
+from .person_random import uniform
+from .routing import WAY, Router, fresh
+from .source import Arrivals, Source
+
+__all__ = ["Traffic"]
+
+Floats = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+
+
+@dataclass
+class Traffic:
+    """Routes, journeys and arrivals of one world.
+
+    Attributes:
+        seeds: ``[E]``.
+        ids: ``[E, A]`` who is who.
+        following: ``[E]`` identity of the next who comes in.
+        router: leads around walls.
+        journeys: of all, those of the sources last.
+        arrivals: who comes in.
+    """
+
+    seeds: Numbers
+    ids: Numbers
+    following: Numbers
+    router: Router | None
+    journeys: Journeys | None
+    arrivals: Arrivals | None
+    mixture: Mixture | None
+
+    @classmethod
+    def of(
+        cls,
+        scene: Scene,
+        model: CrowdModel,
+        seed: int,
+        ids: Any,
+        router: Router | None,
+        journeys: Journeys | None,
+        sources: Sequence[Source],
+    ) -> Traffic:
+        """Make the traffic of a world that begins with this scene.
+
+        Raises:
+            InputError: identities are not different, or goals do not fit to preferred velocities or to the model.
+        """
+        if scene.preferred_velocity is not None and (router or journeys or sources):
+            raise InputError("a scene with preferred velocities has no goals: routers, journeys and sources need goals")
+        seeds = np.array([(int(seed) + e) % 2**63 for e in range(scene.shape[0])], dtype=np.int64)
+        who = _identities(ids, scene.shape)
+        following = who.max(axis=1, initial=-1) + 1
+        mixture = model if isinstance(model, Mixture) and sources else None
+        for source in sources:
+            if not 0 <= source.model < (1 if mixture is None else len(mixture.models)):
+                raise InputError(
+                    f"Source: model = {source.model}, but the crowd is no mixture that has a model of this number"
+                )
+        if sources:
+            first = journeys or Journeys((), -1)
+            start = {WAY: fresh((1, 1))[0, 0], **model.memory_at_start}
+            arrivals = Arrivals(tuple(sources), seeds.tolist(), len(first.journeys), start)
+            journeys = Journeys((*first.journeys, *(source.journey for source in sources)), first.which)
+            return cls(seeds, who, following, router, journeys, arrivals, mixture)
+        return cls(seeds, who, following, router, journeys, None, mixture)
+
+    def turn_to(self, router: Router | None, sources: Sequence[Source], seed: int | None) -> None:
+        """Go on with another router, other sources in the places of these, and new chance when a seed is given."""
+        self.router = router
+        if seed is not None:
+            self.seeds = np.array([(int(seed) + e) % 2**63 for e in range(len(self.seeds))], dtype=np.int64)
+        if self.arrivals is not None:
+            self.arrivals.turn_to(sources, None if seed is None else self.seeds.tolist())
+        elif sources:
+            raise InputError("sources cannot be added while a world runs")
+
+    @property
+    def waiting(self) -> Numbers:
+        """How many wait to come in, ``[E]``."""
+        return np.zeros(len(self.seeds), dtype=np.int64) if self.arrivals is None else self.arrivals.waiting
+
+    def begun(self, scene: Scene) -> Scene:
+        """Return the scene at the beginning, with everybody's first goal and way."""
+        if self.mixture is not None:
+            scene = scene.replace(memory={**scene.memory, MODEL: self.mixture.of(scene).astype(np.float64)})
+        if self.journeys is not None:
+            scene = self.journeys.begun(scene, self.seeds, self.ids, self._holds)
+        if self.router is not None:
+            scene = scene.replace(memory=self.router.led(scene, self._routed(scene)).memory)
+        return scene
+
+    def felt(self, scene: Scene, symmetry: float) -> Scene:
+        """Return the scene with goals as people walk to them: straight ahead on their ways, a little to one side."""
+        if self.router is not None:
+            scene = self.router.led(scene, self._routed(scene))
+        return _turned(scene, symmetry * (2.0 * self._luck() - 1.0)) if symmetry > 0.0 else scene
+
+    def gone_on(self, scene: Scene, time: float) -> Scene:
+        """Return the scene with the next goals of those who arrived, and with those who have come in by a time [s]."""
+        if self.journeys is not None:
+            scene = self.journeys.gone_on(scene, self.seeds, self.ids, self._holds)
+        if self.arrivals is None or self.journeys is None:
+            return scene
+        scene, new = self.arrivals.let_in(scene, time, self.ids, self.following)
+        if not np.any(new):
+            return scene
+        return self._sent_off(self.journeys.aimed(scene, new, self.seeds, self.ids, self._holds), new)
+
+    def _sent_off(self, scene: Scene, new: NDArray[np.bool_]) -> Scene:
+        """Return the scene in which those who are new walk at their preferred speed."""
+        aim = scene.goal
+        if self.router is not None:
+            aim = self.router.follow(scene.position, aim, None, new & self._routed(scene)).subgoal
+        away = aim - scene.position
+        distance = np.maximum(np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2), 1e-12)
+        moving = away * (scene.preferred_speed / distance)[..., None]
+        return scene.replace(
+            velocity=np.where(new[..., None], moving, scene.velocity),
+            heading=np.where(new, np.arctan2(away[..., 1], away[..., 0]), scene.heading),
+        )
+
+    def _holds(self, points: Floats) -> NDArray[np.bool_]:
+        return np.ones(len(points), dtype=np.bool_) if self.router is None else self.router.holds(points)
+
+    def _routed(self, scene: Scene) -> NDArray[np.bool_]:
+        walking = scene.active & ~scene.external
+        return walking if self.journeys is None else walking & self.journeys.routed(scene)
+
+    def _luck(self) -> Floats:
+        return uniform(self.seeds[:, None], self.ids, "symmetry")
+
+
+def _identities(ids: Any, shape: tuple[int, int]) -> Numbers:
+    try:
+        who = np.broadcast_to(np.arange(shape[1]) if ids is None else np.asarray(ids), shape)
+    except ValueError:
+        raise InputError(f"ids have shape {list(np.shape(ids))}, they must fit [E, A] = {list(shape)}") from None
+    different = np.sort(who, axis=1)
+    if who.dtype.kind not in "iu" or np.any(different[:, 1:] == different[:, :-1]):
+        raise InputError("ids must be whole numbers, no two the same in one environment")
+    return who.astype(np.int64)
+
+
+def _turned(scene: Scene, angle: Floats) -> Scene:
+    """Return the scene with goals, or preferred velocities, turned about everyone by an angle ``[E, A]`` [rad]."""
+    cos, sin = np.cos(angle), np.sin(angle)
+
+    def turned(way: Floats) -> Floats:
+        return np.stack([cos * way[..., 0] - sin * way[..., 1], sin * way[..., 0] + cos * way[..., 1]], axis=-1)
+
+    own = (scene.active & ~scene.external)[..., None]
+    if scene.preferred_velocity is not None:
+        wish = scene.preferred_velocity
+        return scene.replace(preferred_velocity=np.where(own, turned(wish), wish))
+    return scene.replace(goal=np.where(own, scene.position + turned(scene.goal - scene.position), scene.goal))

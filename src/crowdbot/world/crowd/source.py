@@ -1,0 +1,323 @@
+"""Flow: people who come in while the world runs, and the places where they go out."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Scene, did_you_mean, stream
+from crowdbot.models.mixture import MODEL
+
+from .journey import JOURNEY, Journey
+from .waypoint import Zone
+
+__all__ = ["Arrivals", "Draw", "Source"]
+
+Floats = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+
+TIMINGS = ("poisson", "regular")
+TRIES = 20
+"""So many places are tried in a step for one person, then the source waits for the next step."""
+GAP = 0.01
+"""Bodies begin at least this far apart [m]."""
+TOP = 1.3
+"""Maximum speed, as a multiple of the preferred one (Helbing & Molnar 1995)."""
+MOST_RATE = 1e4
+
+
+class Draw(Protocol):
+    """A distribution that numbers can be drawn from."""
+
+    def draw(self, rng: np.random.Generator, count: int) -> Floats:
+        """Return ``[count]`` numbers."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """People come in at a rate, at random places of a zone, as soon as there is room.
+
+    Whoever finds no room, or no free place among the agents of the scene, waits outside; the first to come is the first
+    to enter. The number of agents A does not change: who comes takes the place in the arrays of somebody who has left,
+    with a new identity.
+
+    Fields:
+        zone: where people stand when they come in.
+        journey: where they go.
+        rate: people per second.
+        timing: ``poisson`` (at random) or ``regular`` (evenly, the first at ``begin``).
+        begin, end: when people come [s].
+        most: no more people than this; None: no limit.
+        speed: preferred [m/s], a number or something to draw from.
+        radius: of bodies [m], likewise.
+        model: the index of the model of a mixture that they walk by.
+
+    Raises:
+        InputError: a value is not allowed.
+
+    >>> from crowdbot.world import Point
+    >>> door = Zone(((0, 0), (1, 0), (1, 2), (0, 2)))
+    >>> Source(door, Journey((Point(9.0, 1.0),)), rate=0.5, most=20).timing
+    'poisson'
+    """
+
+    zone: Zone
+    journey: Journey
+    rate: float
+    timing: str = "poisson"
+    begin: float = 0.0
+    end: float = math.inf
+    most: int | None = None
+    speed: float | Draw = 1.34
+    radius: float | Draw = 0.25
+    model: int = 0
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.rate <= MOST_RATE:
+            raise InputError(f"Source: rate = {self.rate} people/s must be above 0 and at most {MOST_RATE:g}")
+        if self.timing not in TIMINGS:
+            near = did_you_mean(str(self.timing), TIMINGS)
+            raise InputError(f"Source: timing {self.timing!r} is unknown{near}; choose {' or '.join(TIMINGS)}")
+        if not (math.isfinite(self.begin) and self.begin < self.end):
+            raise InputError(f"Source: begin = {self.begin} s must be finite and before end = {self.end} s")
+        if self.most is not None and self.most < 0:
+            raise InputError(f"Source: most = {self.most} people must be at least 0, or None")
+        for name in ("speed", "radius"):
+            value = getattr(self, name)
+            if isinstance(value, int | float) and not 0.0 < value < math.inf:
+                raise InputError(f"Source: {name} = {value} must be finite and above 0")
+
+    def come_by(self, time: float, seed: int, number: int = 0) -> int:
+        """Return how many people come by a time [s] as the source ``number`` of a world with this seed.
+
+        >>> from crowdbot.world import Point
+        >>> door = Zone(((0, 0), (1, 0), (1, 2), (0, 2)))
+        >>> Source(door, Journey((Point(9.0, 1.0),)), rate=0.5, timing="regular").come_by(9.0, seed=0)
+        5
+        """
+        queue = _Queue.of(self, int(seed) % 2**63, number)
+        queue.fill(time)
+        return queue.come
+
+
+@dataclass
+class _Queue:
+    """Who comes in by one source in one environment."""
+
+    source: Source
+    times: np.random.Generator
+    bodies: np.random.Generator
+    places: np.random.Generator
+    due: float
+    come: int = 0
+    waiting: int = 0
+    body: tuple[float, float] | None = None
+    """Preferred speed [m/s] and radius [m] of the first who waits."""
+
+    @classmethod
+    def of(cls, source: Source, seed: int, number: int) -> _Queue:
+        times, bodies, places = (stream(seed, "source", number, name) for name in ("times", "bodies", "places"))
+        queue = cls(source, times, bodies, places, source.begin)
+        if source.timing == "poisson":
+            queue.due += queue.pause()
+        return queue
+
+    def turn_to(self, source: Source) -> None:
+        """Go on as another source; whoever comes evenly goes on from the next who is due."""
+        begin = self.due - self.come / source.rate
+        if source.timing == "regular" and source != self.source and self.come and begin < source.end:
+            source = dataclasses.replace(source, begin=begin)
+        self.source = source
+
+    def pause(self) -> float:
+        """Return the time until the next one comes [s]."""
+        regular = self.source.timing == "regular"
+        return 1.0 / self.source.rate if regular else float(self.times.exponential(1.0 / self.source.rate))
+
+    def fill(self, time: float) -> None:
+        """Count those who have come up to a time [s]."""
+        most = math.inf if self.source.most is None else self.source.most
+        while self.due <= time + 1e-9 and self.due < self.source.end and self.come < most:
+            self.come += 1
+            self.waiting += 1
+            self.due = (
+                self.source.begin + self.come / self.source.rate
+                if self.source.timing == "regular"
+                else self.due + self.pause()
+            )
+
+    def first(self) -> tuple[float, float]:
+        """Return preferred speed [m/s] and radius [m] of the first who waits."""
+        if self.body is None:
+            self.body = (self._drawn("speed"), self._drawn("radius"))
+        return self.body
+
+    def _drawn(self, name: str) -> float:
+        value = getattr(self.source, name)
+        number = float(value if isinstance(value, int | float) else np.asarray(value.draw(self.bodies, 1))[0])
+        if not 0.0 < number < math.inf:
+            raise InputError(f"Source: a {name} of {number} was drawn, it must be finite and above 0")
+        return number
+
+    def place(self, taken: Floats, walls: Floats) -> tuple[float, float] | None:
+        """Return a free place x, y [m] for the first who waits, None when none was found.
+
+        Args:
+            taken: ``[N, 3]`` x, y, radius of who is there.
+            walls: ``[M, 4]``.
+        """
+        radius = self.first()[1]
+        ring = np.array(self.source.zone.corners)
+        low = ring.min(axis=0)
+        points = low + (ring.max(axis=0) - low) * self.places.random((TRIES, 2))
+        for x, y in points[self.source.zone.contains(points)]:
+            near = (taken[:, 0] - x) ** 2 + (taken[:, 1] - y) ** 2 < (taken[:, 2] + radius + GAP) ** 2
+            if not np.any(near) and not np.any(_distance2(x, y, walls) < radius * radius):
+                return float(x), float(y)
+        return None
+
+
+class _Entry(NamedTuple):
+    """Somebody who comes in: environment, place in the arrays, source, and what is known of the person."""
+
+    e: int
+    a: int
+    source: int
+    x: float
+    y: float
+    speed: float
+    radius: float
+
+
+class Arrivals:
+    """Everybody who comes in by some sources.
+
+    Args:
+        sources: by which people come.
+        seeds: of each environment.
+        first_journey: index of the journey of the first source; the others follow.
+        fresh: what the memory of a scene holds for somebody new, by name; 0 under other names.
+
+    >>> from crowdbot.world import Point
+    >>> door = Zone(((0, 0), (1, 0), (1, 2), (0, 2)))
+    >>> coming = Arrivals([Source(door, Journey((Point(9, 1),)), rate=2.0, timing="regular")], [0], 0, {})
+    >>> empty = Scene.of(np.zeros((3, 2)), active=False)
+    >>> scene, new = coming.let_in(empty, 0.6, np.arange(3)[None], np.array([3]))
+    >>> new.tolist(), scene.active.tolist()
+    ([[True, True, False]], [[True, True, False]])
+    """
+
+    def __init__(
+        self, sources: Sequence[Source], seeds: Sequence[int], first_journey: int, fresh: Mapping[str, float | Floats]
+    ) -> None:
+        self._sources = sources
+        self._queues = [[_Queue.of(source, int(seed), k) for k, source in enumerate(sources)] for seed in seeds]
+        self._first_journey = first_journey
+        self._fresh = fresh
+
+    @property
+    def waiting(self) -> Numbers:
+        """How many wait outside, ``[E]``."""
+        return np.array([sum(queue.waiting for queue in queues) for queues in self._queues], dtype=np.int64)
+
+    def turn_to(self, sources: Sequence[Source], seeds: Sequence[int] | None = None) -> None:
+        """Go on with other sources in the places of these; who is due or waits stays so.
+
+        Args:
+            sources: as many as before, with the same journeys.
+            seeds: of each environment, for new chance from now on; None: chance goes on.
+
+        Raises:
+            InputError: the number or a journey of the sources is another.
+        """
+        if [source.journey for source in sources] != [source.journey for source in self._sources]:
+            raise InputError("sources cannot change their number or their journeys while a world runs")
+        self._sources = tuple(sources)
+        for e, queues in enumerate(self._queues):
+            for number, queue in enumerate(queues):
+                queue.turn_to(sources[number])
+                if seeds is not None:
+                    new = _Queue.of(sources[number], int(seeds[e]), number)
+                    queue.times, queue.bodies, queue.places = new.times, new.bodies, new.places
+
+    def let_in(self, scene: Scene, time: float, ids: Numbers, following: Numbers) -> tuple[Scene, NDArray[np.bool_]]:
+        """Return the scene with those who have come up to a time, and who they are ``[E, A]``.
+
+        They stand, and have no goal of their own yet.
+
+        Args:
+            scene: now.
+            time: since the beginning [s].
+            ids: ``[E, A]`` who is who; is written to.
+            following: ``[E]`` the next identities; is written to.
+        """
+        entries, walls = [], scene.walls.segments()
+        for e, queues in enumerate(self._queues):
+            for queue in queues:
+                queue.fill(time)
+            if any(queue.waiting for queue in queues):
+                entries += self._into(scene, e, walls)
+        new = np.zeros(scene.shape, dtype=np.bool_)
+        for entry in entries:
+            ids[entry.e, entry.a] = following[entry.e]
+            following[entry.e] += 1
+            new[entry.e, entry.a] = True
+        return (self._with(scene, entries) if entries else scene), new
+
+    def _into(self, scene: Scene, e: int, walls: Floats) -> list[_Entry]:
+        """Return who comes into one environment now."""
+        places = np.flatnonzero(~scene.active[e] & ~scene.external[e]).tolist()
+        here = scene.active[e]
+        taken = np.column_stack([scene.position[e][here], scene.radius[e][here]])
+        entries = []
+        for number, queue in enumerate(self._queues[e]):
+            while queue.waiting and places:
+                found = queue.place(taken, walls)
+                if found is None:
+                    break
+                speed, radius = queue.first()
+                entries.append(_Entry(e, places.pop(0), number, *found, speed, radius))
+                taken = np.vstack([taken, [*found, radius]])
+                queue.body, queue.waiting = None, queue.waiting - 1
+        return entries
+
+    def _with(self, scene: Scene, entries: Sequence[_Entry]) -> Scene:
+        e, a, source, x, y, speed, radius = (np.array(column) for column in zip(*entries, strict=True))
+
+        def put(value: NDArray[Any], new: Any) -> NDArray[Any]:
+            changed = value.copy()
+            changed[e, a] = new
+            return changed
+
+        place = np.stack([x, y], axis=-1)
+        memory = {name: put(value, self._fresh.get(name, 0.0)) for name, value in scene.memory.items()}
+        if JOURNEY in memory:
+            memory[JOURNEY] = put(memory[JOURNEY], self._first_journey + source)
+        if MODEL in memory:
+            memory[MODEL] = put(memory[MODEL], [self._sources[k].model for k in source])
+        return scene.replace(
+            position=put(scene.position, place),
+            velocity=put(scene.velocity, 0.0),
+            goal=put(scene.goal, place),
+            radius=put(scene.radius, radius),
+            preferred_speed=put(scene.preferred_speed, speed),
+            max_speed=put(scene.max_speed, TOP * speed),
+            active=put(scene.active, True),
+            visible=put(scene.visible, True),
+            group=put(scene.group, -1),
+            memory=memory,
+        )
+
+
+def _distance2(x: float, y: float, walls: Floats) -> Floats:
+    """Return ``[M]`` squared distances [m2] from a point to walls ``[M, 4]``."""
+    ex, ey = walls[:, 2] - walls[:, 0], walls[:, 3] - walls[:, 1]
+    dx, dy = x - walls[:, 0], y - walls[:, 1]
+    along = np.clip((dx * ex + dy * ey) / np.maximum(ex * ex + ey * ey, 1e-300), 0.0, 1.0)
+    return np.asarray((dx - along * ex) ** 2 + (dy - along * ey) ** 2)

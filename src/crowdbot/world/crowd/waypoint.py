@@ -1,0 +1,235 @@
+"""Stops: what people go to, and when they are there."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, did_you_mean
+
+from .person_random import uniform
+
+__all__ = ["Direction", "Luck", "Point", "Stop", "Zone"]
+
+Floats = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+AHEAD = 1000.0
+"""Who walks in a direction has a goal this far ahead [m]."""
+TRIES = 5000
+"""A zone of which so many points of its bounding box hit nothing is too thin to stand in."""
+AIMS = ("nearest", "random")
+
+
+@dataclass(frozen=True)
+class Luck:
+    """Who draws, and what for.
+
+    Fields:
+        seed, person: ``[N]`` of the environment, and who it is.
+        path: what is drawn.
+        holds: whether a body has room at points ``[N, 2]``; None: everywhere.
+    """
+
+    seed: Numbers
+    person: Numbers
+    path: tuple[str | int, ...] = ()
+    holds: Callable[[Floats], Bools] | None = None
+
+    def draw(self, *more: str | int) -> Floats:
+        """Return a number in [0, 1) for everyone."""
+        return uniform(self.seed, self.person, *self.path, *more)
+
+
+@dataclass(frozen=True)
+class Stop(ABC):
+    """Something to go to."""
+
+    routed: ClassVar[bool] = True
+    """Whether a router leads there."""
+
+    @property
+    def moves(self) -> bool:
+        """Whether the goal depends on where one is."""
+        return False
+
+    @abstractmethod
+    def goal(self, place: Floats, luck: Luck) -> Floats:
+        """Return the goals ``[N, 2]`` [m] of people at ``place`` ``[N, 2]`` [m]."""
+
+    @abstractmethod
+    def reached(self, place: Floats, goal: Floats) -> Bools:
+        """Return ``[N]`` who is there."""
+
+
+@dataclass(frozen=True)
+class Point(Stop):
+    """A point, reached when one is nearer than the tolerance [m].
+
+    >>> Point(1.0, 2.0).reached(np.array([[1.0, 1.8], [1.0, 1.0]]), np.array([[1.0, 2.0], [1.0, 2.0]])).tolist()
+    [True, False]
+    """
+
+    x: float
+    y: float
+    tolerance: float = 0.3
+
+    def __post_init__(self) -> None:
+        _check_finite("Point", x=self.x, y=self.y)
+        _check_tolerance("Point", self.tolerance)
+
+    def goal(self, place: Floats, luck: Luck) -> Floats:
+        """Return the point for everyone."""
+        return np.tile([float(self.x), float(self.y)], (len(place), 1))
+
+    def reached(self, place: Floats, goal: Floats) -> Bools:
+        """Return ``[N]`` who is nearer than the tolerance."""
+        return _within(place, goal, self.tolerance)
+
+
+@dataclass(frozen=True)
+class Direction(Stop):
+    """A direction [rad] to walk in for ever, counter-clockwise from +x; no router leads there.
+
+    >>> Direction(0.0).reached(np.zeros((1, 2)), np.ones((1, 2))).tolist()
+    [False]
+    """
+
+    routed: ClassVar[bool] = False
+    heading: float = 0.0
+
+    def __post_init__(self) -> None:
+        _check_finite("Direction", heading=self.heading)
+
+    @property
+    def moves(self) -> bool:
+        """Whether the goal depends on where one is."""
+        return True
+
+    def goal(self, place: Floats, luck: Luck) -> Floats:
+        """Return a point far ahead of everyone."""
+        return place + AHEAD * np.array([math.cos(self.heading), math.sin(self.heading)])
+
+    def reached(self, place: Floats, goal: Floats) -> Bools:
+        """Return that nobody is there."""
+        return np.zeros(len(place), dtype=np.bool_)
+
+
+@dataclass(frozen=True)
+class Zone(Stop):
+    """A polygon, reached when one is in it, or nearer to the own goal in it than the tolerance [m].
+
+    Fields:
+        corners: ``x, y`` [m], three or more, either way round.
+        aim: where in it one goes to: the ``nearest`` point, or a ``random`` one of one's own.
+        tolerance: [m].
+
+    Raises:
+        InputError: it has no area, or a value is not allowed.
+
+    >>> hall = Zone(((4.0, 0.0), (6.0, 0.0), (6.0, 3.0), (4.0, 3.0)))
+    >>> hall.goal(np.array([[0.0, 1.0], [5.0, 2.0]]), Luck(np.zeros(2, int), np.arange(2))).tolist()
+    [[4.0, 1.0], [5.0, 2.0]]
+    """
+
+    corners: Sequence[tuple[float, float]]
+    aim: str = "nearest"
+    tolerance: float = 0.3
+    _ring: Floats = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        ring = np.array(self.corners, dtype=np.float64)
+        if ring.ndim != 2 or ring.shape[1:] != (2,) or len(ring) < 3 or not np.all(np.isfinite(ring)):
+            raise InputError(f"Zone: corners {ring.tolist()} must be three or more finite points x, y")
+        area = 0.5 * abs(float(np.sum(ring[:, 0] * np.roll(ring[:, 1], -1) - np.roll(ring[:, 0], -1) * ring[:, 1])))
+        if area < 1e-6:
+            raise InputError(f"Zone: corners {ring.tolist()} enclose {area:g} m2, which is no area")
+        if self.aim not in AIMS:
+            raise InputError(
+                f"Zone: aim {self.aim!r} is unknown{did_you_mean(self.aim, AIMS)}; choose nearest or random"
+            )
+        _check_tolerance("Zone", self.tolerance)
+        object.__setattr__(self, "corners", tuple(map(tuple, ring.tolist())))
+        object.__setattr__(self, "_ring", ring)
+
+    @property
+    def moves(self) -> bool:
+        """Whether the goal depends on where one is."""
+        return self.aim == "nearest"
+
+    def goal(self, place: Floats, luck: Luck) -> Floats:
+        """Return the nearest points of the zone, or random ones."""
+        if self.aim == "random":
+            return self.drawn(luck)
+        return np.where(self.contains(place)[:, None], place, _on_border(self._ring, place))
+
+    def reached(self, place: Floats, goal: Floats) -> Bools:
+        """Return ``[N]`` who is in the zone, or near the own goal."""
+        return self.contains(place) | _within(place, goal, self.tolerance)
+
+    def contains(self, place: Floats) -> Bools:
+        """Return ``[N]`` which points ``[N, 2]`` [m] lie in the zone."""
+        x, y = place[:, 0], place[:, 1]
+        inside = np.zeros(len(place), dtype=np.bool_)
+        for (ax, ay), (bx, by) in zip(self._ring, np.roll(self._ring, -1, axis=0), strict=True):
+            if ay != by:
+                inside ^= ((ay > y) != (by > y)) & (x < ax + (bx - ax) * ((y - ay) / (by - ay)))
+        return inside
+
+    def drawn(self, luck: Luck) -> Floats:
+        """Return a random point of the zone ``[N, 2]`` for everyone, where a body has room.
+
+        Raises:
+            InputError: there is none.
+        """
+        low = self._ring.min(axis=0)
+        size = self._ring.max(axis=0) - low
+        points = np.zeros((len(luck.person), 2))
+        missing = np.arange(len(points))
+        for k in range(TRIES):
+            if len(missing) == 0:
+                return points
+            some = Luck(luck.seed[missing], luck.person[missing], luck.path)
+            found = low + size * np.stack([some.draw(k, "x"), some.draw(k, "y")], axis=-1)
+            good = self.contains(found)
+            if luck.holds is not None and np.any(good):
+                good[good] = luck.holds(found[good])
+            points[missing[good]] = found[good]
+            missing = missing[~good]
+        raise InputError(f"Zone: no place for a body was found in the zone with corners {list(self.corners)}")
+
+
+def _on_border(ring: Floats, place: Floats) -> Floats:
+    """Return the point ``[N, 2]`` on the border of a polygon that is nearest to each place."""
+    x, y = place[:, 0], place[:, 1]
+    best, found = np.full(len(place), np.inf), place.copy()
+    for (ax, ay), (bx, by) in zip(ring, np.roll(ring, -1, axis=0), strict=True):
+        ex, ey = bx - ax, by - ay
+        along = np.clip(((x - ax) * ex + (y - ay) * ey) / max(ex * ex + ey * ey, 1e-300), 0.0, 1.0)
+        point = np.stack([ax + along * ex, ay + along * ey], axis=-1)
+        away = (x - point[:, 0]) ** 2 + (y - point[:, 1]) ** 2
+        nearer = away < best
+        best, found = np.where(nearer, away, best), np.where(nearer[:, None], point, found)
+    return found
+
+
+def _within(place: Floats, goal: Floats, distance: float) -> Bools:
+    return np.asarray((place[:, 0] - goal[:, 0]) ** 2 + (place[:, 1] - goal[:, 1]) ** 2 < distance * distance)
+
+
+def _check_finite(kind: str, **values: Any) -> None:
+    for name, value in values.items():
+        if not np.isfinite(value):
+            raise InputError(f"{kind}: {name} = {value} is not finite")
+
+
+def _check_tolerance(kind: str, value: float) -> None:
+    if not 0.0 < value < math.inf:
+        raise InputError(f"{kind}: tolerance {value} m must be finite and above 0")

@@ -1,0 +1,227 @@
+"""What range sensors see of people, robots and props, in a world of any kind: their bodies as simple shapes."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from crowdbot.core import STAGE, Bodies, Element, InputError, Scene, Skins
+from crowdbot.world.robots.robot import Robot
+from crowdbot.world.urdf import Box, Capsule, Cylinder, Mesh, Sphere
+from crowdbot.world.urdf.transforms import frame, quaternion, turning
+
+from .people_motion import Walkers
+from .stage import PhysicsStage, Prop
+
+__all__ = ["bodies"]
+
+Floats = NDArray[np.float64]
+Frames = Mapping[str, Floats]
+UPRIGHT = math.cos(math.radians(5.0))
+"""Cylinders that lean by less than this are upright."""
+SLICES = 12
+"""An ellipsoid is a stack of so many discs."""
+
+
+class _Rows(NamedTuple):
+    """Shapes of one kind in the frame of a link: ``place [N, 4, 4]`` and sizes ``[N, 3]``."""
+
+    links: list[str]
+    place: Floats
+    size: Floats
+
+
+def bodies(
+    scene: Scene,
+    walkers: Walkers | None = None,
+    robots: Mapping[int, Robot] | None = None,
+    stage: PhysicsStage | None = None,
+    *,
+    joints: Mapping[int, Mapping[str, ArrayLike]] | None = None,
+    frames: Mapping[int, Frames] | None = None,
+    props: Mapping[int, Floats] | None = None,
+    skins: int | None = None,
+) -> Bodies:
+    """Return the bodies of everyone and everything in a scene, E = 1, to be given to range sensors.
+
+    People are 17 capsules, robots what touches of them, props what is seen of them. Boxes, balls, capsules and upright
+    cylinders are exact. A cylinder that lies is a box as wide, or a capsule when it is longer than wide; a mesh is the
+    bounding boxes of its convex pieces; an ellipsoid is a stack of discs. Who neither walks nor is among ``robots`` has
+    no body and is seen as the cylinder of the own radius. The carrier of a sensor is left out by
+    :meth:`Scene.without`.
+
+    Args:
+        scene: places and headings of robots; who is active.
+        walkers: people as they stand now.
+        robots: by agent.
+        stage: for its props.
+        joints: positions of joints of robots [rad, m], by agent and name; those left out are as in the posture.
+        frames: of the links of robots in the world ``[4, 4]``, by agent and link, if they are known better.
+        props: frames in the world ``[4, 4]`` of props that were moved, by number.
+        skins: level of detail of people's skins, 0 (finest) to 2, for rays that are true to the mesh; None: none.
+
+    Raises:
+        InputError: the scene has several environments.
+
+    >>> scene = Scene.of([[0.0, 0.0], [3.0, 0.0]], external=[True, False])
+    >>> found = bodies(scene, Walkers(scene, np.array([1])), {0: Robot.load("turtlebot2")})
+    >>> found.start.shape, sorted(set(found.post_owner.tolist()))  # a castor is a ball, that is a short capsule
+    ((1, 19, 3), [0])
+    """
+    if scene.shape[0] != 1:
+        raise InputError(f"bodies: the scene has {scene.shape[0]} environments; give one: scene.environments([0])")
+    found = _Found()
+    parts: tuple[str, ...] = ()
+    if walkers is not None:
+        limbs = walkers.limbs(scene.active[0])
+        parts = limbs.parts
+        found.capsules.append((limbs.start[0], limbs.end[0], limbs.radius[0], limbs.owner, limbs.part))
+    for agent, robot in (robots or {}).items():
+        places = (frames or {}).get(agent) or _standing(scene, agent, robot, (joints or {}).get(agent, {}))
+        for kind, rows in _rows_of(robot).items():
+            if rows.links:
+                found.add(kind, np.stack([places[link] for link in rows.links]) @ rows.place, rows.size, agent)
+    for number, prop in enumerate(stage.props if stage is not None else ()):
+        for kind, place, size in _of_prop(prop, (props or {}).get(number)):
+            found.add(kind, place[None], size[None], STAGE)
+    skin = None if skins is None or walkers is None else _skins(scene, walkers, skins)
+    return found.bodies(parts, skin)
+
+
+class _Found:
+    """Collects shapes."""
+
+    def __init__(self) -> None:
+        self.capsules: list[tuple[NDArray[Any], ...]] = []
+        self.boxes: list[tuple[NDArray[Any], ...]] = []
+        self.posts: list[tuple[NDArray[Any], ...]] = []
+
+    def add(self, kind: str, place: Floats, size: Floats, owner: int) -> None:
+        """Add shapes of a kind with the frames ``[N, 4, 4]`` and sizes ``[N, 3]`` of an agent or the stage."""
+        middle, axis = place[:, :3, 3], place[:, :3, 2]
+        if kind == "box":
+            turn = np.array([quaternion(one[:3, :3]) for one in place])
+            self.boxes.append((middle, size, turn, np.full(len(size), owner)))
+        elif kind == "capsule":
+            reach = axis * size[:, 1:2]
+            names = np.full(len(size), owner), np.full(len(size), -1)
+            self.capsules.append((middle - reach, middle + reach, size[:, 0], *names))
+        elif kind == "cylinder":
+            self._cylinders(place, size, owner)
+        else:
+            self._ellipsoids(middle, size, owner)
+
+    def _cylinders(self, place: Floats, size: Floats, owner: int) -> None:
+        radius, half = size[:, 0], size[:, 1]
+        upright = np.abs(place[:, 2, 2]) >= UPRIGHT
+        flat = ~upright & (half <= radius)
+        long = ~upright & ~flat
+        if upright.any():
+            foot = place[upright, :3, 3] - half[upright, None] * (0.0, 0.0, 1.0)
+            names = np.full(int(upright.sum()), owner)
+            self.posts.append((foot, radius[upright], 2.0 * half[upright], names))
+        if flat.any():
+            self.add("box", place[flat], np.stack([radius, radius, half], axis=1)[flat], owner)
+        if long.any():
+            self.add("capsule", place[long], np.stack([radius, half - radius, half], axis=1)[long], owner)
+
+    def _ellipsoids(self, middle: Floats, size: Floats, owner: int) -> None:
+        """Stack discs of the mean radius that an upright ellipsoid has at their heights."""
+        edge = np.linspace(-1.0, 1.0, SLICES + 1)
+        low, high = edge[:-1], edge[1:]
+        across = np.sqrt(1.0 - (low**2 + low * high + high**2) / 3.0)
+        for (x, y, z), (wide, _, tall) in zip(middle.tolist(), size.tolist(), strict=True):
+            foot = np.column_stack([np.full(SLICES, x), np.full(SLICES, y), z + tall * low])
+            self.posts.append((foot, wide * across, tall * (high - low), np.full(SLICES, owner)))
+
+    def bodies(self, parts: tuple[str, ...], skins: Skins | None) -> Bodies:
+        """Return all of them."""
+        named = (
+            (self.capsules, ("start", "end", "radius", "owner", "part")),
+            (self.boxes, ("box_centre", "box_half", "box_turn", "box_owner")),
+            (self.posts, ("post_foot", "post_radius", "post_height", "post_owner")),
+        )
+        arrays: dict[str, Any] = {}
+        for rows, names in named:
+            if rows:
+                arrays |= {
+                    name: np.concatenate(column) for name, column in zip(names, zip(*rows, strict=True), strict=True)
+                }
+        return Bodies.of(parts=parts, skins=skins, **arrays)
+
+
+def _standing(scene: Scene, agent: int, robot: Robot, joints: Mapping[str, ArrayLike]) -> Frames:
+    """Return the frames of the links of a robot that stands on the floor."""
+    x, y = scene.position[0, agent].tolist()
+    base = frame((x, y, robot.lift), turning((0.0, 0.0, 1.0), float(scene.heading[0, agent])))
+    poses = _posture(robot) if not joints else robot.model.poses({**robot.posture, **joints})
+    return {link: base @ pose for link, pose in poses.items()}
+
+
+@functools.lru_cache(maxsize=64)
+def _posture(robot: Robot) -> Frames:
+    return robot.model.poses(robot.posture)
+
+
+@functools.lru_cache(maxsize=64)
+def _rows_of(robot: Robot) -> dict[str, _Rows]:
+    """Return the colliders of a robot by kind, in the frames of their links."""
+    found: dict[str, list[tuple[str, Floats, tuple[float, float, float]]]] = {"box": [], "capsule": [], "cylinder": []}
+    for name, link in robot.model.links.items():
+        for part in link.collisions:
+            shape = part.shape
+            if isinstance(shape, Box):
+                found["box"].append((name, part.origin, tuple(0.5 * side for side in shape.size)))  # type: ignore[arg-type]
+            elif isinstance(shape, Sphere):
+                found["capsule"].append((name, part.origin, (shape.radius, 0.0, 0.0)))
+            elif isinstance(shape, Mesh):
+                for points in [piece.vertices for piece in shape.pieces] or [shape.vertices]:
+                    low, high = points.min(axis=0), points.max(axis=0)
+                    x, y, z = (0.5 * (high - low)).tolist()
+                    found["box"].append((name, part.origin @ frame(0.5 * (low + high)), (x, y, z)))
+            else:
+                kind = "capsule" if isinstance(shape, Capsule) else "cylinder"
+                assert isinstance(shape, Capsule | Cylinder)
+                found[kind].append((name, part.origin, (shape.radius, 0.5 * shape.length, 0.0)))
+    return {
+        kind: _Rows([row[0] for row in rows], np.array([row[1] for row in rows]), np.array([row[2] for row in rows]))
+        for kind, rows in found.items()
+    }
+
+
+def _of_prop(prop: Prop, moved: Floats | None) -> list[tuple[str, Floats, Floats]]:
+    """Return kind, frame and size of the shapes of a prop, as its body of MJCF says."""
+    body = prop.body("prop")
+    place = moved
+    if place is None:
+        place = frame(_numbers(body, "pos"), turning((0.0, 0.0, 1.0), prop.heading))
+    found = []
+    for geom in body.each("geom"):
+        size = _numbers(geom, "size")
+        size = np.concatenate([size, np.zeros(3 - len(size))])
+        kind = geom.attributes.get("type", "sphere")
+        kind = "capsule" if kind == "sphere" else kind
+        if kind not in ("box", "capsule", "cylinder", "ellipsoid"):
+            raise InputError(f"bodies: {type(prop).__name__} has a shape of the type {kind!r}, which rays cannot meet")
+        found.append((kind, place @ frame(_numbers(geom, "pos")), size))
+    return found
+
+
+def _numbers(element: Element, key: str) -> Floats:
+    return np.array([float(word) for word in element.attributes.get(key, "0 0 0").split()])
+
+
+def _skins(scene: Scene, walkers: Walkers, level: int) -> Skins:
+    """Return the skins of everyone who is there, what they do not wear left out."""
+    points = walkers.gait.skin(walkers.state, level)
+    points[~scene.active[0, walkers.agents]] = np.nan
+    worn, faces = walkers.people.worn(level), walkers.people.faces(level)
+    count = points.shape[1]
+    rows = [faces[own] + k * count for k, own in enumerate(worn)]
+    owner = np.repeat(walkers.agents, worn.sum(axis=1))
+    return Skins.of(points.reshape(1, -1, 3), np.concatenate(rows) if rows else np.zeros((0, 3)), owner)

@@ -1,0 +1,303 @@
+"""Collisions: touches that belong together, from the first to the last, with who hit whom and how hard."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.humans import LIMBS
+from crowdbot.metrics import cause_of
+from crowdbot.metrics.contacts import HOLD
+
+from .body_region_limits import TISSUES, region_of, two_body_force
+from .contacts import Party, Touch
+
+__all__ = ["BodyForce", "Collision", "CollisionBook"]
+
+Floats = NDArray[np.float64]
+CLAMPED = 0.5
+"""A limb that is pressed for so long [s] is clamped: from then on its force counts as quasi-static (ISO/TS 15066)."""
+WINDOW = 0.1
+"""Quasi-static forces are means over this time [s]; a limb that is free for longer is let go."""
+ANEW = 0.05
+"""A limb that was free for so long [s] is hit anew."""
+PARTS = {limb.name: limb.region for limb in LIMBS}
+
+
+class BodyForce(NamedTuple):
+    """What two did to each other during one step of the world.
+
+    Fields:
+        first, second: who; a robot comes before a prop, a prop before a person, a person before a wall.
+        first_part: the link of a robot.
+        limb, part: of the person: one of :data:`crowdbot.humans.LIMBS`, and ``head``, ``torso``, ``arm`` or ``leg``.
+        force: size of the mean over the step [N].
+        vector: ``[3]`` that mean [N], from the first on the second.
+        depth: largest overlap [m].
+        point: ``[3]`` where [m], the last.
+    """
+
+    first: Party
+    second: Party
+    first_part: str
+    limb: str
+    part: str
+    force: float
+    vector: tuple[float, float, float]
+    depth: float
+    point: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Collision:
+    """From the first touch of two until they have been apart for half a second.
+
+    Fields:
+        first, second: who.
+        begin, end: first and last touch [s].
+        cause: ``first``, ``second`` or ``mutual``: who closed in, see :func:`crowdbot.metrics.contacts.cause_of`.
+        impact_speed: closing speed along the normal at the first touch [m/s], of the surfaces there: a foot in its
+            stride comes at three to four times the speed of the person.
+        depth: deepest overlap [m].
+        impulse: integral of the force [N s].
+        limb, part, region: of the person, what was hit hardest: the limb, one of ``head``, ``torso``, ``arm``, ``leg``,
+            and the region of ISO/TS 15066; empty without a person.
+        peak_force: of the hardest impact by the two-body model [N]; NaN without a person. What bears a limb from below
+            (somebody treads on it) is left out of this force and the next: people here cannot be lifted.
+        steady_force: largest mean over 0.1 s on one limb that has been pressed for 0.5 s without being free for 0.1 s
+            [N]; 0 when none was: repeated impacts are no clamping. Without a person over all that touches.
+        steady_region: where that was; empty without a person.
+        simulated_peak: largest force on one limb that the engine found in one of its steps [N]; it is there to be
+            compared and not an injury force.
+    """
+
+    first: Party
+    second: Party
+    begin: float
+    end: float
+    cause: str
+    impact_speed: float
+    depth: float
+    impulse: float
+    limb: str
+    part: str
+    region: str
+    peak_force: float
+    steady_force: float
+    steady_region: str
+    simulated_peak: float
+
+    @property
+    def duration(self) -> float:
+        """From the first to the last touch [s]."""
+        return self.end - self.begin
+
+    @property
+    def severity(self) -> float:
+        """Force over the limit of its region (ISO/TS 15066), the worse of impact and steady; NaN without a person.
+
+        Infinite for an impact on skull or face, where none is allowed.
+        """
+        if not self.region:
+            return math.nan
+        tissue = TISSUES[self.region]
+        allowed = tissue.transient * tissue.limit
+        impact = self.peak_force / allowed if allowed > 0.0 else math.inf if self.peak_force > 0.0 else 0.0
+        steady = self.steady_force / TISSUES[self.steady_region].limit if self.steady_region else 0.0
+        return max(impact, steady)
+
+
+@dataclass
+class _Pressed:
+    """A limb, or the whole, during a collision; pressed since ``since``, the last time at ``last``."""
+
+    since: float
+    last: float
+    recent: deque[float]
+
+
+@dataclass
+class _Running:
+    """A collision that is not over."""
+
+    begin: float
+    cause: str
+    impact_speed: float
+    end: float = 0.0
+    depth: float = 0.0
+    impulse: float = 0.0
+    hardest: tuple[float, str, str] = (-1.0, "", "")
+    steady: tuple[float, str] = (0.0, "")
+    simulated_peak: float = 0.0
+    pressed: dict[str, _Pressed] = field(default_factory=dict)
+    region: dict[str, str] = field(default_factory=dict)
+
+
+class CollisionBook:
+    """Keeps collisions from touches.
+
+    Args:
+        step: of the engine [s].
+        mass_of: mass [kg] of a party, infinite for what stands fast.
+        limb_mass_of: mass [kg] of a limb of a person, with what hangs on it.
+        heading_of: heading [rad] of a person.
+    """
+
+    def __init__(
+        self, step: float, mass_of: Callable[[Party], float], limb_mass_of: Callable[[int, str], float],
+        heading_of: Callable[[int], float],
+    ) -> None:  # fmt: skip
+        self._step, self._mass_of, self._limb_mass_of, self._heading_of = step, mass_of, limb_mass_of, heading_of
+        self._window = max(1, round(WINDOW / step))
+        self._running: dict[tuple[Party, Party], _Running] = {}
+        self._over: list[Collision] = []
+        self._sums: dict[tuple[Party, Party, str, str], tuple[Floats, float, Floats]] = {}
+
+    @property
+    def collisions(self) -> tuple[Collision, ...]:
+        """All so far, by first touch; those that are not over end with their last touch."""
+        now = [_closed(pair, running) for pair, running in self._running.items()]
+        return tuple(sorted([*self._over, *now], key=lambda one: (one.begin, one.first, one.second)))
+
+    def add(self, time: float, touches: tuple[Touch, ...]) -> None:
+        """Take the touches of one step of the engine that ends at ``time`` [s]."""
+        if not touches and not self._running:
+            return
+        pairs: dict[tuple[Party, Party], list[Touch]] = {}
+        for touch in touches:
+            pairs.setdefault((touch.first, touch.second), []).append(touch)
+            self._sum(touch)
+        for pair, rows in pairs.items():
+            self._touched(pair, rows, time)
+        for pair, running in list(self._running.items()):
+            self._pressed(running, pairs.get(pair, []), time)
+            if time - running.end > HOLD:
+                self._over.append(_closed(pair, self._running.pop(pair)))
+
+    def forces(self, steps: int) -> tuple[BodyForce, ...]:
+        """Return the means over the last ``steps`` steps of the engine, and begin anew."""
+        found = []
+        for (first, second, one, limb), (force, depth, point) in self._sums.items():
+            mean = force / steps
+            size = _size(mean)
+            found.append(
+                BodyForce(first, second, one, limb, PARTS.get(limb, ""), size, _three(mean), depth, _three(point))
+            )
+        self._sums = {}
+        return tuple(sorted(found))
+
+    def _sum(self, touch: Touch) -> None:
+        limb = touch.second_part if touch.second.kind == "person" else ""
+        limb = touch.first_part if touch.first.kind == "person" else limb
+        link = touch.first_part if touch.first.kind == "robot" else ""
+        key = (touch.first, touch.second, link, limb)
+        force, depth, _ = self._sums.get(key, (np.zeros(3), 0.0, touch.point))
+        self._sums[key] = (force + touch.force, max(depth, touch.depth), touch.point)
+
+    def _touched(self, pair: tuple[Party, Party], rows: list[Touch], time: float) -> None:
+        running = self._running.get(pair)
+        if running is None:
+            fastest = max(rows, key=_closing)
+            cause = cause_of(fastest.normal, fastest.first_velocity, fastest.second_velocity)
+            words = {"robot": "first", "person": "second", "mutual": "mutual"}
+            running = _Running(time - self._step, words[cause], _closing(fastest))
+            self._running[pair] = running
+        running.end = time
+        for touch in rows:
+            running.depth = max(running.depth, touch.depth)
+            if "person" in (touch.first.kind, touch.second.kind):
+                self._hit(running, touch, time)
+
+    def _hit(self, running: _Running, touch: Touch, time: float) -> None:
+        """Judge an impact on a limb by the two-body model."""
+        first = touch.first.kind == "person"
+        person, limb = (touch.first, touch.first_part) if first else (touch.second, touch.second_part)
+        known = running.pressed.get(limb)
+        if known is not None and time - known.last < ANEW:
+            return
+        towards = touch.normal if first else -touch.normal
+        heading = self._heading_of(person.number)
+        ahead = float(towards[0] * math.cos(heading) + towards[1] * math.sin(heading)) >= 0.0
+        region = region_of(limb, ahead)
+        running.region[limb] = region
+        mass = self._mass_of(touch.second if first else touch.first)
+        swing = float(touch.swing @ touch.normal) * (1.0 if first else -1.0)
+        surface = _closing(touch)
+        body = min(surface, max(0.0, surface - swing))  # what swings carries its own mass, not that of the body
+        force = max(
+            two_body_force(body, mass, region, self._mass_of(person)),
+            two_body_force(surface, mass, region, self._limb_mass_of(person.number, limb)),
+        )
+        force *= _size(_borne(-towards))
+        if force > running.hardest[0]:
+            running.hardest = (force, limb, region)
+
+    def _pressed(self, running: _Running, rows: list[Touch], time: float) -> None:
+        """Follow the force on each limb."""
+        sums: dict[str, Floats] = {}
+        for touch in rows:
+            limb = touch.first_part if touch.first.kind == "person" else touch.second_part
+            where = limb if limb in PARTS else ""
+            on_limb = -touch.force if touch.first.kind == "person" else touch.force
+            sums[where] = sums.get(where, np.zeros(3)) + on_limb
+        borne = {where: _size(_borne(force) if where else force) for where, force in sums.items()}
+        for where in sums.keys() - running.pressed.keys():
+            running.pressed[where] = _Pressed(time, time, deque(maxlen=self._window))
+        for where, pressed in running.pressed.items():
+            force = _size(sums[where]) if where in sums else 0.0
+            if where in sums:
+                pressed.since = time if time - pressed.last > WINDOW else pressed.since
+                pressed.last = time
+            pressed.recent.append(borne.get(where, 0.0))
+            running.impulse += force * self._step
+            running.simulated_peak = max(running.simulated_peak, force)
+            mean = sum(pressed.recent) / self._window
+            if time - pressed.since >= CLAMPED and mean > running.steady[0]:
+                running.steady = (mean, running.region.get(where, ""))
+
+
+def _borne(push: Floats) -> Floats:
+    """Return what of a push on a person counts: not what bears the own weight and step from below.
+
+    People here cannot be lifted, so the upward part of a force would be that of somebody who is immovable.
+    """
+    return push * (1.0, 1.0, 0.0) if push[2] > 0.0 else push
+
+
+def _size(vector: Floats) -> float:
+    return float(np.sqrt(vector @ vector))
+
+
+def _three(vector: Floats) -> tuple[float, float, float]:
+    x, y, z = vector.tolist()
+    return x, y, z
+
+
+def _closing(touch: Touch) -> float:
+    return max(0.0, float((touch.first_velocity - touch.second_velocity) @ touch.normal))
+
+
+def _closed(pair: tuple[Party, Party], running: _Running) -> Collision:
+    force, limb, region = running.hardest
+    return Collision(
+        *pair,
+        begin=running.begin,
+        end=running.end,
+        cause=running.cause,
+        impact_speed=running.impact_speed,
+        depth=running.depth,
+        impulse=running.impulse,
+        limb=limb,
+        part=PARTS.get(limb, ""),
+        region=region,
+        peak_force=force if limb else math.nan,
+        steady_force=running.steady[0],
+        steady_region=running.steady[1],
+        simulated_peak=running.simulated_peak,
+    )

@@ -1,0 +1,193 @@
+"""Touches: who presses on whom in one step of the engine, with which part, how hard and how deep."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .engine import engine
+from .mjcf_model import LIMB_NAMES
+
+__all__ = ["KINDS", "Party", "Touch", "Touches"]
+
+Floats = NDArray[np.float64]
+KINDS = ("robot", "person", "prop", "wall")
+NOTHING, ROBOT, PROP, PERSON, WALL = 0, 1, 2, 3, 4
+WORDS = {ROBOT: "robot", PROP: "prop", PERSON: "person", WALL: "wall"}
+
+
+class Party(NamedTuple):
+    """One side of a touch.
+
+    Fields:
+        kind: ``robot``, ``person``, ``prop`` or ``wall``.
+        number: of the agent, of the prop on the stage, or of the ring of the wall.
+    """
+
+    kind: str
+    number: int
+
+
+class Touch(NamedTuple):
+    """Two that touch in one step of the engine; the first is a robot if one is, then a prop, then a person.
+
+    Fields:
+        first, second: who.
+        first_part, second_part: link of a robot, limb of a person, otherwise empty.
+        force: ``[3]`` of the first on the second, along the normals of the surfaces [N].
+        depth: how far they overlap [m].
+        normal: ``[3]`` from the first to the second, mean of the points.
+        point: ``[3]`` where they touch [m].
+        first_velocity, second_velocity: ``[3]`` of the surfaces there, before this step [m/s].
+        swing: ``[3]`` what of the person's velocity is the limb's against the body; 0 without a person.
+    """
+
+    first: Party
+    second: Party
+    first_part: str
+    second_part: str
+    force: Floats
+    depth: float
+    normal: Floats
+    point: Floats
+    first_velocity: Floats
+    second_velocity: Floats
+    swing: Floats
+
+
+class _Contact(NamedTuple):
+    """One point where the geom ``one`` meets ``other``, with velocities there."""
+
+    row: int
+    one: int
+    first: Floats
+    second: Floats
+    swing: Floats
+    other: int
+
+
+class Touches:
+    """Reads the contacts of the engine.
+
+    Args:
+        model, data: of the engine.
+        prefixes: names of robots, by agent.
+        agent_of: which agent has the body of a slot.
+        swing: velocities of the ends of limbs ``[S, L, 6]`` [m/s] against their bodies.
+    """
+
+    def __init__(
+        self, model: Any, data: Any, prefixes: dict[int, str], agent_of: Callable[[int], int],
+        swing: Callable[[], Floats],
+    ) -> None:  # fmt: skip
+        self._mj, self._model, self._data = engine(), model, data
+        self._agent_of, self._swing = agent_of, swing
+        names = [model.geom(g).name for g in range(model.ngeom)]
+        rows = [_sorted_out(name, prefixes) for name in names]
+        self._kind = np.array([kind for kind, _, _ in rows], dtype=np.int64)
+        self._number = [number for _, number, _ in rows]
+        self._part = [part for _, _, part in rows]
+        self._found: list[_Contact] = []
+
+    def look(self) -> None:
+        """Note the contacts that matter and how fast the surfaces are: between both halves of a step of the engine."""
+        self._found = []
+        if self._data.ncon == 0:
+            return
+        pairs = self._data.contact.geom
+        kinds = self._kind[pairs]
+        for index in np.flatnonzero(np.all(kinds != NOTHING, axis=1)):
+            one, other = int(pairs[index, 0]), int(pairs[index, 1])
+            if self._rank(other) < self._rank(one):
+                one, other = other, one
+            point = np.array(self._data.contact[int(index)].pos)
+            swing = np.zeros(3)
+            for geom in (one, other):
+                if self._kind[geom] == PERSON:
+                    swing = self._swung(geom, point)
+            first = self._velocity(one, point) + (swing if self._kind[one] == PERSON else 0.0)
+            second = self._velocity(other, point) + (swing if self._kind[other] == PERSON else 0.0)
+            self._found.append(_Contact(int(index), one, first, second, swing, other))
+        self._share()
+
+    def _share(self) -> None:
+        """Let the points in which a limb is touched share its stiffness: to the engine each is a spring of its own."""
+        points: dict[tuple[int, int], list[int]] = {}
+        for found in self._found:
+            if PERSON in (self._kind[found.one], self._kind[found.other]):
+                points.setdefault((found.one, found.other), []).append(found.row)
+        for indices in points.values():
+            for index in indices if len(indices) > 1 else ():
+                contact = self._data.contact[index]
+                rows = slice(contact.efc_address, contact.efc_address + contact.dim)
+                self._data.efc_R[rows] *= len(indices)
+                self._data.efc_D[rows] /= len(indices)
+
+    def read(self) -> tuple[Touch, ...]:
+        """Return who presses on whom, after the second half of the step; points of the same parts are together."""
+        if not self._found:
+            return ()
+        together: dict[tuple[Party, Party, str, str], list[_Contact]] = {}
+        for found in self._found:
+            one, other = found.one, found.other
+            key = (self._party(one), self._party(other), self._part[one], self._part[other])
+            together.setdefault(key, []).append(found)
+        return tuple(self._joined(key, rows) for key, rows in sorted(together.items(), key=lambda item: item[0]))
+
+    def _joined(self, key: tuple[Party, Party, str, str], rows: list[_Contact]) -> Touch:
+        force, normals, depth, six = np.zeros(3), np.zeros(3), 0.0, np.zeros(6)
+        for row in rows:
+            contact = self._data.contact[row.row]
+            normal = np.array(contact.frame[:3]) * (1.0 if contact.geom[0] == row.one else -1.0)
+            self._mj.mj_contactForce(self._model, self._data, row.row, six)
+            force += six[0] * normal
+            normals += normal
+            depth = max(depth, -float(contact.dist))
+        size = float(np.sqrt(normals @ normals))
+        normal = normals / size if size > 1e-9 else np.array([1.0, 0.0, 0.0])
+        first = np.mean([row.first for row in rows], axis=0)
+        second = np.mean([row.second for row in rows], axis=0)
+        swing = np.mean([row.swing for row in rows], axis=0)
+        point = np.mean([self._data.contact[row.row].pos for row in rows], axis=0)
+        return Touch(*key, force, depth, normal, point, first, second, swing)
+
+    def _rank(self, geom: int) -> tuple[int, int]:
+        return int(self._kind[geom]), geom
+
+    def _party(self, geom: int) -> Party:
+        kind, number = int(self._kind[geom]), self._number[geom]
+        return Party(WORDS[kind], self._agent_of(number) if kind == PERSON else number)
+
+    def _velocity(self, geom: int, point: Floats) -> Floats:
+        """Return the velocity ``[3]`` of the body of a geom at a point."""
+        body = int(self._model.geom_bodyid[geom])
+        spin, move = self._data.cvel[body, :3], self._data.cvel[body, 3:]
+        center = self._data.subtree_com[self._model.body_rootid[body]]
+        return np.asarray(move + np.cross(spin, point - center))
+
+    def _swung(self, geom: int, point: Floats) -> Floats:
+        """Return how fast a limb swings, where it is nearest to a point."""
+        limb = LIMB_NAMES.index(self._part[geom])
+        ends = self._swing()[self._number[geom], limb]
+        axis = self._data.geom_xmat[geom].reshape(3, 3)[:, 2]
+        half = max(float(self._model.geom_size[geom, 1]), 1e-9)
+        along = float(np.clip(0.5 + 0.5 * (point - self._data.geom_xpos[geom]) @ axis / half, 0.0, 1.0))
+        return np.asarray((1.0 - along) * ends[:3] + along * ends[3:])
+
+
+def _sorted_out(name: str, prefixes: dict[int, str]) -> tuple[int, int, str]:
+    """Return kind, number and part of a geom by its name."""
+    if name.startswith("person"):
+        slot, limb = name.removeprefix("person").split("/")
+        return PERSON, int(slot), limb
+    if name.startswith("prop"):
+        return PROP, int(name.removeprefix("prop").split("/")[0]), ""
+    if name.startswith("wall/"):
+        return WALL, int(name.removeprefix("wall/").split(".")[0]), ""
+    for agent, prefix in prefixes.items():
+        if name.startswith(prefix):
+            return ROBOT, agent, name.removeprefix(prefix).rsplit("/", 1)[0].removesuffix("/seen")
+    return NOTHING, -1, ""

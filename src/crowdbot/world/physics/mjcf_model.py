@@ -1,0 +1,191 @@
+"""The whole world as one MuJoCo model: stage, robots, and bodies that people take when something is near them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from crowdbot.core import Element, InputError, Scene, format_xml
+from crowdbot.humans import LIMBS
+from crowdbot.world.robots.ackermann import AckermannDrive
+from crowdbot.world.robots.robot import Robot
+from crowdbot.world.urdf import BaseServo, mjcf
+from crowdbot.world.urdf.geoms import row
+
+from .engine import engine
+from .layers import LIMB, PULLED, ROBOT, TRUNK
+from .scenery import scenery
+from .stage import PhysicsStage
+
+__all__ = ["PARKED", "Built", "built"]
+
+PARKED = 60.0
+"""Height [m] at which limbs that nobody has wait."""
+PULL, SPIN = 4.0, 1.5
+"""Largest force [N] and torque [N m] of a base that is pulled, per kg of the robot."""
+ROTOR = 1e-4
+"""Least inertia [kg m2] about the axis of a hinge (assumed, that of a small geared motor)."""
+QUICKEST = 0.5
+"""Motors of joints take at least two steps of the engine to follow."""
+SKIN = "0.85 0.70 0.60 1"
+ARENA = "64M"
+SPRING = "0.5 0.5 0.001 0.5 2"
+"""Of the touch of a limb: so the engine solves it as a spring and a damper, whose force two limbs cannot drive up."""
+
+
+class Built(NamedTuple):
+    """A model as XML tree with its mesh files; ``prefixes`` of the names of each robot; joints of all ``wheels``."""
+
+    root: Element
+    files: dict[str, bytes]
+    prefixes: dict[int, str]
+    wheels: frozenset[str]
+
+    def load(self, timestep: float) -> Any:
+        """Return the ``mujoco.MjModel``."""
+        model = engine().MjModel.from_xml_string(format_xml(self.root), self.files)
+        model.opt.timestep = timestep
+        _steadied(model, self.wheels)
+        return model
+
+
+def built(
+    scene: Scene,
+    stage: PhysicsStage,
+    robots: Mapping[int, Robot],
+    slots: int,
+    motors: Mapping[int, Mapping[str, str]] | None = None,
+    posed: bool = False,
+) -> Built:
+    """Return the model of a world.
+
+    Args:
+        scene: with walls, and robots where they begin.
+        stage: what else stands there.
+        robots: by agent.
+        slots: how many people can have a body at a time.
+        motors: how joints of robots are commanded, by agent and joint, see :func:`crowdbot.world.urdf.mjcf`.
+        posed: robots are not moved by the engine but put where they are.
+
+    Raises:
+        InputError: a robot has no wheels to drive or to steer with.
+    """
+    assets, world = scenery(scene.walls, stage)
+    sections: dict[str, list[Element]] = {"contact": [], "equality": [], "actuator": []}
+    files: dict[str, bytes] = {}
+    prefixes = {}
+    for agent, robot in sorted(robots.items()):
+        prefixes[agent] = f"robot{agent}/"
+        if posed:
+            made = mjcf(robot.model, base="kinematic", prefix=prefixes[agent], contact=ROBOT)
+        else:
+            made = _robot(scene, agent, robot, prefixes[agent], (motors or {}).get(agent))
+        files |= made.assets
+        for section in made.root.children:
+            if section.tag == "asset":
+                assets += section.children
+            elif section.tag == "worldbody":
+                world += section.children
+            elif section.tag in sections:
+                sections[section.tag] += section.children
+    world += [_person(slot) for slot in range(slots)]
+    root = Element("mujoco", {"model": "crowdbot"}, _settings())
+    root.children += [Element("asset", {}, assets), Element("worldbody", {}, world)]
+    root.children += [Element(tag, {}, rows) for tag, rows in sections.items() if rows]
+    wheels = {prefixes[agent] + wheel.joint for agent, robot in robots.items() for wheel in robot.wheels}
+    return Built(root, files, prefixes, frozenset(wheels))
+
+
+def _steadied(model: Any, wheels: Collection[str]) -> None:
+    """Make light joints such that the steps of the engine can follow them; those of wheels carry the whole robot.
+
+    Hinges get a rotor as motors have one where next to nothing turns. Motors are as soft as their joint is light: a
+    stiff one would swing to and fro between its largest forces.
+    """
+    mj = engine()
+    hinge = model.jnt_type == mj.mjtJoint.mjJNT_HINGE
+    turned = model.jnt_dofadr[hinge]
+    lack = ROTOR - model.dof_M0[turned]
+    if np.any(lack > 0.0):
+        model.dof_armature[turned] += np.maximum(lack, 0.0)
+        mj.mj_setConst(model, mj.MjData(model))
+    for motor in range(model.nu):
+        name = model.actuator(motor).name
+        if model.actuator_trntype[motor] != mj.mjtTrn.mjTRN_JOINT or name in wheels:
+            continue
+        inertia = float(model.dof_M0[model.jnt_dofadr[model.actuator_trnid[motor, 0]]])
+        quickest = QUICKEST / model.opt.timestep
+        if model.actuator_biasprm[motor, 1] < -inertia * quickest**2:
+            model.actuator_gainprm[motor, 0] = inertia * quickest**2
+            model.actuator_biasprm[motor, 1:3] = -inertia * quickest**2, -2.0 * inertia * quickest
+        elif model.actuator_biasprm[motor, 1] == 0.0 and model.actuator_biasprm[motor, 2] < -inertia * quickest:
+            model.actuator_gainprm[motor, 0] = inertia * quickest
+            model.actuator_biasprm[motor, 2] = -inertia * quickest
+
+
+def _settings() -> list[Element]:
+    compiler = {"angle": "radian", "autolimits": "false", "inertiafromgeom": "false", "balanceinertia": "false"}
+    # limbs move on their bodies, which the boxes of the mid-phase would not notice; islands would copy what is shared
+    flags = Element("flag", {"midphase": "disable", "island": "disable"})
+    looks = Element("global", {"offwidth": "1920", "offheight": "1200"})
+    near = Element("map", {"znear": "0.005", "zfar": "60", "shadowclip": "0.7"})
+    quality = Element("quality", {"shadowsize": "4096", "offsamples": "0", "numslices": "16", "numstacks": "8"})
+    light = Element("headlight", {"ambient": "0.38 0.38 0.38", "diffuse": "0.3 0.3 0.3", "specular": "0 0 0"})
+    return [
+        Element("compiler", compiler),
+        Element("option", {"integrator": "implicitfast", "cone": "elliptic"}, [flags]),
+        Element("size", {"memory": ARENA}),
+        Element("statistic", {"extent": "10", "center": "0 0 1"}),
+        Element("visual", {}, [looks, quality, light, near]),
+    ]
+
+
+def _robot(scene: Scene, agent: int, robot: Robot, prefix: str, motors: Mapping[str, str] | None) -> Any:
+    planar = robot.base == "planar"
+    steers = any(wheel.steering for wheel in robot.wheels)
+    who = f"robot {robot.name} of agent {agent}"
+    if not planar and not any(wheel.driven for wheel in robot.wheels):
+        raise InputError(f"{who} has no wheels that a motor turns; name them in its file")
+    if not planar and steers != isinstance(robot.drive, AckermannDrive):
+        raise InputError(
+            f"{who} drives as {type(robot.drive).__name__} and has {'' if steers else 'no '}wheels that steer; give it"
+            ' base="planar", or an AckermannDrive and wheels with steering joints'
+        )
+    kinds = {wheel.joint: "velocity" for wheel in robot.wheels if wheel.driven and not planar}
+    kinds |= {wheel.steering: "position" for wheel in robot.wheels if wheel.steering and not planar}
+    said = {name: robot.model.joints[name].motor.kind or kind for name, kind in kinds.items()}
+    x, y = scene.position[0, agent]
+    mass = robot.model.mass
+    return mjcf(
+        robot.model,
+        base="planar" if planar else "free",
+        place=(0.0, 0.0, robot.lift) if planar else (float(x), float(y), robot.lift),
+        heading=0.0 if planar else float(scene.heading[0, agent]),
+        prefix=prefix,
+        motors={**said, **(motors or {})},
+        servo=BaseServo(PULL * mass, SPIN * mass) if planar else None,
+        contact=PULLED if planar else ROBOT,
+    )
+
+
+def _person(slot: int) -> Element:
+    """Return a body of 17 limbs that glides on the floor; who takes it gives it mass, limbs and softness."""
+    name = f"person{slot}"
+    body = Element("body", {"name": name})
+    body.children.append(Element("inertial", {"pos": "0 0 1", "mass": "70", "diaginertia": "5 5 1"}))
+    for letter, axis in (("x", "1 0 0"), ("y", "0 1 0")):
+        body.children.append(Element("joint", {"name": f"{name}/{letter}", "type": "slide", "axis": axis}))
+    for limb in LIMBS:
+        layer = TRUNK if limb.region == "torso" else LIMB
+        values = {"name": f"{name}/{limb.name}", "type": "capsule", "size": "0.05 0.1", "pos": f"0 0 {PARKED}"}
+        values["quat"] = "0.5 0.5 0.5 0.5"  # were they upright now, the engine would keep them so for good
+        touch = {"priority": "2", "friction": row((0.4, 0.005, 0.0001)), "solimp": SPRING}
+        body.children.append(Element("geom", {**values, **touch, **layer, "group": "4", "rgba": SKIN}))
+    return body
+
+
+LIMB_COUNT = len(LIMBS)
+LIMB_NAMES = tuple(limb.name for limb in LIMBS)
+LIMB_PARTS = np.array([("head", "torso", "arm", "leg").index(limb.region) for limb in LIMBS])

@@ -1,0 +1,286 @@
+"""People with bodies: who comes near something that moves takes a body in the engine, can be pushed, and yields.
+
+Of a crowd of hundreds only a few can touch anything in the next step, so the engine knows a fixed number of bodies.
+A body follows the way that the crowd model gives, exactly as long as nothing touches it. A push changes its velocity
+by its mass; the person then steps back into the own way with no more force than people brace themselves with.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .body_region_limits import region_of, softness
+from .contacts import Touch
+from .mjcf_model import LIMB_COUNT, LIMB_NAMES, PARKED
+
+__all__ = ["BRACE", "REACTION", "Passers"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+BRACE = 100.0
+"""Force [N] with which people hold against a push at most (assumed: an eighth of the weight of an adult)."""
+REACTION = 0.1
+"""So long [s] after the first touch people begin to hold against it, and they make up for a changed velocity in about
+this time, as far as the force allows (assumed)."""
+HOLD = 0.05
+"""So long [s] after a touch the limbs stay as they are, against the body."""
+RETURN = 1.5
+"""Then they go back into the walk at this speed [m/s]."""
+QUICK = 5.0
+"""No limb moves faster [m/s] against the body (assumed: feet in their stride reach 4 to 5 m/s over the floor). A walk
+whose direction jumps, as models of crowds let it, would swing a foot at twice that."""
+TREAD, LIFTED = 0.5, 0.5
+"""An arm or leg that something presses upwards, by at least this share of the force, is lifted by it at once, by up to
+so much [m]: these bodies glide, and would otherwise press it down as if held from above."""
+GIVE, GIVEN = 1.0, 0.3
+"""An arm or leg that is pressed by more than :data:`BRACE`, in the mean over about the reaction, gives way against the
+body: at most so fast [m/s] and so far [m]. Single knocks do not move it, or a robot would knock its way through."""
+CHAINS = {name: chain for chain in (("thigh", "shank", "foot"), ("upperarm", "forearm", "hand")) for name in chain}
+REGIONS = {ahead: tuple(region_of(name, ahead) for name in LIMB_NAMES) for ahead in (True, False)}
+
+
+class Passers:
+    """The bodies of the engine and who has them.
+
+    Args:
+        model, data: of the engine.
+        slots: how many bodies there are.
+        step: of the engine [s].
+
+    Attributes:
+        agent: ``[S]`` who has each body, -1 for nobody.
+        pushed: ``[S]`` whether something has moved it off its way during this step of the world.
+    """
+
+    def __init__(self, model: Any, data: Any, slots: int, step: float) -> None:
+        self._model, self._data, self.step = model, data, step
+        self.agent = np.full(slots, -1, dtype=np.int64)
+        self.pushed = np.zeros(slots, dtype=np.bool_)
+        self._off = np.zeros((slots, 2))
+        self._mass = np.full(slots, 70.0)
+        first = int(model.geom("person0/" + LIMB_NAMES[0]).id) if slots else 0
+        self.geoms = first + np.arange(slots * LIMB_COUNT).reshape(slots, LIMB_COUNT)
+        self.bodies = np.array([model.body(f"person{s}").id for s in range(slots)], dtype=np.int64)
+        self._place = np.array([model.joint(f"person{s}/x").qposadr[0] for s in range(slots)], dtype=np.int64)
+        self._speed = np.array([model.joint(f"person{s}/x").dofadr[0] for s in range(slots)], dtype=np.int64)
+        self._way = np.zeros((slots, 2))
+        self._limbs: tuple[Floats, Floats] = (np.zeros((0, LIMB_COUNT, 6)), np.zeros((0, LIMB_COUNT, 6)))
+        self._limbs_now = np.zeros((slots, LIMB_COUNT, 6))
+        self._walk_now = np.zeros((slots, LIMB_COUNT, 6))
+        self._load = np.zeros((slots, LIMB_COUNT, 3))
+        self._stride = np.zeros((slots, LIMB_COUNT, 6))
+        self._late = np.zeros(slots, dtype=np.bool_)
+        self._touched = np.zeros(slots, dtype=np.int64)
+        self._since = np.zeros(slots, dtype=np.int64)
+        self._fresh = np.ones(slots, dtype=np.bool_)
+        self._hold = round(HOLD / step)
+        self.swing = np.zeros((slots, LIMB_COUNT, 6))
+        """Velocities [m/s] of both ends of the limbs against the body."""
+        self._park(np.arange(slots))
+
+    def take(self, wanted: Ints, mass: Floats, radius: Floats, other: Floats, ahead: Bools) -> int:
+        """Give bodies to those who want one, and return how many got none.
+
+        Args:
+            wanted: agents, the most urgent first.
+            mass, radius: ``[W]`` [kg] and ``[W, L]`` [m] of their bodies and limbs.
+            other: ``[W]`` [kg], mass of what is near them.
+            ahead: ``[W]``, whether that is in front of them.
+        """
+        rank = {int(agent): k for k, agent in enumerate(wanted[: len(self.agent)])}
+        gone = np.array([s for s, agent in enumerate(self.agent) if agent >= 0 and int(agent) not in rank], dtype=int)
+        self._park(gone)
+        have = {int(agent) for agent in self.agent if agent >= 0}
+        free = [s for s in range(len(self.agent)) if self.agent[s] < 0]
+        for agent in rank:
+            if agent not in have:
+                self.agent[free.pop(0)] = agent
+        for slot in np.flatnonzero(self.agent >= 0):
+            k = rank[int(self.agent[slot])]
+            self._embody(int(slot), float(mass[k]), radius[k], float(other[k]), bool(ahead[k]))
+        return max(0, len(wanted) - len(self.agent))
+
+    def begin(self, place: Floats, way: Floats, before: Floats, after: Floats, duration: float) -> None:
+        """Set everyone who has a body on the way of the next step of the world.
+
+        Args:
+            place: ``[A, 2]`` where everyone is [m].
+            way: ``[A, 2]`` velocity that leads to where the crowd model wants everyone [m/s].
+            before, after: ``[A, L, 6]`` both ends of the limbs at the begin and the end of the step, against the body.
+            duration: of the step [s].
+        """
+        here = self._here
+        agents = self.agent[here]
+        self._way[here] = way[agents]
+        held = here[self._touched[here] > 0]  # who is touched cannot change the own velocity at once
+        self._off[held] = self._velocity(held) - self._way[held]
+        self.pushed[:] = np.any(self._off != 0.0, axis=1)
+        self._limbs = (before[agents], after[agents])
+        self._stride[here] = self.swing[here] = (after[agents] - before[agents]) / duration
+        for axis in (0, 1):
+            self._data.qpos[self._place[here] + axis] = place[agents, axis]
+            self._data.qvel[self._speed[here] + axis] = way[agents, axis] + self._off[here, axis]
+
+    def go(self, share: float) -> None:
+        """Pose the limbs of this share of the step, and brace those who were pushed."""
+        here = self._here
+        if not len(here):
+            return
+        self._move(here, (1.0 - share) * self._limbs[0] + share * self._limbs[1])
+        force = np.zeros((len(here), 2))
+        if np.any(self.pushed):
+            force = self._braced(here)
+        for axis in (0, 1):
+            self._data.qfrc_applied[self._speed[here] + axis] = force[:, axis]
+
+    def stepped(self, touches: Iterable[Touch]) -> None:
+        """Notice who was pushed during the last step of the engine, and let limbs give way that are pressed."""
+        self._touched = np.maximum(self._touched - 1, 0)
+        fresh = self.step / REACTION
+        self._load *= 1.0 - fresh
+        for touch in touches:
+            for party, limb, sign in ((touch.first, touch.first_part, -1.0), (touch.second, touch.second_part, 1.0)):
+                if party.kind == "person":
+                    slot = int(np.flatnonzero(self.agent == party.number)[0])
+                    self._touched[slot] = self._hold
+                    row = LIMB_NAMES.index(limb)
+                    self._load[slot, row] += fresh * sign * touch.force
+                    self._lift(slot, limb, sign * float(touch.normal[2]), touch.depth)
+                    if self._since[slot] >= REACTION / self.step:
+                        self._give_way(slot, limb, self._load[slot, row])
+        here = self._here
+        if len(here):
+            now = self._velocity(here)
+            self.pushed[here] |= np.any(now != self._way[here] + self._off[here], axis=1)
+        self._since[self.pushed] += 1
+
+    def _lift(self, slot: int, limb: str, upwards: float, depth: float) -> None:
+        """Take the arm or leg that a limb belongs to up from what it treads on."""
+        rows = _chain(limb)
+        if upwards < TREAD or not rows:
+            return
+        up = min(depth / upwards, QUICK * self.step)
+        raised = self._limbs_now[slot, rows][:, [2, 5]] + up
+        if np.max(raised - self._walk_now[slot, rows][:, [2, 5]]) <= LIFTED:
+            self._limbs_now[slot, rows] += (0.0, 0.0, up, 0.0, 0.0, up)
+
+    def _give_way(self, slot: int, limb: str, force: Floats) -> None:
+        """Move the arm or leg that a limb belongs to the way it is pressed, when that is more than it can hold."""
+        size = float(np.sqrt(force @ force))
+        rows = _chain(limb)
+        if size <= BRACE or not rows:
+            return
+        shift = min(1.0, size / BRACE - 1.0) * GIVE * self.step * force / size
+        shift[2] = max(0.0, shift[2])  # not into the floor
+        moved = self._limbs_now[slot, rows] + np.tile(shift, 2)
+        away = np.sqrt(np.sum((moved - self._walk_now[slot, rows]).reshape(-1, 3) ** 2, axis=1))
+        if away.max() <= GIVEN:
+            self._limbs_now[slot, rows] = moved
+
+    def end(self) -> tuple[Ints, Floats, Floats]:
+        """Return who was pushed off the own way, with their places ``[P, 2]`` [m] and velocities ``[P, 2]`` [m/s]."""
+        slots = np.flatnonzero(self.pushed & (self.agent >= 0))
+        velocity = self._velocity(slots)
+        off = velocity - self._way[slots]
+        off[np.sum(off * off, axis=1) < STEADY**2] = 0.0
+        self._off[:] = 0.0
+        self._off[slots] = off
+        self._since[np.all(self._off == 0.0, axis=1) & (self._touched == 0)] = 0
+        place = np.stack([self._data.qpos[self._place[slots] + axis] for axis in (0, 1)], axis=-1)
+        return self.agent[slots], place.reshape(-1, 2), velocity
+
+    @property
+    def _here(self) -> Ints:
+        return np.flatnonzero(self.agent >= 0)
+
+    def _velocity(self, slots: Ints) -> Floats:
+        return np.stack([self._data.qvel[self._speed[slots] + axis] for axis in (0, 1)], axis=-1).reshape(-1, 2)
+
+    def _braced(self, here: Ints) -> Floats:
+        error = self._way[here] - self._velocity(here)
+        force = self._mass[here, None] * error / REACTION
+        size = np.sqrt(np.sum(force * force, axis=1, keepdims=True))
+        force *= np.minimum(1.0, BRACE / np.maximum(size, 1e-12))
+        return np.where((self._since[here] >= REACTION / self.step)[:, None], force, 0.0)
+
+    def _park(self, slots: Ints) -> None:
+        """Lift bodies that nobody has out of the way."""
+        self.agent[slots] = -1
+        self._off[slots], self._load[slots] = 0.0, 0.0
+        self._touched[slots], self._since[slots] = 0, 0
+        self.pushed[slots], self._late[slots], self._fresh[slots] = False, False, True
+        if not len(slots):
+            return
+        self._model.geom_pos[self.geoms[slots].ravel()] = (0.0, 0.0, PARKED)
+        for axis in (0, 1):
+            self._data.qpos[self._place[slots] + axis] = 2.0 * slots if axis else 0.0
+            self._data.qvel[self._speed[slots] + axis] = 0.0
+            self._data.qfrc_applied[self._speed[slots] + axis] = 0.0
+
+    def _embody(self, slot: int, mass: float, radius: Floats, other: float, ahead: bool) -> None:
+        model = self._model
+        body, geoms = self.bodies[slot], self.geoms[slot]
+        self._mass[slot] = mass
+        model.body_mass[body] = mass
+        model.body_invweight0[body] = (1.0 / mass, 0.0)
+        model.geom_size[geoms, 0] = radius
+        for geom, region in zip(geoms, REGIONS[ahead], strict=True):
+            stiffness, damping = softness(region, mass, other, self.step)
+            model.geom_solref[geom] = (-stiffness, -damping)
+
+    def _move(self, here: Ints, walk: Floats) -> None:
+        """Let limbs follow the walk; those of who is touched stay as they are, and then go back without haste.
+
+        A limb that walked on inside of what holds it would press without end.
+        """
+        held = (self._touched[here] > 0) & ~self._fresh[here]
+        late = held | self._late[here]
+        lag = walk - self._limbs_now[here]
+        length = np.sqrt(np.maximum(np.sum(lag[..., :3] ** 2, axis=-1), np.sum(lag[..., 3:] ** 2, axis=-1)))
+        fastest = np.where(late, RETURN, QUICK)[:, None]
+        share = np.minimum(1.0, fastest * self.step / np.maximum(length, 1e-12))
+        share[held] = 0.0
+        share[self._fresh[here]] = 1.0
+        late &= held | np.any(share < 1.0, axis=1)
+        behind = (late[:, None] | (share < 1.0))[..., None]
+        moved = share[..., None] * lag
+        now = np.where(behind, self._limbs_now[here] + moved, walk)
+        self.swing[here] = np.where(behind, moved / self.step, self._stride[here])
+        self._limbs_now[here], self._late[here], self._fresh[here] = now, late, False
+        self._walk_now[here] = walk
+        self._pose(here, now)
+
+    def _pose(self, here: Ints, limbs: Floats) -> None:
+        """Put the capsules where the limbs are, against their bodies."""
+        model = self._model
+        geoms = self.geoms[here].ravel()
+        ends = limbs.reshape(-1, 6)
+        axis = ends[:, 3:] - ends[:, :3]
+        length = np.maximum(np.sqrt(np.sum(axis * axis, axis=1)), 1e-9)
+        model.geom_pos[geoms] = 0.5 * (ends[:, 3:] + ends[:, :3])
+        model.geom_size[geoms, 1] = 0.5 * length
+        model.geom_rbound[geoms] = 0.5 * length + model.geom_size[geoms, 0]
+        model.geom_quat[geoms] = _upright_to(axis / length[:, None])
+
+
+STEADY = 1e-4
+"""Who is off the own velocity by less [m/s] has got over the push."""
+
+
+def _chain(limb: str) -> list[int]:
+    """Return the rows of the arm or leg that a limb belongs to; of the trunk, none."""
+    return [LIMB_NAMES.index(f"{name}_{limb[-1]}") for name in CHAINS.get(limb.split("_", maxsplit=1)[0], ())]
+
+
+def _upright_to(direction: Floats) -> Floats:
+    """Return quaternions ``[N, 4]`` that turn the z axis into unit vectors ``[N, 3]``."""
+    x, y, z = direction.T
+    turn = np.stack([1.0 + z, -y, x, np.zeros_like(x)], axis=-1)
+    turn[z < -1.0 + 1e-9] = (0.0, 1.0, 0.0, 0.0)
+    return np.asarray(turn / np.sqrt(np.sum(turn * turn, axis=1, keepdims=True)))

@@ -1,0 +1,216 @@
+"""The body of a robot in the engine: commands go to its motors, its pose and twist are read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Pose, SpatialPose, Twist, did_you_mean
+from crowdbot.world.robots.ackermann import AckermannDrive, SteeredTwists
+from crowdbot.world.robots.drive import Twists
+from crowdbot.world.robots.robot import Robot, spatial
+from crowdbot.world.robots.servo import CommandDelay, Pending
+
+from .engine import engine
+
+__all__ = ["Chassis"]
+
+Floats = NDArray[np.float64]
+STILL = Twist()
+
+
+class Chassis:
+    """One robot in the engine.
+
+    Args:
+        model, data: of the engine.
+        robot: what it is.
+        prefix: of its names.
+        step: of the engine [s].
+
+    Attributes:
+        robot: what it is.
+        body: index of its root.
+    """
+
+    def __init__(self, model: Any, data: Any, robot: Robot, prefix: str, step: float) -> None:
+        self.robot, self.prefix, self.step = robot, prefix, step
+        self._model, self._data, self._mj = model, data, engine()
+        self.body = int(model.body(prefix + robot.model.root).id)
+        self._sites = [int(model.site(prefix + link).id) for link in robot.model.links]
+        self._servo = [model.actuator(f"{prefix}base_{name}").id for name in ("forward", "turn", "left")] if (
+            robot.base == "planar") else []  # fmt: skip
+        named = [wheel.joint for wheel in robot.wheels if wheel.driven]
+        named += [wheel.steering for wheel in robot.wheels if wheel.steering]
+        self._wheels = {} if self._servo else {joint: self._motor(joint) for joint in named}
+        self._steers = any(wheel.steering for wheel in robot.wheels)
+        units = [robot.wheel_speeds(Twist(*row)) for row in np.eye(3).tolist()]
+        self._driven = [joint for joint in units[0] if joint in self._wheels]
+        self._rolling = np.array([[unit[joint] for unit in units] for joint in self._driven]).reshape(-1, 3)
+        if self._servo:  # the engine takes the mean over three directions, one of which the base does not have
+            model.body_invweight0[self.body, 0] = 1.0 / robot.model.mass
+        self._delay = CommandDelay(robot.latency)
+        self._pending: tuple[Pending, ...] = ()
+        self._held: Twist | Twists = STILL
+        self._asked: Twist | Twists = STILL
+        self._forced: Twist | Twists | None = None
+        self._aim = Twists.of(STILL, 1)
+        self._posed()
+
+    @property
+    def mass(self) -> float:
+        """Mass of the whole robot [kg]."""
+        return self.robot.model.mass
+
+    @property
+    def pose(self) -> Pose:
+        """Where it is, E = 1."""
+        place, turn = self._data.xpos[self.body], self._data.xmat[self.body]
+        return Pose(place[None, :2].copy(), np.array([math.atan2(turn[3], turn[0])]))
+
+    @property
+    def tilt(self) -> float:
+        """Angle between its own upward axis and the vertical [rad]; above about 1 it lies on the floor."""
+        return math.acos(min(1.0, max(-1.0, float(self._data.xmat[self.body][8]))))
+
+    @property
+    def twist(self) -> Twists:
+        """How it moves in its own frame."""
+        speed = np.zeros(6)
+        self._mj.mj_objectVelocity(self._model, self._data, self._mj.mjtObj.mjOBJ_XBODY, self.body, speed, 1)
+        return Twists(speed[3:4].copy(), speed[2:3].copy(), speed[4:5].copy())
+
+    def put(self, x: float, y: float, heading: float) -> None:
+        """Set it down somewhere, at rest and upright; joints and height stay as they are."""
+        model, data = self._model, self._data
+        if self._servo:
+            for name, value in (("base_x", x), ("base_y", y), ("base_yaw", heading)):
+                joint = model.joint(self.prefix + name)
+                data.qpos[joint.qposadr[0]], data.qvel[joint.dofadr[0]] = value, 0.0
+            return
+        joint = model.joint(f"{self.prefix}base")
+        first = int(joint.qposadr[0])
+        data.qpos[first : first + 2] = x, y
+        data.qpos[first + 3 : first + 7] = math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2)
+        data.qvel[joint.dofadr[0] : joint.dofadr[0] + 6] = 0.0
+
+    def ask(self, command: Twist | Twists) -> None:
+        """Take the command of a step of the world."""
+        self._asked = command
+        self._forced = None
+
+    def drive(self) -> None:
+        """Send to the motors what holds for the next step of the engine: delayed, within the limits, ramped."""
+        now = self._asked
+        if self.robot.latency > 0.0:
+            self._pending, now = self._delay.step(self._pending, self._held, self._asked, self.step)
+            self._held = now
+        if now is self._forced:  # nothing has changed since the aim was reached
+            return
+        old = self._aim
+        _, self._aim = self.robot.drive.step(NOWHERE, old, now, self.step)
+        aim = np.array([self._aim.forward[0], self._aim.turn[0], self._aim.left[0]])
+        if _same(old, self._aim):
+            self._forced = now
+        if self._servo:
+            self._data.ctrl[self._servo] = aim
+        elif self._steers:
+            self._steered(self._aim)
+        else:
+            self._data.ctrl[[self._wheels[joint] for joint in self._driven]] = self._rolling @ aim
+
+    def _steered(self, aim: Twists) -> None:
+        """Turn the wheels of a car; at rest they stay turned."""
+        drive = self.robot.drive
+        assert isinstance(drive, AckermannDrive)
+        bend = math.tan(float(aim.steering[0])) / drive.wheelbase if isinstance(aim, SteeredTwists) else 0.0
+        way = Twist(1.0, bend)
+        values = self.robot.steering(way)
+        values |= {joint: speed * float(aim.forward[0]) for joint, speed in self.robot.wheel_speeds(way).items()}
+        for joint, value in values.items():
+            self._data.ctrl[self._wheels[joint]] = value
+
+    def command(self, joints: Mapping[str, float]) -> None:
+        """Send values to motors of joints: positions, speeds or forces, as each motor is commanded.
+
+        Raises:
+            InputError: a joint has no motor, is a wheel of the base, or a value is not finite.
+        """
+        for name, value in joints.items():
+            if name in self._wheels:
+                raise InputError(f"the joint {name!r} of {self.robot.name} is a wheel; drive it by a Twist")
+            if not math.isfinite(value):
+                raise InputError(f"the command {value} for joint {name!r} of {self.robot.name} is not finite")
+            self._data.ctrl[self._motor(name)] = value
+
+    def joints(self) -> dict[str, tuple[float, float]]:
+        """Return position and speed of every joint with one number."""
+        found = {}
+        for joint in self.robot.model.joints.values():
+            index = self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_JOINT, self.prefix + joint.name)
+            if joint.size == 1 and index >= 0:
+                place, speed = self._model.jnt_qposadr[index], self._model.jnt_dofadr[index]
+                found[joint.name] = (float(self._data.qpos[place]), float(self._data.qvel[speed]))
+        return found
+
+    def frame(self, link: str) -> Floats:
+        """Return the frame ``[4, 4]`` of a link in the world.
+
+        Raises:
+            InputError: there is no such link.
+        """
+        if link not in self.robot.model.links:
+            raise InputError(f"{self.robot.name} has no link {link!r}{did_you_mean(link, self.robot.model.links)}")
+        site = self._data.site(self.prefix + link)
+        found = np.eye(4)
+        found[:3, :3], found[:3, 3] = site.xmat.reshape(3, 3), site.xpos
+        return found
+
+    def frames(self) -> dict[str, Floats]:
+        """Return the frames ``[4, 4]`` of all links in the world."""
+        found = np.zeros((len(self._sites), 4, 4))
+        found[:, :3, :3] = self._data.site_xmat[self._sites].reshape(-1, 3, 3)
+        found[:, :3, 3], found[:, 3, 3] = self._data.site_xpos[self._sites], 1.0
+        return dict(zip(self.robot.model.links, found, strict=True))
+
+    def mounted(self, sensor: str) -> SpatialPose:
+        """Return where a sensor of the robot is now, with its joints as they are, E = 1.
+
+        Raises:
+            InputError: it has no sensor of this name.
+        """
+        mount = self.robot.mount(sensor)
+        return spatial(self.frame(mount.link) @ mount.origin)
+
+    def _motor(self, joint: str) -> int:
+        index = self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_ACTUATOR, self.prefix + joint)
+        if index < 0:
+            named = [self._model.actuator(k).name for k in range(self._model.nu)]
+            own = [name.removeprefix(self.prefix) for name in named if name.startswith(self.prefix)]
+            raise InputError(f"{self.robot.name} has no motor on a joint {joint!r}{did_you_mean(joint, own)}")
+        return int(index)
+
+    def _posed(self) -> None:
+        """Put the joints into the posture and let the motors hold it."""
+        model = self.robot.model
+        for name, value in model.positions(self.robot.posture).items():
+            index = self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_JOINT, self.prefix + name)
+            if index >= 0 and model.joints[name].size == 1:
+                self._data.qpos[self._model.jnt_qposadr[index]] = value[0]
+        for name, position in self.robot.posture.items():
+            index = self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_ACTUATOR, self.prefix + name)
+            if index >= 0:
+                self._data.ctrl[index] = float(np.atleast_1d(position)[0])
+
+
+def _same(one: Twists, other: Twists) -> bool:
+    names = vars(one).keys()
+    return names == vars(other).keys() and all(getattr(one, name)[0] == getattr(other, name)[0] for name in names)
+
+
+NOWHERE = Pose(np.zeros((1, 2)), np.zeros(1))
+"""Drives limit the twist, whatever the pose."""

@@ -1,0 +1,1 @@
+"""Cameras and offscreen rendering of a scene."""

@@ -1,0 +1,199 @@
+"""Studio: draws scenes of any world, robots and people with their bodies; no screen is needed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Scene, SpatialPose, did_you_mean
+from crowdbot.sensors import Lens
+from crowdbot.world.physics.engine import engine
+from crowdbot.world.physics.mjcf_model import Built, built
+from crowdbot.world.physics.people_motion import Walkers
+from crowdbot.world.physics.stage import PhysicsStage
+from crowdbot.world.robots.robot import Robot
+
+from .camera import Camera, Images, View
+from .visuals import Looks
+
+__all__ = ["Studio"]
+
+Floats = NDArray[np.float64]
+
+
+class LensCamera(Protocol):
+    """What a camera of :mod:`crowdbot.sensors` has: a lens, and the limits of what is drawn [m]."""
+
+    @property
+    def lens(self) -> Lens:
+        """Its intrinsics."""
+
+    @property
+    def near(self) -> float:
+        """What is nearer is not drawn [m]."""
+
+    @property
+    def far(self) -> float:
+        """What is farther is not drawn [m]."""
+
+
+class Studio:
+    """Draws what is in a scene, E = 1: floor, walls, props, robots, and people with their skins.
+
+    In the plane, robots stand in their posture where the scene has them, and people as their walkers stand. A physics
+    world has a studio of its own, in which everything is as the engine has it: :attr:`PhysicsWorld.studio`.
+
+    Args:
+        scene: with the walls; it is what is drawn until :meth:`show` gives another.
+        robots: by agent. :meth:`Robot.disc` makes a robot of which only the size is known.
+        stage: height of walls, props and lights.
+        walkers: people; None: all agents that are no robots, with bodies that are drawn for them. The caller lets them
+            walk (:meth:`Walkers.walk`).
+        detail: of people's skins in :meth:`render`, 0 (finest) to 2.
+
+    Raises:
+        InputError: the scene has several environments, or a robot is no agent.
+        MissingExtra: mujoco is not installed.
+
+    >>> scene = Scene.of([[0.0, 0.0], [3.0, 0.0]], external=[True, False])
+    >>> studio = Studio(scene, {0: Robot.load("turtlebot2")})
+    >>> camera = Camera((0.0, 0.0, 1.0), (1.0, 0.0, 0.9), width=64, height=48, robot=0, detail=2)
+    >>> seen = studio.images(camera, rgb=False, segmentation=True)
+    >>> sorted(set(seen.segmentation.ravel().tolist()))  # nothing, floor, the person
+    [-3, -1, 1]
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        robots: Mapping[int, Robot],
+        stage: PhysicsStage | None = None,
+        walkers: Walkers | None = None,
+        *,
+        detail: int = 1,
+    ) -> None:
+        _checked(scene)
+        for agent in robots:
+            if not 0 <= agent < scene.shape[1]:
+                raise InputError(f"robots: agent {agent} is not in the scene, which has {scene.shape[1]} agents")
+        stage = stage or PhysicsStage()
+        if walkers is None:
+            walkers = Walkers(scene, np.array([a for a in range(scene.shape[1]) if a not in robots], dtype=np.int64))
+        self._made(built(scene, stage, robots, 0, posed=True), robots, stage, walkers, detail)
+        self.show(scene)
+
+    @classmethod
+    def of_engine(
+        cls, whole: Built, robots: Mapping[int, Robot], stage: PhysicsStage, walkers: Walkers, scene: Scene
+    ) -> Studio:
+        """Return the studio of a world that the engine moves."""
+        found = cls.__new__(cls)
+        found._made(whole, robots, stage, walkers, 1)
+        found._scene = scene
+        return found
+
+    def _made(
+        self, whole: Built, robots: Mapping[int, Robot], stage: PhysicsStage, walkers: Walkers, detail: int
+    ) -> None:
+        self._whole, self.robots, self.stage, self.walkers, self.detail = whole, dict(robots), stage, walkers, detail
+        self._joints: Mapping[int, Mapping[str, float]] = {}
+        self._coordinates: Floats | None = None
+        self._scene: Scene
+        self._looks: Looks | None = None
+
+    def show(self, scene: Scene, joints: Mapping[int, Mapping[str, float]] | None = None) -> None:
+        """Take what is drawn from now on.
+
+        Args:
+            scene: E = 1, with the agents and walls of the first one.
+            joints: positions of joints of robots, by agent and name [rad, m]; those left out are as in the posture.
+
+        Raises:
+            InputError: the scene has several environments or other agents.
+        """
+        _checked(scene)
+        if scene.shape[1] != len(self.walkers.row):
+            raise InputError(f"studio: the scene has {scene.shape[1]} agents, it was made for {len(self.walkers.row)}")
+        self._scene, self._joints, self._coordinates = scene, joints or {}, None
+
+    def show_engine(self, scene: Scene, coordinates: Floats) -> None:
+        """Take the scene and the coordinates of the engine."""
+        self._scene, self._coordinates = scene, coordinates.copy()
+
+    def images(self, camera: Camera, *, rgb: bool = True, depth: bool = False, segmentation: bool = False) -> Images:
+        """Return what a camera sees, without distortion.
+
+        Raises:
+            InputError: there is no way to draw here, or the camera is on no robot or no link.
+        """
+        looks = self._arranged(camera.detail)
+        view = camera.on(self._carrier(camera, looks))
+        return looks.images(view, self._scene.active[0], rgb, depth, segmentation, camera.shadows)
+
+    def render(self, camera: LensCamera, pose: SpatialPose) -> Mapping[str, NDArray[Any]]:
+        """Return images of a camera of :mod:`crowdbot.sensors`, as its ``ImageSource``: without distortion.
+
+        Args:
+            camera: with a lens, near and far.
+            pose: E = 1; it looks along x, z is up in the image. The carrier is drawn too where it is in view.
+
+        Raises:
+            InputError: there is no way to draw here, the image is too large, or there are several poses.
+        """
+        view = View.through(camera.lens, pose, camera.near, camera.far)
+        seen = self._arranged(self.detail).images(view, self._scene.active[0], True, True, True, False)
+        assert seen.rgb is not None
+        assert seen.depth is not None
+        assert seen.segmentation is not None
+        who = seen.segmentation.astype(np.int64)[None]
+        return {"rgb": seen.rgb[None], "depth": seen.depth[None].astype(np.float64), "hit": who, "part": 0 * who - 1}
+
+    def _arranged(self, detail: int) -> Looks:
+        """Put everything where it is now."""
+        if self._looks is None or self._looks.detail != detail:
+            self._looks = None  # one is given back before the next is made
+            self._looks = Looks(self._whole, self.walkers, self.stage, detail)
+        model, data = self._looks.model, self._looks.data
+        if self._coordinates is not None:
+            data.qpos[:] = self._coordinates
+        else:
+            for agent, robot in self.robots.items():
+                self._put(self._looks, agent, robot)
+        mj = engine()
+        mj.mj_kinematics(model, data)
+        mj.mj_comPos(model, data)
+        return self._looks
+
+    def _put(self, looks: Looks, agent: int, robot: Robot) -> None:
+        model, data, prefix = looks.model, looks.data, self._whole.prefixes[agent]
+        body = model.body_mocapid[model.body(prefix + robot.model.root).id]
+        heading = float(self._scene.heading[0, agent])
+        data.mocap_pos[body] = (*self._scene.position[0, agent].tolist(), robot.lift)
+        data.mocap_quat[body] = math.cos(0.5 * heading), 0.0, 0.0, math.sin(0.5 * heading)
+        for name, place in robot.model.positions({**robot.posture, **self._joints.get(agent, {})}).items():
+            joint = looks.joints.get(prefix + name)
+            if joint is not None and robot.model.joints[name].size == 1:
+                data.qpos[joint] = place[0]
+
+    def _carrier(self, camera: Camera, looks: Looks) -> Floats:
+        found = np.eye(4)
+        if camera.robot is None:
+            return found
+        if camera.robot not in self.robots:
+            raise InputError(f"agent {camera.robot} is no robot; robots are {sorted(self.robots) or 'none'}")
+        robot = self.robots[camera.robot]
+        link = camera.link or robot.model.root
+        if link not in robot.model.links:
+            raise InputError(f"{robot.name} has no link {link!r}{did_you_mean(link, robot.model.links)}")
+        site = looks.data.site(self._whole.prefixes[camera.robot] + link)
+        found[:3, :3], found[:3, 3] = site.xmat.reshape(3, 3), site.xpos
+        return found
+
+
+def _checked(scene: Scene) -> None:
+    if scene.shape[0] != 1:
+        raise InputError(f"studio: the scene has {scene.shape[0]} environments; give one: scene.environments([0])")

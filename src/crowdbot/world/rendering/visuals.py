@@ -1,0 +1,199 @@
+"""How a world looks: its shapes and the skins of its people, drawn by MuJoCo."""
+
+from __future__ import annotations
+
+import weakref
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import format_xml
+from crowdbot.humans.asset import shapes
+from crowdbot.humans.wardrobe import region_colors
+from crowdbot.world.physics.engine import engine
+from crowdbot.world.physics.mjcf_model import Built
+from crowdbot.world.physics.people_motion import Walkers
+from crowdbot.world.physics.stage import PhysicsStage
+
+from .camera import LARGEST, Images, View
+from .gl_context import canvas, closed
+
+__all__ = ["Looks"]
+
+Floats = NDArray[np.float64]
+SHAPES_MOST = 20_000
+SHADED = 10.0
+"""The middle of the shadows is at most so far along the axis of the camera [m]."""
+NOTHING, WALL, FLOOR, PROP = -1, -2, -3, -4
+
+
+class Looks:
+    """Draws a world at one level of detail.
+
+    Args:
+        built: the world as the engine knows it.
+        walkers: its people.
+        stage: for its lights.
+        detail: level of the skins, 0 (finest) to 2.
+
+    Attributes:
+        model, data: what is drawn; who asks for an image has put ``data`` as it shall be.
+        joints: where in ``data.qpos`` the position of each joint begins, by name.
+    """
+
+    def __init__(self, built: Built, walkers: Walkers, stage: PhysicsStage, detail: int) -> None:
+        self._mj, self.detail = engine(), detail
+        self._walkers, self._sunny = walkers, not stage.lights
+        self._faces, self._part = walkers.people.faces(detail), walkers.people.worn(detail)
+        self.model = self._painted(built)
+        self.data = self._mj.MjData(self.model)
+        self.joints = {self.model.joint(k).name: int(self.model.jnt_qposadr[k]) for k in range(self.model.njnt)}
+        self._canvas = canvas(*LARGEST)
+        self._context = self._mj.MjrContext(self.model, self._mj.mjtFontScale.mjFONTSCALE_100)
+        weakref.finalize(self, closed, self._canvas, self._context).atexit = False
+        self._mj.mjr_setBuffer(self._mj.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
+        self._context.readDepthMap = self._mj.mjtDepthMap.mjDEPTH_ZEROFAR
+        self._scene = self._mj.MjvScene(self.model, maxgeom=SHAPES_MOST)
+        self._option = self._mj.MjvOption()
+        self._option.geomgroup[:] = (1, 1, 1, 0, 0, 0)
+        self._option.flags[self._mj.mjtVisFlag.mjVIS_STATIC] = 1
+
+    def images(
+        self, view: View, active: NDArray[np.bool_], rgb: bool, depth: bool, segmentation: bool, shadows: bool
+    ) -> Images:
+        """Return what is seen now, with the people who are ``active`` ``[A]``."""
+        mj = self._mj
+        self._canvas.make_current()
+        codes = self._arranged(view, active)
+        area = mj.MjrRect(0, 0, view.width, view.height)
+        colors = np.empty((view.height, view.width, 3), dtype=np.uint8)
+        flags = self._scene.flags
+        flags[mj.mjtRndFlag.mjRND_SHADOW] = shadows
+        flags[mj.mjtRndFlag.mjRND_REFLECTION] = 0
+        found: list[Any] = [None, None, None]
+        if rgb:
+            flags[mj.mjtRndFlag.mjRND_SEGMENT] = flags[mj.mjtRndFlag.mjRND_IDCOLOR] = 0
+            mj.mjr_render(area, self._scene, self._context)
+            mj.mjr_readPixels(colors, None, area, self._context)
+            found[0] = np.flipud(colors).copy()
+        if depth or segmentation:
+            flags[mj.mjtRndFlag.mjRND_SEGMENT] = flags[mj.mjtRndFlag.mjRND_IDCOLOR] = 1
+            raw = np.empty((view.height, view.width), dtype=np.float32)
+            mj.mjr_render(area, self._scene, self._context)
+            mj.mjr_readPixels(colors, raw, area, self._context)
+            number = colors.astype(np.int64) @ np.array([1, 256, 65536])
+            if depth:
+                found[1] = np.flipud(_metric(raw, view)).copy()
+            if segmentation:
+                found[2] = np.flipud(codes[np.minimum(number, len(codes) - 1)]).astype(np.int32)
+        return Images(*found)
+
+    def _painted(self, built: Built) -> Any:
+        """Return the model of the world with a skin, and its colours, for every person."""
+        mj, walkers = self._mj, self._walkers
+        spec = mj.MjSpec.from_string(format_xml(built.root), assets=built.files)
+        names = shapes().regions
+        region = shapes().levels[self.detail].face_region
+        around = np.stack([(np.arange(len(names)) + 0.5) / len(names), np.full(len(names), 0.5)], axis=1)
+        skin = walkers.gait.skin(walkers.state, self.detail)
+        for k, outfit in enumerate(walkers.people.outfits):
+            worn = self._part[k]
+            spec.add_mesh(
+                name=f"skin{k}",
+                inertia=mj.mjtMeshInertia.mjMESH_INERTIA_SHELL,
+                uservert=skin[k].ravel(),
+                usernormal=_normals(skin[k], self._faces[worn]).ravel(),
+                userface=self._faces[worn].ravel().astype(np.int32),
+                userfacenormal=self._faces[worn].ravel().astype(np.int32),
+                usertexcoord=around.ravel(),
+                userfacetexcoord=np.repeat(region[worn], 3).astype(np.int32),
+            )
+            paint = (255.0 * np.clip(region_colors(outfit), 0.0, 1.0)).astype(np.uint8)
+            cloth = spec.add_texture(name=f"cloth{k}", type=mj.mjtTexture.mjTEXTURE_2D, width=len(names), height=1)
+            cloth.nchannel = 3
+            cloth.data = paint.tobytes()
+            material = spec.add_material(name=f"cloth{k}", specular=0.1, shininess=0.1)
+            material.textures[mj.mjtTextureRole.mjTEXROLE_RGB] = f"cloth{k}"
+        model = spec.compile()
+        self._meshes = np.array([model.mesh(f"skin{k}").id for k in range(len(walkers.people))], dtype=np.int64)
+        self._cloths = [model.material(f"cloth{k}").id for k in range(len(walkers.people))]
+        shown = {int(b) for b in model.geom_bodyid[model.geom_group == 2]}
+        bare = (model.geom_group == 3) & ~np.isin(model.geom_bodyid, list(shown))
+        model.geom_group[bare] = 2  # robots without anything to be seen show what touches
+        return model
+
+    def _arranged(self, view: View, active: NDArray[np.bool_]) -> NDArray[np.int64]:
+        """Gather everything where it is now, and return what the numbers in an image of numbers stand for."""
+        mj, model, data, scene = self._mj, self.model, self.data, self._scene
+        if self._sunny:  # the shadows of the sun are sharp about where the middle of the image meets the floor
+            fall = -view.forward[2]
+            reach = min(SHADED, view.place[2] / fall) if fall > 1e-6 else SHADED
+            model.light_pos[0, :2] = (view.place + reach * view.forward)[:2]
+        mj.mj_camlight(model, data)
+        mj.mjv_updateScene(model, data, self._option, None, mj.MjvCamera(), mj.mjtCatBit.mjCAT_ALL.value, scene)
+        codes = np.full(scene.ngeom + len(self._meshes) + 2, NOTHING, dtype=np.int64)
+        for geom in scene.geoms[: scene.ngeom]:
+            if geom.segid >= 0 and geom.objtype == mj.mjtObj.mjOBJ_GEOM:
+                codes[geom.segid + 1] = self._code(model.geom(geom.objid).name)
+        for eye in scene.camera:
+            eye.pos, eye.forward, eye.up = view.place, view.forward, view.up
+            eye.frustum_center = 0.5 * view.near * (view.left + view.right)
+            eye.frustum_width = 0.5 * view.near * (view.right - view.left)
+            eye.frustum_bottom, eye.frustum_top = view.near * view.bottom, view.near * view.top
+            eye.frustum_near, eye.frustum_far = view.near, view.far
+            eye.orthographic = 0
+        self._people(codes, view, active)
+        return codes
+
+    def _people(self, codes: NDArray[np.int64], view: View, active: NDArray[np.bool_]) -> None:
+        """Add the skins of those who are there and not behind the camera."""
+        mj, model, scene, walkers = self._mj, self.model, self._scene, self._walkers
+        here = active[walkers.agents]
+        if not np.any(here):
+            return
+        skin = walkers.gait.skin(walkers.state, self.detail)
+        for k in np.flatnonzero(here):
+            ahead = (skin[k] - view.place) @ view.forward
+            if ahead.max() < 0.0 or ahead.min() > view.far:
+                continue
+            mesh = int(self._meshes[k])
+            first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
+            model.mesh_vert[first : first + count] = skin[k]
+            bent = int(model.mesh_normaladr[mesh])
+            model.mesh_normal[bent : bent + count] = _normals(skin[k], self._faces[self._part[k]])
+            mj.mjr_uploadMesh(model, self._context, mesh)
+            geom = scene.geoms[scene.ngeom]
+            mj.mjv_initGeom(
+                geom, mj.mjtGeom.mjGEOM_MESH, np.zeros(3), np.zeros(3), np.eye(3).ravel(), np.ones(4, np.float32)
+            )
+            geom.dataid, geom.matid, geom.texcoord, geom.segid = 2 * mesh, self._cloths[k], 1, scene.ngeom
+            geom.category = mj.mjtCatBit.mjCAT_DYNAMIC
+            scene.ngeom += 1
+            codes[geom.segid + 1] = int(walkers.agents[k])
+
+    def _code(self, name: str) -> int:
+        if name.startswith("robot"):
+            return int(name.removeprefix("robot").split("/")[0])
+        return FLOOR if name == "floor" else WALL if name.startswith("wall/") else PROP
+
+
+def _metric(raw: NDArray[np.float32], view: View) -> NDArray[np.float32]:
+    """Return distances along the axis [m] from a depth buffer that is 0 far away."""
+    near, far = view.near, view.far
+    value = raw.astype(np.float64)
+    with np.errstate(divide="ignore"):
+        found = near * far / (near + value * (far - near))
+    return np.where(value <= 0.0, np.inf, found).astype(np.float32)
+
+
+def _normals(points: Floats, faces: NDArray[np.int64]) -> Floats:
+    """Return unit normals ``[V, 3]`` of vertices, up where no face has the vertex."""
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    flat = np.cross(b - a, c - a)
+    found = np.zeros_like(points)
+    for k in range(3):
+        for axis in range(3):
+            found[:, axis] += np.bincount(faces[:, k], flat[:, axis], minlength=len(points))
+    size = np.sqrt(np.sum(found * found, axis=1, keepdims=True))
+    return np.where(size > 1e-12, found / np.maximum(size, 1e-12), (0.0, 0.0, 1.0))

@@ -1,0 +1,1 @@
+"""Robots: drives, wheels, sensor mounts, and the files that describe them."""

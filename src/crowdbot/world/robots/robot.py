@@ -1,0 +1,279 @@
+"""Robot: a folder with a URDF and one small file: how it drives, what it senses with and what room it takes."""
+
+from __future__ import annotations
+
+import functools
+import importlib.resources
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Pose, RobotError, SpatialPose, Twist, did_you_mean
+from crowdbot.world.urdf import Cylinder, Inertial, Link, Part, RobotModel
+from crowdbot.world.urdf.transforms import frame, quaternion, turning
+
+from .drive import Drive
+from .mount import SensorMount
+from .robot_file import FILE, read_robot_file
+from .servo import CommandDelay
+from .wheel import Wheel
+
+__all__ = ["Robot", "builtin_robots", "spatial"]
+
+Floats = NDArray[np.float64]
+SUNK = 2e-3
+"""Robots that reach deeper [m] below their root than this do not have it on the ground."""
+CLEAR = 0.01
+"""Height [m] above the floor of a robot of which only the size is known: it does not rub."""
+
+
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """A robot that can be put into a world.
+
+    Fields:
+        name: of the robot.
+        model: its links and joints; the root is on the ground below its centre, x forward.
+        drive: how its base follows commands, with its limits of speed and acceleration.
+        latency: between a command and the wheels [s], see :class:`CommandDelay`.
+        base: what physics moves: ``wheels`` (motors turn them) or ``planar`` (the base itself is pulled, for wheels
+            that roll in all directions).
+        footprint: corners ``[N, 2]`` [m] of the room it takes on the ground, counter-clockwise.
+        mounts: its sensors.
+        wheels: that motors turn or steer.
+        posture: positions of joints [rad, m] while it drives; those left out are at 0.
+        about: one line for people.
+
+    >>> robot = Robot.load("turtlebot2")
+    >>> robot.drive.max_speed, round(robot.radius, 3), [mount.name for mount in robot.mounts][:3]
+    (0.65, 0.232, ['laser', 'kinect_depth', 'kinect_rgb'])
+    """
+
+    name: str
+    model: RobotModel
+    drive: Drive
+    latency: float = 0.0
+    base: str = "wheels"
+    footprint: Floats = field(default_factory=lambda: np.zeros((0, 2)))
+    mounts: tuple[SensorMount, ...] = ()
+    wheels: tuple[Wheel, ...] = ()
+    posture: Mapping[str, float] = field(default_factory=dict)
+    about: str = ""
+
+    def __post_init__(self) -> None:
+        CommandDelay(self.latency)
+        if self.base not in ("wheels", "planar"):
+            raise InputError(f"Robot: base = {self.base!r} must be wheels or planar")
+        shape = np.asarray(self.footprint, dtype=np.float64)
+        if shape.size == 0:
+            shape = self.model.footprint(self.posture)
+        if shape.ndim != 2 or shape.shape[1] != 2 or len(shape) < 3 or not np.all(np.isfinite(shape)):
+            raise InputError(
+                f"Robot: the footprint of {self.name} must be at least 3 points x, y [m]; its model has"
+                f" {'no colliders to take it from' if not len(shape) else f'{len(shape)} corners'}"
+            )
+        object.__setattr__(self, "footprint", shape)
+        self.model.positions(self.posture)
+        names = [mount.name for mount in self.mounts]
+        for mount in self.mounts:
+            if names.count(mount.name) > 1:
+                raise InputError(f"Robot: two sensors of {self.name} have the name {mount.name!r}; names must differ")
+            if mount.link not in self.model.links:
+                meant = did_you_mean(mount.link, self.model.links)
+                raise InputError(f"Robot: the sensor {mount.name!r} sits on {mount.link!r}, which is no link{meant}")
+        turning_joints = {joint.name for joint in self.model.movable if joint.size == 1}
+        for wheel in self.wheels:
+            for what, name in (("wheel", wheel.joint), ("steering", wheel.steering or wheel.joint)):
+                if name not in turning_joints:
+                    meant = did_you_mean(name, self.model.joints)
+                    raise InputError(f"Robot: the {what} joint {name!r} is no joint that turns{meant}")
+
+    @classmethod
+    def load(cls, source: str | Path, *, trust: bool = False) -> Robot:
+        """Read a robot.
+
+        Args:
+            source: a built-in name, the folder of a robot, or its ``robot.xml``; a folder of that name in the working
+                folder comes first.
+            trust: whether code from outside the folder may be loaded, when the file names sensors or drives by address.
+
+        Raises:
+            RobotError: there is no such robot, or with everything that is wrong with it, a sentence each.
+        """
+        folder = _folder(source)
+        values = read_robot_file(folder, trust=trust)
+        try:
+            return cls(**values)
+        except InputError as error:
+            raise RobotError(f"{folder / FILE}: {error}") from None
+
+    @classmethod
+    def disc(cls, name: str, drive: Drive, radius: float, *, height: float = 1.0, mass: float = 50.0) -> Robot:
+        """Return a robot of which only the size is known: an upright cylinder that is pulled along the floor.
+
+        Args:
+            name: of the robot.
+            drive: how it follows commands.
+            radius, height: [m].
+            mass: [kg].
+
+        Raises:
+            InputError: a size or the mass is not finite and above 0.
+
+        >>> from crowdbot.world import DifferentialDrive
+        >>> round(Robot.disc("puck", DifferentialDrive(), 0.3).radius, 3)
+        0.3
+        """
+        for what, value in (("radius", radius), ("height", height), ("mass", mass)):
+            if not 0.0 < value < math.inf:
+                raise InputError(f"Robot.disc: {what} = {value} must be finite and above 0")
+        origin = frame((0.0, 0.0, 0.5 * height + CLEAR))
+        column = Cylinder(radius, height)
+        whole = Inertial(mass, origin[:3, 3], column.solid().inertia(mass))
+        link = Link("base_link", whole, (Part(column, origin),), (Part(column, origin),))
+        return cls(name, RobotModel(name, {"base_link": link}, {}, "base_link"), drive, base="planar")
+
+    @property
+    def radius(self) -> float:
+        """Radius [m] of the disc about its origin that holds the footprint."""
+        return float(np.hypot(self.footprint[:, 0], self.footprint[:, 1]).max())
+
+    @functools.cached_property
+    def height(self) -> float:
+        """Height [m] of its highest collider above its root, in its posture."""
+        points = self.model.points(self.posture)
+        return float(points[:, 2].max()) if len(points) else 0.0
+
+    @property
+    def lift(self) -> float:
+        """How far its root is above the floor when it stands in its posture [m]; 0 for a root on the ground."""
+        points = self.model.points(self.posture)
+        lowest = float(points[:, 2].min()) if len(points) else 0.0
+        return -lowest if lowest < -SUNK else 0.0
+
+    def mount(self, name: str) -> SensorMount:
+        """Return the sensor of this name.
+
+        Raises:
+            InputError: there is none.
+        """
+        for mount in self.mounts:
+            if mount.name == name:
+                return mount
+        names = [mount.name for mount in self.mounts]
+        raise InputError(
+            f"{self.name} has no sensor {name!r}{did_you_mean(name, names)}; it has {', '.join(names) or 'none'}"
+        )
+
+    def mounted(self, name: str, positions: Mapping[str, float] | None = None) -> Floats:
+        """Return the frame ``[4, 4]`` of a sensor in the robot's frame: in its posture, or with joints elsewhere."""
+        mount = self.mount(name)
+        return np.asarray(self.model.poses({**self.posture, **(positions or {})})[mount.link] @ mount.origin)
+
+    def planar_mount(self, name: str) -> tuple[float, float, float]:
+        """Return where a sensor sits, seen from above: x, y [m], heading [rad], as :meth:`Pose.mounted` takes it.
+
+        >>> Robot.load("qolo").planar_mount("lidar_rear")
+        (-0.516, 0.0, 3.141592654)
+        """
+        matrix = self.mounted(name)
+        heading = math.atan2(matrix[1, 0], matrix[0, 0])
+        return round(float(matrix[0, 3]), 12), round(float(matrix[1, 3]), 12), round(heading, 9)
+
+    def sensor_pose(self, name: str, pose: Pose, positions: Mapping[str, float] | None = None) -> SpatialPose:
+        """Return where a sensor is in space when the robot stands on the floor at ``pose`` ``[E]``.
+
+        >>> Robot.load("qolo").sensor_pose("lidar_rear", Pose.of((1.0, 0.0), 0.0)).position.round(3).tolist()
+        [[0.484, 0.0, 0.364]]
+        """
+        seat = self.mounted(name, positions)
+        found = [spatial(frame((x, y, self.lift), turning((0.0, 0.0, 1.0), a)) @ seat) for (x, y), a in zip(
+            pose.position.tolist(), pose.heading.tolist(), strict=True)]  # fmt: skip
+        return SpatialPose(
+            np.concatenate([one.position for one in found]), np.concatenate([one.rotation for one in found])
+        )
+
+    def wheel_speeds(self, twist: Twist) -> dict[str, float]:
+        """Return how fast the wheels must turn [rad/s], by joint, so that none slips along its rolling direction.
+
+        It holds for plain wheels and for those whose rollers let them slide along the axle.
+
+        >>> Robot.load("turtlebot2").wheel_speeds(Twist(0.35, 0.0))
+        {'wheel_left_joint': 10.0, 'wheel_right_joint': 10.0}
+        """
+        steered = self.steering(twist)
+        poses = self.model.poses({**self.posture, **steered})
+        speeds = {}
+        for wheel in self.wheels:
+            if wheel.driven:
+                joint = self.model.joints[wheel.joint]
+                matrix = poses[joint.parent] @ joint.origin
+                axle = matrix[:3, :3] @ joint.axis
+                rolling = np.array([axle[1], -axle[0]])  # axle x up
+                speeds[wheel.joint] = round(float(_carried(twist, matrix) @ rolling) / wheel.radius, 12)
+        return speeds
+
+    def steering(self, twist: Twist) -> dict[str, float]:
+        """Return how far wheels that steer are turned [rad], by joint, so that all roll about the same point.
+
+        At rest, where every direction does, they look ahead. Backwards they are turned as ahead on the same circle.
+        """
+        poses = self.model.poses(self.posture)
+        angles = {}
+        for wheel in self.wheels:
+            if wheel.steering:
+                joint = self.model.joints[wheel.steering]
+                matrix = poses[joint.parent] @ joint.origin
+                x, y = (_carried(twist, matrix) * (-1.0 if twist.forward < 0.0 else 1.0)).tolist()
+                sense = 1.0 if (matrix[:3, :3] @ joint.axis)[2] > 0.0 else -1.0
+                angles[wheel.steering] = round(sense * math.atan2(y, x), 12)
+        return angles
+
+
+def _carried(twist: Twist, matrix: Floats) -> Floats:
+    """Return how fast the origin of a frame ``[4, 4]`` of the robot moves over the floor, ``[2]`` [m/s]."""
+    x, y = matrix[:2, 3].tolist()
+    return np.array([twist.forward - twist.turn * y, twist.left + twist.turn * x])
+
+
+def spatial(matrix: Floats) -> SpatialPose:
+    """Return a frame ``[4, 4]`` of the world as a pose, E = 1."""
+    return SpatialPose(matrix[None, :3, 3].copy(), np.asarray(quaternion(matrix[:3, :3]))[None])
+
+
+def builtin_robots() -> tuple[str, ...]:
+    """Return the names of the built-in robots.
+
+    >>> builtin_robots()
+    ('cuybot', 'differential', 'pepper', 'qolo', 'turtlebot2', 'wheelchair')
+    """
+    return tuple(sorted(entry.name for entry in _assets().iterdir() if (entry / FILE).is_file()))
+
+
+def _assets() -> Path:
+    return Path(str(importlib.resources.files("crowdbot").joinpath("assets", "robots")))
+
+
+def _folder(source: str | Path) -> Path:
+    """Return the folder that holds the robot's file."""
+    path = Path(source)
+    known = builtin_robots()
+    if path.is_dir():
+        if (path / FILE).is_file():
+            return path
+        if str(source) not in known:
+            raise RobotError(f"the folder {path} holds no {FILE}; a robot is a folder with a URDF and a {FILE}")
+    if str(source) in known:
+        return _assets() / str(source)
+    if path.name == FILE and path.is_file():
+        return path.parent
+    if path.suffix == ".urdf":
+        raise RobotError(f"{path} says nothing of drive and sensors; give the folder with its {FILE}")
+    raise RobotError(
+        f"there is no robot {str(source)!r}{did_you_mean(str(source), known)}: no folder has this name,"
+        f" and built in are {', '.join(known)}"
+    )

@@ -1,0 +1,166 @@
+"""What the GAN study adds to Social Ways: centred noise, a discriminator that is not steep, and rows that resume."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from crowdbot.benchmark.toy_gan.methods import METHODS
+from crowdbot.benchmark.toy_gan.study import MEASURES, Run, ToyStudy, with_values
+from crowdbot.benchmark.toy_gan.toy_data import Toy
+from crowdbot.benchmark.toy_gan.training import ToyTraining, sample_futures, toy_config
+from crowdbot.core import InputError, stream
+from crowdbot.prediction.social_ways.config import SocialWaysConfig
+from crowdbot.prediction.training.torch_backend import threads
+
+SMALL = {"hidden": 8, "pooled": 4, "noise": 6, "batch": 32}
+TOY = Toy(tracks=6)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def one_thread() -> Iterator[None]:
+    with threads(1):
+        yield
+
+
+def trained(updates: int, **values: object) -> ToyTraining:
+    """Return a small network on the toy set after some updates."""
+    model = ToyTraining(TOY, toy_config("vanilla", TOY, {**SMALL, **values}))
+    parts = model.batches(stream(0, "order"))
+    for number in range(updates):
+        model.update(parts[number % len(parts)], stream(0, "update", number), number, updates)
+    return model
+
+
+def slope(model: ToyTraining) -> float:
+    """Return the mean squared slope of the discriminator at true futures, by its derivative."""
+    lesson = model._lesson(model.samples.batch(np.arange(len(model.samples))))
+    future = lesson.future.clone().requires_grad_(True)
+    said, _ = model.discriminator(lesson.observed, future)
+    (steep,) = torch.autograd.grad(said.sum(), future)
+    return float(steep.square().sum(dim=(1, 2)).mean())
+
+
+def test_noise_is_centred_and_made_larger() -> None:
+    plain, centred = trained(0), trained(0, noise_gain=math.sqrt(12.0))
+    lesson = plain._lesson(plain.samples.batch(np.arange(3)))
+    noise = torch.full((1, 3, 1, plain.config.inputs), 0.75)
+    there, _ = centred.generator(lesson.sight, noise, 2)
+    same, _ = plain.generator(lesson.sight, 0.25 * math.sqrt(12.0) * torch.ones_like(noise), 2)
+    torch.testing.assert_close(there, same)
+    few, many = (sample_futures(one, 200, stream(0, "drawn")).std(axis=1).mean() for one in (plain, centred))
+    assert many > 3.0 * few  # before anything is learned
+
+
+def test_codes_of_one_step_are_the_same_and_the_rest_of_the_noise_is_left() -> None:
+    model = trained(0, code_levels=3, noise_gain=10.0)
+    lesson = model._lesson(model.samples.batch(np.arange(1)))
+
+    def drawn(code: float, rest: float = 0.5) -> torch.Tensor:
+        noise = torch.full((1, 1, 1, model.config.inputs), rest)
+        noise[..., : model.config.latent_codes] = code
+        return torch.as_tensor(model.generator(lesson.sight, noise, 2)[0])
+
+    assert torch.equal(drawn(0.05), drawn(0.3))
+    assert torch.equal(drawn(0.7), drawn(1.0))  # noise of exactly 1 belongs to the last step
+    assert not torch.allclose(drawn(0.3), drawn(0.4))
+    assert not torch.allclose(drawn(0.3), drawn(0.3, rest=0.6))
+
+
+def test_the_penalty_is_the_squared_slope_and_makes_it_smaller() -> None:
+    """The small step aside gives the derivative's square on average, and training with it keeps slopes low."""
+    model = trained(0)
+    lesson = model._lesson(model.samples.batch(np.arange(len(model.samples))))
+    rng, felt = stream(0, "aside"), []
+    with torch.no_grad():
+        here, _ = model.discriminator(lesson.observed, lesson.future)
+        for _ in range(100):
+            aside = torch.as_tensor(rng.standard_normal(lesson.future.shape, dtype=np.float32))
+            there, _ = model.discriminator(lesson.observed, lesson.future + 0.01 * aside)
+            felt.append(float(((there - here) / 0.01).square().mean()))
+    assert np.mean(felt) == pytest.approx(slope(model), rel=0.1)
+    values = {"discriminator_rate": 1e-2, "generator_rate": 1e-6}
+    assert slope(trained(60, slope_penalty=10.0, **values)) < 0.2 * slope(trained(60, **values))
+
+
+def test_the_penalty_falls_between_30_and_90_percent() -> None:
+    model = trained(0, slope_penalty=2.0, slope_penalty_left=0.01)
+    assert [model._penalty(done) for done in (0.0, 0.3, 0.6, 0.9, 1.0)] == pytest.approx([2.0, 2.0, 0.2, 0.02, 0.02])
+    assert trained(0)._penalty(0.5) == 0.0
+
+
+def test_variety_grows_between_30_and_80_percent() -> None:
+    model = trained(0, use_variety_loss=True, variety_weight=10.0, variety_growth=100.0)
+    weights = [model._variety_weight(done) for done in (0.0, 0.3, 0.55, 0.8, 1.0)]
+    assert weights == pytest.approx([10.0, 10.0, 100.0, 1000.0, 1000.0])
+    first, last = model._lesson(model.samples.batch(np.arange(4))), {}
+    for weight in (weights[0], weights[-1]):
+        noise = model._noise(first, stream(1, "noise"), 20)
+        losses = model._generator_step(first, model._made(first, noise)[1], noise[0][first.scored][:, :2], weight)
+        last[weight] = losses["variety"]
+    assert 50.0 < last[weights[-1]] / last[weights[0]] < 150.0
+
+
+def test_without_them_nothing_random_is_drawn_for_them() -> None:
+    """Rows of the report draw the same numbers as before these settings were there."""
+    one, other = trained(3), trained(3, slope_penalty_left=0.5)
+    assert all(torch.equal(one.mean[name], other.mean[name]) for name in one.mean)
+
+
+def test_wrong_settings_are_said() -> None:
+    with pytest.raises(InputError, match="slope_penalty_left = 0.0 must be above 0 and at most 1"):
+        SocialWaysConfig(slope_penalty_left=0.0)
+    with pytest.raises(InputError, match="variety_growth = 0.0 must be above 0 and at most 1000000"):
+        SocialWaysConfig(variety_growth=0.0)
+    with pytest.raises(InputError, match="slope_penalty = -1.0 must be at least 0"):
+        SocialWaysConfig(slope_penalty=-1.0)
+    with pytest.raises(InputError, match="code_levels = -1 must be at least 0"):
+        SocialWaysConfig(code_levels=-1)
+    with pytest.raises(InputError, match="noise_gain = -1.0 must be at least 0"):
+        SocialWaysConfig(noise_gain=-1.0)
+
+
+def test_rows_of_the_report_keep_its_settings_and_ours_say_what_differs() -> None:
+    report = SocialWaysConfig()
+    for method in tuple(METHODS)[:7]:
+        config = toy_config(method, Toy())
+        for name in ("generator_rate", "discriminator_rate", "momentum", "adversarial", "batch", "hidden", "noise"):
+            assert getattr(config, name) == getattr(report, name)
+        assert (config.noise_gain, config.slope_penalty, config.average) == (0.0, 0.0, 0.0)
+    code = toy_config("info+rates-of-code", Toy())
+    assert (code.generator_rate, code.discriminator_rate, code.adversarial) == (1e-4, 1e-3, "least-squares")
+    steady = toy_config("info+slope-penalty", Toy())
+    assert dataclasses.replace(steady, use_info_loss=False) == toy_config("vanilla+slope-penalty", Toy())
+
+
+def test_a_study_goes_seed_by_seed_and_resumes_to_the_same_runs(tmp_path: Path) -> None:
+    study = ToyStudy(("info+slope-penalty", "vanilla"), (0, 1), updates=4, check_every=2, toy=TOY)
+    study = with_values(study, {"hidden": "4", "noise": "2"})
+    runs: list[Run] = []
+    for run in study.run(tmp_path):
+        runs.append(run)
+        if len(runs) == 2:
+            break
+    assert [(run.method, run.seed) for run in runs] == [("info+slope-penalty", 0), ("vanilla", 0)]
+    again = list(study.run(tmp_path))
+    fresh = list(study.run())
+    assert [(run.method, run.seed) for run in again[2:]] == [("info+slope-penalty", 1), ("vanilla", 1)]
+    for one, other in zip(again, fresh, strict=True):
+        np.testing.assert_array_equal(one.drawn, other.drawn)
+        assert list(one.update) == [2, 4]
+    assert [row["seeds"] for row in ToyStudy.rows(again)] == [2, 2]
+
+
+def test_a_row_is_the_mean_of_the_last_quarter() -> None:
+    measures = {name: np.arange(8.0) for name in MEASURES}
+    runs = [Run("vanilla", seed, np.arange(8) + 1, measures, np.zeros((1, 1, 2, 2))) for seed in (0, 1)]
+    (row,) = ToyStudy.rows(runs)
+    assert (row["emd"], row["emd_sd"], row["updates"], row["seeds"]) == (6.5, 0.0, 8, 2)
+    short = [dataclasses.replace(runs[0], update=np.array([1]), measures={name: np.ones(1) for name in MEASURES})]
+    assert ToyStudy.rows(short)[0]["emd"] == 1.0

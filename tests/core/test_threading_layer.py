@@ -1,0 +1,150 @@
+"""Parallel kernels after a fork, from several Python threads, and both, on every threading layer."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from crowdbot.core import threading_layer
+
+PROGRAM = Path(__file__).with_name("parallel_work.py")
+STEPS = ["work", "fork", "threads", "fork-threads", "fork-during", "fork-from-thread"]
+LAYERS = ["tbb", "workqueue"]
+
+NESTED = """
+import numpy as np
+from numba import prange
+from crowdbot.core import kernel
+
+
+@kernel(parallel=True)
+def double(values, out):
+    for i in prange(len(values)):
+        out[i] = 2.0 * values[i]
+
+
+@kernel(parallel=True)
+def both(values, out):
+    double(values, out)
+    for i in prange(len(values)):
+        out[i] += 1.0
+
+
+@kernel
+def serial(values, out):
+    double(values, out)
+    out[0] = -1.0
+
+
+found = np.zeros(4)
+both(np.arange(4.0), found)
+print(found.tolist())
+serial(np.arange(4.0), found)
+print(found.tolist(), double.__name__, double.__doc__, type(serial) is type(double))
+"""
+
+
+def run(program, *words, **environment):
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")}
+    done = subprocess.run(
+        [sys.executable, str(program), *words],
+        env={**kept, "NUMBA_NUM_THREADS": "2", **environment},
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def results(*words, **environment):
+    lines = [line.split() for line in run(PROGRAM, *words, **environment).splitlines() if line.startswith("result ")]
+    return {word: value for _, word, *value in lines}
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+@pytest.mark.parametrize("layer", LAYERS)
+def test_forks_and_threads_get_the_same_bytes(layer):
+    found = results(*STEPS, "layer", NUMBA_THREADING_LAYER=layer)
+    assert found.pop("layer") == [layer]
+    assert set(found) == set(STEPS)
+    assert all(value == found["work"] for value in found.values()), found
+    assert len(found["work"]) == 1
+
+
+def test_every_layer_and_number_of_threads_gives_the_same_bytes():
+    found = [results("work", NUMBA_THREADING_LAYER=layer, NUMBA_NUM_THREADS=n) for layer in LAYERS for n in "12"]
+    assert found[0]["work"]
+    assert all(other == found[0] for other in found)
+
+
+def test_tbb_is_found_in_its_wheel():
+    assert results("work", "layer")["layer"] == ["tbb"]
+
+
+def test_workqueue_is_taken_if_there_is_no_tbb(monkeypatch, tmp_path):
+    program = tmp_path / "without_tbb.py"
+    program.write_text(
+        "import importlib.metadata, runpy, sys\n"
+        "real = importlib.metadata.files\n"
+        "def files(name):\n"
+        "    if name == 'tbb':\n"
+        "        raise importlib.metadata.PackageNotFoundError(name)\n"
+        "    return real(name)\n"
+        "importlib.metadata.files = files\n"
+        f"runpy.run_path({str(PROGRAM)!r}, run_name='__main__')\n"
+    )
+    done = run(program, "threads", "layer").splitlines()
+    assert done[1].split()[1:] in (["layer", "workqueue"], ["layer", "tbb"])  # tbb: one that the system itself offers
+    assert len(done[0].split()) == 3
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_other_kernels_call_parallel_ones(layer, tmp_path):
+    program = tmp_path / "nested.py"
+    program.write_text(NESTED)
+    printed = run(program, NUMBA_THREADING_LAYER=layer, CROWDBOT_CACHE=str(tmp_path / "cache")).splitlines()
+    assert printed == ["[1.0, 3.0, 5.0, 7.0]", "[-1.0, 2.0, 4.0, 6.0] double None True"]
+
+
+def test_without_the_compiler_a_kernel_is_the_function_itself(tmp_path):
+    program = tmp_path / "nested.py"
+    program.write_text(NESTED)
+    assert run(program, NUMBA_DISABLE_JIT="1").startswith("[1.0, 3.0, 5.0, 7.0]\n")
+
+
+def test_the_order_of_layers_that_the_user_gave_stays(tmp_path):
+    program = tmp_path / "order.py"
+    program.write_text("import crowdbot.core.kernels, numba; print(*numba.config.THREADING_LAYER_PRIORITY)")
+    assert run(program).split() == ["tbb", "workqueue", "omp"]
+    assert run(program, NUMBA_THREADING_LAYER_PRIORITY="omp workqueue tbb").split() == ["omp", "workqueue", "tbb"]
+
+
+def test_a_library_that_does_not_load_is_left_out(monkeypatch, tmp_path):
+    broken = tmp_path / threading_layer.LIBRARY
+    broken.write_text("no library")
+    tried = []
+
+    class File:
+        name = broken.name
+
+        def locate(self):
+            tried.append(self.name)
+            return broken
+
+    monkeypatch.setattr("importlib.metadata.files", lambda name: [File()])
+    threading_layer.prefer_safe_layers()
+    assert tried == [broken.name]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
+def test_a_fork_waits_for_kernels_of_other_threads_but_not_for_ever(monkeypatch):
+    monkeypatch.setattr(threading_layer, "PATIENCE", 0.2)
+    threading_layer._running.add("a kernel that never ends")
+    child = os.fork()
+    if child == 0:
+        os._exit(len(threading_layer._running))
+    threading_layer._running.clear()
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0

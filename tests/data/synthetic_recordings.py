@@ -1,0 +1,291 @@
+"""Synthetic recordings in every supported format, byte for byte as the programs of the field write them.
+
+Twelve people cross a square: two groups of three walk east, three people walk west, three walk north. The tracks are
+functions of time, so every format holds the same people at its own frame rate, units and columns.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sqlite3
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from mcap_messages import McapRecording
+
+WALLS = "POLYGON ((-9 -9, 9 -9, 9 9, -9 9, -9 -9), (4 4, 5 4, 5 5, 4 5, 4 4))"
+PEOPLE = 12
+ROBOT = 40
+SHORT = 8
+"""Observed rows of a TrajNet test file; the rows after them are hidden."""
+
+
+@dataclass(frozen=True)
+class Walker:
+    """A person who walks straight with a slight sway from ``begin`` to ``end`` [s]."""
+
+    id: int
+    begin: float
+    end: float
+    start: tuple[float, float]
+    velocity: tuple[float, float]
+
+    def at(self, time: float) -> tuple[float, float]:
+        """Return the position [m] at a time [s]."""
+        since = time - self.begin
+        sway = 0.05 * math.sin(1.7 * since + self.id)
+        (x, y), (vx, vy) = self.start, self.velocity
+        speed = math.hypot(vx, vy)
+        return x + vx * since - sway * vy / speed, y + vy * since + sway * vx / speed
+
+
+def walkers() -> list[Walker]:
+    """Return the people, by id from 1."""
+    found = []
+    for number in range(PEOPLE):
+        place, family = number % 3, number // 3
+        begin, end = 0.8 * number, 0.8 * number + 12.0
+        if family < 2:  # two groups who walk side by side
+            begin, end = 3.2 * family, 3.2 * family + 12.0
+            start, velocity = (-7.0, -1.0 + 0.7 * place), (1.1 + 0.1 * family, 0.0)
+        elif family == 2:
+            start, velocity = (7.0, 1.5 + 0.8 * place), (-1.2 - 0.1 * place, 0.05)
+        else:
+            start, velocity = (-2.0 + 1.5 * place, -7.0), (0.1, 1.3)
+        found.append(Walker(number + 1, begin, end, start, velocity))
+    return found
+
+
+def rows(fps: float, step: int = 1) -> list[tuple[int, int, float, float]]:
+    """Return frame, id, x [m], y [m] of everyone at every ``step``-th frame, by frame, then id."""
+    found = []
+    for walker in walkers():
+        first, last = math.ceil(walker.begin * fps / step), math.floor(walker.end * fps / step)
+        for frame in range(first * step, last * step + 1, step):
+            found.append((frame, walker.id, *walker.at(frame / fps)))
+    return sorted(found)
+
+
+def eth_obsmat(path: Path) -> None:
+    """Write an ``obsmat.txt``: frame id x z y vx vz vy, 6 frames per row."""
+    people = {walker.id: walker for walker in walkers()}
+    lines = []
+    for frame, id, x, y in rows(15.0, 6):
+        vx, vy = people[id].velocity
+        lines.append("".join(f"   {value:.7e}" for value in (frame, id, x, 0.0, y, vx, 0.0, vy)) + "\n")
+    path.write_text("".join(lines))
+
+
+def sgan_text(path: Path) -> None:
+    """Write a leave-one-out file: frame id x y with tabs, 10 frames per row."""
+    path.write_text("".join(f"{float(f)}\t{float(id)}\t{x:.10g}\t{y:.10g}\n" for f, id, x, y in rows(25.0, 10)))
+
+
+def trajnet_test(path: Path) -> None:
+    """Write a TrajNet test file: 12 frames per row, "?" for every row after the eighth of a track."""
+    count: dict[int, int] = {}
+    lines = []
+    for frame, id, x, y in rows(30.0, 12):
+        count[id] = count.get(id, 0) + 1
+        lines.append(f"{frame} {float(id)} {x:.3f} {y:.3f}\n" if count[id] <= SHORT else f"{frame} {float(id)} ? ?\n")
+    path.write_text("".join(lines))
+
+
+def ucy_vsp(path: Path) -> None:
+    """Write an ``annotation.vsp``: one spline per person, a control point every second, pixels."""
+    lines = [f"{PEOPLE} - the number of splines\n"]
+    for walker in walkers():
+        frames = range(round(25 * walker.begin), round(25 * walker.end) + 1, 25)
+        lines.append(f"{len(frames)} - Num of control points\n")
+        for frame in frames:
+            x, y = walker.at(frame / 25.0)
+            lines.append(f"{30 * x:.6f} {25 * y:.6f} {frame} 90.000000 - (2D point, m_id)\n")
+    path.write_text("".join(lines))
+
+
+def sdd_annotations(path: Path) -> None:
+    """Write an ``annotations.txt``: boxes in pixels at 30 fps; the first row of every track is marked lost."""
+    lines = []
+    for walker in walkers():
+        own = [(frame, x, y) for frame, id, x, y in rows(30.0) if id == walker.id]
+        label = "Biker" if walker.id > 9 else "Pedestrian"
+        for k, (frame, x, y) in enumerate(own):
+            left, top = round(400 + 30 * x), round(400 - 30 * y)
+            box = f"{left - 10} {top - 20} {left + 10} {top + 20}"
+            lines.append(f'{walker.id - 1} {box} {frame} {int(k == 0)} 0 {int(k % 12 > 0)} "{label}"\n')
+    path.write_text("".join(lines))
+
+
+def petrack_metres(path: Path) -> None:
+    """Write a PeTrack file in metres at 25 fps with a header."""
+    head = "# PeTrack project: synthetic.pet\n# framerate: 25 fps\n# id frame x/m y/m z/m\n"
+    body = (f"{id} {frame} {x:.4f} {y:.4f} 1.7600\n" for frame, id, x, y in sorted(rows(25.0), key=lambda r: r[1]))
+    path.write_text(head + "".join(body))
+
+
+def petrack_centimetres(path: Path) -> None:
+    """Write a PeTrack file in centimetres at 25 fps with a header."""
+    head = "# PeTrack project: synthetic.pet\n# framerate: 25 fps\n# id frame x/cm y/cm z/cm\n"
+    body = (f"{id} {f} {100 * x:.2f} {100 * y:.2f} 176.00\n" for f, id, x, y in sorted(rows(25.0), key=lambda r: r[1]))
+    path.write_text(head + "".join(body))
+
+
+def hermes(path: Path) -> None:
+    """Write a HERMES file: id frame x y z in centimetres at 16 fps, no header."""
+    ordered = sorted(rows(16.0), key=lambda row: row[1])
+    path.write_text("".join(f"{id} {f} {100 * x:.3f} {100 * y:.3f} 183.02\n" for f, id, x, y in ordered))
+
+
+def juelich_hdf5(path: Path) -> None:
+    """Write an HDF5 file of the Jülich archive at 25 fps with a walkable area."""
+    import h5py
+
+    kind = [("id", "<i8"), ("frame", "<i8"), ("x", "<f8"), ("y", "<f8"), ("z", "<f8")]
+    table = np.array([(id, frame, x, y, 1.76) for frame, id, x, y in rows(25.0)], dtype=kind)
+    with h5py.File(path, "w") as file:
+        file.attrs["file_version"] = "1.0.0"
+        file.attrs["wkt_geometry"] = WALLS
+        data = file.create_dataset("trajectory", data=table, chunks=True)
+        data.attrs["fps"] = 25.0
+        for axis in "xyz":
+            data.attrs[axis] = f"pedestrian {axis}-coordinate (meter [m])"
+
+
+def jupedsim_sqlite(path: Path) -> None:
+    """Write the output of JuPedSim: every second frame of a simulation at 50 fps."""
+    base = sqlite3.connect(path)
+    base.executescript(
+        "CREATE TABLE trajectory_data (frame INTEGER NOT NULL, id INTEGER NOT NULL, pos_x REAL NOT NULL,"
+        " pos_y REAL NOT NULL, ori_x REAL NOT NULL, ori_y REAL NOT NULL);"
+        "CREATE TABLE metadata(key TEXT NOT NULL UNIQUE PRIMARY KEY, value TEXT NOT NULL);"
+        "CREATE TABLE geometry(hash INTEGER NOT NULL, wkt TEXT NOT NULL);"
+        "CREATE INDEX frame_id_idx ON trajectory_data(frame, id);"
+    )
+    base.executemany("INSERT INTO trajectory_data VALUES (?, ?, ?, ?, 1.0, 0.0)", rows(50.0, 2))
+    base.executemany("INSERT INTO metadata VALUES (?, ?)", [("version", "2"), ("fps", "50.0"), ("xmin", "-9.0")])
+    base.execute("INSERT INTO geometry VALUES (1, ?)", (WALLS,))
+    base.commit()
+    base.close()
+
+
+def trajnetpp(path: Path) -> None:
+    """Write TrajNet++ lines: a scene per person, then tracks, 10 frames per row, 2.5 rows per second."""
+    lines = []
+    for walker in walkers():
+        own = [frame for frame, id, _, _ in rows(25.0, 10) if id == walker.id]
+        scene = {"id": walker.id - 1, "p": walker.id, "s": own[0], "e": own[20], "fps": 2.5, "tag": [3, [2]]}
+        lines.append(json.dumps({"scene": scene}))
+    for frame, id, x, y in rows(25.0, 10):
+        lines.append(json.dumps({"track": {"f": frame, "p": id, "x": round(x, 2), "y": round(y, 2)}}))
+    path.write_text("\n".join(lines) + "\n")
+
+
+def social_ways(path: Path) -> None:
+    """Write the arrays of Social Ways: 8 observed and 12 future rows of every person at 0.4 s."""
+    place = np.array([[walker.at(walker.begin + 0.4 * k) for k in range(20)] for walker in walkers()])
+    times = np.array([[round(walker.begin / 0.4)] for walker in walkers()], dtype=float)
+    np.savez(path.with_suffix(".npz"), obsvs=place[:, :8], preds=place[:, 8:], times=times)
+    path.with_suffix(".npz").replace(path)
+
+
+def csv_table(path: Path) -> None:
+    """Write a table as single-file experiments have it: ID,Frame,x,y,v_x,v_y, 10 frames per row at 25 fps."""
+    people = {walker.id: walker for walker in walkers()}
+    lines = ["ID,Frame,x,y,v_x,v_y\n"]
+    for frame, id, x, y in sorted(rows(25.0, 10), key=lambda row: row[1]):
+        vx, vy = people[id].velocity
+        lines.append(f"{id},{frame},{x:.15f},{y:.15f},{vx:.15f},{vy:.15f}\n")
+    path.write_text("".join(lines))
+
+
+def csv_filtered(path: Path) -> None:
+    """Write a table as CITR has it: id,frame,label,x_est,y_est,vx_est,vy_est, every frame at 29.97 fps."""
+    lines = ["id,frame,label,x_est,y_est,vx_est,vy_est\n"]
+    lines += [f"{id},{frame},ped,{x:.12f},{y:.12f},1.0,0.0\n" for frame, id, x, y in rows(29.97)]
+    path.write_text("".join(lines))
+
+
+def csv_times(path: Path) -> None:
+    """Write a table of times [s] without frames, 0.4 s per row."""
+    lines = ["track_id;time;pos_x;pos_y\n"]
+    lines += [f"{id};{100 + frame / 25.0:.2f};{x:.6f};{y:.6f}\n" for frame, id, x, y in rows(25.0, 10)]
+    path.write_text("".join(lines))
+
+
+def parquet(path: Path) -> None:
+    """Write a Parquet table of id, frame, time [s], x, y, 10 frames per row at 25 fps."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    frame, id, x, y = zip(*rows(25.0, 10), strict=True)
+    columns = {"id": id, "frame": frame, "time": [one / 25.0 for one in frame], "x": x, "y": y}
+    pq.write_table(pa.table({name: list(column) for name, column in columns.items()}), path)
+
+
+def episode(path: Path) -> None:
+    """Write a recorded trial: /people every 0.1 s and the odometry of one robot every 0.05 s."""
+    with McapRecording(path) as recording:
+        by_frame: dict[int, dict[int, tuple[float, float]]] = {}
+        for frame, id, x, y in rows(10.0):
+            by_frame.setdefault(frame, {})[id] = x, y
+        for frame, persons in by_frame.items():
+            recording.people(100_000_000 * frame, persons)
+            for now in (100_000_000 * frame, 100_000_000 * frame + 50_000_000):
+                recording.odometry(now, -5.0 + 0.5e-9 * now, 0.0)
+        recording.metadata(format="1", walls="[[[0, 6], [4, 6]]]", robots=json.dumps([{"name": "robot", "id": ROBOT}]))
+
+
+@dataclass(frozen=True)
+class Synthetic:
+    """One synthetic file.
+
+    Fields:
+        format: name of the format that must be detected.
+        write: writes the file.
+        step: frames between two rows of a track.
+        fps: frames per second of the frame counter [1/s].
+        units: units after loading.
+        scale: pixels or metres of the loaded tracks per metre, along x and y.
+        options: options that are needed to load it.
+        robots: ids of robots.
+    """
+
+    format: str
+    write: Callable[[Path], None]
+    step: int
+    fps: float
+    units: str = "m"
+    scale: tuple[float, float] = (1.0, 1.0)
+    options: tuple[tuple[str, object], ...] = ()
+    robots: frozenset[int] = frozenset()
+
+
+SYNTHETIC = {
+    "obsmat.txt": Synthetic("eth-obsmat", eth_obsmat, 6, 15.0),
+    "crowds.txt": Synthetic("sgan", sgan_text, 10, 25.0),
+    "gates_2.txt": Synthetic("sgan", trajnet_test, 12, 30.0),
+    "annotation.vsp": Synthetic("ucy-vsp", ucy_vsp, 1, 25.0, "px", (30.0, 25.0)),
+    "annotations.txt": Synthetic("sdd", sdd_annotations, 1, 30.0, "px", (30.0, -30.0)),
+    "petrack_m.txt": Synthetic("petrack", petrack_metres, 1, 25.0),
+    "petrack_cm.txt": Synthetic("petrack", petrack_centimetres, 1, 25.0),
+    "uo-050.txt": Synthetic("petrack", hermes, 1, 16.0),
+    "00_01a.h5": Synthetic("juelich-hdf5", juelich_hdf5, 1, 25.0),
+    "trajectories.sqlite": Synthetic("jupedsim", jupedsim_sqlite, 2, 50.0),
+    "hotel.ndjson": Synthetic("trajnetpp", trajnetpp, 10, 25.0),
+    "data_8_12.npz": Synthetic("social-ways", social_ways, 1, 2.5, options=(("fps", 2.5),)),
+    "n56.csv": Synthetic("csv", csv_table, 10, 25.0),
+    "citr.csv": Synthetic("csv", csv_filtered, 1, 29.97, options=(("fps", 29.97),)),
+    "times.csv": Synthetic("csv", csv_times, 1, 2.5),
+    "tracks.parquet": Synthetic("parquet", parquet, 10, 25.0),
+    "episode.mcap": Synthetic("episode", episode, 1, 10.0, robots=frozenset({ROBOT})),
+}
+
+
+def write_all(folder: Path) -> dict[str, Path]:
+    """Write every synthetic recording and return the paths by file name."""
+    for name, one in SYNTHETIC.items():
+        one.write(folder / name)
+    return {name: folder / name for name in SYNTHETIC}
