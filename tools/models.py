@@ -11,7 +11,7 @@ HEAD = """# Crowd models
 
 `python tools/models.py > docs/models.md` makes this page from the models. `low` and `high` are the box in which a
 calibration searches; every parameter is a number for all or an array `[E, A]`. How the models compare with other
-engines stands in [measured.md](measured.md); how they behave, in [validation.md](validation.md)."""
+engines stands in [measured.md](results/measured.md); how they behave, in [validation.md](validation.md)."""
 
 
 def main() -> None:
