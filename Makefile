@@ -1,4 +1,5 @@
 # make demo     install into .venv and run the main job on built-in input
+# make docs     build the documentation as a site into site/; warnings are errors
 # make test     install what the tests need, then lint, types, import layers, tests and doctests
 # make test-room ROOM=core   the tests and doctests of one room
 # make sweeps   the long tests: fuzzing, mutation, killed processes, every built-in trial in both worlds
@@ -13,7 +14,7 @@ WORKERS ?= auto
 PYTEST := $(BIN)/python -m pytest
 PARALLEL := -n $(WORKERS) --maxprocesses 4
 
-.PHONY: demo test test-room sweeps soak lint picture dist smoke rehearse clean
+.PHONY: demo test test-room sweeps soak lint docs picture dist smoke rehearse clean
 
 demo: $(VENV)/installed
 	$(BIN)/crowdbot demo --out $(OUT)
@@ -42,6 +43,9 @@ lint: $(VENV)/installed-dev
 	$(BIN)/lint-imports
 	$(BIN)/python tools/house.py
 
+docs: $(VENV)/installed-dev
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
+
 picture: $(VENV)/installed
 	$(BIN)/python tools/picture.py docs/crossing-flows.png
 
@@ -67,4 +71,4 @@ $(VENV)/installed-dev: $(VENV)/installed
 	touch $@
 
 clean:
-	rm -rf $(VENV) build dist $(OUT) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache src/*.egg-info
+	rm -rf $(VENV) build dist site $(OUT) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache src/*.egg-info

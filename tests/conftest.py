@@ -26,7 +26,7 @@ settings.load_profile("hunt" if os.environ.get("HUNT") else "same")
 
 ROOT = Path(__file__).parents[1]
 SHARED = Path(os.environ.get("CROWDBOT_SHARED") or ROOT.parent / "shared")
-"""Folder of the inputs that cannot ship: ``data/`` and ``urdf/``. docs/recordings.md lists its content."""
+"""Folder of the inputs that cannot ship: ``data/`` and ``urdf/``. tests/RECORDINGS.md lists its content."""
 WORKER_KEY = "deselected_by_input"
 
 
@@ -75,7 +75,7 @@ def _drawing() -> str | None:
         return None
 
 
-COPY = "docs/recordings.md"
+COPY = "tests/RECORDINGS.md"
 PACKAGES = "tests/system-packages"
 INPUTS = {
     "recordings": Input("recordings that cannot ship", COPY, lambda: _folder("data")),

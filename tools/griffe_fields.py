@@ -9,6 +9,7 @@ import griffe
 
 HEADING = re.compile(r"^Fields(?: \((?P<about>[^\n]*)\))?:$", flags=re.M)
 DOCTEST = re.compile(r"(^|\n\n)(>>> (?:.|\n(?!\n))*)(?=\n\n|\n?\Z)")
+UNIT = re.compile(r"\] \[(?=[a-zA-Z0-9/]+\])")
 ROLE = re.compile(r":[a-z]+:`~?([^`]+)`")
 
 
@@ -33,5 +34,5 @@ def google(text: str) -> str:
         x: ``[E]`` [m].
     <BLANKLINE>
     """
-    plain = DOCTEST.sub(r"\1```pycon\n\2\n```", ROLE.sub(r"`\1`", text))
+    plain = DOCTEST.sub(r"\1```pycon\n\2\n```", ROLE.sub(r"`\1`", UNIT.sub(r"] \\[", text)))
     return HEADING.sub(lambda m: f"Fields: {m['about']}.\n\nAttributes:" if m["about"] else "Attributes:", plain)

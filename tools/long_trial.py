@@ -2,8 +2,8 @@
 
     python tools/long_trial.py OUT [TRIAL] [SECONDS]
 
-TRIAL is docs/trials/thousand.xml when it is not given: a thousand people for ten minutes. ``crowdbot run
-docs/trials/thousand.xml --out OUT`` is the same with a progress bar.
+TRIAL is docs/gallery/trials/thousand.xml when it is not given: a thousand people for ten minutes. ``crowdbot run
+docs/gallery/trials/thousand.xml --out OUT`` is the same with a progress bar.
 """
 
 from __future__ import annotations

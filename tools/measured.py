@@ -1,4 +1,4 @@
-"""Write docs/measured.md: ``python tools/measured.py SHARED > docs/measured.md``.
+"""Write docs/results/measured.md: ``python tools/measured.py SHARED > docs/results/measured.md``.
 
 SHARED holds ``data/`` (recordings, see CONTRIBUTING.md) and ``reference/`` (steps of other engines).
 """
@@ -11,6 +11,7 @@ import re
 import subprocess
 import sys
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -29,10 +30,70 @@ FOLDS = {
     "zara2": ("crowds_zara02",),
 }
 SEEDS = range(100)
-HEAD = """# What is measured
+HEAD = """# Measured
 
-Every number names its protocol and the command that makes it. `python tools/measured.py SHARED > docs/measured.md`
-makes this page anew; the recordings and reference steps that it needs are not ours to ship (see CONTRIBUTING.md)."""
+This page holds the numbers that crowdbot claims, each with its protocol and the command that makes it. It is generated:
+
+```
+python tools/measured.py SHARED > docs/results/measured.md
+```
+
+SHARED holds public recordings and reference steps of other engines, which are not part of crowdbot (see CONTRIBUTING.md
+in the repository). [Known weaknesses](../about/weaknesses.md) says what the numbers do not show.
+
+| question | section |
+|---|---|
+| Are the baselines right? | [Constant velocity on the leave-one-out sets](#constant-velocity-on-the-leave-one-out-sets) |
+| Which predictor is best? | [Predictors, protocol all](#predictors-protocol-all) |
+| Do the crowd models agree with other engines? | [ORCA against RVO2](#orca-against-rvo2), [other engines](#crowd-models-against-other-engines) |
+| Which search finds small costs? | [Searches](#searches) |
+| What do trials with visible robots prove? | [Robots in `crossing-flows`](#robots-in-crossing-flows) |
+| How fast is it? | [Speed](#speed) |"""
+ENGINES = """
+## Crowd models against other engines
+
+One step from the same state, compared with a reference engine: the share of samples that agree within a tolerance. The
+docstring of each test explains the samples that differ.
+
+`pytest tests/models -q -s`"""
+ENGINE_OF = (
+    (r"^corridor of six|AnticipationVelocity", "anticipation-velocity", "JuPedSim"),
+    (r"Boids", "boids", "CrowdBot simulator"),
+    (r"CollisionFreeSpeed", "collision-free-speed", "JuPedSim"),
+    (r"CostModel", "cost-model", "UMANS"),
+    (r"Helbing2000", "escape-panic", "CrowdBot simulator"),
+    (r"nogroups|pairs_triples|corridor_groups", "group-force", "PySocialForce"),
+    (r"Heuristics", "heuristics", "UMANS"),
+    (r"PLEdestrians", "pledestrians", "UMANS"),
+    (r"PowerLaw", "power-law", "UMANS"),
+    (r"SocialForces", "social-force", "UMANS"),
+    (r"^Tangent", "tangent", "CrowdBot simulator"),
+    (r"^VBM", "vbm", "CrowdBot simulator"),
+    (r"UMANS law with its slips", "vbm", "UMANS"),
+    (r"^VOG", "vog", "CrowdBot simulator"),
+)
+"""Model and engine of what a test prints, by a part of the line."""
+PARTS = {
+    "pairs_triples, moving": "pairs and triples, moving people",
+    "pairs_triples": "pairs and triples",
+    "nogroups, moving": "no groups, moving people",
+    "nogroups": "no groups",
+    "groups, moving": "groups, moving people",
+    "corridor_groups": "groups",
+    "free": "free people",
+}
+"""What a line says about the people, by a part of its name."""
+SPEED = """
+## Speed
+
+Medians of 7 repeats after a warm-up, on a shared machine.
+
+`crowdbot bench --data students003.txt`
+
+### Crowd models
+
+Million agent-steps per second at a step of 0.1 s; in brackets the ratio to real time. The last column steps 1 024 crowds
+at once."""
 
 
 def main(shared: Path) -> None:
@@ -46,7 +107,6 @@ def main(shared: Path) -> None:
     _searches(shared / "data")
     _navigation()
     _speed(splits / "all_data" / "students003.txt")
-    print((Path(__file__).parent / "weak.md").read_text(encoding="utf-8").rstrip())
 
 
 def _windows(folder: Path, fold: str, protocol: str = "all") -> list[tuple[cb.Windows, cb.Windows]]:
@@ -59,14 +119,15 @@ def _scored(predictor: cb.Predictor, cut: list[tuple[cb.Windows, cb.Windows]], s
 
 
 def _table(head: list[str], rows: list[list[str]]) -> None:
-    print("\n| " + " | ".join(head) + " |\n|" + "---|" * len(head))
-    for row in rows:
-        print("| " + " | ".join(row) + " |")
+    print("\n".join(_lines(head, rows)))
 
 
 def _baseline(folder: Path) -> None:
     print("\n## Constant velocity on the leave-one-out sets\n")
-    print("ADE / FDE [m] and person-windows; 8 observed and 12 predicted rows; univ is students001 + students003.\n")
+    print(
+        "ADE / FDE [m], person-windows in brackets. 8 observed and 12 predicted rows of 0.4 s; univ is students001 and"
+        " students003.\n"
+    )
     print("`crowdbot predict --data FILE... --predictor constant-velocity --protocol all|sgan|partial`")
     rows = []
     for protocol in ("all", "sgan", "partial"):
@@ -74,17 +135,17 @@ def _baseline(folder: Path) -> None:
         rows.append([protocol, *(f"{s.ade:.3f} / {s.fde:.3f} ({s.persons})" for s in scores)])
     _table(["protocol", *FOLDS], rows)
     print(
-        "\nThe row `all`, cut to two decimals, is the published linear baseline (GeoTDM 2024, table 2); the row"
-        "\n`partial` is that of Schöller et al. 2020. Publications take 10 frames of biwi_eth as 0.4 s; the true step"
-        "\nof that file is 0.667 s (`--time-base true`, the default): errors over rows do not change, speeds do."
+        "\nThe row `all`, truncated to two decimals, equals the published linear baseline (GeoTDM 2024, table 2). The row"
+        "\n`partial` equals that of Schöller et al. 2020. Publications take 10 frames of biwi_eth as 0.4 s; the true step"
+        "\nof that file is 0.667 s (`--time-base true`, the default). This changes speeds, but not errors over rows."
     )
 
 
 def _predictors(splits: Path) -> None:
     print("\n## Predictors, protocol all\n")
     print(
-        "ADE / FDE [m]; the calibrated crowd is fitted on the training part of another scene (students003, for univ"
-        " crowds_zara02), 64 evaluations of random search.\n"
+        "ADE / FDE [m]. The calibrated crowd is fitted on the training part of another scene (students003; for univ"
+        " crowds_zara02) with 64 evaluations of random search. Collisions are in the order of the scenes.\n"
     )
     print(
         "`crowdbot predict --data FILE... --predictor NAME --protocol all`"
@@ -126,7 +187,7 @@ def _clash(scores: list[Score]) -> str:
 def _engines(folder: Path) -> None:
     print("\n## ORCA against RVO2\n")
     print(
-        "One step from the same state; share of agents whose velocity differs by less than 1e-4 m/s; walls included.\n"
+        "One step from the same state, walls included: the share of agents whose velocity differs by less than 1e-4 m/s.\n"
     )
     print("`pytest tests/models/test_orca.py -k rvo2`")
     rows = []
@@ -144,29 +205,57 @@ def _engines(folder: Path) -> None:
         rows.append([file.stem, str(error.size), share, f"{np.median(error):.0e}", f"{error.max():.0e}"])
     _table(["scene", "samples", "within 1e-4", "median [m/s]", "worst [m/s]"], rows)
     print(
-        "\nWhat remains are ties of neighbours and branches of infeasible programs, where RVO2 computes in single"
+        "\nThe samples that differ are ties between neighbours and infeasible linear programs: RVO2 computes in single"
         "\nprecision and splits walls at the planes of its tree."
     )
 
 
 def _other_engines() -> None:
-    print("\n## Crowd models against other engines\n")
-    print("One step from the same state, as the tests print it; what remains is explained where the test stands.\n")
-    print("`pytest tests/models -q -s`\n\n```text")
     command = [sys.executable, "-m", "pytest", "tests/models", "-q", "-s"]
-    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    for line in said.splitlines():
-        if re.search(r"[\d.]+% .*(within|median)|median .*%", line):
-            print(line.lstrip("."))
-    print("```")
+    print(engines_text(subprocess.run(command, capture_output=True, text=True, check=True).stdout))
+
+
+def engines_text(said: str) -> str:
+    """Return the section about other engines from what the tests of the models print."""
+    rows = [row for line in said.splitlines() if (row := _engine_row(line.lstrip("."))) is not None]
+    rows.sort(key=lambda row: (row[0].lower(), row[1], row[2]))
+    return "\n".join(
+        [ENGINES, *_lines(["model", "engine", "steps compared", "agree", "within", "median", "worst"], rows)]
+    )
+
+
+def _engine_row(line: str) -> list[str] | None:
+    """Return model, engine, scene, share, tolerance, median and worst of one printed line, None for other lines."""
+    share = re.search(r"([\d.]+)%(?: of (\d+))?[^,]*? within (\S+?)(?: (m/s|m))?(?:[,;]|$)", line)
+    middle, worst = re.search(r"median ([\d.e+-]+)", line), re.search(r"worst ([\d.e+-]+)", line)
+    known = next(((model, engine) for part, model, engine in ENGINE_OF if re.search(part, line)), None)
+    if share is None or middle is None or known is None:
+        return None
+    count = share[2] or (found[1] if (found := re.search(r"(\d+) (?:steps|agents)", line)) else "")
+    scene = re.split(r": |, (?:all|moving|free)", line)[0]
+    for word in ("crossing", "corridor", "bottleneck"):
+        scene = word if word in scene else scene
+    part = next((word for key, word in PARTS.items() if key in line.split(":")[0]), "")
+    cost = re.search(r"CostModel\((.*)\):", line)
+    scene = re.sub(r"\([^)]*\)", "", cost[1]) if cost else scene if scene != "UMANS law with its slips" else "crossing"
+    scene = "" if scene.endswith(", UMANS") else scene
+    where = ", ".join(word for word in (scene, part, f"{count} samples" if count else "") if word)
+    return [
+        *known,
+        where,
+        f"{share[1]} %",
+        f"{share[3]} {share[4] or ''}".strip(),
+        middle[1],
+        worst[1] if worst else "",
+    ]
 
 
 def _navigation() -> None:
     print("\n## Robots in `crossing-flows`\n")
     trial = cb.load_trial("crossing-flows")
     print(
-        f"Seeds {SEEDS.start} to {SEEDS.stop - 1}; people walk by {type(trial.crowd).__name__}; visible: whether they"
-        " react to the robot (attribute `visible` of the robot in the trial).\n\n`crowdbot run crossing-flows --seed N`"
+        f"Seeds {SEEDS.start} to {SEEDS.stop - 1}. People walk by {type(trial.crowd).__name__}. `visible` says whether"
+        " they react to the robot.\n\n`crowdbot run crossing-flows --seed N --set robot/visible=false`"
     )
     rows = []
     for visible in (True, False):
@@ -188,7 +277,7 @@ def _rates(trial: cb.Trial, robot: object) -> list[str]:
 
 def _searches(data: Path) -> None:
     print("\n## Searches\n")
-    print("Smallest values found, medians of 7 problems with 2000 evaluations each; N people with D numbers.\n")
+    print("Smallest values found in problems of N people with D numbers each.\n")
     print("`python tests/calibration/test_search_comparison.py`\n")
     folder = Path(__file__).parents[1] / "tests" / "calibration"
     for program, given in (("test_search_comparison.py", []), ("test_search_on_recordings.py", [str(data)])):
@@ -200,16 +289,38 @@ def _searches(data: Path) -> None:
 
 
 def _speed(recording: Path) -> None:
-    print("\n## Speed\n")
-    print(
-        "Medians of 7 repeats after a warm-up, one run on a shared machine.\n\n`crowdbot bench --data students003.txt`"
-    )
     rows = measure(recording=recording)
-    _table(
-        ["name", "median", "unit", "against", "ratio"],
-        [[r.name, f"{r.median:.3g}", r.unit, r.against, f"{r.ratio:.3g}"] for r in rows],
-    )
-    print(f"\n{rows[0].environment}.")
+    print(speed_text([(r.name, r.median, r.unit, r.against, r.ratio) for r in rows], rows[0].environment))
+
+
+def speed_text(rows: Sequence[tuple[str, float, str, str, float]], environment: str) -> str:
+    """Return the section about speed: crowd models by size, then everything else."""
+    sizes = {"1000": "1 000 people", "10000": "10 000 people", "100000": "100 000 people", "batch": "1 024 x 32 people"}
+    models: dict[str, dict[str, str]] = {}
+    other: list[list[str]] = []
+    for name, median, unit, against, ratio in rows:
+        model, _, size = name.rpartition("-")
+        if size in sizes and unit == "agent-steps/s":
+            models.setdefault(model, {})[size] = f"{median / 1e6:.2f} ({ratio:.3g} x)"
+        else:
+            other.append([name, f"{median:.3g}", unit, against, f"{ratio:.3g}"])
+    table = [[name, *(cells.get(size, "") for size in sizes)] for name, cells in models.items()]
+    return "\n".join([
+        SPEED,
+        *_lines(["model", *sizes.values()], table),
+        "",
+        "### Other measurements",
+        "",
+        "The ratio compares the value with what the column \"compared with\" names; for values in ms and MB, below 1 is",
+        "better.",
+        *_lines(["name", "value", "unit", "compared with", "ratio"], other),
+        "",
+        f"Machine: {environment}.",
+    ])  # fmt: skip
+
+
+def _lines(head: list[str], rows: list[list[str]]) -> list[str]:
+    return ["", *("| " + " | ".join(row) + " |" for row in (head, ["---"] * len(head), *rows))]
 
 
 if __name__ == "__main__":

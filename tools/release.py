@@ -25,7 +25,12 @@ ROOT = Path(__file__).parents[1]
 LARGEST_WHEEL = 25e6
 WEIGHTS = ROOT / "src" / "crowdbot" / "assets" / "predictors"
 ARCHIVE = "crowdbot-weights.zip"
-PLATFORMS = {"Linux": "manylinux_2_28_x86_64", "Windows": "win_amd64", "macOS": "macosx_14_0_arm64"}
+PLATFORMS = {
+    "Linux": [f"manylinux_2_{minor}_x86_64" for minor in (28, 27, 26, 24, 17, 12, 5)] + ["manylinux2014_x86_64"],
+    "Windows": ["win_amd64"],
+    "macOS": [f"macosx_{major}_0_{chip}" for major in (14, 13, 12, 11) for chip in ("arm64", "universal2")],
+}
+"""Names of platforms that pip matches exactly; macOS means Apple silicon."""
 PYTHONS = ("3.11", "3.12", "3.13")
 SOURCE_ONLY = {"rosbags", "pycollada"}
 """Pure Python packages that may lack a wheel; they build without a compiler."""
@@ -66,7 +71,9 @@ def check(dist: Path) -> int:
     names = [line.split(maxsplit=1)[1] for line in hashes.splitlines()]
     apart = [name for name in names if f"crowdbot/assets/predictors/{name}" not in inside]
     problems = [f"{wheel.name} has {wheel.stat().st_size} bytes"] if wheel.stat().st_size > LARGEST_WHEEL else []
-    problems += [f"{wheel.name} has no {name}" for name in needed_in_wheel(names) if name not in inside]
+    needed = needed_in_wheel(names)
+    problems += [f"{wheel.name} has no {name}" for name in needed if name not in inside]
+    problems += [f"{wheel.name} has {name}" for name in inside - set(needed) if name.startswith("crowdbot/")]
     problems += [f"{wheel.name} has {name}" for name in inside if re.search(r"__pycache__|\.py[co]$|^tests/", name)]
     problems += [f"{sdist.name} has no {name}" for name in tracked() if name not in sources]
     problems += versions_that_differ(str(project()["version"]))
@@ -151,9 +158,9 @@ def check_dependencies() -> int:
     lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
     pins = [line for line in lines if line.partition("==")[0].lower() in wanted]
     missing = 0
-    for system, platform in PLATFORMS.items():
+    for system, platforms in PLATFORMS.items():
         for python in PYTHONS:
-            lacking = [pin for pin in pins if not has_wheel(pin, platform, python)]
+            lacking = [pin for pin in pins if not has_wheel(pin, platforms, python)]
             missing += len([pin for pin in lacking if pin.partition("==")[0] not in SOURCE_ONLY])
             print(
                 f"{system:8s} Python {python}: {len(pins) - len(lacking)} of {len(pins)} wheels", *lacking, flush=True
@@ -169,11 +176,12 @@ def dependencies() -> list[str]:
     return [*table["dependencies"], *more]  # type: ignore[misc]
 
 
-def has_wheel(pin: str, platform: str, python: str) -> bool:
+def has_wheel(pin: str, platforms: list[str], python: str) -> bool:
     """Return whether the index has a wheel of a pinned package."""
     with tempfile.TemporaryDirectory() as folder:
         words = ["install", "--dry-run", "--quiet", "--ignore-installed", "--no-deps", "--only-binary=:all:"]
-        words += ["--platform", platform, "--python-version", python, "--implementation", "cp", "--target", folder]
+        words += [word for platform in platforms for word in ("--platform", platform)]
+        words += ["--python-version", python, "--implementation", "cp", "--target", folder]
         words += ["--report", f"{folder}/report.json", pin]
         run = subprocess.run([sys.executable, "-m", "pip", *words], capture_output=True, text=True, check=False)
         return run.returncode == 0 and bool(json.loads(Path(folder, "report.json").read_text())["install"])

@@ -1,6 +1,6 @@
 """Draw every built-in trial: its stage, its people at the beginning, and the ways of a run.
 
-    python tools/trial_pictures.py docs/trials
+    python tools/trial_pictures.py docs/gallery/trials
 
 writes one small picture a trial, and the page that lists them with their parameters.
 """
@@ -124,7 +124,7 @@ def page(file: Path) -> None:
     lines = [
         "# Built-in trials",
         "",
-        "Made by `python tools/trial_pictures.py docs/trials`: people (blue) and the robot (red) at the beginning, the",
+        "Made by `python tools/trial_pictures.py docs/gallery/trials`: people (blue) and the robot (red) at the beginning, the",
         "ways of the first 20 s, the goal of the robot (x). Shaded zones are portals: who goes in comes out at the",
         "other end; where people come in later, the floor is blue. Run one with `crowdbot run NAME`, change its",
         "parameters with `--set NAME=VALUE`, see them all with `crowdbot list trials NAME`. The last column says what",
@@ -151,7 +151,7 @@ def page(file: Path) -> None:
         "",
         "[thousand.xml](thousand.xml) is not built in: a thousand people walk both ways for ten minutes, with a robot",
         "among them, in a corridor of 100 m by 20 m without ends.",
-        "`crowdbot run docs/trials/thousand.xml --out DIR` runs and records it with a progress bar;",
+        "`crowdbot run docs/gallery/trials/thousand.xml --out DIR` runs and records it with a progress bar;",
         "`python tools/long_trial.py DIR` prints its speed against real time, and the memory at quarters of the run.",
     ]
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")

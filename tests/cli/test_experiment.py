@@ -248,13 +248,15 @@ def test_a_session_that_is_killed_and_left_comes_to_the_same_end(tmp_path, capsy
 
 
 def _commands():
-    text = (ROOT / "docs" / "experiments.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "tutorials" / "first-experiment.md").read_text(encoding="utf-8")
     blocks = re.findall(r"^ *```(\w*)\n(.*?)^ *```", text, flags=re.S | re.M)
     return [line.split() for kind, block in blocks if not kind for line in block.splitlines() if line.strip()]
 
 
 def test_the_page_tells_the_truth(capsys, monkeypatch, tmp_path):
-    (answers,) = re.findall(r"`(\{.*?\})`", (ROOT / "docs" / "experiments.md").read_text(encoding="utf-8"))
+    (answers,) = re.findall(
+        r"`(\{.*?\})`", (ROOT / "docs" / "tutorials" / "first-experiment.md").read_text(encoding="utf-8")
+    )
     (tmp_path / "answers.json").write_text(answers)
     monkeypatch.chdir(tmp_path)
     typed = "30\n1\n\n\n\n5\nfine\n\n\n"  # the input ends at the second opinion

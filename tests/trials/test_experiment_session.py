@@ -48,6 +48,7 @@ from crowdbot.experiments import (
     summary,
 )
 from crowdbot.recording import read_episode
+from samples import sample
 
 AGE = Number(name="age", text="How old are you?", min=18, integer=True)
 LIKED = Choice(name="liked", text="What?", multiple=True, options=[Option(value="speed"), Option(value="distance")])
@@ -174,7 +175,7 @@ def _any(session: Session, draw: random.Random) -> Event:
     return made[draw.choices(session.allowed, weights)[0]]()
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", sample(range(40), 8))
 def test_any_way_is_brought_back_by_its_records(seed: int) -> None:
     draw = random.Random(seed)
     session, records = Session.of(EXPERIMENT, 1 + seed), []

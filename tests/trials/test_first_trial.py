@@ -11,7 +11,9 @@ import pytest
 from crowdbot.cli import main
 from crowdbot.trials import load_trial
 
-PAGE = (Path(__file__).parents[2] / "docs" / "first-trial.md").read_text(encoding="utf-8")
+DOCS = Path(__file__).parents[2] / "docs"
+PAGE = (DOCS / "tutorials" / "first-trial.md").read_text(encoding="utf-8")
+ELEMENTS = (DOCS / "reference" / "trial-file.md").read_text(encoding="utf-8")
 STEPS = re.split(r"^\*\*\d+\. ", PAGE.split("\n## ")[0], flags=re.M)[1:]
 
 
@@ -54,8 +56,9 @@ def test_each_step_does_what_it_says(
     assert sorted(path.name for path in tmp_path.iterdir()) == ["first", "hall.xml", "people.xml"]
 
 
-def test_every_element_of_the_page_exists() -> None:
+def test_every_element_of_the_pages_exists() -> None:
     from crowdbot.trials import schema
 
     known = set(re.findall(r'<xs:element name="([a-z-]+)"', schema()))
-    assert set(re.findall(r"`?<([a-z-]+)[ >`/]", PAGE)) <= known
+    for page in (PAGE, ELEMENTS):
+        assert set(re.findall(r"`?<([a-z-]+)[ >`/]", page)) <= known

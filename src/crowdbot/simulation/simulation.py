@@ -1,6 +1,6 @@
 """Simulation: a trial that is running, one step of time at a time.
 
-The order of a step, from tick k to tick k + 1 (docs/steps.md tells why):
+The order of a step, from tick k to tick k + 1 (docs/concepts/steps.md tells why):
 
 1. **time**: the clock allows the step: at once (free), when it is due (paced), or when it is told (external);
 2. **crowd**: people walk, from the scene of tick k;
