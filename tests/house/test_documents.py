@@ -64,7 +64,13 @@ def test_links_and_pictures_exist(page):
 
 @pytest.mark.parametrize("page", ALL_PAGES, ids=lambda p: str(p.relative_to(ROOT)))
 def test_commands_exist(page):
-    named = set(re.findall(r"^ *(?:\$ )?crowdbot ([a-z]+)", "\n".join(re.findall(r"```(?:console)?\n(.*?)```", page.read_text(), flags=re.S)), flags=re.M))
+    named = set(
+        re.findall(
+            r"^ *(?:\$ )?crowdbot ([a-z]+)",
+            "\n".join(re.findall(r"```(?:console)?\n(.*?)```", page.read_text(), flags=re.S)),
+            flags=re.M,
+        )
+    )
     assert named <= set(COMMANDS)
 
 
