@@ -43,9 +43,9 @@ in the repository). [Known weaknesses](../about/weaknesses.md) says what the num
 
 | question | section |
 |---|---|
-| Are the baselines right? | [Constant velocity on the leave-one-out sets](#constant-velocity-on-the-leave-one-out-sets) |
+| Are the baselines right? | [Constant velocity](#constant-velocity-on-the-leave-one-out-sets) |
 | Which predictor is best? | [Predictors, protocol all](#predictors-protocol-all) |
-| Do the crowd models agree with other engines? | [ORCA against RVO2](#orca-against-rvo2), [other engines](#crowd-models-against-other-engines) |
+| Do the models agree with other engines? | [RVO2](#orca-against-rvo2), [others](#crowd-models-against-other-engines) |
 | Which search finds small costs? | [Searches](#searches) |
 | What do trials with visible robots prove? | [Robots in `crossing-flows`](#robots-in-crossing-flows) |
 | How fast is it? | [Speed](#speed) |"""
@@ -92,8 +92,8 @@ Medians of 7 repeats after a warm-up, on a shared machine.
 
 ### Crowd models
 
-Million agent-steps per second at a step of 0.1 s; in brackets the ratio to real time. The last column steps 1 024 crowds
-at once."""
+Million agent-steps per second at a step of 0.1 s; in brackets the ratio to real time. The last column is for
+1 024 crowds in one call."""
 
 
 def main(shared: Path) -> None:
@@ -235,7 +235,7 @@ def _engine_row(line: str) -> list[str] | None:
     scene = re.split(r": |, (?:all|moving|free)", line)[0]
     for word in ("crossing", "corridor", "bottleneck"):
         scene = word if word in scene else scene
-    part = next((word for key, word in PARTS.items() if key in line.split(":")[0]), "")
+    part = next((word for key, word in PARTS.items() if key in line.split(":", maxsplit=1)[0]), "")
     cost = re.search(r"CostModel\((.*)\):", line)
     scene = re.sub(r"\([^)]*\)", "", cost[1]) if cost else scene if scene != "UMANS law with its slips" else "crossing"
     scene = "" if scene.endswith(", UMANS") else scene
@@ -311,8 +311,7 @@ def speed_text(rows: Sequence[tuple[str, float, str, str, float]], environment: 
         "",
         "### Other measurements",
         "",
-        "The ratio compares the value with what the column \"compared with\" names; for values in ms and MB, below 1 is",
-        "better.",
+        "The ratio compares the value with the column \"compared with\"; for values in ms and MB, below 1 is better.",
         *_lines(["name", "value", "unit", "compared with", "ratio"], other),
         "",
         f"Machine: {environment}.",

@@ -6,11 +6,15 @@ One page for each room with every name of its face, from the docstrings, and one
 from __future__ import annotations
 
 import argparse
+import ast
 import importlib
 import inspect
+import itertools
 import os
 import pkgutil
+import sys
 from collections.abc import Iterator
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -19,6 +23,9 @@ from mkdocs.structure.files import File, Files
 
 import crowdbot
 from crowdbot.cli import COMMANDS
+
+sys.path.insert(0, str(Path(__file__).parent))
+from griffe_fields import google
 
 API, CLI = "reference/api", "reference/cli"
 
@@ -61,11 +68,36 @@ def face(module: ModuleType) -> str:
     lines = [f"# {module.__name__}", "", inspect.cleandoc(module.__doc__ or ""), ""]
     for title, names in groups.items():
         if names:
-            lines += [f"**{title}**: " + ", ".join(f"[`{n}`][{module.__name__}.{n}]" for n in names), ""]
-    for names in groups.values():
-        for name in names:
+            links = [f"[`{n}`](#{module.__name__}.{n})" for n in names]
+            lines += [f"**{title}**: " + ", ".join(links), ""]
+    for title in ("Classes", "Functions"):
+        for name in groups[title]:
             lines += [f"::: {module.__name__}.{name}", ""]
+    notes = _notes(module)
+    for name in groups["Constants"]:
+        lines += [f"## {name} {{ #{module.__name__}.{name} .doc-heading }}", "", notes.get(name, ""), ""]
+        if isinstance(value := getattr(module, name), int | float | str | tuple) and len(repr(value)) < 300:
+            lines += [f"`{name} = {value!r}`", ""]
     return "\n".join(lines)
+
+
+def _notes(module: ModuleType) -> dict[str, str]:
+    """Return the docstrings below constants, by name, in all files of a package."""
+    found: dict[str, str] = {}
+    for file in sorted(Path(module.__path__[0]).rglob("*.py")):
+        body = ast.parse(file.read_text(encoding="utf-8")).body
+        for assigned, note in itertools.pairwise(body):
+            if (
+                isinstance(note, ast.Expr)
+                and isinstance(note.value, ast.Constant)
+                and isinstance(note.value.value, str)
+            ):
+                targets = assigned.targets if isinstance(assigned, ast.Assign) else [getattr(assigned, "target", None)]
+                names = [
+                    node.id for target in targets if target for node in ast.walk(target) if isinstance(node, ast.Name)
+                ]
+                found |= {name: google(note.value.value) for name in names if name not in found}
+    return found
 
 
 def front_door() -> str:

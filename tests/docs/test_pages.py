@@ -36,7 +36,7 @@ def test_a_page_runs_from_top_to_bottom(
             write(tmp_path / block.title, block.text)
         elif block.language == "python":
             capsys.readouterr()
-            exec(compile(block.text, page, "exec"), names)  # noqa: S102
+            exec(compile(block.text, page, "exec"), names)
             printed = capsys.readouterr().out
         elif block.language == "text" and printed:
             assert same(block.text, printed), f"{page} shows\n{block.text}but this is printed:\n{printed}"

@@ -44,12 +44,19 @@ if TYPE_CHECKING:
     from .compiling import on_compiling
     from .kernels import cache_folder, is_cold, kernel
     from .neighbors import CHUNK, SMALL, Neighbors
+    from .svg import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, draw_svg
 
 _LAZY = {
     "CHUNK": "neighbors",
+    "Disc": "svg",
     "Neighbors": "neighbors",
+    "PERSON_COLOR": "svg",
+    "Path2D": "svg",
+    "ROBOT_COLOR": "svg",
     "SMALL": "neighbors",
     "cache_folder": "kernels",
+    "draw_svg": "svg",
+    "WALL_COLOR": "svg",
     "is_cold": "kernels",
     "kernel": "kernels",
     "on_compiling": "compiling",
@@ -58,14 +65,18 @@ _LAZY = {
 __all__ = [
     "CHUNK",
     "MOUNT_HEIGHT",
+    "PERSON_COLOR",
     "PERSON_HEIGHT",
+    "ROBOT_COLOR",
     "SMALL",
     "STAGE",
+    "WALL_COLOR",
     "Bodies",
     "Bounds",
     "Clock",
     "CrowdbotError",
     "DataError",
+    "Disc",
     "Element",
     "EpisodeError",
     "ExternalClock",
@@ -76,6 +87,7 @@ __all__ = [
     "PacedClock",
     "Paper",
     "Parameter",
+    "Path2D",
     "PerAgent",
     "Pose",
     "RobotError",
@@ -94,6 +106,7 @@ __all__ = [
     "check_parameters",
     "code_digest",
     "did_you_mean",
+    "draw_svg",
     "each",
     "each_kept",
     "find_class",

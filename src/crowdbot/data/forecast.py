@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError
+from crowdbot.core import Disc, InputError, Path2D, draw_svg
 
 __all__ = ["Forecast"]
 
@@ -77,6 +77,21 @@ class Forecast:
     def __len__(self) -> int:
         """Return the number of windows."""
         return len(self.position)
+
+    def _repr_svg_(self) -> str:
+        """Return a drawing for notebooks: the predicted paths of the middle window."""
+        if not len(self):
+            return draw_svg([], caption=f"{self.predictor}: no windows")
+        window = len(self) // 2
+        people = np.flatnonzero(self.valid[window])
+        paths = self.position[window][:, :, people]
+        opacity = np.clip(self.weight[window] / self.weight[window].max(), 0.15, 1.0) if self.samples > 1 else [1.0]
+        lines = [
+            Path2D(paths[k, :, a], opacity=float(opacity[k])) for a in range(len(people)) for k in range(self.samples)
+        ]
+        starts = [Disc(*map(float, paths[0, 0, a]), 0.15) for a in range(len(people))]
+        about = f"window {window + 1} of {len(self)}, {len(people)} people, {self.samples} x {self.steps} steps"
+        return draw_svg(lines, starts, f"{self.predictor}: {about} of {self.dt:.4g} s")
 
     def __getitem__(self, chosen: slice | NDArray[np.int64] | NDArray[np.bool_]) -> Forecast:
         """Return the forecast of some of the windows."""

@@ -11,7 +11,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import DataError, InputError, did_you_mean
+from crowdbot.core import (
+    PERSON_COLOR,
+    ROBOT_COLOR,
+    WALL_COLOR,
+    DataError,
+    Disc,
+    InputError,
+    Path2D,
+    did_you_mean,
+    draw_svg,
+)
 
 from .protocols import cut_past, cut_windows
 from .resample import resample
@@ -59,6 +69,18 @@ class Trajectories(TrackTable):
     >>> tracks.dt, tracks.frame_step, tracks.fps, tracks.time.tolist()
     (0.4, 10, 25.0, [0.0, 0.4, 0.8])
     """
+
+    def _repr_svg_(self) -> str:
+        """Return a drawing for notebooks: walls, the tracks of people and of robots."""
+        closed = [np.concatenate([ring, ring[:1]]) for ring in self.walls]
+        walls = [Path2D(np.asarray(ring, dtype=np.float64), WALL_COLOR, 1.5) for ring in closed]
+        tracks = [(int(who), self.position[self.id == who]) for who in self.ids]
+        paths = [Path2D(way, ROBOT_COLOR if who in self.robots else PERSON_COLOR, 1.2, 0.7) for who, way in tracks]
+        size = 0.004 * float(np.ptp(self.position, axis=0).max(initial=0.0))
+        ends = [
+            Disc(float(way[-1, 0]), float(way[-1, 1]), size, p.color) for (_, way), p in zip(tracks, paths, strict=True)
+        ]
+        return draw_svg([*walls, *paths], ends, repr(self)[1:-1])
 
     def track(self, id: int) -> Trajectories:
         """Return the track of one person or robot.

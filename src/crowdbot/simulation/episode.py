@@ -107,6 +107,11 @@ class Episode:
         """
         return tracks_of(self, self.trial.name, dt)
 
+    def _repr_svg_(self) -> str:
+        """Return a drawing for notebooks: the walls and everyone's path."""
+        period = float(self.times[1] - self.times[0]) if len(self.times) > 1 else self.trial.step
+        return tracks_of(self, f"{self.trial.name}, seed {self.seed}, {self.outcome}", period)._repr_svg_()
+
 
 def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
     """Return the trajectories of an episode, run or read."""

@@ -13,6 +13,7 @@ from crowdbot.models import CrowdModel
 from .agent import Agent
 from .camera import Camera
 from .crowd import Contact, Crowd, Crowds, Limits, Routing
+from .drawing import trial_svg
 from .fields import attribute, check, child, children
 from .journey import Exit, Journey, Portal
 from .people import Source, Spawner
@@ -143,6 +144,10 @@ class Trial:
                 f'step="{self.step:g}" must be a whole number of steps of the physics world, physics-step='
                 f'"{self.physics_step:g}" s'
             )
+
+    def _repr_svg_(self) -> str:
+        """Return a drawing for notebooks: stage, zones of people, robots and their goals."""
+        return trial_svg(self)
 
     @property
     def people(self) -> int:

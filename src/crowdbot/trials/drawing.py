@@ -1,0 +1,31 @@
+"""A trial as a small drawing: its stage, the zones of people, and its robots."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from crowdbot.core import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, draw_svg
+
+if TYPE_CHECKING:
+    from .trial import Trial
+
+__all__ = ["trial_svg"]
+
+
+def trial_svg(trial: Trial) -> str:
+    """Return an SVG drawing: walls grey, zones where people start blue, robots and their goals red."""
+    rings = [np.concatenate([ring, ring[:1]]) for ring in trial.stage.rings]
+    lines = [Path2D(ring, WALL_COLOR, 1.5) for ring in rings]
+    for place in (*trial.spawners, *trial.sources):
+        zone = np.asarray(place.zone, dtype=np.float64)
+        lines.append(Path2D(np.concatenate([zone, zone[:1]]), PERSON_COLOR, 1.0, 0.6))
+    discs = [Disc(agent.x, agent.y, 0.25, PERSON_COLOR) for agent in trial.agents]
+    for robot in trial.robots:
+        start = np.array([robot.x, robot.y], dtype=np.float64)
+        lines.append(Path2D(np.stack([start, np.asarray(robot.goal.position)]), ROBOT_COLOR, 1.2, 0.6))
+        discs.append(Disc(robot.x, robot.y, 0.3, ROBOT_COLOR))
+    people = sum(spawner.count for spawner in trial.spawners) + len(trial.agents)
+    about = f"{people} people at the start, {len(trial.robots)} robots, {trial.duration:g} s"
+    return draw_svg(lines, discs, f"{trial.name}: {about}")
