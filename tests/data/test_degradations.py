@@ -177,7 +177,7 @@ def test_late_start_drops_the_first_rows_and_short_tracks():
     seen = LateStart(2).apply(tracks)
     assert seen.tracks.id.tolist() == [1, 1]
     assert seen.tracks.frame.tolist() == [5, 6]
-    with pytest.raises(EmptyRecordingError, match="not one row is left"):
+    with pytest.raises(EmptyRecordingError, match="no rows are left"):
         LateStart(4).apply(tracks)
 
 

@@ -42,7 +42,7 @@ def test_rows_are_sorted_and_cannot_be_written_to():
         ({"x": [0.0] * 12}, "walk: columns differ in shape"),
         ({"row_rate": 0.0}, r"walk: row_rate is 0\.0, it must be above 0"),
         ({"row_rate": np.nan}, "walk: row_rate is nan, it must be above 0"),
-        ({"units": "cm"}, "walk: units 'cm' are not known"),
+        ({"units": "cm"}, "walk: unknown units 'cm'"),
     ],
 )
 def test_what_cannot_be_is_refused_with_its_place(changes, message):

@@ -14,6 +14,7 @@ from crowdbot.core import DataError
 
 from .assemble import assemble
 from .reader import Reader, ReadOptions
+from .rows import integers
 from .source import Source
 from .trajectories import Trajectories
 
