@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from crowdbot.core import DataError
-from crowdbot.data import load
+from crowdbot.data import UCY_TO_METRES, load
 
 # path: rows, ids, first frame, last frame, frame step, dt [s], units
 TABLE = {
