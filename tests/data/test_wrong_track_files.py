@@ -151,7 +151,7 @@ def test_too_large_is_refused_by_size(tmp_path, monkeypatch):
 def test_a_line_of_ndjson_has_a_limit(tmp_path, monkeypatch):
     path = tmp_path / "wide.ndjson"
     path.write_text('{"track": {"f": 0, "p": 1, "x": 1, "y": 2}}\n')
-    monkeypatch.setattr("crowdbot.data.trajnetpp.MAX_LINE", 20)
+    monkeypatch.setattr("crowdbot.data.readers.trajnetpp.MAX_LINE", 20)
     with pytest.raises(DataError, match="line 1 has 43 characters, more than 20"):
         load(path)
 

@@ -5,11 +5,11 @@ from .load import FORMATS, load
 from .mcap_reader import MCAP_MAGIC, McapError, McapOpcode, McapReader, has_summary, read_attachment
 from .motion import fill_gaps, observed_velocity, slice_rows, steady_velocity
 from .protocols import PROTOCOLS
+from .readers.time_base import RowRateError
+from .readers.ucy import TO_METRES as UCY_TO_METRES
 from .recording import Recording
 from .save import save
-from .time_base import RowRateError
 from .trajectories import PrimaryScene, Trajectories
-from .ucy import TO_METRES as UCY_TO_METRES
 from .windows import Windows
 
 __all__ = [

@@ -7,11 +7,11 @@ from pathlib import Path
 
 from crowdbot.core import DataError, InputError, did_you_mean
 
-from . import episode, eth, juelich, petrack, sdd, sgan, socialways, tables, trajnetpp, ucy
-from .assemble import check_units
-from .reader import Reader, ReadOptions
+from .readers import episode, eth, juelich, petrack, sdd, sgan, socialways, tables, trajnetpp, ucy
+from .readers.assemble import check_units
+from .readers.reader import Reader, ReadOptions
+from .readers.time_base import check_fps
 from .source import Source
-from .time_base import check_fps
 from .trajectories import Trajectories
 
 __all__ = ["FORMATS", "TIME_BASES", "load"]

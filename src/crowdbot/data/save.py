@@ -13,8 +13,8 @@ import numpy as np
 
 from crowdbot.core import DataError, InputError, did_you_mean
 
+from .readers.tables import ROBOT
 from .rows import runs
-from .tables import ROBOT
 from .trajectories import PrimaryScene, Trajectories
 
 __all__ = ["SUFFIXES", "save"]

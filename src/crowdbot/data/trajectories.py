@@ -38,7 +38,7 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Trajectories(TrackTable):
     """The rows of a recording, one per person and frame, sorted by frame, then id; the arrays are read-only.
 

@@ -13,12 +13,13 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import DataError
+from crowdbot.data.rows import LARGEST
+from crowdbot.data.source import Source
+from crowdbot.data.track_table import PrimaryScene
+from crowdbot.data.trajectories import Trajectories
 
 from .assemble import assemble
 from .reader import Reader, ReadOptions
-from .rows import LARGEST
-from .source import Source
-from .trajectories import PrimaryScene, Trajectories
 
 __all__ = ["READER"]
 

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError
-
-from .rows import frame_step, integers, where
+from crowdbot.data.rows import frame_step, integers, where
 
 __all__ = [
     "Columns",

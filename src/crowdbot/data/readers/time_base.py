@@ -11,9 +11,9 @@ import math
 import numpy as np
 
 from crowdbot.core import DataError
+from crowdbot.data.trajectories import Trajectories
 
 from .reader import ReadOptions
-from .trajectories import Trajectories
 
 __all__ = ["RowRateError", "check_fps", "check_speeds", "row_rate_of"]
 

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crowdbot.core import DataError, did_you_mean
+from crowdbot.data.rows import check_rows, floats, frame_step, integers
+from crowdbot.data.source import MAX_ROWS, Source
+from crowdbot.data.trajectories import Trajectories
 
 from .reader import ReadOptions
-from .rows import check_rows, floats, frame_step, integers
-from .source import MAX_ROWS, Source
 from .time_base import check_speeds, row_rate_of
-from .trajectories import Trajectories
 
 __all__ = ["PER_METRE", "assemble", "check_units"]
 

@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError
+from crowdbot.data.rows import integers
+from crowdbot.data.source import Source
+from crowdbot.data.trajectories import Trajectories
 
 from .assemble import assemble
 from .reader import Reader, ReadOptions
-from .source import Source
-from .trajectories import Trajectories
 
 __all__ = ["READER"]
 
@@ -44,11 +45,12 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         raise DataError(f"{source.name}: all of its {len(values)} rows are marked lost, nobody is in view")
     lost = int(np.sum(~seen))
     values, line = values[seen], line[seen]
-    ids, first = np.unique(values[:, 0], return_index=True)
+    id = integers(values[:, 0], "id", source.name, line)
+    ids, first = np.unique(id, return_index=True)
     return assemble(
         source,
         options,
-        id=values[:, 0],
+        id=id,
         frame=values[:, 5],
         x=(values[:, 1] + values[:, 3]) / 2.0,
         y=(values[:, 2] + values[:, 4]) / 2.0,
@@ -56,7 +58,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         units="px",
         note=f"pixels; {lost} rows marked lost left out",
         line=line,
-        labels={int(id): names[int(values[row, 9])] for id, row in zip(ids, first, strict=True)},
+        labels={key: names[int(values[row, 9])] for key, row in zip(ids.tolist(), first, strict=True)},
     )
 
 

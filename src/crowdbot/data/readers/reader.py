@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from .source import Source
-from .trajectories import Trajectories
+from crowdbot.data.source import Source
+from crowdbot.data.trajectories import Trajectories
 
 __all__ = ["ReadOptions", "Reader"]
 

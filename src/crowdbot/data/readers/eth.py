@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError
+from crowdbot.data.source import Source
+from crowdbot.data.trajectories import Trajectories
 
 from .assemble import assemble
 from .reader import Reader, ReadOptions
-from .source import Source
-from .trajectories import Trajectories
 
 __all__ = ["READER", "eth_time_base"]
 

@@ -11,6 +11,10 @@ from typing import Any
 import numpy as np
 
 from crowdbot.core import DataError
+from crowdbot.data.rows import integers
+from crowdbot.data.source import MAX_ROWS, Source, parse_errors
+from crowdbot.data.track_table import PrimaryScene
+from crowdbot.data.trajectories import Trajectories
 
 from .assemble import assemble
 from .columns import (
@@ -25,9 +29,6 @@ from .columns import (
     row_rate_of_times,
 )
 from .reader import Reader, ReadOptions
-from .rows import integers
-from .source import MAX_ROWS, Source, parse_errors
-from .trajectories import PrimaryScene, Trajectories
 
 __all__ = ["CSV", "PARQUET", "ROBOT"]
 

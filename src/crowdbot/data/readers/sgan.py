@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from crowdbot.data.source import Source
+from crowdbot.data.trajectories import Trajectories
+
 from .assemble import assemble
 from .eth import eth_time_base
 from .reader import Reader, ReadOptions
-from .source import Source
-from .trajectories import Trajectories
 
 __all__ = ["READER"]
 

@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import DataError
+from crowdbot.data.mcap_reader import McapChannel, McapError, McapReader, has_summary
+from crowdbot.data.source import Source, parse_errors
+from crowdbot.data.trajectories import Trajectories
 
 from .assemble import assemble
-from .mcap_reader import McapChannel, McapError, McapReader, has_summary
 from .reader import Reader, ReadOptions
-from .source import Source, parse_errors
-from .trajectories import Trajectories
 
 __all__ = ["READER"]
 
