@@ -1,9 +1,10 @@
-"""Floor 0: what every other floor stands on. Needs numpy and the standard library; kernels load numba lazily."""
+"""The base of all other rooms: scenes, geometry, clocks, errors, kernels. numba is loaded with the first kernel."""
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from crowdbot.lazy import lazy_exports
 
 from .bodies import STAGE, Bodies, Skins
 from .bounds import Bounds, check_number
@@ -45,15 +46,14 @@ if TYPE_CHECKING:
     from .kernels import cache_folder, is_cold, kernel
     from .neighbors import CHUNK, SMALL, Neighbors
 
-_LAZY = {
-    "CHUNK": "neighbors",
-    "Neighbors": "neighbors",
-    "SMALL": "neighbors",
-    "cache_folder": "kernels",
-    "is_cold": "kernels",
-    "kernel": "kernels",
-    "on_compiling": "compiling",
-}
+__getattr__, __dir__ = lazy_exports(
+    __name__,
+    {
+        "compiling": ["on_compiling"],
+        "kernels": ["cache_folder", "is_cold", "kernel"],
+        "neighbors": ["CHUNK", "SMALL", "Neighbors"],
+    },
+)
 
 __all__ = [
     "CHUNK",
@@ -117,9 +117,3 @@ __all__ = [
     "stream",
     "wrap",
 ]
-
-
-def __getattr__(name: str) -> Any:
-    if name in _LAZY:
-        return getattr(importlib.import_module(f"{__name__}.{_LAZY[name]}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
