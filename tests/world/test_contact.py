@@ -137,14 +137,14 @@ def test_velocities_follow_the_push_up_to_the_maximum_speed(contact):
 
 def test_who_walks_into_a_wall_slides_along_it():
     before = Scene.of([[4.0, 0.5]], [[1.0, -1.0]], radius=0.3, max_speed=2.0, walls=[ROOM])
-    after = BodyContact().settled(before, before.advanced(before.velocity, 0.3), 0.3)
+    after = BodyContact().settled(before, before.advance(before.velocity, 0.3), 0.3)
     np.testing.assert_allclose(after.position[0, 0], [4.3, 0.3], atol=1e-9)
     np.testing.assert_allclose(after.velocity[0, 0], [1.0, -2.0 / 3.0], atol=1e-9)
 
 
 def test_a_corner_holds():
     before = Scene.of([[0.5, 0.5]], [[-1.0, -1.2]], radius=0.3, walls=[ROOM])
-    after = BodyContact().settled(before, before.advanced(before.velocity, 1.0), 1.0)
+    after = BodyContact().settled(before, before.advance(before.velocity, 1.0), 1.0)
     np.testing.assert_allclose(after.position[0, 0], [0.3, 0.3], atol=1e-9)
 
 
@@ -155,7 +155,7 @@ def test_nobody_goes_through_a_wall_however_fast(speed):
     rng = np.random.default_rng(0)
     for _ in range(20):
         velocity = rng.normal(0.0, speed, scene.velocity.shape)
-        scene = BodyContact().settled(scene, scene.advanced(velocity, 0.1), 0.1)
+        scene = BodyContact().settled(scene, scene.advance(velocity, 0.1), 0.1)
         assert np.all(rooms(scene)[scene.active] == 0)
 
 

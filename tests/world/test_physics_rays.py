@@ -153,7 +153,7 @@ def test_bodies_follow_the_scene_in_the_plane():
     assert np.all(gone.radius[0, gone.owner == 1] == 0.0)
     assert np.all(np.isnan(gone.skins.vertices))
     own = cast(
-        scene.replace(bodies=found).without(0), Pose.of((1.0, 2.0), 0.0).lifted(0.1), beams(fan(np.zeros(8))), 9.0
+        scene.replace(bodies=found).without(0), Pose.of((1.0, 2.0), 0.0).to_spatial(0.1), beams(fan(np.zeros(8))), 9.0
     )
     assert 0 not in own.hit
     moved = bodies(scene, None, {0: Robot.load("pepper")}, joints={0: {"HeadYaw": 1.0}})

@@ -89,7 +89,7 @@ class Rehearsal:
         rollout, scene = candidate(self.rollout, self._first.environments(index), 1)
         for row in range(T - 1):
             scene = self._recorded.shown(scene, row, index)
-            scene = rollout.advanced(scene, self.past.dt)
+            scene = rollout.advance(scene, self.past.dt)
             place[:, row] = scene.position
         return place.reshape(copies, len(which), T - 1, A, 2)
 
@@ -99,7 +99,7 @@ class Rehearsal:
             return np.zeros((copies, len(which), 0, A, 2))
         index = np.tile((which[:, None] * (T - 2) + np.arange(T - 2)).ravel(), copies)
         rollout, scene = candidate(self.rollout, self._each.environments(index), T - 2)
-        place = rollout.advanced(scene, self.past.dt).position
+        place = rollout.advance(scene, self.past.dt).position
         return place.reshape(copies, len(which), T - 2, A, 2)
 
 

@@ -97,11 +97,11 @@ class Rollout:
                 known = ~np.isnan(planned[..., 0]) & scene.external
                 toward = (planned - scene.position) / past.dt
                 scene = scene.replace(velocity=np.where(known[..., None], toward, scene.velocity))
-            scene = self.advanced(scene, past.dt, rng)
+            scene = self.advance(scene, past.dt, rng)
             place[:, step] = scene.position
         return place
 
-    def advanced(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
+    def advance(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
         """Return the scene one row later, in equal steps of at most ``substep``."""
         count = max(1, math.ceil(dt / self.substep - 1e-9))
         for _ in range(count):

@@ -130,13 +130,13 @@ def chosen(
     import dataclasses
 
     from crowdbot import prediction
-    from crowdbot.core import InputError, find_class, from_attributes, kebab
+    from crowdbot.core import InputError, find_class, from_attributes, kebab_case
 
     kind = find_class(name, prediction, prediction.Predictor)
     known = {field.name for field in dataclasses.fields(kind)}
     if "model" not in known:
         if model is not None:
-            raise InputError(f"--model is for predictors that simulate a crowd; {kebab(kind.__name__)} does not")
+            raise InputError(f"--model is for predictors that simulate a crowd; {kebab_case(kind.__name__)} does not")
         return from_attributes(kind, values)  # type: ignore[no-any-return]
     own = {key: value for key, value in values.items() if key.replace("-", "_") in known}
     rest = {key: value for key, value in values.items() if key not in own}

@@ -21,7 +21,7 @@ from .errors import (
     did_you_mean,
     nearest_name,
 )
-from .optional import optional
+from .optional import import_optional
 from .paper import Paper
 from .parameter import Parameter, PerAgent, check_parameters, parameter, parameters, per_agent
 from .plugin import (
@@ -30,26 +30,26 @@ from .plugin import (
     builtin_classes,
     find_class,
     from_attributes,
-    kebab,
+    kebab_case,
     required_fields,
 )
-from .pose import MOUNT_HEIGHT, Pose, SpatialPose, Twist, product, wrap
+from .pose import MOUNT_HEIGHT, Pose, SpatialPose, Twist, product, wrap_angle
 from .random import stream
 from .scene import PERSON_HEIGHT, Scene
-from .version import code_digest
+from .version import source_digest
 from .walls import Walls
-from .workers import each, each_kept
+from .workers import each, run_saved_jobs
 from .xml_tree import Element, format_xml, parse_number, parse_xml, read_bytes, reject_entities
 
 if TYPE_CHECKING:
-    from .compiling import on_compiling
+    from .compiling import notify_compiling
     from .kernels import cache_folder, is_cold, kernel
     from .neighbors import CHUNK, SMALL, Neighbors
 
 __getattr__, __dir__ = lazy_exports(
     __name__,
     {
-        "compiling": ["on_compiling"],
+        "compiling": ["notify_compiling"],
         "kernels": ["cache_folder", "is_cold", "kernel"],
         "neighbors": ["CHUNK", "SMALL", "Neighbors"],
     },
@@ -92,19 +92,17 @@ __all__ = [
     "cache_folder",
     "check_number",
     "check_parameters",
-    "code_digest",
     "did_you_mean",
     "each",
-    "each_kept",
     "find_class",
     "format_xml",
     "from_attributes",
+    "import_optional",
     "is_cold",
-    "kebab",
+    "kebab_case",
     "kernel",
     "nearest_name",
-    "on_compiling",
-    "optional",
+    "notify_compiling",
     "parameter",
     "parameters",
     "parse_number",
@@ -114,6 +112,8 @@ __all__ = [
     "read_bytes",
     "reject_entities",
     "required_fields",
+    "run_saved_jobs",
+    "source_digest",
     "stream",
-    "wrap",
+    "wrap_angle",
 ]

@@ -65,7 +65,7 @@ class CrowdModel(abc.ABC):
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
         """Return the scene ``dt`` [s] later."""
-        return scene.advanced(self.velocity(scene, dt, rng), dt)
+        return scene.advance(self.velocity(scene, dt, rng), dt)
 
 
 def walkers(scene: Scene) -> NDArray[np.bool_]:

@@ -351,7 +351,7 @@ class VOG(CrowdModel):
         """Return the scene ``dt`` [s] later, which remembers how calm everyone is as ``vog_calm``."""
         out = self._chosen(scene, dt)
         calm = np.where(walkers(scene), out[..., 2] + 10.0 * dt, CALM)
-        return scene.advanced(out[..., :2], dt).replace(memory={**scene.memory, MEMORY: calm})
+        return scene.advance(out[..., :2], dt).replace(memory={**scene.memory, MEMORY: calm})
 
     def _chosen(self, scene: Scene, dt: float) -> Floats:
         wish, walking = wishes(scene, dt), walkers(scene)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.calibration import Fit
-from crowdbot.core import InputError, code_digest, each_kept, stream
+from crowdbot.core import InputError, run_saved_jobs, source_digest, stream
 from crowdbot.data import Recording
 from crowdbot.metrics import PersonErrors, Score, person_errors
 
@@ -54,7 +54,7 @@ class Piece:
     @property
     def key(self) -> str:
         """Hash of everything that decides about the result but the content of the recording."""
-        return hashlib.blake2b(pickle.dumps((code_digest(), self)), digest_size=12).hexdigest()
+        return hashlib.blake2b(pickle.dumps((source_digest(), self)), digest_size=12).hexdigest()
 
 
 @dataclass(frozen=True)
@@ -198,7 +198,7 @@ class Study:
         pieces = self.pieces()
         content = {recording: recording.digest for recording in self.recordings} if keep is not None else {}
         files = [] if keep is None else [keep / f"{piece.key}-{content[piece.recording]}.npz" for piece in pieces]
-        for number, part in each_kept(predicted, pieces, files, Part.save, Part.load, workers, cluster):
+        for number, part in run_saved_jobs(predicted, pieces, files, Part.save, Part.load, workers, cluster):
             yield pieces[number], part
 
     def results(self, done: Sequence[tuple[Piece, Part]]) -> list[Result]:

@@ -83,7 +83,7 @@ class Sensor(ABC):
 
 def in_space(pose: Pose | SpatialPose) -> SpatialPose:
     """Return the pose in space; a planar one is at the height of a usual mount, level."""
-    return pose if isinstance(pose, SpatialPose) else pose.lifted()
+    return pose if isinstance(pose, SpatialPose) else pose.to_spatial()
 
 
 def in_plane(pose: Pose | SpatialPose) -> Pose:

@@ -91,7 +91,7 @@ class Probe:
         if chassis is None or (not self.space and not link):
             base = around.pose(agent)
             x, y, z, roll, pitch, yaw = self.placed
-            return base.lifted(0.0).mounted(x, y, z, roll, pitch, yaw) if self.space else base.mounted(x, y, yaw)
+            return base.to_spatial(0.0).mounted(x, y, z, roll, pitch, yaw) if self.space else base.mounted(x, y, yaw)
         matrix = chassis.frame(link or chassis.robot.model.root) @ self.mount.origin
         found = SpatialPose(matrix[None, :3, 3].copy(), quaternion(matrix[:3, :3])[None])
         return found if self.space else found.planar
