@@ -1,12 +1,13 @@
 """crowdbot: predict how a crowd moves in the next seconds, and test robots in simulated crowds.
 
-The names below are the front door; each is loaded when it is first used.
+The names below are the public interface. Each is imported at its first use.
 """
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from .lazy import lazy_exports
 
 __version__ = "0.1.0"
 
@@ -38,22 +39,12 @@ _ROOMS = {
     "recording": ("branch", "read_episode", "replay", "run"),
     "benchmark": ("cite",),
 }
-_HOME = {name: room for room, names in _ROOMS.items() for name in names}
+__getattr__, __dir__ = lazy_exports(__name__, _ROOMS)
 
 __all__ = [  # noqa: PLE0604
-    *_HOME,
+    *(name for names in _ROOMS.values() for name in names),
     "__version__",
 ]
-
-
-def __getattr__(name: str) -> Any:
-    if name in _HOME:
-        return getattr(importlib.import_module(f"crowdbot.{_HOME[name]}"), name)
-    raise AttributeError(f"module 'crowdbot' has no attribute {name!r}")
-
-
-def __dir__() -> list[str]:
-    return sorted([*globals(), *_HOME])
 
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from crowdbot.core import InputError, UnknownName, builtin_classes, find_class, from_attributes, kebab
+from crowdbot.core import InputError, UnknownName, builtin_classes, find_class, from_attributes, kebab_case
 
 
 class Walker(ABC):
@@ -54,7 +54,7 @@ room.Walker, room.FastWalker, room.SlowWalker, room.number = Walker, FastWalker,
     ],
 )
 def test_kebab(name, spoken):
-    assert kebab(name) == spoken
+    assert kebab_case(name) == spoken
 
 
 def test_built_in_lists_concrete_classes_only():

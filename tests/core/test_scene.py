@@ -39,7 +39,7 @@ def test_desired_velocity_is_zero_on_the_goal():
 
 def test_advanced_moves_own_agents_and_lets_external_ones_drift():
     scene = _pair(external=[False, True])
-    later = scene.advanced(np.full((1, 2, 2), 2.0), 0.5)
+    later = scene.advance(np.full((1, 2, 2), 2.0), 0.5)
     np.testing.assert_allclose(later.position[0], [[1.0, 1.0], [3.5, 0.0]])
     np.testing.assert_allclose(later.velocity[0, 1], [-1.0, 0.0])
     assert later.time == 0.5
@@ -49,12 +49,12 @@ def test_absent_agents_stay_and_do_not_show_in_the_digest():
     scene = _pair(active=[True, False])
     other = scene.replace(position=scene.position + [[[0.0, 0.0], [9.0, 9.0]]])
     assert scene.digest() == other.digest()
-    np.testing.assert_array_equal(scene.advanced(scene.velocity, 1.0).position[0, 1], scene.position[0, 1])
+    np.testing.assert_array_equal(scene.advance(scene.velocity, 1.0).position[0, 1], scene.position[0, 1])
 
 
 def test_standing_agents_keep_their_heading():
     scene = _pair(heading=[2.0, -1.0])
-    assert scene.advanced(np.full((1, 2, 2), 1e-3), 0.1).heading.tolist() == [[2.0, -1.0]]
+    assert scene.advance(np.full((1, 2, 2), 1e-3), 0.1).heading.tolist() == [[2.0, -1.0]]
 
 
 def test_environments_are_taken_in_any_order_and_number():
@@ -62,7 +62,7 @@ def test_environments_are_taken_in_any_order_and_number():
     many = one.environments([0, 0, 0])
     assert many.shape == (3, 2)
     assert many.preferred_velocity.shape == (3, 2, 2)
-    moved = many.advanced(many.velocity + np.arange(3.0)[:, None, None], 1.0).replace(memory={"x": np.arange(3.0)})
+    moved = many.advance(many.velocity + np.arange(3.0)[:, None, None], 1.0).replace(memory={"x": np.arange(3.0)})
     chosen = moved.environments([2, 0])
     assert np.array_equal(chosen.position, moved.position[[2, 0]])
     assert chosen.memory["x"].tolist() == [2.0, 0.0]
@@ -140,7 +140,7 @@ def test_the_digest_of_a_known_scene_stays():
 @given(st.floats(0.0, 0.2), st.floats(-3.1, 3.1))
 def test_agents_turn_only_above_the_turning_speed(speed, angle):
     scene = Scene.of([[0.0, 0.0]], heading=0.7)
-    later = scene.advanced(np.array([[[speed * np.cos(angle), speed * np.sin(angle)]]]), 0.1)
+    later = scene.advance(np.array([[[speed * np.cos(angle), speed * np.sin(angle)]]]), 0.1)
     moved = np.hypot(*later.velocity[0, 0])
     if moved > 0.05 + 1e-12:
         np.testing.assert_allclose(later.heading, angle, atol=1e-9)
@@ -150,7 +150,7 @@ def test_agents_turn_only_above_the_turning_speed(speed, angle):
 
 def test_external_and_absent_agents_keep_their_heading():
     scene = _pair(heading=0.3, external=[True, False], active=[True, False])
-    np.testing.assert_array_equal(scene.advanced(np.full((1, 2, 2), 2.0), 0.5).heading, 0.3)
+    np.testing.assert_array_equal(scene.advance(np.full((1, 2, 2), 2.0), 0.5).heading, 0.3)
 
 
 def test_defaults_of_a_scene():

@@ -56,12 +56,12 @@ def test_after_a_step_only_the_stage_keeps_its_bodies():
         post_owner=[1],
         skins=Skins.of([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [2, 1, 0]], owner=[1, STAGE]),
     )
-    later = _pair(bodies=bodies).advanced(np.ones((1, 2, 2)), 0.1)
+    later = _pair(bodies=bodies).advance(np.ones((1, 2, 2)), 0.1)
     assert later.bodies.owner.tolist() == [STAGE]
     assert later.bodies.post_foot.shape == (1, 0, 3)
     assert later.bodies.skins.faces.tolist() == [[2, 1, 0]]
     assert Bodies.of(**LIMBS, skins=Skins.of(np.eye(3), [[0, 1, 2]], owner=0)).staged().skins is None
-    assert Scene.of([[0.0, 0.0]]).advanced(np.zeros((1, 1, 2)), 0.1).bodies is None
+    assert Scene.of([[0.0, 0.0]]).advance(np.zeros((1, 1, 2)), 0.1).bodies is None
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,7 @@ from crowdbot.core import (
     parameters,
     per_agent,
     stream,
-    wrap,
+    wrap_angle,
 )
 
 
@@ -102,7 +102,7 @@ def test_per_agent_broadcasts_or_says_why_not():
 
 @given(st.floats(-1e3, 1e3))
 def test_wrap_keeps_the_direction(angle):
-    turned = wrap(angle)
+    turned = wrap_angle(angle)
     assert -math.pi < turned <= math.pi
     assert math.cos(turned) == pytest.approx(math.cos(angle), abs=1e-9)
 

@@ -19,7 +19,7 @@ from crowdbot.core import (
     builtin_classes,
     find_class,
     from_attributes,
-    kebab,
+    kebab_case,
     parameters,
     stream,
 )
@@ -27,7 +27,7 @@ from crowdbot.core.neighbors import CROWD
 
 MODELS = [kind for kind in builtin_classes(room, room.CrowdModel).values() if kind is not room.Mixture]
 """All but the mixture: it is made of others, has no parameters of its own, and is held to this in test_mixture."""
-every_model = pytest.mark.parametrize("kind", MODELS, ids=lambda kind: kebab(kind.__name__))
+every_model = pytest.mark.parametrize("kind", MODELS, ids=lambda kind: kebab_case(kind.__name__))
 
 
 def velocity(model, scene, dt=0.1):
@@ -60,7 +60,7 @@ def test_parameters_come_from_text(kind):
     for row in parameters(kind):
         model = from_attributes(kind, {row.name.replace("_", "-"): repr(row.default)})
         assert getattr(model, row.name) == row.default
-    assert find_class(kebab(kind.__name__), room, room.CrowdModel) is kind
+    assert find_class(kebab_case(kind.__name__), room, room.CrowdModel) is kind
 
 
 @every_model
@@ -260,4 +260,4 @@ def test_an_impossible_crowd_takes_a_bounded_step(kind, make, dt):
         chosen = velocity(kind(), scene, dt)
         assert np.all(np.isfinite(chosen))
         assert np.all(np.linalg.norm(chosen, axis=-1) <= scene.max_speed * (1.0 + 1e-9) + 1e-12)
-        scene = scene.advanced(chosen, dt)
+        scene = scene.advance(chosen, dt)

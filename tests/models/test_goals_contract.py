@@ -10,13 +10,13 @@ from goal_places import crowd, made, moved, street, windows
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core import InputError, builtin_classes, find_class, kebab
+from crowdbot.core import InputError, builtin_classes, find_class, kebab_case
 from crowdbot.data import observed_velocity, steady_velocity
 from crowdbot.models import goals
 from crowdbot.models.goals import Choices, CurrentDirection, Goal
 
 KINDS = list(builtin_classes(goals, Goal).values())
-every_goal = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kebab(kind.__name__))
+every_goal = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kebab_case(kind.__name__))
 
 
 def answers(goal, past):
@@ -130,9 +130,11 @@ def test_one_row_two_rows_many_rows_and_nobody(kind):
     assert made(kind, crowd()[:0]).resolve(crowd()[:0]).shape == (0, 6, 2)
 
 
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if not kind.learns], ids=lambda kind: kebab(kind.__name__))
+@pytest.mark.parametrize(
+    "kind", [kind for kind in KINDS if not kind.learns], ids=lambda kind: kebab_case(kind.__name__)
+)
 def test_what_does_not_learn_says_so(kind):
-    with pytest.raises(InputError, match=rf"{kebab(kind.__name__)} does not learn from recordings: make it by"):
+    with pytest.raises(InputError, match=rf"{kebab_case(kind.__name__)} does not learn from recordings: make it by"):
         kind.learn(street())
 
 

@@ -30,7 +30,7 @@ class Counter(CrowdModel):
 
     def step(self, scene, dt, rng=None):
         counted = scene.memory.get(self.name, np.zeros(scene.shape)) + self.by
-        after = scene.advanced(self.velocity(scene, dt, rng), dt)
+        after = scene.advance(self.velocity(scene, dt, rng), dt)
         return after.replace(heading=np.full(scene.shape, self.by), memory={**scene.memory, self.name: counted})
 
 

@@ -325,6 +325,6 @@ def test_poses_in_space_compose():
     np.testing.assert_allclose(
         pose.matrix @ np.moveaxis(pose.matrix, 1, 2), np.broadcast_to(np.eye(3), (3, 3, 3)), atol=1e-14
     )
-    level = Pose.of([[1.0, 2.0]], 0.4).lifted(0.7)
+    level = Pose.of([[1.0, 2.0]], 0.4).to_spatial(0.7)
     assert level.planar.heading == pytest.approx(0.4)
     np.testing.assert_allclose(SpatialPose.of((0, 0, 0), pitch=0.3).matrix[0, :, 0], [math.cos(0.3), 0, -math.sin(0.3)])

@@ -105,7 +105,7 @@ def test_a_level_scan_through_space_equals_the_one_from_above():
     )
     lidar = Lidar2D(rays=720, range_max=20.0)
     pose = Pose.of(rng.uniform(-3, 3, (2, 2)), [0.4, -2.0])
-    above, through = lidar.read(scene, pose), lidar.read(scene, pose.lifted(1.0))
+    above, through = lidar.read(scene, pose), lidar.read(scene, pose.to_spatial(1.0))
     np.testing.assert_allclose(above.ranges, through.ranges, rtol=0, atol=1e-9)
     np.testing.assert_array_equal(above.hit, through.hit)
     np.testing.assert_allclose(above.incidence, through.incidence, rtol=0, atol=1e-6)

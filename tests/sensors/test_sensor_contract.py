@@ -157,7 +157,7 @@ def test_hostile_scenes_give_readings_without_surprise(kind):
     nobody = Scene.of(np.zeros((1, 0, 2)))
     assert arrays(measured(small(kind), nobody, pose))
     inside = scene.replace(bodies=None, position=np.broadcast_to(pose.position[:, None, :2], scene.position.shape))
-    for value in arrays(measured(small(kind), inside, pose.planar.lifted(0.3))).values():
+    for value in arrays(measured(small(kind), inside, pose.planar.to_spatial(0.3))).values():
         assert not np.isnan(np.where(np.isnan(value.astype(float)), 0.0, value)).any()
 
 

@@ -149,7 +149,7 @@ def test_every_class_of_readings_comes_back(kind: type[Reading], place: str) -> 
     state = sensor.begin()
     for number in range(2):
         if place == "in space":
-            pose = Pose.of((0.1 + 0.2 * number, 0.0), 0.3).lifted(0.7, 0.02, 0.1)
+            pose = Pose.of((0.1 + 0.2 * number, 0.0), 0.3).to_spatial(0.7, 0.02, 0.1)
         view = sensors.SensorView(SCENE.replace(time=0.05 * number), pose)
         reading, state = sensor.measure(view, state, np.random.default_rng(number))
         assert type(reading) is kind
@@ -193,7 +193,7 @@ def test_pictures_are_images_with_their_lens(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setitem(CODECS, Colours, picture_codec)
     rgb = np.random.default_rng(0).integers(0, 256, (1, 6, 8, 3), dtype=np.uint8)
     lens = Lens.of(8, 6, 1.0, (0.1, 0.0, 0.0, 0.0, 0.01))
-    picture = Colours(0.5, Pose.of((0.0, 0.0), 0.0).lifted(1.0), rgb, lens, np.full((1, 6, 8), -1))
+    picture = Colours(0.5, Pose.of((0.0, 0.0), 0.0).to_spatial(1.0), rgb, lens, np.full((1, 6, 8), -1))
     make = Messages()
     messages = dict(said(make, Told(picture, None, "robot", "robot/eye")))
     assert (messages["/image"].encoding, messages["/image"].step) == ("rgb8", 24)

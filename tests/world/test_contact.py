@@ -155,7 +155,7 @@ def test_nobody_goes_through_a_wall_however_fast(speed):
     rng = np.random.default_rng(0)
     for _ in range(20):
         velocity = rng.normal(0.0, speed, scene.velocity.shape)
-        scene = ContactModel().resolve_overlaps(scene, scene.advanced(velocity, 0.1), 0.1)
+        scene = ContactModel().resolve_overlaps(scene, scene.advance(velocity, 0.1), 0.1)
         assert np.all(rooms(scene)[scene.active] == 0)
 
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crowdbot.core import InputError, Pose, Twist, stream, wrap
+from crowdbot.core import InputError, Pose, Twist, stream, wrap_angle
 from crowdbot.world import DifferentialDrive, Omnidirectional, Twists, integrate_twist
 
 few = settings(max_examples=60, deadline=None)
@@ -31,7 +31,7 @@ def test_the_arc_is_what_many_small_steps_give(forward, turn, left, heading, dt)
     after = integrate_twist(Pose.of((1.0, -2.0), heading), Twists.of(Twist(forward, turn, left), 1), dt)
     x, y, angle = arc_by_many_steps((1.0, -2.0), heading, forward, turn, left, dt)
     np.testing.assert_allclose(after.position[0], [x, y], rtol=0, atol=1e-6)
-    assert abs(wrap(float(after.heading[0]) - angle)) < 1e-9
+    assert abs(wrap_angle(float(after.heading[0]) - angle)) < 1e-9
     assert -math.pi <= after.heading[0] <= math.pi
 
 

@@ -13,7 +13,7 @@ from crowdbot.world import CrowdLimits, PlanarWorld
 def steps(seed, A=12, E=2):
     rng = np.random.default_rng(seed)
     before = Scene.of(rng.normal(size=(E, A, 2)), rng.normal(size=(E, A, 2)), external=np.arange(A) == 3)
-    return before, before.advanced(rng.normal(0.0, 3.0, (E, A, 2)), 0.1)
+    return before, before.advance(rng.normal(0.0, 3.0, (E, A, 2)), 0.1)
 
 
 def by_hand(before, after, dt, speed, acceleration):

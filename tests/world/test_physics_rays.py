@@ -162,7 +162,7 @@ def test_bodies_follow_the_scene_in_the_plane():
     assert np.all(np.isnan(gone.skins.vertices))
     own = cast_rays(
         scene.replace(bodies=found).without(0),
-        Pose.of((1.0, 2.0), 0.0).lifted(0.1),
+        Pose.of((1.0, 2.0), 0.0).to_spatial(0.1),
         sort_beams(unit_vectors(np.zeros(8))),
         9.0,
     )

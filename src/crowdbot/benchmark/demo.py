@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from crowdbot.core import kebab
+from crowdbot.core import kebab_case
 from crowdbot.recording import run
 
 from .report import Predicted, write_report
@@ -128,7 +128,7 @@ def _commands(out: Path, episode: Episode, fit: Fit) -> dict[str, str]:
 
 
 def _seen(trial: Trial, fit: Fit) -> str:
-    crowd = kebab(type(trial.crowd).__name__)
+    crowd = kebab_case(type(trial.crowd).__name__)
     return (
         f"Predictors know the last {OBSERVE * STEP:.1f} s of everyone's true positions, without noise, and no goals."
         f" The crowd of this trial walks by {crowd}; the simulated predictor is ORCA, calibrated in"

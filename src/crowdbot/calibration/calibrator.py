@@ -11,7 +11,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, kebab, stream
+from crowdbot.core import InputError, Scene, kebab_case, stream
 from crowdbot.data import Windows
 from crowdbot.models import CrowdModel
 from crowdbot.models.goals import Goal
@@ -99,7 +99,7 @@ class Calibrator:
     @property
     def scheme(self) -> str:
         """Names of model, cost, search and goal."""
-        return ", ".join(kebab(type(part).__name__) for part in (self.model, self.cost, self.search, self.goal))
+        return ", ".join(kebab_case(type(part).__name__) for part in (self.model, self.cost, self.search, self.goal))
 
     def fit(
         self,
@@ -134,7 +134,7 @@ class Calibrator:
         if fit.persons == 0:
             where = f"{fit.windows} windows of {', '.join(one.source for one in pasts) or 'no recording'}"
             raise InputError(
-                f"calibration: nobody in {where} can be compared by {kebab(type(self.cost).__name__)};"
+                f"calibration: nobody in {where} can be compared by {kebab_case(type(self.cost).__name__)};"
                 " people must be seen at enough rows, and with others where distances between them count"
             )
         return fit

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Parameter, Scene, did_you_mean, kebab, parameters
+from crowdbot.core import InputError, Parameter, Scene, did_you_mean, kebab_case, parameters
 from crowdbot.data import Windows, fill_gaps, observed_velocity
 from crowdbot.models import CrowdModel
 
@@ -51,7 +51,7 @@ class ParameterSpace:
         for name in self.free:
             if name.replace("-", "_") not in known:
                 raise InputError(
-                    f"calibration: {kebab(type(self.model).__name__)} has no parameter {name!r} to calibrate"
+                    f"calibration: {kebab_case(type(self.model).__name__)} has no parameter {name!r} to calibrate"
                     f"{did_you_mean(name, known)}; it has {', '.join(known)}"
                 )
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import code_digest, each_kept, stream
+from crowdbot.core import run_saved_jobs, source_digest, stream
 from crowdbot.data import Recording, Windows
 
 from .calibrator import Calibrator
@@ -70,7 +70,7 @@ class RecordingCalibration:
     @property
     def key(self) -> str:
         """Hash of all inputs that determine the result."""
-        content = pickle.dumps((code_digest(), self, self.recording.digest))
+        content = pickle.dumps((source_digest(), self, self.recording.digest))
         return hashlib.blake2b(content, digest_size=12).hexdigest()
 
     @property
@@ -85,7 +85,7 @@ class RecordingCalibration:
         size = max(1, min(len(past) // PIECES, AGENTS * len(past) // max(1, people)))
         jobs = [(self, first, min(first + size, len(past))) for first in range(0, len(past), size)]
         files = [] if keep is None else [keep / f"{self.key}-{first}.npz" for _, first, _ in jobs]
-        for _, chunk in each_kept(_calibrate_chunk, jobs, files, _save, _load, workers, cluster):
+        for _, chunk in run_saved_jobs(_calibrate_chunk, jobs, files, _save, _load, workers, cluster):
             yield chunk
 
     def merge(self, chunks: Sequence[CalibrationChunk]) -> Fit:

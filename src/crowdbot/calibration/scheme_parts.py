@@ -7,7 +7,7 @@ from types import ModuleType
 from typing import cast
 
 from crowdbot import models
-from crowdbot.core import InputError, find_class, kebab
+from crowdbot.core import InputError, find_class, kebab_case
 from crowdbot.data import Recording
 from crowdbot.models import CrowdModel, Goal, GroundTruth, goals
 
@@ -68,7 +68,7 @@ def _resolve(value: object, room: ModuleType, contract: type) -> object:
             return kind()
         except TypeError:
             raise InputError(
-                f"{kebab(kind.__name__)} needs values of its own: pass an instance, not its name"
+                f"{kebab_case(kind.__name__)} needs values of its own: pass an instance, not its name"
             ) from None
     if not isinstance(value, contract):
         raise InputError(f"{value!r} is not a {contract.__name__}, nor the name of one")

@@ -128,21 +128,21 @@ def _fields(kind: type) -> list[str]:
 
 def _own(kind: type, values: Mapping[str, str]) -> dict[str, str]:
     """Return the values that apply to a degradation."""
-    from crowdbot.core import kebab
+    from crowdbot.core import kebab_case
 
     split = {key: key.replace("_", "-").rpartition(".") for key in values}
     return {
         field: values[key]
         for key, (name, _, field) in split.items()
-        if field in _fields(kind) and name in ("", kebab(kind.__name__))
+        if field in _fields(kind) and name in ("", kebab_case(kind.__name__))
     }
 
 
 def _check_names(values: Mapping[str, str], kinds: set[type]) -> None:
-    from crowdbot.core import InputError, did_you_mean, kebab
+    from crowdbot.core import InputError, did_you_mean, kebab_case
 
     known = sorted({field for kind in kinds for field in _fields(kind)})
-    full = sorted(f"{kebab(kind.__name__)}.{field}" for kind in kinds for field in _fields(kind))
+    full = sorted(f"{kebab_case(kind.__name__)}.{field}" for kind in kinds for field in _fields(kind))
     for key in values:
         word = key.replace("_", "-")
         if word not in known and word not in full:

@@ -133,13 +133,13 @@ def progress(quiet: bool = False) -> Iterator[Progress]:
 
 @contextmanager
 def _compiling_told(say: Callable[[str], None]) -> Iterator[None]:
-    from crowdbot.core import cache_folder, is_cold, on_compiling
+    from crowdbot.core import cache_folder, is_cold, notify_compiling
 
     def tell() -> None:
         first = "first run: " if is_cold() else ""
         say(f"{first}compiling kernels once, into {cache_folder()}; that takes up to a minute or two")
 
-    with on_compiling(tell):
+    with notify_compiling(tell):
         yield
 
 

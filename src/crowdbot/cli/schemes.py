@@ -161,13 +161,13 @@ def build_predictor(
     import dataclasses
 
     from crowdbot import prediction
-    from crowdbot.core import InputError, find_class, from_attributes, kebab
+    from crowdbot.core import InputError, find_class, from_attributes, kebab_case
 
     kind = find_class(name, prediction, prediction.Predictor)
     known = {field.name for field in dataclasses.fields(kind)}
     if "model" not in known:
         if model is not None:
-            raise InputError(f"--model requires the predictor simulated, not {kebab(kind.__name__)}")
+            raise InputError(f"--model requires the predictor simulated, not {kebab_case(kind.__name__)}")
         return from_attributes(kind, values)  # type: ignore[no-any-return]
     own = {key: value for key, value in values.items() if key.replace("-", "_") in known}
     rest = {key: value for key, value in values.items() if key not in own}

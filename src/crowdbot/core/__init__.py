@@ -1,9 +1,10 @@
-"""Floor 0: what every other floor stands on. Needs numpy and the standard library; kernels load numba lazily."""
+"""The base of all other rooms: scenes, geometry, clocks, errors, kernels. numba is loaded with the first kernel."""
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from crowdbot.lazy import lazy_exports
 
 from .bodies import STAGE, Bodies, Skins
 from .bounds import Bounds, check_number
@@ -20,7 +21,7 @@ from .errors import (
     did_you_mean,
     nearest_name,
 )
-from .optional import optional
+from .optional import import_optional
 from .paper import Paper
 from .parameter import Parameter, PerAgent, check_parameters, parameter, parameters, per_agent
 from .plugin import (
@@ -29,38 +30,32 @@ from .plugin import (
     builtin_classes,
     find_class,
     from_attributes,
-    kebab,
+    kebab_case,
     required_fields,
 )
-from .pose import MOUNT_HEIGHT, Pose, SpatialPose, Twist, product, wrap
+from .pose import MOUNT_HEIGHT, Pose, SpatialPose, Twist, product, wrap_angle
 from .random import stream
 from .scene import PERSON_HEIGHT, Scene
-from .version import code_digest
+from .version import source_digest
 from .walls import Walls
-from .workers import each, each_kept
+from .workers import each, run_saved_jobs
 from .xml_tree import Element, format_xml, parse_number, parse_xml, read_bytes, reject_entities
 
 if TYPE_CHECKING:
-    from .compiling import on_compiling
+    from .compiling import notify_compiling
     from .kernels import cache_folder, is_cold, kernel
     from .neighbors import CHUNK, SMALL, Neighbors
     from .svg import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, draw_svg
 
-_LAZY = {
-    "CHUNK": "neighbors",
-    "Disc": "svg",
-    "Neighbors": "neighbors",
-    "PERSON_COLOR": "svg",
-    "Path2D": "svg",
-    "ROBOT_COLOR": "svg",
-    "SMALL": "neighbors",
-    "cache_folder": "kernels",
-    "draw_svg": "svg",
-    "WALL_COLOR": "svg",
-    "is_cold": "kernels",
-    "kernel": "kernels",
-    "on_compiling": "compiling",
-}
+__getattr__, __dir__ = lazy_exports(
+    __name__,
+    {
+        "compiling": ["notify_compiling"],
+        "kernels": ["cache_folder", "is_cold", "kernel"],
+        "neighbors": ["CHUNK", "SMALL", "Neighbors"],
+        "svg": ["PERSON_COLOR", "ROBOT_COLOR", "WALL_COLOR", "Disc", "Path2D", "draw_svg"],
+    },
+)
 
 __all__ = [
     "CHUNK",
@@ -104,20 +99,18 @@ __all__ = [
     "cache_folder",
     "check_number",
     "check_parameters",
-    "code_digest",
     "did_you_mean",
     "draw_svg",
     "each",
-    "each_kept",
     "find_class",
     "format_xml",
     "from_attributes",
+    "import_optional",
     "is_cold",
-    "kebab",
+    "kebab_case",
     "kernel",
     "nearest_name",
-    "on_compiling",
-    "optional",
+    "notify_compiling",
     "parameter",
     "parameters",
     "parse_number",
@@ -127,12 +120,8 @@ __all__ = [
     "read_bytes",
     "reject_entities",
     "required_fields",
+    "run_saved_jobs",
+    "source_digest",
     "stream",
-    "wrap",
+    "wrap_angle",
 ]
-
-
-def __getattr__(name: str) -> Any:
-    if name in _LAZY:
-        return getattr(importlib.import_module(f"{__name__}.{_LAZY[name]}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

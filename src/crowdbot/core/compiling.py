@@ -8,7 +8,7 @@ from typing import Any
 
 from numba.core import event
 
-__all__ = ["on_compiling"]
+__all__ = ["notify_compiling"]
 
 
 class _Once(event.Listener):
@@ -27,10 +27,10 @@ class _Once(event.Listener):
 
 
 @contextlib.contextmanager
-def on_compiling(tell: Callable[[], None]) -> Iterator[None]:
+def notify_compiling(tell: Callable[[], None]) -> Iterator[None]:
     """Call ``tell`` as soon as a kernel has to be compiled, once for as long as the context lasts.
 
-    >>> with on_compiling(lambda: print("one moment")):
+    >>> with notify_compiling(lambda: print("one moment")):
     ...     pass
     """
     with event.install_listener("numba:compile", _Once(tell)):

@@ -7,10 +7,10 @@ from typing import Any
 
 from .errors import MissingExtra
 
-__all__ = ["optional"]
+__all__ = ["import_optional"]
 
 
-def optional(module: str, what: str, extra: str) -> Any:
+def import_optional(module: str, what: str, extra: str) -> Any:
     """Return a library of an optional part.
 
     Args:
@@ -21,7 +21,7 @@ def optional(module: str, what: str, extra: str) -> Any:
     Raises:
         MissingExtra: it is not installed.
 
-    >>> optional("nothing_of_this_name", "a dream", "sim")
+    >>> import_optional("nothing_of_this_name", "a dream", "sim")
     Traceback (most recent call last):
     crowdbot.core.errors.MissingExtra: a dream needs the extra [sim]: pip install 'crowdbot[sim]'
     """

@@ -29,15 +29,15 @@ __all__ = [
     "builtin_classes",
     "find_class",
     "from_attributes",
-    "kebab",
+    "kebab_case",
     "required_fields",
 ]
 
 
-def kebab(name: str) -> str:
+def kebab_case(name: str) -> str:
     """Return a class name as it is written on the command line and in XML.
 
-    >>> kebab("ConstantVelocity"), kebab("ORCA"), kebab("Lidar2D"), kebab("PLEdestrians")
+    >>> kebab_case("ConstantVelocity"), kebab_case("ORCA"), kebab_case("Lidar2D"), kebab_case("PLEdestrians")
     ('constant-velocity', 'orca', 'lidar2d', 'pledestrians')
     """
     return re.sub(r"(?<=[a-z])(?=[A-Z])", "-", name).lower()
@@ -47,7 +47,7 @@ def builtin_classes(room: types.ModuleType, contract: type) -> dict[str, type]:
     """Return the concrete classes of ``contract`` in ``room.__all__`` by their kebab-case names, sorted."""
     classes = (getattr(room, name) for name in room.__all__)
     found = {
-        kebab(value.__name__): value
+        kebab_case(value.__name__): value
         for value in classes
         if inspect.isclass(value)
         and issubclass(value, contract)
@@ -104,13 +104,13 @@ def from_attributes(cls: type, attributes: Mapping[str, str], where: str = "") -
         if name not in fields:
             known = [f.replace("_", "-") for f in fields]
             raise InputError(
-                f"{prefix}{kebab(cls.__name__)} has no attribute {key!r}{did_you_mean(key, known)};"
+                f"{prefix}{kebab_case(cls.__name__)} has no attribute {key!r}{did_you_mean(key, known)};"
                 f" it takes {', '.join(known) or 'none'}"
             )
-        values[name] = _convert(text, hints[name], f"{prefix}{kebab(cls.__name__)} {key}")
+        values[name] = _convert(text, hints[name], f"{prefix}{kebab_case(cls.__name__)} {key}")
     missing = [name for name in required_fields(cls) if name not in values]
     if missing:
-        raise InputError(f"{prefix}{kebab(cls.__name__)} needs the attribute {missing[0].replace('_', '-')!r}")
+        raise InputError(f"{prefix}{kebab_case(cls.__name__)} needs the attribute {missing[0].replace('_', '-')!r}")
     try:
         return cls(**values)
     except InputError as error:
@@ -208,7 +208,7 @@ def _number(text: str, what: str) -> float:
 
 
 def _spoken(contract: type) -> str:
-    return kebab(contract.__name__).replace("-", " ")
+    return kebab_case(contract.__name__).replace("-", " ")
 
 
 def _load(place: str, trust: bool) -> types.ModuleType:

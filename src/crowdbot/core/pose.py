@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["MOUNT_HEIGHT", "Pose", "SpatialPose", "Twist", "wrap"]
+__all__ = ["MOUNT_HEIGHT", "Pose", "SpatialPose", "Twist", "wrap_angle"]
 
 Floats = NDArray[np.float64]
 
@@ -17,10 +17,10 @@ MOUNT_HEIGHT = 0.4
 """Height [m] above the floor of a sensor whose pose is planar, about that of the scanners of indoor robots."""
 
 
-def wrap(angle: float) -> float:
+def wrap_angle(angle: float) -> float:
     """Return ``angle`` [rad] in (-pi, pi].
 
-    >>> round(wrap(3 * math.pi / 2), 6) == round(-math.pi / 2, 6)
+    >>> round(wrap_angle(3 * math.pi / 2), 6) == round(-math.pi / 2, 6)
     True
     """
     return math.pi - (math.pi - angle) % (2.0 * math.pi)
@@ -61,10 +61,10 @@ class Pose:
         shift = np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
         return Pose(self.position + shift, self.heading + heading)
 
-    def lifted(self, z: ArrayLike = MOUNT_HEIGHT, roll: ArrayLike = 0.0, pitch: ArrayLike = 0.0) -> SpatialPose:
+    def to_spatial(self, z: ArrayLike = MOUNT_HEIGHT, roll: ArrayLike = 0.0, pitch: ArrayLike = 0.0) -> SpatialPose:
         """Return the pose in space at height ``z`` [m] with ``roll`` and ``pitch`` [rad].
 
-        >>> Pose.of((1.0, 2.0), 0.5).lifted(0.3).position.tolist()
+        >>> Pose.of((1.0, 2.0), 0.5).to_spatial(0.3).position.tolist()
         [[1.0, 2.0, 0.3]]
         """
         height = np.broadcast_to(np.asarray(z, dtype=np.float64), self.heading.shape)

@@ -54,7 +54,7 @@ class Scene:
         wall_height: of all walls [m]; rays pass above.
 
     >>> scene = Scene.of([[0.0, 0.0], [4.0, 0.0]], [[1.0, 0.0], [-1.0, 0.0]], goal=[[9.0, 0.0], [-9.0, 0.0]])
-    >>> scene.position.shape, float(scene.advanced(scene.velocity, 0.5).position[0, 0, 0])
+    >>> scene.position.shape, float(scene.advance(scene.velocity, 0.5).position[0, 0, 0])
     ((1, 2, 2), 0.5)
     """
 
@@ -171,7 +171,7 @@ class Scene:
         speed = np.minimum(self.preferred_speed, distance / dt)
         return np.asarray(away * (speed / np.maximum(distance, 1e-12))[..., None])
 
-    def advanced(self, velocity: Floats, dt: float) -> Scene:
+    def advance(self, velocity: Floats, dt: float) -> Scene:
         """Return the scene ``dt`` [s] later: velocity first, then position (symplectic Euler).
 
         External and absent agents do not take the new velocity; external ones drift with their own. Of the bodies

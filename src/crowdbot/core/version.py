@@ -6,14 +6,14 @@ import functools
 import hashlib
 from pathlib import Path
 
-__all__ = ["code_digest"]
+__all__ = ["source_digest"]
 
 
 @functools.cache
-def code_digest() -> str:
+def source_digest() -> str:
     """Return a hash of every source file of the package.
 
-    >>> len(code_digest())
+    >>> len(source_digest())
     16
     """
     root = Path(__file__).parent.parent

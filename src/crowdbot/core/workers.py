@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from .errors import CrowdbotError, InputError
-from .optional import optional
+from .optional import import_optional
 
-__all__ = ["Job", "Result", "each", "each_kept"]
+__all__ = ["Job", "Result", "each", "run_saved_jobs"]
 
 Job = TypeVar("Job")
 Result = TypeVar("Result")
@@ -55,7 +55,7 @@ def each(
     return _in_processes(function, jobs, workers)
 
 
-def each_kept(
+def run_saved_jobs(
     function: Callable[[Job], Result],
     jobs: Sequence[Job],
     files: Sequence[Path],
@@ -135,7 +135,7 @@ def _threads_shared(workers: int) -> Iterator[None]:
 def _on_ray(
     function: Callable[[Job], Result], jobs: Sequence[Job], workers: int, cluster: str
 ) -> Iterator[tuple[int, Result]]:
-    ray = optional("ray", "a cluster", "cluster")
+    ray = import_optional("ray", "a cluster", "cluster")
     ray.init(address=cluster, ignore_reinit_error=True, log_to_driver=False)
     remote: Any = ray.remote(max_retries=ATTEMPTS - 1)(function)
     waiting = list(enumerate(jobs))[::-1]

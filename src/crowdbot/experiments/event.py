@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from crowdbot.core import InputError, kebab
+from crowdbot.core import InputError, kebab_case
 
 __all__ = [
     "EVENTS", "Abort", "Answered", "Begin", "Event", "Fail", "Finish", "Next", "Pause", "Repeat", "Resume", "Start",
@@ -84,7 +84,7 @@ class Abort:
 
 Event = Start | Next | Answered | Begin | Finish | Fail | Pause | Resume | Repeat | Abort
 
-EVENTS: dict[str, type] = {kebab(kind.__name__): kind for kind in typing.get_args(Event)}
+EVENTS: dict[str, type] = {kebab_case(kind.__name__): kind for kind in typing.get_args(Event)}
 """The kinds of events by their words."""
 
 
@@ -94,7 +94,7 @@ def record_of(event: Event) -> dict[str, Any]:
     >>> record_of(Answered("age", 27))
     {'event': 'answered', 'question': 'age', 'value': 27}
     """
-    return {"event": kebab(type(event).__name__), **dataclasses.asdict(event)}
+    return {"event": kebab_case(type(event).__name__), **dataclasses.asdict(event)}
 
 
 def event_of(record: Mapping[str, Any]) -> Event:

@@ -20,7 +20,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from crowdbot.core import InputError, kebab
+from crowdbot.core import InputError, kebab_case
 
 from .event import Abort, Answered, Begin, Event, Fail, Finish, Next, Pause, Repeat, Resume, Start
 from .experiment import Experiment
@@ -118,7 +118,7 @@ class Session:
         Raises:
             InputError: the event is not possible now, or the answer is not allowed; what is, is said.
         """
-        word = kebab(type(event).__name__)
+        word = kebab_case(type(event).__name__)
         if word not in self.allowed:
             known = ", ".join(self.allowed) or "nothing"
             raise InputError(f"{word!r} is not possible {self._where()}; possible is {known}")

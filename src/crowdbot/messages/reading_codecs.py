@@ -253,7 +253,7 @@ def _read_tracked(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[st
 
 def _odometry_frames(robot: str, topic: str) -> list[tuple[str, str, SpatialPose]]:
     """The estimate begins as the true pose, so the odometry frame lies where the map does."""
-    return [("map", f"{robot}/odom", Pose.of((0.0, 0.0), 0.0).lifted(0.0))]
+    return [("map", f"{robot}/odom", Pose.of((0.0, 0.0), 0.0).to_spatial(0.0))]
 
 
 CODECS: dict[type[Reading], Codec] = {

@@ -75,7 +75,7 @@ class CrowdModel(abc.ABC):
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
         """Return the scene ``dt`` [s] later."""
-        return scene.advanced(self.velocity(scene, dt, rng), dt)
+        return scene.advance(self.velocity(scene, dt, rng), dt)
 
 
 def movable(scene: Scene) -> NDArray[np.bool_]:

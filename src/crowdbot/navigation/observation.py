@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Scene, Twist, Walls, wrap
+from crowdbot.core import InputError, Scene, Twist, Walls, wrap_angle
 from crowdbot.sensors import Reading
 
 __all__ = ["DriveLimits", "Observation", "VisiblePeople"]
@@ -182,7 +182,7 @@ class Observation:
         """Direction to the goal in the robot's frame, -pi to pi [rad]; 0 when it is there."""
         if self.distance == 0.0:
             return 0.0
-        return wrap(math.atan2(self.goal[1] - self.pose[1], self.goal[0] - self.pose[0]) - self.heading)
+        return wrap_angle(math.atan2(self.goal[1] - self.pose[1], self.goal[0] - self.pose[0]) - self.heading)
 
     @property
     def clearances(self) -> Floats:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, kebab, stream
+from crowdbot.core import InputError, kebab_case, stream
 from crowdbot.data import Forecast, Windows
 
 __all__ = ["Predictor", "window_streams"]
@@ -125,7 +125,7 @@ def _spoken(value: object) -> str:
             for field in dataclasses.fields(value)
             if field.repr and not _same(getattr(value, field.name), _default(field))
         ]
-        return kebab(type(value).__name__) + (f"({', '.join(own)})" if own else "")
+        return kebab_case(type(value).__name__) + (f"({', '.join(own)})" if own else "")
     if isinstance(value, np.ndarray):
         return f"array{list(value.shape)}"
     return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -10,7 +10,7 @@ from typing import cast
 import numpy as np
 
 from crowdbot.calibration import Calibrator, PopulationPrior, goal_class, goal_for
-from crowdbot.core import InputError, kebab, stream
+from crowdbot.core import InputError, kebab_case, stream
 from crowdbot.data import Recording, Windows
 from crowdbot.models import Goal
 
@@ -47,7 +47,7 @@ class PredictorSpec:
         crowd = self.predictor
         if self.goal is not None:
             if not isinstance(crowd, Simulated):
-                name = kebab(type(crowd).__name__)
+                name = kebab_case(type(crowd).__name__)
                 raise InputError(f"goals are for predictors that simulate a crowd; {name} has none")
             goal_class(self.goal)
         for word in ("prior", "shared"):
@@ -81,8 +81,8 @@ class PredictorSpec:
         if not isinstance(crowd, Simulated):
             return crowd.name
         parts = [crowd.model, crowd.cost, crowd.search] if crowd.cost is not None else [crowd.model]
-        words = [kebab(type(part).__name__) for part in parts]
-        words.append(self.goal or kebab(type(crowd.goal).__name__))
+        words = [kebab_case(type(part).__name__) for part in parts]
+        words.append(self.goal or kebab_case(type(crowd.goal).__name__))
         words += ["prior"] * (self.prior or crowd.prior is not None) + ["shared"] * self.shared
         return ", ".join(words)
 

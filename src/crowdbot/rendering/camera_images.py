@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, did_you_mean, optional, stream
+from crowdbot.core import InputError, did_you_mean, import_optional, stream
 from crowdbot.sensors import NOTHING, DepthCamera, RGBCamera, distort_image, spatial_pose
 from crowdbot.simulation import Carrier, Running, Simulation
 from crowdbot.trials import OVERVIEW, Camera, Mount, Trial, check_trial, overview
@@ -146,7 +146,7 @@ def _ticks(simulation: Simulation, take: Take) -> tuple[int, int, int]:
 
 def _check_drawing() -> None:
     """Say at once, and not after the run, that nothing can be drawn."""
-    optional("mujoco", "an image of a trial", "sim")
+    import_optional("mujoco", "an image of a trial", "sim")
 
 
 def _looks(mount: Mount) -> bool:

@@ -15,7 +15,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import optional
+from crowdbot.core import import_optional
 
 __all__ = ["Reel", "av_module", "reel"]
 
@@ -248,4 +248,4 @@ def av_module() -> Any:
     Raises:
         MissingExtra: it is not installed.
     """
-    return optional("av", "a film as .mp4", "sim")
+    return import_optional("av", "a film as .mp4", "sim")

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, check_number, did_you_mean, kebab
+from crowdbot.core import InputError, check_number, did_you_mean, kebab_case
 
 __all__ = ["Dropout", "Gaussian", "Noise", "Offset", "Peak", "Quantised", "Randomness", "apply_noise", "normals"]
 
@@ -62,7 +62,7 @@ class Noise(ABC):
         while values and values[-1] == optional[len(values) - 1]:
             values.pop()
         numbers = ", ".join(map(repr, values))
-        return f"{kebab(type(self).__name__)}({numbers})"
+        return f"{kebab_case(type(self).__name__)}({numbers})"
 
 
 @dataclass(frozen=True)
@@ -216,7 +216,7 @@ def normals(shape: tuple[int, ...], rng: Randomness | None) -> Floats:
 
 
 def _made(word: str, inside: str, text: str) -> Noise:
-    known: dict[str, type[Noise]] = {kebab(c.__name__): c for c in (Dropout, Gaussian, Offset, Peak, Quantised)}
+    known: dict[str, type[Noise]] = {kebab_case(c.__name__): c for c in (Dropout, Gaussian, Offset, Peak, Quantised)}
     kind = known.get(word.lower())
     if kind is None:
         raise InputError(

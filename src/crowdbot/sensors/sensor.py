@@ -148,7 +148,7 @@ class Sensor(ABC):
 
 def spatial_pose(pose: Pose | SpatialPose) -> SpatialPose:
     """Return the pose in space; a planar pose becomes level, at the height of a usual mount."""
-    return pose if isinstance(pose, SpatialPose) else pose.lifted()
+    return pose if isinstance(pose, SpatialPose) else pose.to_spatial()
 
 
 def planar_pose(pose: Pose | SpatialPose) -> Pose:

@@ -57,7 +57,7 @@ class Ultrasound(Ranging):
         InputError: a value is not allowed.
 
     >>> scene = Scene.of([[2.0, 0.0]], radius=0.3)
-    >>> Ultrasound().read(scene, Pose.of((0.0, 0.0), 0.0).lifted(0.5)).ranges.tolist()
+    >>> Ultrasound().read(scene, Pose.of((0.0, 0.0), 0.0).to_spatial(0.5)).ranges.tolist()
     [1.7]
     """
 

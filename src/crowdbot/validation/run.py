@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot import models as room
-from crowdbot.core import CrowdbotError, InputError, builtin_classes, find_class, kebab
+from crowdbot.core import CrowdbotError, InputError, builtin_classes, find_class, kebab_case
 from crowdbot.models import CrowdModel
 
 from .bottleneck import BOTTLENECK
@@ -100,7 +100,7 @@ def select_models(names: Sequence[str] = ()) -> tuple[dict[str, CrowdModel], dic
         UnknownName, InputError: a name means no model, or one that has no defaults.
     """
     if names:
-        classes = {kebab(cls.__name__): cls for cls in (find_class(name, room, CrowdModel) for name in names)}
+        classes = {kebab_case(cls.__name__): cls for cls in (find_class(name, room, CrowdModel) for name in names)}
     else:
         classes = builtin_classes(room, CrowdModel)
     known: dict[str, CrowdModel] = {}

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.calibration import Fit
-from crowdbot.core import InputError, code_digest, each_kept, stream
+from crowdbot.core import InputError, run_saved_jobs, source_digest, stream
 from crowdbot.data import Recording
 from crowdbot.metrics import PersonErrors, Score, person_errors
 from crowdbot.prediction import PredictorSpec
@@ -53,7 +53,7 @@ class EvaluationJob:
     @property
     def key(self) -> str:
         """Hash of everything that determines the result, except the content of the recording."""
-        return hashlib.blake2b(pickle.dumps((code_digest(), self)), digest_size=12).hexdigest()
+        return hashlib.blake2b(pickle.dumps((source_digest(), self)), digest_size=12).hexdigest()
 
 
 @dataclass(frozen=True)
@@ -201,7 +201,7 @@ class Evaluation:
         """Yield each job with its result when it is done; results stored in the folder ``keep`` come first."""
         jobs = self.jobs()
         files = [] if keep is None else self._files(keep)
-        for number, part in each_kept(run_job, jobs, files, JobResult.save, JobResult.load, workers, cluster):
+        for number, part in run_saved_jobs(run_job, jobs, files, JobResult.save, JobResult.load, workers, cluster):
             yield jobs[number], part
 
     def progress(self, keep: Path) -> int:

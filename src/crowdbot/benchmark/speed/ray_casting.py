@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core import Bodies, Scene, SpatialPose, optional, stream
+from crowdbot.core import Bodies, Scene, SpatialPose, import_optional, stream
 from crowdbot.sensors.beams import unit_vectors
 
 __all__ = ["mujoco_rays", "people_with_limbs"]
@@ -37,7 +37,7 @@ def mujoco_rays(scene: Scene, sensor: Any, pose: SpatialPose) -> Callable[[], An
     Raises:
         MissingExtra: MuJoCo is not installed.
     """
-    mujoco = optional("mujoco", "the comparison with MuJoCo", "sim")
+    mujoco = import_optional("mujoco", "the comparison with MuJoCo", "sim")
     spec = mujoco.MjSpec()
     spec.memory = 64 * 2**20
     world, shapes = spec.worldbody, mujoco.mjtGeom

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Scene, optional
+from crowdbot.core import Scene, import_optional
 
 __all__ = ["JUPEDSIM", "jupedsim_step", "power_law_in_numpy"]
 
@@ -25,7 +25,7 @@ def jupedsim_step(model: str, scene: Scene) -> Callable[[], object]:
     Raises:
         MissingExtra: jupedsim is not installed.
     """
-    jps = optional("jupedsim", "the comparison with JuPedSim", "bench")
+    jps = import_optional("jupedsim", "the comparison with JuPedSim", "bench")
     place = scene.position[0]
     low, high = place.min() - 200.0, place.max() + 200.0
     square = [(low, low), (high, low), (high, high), (low, high)]

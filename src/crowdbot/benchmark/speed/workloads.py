@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core import Scene, parameters, stream
+from crowdbot.core import Scene, kebab_case, parameters, stream
 from crowdbot.recording import run
 
 from .measurement import Gauge, Measurement
@@ -40,7 +40,7 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
     True
     """
     from crowdbot import models
-    from crowdbot.core import builtin_classes, kebab
+    from crowdbot.core import builtin_classes
 
     kinds = builtin_classes(models, models.CrowdModel)
     found: dict[str, Callable[[], Measurement | Gauge]] = {}
@@ -71,7 +71,7 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
     found["lidar3d-16x1800-limbs"] = functools.partial(_rays_of_limbs, rings=16)
     found["posing-and-skinning"] = posing_and_skinning
     for predictor in ("ConstantVelocity", "Kalman", "Simulated"):
-        found[f"predict-{kebab(predictor)}"] = functools.partial(_predictor, predictor)
+        found[f"predict-{kebab_case(predictor)}"] = functools.partial(_predictor, predictor)
     return found
 
 
@@ -184,7 +184,7 @@ def _rays_of_limbs(rings: int = 0) -> Measurement:
     from crowdbot.core import Pose
     from crowdbot.sensors import Lidar2D, Lidar3D
 
-    scene, pose = people_with_limbs(50), Pose.of((5.0, 5.0), 0.3).lifted()
+    scene, pose = people_with_limbs(50), Pose.of((5.0, 5.0), 0.3).to_spatial()
     sensor: Any = Lidar3D(columns=1800) if rings else Lidar2D(rays=1080, field_of_view=1.5 * np.pi, range_max=30.0)
     theirs = mujoco_rays(scene, sensor, pose)
     words = "mj_multiRay of MuJoCo, the same 750 capsules as moving bodies, 4 walls and the floor"

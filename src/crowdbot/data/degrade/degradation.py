@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import DataError, InputError, check_parameters, kebab, parameters, stream
+from crowdbot.core import DataError, InputError, check_parameters, kebab_case, parameters, stream
 from crowdbot.data.trajectories import Trajectories
 
 __all__ = ["GHOST", "Degradation", "DegradedTracks", "EmptyRecordingError"]
@@ -146,7 +146,7 @@ class Degradation(ABC):
     @property
     def name(self) -> str:
         """Name on the command line."""
-        return kebab(type(self).__name__)
+        return kebab_case(type(self).__name__)
 
     @property
     def unit(self) -> str:

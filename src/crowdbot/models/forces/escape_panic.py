@@ -280,7 +280,7 @@ class EscapePanic(CrowdModel):
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
         """Return the scene ``dt`` [s] later, which remembers the last velocities; ``rng`` is not used."""
         mean, last = self._move_agents(scene, dt)
-        return scene.advanced(mean, dt).replace(memory={**scene.memory, MEMORY: last - mean})
+        return scene.advance(mean, dt).replace(memory={**scene.memory, MEMORY: last - mean})
 
     def _move_agents(self, scene: Scene, dt: float) -> tuple[Floats, Floats]:
         """Return the mean and the last velocities ``[E, A, 2]`` [m/s]."""

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, kebab
+from crowdbot.core import InputError, kebab_case
 from crowdbot.data import Trajectories, Windows, steady_velocity
 
 __all__ = ["Choices", "Goal"]
@@ -96,5 +96,5 @@ class Goal(abc.ABC):
             InputError: this goal does not learn, or the recordings do not suit it.
             DataError: a recording is too short to learn from.
         """
-        name = kebab(cls.__name__)
+        name = kebab_case(cls.__name__)
         raise InputError(f"{name} does not learn from recordings: make it by {cls.__name__}(...)")

@@ -245,7 +245,7 @@ class AnticipationVelocity(CrowdModel):
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
         """Return the scene ``dt`` [s] later, with the headings of the model."""
         velocity, heading = self._move(scene, dt, rng)
-        return scene.advanced(velocity, dt).replace(heading=heading)
+        return scene.advance(velocity, dt).replace(heading=heading)
 
     def _move(self, scene: Scene, dt: float, rng: np.random.Generator | None) -> tuple[Floats, Floats]:
         wish, walking = desired_velocity(scene, dt), movable(scene)

@@ -361,7 +361,7 @@ class VOG(CrowdModel):
         """Return the scene ``dt`` [s] later, which remembers how calm everyone is as ``vog_calm``."""
         out = self._choose_velocity(scene, dt)
         calm = np.where(movable(scene), out[..., 2] + 10.0 * dt, CALM)
-        return scene.advanced(out[..., :2], dt).replace(memory={**scene.memory, MEMORY: calm})
+        return scene.advance(out[..., :2], dt).replace(memory={**scene.memory, MEMORY: calm})
 
     def _choose_velocity(self, scene: Scene, dt: float) -> Floats:
         wish, walking = desired_velocity(scene, dt), movable(scene)

@@ -375,7 +375,7 @@ class VBM(CrowdModel):
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
         """Return the scene ``dt`` [s] later; standing agents turn, too."""
         out = self._choose_velocity(scene, dt, rng)
-        after = scene.advanced(out[..., :2], dt)
+        after = scene.advance(out[..., :2], dt)
         turned = np.where(movable(scene), np.arctan2(out[..., 3], out[..., 2]), after.heading)
         return after.replace(heading=turned)
 

@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Iterator
 from typing import Any
 
-from crowdbot.core import InputError, optional
+from crowdbot.core import InputError, import_optional
 
 __all__ = ["to_tensors", "torch_device", "torch_module", "torch_threads"]
 
@@ -17,7 +17,7 @@ def torch_module() -> Any:
     Raises:
         MissingExtra: PyTorch is not installed.
     """
-    return optional("torch", "learned prediction", "learn")
+    return import_optional("torch", "learned prediction", "learn")
 
 
 def torch_device(name: str) -> Any:

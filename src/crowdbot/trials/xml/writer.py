@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import Element, InputError, builtin_classes, format_xml, kebab
+from crowdbot.core import Element, InputError, builtin_classes, format_xml, kebab_case
 from crowdbot.trials.fields import Part, outline
 from crowdbot.trials.notation import plain
 from crowdbot.trials.randomized_model import Drawn
@@ -87,8 +87,8 @@ def _type(part: Part, value: Any, folder: Path | None) -> str:
     assert part.plug is not None
     cls = type(value)
     room, contract = part.plug.places()
-    if builtin_classes(room, contract).get(kebab(cls.__name__)) is cls:
-        return kebab(cls.__name__)
+    if builtin_classes(room, contract).get(kebab_case(cls.__name__)) is cls:
+        return kebab_case(cls.__name__)
     module = sys.modules[cls.__module__]
     if cls.__module__.startswith("crowdbot_plug_") and module.__file__:
         file = Path(module.__file__)

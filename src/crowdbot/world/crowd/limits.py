@@ -29,7 +29,7 @@ class CrowdLimits:
         InputError: a limit is not above 0, or not finite.
 
     >>> start = Scene.of([[0.0, 0.0]], goal=[[9.0, 0.0]])
-    >>> fast = start.advanced(start.desired_velocity(0.1), 0.1)
+    >>> fast = start.advance(start.desired_velocity(0.1), 0.1)
     >>> CrowdLimits(max_acceleration=2.0).kept(start, fast, dt=0.1).velocity.round(9).tolist()
     [[[0.2, 0.0]]]
     """

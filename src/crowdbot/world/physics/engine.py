@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from crowdbot.core import optional
+from crowdbot.core import import_optional
 
 __all__ = ["engine"]
 
@@ -18,4 +18,4 @@ def engine() -> Any:
     >>> engine().__name__
     'mujoco'
     """
-    return optional("mujoco", "the physics world", "sim")
+    return import_optional("mujoco", "the physics world", "sim")

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.core import InputError, optional, reject_entities
+from crowdbot.core import InputError, import_optional, reject_entities
 
 from .shapes import ConvexPiece, Mesh
 
@@ -85,7 +85,7 @@ def with_pieces(mesh: Mesh, method: str = "auto") -> tuple[Mesh, str]:
 
 
 def _trimesh() -> Any:
-    return optional("trimesh", "reading meshes of robots", "sim")
+    return import_optional("trimesh", "reading meshes of robots", "sim")
 
 
 def _loaded(data: bytes, kind: str) -> Any:

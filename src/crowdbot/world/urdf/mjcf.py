@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Element, InputError, did_you_mean, format_xml, optional
+from crowdbot.core import Element, InputError, did_you_mean, format_xml, import_optional
 
 from .geoms import Geoms, row
 from .inertia import unphysical
@@ -50,7 +50,7 @@ class Mjcf(NamedTuple):
         Raises:
             MissingExtra: mujoco is not installed.
         """
-        mujoco = optional("mujoco", "the physics of robots", "sim")
+        mujoco = import_optional("mujoco", "the physics of robots", "sim")
         return mujoco.MjModel.from_xml_string(self.xml, self.assets)
 
 
