@@ -135,9 +135,9 @@ def _baseline(folder: Path) -> None:
         rows.append([protocol, *(f"{s.ade:.3f} / {s.fde:.3f} ({s.persons})" for s in scores)])
     _table(["protocol", *FOLDS], rows)
     print(
-        "\nThe row `all`, truncated to two decimals, equals the published linear baseline (GeoTDM 2024, table 2). The"
-        "\nrow `partial` equals that of Schöller et al. 2020. Publications take 10 frames of biwi_eth as 0.4 s; the true"
-        "\nstep of that file is 0.667 s (`--time-base true`, the default). This changes speeds, but not errors over rows."
+        "\nThe row `all`, truncated to two decimals, equals the published linear baseline (GeoTDM 2024, table 2)."
+        "\nThe row `partial` equals that of Schöller et al. 2020. Publications take 10 frames of biwi_eth as 0.4 s; the"
+        "\ntrue step of that file is 0.667 s (`--time-base true`, the default). This changes speeds, not errors over rows."
     )
 
 
