@@ -135,9 +135,9 @@ def _baseline(folder: Path) -> None:
         rows.append([protocol, *(f"{s.ade:.3f} / {s.fde:.3f} ({s.persons})" for s in scores)])
     _table(["protocol", *FOLDS], rows)
     print(
-        "\nThe row `all`, truncated to two decimals, equals the published linear baseline (GeoTDM 2024, table 2). The row"
-        "\n`partial` equals that of Schöller et al. 2020. Publications take 10 frames of biwi_eth as 0.4 s; the true step"
-        "\nof that file is 0.667 s (`--time-base true`, the default). This changes speeds, but not errors over rows."
+        "\nThe row `all`, truncated to two decimals, equals the published linear baseline (GeoTDM 2024, table 2)."
+        "\nThe row `partial` equals that of Schöller et al. 2020. Publications take 10 frames of biwi_eth as 0.4 s; the"
+        "\ntrue step of that file is 0.667 s (`--time-base true`, the default). This changes speeds, not errors over rows."
     )
 
 
@@ -187,7 +187,8 @@ def _clash(scores: list[Score]) -> str:
 def _engines(folder: Path) -> None:
     print("\n## ORCA against RVO2\n")
     print(
-        "One step from the same state, walls included: the share of agents whose velocity differs by less than 1e-4 m/s.\n"
+        "One step from the same state, walls included: the share of agents with velocities that differ by less than"
+        " 1e-4 m/s.\n"
     )
     print("`pytest tests/models/test_orca.py -k rvo2`")
     rows = []

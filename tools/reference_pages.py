@@ -68,17 +68,25 @@ def face(module: ModuleType) -> str:
     lines = [f"# {module.__name__}", "", inspect.cleandoc(module.__doc__ or ""), ""]
     for title, names in groups.items():
         if names:
-            links = [f"[`{n}`](#{module.__name__}.{n})" for n in names]
+            links = [f"[`{n}`](#{_path(module, n)})" for n in names]
             lines += [f"**{title}**: " + ", ".join(links), ""]
     for title in ("Classes", "Functions"):
         for name in groups[title]:
-            lines += [f"::: {module.__name__}.{name}", ""]
+            lines += [f"::: {_path(module, name)}", ""]
     notes = _notes(module)
     for name in groups["Constants"]:
         lines += [f"## {name} {{ #{module.__name__}.{name} .doc-heading }}", "", notes.get(name, ""), ""]
         if isinstance(value := getattr(module, name), int | float | str | tuple) and len(repr(value)) < 300:
             lines += [f"`{name} = {value!r}`", ""]
     return "\n".join(lines)
+
+
+def _path(module: ModuleType, name: str) -> str:
+    """Return the dotted name of something in a face; where a file has the same name, that in the file."""
+    thing = getattr(module, name)
+    if (Path(module.__path__[0]) / f"{name}.py").exists() and hasattr(thing, "__qualname__"):
+        return f"{thing.__module__}.{thing.__qualname__}"
+    return f"{module.__name__}.{name}"
 
 
 def _notes(module: ModuleType) -> dict[str, str]:
@@ -114,7 +122,7 @@ def front_door() -> str:
         thing = getattr(crowdbot, name)
         room = ".".join(thing.__module__.split(".")[:2])
         known = name in getattr(importlib.import_module(room), "__all__", ())
-        link = f"[`cb.{name}`][{room}.{name}]" if known else f"`cb.{name}`"
+        link = f"[`cb.{name}`][{_path(importlib.import_module(room), name)}]" if known else f"`cb.{name}`"
         lines.append(f"| {link} | `{room}` | {_sentence(thing)} |")
     lines += ["", "## Rooms", "", "| package | |", "|---|---|"]
     lines += [f"| [`{room.__name__}`]({_title(room)}.md) | {_sentence(room)} |" for room in faces()]

@@ -89,7 +89,7 @@ class Forecast:
         lines = [
             Path2D(paths[k, :, a], opacity=float(opacity[k])) for a in range(len(people)) for k in range(self.samples)
         ]
-        starts = [Disc(*map(float, paths[0, 0, a]), 0.15) for a in range(len(people))]
+        starts = [Disc(float(paths[0, 0, a, 0]), float(paths[0, 0, a, 1]), 0.15) for a in range(len(people))]
         about = f"window {window + 1} of {len(self)}, {len(people)} people, {self.samples} x {self.steps} steps"
         return draw_svg(lines, starts, f"{self.predictor}: {about} of {self.dt:.4g} s")
 

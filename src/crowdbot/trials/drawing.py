@@ -18,8 +18,8 @@ def trial_svg(trial: Trial) -> str:
     """Return an SVG drawing: walls grey, zones where people start blue, robots and their goals red."""
     rings = [np.concatenate([ring, ring[:1]]) for ring in trial.stage.rings]
     lines = [Path2D(ring, WALL_COLOR, 1.5) for ring in rings]
-    for place in (*trial.spawners, *trial.sources):
-        zone = np.asarray(place.zone, dtype=np.float64)
+    for area in [spawner.zone for spawner in trial.spawners] + [source.zone for source in trial.sources]:
+        zone = np.asarray(area, dtype=np.float64)
         lines.append(Path2D(np.concatenate([zone, zone[:1]]), PERSON_COLOR, 1.0, 0.6))
     discs = [Disc(agent.x, agent.y, 0.25, PERSON_COLOR) for agent in trial.agents]
     for robot in trial.robots:
