@@ -77,7 +77,7 @@ NEW = """<trial name="new" duration="2" step="0.04" seed="4" world="planar" phys
   <agent x="6" y="4" goal="1,4" body="woman-36" outfit="3"/>
   <agent x="7" y="2.2" heading="3" body="man" activity="phone"/>
   <spawner count="3" zone="9,1 11,1 11,5 9,5" goal="1,1 2,1 2,5 1,5" body="adult child" activity="talk bottle"/>
-  <robot name="pepper" type="pepper" rates="nearest" x="2" y="4" control-period="0.08">
+  <robot name="pepper" type="pepper" sensor-rates="nearest" x="2" y="4" control-period="0.08">
     <goal x="10" y="4"/>
     <navigator type="orca"/>
     <sensor name="eyes" type="rgbcamera" link="CameraTop_frame" width="32" height="24" rate="5" segmentation="true"/>

@@ -83,7 +83,7 @@ def rays(folder: Path) -> None:
     robot_bodies, seen = world.robot_body(robot), world.body_scene()
     figure = Figure(figsize=(12, 5.2), layout="constrained")
     left, right = figure.subplots(1, 2)
-    scan = robot_bodies.robot.mount("lidar_front").sensor.measure(
+    scan = robot_bodies.robot.mount("lidar_front").sensor.read(
         seen.without(robot), robot_bodies.mounted("lidar_front"), stream(0, "scan")
     )
     ends, hit = scan.points()[0], scan.hit[0]
@@ -103,7 +103,7 @@ def rays(folder: Path) -> None:
     left.set(xlim=(-6, 6), ylim=(-5, 7.5), aspect="equal", xlabel="x [m]", ylabel="y [m]")
     left.set_title("lidar_front of Qolo, 160 degrees")
     left.legend(loc="lower left")
-    cloud = robot_bodies.robot.mount("velodyne_front").sensor.measure(
+    cloud = robot_bodies.robot.mount("velodyne_front").sensor.read(
         seen.without(robot), robot_bodies.mounted("velodyne_front")
     )
     points, who = cloud.points(in_world=True)[0].reshape(-1, 3), cloud.hit[0].ravel()

@@ -21,9 +21,9 @@ import numpy as np
 from crowdbot.core import stream
 from crowdbot.data import Trajectories, Windows, load
 from crowdbot.prediction import SocialWays
-from crowdbot.prediction.training.loop import BEST, Schedule, train
+from crowdbot.prediction.training.loop import BEST, TrainingSchedule, train
 from crowdbot.prediction.training.samples import Samples
-from crowdbot.prediction.training.torch_backend import threads
+from crowdbot.prediction.training.torch_backend import torch_threads
 
 SCALE = 0.0373
 """Metres of a pixel in gates/video2, as estimated_scales.yaml says."""
@@ -55,8 +55,10 @@ def drawn(options: argparse.Namespace, place: str, method: str, learned: Windowe
     settings, values = METHODS[method]
     samples, folder = Samples.cut(*learned, place), options.out / f"{place}-{method}"
     model = learner(settings, values, samples, samples, 0, "cpu")
-    with threads():
-        train(model, Schedule(options.updates, check_every=options.updates, keep_every=100), folder, resume=True)
+    with torch_threads():
+        train(
+            model, TrainingSchedule(options.updates, check_every=options.updates, keep_every=100), folder, resume=True
+        )
     past, future = asked
     window, person = np.nonzero(future.scored)
     found = SocialWays(str(folder / BEST), contact=0.0).predict(past, ROWS, DRAWS, stream(0, "draws"))

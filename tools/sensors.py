@@ -107,7 +107,7 @@ def lidar2d(world: cb.Scene, folder: Path) -> None:
         both, (("level, 0.4 m high", 0.0, 0.4), ("tilted by 12 deg, 0.9 m high", 0.21, 0.9)), strict=True
     ):
         pose = SpatialPose.of((-0.3, -0.2, z), pitch=pitch, yaw=0.2)
-        scan = lidar.measure(world, pose)
+        scan = lidar.read(world, pose)
         plan(axes, world, pose)
         ends, finite = scan.points()[0], np.isfinite(scan.ranges[0])
         for end in ends[finite]:
@@ -133,7 +133,7 @@ def lidar3d(world: cb.Scene, folder: Path) -> None:
     axes = figure.add_subplot(projection="3d")
     pose = SpatialPose.of((-0.3, -0.2, 1.1), yaw=0.2)
     sensor = Lidar3D(columns=900, elevations=tuple(np.radians(np.linspace(-25, 15, 24))))
-    cloud = sensor.measure(world, pose)
+    cloud = sensor.read(world, pose)
     finite = np.isfinite(cloud.ranges[0])
     space(axes, cloud.points(in_world=True)[0][finite], cloud.hit[0][finite], 1.2)
     axes.plot(*pose.position.T, "k^", ms=8)
@@ -158,7 +158,7 @@ def echoes(world: cb.Scene, folder: Path) -> None:
             )
             edge = pose.position[0, :2] + reach[:, None] * np.column_stack([np.cos(yaw + angle), np.sin(yaw + angle)])
             axes.add_patch(plt.Polygon(np.vstack([pose.position[0, :2], edge]), fill=False, color="tab:orange", lw=1))
-            echo = sensor.measure(world, pose)
+            echo = sensor.read(world, pose)
             if np.isfinite(echo.ranges[0]):
                 end = pose.position[0] + echo.ranges[0] * pose.matrix[0] @ echo.direction[0]
                 axes.plot([pose.position[0, 0], end[0]], [pose.position[0, 1], end[1]], color="tab:orange", lw=1.5)
@@ -196,7 +196,7 @@ def depth(world: cb.Scene, folder: Path) -> None:
     plain = DepthCamera(width=424, height=240, field_of_view=math.radians(90.0))
     noisy = DepthCamera(width=424, height=240, field_of_view=math.radians(90.0), baseline=0.05, disparity_noise=0.08,
                         disparity_step=1 / 32)  # fmt: skip
-    image, error = plain.measure(world, pose), noisy.measure(world, pose, stream(1))
+    image, error = plain.read(world, pose), noisy.read(world, pose, stream(1))
     shown = three[0].imshow(np.where(np.isfinite(image.depth[0]), image.depth[0], np.nan), cmap="viridis_r")
     figure.colorbar(shown, ax=three[0], label="depth [m]")
     label = np.where(image.hit[0] >= 0, 4 + image.part[0], -image.hit[0])

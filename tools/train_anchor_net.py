@@ -25,12 +25,12 @@ from crowdbot.benchmark import evaluate
 from crowdbot.data import Trajectories, Windows, load
 from crowdbot.metrics import Score
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity
-from crowdbot.prediction.anchor_net.confidence import calibrated
+from crowdbot.prediction.anchor_net.confidence import calibrate_confidence
 from crowdbot.prediction.anchor_net.training import UPDATES, AnchorNetTraining, AnchorTraining
-from crowdbot.prediction.anchor_net.training_data import Variation, gathered
-from crowdbot.prediction.pretrained_weights import ALL, FOLDS, kept_out
-from crowdbot.prediction.training.loop import Schedule, train
-from crowdbot.prediction.training.torch_backend import threads
+from crowdbot.prediction.anchor_net.training_data import Augmentation, training_set
+from crowdbot.prediction.pretrained_weights import ALL, FOLDS, is_held_out
+from crowdbot.prediction.training.loop import TrainingSchedule, train
+from crowdbot.prediction.training.torch_backend import torch_threads
 
 SHOWN = ("ade", "fde", "nll", "energy", "collisions")
 EDGES = np.concatenate([[0.0], np.geomspace(0.005, 1.0, 13)])
@@ -41,7 +41,7 @@ SMALL = ("basis", "centres", "spread", "width", "temperature", "widening")
 def recordings(folder: Path, fold: str, left_out: bool = False) -> list[Trajectories]:
     """Return the recordings of a folder that belong to the training of a fold, or those that are left out."""
     found = [load(path, fps=25) for path in sorted(folder.glob("*.txt"))]
-    return [tracks for tracks in found if kept_out(fold, tracks.name) == left_out]
+    return [tracks for tracks in found if is_held_out(fold, tracks.name) == left_out]
 
 
 def train_fold(options: argparse.Namespace, fold: str, seed: int) -> None:
@@ -56,16 +56,16 @@ def train_fold(options: argparse.Namespace, fold: str, seed: int) -> None:
         anchors = Anchors.fit(*(tracks.windows() for tracks in used))
         np.savez(options.out / f"anchors-{fold}.npz", shapes=anchors.shapes.astype(np.float32), share=anchors.share)
     how = AnchorTraining(seed=seed, **_changes(options.set))
-    watched = gathered(recordings(options.data / "val", fold), reverse=False)
-    model = AnchorNetTraining(how, gathered(used), watched, [tracks.name for tracks in used])
-    schedule = Schedule(options.updates, check_every=options.updates, keep_every=500, seed=seed)
+    watched = training_set(recordings(options.data / "val", fold), reverse=False)
+    model = AnchorNetTraining(how, training_set(used), watched, [tracks.name for tracks in used])
+    schedule = TrainingSchedule(options.updates, check_every=options.updates, keep_every=500, seed=seed)
     work, folder = time.process_time(), options.out / name
 
     def tell(update: int, total: int) -> None:
         if update % 500 == 0:
             print(f"{name}: update {update} of {total}, {time.process_time() - work:.0f} CPU s", flush=True)
 
-    with threads():
+    with torch_threads():
         course = train(model, schedule, folder, resume=True, tick=tell)
     write(options, fold, done, model.numbers())
     shutil.rmtree(folder)
@@ -76,7 +76,7 @@ def train_fold(options: argparse.Namespace, fold: str, seed: int) -> None:
 def write(options: argparse.Namespace, fold: str, file: Path, numbers: dict[str, np.ndarray]) -> None:
     """Calibrate on val/ of the places that were learned from, and write the numbers in as few bytes as they need."""
     kept = {k: v.astype(np.float32 if k in SMALL else np.float16) for k, v in numbers.items()}
-    kept = calibrated(kept, gathered(recordings(options.data / "val", fold), reverse=False))
+    kept = calibrate_confidence(kept, training_set(recordings(options.data / "val", fold), reverse=False))
     np.savez(file, **{k: v.astype(np.float32) if k in SMALL else v for k, v in kept.items()})
     size = sum(values.size for values in kept.values())
     said = {name: kept[name].round(2).tolist() for name in ("temperature", "widening")}
@@ -86,8 +86,8 @@ def write(options: argparse.Namespace, fold: str, file: Path, numbers: dict[str,
 def _changes(words: list[str]) -> dict[str, object]:
     """Return settings of the training; those of the variation may be named too."""
     pairs = {k: float(v) for k, _, v in (word.partition("=") for word in words)}
-    fields = {f.name for f in dataclasses.fields(Variation)}
-    varied = dataclasses.replace(Variation(), **{k: v for k, v in pairs.items() if k in fields})
+    fields = {f.name for f in dataclasses.fields(Augmentation)}
+    varied = dataclasses.replace(Augmentation(), **{k: v for k, v in pairs.items() if k in fields})
     return {k: v for k, v in pairs.items() if k not in fields} | {"variation": varied}
 
 

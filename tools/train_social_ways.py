@@ -25,11 +25,11 @@ from crowdbot.benchmark import evaluate
 from crowdbot.data import Trajectories, load
 from crowdbot.metrics import Score
 from crowdbot.prediction import SocialWays
-from crowdbot.prediction.pretrained_weights import FOLDS, kept_out
+from crowdbot.prediction.pretrained_weights import FOLDS, is_held_out
 from crowdbot.prediction.training.checkpoint import load_checkpoint, save_checkpoint
-from crowdbot.prediction.training.loop import BEST, Row, Schedule, train
+from crowdbot.prediction.training.loop import BEST, LogRow, TrainingSchedule, train
 from crowdbot.prediction.training.samples import Samples
-from crowdbot.prediction.training.torch_backend import threads
+from crowdbot.prediction.training.torch_backend import torch_threads
 
 SHOWN = ("ade", "fde", "nll", "energy", "collisions")
 OBSMAT = {"eth": "eth_biwi/seq_eth", "hotel": "eth_biwi/seq_hotel", "univ": "ucy/students03", "zara1": "ucy/zara01",
@@ -46,7 +46,7 @@ def samples_of(recordings: list[Trajectories], protocol: str = "all") -> Samples
 def texts(folder: Path, fold: str, left_out: bool = False) -> list[Trajectories]:
     """Return the recordings of a folder that belong to the training of a fold, or those that are left out."""
     found = [load(path, fps=25) for path in sorted(folder.glob("*.txt"))]
-    return [one for one in found if kept_out(fold, one.name) == left_out]
+    return [one for one in found if is_held_out(fold, one.name) == left_out]
 
 
 def leave_one_out(options: argparse.Namespace, fold: str, seed: int) -> None:
@@ -78,12 +78,12 @@ def trained(
 
     values = dict(word.split("=", 1) for word in options.set)
     model = learner("variety", values, learned, watched, seed, "cpu")
-    schedule = Schedule(options.updates, check_every=every, keep_every=100, watch=("ade", "fde"), seed=seed)
+    schedule = TrainingSchedule(options.updates, check_every=every, keep_every=100, watch=("ade", "fde"), seed=seed)
 
-    def tell(row: Row) -> None:
+    def tell(row: LogRow) -> None:
         print(folder.name, *(f"{name} {value:.4g}" for name, value in row.items()), flush=True)
 
-    with threads():
+    with torch_threads():
         train(model, schedule, folder, resume=True, report=tell)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crowdbot.benchmark import Task, draw_degraded, sweep
+from crowdbot.benchmark import DegradedTask, plot_degraded, sweep_degradations
 from crowdbot.benchmark.prediction.degraded_plot import _figure
 from crowdbot.data import Trajectories
 from crowdbot.data.degrade import GaussianNoise, MissingFrames
@@ -18,7 +18,11 @@ def sweeps():
     )
     predictors = [ConstantVelocity(), Kalman(), ConstantAcceleration()]
     return [
-        [score for scores in sweep([tracks], [one], predictors, task=Task(draws=2)) for score in scores]
+        [
+            score
+            for scores in sweep_degradations([tracks], [one], predictors, task=DegradedTask(draws=2))
+            for score in scores
+        ]
         for one in (GaussianNoise(), MissingFrames())
     ]
 
@@ -47,7 +51,7 @@ def test_the_same_scores_give_the_same_files(sweeps, tmp_path):
     for name in ("one", "two"):
         folder = tmp_path / name
         folder.mkdir()
-        files = draw_degraded(sweeps, folder, "two people")
+        files = plot_degraded(sweeps, folder, "two people")
         assert [file.name for file in files] == ["degraded.png", "degraded.svg"]
         assert sorted(folder.iterdir()) == files
         kept.append([file.read_bytes() for file in files])

@@ -12,26 +12,26 @@ import pytest
 import torch
 
 from crowdbot.benchmark.toy_gan.methods import METHODS
-from crowdbot.benchmark.toy_gan.study import MEASURES, Run, ToyStudy, with_values
-from crowdbot.benchmark.toy_gan.toy_data import Toy
-from crowdbot.benchmark.toy_gan.training import ToyTraining, sample_futures, toy_config
+from crowdbot.benchmark.toy_gan.study import MEASURES, GanComparison, GanRun, with_settings
+from crowdbot.benchmark.toy_gan.toy_data import ToyData
+from crowdbot.benchmark.toy_gan.training import ToyTraining, gan_config, sample_futures
 from crowdbot.core import InputError, stream
 from crowdbot.prediction.social_ways.config import SocialWaysConfig
-from crowdbot.prediction.training.torch_backend import threads
+from crowdbot.prediction.training.torch_backend import torch_threads
 
 SMALL = {"hidden": 8, "pooled": 4, "noise": 6, "batch": 32}
-TOY = Toy(tracks=6)
+TOY = ToyData(tracks=6)
 
 
 @pytest.fixture(autouse=True, scope="module")
 def one_thread() -> Iterator[None]:
-    with threads(1):
+    with torch_threads(1):
         yield
 
 
 def trained(updates: int, **values: object) -> ToyTraining:
     """Return a small network on the toy set after some updates."""
-    model = ToyTraining(TOY, toy_config("vanilla", TOY, {**SMALL, **values}))
+    model = ToyTraining(TOY, gan_config("vanilla", TOY, {**SMALL, **values}))
     parts = model.batches(stream(0, "order"))
     for number in range(updates):
         model.update(parts[number % len(parts)], stream(0, "update", number), number, updates)
@@ -129,20 +129,20 @@ def test_wrong_settings_are_said() -> None:
 def test_rows_of_the_report_keep_its_settings_and_ours_say_what_differs() -> None:
     report = SocialWaysConfig()
     for method in tuple(METHODS)[:7]:
-        config = toy_config(method, Toy())
+        config = gan_config(method, ToyData())
         for name in ("generator_rate", "discriminator_rate", "momentum", "adversarial", "batch", "hidden", "noise"):
             assert getattr(config, name) == getattr(report, name)
         assert (config.noise_gain, config.slope_penalty, config.average) == (0.0, 0.0, 0.0)
-    code = toy_config("info+rates-of-code", Toy())
+    code = gan_config("info+rates-of-code", ToyData())
     assert (code.generator_rate, code.discriminator_rate, code.adversarial) == (1e-4, 1e-3, "least-squares")
-    steady = toy_config("info+slope-penalty", Toy())
-    assert dataclasses.replace(steady, use_info_loss=False) == toy_config("vanilla+slope-penalty", Toy())
+    steady = gan_config("info+slope-penalty", ToyData())
+    assert dataclasses.replace(steady, use_info_loss=False) == gan_config("vanilla+slope-penalty", ToyData())
 
 
 def test_a_study_goes_seed_by_seed_and_resumes_to_the_same_runs(tmp_path: Path) -> None:
-    study = ToyStudy(("info+slope-penalty", "vanilla"), (0, 1), updates=4, check_every=2, toy=TOY)
-    study = with_values(study, {"hidden": "4", "noise": "2"})
-    runs: list[Run] = []
+    study = GanComparison(("info+slope-penalty", "vanilla"), (0, 1), updates=4, check_every=2, toy=TOY)
+    study = with_settings(study, {"hidden": "4", "noise": "2"})
+    runs: list[GanRun] = []
     for run in study.run(tmp_path):
         runs.append(run)
         if len(runs) == 2:
@@ -154,13 +154,13 @@ def test_a_study_goes_seed_by_seed_and_resumes_to_the_same_runs(tmp_path: Path) 
     for one, other in zip(again, fresh, strict=True):
         np.testing.assert_array_equal(one.drawn, other.drawn)
         assert list(one.update) == [2, 4]
-    assert [row["seeds"] for row in ToyStudy.rows(again)] == [2, 2]
+    assert [row["seeds"] for row in GanComparison.rows(again)] == [2, 2]
 
 
 def test_a_row_is_the_mean_of_the_last_quarter() -> None:
     measures = {name: np.arange(8.0) for name in MEASURES}
-    runs = [Run("vanilla", seed, np.arange(8) + 1, measures, np.zeros((1, 1, 2, 2))) for seed in (0, 1)]
-    (row,) = ToyStudy.rows(runs)
+    runs = [GanRun("vanilla", seed, np.arange(8) + 1, measures, np.zeros((1, 1, 2, 2))) for seed in (0, 1)]
+    (row,) = GanComparison.rows(runs)
     assert (row["emd"], row["emd_sd"], row["updates"], row["seeds"]) == (6.5, 0.0, 8, 2)
     short = [dataclasses.replace(runs[0], update=np.array([1]), measures={name: np.ones(1) for name in MEASURES})]
-    assert ToyStudy.rows(short)[0]["emd"] == 1.0
+    assert GanComparison.rows(short)[0]["emd"] == 1.0

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from crowdbot.benchmark.toy_gan.toy_data import Toy
-from crowdbot.benchmark.toy_gan.training import toy_config
+from crowdbot.benchmark.toy_gan.toy_data import ToyData
+from crowdbot.benchmark.toy_gan.training import gan_config
 from crowdbot.core import InputError, stream
 
 
 def test_tracks_lie_on_circles_and_turn_off_to_three_sides() -> None:
-    toy = Toy()
+    toy = ToyData()
     paths = toy.paths(stream(0, "toy"), 200)
     assert paths.shape == (6, 3, 200, 4, 2)
     np.testing.assert_allclose(np.linalg.norm(paths, axis=-1), np.broadcast_to(toy.radii, (6, 3, 200, 4)))
@@ -25,16 +25,16 @@ def test_tracks_lie_on_circles_and_turn_off_to_three_sides() -> None:
 
 
 def test_it_is_a_set_of_samples_with_one_person_each() -> None:
-    samples = Toy(tracks=5).samples(stream(0, "toy"))
+    samples = ToyData(tracks=5).samples(stream(0, "toy"))
     assert (len(samples), samples.people, samples.observe, samples.predict) == (90, 90, 2, 2)
     assert sum(len(batch) for batch in samples.batches(stream(0, "order"), 64)) == 90
 
 
 def test_wrong_numbers_and_methods_are_said() -> None:
     with pytest.raises(InputError, match="1 of 4 rows are seen"):
-        Toy(observe=1)
+        ToyData(observe=1)
     with pytest.raises(InputError, match="must be at least 1"):
-        Toy(groups=0)
+        ToyData(groups=0)
     with pytest.raises(InputError, match="unknown method 'vanila', did you mean 'vanilla'"):
-        toy_config("vanila", Toy())
-    assert toy_config("s-gan-v20", Toy()).variety_draws == 20
+        gan_config("vanila", ToyData())
+    assert gan_config("s-gan-v20", ToyData()).variety_draws == 20

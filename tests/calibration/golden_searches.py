@@ -59,7 +59,7 @@ def compute() -> dict[str, np.ndarray]:
     past = shy_crowd(Shy(strength=1.5, space=1.2), W=3)
     free = ("strength", "space", "radius", "preferred-speed")
     fit = Calibrator(Shy(), "absolute", Genetic(population=10), budget=80, free=free).fit(past, seed=2)
-    prior = PopulationPrior.learned(fit, strength=0.3)
+    prior = PopulationPrior.from_fits(fit, strength=0.3)
     drawn = Calibrator(Shy(), "progressive", Annealing(), budget=60, free=free, prior=prior).fit(
         past, seed=2, start=fit
     )

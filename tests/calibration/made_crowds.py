@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from crowdbot.calibration import Rehearsal, Rollout, Walked
+from crowdbot.calibration import ResimulatedTracks, Resimulation, Rollout
 from crowdbot.core import Paper, PerAgent, Scene, parameter, per_agent, stream
 from crowdbot.data import Windows
 from crowdbot.models import CrowdModel, CurrentDirection
@@ -76,11 +76,13 @@ def shy_crowd(truth: Shy, radius: float = 0.3, W: int = 8, A: int = 6) -> Window
     everyone, nobody = np.ones((W, T, A), dtype=bool), np.zeros((W, A), dtype=bool)
     frame, id = np.tile(np.arange(T), (W, 1)), np.tile(np.arange(A), (W, 1))
     begun = Windows(position, everyone, nobody, nobody, id, frame, 0.4, "all", "made")
-    position[:, 1:] = walked(begun, truth, radius=radius).once[0]
+    position[:, 1:] = resimulate(begun, truth, radius=radius).once[0]
     return begun
 
 
-def walked(past: Windows, model: CrowdModel, radius: float = 0.25, substep: float = 0.1) -> Walked:
+def resimulate(past: Windows, model: CrowdModel, radius: float = 0.25, substep: float = 0.1) -> ResimulatedTracks:
     """What one crowd makes of all windows."""
     rollout = Rollout(model, CurrentDirection(), radius, substep=substep)
-    return Rehearsal(rollout, past).walked(lambda rollout, scene, copies: (rollout, scene), 1, np.arange(len(past)))
+    return Resimulation(rollout, past).resimulate(
+        lambda rollout, scene, copies: (rollout, scene), 1, np.arange(len(past))
+    )

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from made_crowds import Shy, shy_crowd
 
-from crowdbot.calibration import Calibrator, PopulationPrior, Space
+from crowdbot.calibration import Calibrator, ParameterSpace, PopulationPrior
 from crowdbot.calibration import calibrator as module
 from crowdbot.core import InputError
 from crowdbot.data import Windows
@@ -56,9 +56,9 @@ def test_everyone_s_own_parameters_fit_better_than_the_given_ones(past: Windows)
 
 def test_what_is_found_costs_what_was_said(past: Windows) -> None:
     fit = each(50).fit(past, seed=3)
-    told = each(2).fit(past, start=fit)
-    np.testing.assert_allclose(told.cost, fit.cost, rtol=1e-12)
-    assert np.array_equal(told.values, fit.values)
+    content = each(2).fit(past, start=fit)
+    np.testing.assert_allclose(content.cost, fit.cost, rtol=1e-12)
+    assert np.array_equal(content.values, fit.values)
 
 
 def test_the_same_seed_gives_the_same_fit_and_another_another(past: Windows) -> None:
@@ -94,10 +94,10 @@ def test_pieces_that_fit_the_memory_change_nothing(past: Windows, monkeypatch: p
     whole = [scheme.fit(past) for scheme in (shared(20), each(20))]
     for agents in (1, 6 * 8 * 3):
         monkeypatch.setattr(module, "AGENTS_AT_ONCE", agents)
-        pieces = [scheme.fit(past) for scheme in (shared(20), each(20))]
-        for piece, one in zip(pieces, whole, strict=True):
-            np.testing.assert_allclose(piece.history, one.history, rtol=1e-12)
-            assert np.array_equal(piece.values, one.values)
+        chunks = [scheme.fit(past) for scheme in (shared(20), each(20))]
+        for chunk, one in zip(chunks, whole, strict=True):
+            np.testing.assert_allclose(chunk.history, one.history, rtol=1e-12)
+            assert np.array_equal(chunk.values, one.values)
 
 
 def test_several_recordings_are_fitted_together(past: Windows) -> None:
@@ -165,7 +165,7 @@ def test_only_the_past_decides(past: Windows) -> None:
 
 def test_a_prior_draws_people_towards_the_population(past: Windows, tmp_path: Path) -> None:
     fit = each(200).fit(past, seed=1)
-    prior = PopulationPrior.learned(fit, strength=0.5)
+    prior = PopulationPrior.from_fits(fit, strength=0.5)
     drawn = each(200, prior=prior).fit(past, seed=1)
     spread = [np.std(one.values.reshape(-1, 3), axis=0) for one in (drawn, fit)]
     assert np.all(spread[0] < spread[1])
@@ -173,18 +173,18 @@ def test_a_prior_draws_people_towards_the_population(past: Windows, tmp_path: Pa
     again = PopulationPrior.load(tmp_path / "prior.json")
     assert again.names == prior.names
     np.testing.assert_allclose(again.covariance, prior.covariance)
-    space = Space(Shy(), FREE)
+    space = ParameterSpace(Shy(), FREE)
     typical = prior.typical(space, fit.given)
     assert np.all(prior.penalty(space, typical, fit.given) < 1e-6)
     assert np.all(prior.penalty(space, fit.values, fit.given) >= 0.0)
 
 
 def test_a_prior_of_other_parameters_or_of_nobody_is_refused(past: Windows, tmp_path: Path) -> None:
-    prior = PopulationPrior.learned(each(5).fit(past))
+    prior = PopulationPrior.from_fits(each(5).fit(past))
     with pytest.raises(InputError, match="it is of strength, space, radius, and strength are calibrated"):
         Calibrator(Shy(), "absolute", "random-search", budget=5, free=("strength",), prior=prior).fit(past)
     with pytest.raises(InputError, match="learned from fits of each person"):
-        PopulationPrior.learned(shared(5).fit(past))
+        PopulationPrior.from_fits(shared(5).fit(past))
     with pytest.raises(InputError, match="a population prior is about each person's own parameters"):
         shared(5, prior=prior)
     (tmp_path / "wrong.json").write_text('{"names": ["a"], "mean": [1.0]}')

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from made_crowds import Drifting, walked, windows
+from made_crowds import Drifting, resimulate, windows
 
 from crowdbot.calibration import Absolute, Cost, InterPedestrian, Progressive, WeightedSum
 from crowdbot.data import Windows
@@ -22,7 +22,7 @@ seeds = st.integers(0, 1000)
 
 
 def measure(cost: Cost, past: Windows, model: CrowdModel = MODELS[0]) -> np.ndarray:
-    return cost.measure(walked(past, model))[0]
+    return cost.measure(resimulate(past, model))[0]
 
 
 def moved(past: Windows, angle: float, shift: tuple[float, float]) -> Windows:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from made_crowds import Drifting
 
-from crowdbot.calibration import Calibrator, Campaign, Fit, FittedPiece
+from crowdbot.calibration import CalibrationChunk, Calibrator, Fit, RecordingCalibration
 from crowdbot.core import stream
 from crowdbot.data import Recording
 
@@ -41,8 +41,8 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
 
 @pytest.fixture(scope="module")
 def whole(recording: Recording) -> Fit:
-    calibration = Campaign(recording, scheme(), seed=3)
-    return calibration.joined(list(calibration.run()))
+    calibration = RecordingCalibration(recording, scheme(), seed=3)
+    return calibration.merge(list(calibration.run()))
 
 
 def assert_same(one: Fit, other: Fit) -> None:
@@ -52,30 +52,30 @@ def assert_same(one: Fit, other: Fit) -> None:
 
 
 def test_chunks_cover_the_recording_in_order(recording: Recording) -> None:
-    pieces = list(Campaign(recording, scheme()).run())
-    assert len(pieces) >= 8
-    ends = [(piece.first, piece.last) for piece in pieces]
+    chunks = list(RecordingCalibration(recording, scheme()).run())
+    assert len(chunks) >= 8
+    ends = [(chunk.first, chunk.last) for chunk in chunks]
     assert ends[0][0] == 0
     assert ends[-1][1] == len(recording.windows[0])
     assert all(before[1] == after[0] for before, after in itertools.pairwise(ends))
     past = recording.windows[0]
-    np.testing.assert_array_equal(np.concatenate([piece.frame for piece in pieces]), past.frame[:, -1])
-    np.testing.assert_array_equal(np.concatenate([piece.people for piece in pieces]), past.present[:, -1].sum(axis=1))
+    np.testing.assert_array_equal(np.concatenate([chunk.frame for chunk in chunks]), past.frame[:, -1])
+    np.testing.assert_array_equal(np.concatenate([chunk.people for chunk in chunks]), past.present[:, -1].sum(axis=1))
 
 
 def test_chunks_give_the_fit_of_all_windows(recording: Recording, whole: Fit) -> None:
     past = recording.windows[0]
     rngs = [stream(3, "calibrate", window) for window in range(len(past))]
     assert_same(whole, scheme().fit_each(past, rngs))
-    calibration = Campaign(recording, scheme(), seed=3)
-    assert_same(whole, calibration.joined(list(calibration.run())[::-1]))
+    calibration = RecordingCalibration(recording, scheme(), seed=3)
+    assert_same(whole, calibration.merge(list(calibration.run())[::-1]))
     assert whole.seconds > 0.0
 
 
 def test_an_interrupted_calibration_resumes(
     recording: Recording, whole: Fit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    calibration = Campaign(recording, scheme(), seed=3)
+    calibration = RecordingCalibration(recording, scheme(), seed=3)
     run = calibration.run(keep=tmp_path)
     first = [next(run) for _ in range(3)]
     run.close()
@@ -90,17 +90,17 @@ def test_an_interrupted_calibration_resumes(
         return fit_each(self, past, *more)  # type: ignore[arg-type]
 
     monkeypatch.setattr(Calibrator, "fit_each", counted)
-    pieces: list[FittedPiece] = list(calibration.run(keep=tmp_path))
-    assert sum(calibrated) == sum(piece.last - piece.first for piece in pieces[len(kept) :])
-    assert_same(whole, calibration.joined(pieces))
-    assert [piece.first for piece in first[: len(kept)]] == [piece.first for piece in pieces[: len(kept)]]
+    chunks: list[CalibrationChunk] = list(calibration.run(keep=tmp_path))
+    assert sum(calibrated) == sum(chunk.last - chunk.first for chunk in chunks[len(kept) :])
+    assert_same(whole, calibration.merge(chunks))
+    assert [chunk.first for chunk in first[: len(kept)]] == [chunk.first for chunk in chunks[: len(kept)]]
     calibrated.clear()
-    assert_same(whole, calibration.joined(list(calibration.run(keep=tmp_path))))
+    assert_same(whole, calibration.merge(list(calibration.run(keep=tmp_path))))
     assert calibrated == []
 
 
 def test_the_key_depends_on_everything_that_decides(recording: Recording, tmp_path: Path) -> None:
-    calibration = Campaign(recording, scheme(), seed=3)
+    calibration = RecordingCalibration(recording, scheme(), seed=3)
     others = [
         dataclasses.replace(calibration, seed=4),
         dataclasses.replace(calibration, calibrator=scheme(7)),
@@ -112,12 +112,12 @@ def test_the_key_depends_on_everything_that_decides(recording: Recording, tmp_pa
     others.append(dataclasses.replace(calibration, recording=dataclasses.replace(recording, path=str(changed))))
     keys = [calibration.key, *(other.key for other in others)]
     assert len(set(keys)) == len(keys)
-    assert Campaign(recording, scheme(), seed=3).key == calibration.key
+    assert RecordingCalibration(recording, scheme(), seed=3).key == calibration.key
 
 
 def test_a_goal_that_knows_the_future_is_given_the_recording(recording: Recording) -> None:
-    calibration = Campaign(recording, scheme(), goal="ground-truth", seed=3)
-    assert calibration.prepared.scheme == "drifting, absolute, random-search, ground-truth"
-    fit = calibration.joined(list(calibration.run()))
+    calibration = RecordingCalibration(recording, scheme(), goal="ground-truth", seed=3)
+    assert calibration.goal_calibrator.scheme == "drifting, absolute, random-search, ground-truth"
+    fit = calibration.merge(list(calibration.run()))
     assert np.nanmean(fit.cost) <= np.nanmean(fit.given_cost)
-    assert Campaign(recording, scheme()).prepared == scheme()
+    assert RecordingCalibration(recording, scheme()).goal_calibrator == scheme()

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.calibration import Annealing, Genetic, Geometric, RandomSearch, Search
-from crowdbot.calibration.ledger import Ledger
+from crowdbot.calibration.search_state import SearchState
 from crowdbot.core import stream
 
 Function = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -41,11 +41,11 @@ def run(search: Search, cost: Callable[[np.ndarray, int], np.ndarray], start: np
     return function.batches
 
 
-def state(low: list[float], high: list[float], budget: int = 100, people: int = 2) -> Ledger:
+def state(low: list[float], high: list[float], budget: int = 100, people: int = 2) -> SearchState:
     """Return the state of a search of one problem in a box."""
     ends = np.array(low), np.array(high)
     start = np.zeros((1, people, len(low)))
-    return Ledger(lambda x, which: x.sum(axis=-1), *ends, [stream(0, "state")], budget, start, -math.inf, 0)
+    return SearchState(lambda x, which: x.sum(axis=-1), *ends, [stream(0, "state")], budget, start, -math.inf, 0)
 
 
 @pytest.mark.parametrize("memory", [1, 2, 3, 5])
@@ -145,13 +145,13 @@ def test_folding_mirrors_at_the_sides_and_never_leaves_the_box(
 ) -> None:
     high = low + side
     box = state([low], [high])
-    folded = float(box.folded(np.array([value]))[0])
-    assert low <= folded <= high
+    fold = float(box.fold(np.array([value]))[0])
+    assert low <= fold <= high
     if low <= value <= high:
-        assert folded == pytest.approx(value)
+        assert fold == pytest.approx(value)
     beyond = abs(shift) * side
-    assert float(box.folded(np.array([low - beyond]))[0]) == pytest.approx(low + beyond, abs=1e-9)
-    assert float(box.folded(np.array([high + beyond]))[0]) == pytest.approx(high - beyond, abs=1e-9)
+    assert float(box.fold(np.array([low - beyond]))[0]) == pytest.approx(low + beyond, abs=1e-9)
+    assert float(box.fold(np.array([high + beyond]))[0]) == pytest.approx(high - beyond, abs=1e-9)
 
 
 @pytest.mark.parametrize("search", [Genetic(), Annealing()], ids=["genetic", "annealing"])

@@ -62,7 +62,7 @@ def _pymoo(past: Windows, seed: int) -> float:
     from pymoo.optimize import minimize
 
     space = scheme().space
-    given = space.given(past, scheme().rollout)
+    given = space.initial_values(past, scheme().rollout)
     task = _Task(scheme(), past, given, None)
     people = past.present.shape[2]
     best = [np.inf]

@@ -171,7 +171,7 @@ def test_degradations_are_listed(capsys):
         (["--by", "gaussian-noise", "--write", "x.csv", "--predictor", "kalman"], ("scores nothing",)),
         (["--by", "gaussian-noise", "late-start", "--write", "x.csv"], ("one recording",)),
         (["--by", "gaussian-noise", "--write", "x.docx"], ("x.docx", ".csv")),
-        (["--by", "late-start", "--levels", "30", "--write", "x.csv"], ("nobody is seen any more",)),
+        (["--by", "late-start", "--levels", "30", "--write", "x.csv"], ("no rows are left after degradation",)),
     ],
 )
 def test_wrong_input_is_one_sentence(capsys, tmp_path, monkeypatch, small, words, said):

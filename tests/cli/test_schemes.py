@@ -98,9 +98,24 @@ def _hears_ctrl_c() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-def test_a_stopped_run_goes_on_where_it_was(street, tmp_path, recordings):
-    data = str(recordings / "eth_ucy_splits" / "all_data" / "crowds_zara02.txt")
-    words = ["predict", "--data", data, "--predictor", "simulated", "--cost", "progressive", "--budget", "500"]
+@pytest.fixture
+def plaza(tmp_path):
+    """A synthetic recording: 12 people who turn slowly, 120 rows at 2.5 Hz."""
+    rng = np.random.default_rng(4)
+    rows = []
+    for person in range(12):
+        angle = rng.uniform(-np.pi, np.pi) + np.cumsum(rng.normal(0.0, 0.05, 120))
+        place = rng.uniform(-8.0, 8.0, 2) + np.cumsum(0.5 * np.stack([np.cos(angle), np.sin(angle)], axis=1), axis=0)
+        rows += [(10 * row, person, *place[row]) for row in range(120)]
+    file = tmp_path / "plaza.txt"
+    np.savetxt(file, sorted(rows), fmt=["%d", "%d", "%.4f", "%.4f"], delimiter="\t")
+    return str(file)
+
+
+@pytest.mark.parametrize("workers", ["1", "2"])
+def test_a_stopped_run_goes_on_where_it_was(plaza, tmp_path, workers):
+    words = ["predict", "--data", plaza, "--fps", "25", "--predictor", "simulated", "--cost", "progressive"]
+    words += ["--budget", "3000", "--workers", workers]
     program = [sys.executable, "-m", "crowdbot", *words, "--set", "substep=0.4", "--out", str(tmp_path)]
     running = subprocess.Popen(
         program,
@@ -116,6 +131,9 @@ def test_a_stopped_run_goes_on_where_it_was(street, tmp_path, recordings):
     _, told = running.communicate(timeout=60)
     assert running.returncode == 130, told
     assert "interrupted" in told
+    assert "Traceback" not in told
+    assert "jobs are stored in" in told
+    assert "run the same command again to resume" in told
     kept = {part: part.stat().st_mtime_ns for part in tmp_path.glob("parts/*.npz")}
     assert kept
     assert not list(tmp_path.glob("parts/*.part"))
@@ -209,11 +227,11 @@ def test_a_search_stops_by_tolerance_and_patience(capsys, street):
 def test_schemes_without_a_simulated_crowd_are_refused(capsys, street):
     for words in (["--cost", "absolute"], ["--prior", "learn"], ["--model", "orca"]):
         assert main(["predict", "--data", street, "--predictor", "kalman", *words]) == 2
-        assert "is for predictors that simulate a crowd; kalman does not" in capsys.readouterr().err
+        assert "requires the predictor simulated, not kalman" in capsys.readouterr().err
     assert main(["predict", "--data", street, "--predictor", "simulated", "--shared"]) == 2
     assert "name a cost and a search" in capsys.readouterr().err
     assert main(["predict", "--data", street, "--animate", "3"]) == 2
-    assert "say where with --out DIR" in capsys.readouterr().err
+    assert "--animate requires --out DIR" in capsys.readouterr().err
 
 
 def test_somebody_alone_cannot_be_compared_with_others(capsys, tmp_path):

@@ -44,8 +44,7 @@ def test_a_training_that_never_began_is_not_resumed(
     status, _, err = said(["train", "social-ways", "--data", *walks, "--out", str(out), "--resume"], capsys)
     assert status == 2
     assert err == (
-        f"crowdbot: --out {out} holds no training to go on with (there is no last.npz in it); give the folder of one,"
-        " or begin one without --resume\n"
+        f"crowdbot: --out {out} has no last.npz: nothing to resume; give the folder of a training, or omit --resume\n"
     )
     assert list(tmp_path.iterdir()) == ([out] if there else [])
 
@@ -98,8 +97,8 @@ def test_weights_that_do_not_fit_are_said_and_a_baseline_answers(
              "--data", walks[0]]  # fmt: skip
     status, _, err = said(words, capsys)
     assert status == 0
-    assert "anchor-net: street.txt has steps of 1 s, it was learned at 0.4 s and takes up to 0.7 s; a baseline" in err
-    assert "social-ways: street.txt has steps of 1 s, it was learned at 0.4 s: bring it there with --step 0.4" in err
+    assert "anchor-net: street.txt has time steps of 1 s; the weights require 0.4 s, at most 0.7 s; a baseline" in err
+    assert "social-ways: street.txt has time steps of 1 s; the weights require 0.4 s: resample with --step 0.4" in err
     assert "UserWarning" not in err
     status, out, _ = said([*words, "--json"], capsys)
     assert [len(one["notes"]) for one in json.loads(out)["results"]] == [1, 1]

@@ -12,18 +12,18 @@ from crowdbot.data.degrade import (
     GHOST,
     Chain,
     CorrelatedNoise,
-    Degraded,
+    DegradedTracks,
+    EmptyRecordingError,
     FalseTracks,
     GaussianNoise,
     HeavyTails,
     IdentitySwitches,
     LateStart,
     MissingFrames,
-    NobodySeen,
     Occlusion,
 )
 from crowdbot.data.degrade.identity_switches import encounters
-from crowdbot.data.degrade.turns import rank, turns
+from crowdbot.data.degrade.row_ranks import iterate_ranks, row_rank
 
 KINDS = list(builtin_classes(degrade, degrade.Degradation).values())
 DETERMINISTIC = (LateStart,)
@@ -69,7 +69,7 @@ def test_the_seed_decides(kind):
     assert _same(first, again)
     assert np.array_equal(first.truth, again.truth)
     assert _same(first, other) == (kind in DETERMINISTIC)
-    assert not _same(first, Degraded.of(tracks))
+    assert not _same(first, DegradedTracks.of(tracks))
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -177,7 +177,7 @@ def test_late_start_drops_the_first_rows_and_short_tracks():
     seen = LateStart(2).apply(tracks)
     assert seen.tracks.id.tolist() == [1, 1]
     assert seen.tracks.frame.tolist() == [5, 6]
-    with pytest.raises(NobodySeen, match="not one row is left"):
+    with pytest.raises(EmptyRecordingError, match="no rows are left"):
         LateStart(4).apply(tracks)
 
 
@@ -280,7 +280,7 @@ def test_a_chain_applies_in_order_and_remembers_the_truth():
     seen = chain.apply(tracks, stream(1))
     assert _same(seen, chain.apply(tracks, stream(1)))
     seeds = stream(1).integers(0, 2**63, size=4)
-    by_hand = Degraded.of(tracks)
+    by_hand = DegradedTracks.of(tracks)
     for link, seed in zip(chain.links, seeds, strict=True):
         by_hand = link.apply(by_hand, np.random.Generator(np.random.PCG64(int(seed))))
     assert _same(seen, by_hand)
@@ -299,10 +299,10 @@ def test_a_chain_applies_in_order_and_remembers_the_truth():
 
 def test_turns_are_the_rows_of_every_track_in_order():
     tracks = _crowd()
-    seen = list(turns(tracks.id, tracks.frame))
+    seen = list(iterate_ranks(tracks.id, tracks.frame))
     assert sorted(np.concatenate([rows for rows, _ in seen]).tolist()) == list(range(len(tracks)))
     for turn, (rows, before) in enumerate(seen):
-        assert (rank(tracks.id, tracks.frame)[rows] == turn).all()
+        assert (row_rank(tracks.id, tracks.frame)[rows] == turn).all()
         assert (tracks.id[rows] == tracks.id[before]).all() if turn else len(before) == 0
 
 
@@ -335,10 +335,10 @@ def test_wrong_recordings_are_one_sentence():
     with pytest.raises(DataError, match="made is in pixels, gaussian-noise is in metres"):
         GaussianNoise(0.1).apply(pixels)
     assert len(MissingFrames(0.5).apply(pixels).tracks) < len(pixels)
-    with pytest.raises(DataError, match="id -1, which stands for false tracks"):
+    with pytest.raises(DataError, match="id -1, which is reserved for false tracks"):
         GaussianNoise(0.1).apply(Trajectories([-1], [0], [0.0], [0.0], row_rate=2.5))
     with pytest.raises(DataError, match="1 rows, truth has shape"):
-        Degraded(Trajectories([1], [0], [0.0], [0.0], row_rate=2.5), np.zeros(2, np.int64))
+        DegradedTracks(Trajectories([1], [0], [0.0], [0.0], row_rate=2.5), np.zeros(2, np.int64))
 
 
 def test_labels_and_scenes_of_who_is_gone_are_gone():

@@ -9,14 +9,14 @@ from shapely.geometry import LineString, Point
 from crowdbot.core import DataError, InputError, Walls, stream
 from crowdbot.data import Trajectories
 from crowdbot.data.degrade import FalseTracks, Occlusion
-from crowdbot.data.degrade.occlusion import hidden
+from crowdbot.data.degrade.occlusion import occlusion_mask
 
 NOWALLS = np.zeros((0, 4))
 
 
 def _hidden(*place, eye=(0.0, 0.0), radius=0.25, reach=100.0, walls=NOWALLS):
     there = np.array(place, dtype=float)
-    return hidden(np.array(eye), there, there, radius, reach, walls).tolist()
+    return occlusion_mask(np.array(eye), there, there, radius, reach, walls).tolist()
 
 
 @pytest.mark.parametrize(
@@ -71,7 +71,7 @@ def test_scenes_by_chance_against_shapes(seed):
     place = rng.uniform(-6.0, 6.0, (25, 2))
     eye = rng.uniform(-3.0, 3.0, 2)
     walls = rng.uniform(-6.0, 6.0, (4, 4))
-    fast = hidden(eye, place, place, 0.3, 6.0, walls).tolist()
+    fast = occlusion_mask(eye, place, place, 0.3, 6.0, walls).tolist()
     assert fast == _slow(eye, place, 0.3, 6.0, walls)
     assert True in fast
     assert False in fast

@@ -217,7 +217,7 @@ def test_only_people_near_a_robot_are_scored():
         tracks.windows(near=0.5)
     with pytest.raises(DataError, match="has no robot to be near to"):
         tracks.only(ids=[1, 2]).windows(near=2.0)
-    with pytest.raises(DataError, match="holds robots only"):
+    with pytest.raises(DataError, match="has only robots, there are no people to predict"):
         tracks.track(9).windows()
 
 

@@ -73,7 +73,7 @@ def test_a_recording_without_people_or_robots_in_it(tmp_path):
             recording.odometry(k * 10**8, k, 0)
     tracks = load(tmp_path / "alone.mcap")
     assert (tracks.ids.tolist(), tracks.robots) == ([1], frozenset({1}))
-    with pytest.raises(DataError, match="holds robots only, there is nobody to predict"):
+    with pytest.raises(DataError, match="has only robots, there are no people to predict"):
         tracks.windows(1, 1)
 
 
@@ -82,7 +82,7 @@ def test_a_recording_that_stopped_in_the_middle(tmp_path):
     cut = tmp_path / "cut.mcap"
     for share in (0.01, 0.3, 0.6, 0.9, 0.999):
         cut.write_bytes(whole[: int(share * len(whole))])
-        with pytest.raises(DataError, match=r"cut\.mcap cannot be read as MCAP, it is cut short or damaged") as error:
+        with pytest.raises(DataError, match=r"cut\.mcap cannot be read as MCAP, it is truncated or damaged") as error:
             load(cut)
         assert "\n" not in str(error.value)
     write(cut, finish=False)
@@ -109,9 +109,9 @@ def test_a_damaged_recording_says_so(tmp_path_factory, spot, byte):
     [
         ("foreign", r"has no topic /people of people_msgs/msg/People; it has /robot/odom"),
         ("once", "holds 1 messages on /people, at least 2 are needed"),
-        ("back", "the stamp of message 6 on /people is not after the one before"),
-        ("uneven", "the stamps on /people are not regular, some are far nearer than 100 ms"),
-        ("twice", "frame 0, id 4 stands there a second time"),
+        ("back", "the stamp of message 6 on /people is not later than the previous one"),
+        ("uneven", "the stamps on /people are not regular, some steps are far shorter than 100 ms"),
+        ("twice", "frame 0, id 4 is a duplicate"),
         ("nan", "x is nan for frame 1, id 4"),
         ("walls", "the metadata 'walls' is not a JSON list of rings"),
         ("ring", "ring 1 of the metadata 'walls' is not a list of finite points"),

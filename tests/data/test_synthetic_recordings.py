@@ -25,9 +25,9 @@ def test_every_format_has_a_synthetic_recording():
 
 @pytest.mark.parametrize("name", SYNTHETIC)
 def test_the_format_is_detected(files, name):
-    from crowdbot.data.load import _sniffed
+    from crowdbot.data.load import _detect
 
-    assert _sniffed(Source.of(files[name])).name == SYNTHETIC[name].format
+    assert _detect(Source.of(files[name])).name == SYNTHETIC[name].format
 
 
 @pytest.mark.parametrize("name", SYNTHETIC)
@@ -136,10 +136,17 @@ def test_speeds_that_are_impossible_for_people_are_noted(tmp_path, metres, fps, 
 
 def test_a_row_rate_is_refused_by_speed_alone(tmp_path):
     path = tmp_path / "two.csv"
-    path.write_text("id,frame,x,y\n" + "".join(f"1,{60 * k},{0.02 * k},0\n" for k in range(5)))
-    with pytest.raises(RowRateError, match=r"time step 1.5 s \(60 frames per row\) and the median speed 0.013"):
-        load(path, fps=40)
-    assert load(path, fps=100).dt == 0.6
+    path.write_text("id,frame,x,y\n" + "".join(f"1,{18 * k},{0.02 * k},0\n" for k in range(5)))
+    with pytest.raises(RowRateError, match=r"time step 1.5 s \(18 frames per row\) and the median speed 0.013"):
+        load(path, fps=12)
+    assert load(path, fps=16).dt == 1.125
+    assert load(path, fps=0.4).dt == 45.0
+
+
+def test_a_sparse_track_at_a_video_rate_is_not_a_row_rate(tmp_path):
+    path = tmp_path / "sparse.csv"
+    path.write_text("id,frame,x,y\n1,0,0,0\n1,250,10,0\n")
+    assert load(path, fps=25).dt == 10.0
 
 
 def test_pixels_are_judged_by_the_time_step_alone(tmp_path):

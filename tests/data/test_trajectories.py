@@ -15,7 +15,7 @@ def walk(**changes):
     frame = [*range(0, 80, 10), *range(20, 70, 10)]
     x = [0.4 * k for k in range(8)] + [3.0] * 5
     y = [0.0] * 8 + [0.8 * k for k in range(5)]
-    return Trajectories(**{"id": id, "frame": frame, "x": x, "y": y, "frame_rate": 2.5, "name": "walk", **changes})
+    return Trajectories(**{"id": id, "frame": frame, "x": x, "y": y, "row_rate": 2.5, "name": "walk", **changes})
 
 
 def test_rows_are_sorted_and_cannot_be_written_to():
@@ -32,17 +32,17 @@ def test_rows_are_sorted_and_cannot_be_written_to():
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"id": [], "frame": [], "x": [], "y": []}, "walk holds no row of any track"),
+        ({"id": [], "frame": [], "x": [], "y": []}, "walk has no rows"),
         ({"x": [np.nan] + [0.0] * 12}, "walk row 1: x is nan for frame 0, id 1; coordinates must be finite"),
         ({"y": [0.0] * 12 + [np.inf]}, "walk row 13: y is inf for frame 60, id 2"),
-        ({"frame": [0] * 13}, "walk row 2: frame 0, id 1 stands there a second time"),
+        ({"frame": [0] * 13}, "walk row 2: frame 0, id 1 is a duplicate"),
         ({"frame": [0.5] + [1.0] * 12}, r"walk row 1: frame is 0\.5, it must be a whole number"),
         ({"id": [np.nan] + [1.0] * 12}, "walk row 1: id is nan, it must be a whole number"),
         ({"id": [1e300] + [1.0] * 12}, r"walk row 1: id is 1e\+300, it must be a whole number"),
         ({"x": [0.0] * 12}, "walk: columns differ in shape"),
-        ({"frame_rate": 0.0}, r"walk: frame rate 0\.0 is not above 0"),
-        ({"frame_rate": np.nan}, "walk: frame rate nan is not above 0"),
-        ({"units": "cm"}, "walk: units 'cm' are not known"),
+        ({"row_rate": 0.0}, r"walk: row_rate is 0\.0, it must be above 0"),
+        ({"row_rate": np.nan}, "walk: row_rate is nan, it must be above 0"),
+        ({"units": "cm"}, "walk: unknown units 'cm'"),
     ],
 )
 def test_what_cannot_be_is_refused_with_its_place(changes, message):
@@ -139,7 +139,7 @@ def test_metres_refuses_what_is_no_transform(transform):
 
 
 def test_metres_refuses_metres_and_points_at_infinity():
-    with pytest.raises(DataError, match="walk is in metres already"):
+    with pytest.raises(DataError, match="walk is already in metres"):
         walk().metres(0.1)
     with pytest.raises(DataError, match="is inf|is nan"):
         walk(units="px").metres([[1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [1.0, 0.0, 0.0]])

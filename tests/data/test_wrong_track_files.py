@@ -26,7 +26,7 @@ SDD = '0 1 1 3 3 0 0 0 0 "Biker"\n0 1 1 3 3 1 1 0 0 "Biker"\n'
         ("prose.txt", "Dear reader,\nhello\n", r"prose.txt is text and of no known format \(it begins with 'Dear"),
         ("nan.txt", "0 1 2 3\n10 1 nan 3\n", "nan.txt line 2: x is nan for frame 10, id 1; coordinates must be finite"),
         ("inf.txt", "# a\n\n0 1 2 3\n10 1 2 -inf\n", "inf.txt line 4: y is -inf for frame 10, id 1"),
-        ("twice.txt", "0 1 2 3\n10 1 2 3\n10 1 4 5\n10 1 6 7\n", "line 3: frame 10, id 1 stands there a second time"),
+        ("twice.txt", "0 1 2 3\n10 1 2 3\n10 1 4 5\n10 1 6 7\n", "line 3: frame 10, id 1 is a duplicate"),
         ("half.txt", "0 1.5 2 3\n", r"half.txt line 1: id is 1\.5, it must be a whole number"),
         ("step.txt", "0 1 2 3\n1 1 2 3\n", "step.txt has no frame rate, and a step of 1 frames is not a convention"),
         ("obsmat.txt", OBSMAT + "11 1 inf 0 1 0 0 0\n", "obsmat.txt line 2: x is inf"),
@@ -43,14 +43,14 @@ SDD = '0 1 1 3 3 0 0 0 0 "Biker"\n0 1 1 3 3 1 1 0 0 "Biker"\n'
         ),
         ("c.csv", "id,frame,x,y\n1,0,,3\n", "c.csv line 2: x is nan for frame 0, id 1"),
         ("d.csv", "id,frame,x,y\n1,0,1,3\n1,10,left,3\n", "d.csv line 3: x is 'left', it must be a number"),
-        ("e.csv", "id,frame,x,y\n1,0,1,3\n1,0,2,3\n", "e.csv line 3: frame 0, id 1 stands there a second time"),
+        ("e.csv", "id,frame,x,y\n1,0,1,3\n1,0,2,3\n", "e.csv line 3: frame 0, id 1 is a duplicate"),
         ("f.csv", "id,frame,x,y\n1,0,1,3\n1,10,2\n", "f.csv line 3 has 3 columns, the line of names has 4"),
-        ("g.csv", "id,frame,x,y\n", "g.csv holds no row of any track"),
-        ("h.csv", "id,time,x,y\n1,0,1,3\n1,1,2,3\n1,1.5,2,3\n1,4,2,3\n", "time .* is .* s away from steps of"),
+        ("g.csv", "id,frame,x,y\n", "g.csv has no rows"),
+        ("h.csv", "id,time,x,y\n1,0,1,3\n1,1,2,3\n1,1.5,2,3\n1,4,2,3\n", "time .* is .* s off a regular step of"),
         (
             "i.csv",
             "id,time,x,y\n1,0,1,3\n1,1000000000,2,3\n",
-            "rows of a track are 1e.09 apart in time; times must be in s",
+            "the time step is 1e.09; times must be in s",
         ),
         ("j.csv", "id,time,x,y\n1,0,1,3\n2,1,2,3\n", "no track has rows at two times, so its frame rate is unknown"),
         ("k.csv", "id,frame,x,y\n,0,1,3\n", "k.csv line 2: id is empty, every row needs one"),
@@ -121,7 +121,7 @@ def test_missing_files_folders_and_rubbish(tmp_path):
 def test_binary_bytes_after_a_good_beginning(tmp_path):
     path = tmp_path / "damaged.txt"
     path.write_bytes(b"0 1 2 3\n" * 10_000 + b"\x00\x01\x02")
-    with pytest.raises(DataError, match="holds binary bytes after a beginning of text"):
+    with pytest.raises(DataError, match="has binary bytes after text"):
         load(path)
 
 
@@ -144,7 +144,7 @@ def test_too_large_is_refused_by_size(tmp_path, monkeypatch):
     path = tmp_path / "large.txt"
     path.write_text("0 1 2 3\n10 1 2 3\n")
     monkeypatch.setattr("crowdbot.data.source.MAX_BYTES", 10)
-    with pytest.raises(DataError, match="has 17 bytes, more than the 10 that are read; cut it in time"):
+    with pytest.raises(DataError, match="has 17 bytes, more than the limit of 10; split it in time"):
         load(path)
 
 
@@ -168,7 +168,7 @@ def test_wrong_hdf5(tmp_path):
         load(path)
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) // 2])
-    with pytest.raises(DataError, match="cannot be read as HDF5, it is cut short or damaged"):
+    with pytest.raises(DataError, match="cannot be read as HDF5, it is truncated or damaged"):
         load(path)
 
 
@@ -194,7 +194,7 @@ def test_an_sqlite_with_words_for_numbers(tmp_path):
         base.execute("INSERT INTO trajectory_data VALUES (0, 1, 'left', 2.0)")
         base.execute("INSERT INTO metadata VALUES ('fps', '25')")
     base.close()
-    with pytest.raises(DataError, match="the column of x holds something else than numbers"):
+    with pytest.raises(DataError, match="the column x must hold numbers"):
         load(path)
 
 
@@ -214,7 +214,7 @@ def test_wrong_parquet(tmp_path):
     with pytest.raises(DataError, match="wrong.parquet row 2: x is nan for frame 10, id 1"):
         load(path)
     pq.write_table(table.replace_schema_metadata({"crowdbot": "{]"}), path)
-    with pytest.raises(DataError, match="what crowdbot wrote beside the columns is damaged"):
+    with pytest.raises(DataError, match="the metadata written by crowdbot is damaged"):
         load(path)
     path.write_bytes(path.read_bytes()[:-20])
     with pytest.raises(DataError, match="cannot be read as Parquet"):

@@ -33,7 +33,7 @@ def street(seed: int = 0, people: int = 60, noise: float = 0.01) -> Trajectories
     id = np.append(id, [people, people])
     frame = np.append(frame, [last + 10, last + 20])
     x, y = np.append(x, [-9.0, -9.0]), np.append(y, [-5.0, -5.0])
-    return Trajectories(id.astype(int), frame.astype(int), x, y, row_rate=1.0 / STEP, frame_step=10, name="street")
+    return Trajectories(id.astype(int), frame.astype(int), x, y, frame_rate=1.0 / STEP, frame_step=10, name="street")
 
 
 def moved(place: np.ndarray, angle: float, shift: tuple[float, float]) -> np.ndarray:
@@ -59,7 +59,7 @@ def made(kind: type, past: Windows, angle: float = 0.0, shift: tuple[float, floa
 def _learned(angle: float, shift: tuple[float, float]) -> LearnedDestinations:
     tracks = street()
     place = moved(tracks.position, angle, shift)
-    return LearnedDestinations.learned(
+    return LearnedDestinations.learn(
         Trajectories(tracks.id, tracks.frame, place[:, 0], place[:, 1], 1.0 / STEP, frame_step=10)
     )
 

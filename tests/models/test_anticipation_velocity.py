@@ -9,7 +9,8 @@ from model_crowds import crowd
 from test_collision_free_speed import crosses, foot
 
 from crowdbot.core import InputError, Scene, stream
-from crowdbot.models.anticipation_velocity import CREEP, AnticipationVelocity
+from crowdbot.models import AnticipationVelocity
+from crowdbot.models.speed_models.anticipation_velocity import CREEP
 
 # Four moments of six people in a corridor, made with JuPedSim 1.4.2 (dt 0.02, r 0.2):
 # x, y, vx, vy, heading, next x, next y, next heading

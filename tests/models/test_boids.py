@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from model_crowds import PILLAR, ROOM, SCREEN, crowd, moved
 
 from crowdbot.core import InputError, Scene
-from crowdbot.models.boids import VARIANTS, Boids
+from crowdbot.models import Boids
+from crowdbot.models.forces.boids import VARIANTS
 
 every_variant = pytest.mark.parametrize("variant", VARIANTS)
 

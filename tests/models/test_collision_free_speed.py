@@ -8,7 +8,7 @@ from engine_steps import jupedsim, report
 from model_crowds import crowd, moved
 
 from crowdbot.core import InputError, Scene
-from crowdbot.models.collision_free_speed import CollisionFreeSpeed
+from crowdbot.models import CollisionFreeSpeed
 
 NAMES = [
     "crossing_CollisionFreeSpeed",

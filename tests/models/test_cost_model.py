@@ -11,11 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from model_crowds import PILLAR, ROOM, SCREEN, crowd, moved
 
-import crowdbot.models.cost_model as room
+import crowdbot.models.costs.cost_model as room
 from crowdbot.core import InputError, Scene, stream
 from crowdbot.core.geometry import time_to_contact, time_to_segment
-from crowdbot.models.collision_free_speed import CollisionFreeSpeed
-from crowdbot.models.cost_model import CostModel
+from crowdbot.models import ORCA, CollisionFreeSpeed, CostModel, Heuristics, PLEdestrians, PowerLaw, SocialForce
 from crowdbot.models.costs import (
     Effort,
     FreeWay,
@@ -28,13 +27,8 @@ from crowdbot.models.costs import (
     PowerLawForce,
     PreferredVelocity,
     ReciprocalObstacles,
-    VelocityCost,
 )
-from crowdbot.models.heuristics import Heuristics
-from crowdbot.models.orca import ORCA
-from crowdbot.models.pledestrians import PLEdestrians
-from crowdbot.models.power_law import PowerLaw
-from crowdbot.models.social_force import SocialForce
+from crowdbot.models.costs.velocity_cost import VelocityCost
 
 EVERY = [
     Effort(),

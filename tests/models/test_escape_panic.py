@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from model_crowds import PILLAR, ROOM, SCREEN, crowd, moved
 
 from crowdbot.core import InputError, Scene
-from crowdbot.models.escape_panic import MEMORY, VARIANTS, EscapePanic
+from crowdbot.models import EscapePanic
+from crowdbot.models.forces.escape_panic import MEMORY, VARIANTS
 
 every_variant = pytest.mark.parametrize("variant", VARIANTS)
 

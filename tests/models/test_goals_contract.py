@@ -133,7 +133,7 @@ def test_one_row_two_rows_many_rows_and_nobody(kind):
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if not kind.learns], ids=lambda kind: kebab(kind.__name__))
 def test_what_does_not_learn_says_so(kind):
     with pytest.raises(InputError, match=rf"{kebab(kind.__name__)} does not learn from recordings: make it by"):
-        kind.learned(street())
+        kind.learn(street())
 
 
 def test_choices_must_fit():
@@ -156,12 +156,12 @@ def weighed_by_hand(past):
 
     error, seen = np.zeros((people, rows - 1)), np.zeros(people)
     for person in range(people):
-        for ahead in aheads:
-            for row in range(1, rows - ahead):
+        for extrapolate in aheads:
+            for row in range(1, rows - extrapolate):
                 seen[person] += 1
                 for k in range(1, rows):
-                    off = place[row + ahead, person] - place[row, person] - ahead * mean(row, k, person)
-                    error[person, k - 1] += off @ off / ahead
+                    off = place[row + extrapolate, person] - place[row, person] - extrapolate * mean(row, k, person)
+                    error[person, k - 1] += off @ off / extrapolate
     shared = (error[0] + 8.0 * error.mean(axis=0)) / (seen[0] + 8.0 * seen.mean())
     weight = (shared.min() / shared) ** 20
     steps = [mean(rows - 1, k, 0) for k in range(1, rows)]

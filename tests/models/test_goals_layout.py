@@ -11,7 +11,7 @@ from goal_places import crowd, street, windows
 
 from crowdbot.core import InputError, Walls, from_attributes
 from crowdbot.models.goals import EnvironmentLayout
-from crowdbot.models.goals.routes import Routes, sees
+from crowdbot.models.goals.routes import Routes, mark_visible
 
 ROOM = np.array([(0.0, 0.0), (0.0, 8.0), (10.0, 8.0), (10.0, 0.0)])  # clockwise: people are inside
 
@@ -69,7 +69,7 @@ def test_sight_is_that_of_shapely():
     rng = np.random.default_rng(4)
     segments, place, target = rng.random((9, 4)), rng.random((20, 2)), rng.random((20, 15, 2))
     seen = np.zeros((20, 15), dtype=bool)
-    sees(place, target, segments, seen)
+    mark_visible(place, target, segments, seen)
     walls = shapely.multilinestrings([s.reshape(2, 2) for s in segments])
     lines = shapely.linestrings([[(place[i], target[i, j]) for j in range(15)] for i in range(20)])
     assert np.array_equal(seen, ~shapely.intersects(lines, walls))
@@ -109,7 +109,7 @@ def test_openings_of_a_border_are_exits():
 
 
 def test_a_recorded_place_has_its_openings_and_how_many_left_there():
-    layout = EnvironmentLayout.learned(street(), straight=0.4)
+    layout = EnvironmentLayout.learn(street(), straight=0.4)
     centre = layout.exits.mean(axis=1)
     busiest = centre[np.argsort(-np.asarray(layout.prior))[:2]]
     assert {("north" if y > 6.0 else "east") for _, y in busiest} == {"north", "east"}
@@ -138,7 +138,7 @@ def test_exits_come_from_text():
         (lambda: EnvironmentLayout([(1.0, 2.0)], prior=[0.0]), "not all 0"),
         (lambda: EnvironmentLayout([(1.0, 2.0)], straight=1.2), "straight = 1.2 is a share"),
         (lambda: EnvironmentLayout([(1.0, 2.0)], certainty=-1.0), "certainty = -1.0"),
-        (EnvironmentLayout.learned, "there is no recording to learn from"),
+        (EnvironmentLayout.learn, "there is no recording to learn from"),
         (lambda: EnvironmentLayout([(1.0, 2.0)]).resolve(windows(np.zeros((1, 8, 1, 2)), units="px")), "is in px"),
     ],
 )

@@ -15,7 +15,7 @@ from crowdbot.data import Trajectories, bridged, load, observed_velocity, steady
 from crowdbot.models.goals import CurrentDirection, LearnedDestinations
 from crowdbot.models.goals.exits import clusters, track_ends
 from crowdbot.models.goals.learned_velocity import LearnedVelocity, mean_velocity
-from crowdbot.models.goals.votes import NODES, Ballot, poll, typical_turn
+from crowdbot.models.goals.turn_histogram import BINS, TurnSamples, accumulate, median_turn
 
 
 def eastwards(x, y, speed=1.3):
@@ -24,7 +24,7 @@ def eastwards(x, y, speed=1.3):
 
 
 def test_people_at_the_junction_are_known_to_turn():
-    goal = LearnedDestinations.learned(street())
+    goal = LearnedDestinations.learn(street())
     assert len(goal.exits) == 2
     turning, passing = eastwards(-0.5, 1.5), eastwards(-0.5, -1.5)
     away = goal.resolve(turning)[0, 0] - turning.position[0, -1, 0]
@@ -40,14 +40,14 @@ def test_people_at_the_junction_are_known_to_turn():
 
 
 def test_where_nobody_has_been_people_go_straight_on():
-    goal = LearnedDestinations.learned(street())
+    goal = LearnedDestinations.learn(street())
     past = eastwards(50.0, 50.0)
     assert goal.resolve(past)[0, 0] == pytest.approx([50.0 + 26.0, 50.0], abs=0.5)
     assert goal.choices(past).weight[0, 0].tolist() == [1.0, 0.0, 0.0]
 
 
 def test_it_predicts_better_than_the_current_direction():
-    goal = LearnedDestinations.learned(street(), lookahead=3.2)
+    goal = LearnedDestinations.learn(street(), lookahead=3.2)
     past, future = street(seed=7).windows(8, 8)
 
     def error(towards):
@@ -60,7 +60,7 @@ def test_it_predicts_better_than_the_current_direction():
 @pytest.mark.parametrize("name", ["crowds_zara03", "students001"])
 def test_on_real_streets_it_is_as_good_as_the_best_constant_velocity(recordings, name):
     early, late = load(recordings / f"eth_ucy_splits/all_data/{name}.txt").split(0.5)
-    goal = LearnedDestinations.learned(early)
+    goal = LearnedDestinations.learn(early)
     past, future = late.windows(8, 12)
     time = past.dt * np.arange(1, 13)[:, None, None]
 
@@ -75,9 +75,8 @@ def test_on_real_streets_it_is_as_good_as_the_best_constant_velocity(recordings,
     assert np.min([error(ways[:, :, k] / goal.horizon) for k in range(3)], axis=0).mean() < 0.93 * one
 
 
-@pytest.mark.soak
 def test_thirty_people_take_less_than_five_milliseconds():
-    goal = LearnedDestinations.learned(street(people=200))
+    goal = LearnedDestinations.learn(street(people=200))
     past = crowd(W=1, A=30, holes=0.0)
     goal.choices(past)
     took = []
@@ -91,7 +90,7 @@ def test_thirty_people_take_less_than_five_milliseconds():
 def test_votes_are_those_of_a_plain_loop():
     rng = np.random.default_rng(3)
     angle = rng.uniform(-3.0, 3.0, 40)
-    ballot = Ballot(
+    samples = TurnSamples(
         rng.normal(0.0, 2.0, (40, 2)),
         np.stack([np.cos(angle), np.sin(angle)], axis=1),
         rng.uniform(-2.0, 2.0, 40),
@@ -99,38 +98,38 @@ def test_votes_are_those_of_a_plain_loop():
         rng.random(40),
         rng.integers(0, 3, 40),
     )
-    place, heading = rng.normal(0.0, 1.0, (3, 2)), ballot.heading[:3]
-    votes, slow = np.zeros((3, 4, NODES)), np.zeros((3, 4, NODES))
-    poll(place, heading, ballot, 2, 1.5, 0.8, votes)
-    nodes = np.linspace(-np.pi / 2, np.pi / 2, NODES)
+    place, heading = rng.normal(0.0, 1.0, (3, 2)), samples.heading[:3]
+    histogram, slow = np.zeros((3, 4, BINS)), np.zeros((3, 4, BINS))
+    accumulate(place, heading, samples, 2, 1.5, 0.8, histogram)
+    nodes = np.linspace(-np.pi / 2, np.pi / 2, BINS)
     for p in range(3):
         for v in range(40):
-            apart = np.sum((ballot.place[v] - place[p]) ** 2) / 1.5**2
-            weight = max(0.0, 1.0 - (apart + np.sum((ballot.heading[v] - heading[p]) ** 2) / 0.8**2) / 8.0) ** 4
+            apart = np.sum((samples.place[v] - place[p]) ** 2) / 1.5**2
+            weight = max(0.0, 1.0 - (apart + np.sum((samples.heading[v] - heading[p]) ** 2) / 0.8**2) / 8.0) ** 4
             hat = np.maximum(
-                0.0, 1.0 - np.abs(np.clip(ballot.turn[v], nodes[0], nodes[-1]) - nodes) / (nodes[1] - nodes[0])
+                0.0, 1.0 - np.abs(np.clip(samples.turn[v], nodes[0], nodes[-1]) - nodes) / (nodes[1] - nodes[0])
             )
-            slow[p, 0] += weight * ballot.worth[v] * ballot.straight[v] * hat
-            slow[p, 1 + ballot.exit[v]] += weight * ballot.worth[v] * (1.0 - ballot.straight[v]) * hat
-    assert votes == pytest.approx(slow, abs=1e-12)
+            slow[p, 0] += weight * samples.worth[v] * samples.straight[v] * hat
+            slow[p, 1 + samples.exit[v]] += weight * samples.worth[v] * (1.0 - samples.straight[v]) * hat
+    assert histogram == pytest.approx(slow, abs=1e-12)
     assert slow.sum() > 1.0
 
 
 def test_the_typical_turn_is_a_median():
-    votes = np.zeros(NODES)
-    votes[[20, 45]] = [1.0, 1.2]
-    assert np.degrees(typical_turn(votes)) == pytest.approx(45.0, abs=3.0)
-    votes[20] = 1.4
-    assert np.degrees(typical_turn(votes)) == pytest.approx(-30.0, abs=3.0)
+    histogram = np.zeros(BINS)
+    histogram[[20, 45]] = [1.0, 1.2]
+    assert np.degrees(median_turn(histogram)) == pytest.approx(45.0, abs=3.0)
+    histogram[20] = 1.4
+    assert np.degrees(median_turn(histogram)) == pytest.approx(-30.0, abs=3.0)
     many = np.random.default_rng(2).normal(0.3, 0.2, 5001)
-    votes = np.bincount(np.round((many + np.pi / 2) / (np.pi / (NODES - 1))).astype(int), minlength=NODES)
-    assert typical_turn(votes.astype(float)) == pytest.approx(np.median(many), abs=0.01)
-    assert typical_turn(np.zeros((2, NODES))).tolist() == [0.0, 0.0]
+    histogram = np.bincount(np.round((many + np.pi / 2) / (np.pi / (BINS - 1))).astype(int), minlength=BINS)
+    assert median_turn(histogram.astype(float)) == pytest.approx(np.median(many), abs=0.01)
+    assert median_turn(np.zeros((2, BINS))).tolist() == [0.0, 0.0]
 
 
 def test_the_learned_velocity_minimises_the_summed_distance():
     past, future = street(seed=5, noise=0.1).windows(5, 4)
-    pace = LearnedVelocity.fitted([(past, future)])
+    pace = LearnedVelocity.fit([(past, future)])
     steady, after, seen = steady_velocity(past), mean_velocity(past, future), future.scored
     off = np.diff(bridged(past).position, axis=1) / past.dt - steady[:, None]
 
@@ -147,7 +146,7 @@ def test_the_learned_velocity_minimises_the_summed_distance():
 def test_even_walkers_teach_nothing():
     past = windows(np.arange(12.0)[None, :, None, None] * np.ones((3, 1, 2, 2)))
     pair = past, dataclasses.replace(past, scored=np.ones((3, 2), dtype=bool), position=past.position + 12.0)
-    assert np.all(LearnedVelocity.fitted([pair]).weight == 0.0)
+    assert np.all(LearnedVelocity.fit([pair]).weight == 0.0)
 
 
 def test_ends_are_grouped_and_those_cut_off_left_out():
@@ -165,35 +164,35 @@ def test_ends_are_grouped_and_those_cut_off_left_out():
 
 
 def test_two_recordings_teach_more_than_one():
-    one, both = LearnedDestinations.learned(street(1)), LearnedDestinations.learned(street(1), street(2))
-    assert len(both.voters.turn) > 1.5 * len(one.voters.turn)
+    one, both = LearnedDestinations.learn(street(1)), LearnedDestinations.learn(street(1), street(2))
+    assert len(both.samples.turn) > 1.5 * len(one.samples.turn)
 
 
 def test_what_was_learned_is_the_same_again():
-    one, two = LearnedDestinations.learned(street()), LearnedDestinations.learned(street())
+    one, two = LearnedDestinations.learn(street()), LearnedDestinations.learn(street())
     assert one.choices(crowd()).position.tobytes() == two.choices(crowd()).position.tobytes()
 
 
 def slow_clock():
     tracks = street()
-    return Trajectories(tracks.id, tracks.frame, tracks.x, tracks.y, row_rate=1.0, frame_step=10, name="slow")
+    return Trajectories(tracks.id, tracks.frame, tracks.x, tracks.y, frame_rate=1.0, frame_step=10, name="slow")
 
 
 @pytest.mark.parametrize(
     ("make", "says"),
     [
-        (LearnedDestinations.learned, "there is no recording to learn from"),
-        (lambda: LearnedDestinations.learned(street(), slow_clock()), "street has steps of 0.4 s and slow of 1 s"),
-        (lambda: LearnedDestinations.learned(dataclasses.replace(street(), units="px")), "street is in pixels"),
-        (lambda: LearnedDestinations.learned(street(), lookahead=0.0), "lookahead = 0.0 s must be finite"),
-        (lambda: LearnedDestinations.learned(street(), width=-1.0), "width = -1.0 m must be finite"),
-        (lambda: LearnedDestinations.learned(street(), reach=0.0), "reach = 0.0"),
+        (LearnedDestinations.learn, "there is no recording to learn from"),
+        (lambda: LearnedDestinations.learn(street(), slow_clock()), "street has steps of 0.4 s and slow of 1 s"),
+        (lambda: LearnedDestinations.learn(dataclasses.replace(street(), units="px")), "street is in pixels"),
+        (lambda: LearnedDestinations.learn(street(), lookahead=0.0), "lookahead = 0.0 s must be finite"),
+        (lambda: LearnedDestinations.learn(street(), width=-1.0), "width = -1.0 m must be finite"),
+        (lambda: LearnedDestinations.learn(street(), reach=0.0), "reach = 0.0"),
         (
-            lambda: LearnedDestinations.learned(street()).resolve(windows(np.zeros((1, 8, 1, 2)), dt=0.1)),
+            lambda: LearnedDestinations.learn(street()).resolve(windows(np.zeros((1, 8, 1, 2)), dt=0.1)),
             "made has steps of 0.1 s, but the place was learned at steps of 0.4 s",
         ),
         (
-            lambda: LearnedDestinations.learned(street()).choices(windows(np.zeros((1, 8, 1, 2)), units="px")),
+            lambda: LearnedDestinations.learn(street()).choices(windows(np.zeros((1, 8, 1, 2)), units="px")),
             "made is in px, the place was learned in m",
         ),
     ],

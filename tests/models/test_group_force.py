@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from model_crowds import PILLAR, ROOM, SCREEN, crowd, moved
 
 from crowdbot.core import InputError, Scene
-from crowdbot.models.group_force import VARIANTS, GroupForce
+from crowdbot.models import GroupForce
+from crowdbot.models.forces.group_force import VARIANTS
 
 every_variant = pytest.mark.parametrize("variant", VARIANTS)
 

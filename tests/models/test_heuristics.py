@@ -11,7 +11,8 @@ from model_crowds import PILLAR, ROOM, SCREEN, crowd, moved
 
 from crowdbot.core import InputError, Scene
 from crowdbot.core.geometry import nearest_on_segment, time_to_contact, time_to_segment
-from crowdbot.models.heuristics import ANGLES, Heuristics
+from crowdbot.models import Heuristics
+from crowdbot.models.vision.heuristics import ANGLES
 
 
 def test_velocities_are_near_those_of_umans(reference):

@@ -15,8 +15,8 @@ from model_crowds import PILLAR, ROOM, SCREEN, crowd, moved
 from crowdbot.core import InputError, Scene, Walls
 from crowdbot.core.geometry import time_to_segment
 from crowdbot.models import ORCA
-from crowdbot.models.linear_program import best_velocity
-from crowdbot.models.orca_lines import avoid_agent, avoid_edge, edges_in_reach, edges_of
+from crowdbot.models.velocity_obstacles.linear_program import best_velocity
+from crowdbot.models.velocity_obstacles.orca_lines import avoid_agent, avoid_edge, edges_in_reach, edges_of
 
 SCENES = ["blocks100", "bottleneck12", "circle250", "corridor_bidir", "crossing90", "hetero", "hetero_dense"]
 

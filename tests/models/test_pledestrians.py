@@ -8,8 +8,7 @@ from engine_steps import circle, report, umans
 from model_crowds import PILLAR, ROOM, SCREEN, crowd, moved
 
 from crowdbot.core import InputError, Scene
-from crowdbot.models.orca import ORCA
-from crowdbot.models.pledestrians import PLEdestrians
+from crowdbot.models import ORCA, PLEdestrians
 
 
 def test_velocities_are_near_those_of_umans(reference):

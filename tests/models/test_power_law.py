@@ -13,7 +13,7 @@ from model_crowds import PILLAR, ROOM, SCREEN, crowd, moved
 
 from crowdbot.core import InputError, Scene
 from crowdbot.core.geometry import time_to_contact, time_to_segment
-from crowdbot.models.power_law import PowerLaw
+from crowdbot.models import PowerLaw
 
 FREE = {"max_acceleration": 1e9, "max_speed": 1e9}
 

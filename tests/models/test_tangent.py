@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from crowdbot.core import InputError, Scene
-from crowdbot.models.tangent import Tangent
-from crowdbot.models.tangent_threats import MOST, THREAT, insert, least_change, threat_of_neighbor
+from crowdbot.models import Tangent
+from crowdbot.models.vision.tangent_threats import MOST, THREAT, insert, least_change, threat_of_neighbor
 
 PAIR = 0.66
 """Clearance of two people with the default personal area [m]."""

@@ -10,9 +10,7 @@ import pytest
 from model_crowds import crowd, renumbered
 
 from crowdbot.core import parameters
-from crowdbot.models.boids import Boids
-from crowdbot.models.escape_panic import EscapePanic
-from crowdbot.models.group_force import GroupForce
+from crowdbot.models import Boids, EscapePanic, GroupForce
 
 VARIANTS = [Boids(variant="crowdbot"), EscapePanic(variant="crowdbot"), GroupForce(variant="pysocialforce")]
 every_variant = pytest.mark.parametrize("model", VARIANTS, ids=lambda model: f"{type(model).__name__}-{model.variant}")

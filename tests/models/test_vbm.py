@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from crowdbot.core import InputError, Scene, stream
-from crowdbot.models.vbm import VBM, _slopes
+from crowdbot.models import VBM
+from crowdbot.models.vision.vbm import _slopes
 
 BARRIER = [[(-6.0, 2.0), (6.0, 2.4)], [(3.0, -4.0), (4.0, -4.0), (4.0, -1.0), (3.0, -1.0)]]
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from crowdbot.core import InputError, Scene, stream
-from crowdbot.models import ORCA, Mixture
-from crowdbot.models.vog import MEMORY, VOG
+from crowdbot.models import ORCA, VOG, Mixture
+from crowdbot.models.velocity_obstacles.vog import MEMORY
 
 ABREAST = np.array([[0.0, 0.0], [0.0, 1.0], [0.0, 2.0]])
 AHEAD = np.array([[1.3, 0.0]] * 3)

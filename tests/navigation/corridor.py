@@ -95,7 +95,7 @@ def run(navigator, seeds, way="across", *, crowd=None, width=7.0, length=20.0, c
             for e in going:
                 twist = world.twists[0].at(e)
                 seen = Observation.of(world.scene, 0, LIMITS, dt=CONTROL * DT, twist=twist, environment=int(e))
-                held[:, e] = navigator.act(seen)[:2]
+                held[:, e] = navigator.decide(seen, None)[0].twist[:2]
         after = world.step({0: Twists(held[0].copy(), held[1].copy(), np.zeros(E))})
         logs.append(after)
         done = np.hypot(*(after.position[:, 0] - goal).T) < TOLERANCE

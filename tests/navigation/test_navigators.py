@@ -2,13 +2,14 @@
 
 import dataclasses
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
 from crowdbot import models, navigation
 from crowdbot.core import InputError, Twist, Walls, builtin_classes, from_attributes
-from crowdbot.navigation import ORCA, Limits, Observation, People, Straight
+from crowdbot.navigation import ORCA, Action, Limits, Navigator, Observation, People, Straight
 
 NAVIGATORS = builtin_classes(navigation, navigation.Navigator)
 LIMITS = Limits(1.0, 1.5, 1.0, 3.0)
@@ -126,3 +127,63 @@ def test_far_people_change_nothing():
 def test_orca_explains_wrong_values(values, message):
     with pytest.raises(InputError, match=message):
         ORCA(**values)
+
+
+@dataclass(frozen=True)
+class Counting(Navigator):
+    """Remembers how often it was asked."""
+
+    def begin(self, observation):
+        return 10
+
+    def act(self, observation, memory):
+        return Action(Twist(0.1 * memory)), memory + 1
+
+
+@dataclass(frozen=True)
+class Plain(Navigator):
+    answer: object = Twist(0.25)
+
+    def act(self, observation):
+        return self.answer
+
+
+def test_memory_is_an_argument_and_a_result():
+    navigator = Counting()
+    memory = navigator.begin(meeting())
+    one, after = navigator.decide(meeting(), memory)
+    again, _ = navigator.decide(meeting(), memory)
+    two, last = navigator.decide(meeting(), after)
+    assert (one.twist.forward, two.twist.forward, last) == (pytest.approx(1.0), pytest.approx(1.1), 12)
+    assert again == one
+
+
+def test_a_plain_act_is_enough_and_keeps_the_memory():
+    action, memory = Plain().decide(meeting(), "kept")
+    assert (action, memory) == (Action(Twist(0.25)), "kept")
+    assert Plain().begin(meeting()) is None
+    for kind in NAVIGATORS.values():
+        assert kind().decide(meeting(), None) == (Action(kind().act(meeting())), None)
+
+
+@pytest.mark.parametrize(
+    ("navigator", "words"),
+    [
+        (Plain((0.1, 0.2)), "navigator Plain gave a tuple, it must give a Twist"),
+        (Plain(None), "navigator Plain gave a NoneType, it must give a Twist"),
+        (Plain(Action(Twist())), "navigator Plain gave a Action, it must give a Twist"),
+    ],
+)
+def test_a_wrong_answer_is_rejected(navigator, words):
+    with pytest.raises(InputError, match=words):
+        navigator.decide(meeting(), None)
+
+
+def test_joints_cannot_be_commanded_yet():
+    @dataclass(frozen=True)
+    class Waving(Navigator):
+        def act(self, observation, memory):
+            return Action(Twist(), {"arm": 1.0}), memory
+
+    with pytest.raises(InputError, match=r"Waving: joints = \{'arm': 1.0\} cannot be commanded yet"):
+        Waving().decide(meeting(), None)

@@ -15,11 +15,11 @@ from crowdbot.benchmark import evaluate
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Trajectories, Windows
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, SampledConstantVelocity
-from crowdbot.prediction.anchor_net.agent_frame import GAITS
+from crowdbot.prediction.anchor_net.agent_frame import SPEED_CLASSES
 from crowdbot.prediction.anchor_net.layers import attend, dense
 from crowdbot.prediction.anchor_net.predictor import NEEDED
-from crowdbot.prediction.joint_kernels import arrange, crossing, part_ways
-from crowdbot.prediction.pretrained_weights import FOLDS, learned
+from crowdbot.prediction.joint_kernels import assign_futures, first_crossing, separate_paths
+from crowdbot.prediction.pretrained_weights import FOLDS, load_pretrained
 
 Maker = Callable[..., Windows]
 KINDS = (AnchorNet(), AnchorNet(sample="draws"))
@@ -64,7 +64,7 @@ def test_attention_is_a_softmax_over_who_is_there() -> None:
 def test_arranged_futures_collide_less_and_everyone_keeps_all(seed: int) -> None:
     rng = stream(seed, "arrange")
     path = rng.normal(0.0, 1.5, (5, 1, 1, 2)) + np.cumsum(rng.normal(0.0, 0.3, (5, 8, 12, 2)), axis=2)
-    choice = arrange(path, 0.4, 0.3, 8)
+    choice = assign_futures(path, 0.4, 0.3, 8)
     assert np.array_equal(np.sort(choice, axis=1), np.tile(np.arange(8), (5, 1)))
 
     def collisions(order: np.ndarray) -> int:
@@ -78,19 +78,19 @@ def test_arranged_futures_collide_less_and_everyone_keeps_all(seed: int) -> None
 def test_who_comes_too_near_gives_way_evenly() -> None:
     step = np.arange(1.0, 13.0)[:, None]
     path = np.stack([np.array([0.5, 0.0]) * step, np.array([6.0, 0.1]) - np.array([0.5, 0.0]) * step])
-    moved = part_ways(path, np.zeros(2, dtype=bool), 0.3, 12)
+    moved = separate_paths(path, np.zeros(2, dtype=bool), 0.3, 12)
     assert np.linalg.norm(moved[0] - moved[1], axis=1).min() >= 0.3
     np.testing.assert_allclose(moved[0] - path[0], path[1] - moved[1], atol=1e-12)
-    held = part_ways(path, np.array([True, False]), 0.3, 12)
+    held = separate_paths(path, np.array([True, False]), 0.3, 12)
     assert np.array_equal(held[0], path[0])
     assert np.linalg.norm(held[0] - held[1], axis=1).min() >= 0.3
     head_on = path * np.array([1.0, 0.0])
-    assert np.linalg.norm(np.subtract(*part_ways(head_on, np.zeros(2, dtype=bool), 0.3, 12)), axis=1).min() >= 0.3
+    assert np.linalg.norm(np.subtract(*separate_paths(head_on, np.zeros(2, dtype=bool), 0.3, 12)), axis=1).min() >= 0.3
 
 
 def test_paths_through_a_wall_are_found() -> None:
     path = np.array([[[[1.0, 0.0], [2.0, 0.0]], [[0.0, 1.0], [0.0, 2.0]]]])
-    found = crossing(np.zeros((1, 2)), path, np.array([[1.5, -1.0]]), np.array([[1.5, 1.0]]))
+    found = first_crossing(np.zeros((1, 2)), path, np.array([[1.5, -1.0]]), np.array([[1.5, 1.0]]))
     assert found.tolist() == [[1, 2]]
 
 
@@ -192,18 +192,18 @@ def test_the_plan_of_a_robot_is_kept_and_moves_people(windows: Maker) -> None:
 @both
 def test_what_does_not_fit_is_said_and_a_baseline_answers(net: AnchorNet, crowd: Maker) -> None:
     slow = dataclasses.replace(crowd(), dt=1.6)
-    with pytest.warns(UserWarning, match="anchor-net: made has steps of 1.6 s.*constant-velocity answers instead"):
+    with pytest.warns(UserWarning, match="anchor-net: made has time steps of 1.6 s.*constant-velocity is used instead"):
         one = net.predict(slow, 12)
     assert np.array_equal(one.position, ConstantVelocity().predict(slow, 12).position)
-    with pytest.warns(UserWarning, match="sampled-constant-velocity answers instead"):
+    with pytest.warns(UserWarning, match="sampled-constant-velocity is used instead"):
         many = net.predict(slow, 12, 4, stream(1))
     assert np.array_equal(many.position, SampledConstantVelocity().predict(slow, 12, 4, stream(1)).position)
-    with pytest.raises(InputError, match="there are no modes of it"):
+    with pytest.raises(InputError, match="anchor-net: "):
         net.modes(dataclasses.replace(crowd(), units="px"))
 
 
 def test_the_place_decides_which_weights_are_taken(crowd: Maker) -> None:
-    assert "not named after one of the five places" in AnchorNet().note(crowd())
+    assert "not named after a training place" in AnchorNet().note(crowd())
     assert AnchorNet().note(dataclasses.replace(crowd(), source="biwi_eth.txt")) == ""
     assert AnchorNet("eth").note(crowd()) == ""
     assert "steps of 2 s" in AnchorNet("eth").note(dataclasses.replace(crowd(), dt=2.0))
@@ -211,16 +211,16 @@ def test_the_place_decides_which_weights_are_taken(crowd: Maker) -> None:
 
 
 def test_own_weights_are_read_and_wrong_ones_are_one_sentence(crowd: Maker, tmp_path: Path) -> None:
-    numbers = learned("anchor-net", "all")
+    numbers = load_pretrained("anchor-net", "all")
     np.savez(tmp_path / "own.npz", **numbers)
     own = AnchorNet(file=str(tmp_path / "own.npz"))
     assert np.array_equal(own.predict(crowd(), 12).position, AnchorNet("all").predict(crowd(), 12).position)
     np.savez(tmp_path / "half.npz", **{k: v for k, v in numbers.items() if k != "query_bias"})
     np.savez(tmp_path / "old.npz", **numbers | {"own_1_weight": np.zeros((30, 256))})
-    for file, word in (("half", "it has no query_bias"), ("old", "its own_1_weight is of another shape")):
-        with pytest.raises(DataError, match=f"{file}.npz holds no weights of this network: {word}"):
+    for file, word in (("half", "query_bias is missing"), ("old", "own_1_weight has another shape")):
+        with pytest.raises(DataError, match=f"{file}.npz is not a file of AnchorNet weights: {word}"):
             AnchorNet(file=str(tmp_path / f"{file}.npz")).predict(crowd(), 12)
-    with pytest.raises(DataError, match="there is no file"):
+    with pytest.raises(DataError, match="does not exist"):
         AnchorNet(file=str(tmp_path / "none.npz")).predict(crowd(), 12)
 
 
@@ -249,10 +249,10 @@ def test_shipped_weights_are_ahead_where_they_did_not_learn(recorded: Callable[[
 
 @pytest.mark.parametrize("fold", ["all", *FOLDS])
 def test_every_fold_is_shipped_whole(fold: str) -> None:
-    numbers = learned("anchor-net", fold)
+    numbers = load_pretrained("anchor-net", fold)
     assert set(NEEDED) <= set(numbers)
-    assert numbers["temperature"].shape == numbers["widening"].shape == (len(GAITS) + 1,)
-    assert learned("anchors", fold)["shapes"].shape == (20, 12, 2)
+    assert numbers["temperature"].shape == numbers["widening"].shape == (len(SPEED_CLASSES) + 1,)
+    assert load_pretrained("anchors", fold)["shapes"].shape == (20, 12, 2)
 
 
 @both

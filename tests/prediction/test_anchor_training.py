@@ -12,7 +12,7 @@ import torch
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories
-from crowdbot.prediction.anchor_net.agent_frame import AHEAD, COMPANY, INPUTS, NEAR
+from crowdbot.prediction.anchor_net.agent_frame import AGENT_FEATURES, NEAR, NEIGHBOR_FEATURES, PREDICTED_ROWS
 from crowdbot.prediction.anchor_net.predictor import NEEDED, network_output
 from crowdbot.prediction.anchor_net.training import (
     AnchorNetTraining,
@@ -23,73 +23,73 @@ from crowdbot.prediction.anchor_net.training import (
     shapes_of,
 )
 from crowdbot.prediction.anchor_net.training_data import (
-    NONE,
-    Material,
-    Variation,
+    NO_AUGMENTATION,
+    Augmentation,
+    TrainingSet,
     backwards,
     batch,
-    gathered,
-    material_of,
+    training_set,
+    training_set_of,
 )
-from crowdbot.prediction.training.loop import Schedule, train
+from crowdbot.prediction.training.loop import TrainingSchedule, train
 from crowdbot.prediction.training.samples import Samples
-from crowdbot.prediction.training.torch_backend import threads
+from crowdbot.prediction.training.torch_backend import torch_threads
 
 TINY = AnchorTraining(people=32, width=16, social=8, warm=5)
 
 
 @pytest.fixture(scope="module")
-def material(recorded: Callable[[str], Trajectories]) -> Material:
-    return gathered([recorded("biwi_hotel")])
+def material(recorded: Callable[[str], Trajectories]) -> TrainingSet:
+    return training_set([recorded("biwi_hotel")])
 
 
 def test_everyone_of_the_protocol_is_learned_from_twice(
-    material: Material, recorded: Callable[[str], Trajectories]
+    material: TrainingSet, recorded: Callable[[str], Trajectories]
 ) -> None:
     assert len(material) == 2 * 1197
     again = backwards(backwards(recorded("biwi_hotel")))
     assert np.array_equal(again.x, recorded("biwi_hotel").x)
 
 
-def test_without_variation_a_batch_is_what_happened(material: Material) -> None:
+def test_without_variation_a_batch_is_what_happened(material: TrainingSet) -> None:
     rows = np.arange(50)
-    plain = batch(material, rows, NONE, stream(0))
-    assert plain.own.shape == (50, INPUTS)
-    assert plain.company.shape == (50, NEAR, COMPANY)
+    plain = batch(material, rows, NO_AUGMENTATION, stream(0))
+    assert plain.own.shape == (50, AGENT_FEATURES)
+    assert plain.company.shape == (50, NEAR, NEIGHBOR_FEATURES)
     assert np.array_equal(plain.there, material.people.there[:50])
     past = material.people.past[:50]
     step = past[:, -1] - past[:, -2]
-    straight = material.ahead[:50] - step[:, None] * np.arange(1, AHEAD + 1)[:, None]
+    straight = material.ahead[:50] - step[:, None] * np.arange(1, PREDICTED_ROWS + 1)[:, None]
     np.testing.assert_allclose(np.linalg.norm(plain.missed, axis=2), np.linalg.norm(straight, axis=2), atol=1e-12)
 
 
-def test_every_variation_changes_what_is_seen(material: Material) -> None:
+def test_every_variation_changes_what_is_seen(material: TrainingSet) -> None:
     rows = np.arange(200)
-    plain = batch(material, rows, NONE, stream(0))
+    plain = batch(material, rows, NO_AUGMENTATION, stream(0))
     for name in ("mirror", "scale", "turn", "jitter", "late", "switched", "unseen"):
-        seen = batch(material, rows, dataclasses.replace(NONE, **{name: 0.9}), stream(0))
+        seen = batch(material, rows, dataclasses.replace(NO_AUGMENTATION, **{name: 0.9}), stream(0))
         assert not np.array_equal(seen.own, plain.own) or not np.array_equal(seen.company, plain.company), name
         assert np.isfinite(seen.own).all()
         assert np.isfinite(seen.company).all()
-    holes = batch(material, rows, dataclasses.replace(NONE, holes=1.0, hole=0.5), stream(0))
+    holes = batch(material, rows, dataclasses.replace(NO_AUGMENTATION, holes=1.0, hole=0.5), stream(0))
     assert 0.4 < holes.own[:, -7:].mean() < 0.75
-    planned = batch(material, rows, dataclasses.replace(NONE, planned=1.0), stream(0))
+    planned = batch(material, rows, dataclasses.replace(NO_AUGMENTATION, planned=1.0), stream(0))
     assert planned.company[..., 9].sum() > 0.0
     assert plain.company[..., 9].sum() == 0.0
 
 
-def test_bends_are_made_of_six_numbers(material: Material) -> None:
+def test_bends_are_made_of_six_numbers(material: TrainingSet) -> None:
     shapes = shapes_of(material)
     assert shapes["basis"].shape == (6, 24)
     np.testing.assert_allclose(shapes["basis"] @ shapes["basis"].T, np.eye(6), atol=1e-9)
-    missed = batch(material, np.arange(len(material)), NONE, stream(0)).missed.reshape(-1, 24)
+    missed = batch(material, np.arange(len(material)), NO_AUGMENTATION, stream(0)).missed.reshape(-1, 24)
     rest = missed - missed @ shapes["basis"].T @ shapes["basis"]
     assert np.linalg.norm(rest.reshape(-1, 12, 2), axis=2).mean() < 0.04
 
 
-def test_predicting_without_torch_gives_what_was_trained(material: Material) -> None:
+def test_predicting_without_torch_gives_what_was_trained(material: TrainingSet) -> None:
     layers = network(TINY)
-    shown = batch(material, np.arange(40), Variation(), stream(1))
+    shown = batch(material, np.arange(40), Augmentation(), stream(1))
     with torch.no_grad():
         inside = outputs(
             layers, torch.tensor(shown.own).float(), torch.tensor(shown.company).float(), torch.tensor(shown.there)
@@ -101,24 +101,24 @@ def test_predicting_without_torch_gives_what_was_trained(material: Material) -> 
     np.testing.assert_allclose(network_output(numbers, shown.own, shown.company, shown.there), inside, atol=1e-5)
 
 
-def best_of_twenty(numbers: dict[str, np.ndarray], material: Material) -> float:
+def best_of_twenty(numbers: dict[str, np.ndarray], material: TrainingSet) -> float:
     """Return the mean error [m] of the best future of everyone."""
-    own, company, there, missed = batch(material, np.arange(len(material)), NONE, stream(0))
+    own, company, there, missed = batch(material, np.arange(len(material)), NO_AUGMENTATION, stream(0))
     found = network_output(numbers, own, company, there)[:, :120].reshape(-1, 20, 6)
     bend = (numbers["centres"] + found * numbers["spread"]) @ numbers["basis"]
     away = bend.reshape(-1, 20, 12, 2) - missed[:, None]
     return float(np.linalg.norm(away, axis=3).mean(axis=2).min(axis=1).mean())
 
 
-def trained(material: Material, how: AnchorTraining, updates: int, folder: Path | None = None) -> AnchorNetTraining:
+def trained(material: TrainingSet, how: AnchorTraining, updates: int, folder: Path | None = None) -> AnchorNetTraining:
     model = AnchorNetTraining(how, material, material)
-    with threads():
-        train(model, Schedule(updates, check_every=updates, keep_every=100, seed=how.seed), folder, resume=True)
+    with torch_threads():
+        train(model, TrainingSchedule(updates, check_every=updates, keep_every=100, seed=how.seed), folder, resume=True)
     return model
 
 
-def test_training_learns_repeats_itself_and_goes_on_after_a_stop(material: Material, tmp_path: Path) -> None:
-    how = dataclasses.replace(TINY, average=0.9, variation=NONE)
+def test_training_learns_repeats_itself_and_goes_on_after_a_stop(material: TrainingSet, tmp_path: Path) -> None:
+    how = dataclasses.replace(TINY, average=0.9, variation=NO_AUGMENTATION)
     model = trained(material, how, 200)
     whole = model.numbers()
     still = whole | {name: 0.0 * whole[name] for name in ("out_weight", "out_bias")}
@@ -132,8 +132,8 @@ def test_training_learns_repeats_itself_and_goes_on_after_a_stop(material: Mater
         if update == 150:
             raise Stopped
 
-    schedule = Schedule(200, check_every=200, keep_every=100)
-    with pytest.raises(Stopped), threads():
+    schedule = TrainingSchedule(200, check_every=200, keep_every=100)
+    with pytest.raises(Stopped), torch_threads():
         train(AnchorNetTraining(how, material, material), schedule, tmp_path, tick=stop)
     again = trained(material, how, 200, tmp_path).numbers()
     assert whole.keys() == again.keys()
@@ -142,7 +142,7 @@ def test_training_learns_repeats_itself_and_goes_on_after_a_stop(material: Mater
         trained(material, dataclasses.replace(how, choice=0.2), 200, tmp_path)
 
 
-def test_calibrated_numbers_are_complete(material: Material) -> None:
+def test_calibrated_numbers_are_complete(material: TrainingSet) -> None:
     numbers = AnchorNetTraining(TINY, material, material).weights()
     assert set(NEEDED) <= set(numbers)
     for name in ("temperature", "widening"):
@@ -151,11 +151,11 @@ def test_calibrated_numbers_are_complete(material: Material) -> None:
 
 
 def test_windows_of_any_recording_give_the_same_people(
-    material: Material, recorded: Callable[[str], Trajectories]
+    material: TrainingSet, recorded: Callable[[str], Trajectories]
 ) -> None:
     samples = Samples.cut(*recorded("biwi_hotel").windows(), "hotel")
-    plain, both = material_of(samples, reverse=False), material_of(samples)
-    forward = gathered([recorded("biwi_hotel")], reverse=False)
+    plain, both = training_set_of(samples, reverse=False), training_set_of(samples)
+    forward = training_set([recorded("biwi_hotel")], reverse=False)
     assert (len(plain), len(both)) == (1197, 2 * 1197)
     for one, other in ((plain.ahead, forward.ahead), (plain.people.past, forward.people.past)):
         rows = [np.unique(array.reshape(len(array), -1).round(6), axis=0) for array in (one, other)]
@@ -176,7 +176,7 @@ def test_what_the_command_line_says_is_read(recorded: Callable[[str], Trajectori
 
 def test_what_cannot_be_learned_from_is_one_sentence(recorded: Callable[[str], Trajectories]) -> None:
     with pytest.raises(InputError, match="there is no recording to learn from"):
-        gathered([])
+        training_set([])
     fast = recorded("biwi_hotel").resample(0.2)
-    with pytest.raises(InputError, match="steps of 0.2 s in m; learning needs 0.4 s in metres"):
-        gathered([fast])
+    with pytest.raises(InputError, match="steps of 0.2 s in m; training requires 0.4 s and metres"):
+        training_set([fast])

@@ -13,8 +13,8 @@ from crowdbot.benchmark import evaluate
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Trajectories, Windows
 from crowdbot.prediction import Anchors, ConstantVelocity, SampledConstantVelocity
-from crowdbot.prediction.anchor_net.anchors import centres, residuals, spread_over_time
-from crowdbot.prediction.pretrained_weights import FOLDS, fold_of, kept_out, read_numbers
+from crowdbot.prediction.anchor_net.anchors import cluster_centers, resample_paths, residuals
+from crowdbot.prediction.pretrained_weights import FOLDS, fold_of, is_held_out, read_weights
 
 Maker = Callable[..., Windows]
 
@@ -72,14 +72,14 @@ def test_other_steps_of_time_end_at_the_same_places(windows: Maker) -> None:
 
 def test_beyond_what_was_learned_the_bend_stays() -> None:
     bend = np.cumsum(np.ones((1, 1, 12, 2)), axis=2)
-    away = spread_over_time(bend, np.zeros((1, 2)), 30, 0.4)
+    away = resample_paths(bend, np.zeros((1, 2)), 30, 0.4)
     assert away[0, 0, :, 0].tolist() == [*range(1, 13), *[12.0] * 18]
 
 
 @pytest.mark.parametrize(("change", "word"), [({"dt": 1.0}, "steps of 1 s"), ({"units": "px"}, "in px")])
 def test_what_does_not_fit_is_said_and_a_baseline_answers(crowd: Maker, change: dict[str, object], word: str) -> None:
     past = dataclasses.replace(crowd(), **change)  # type: ignore[arg-type]
-    with pytest.warns(UserWarning, match=f"anchors: made .*{word}.*answers instead"):
+    with pytest.warns(UserWarning, match=f"anchors: made .*{word}.*is used instead"):
         found = Anchors().predict(past, 5, 3, stream(1))
     assert np.array_equal(found.position, SampledConstantVelocity().predict(past, 5, 3, stream(1)).position)
 
@@ -89,16 +89,16 @@ def test_the_place_decides_which_set_is_taken(crowd: Maker) -> None:
     there = dataclasses.replace(here, source="crowds_zara02.txt")
     assert np.array_equal(Anchors().predict(there, 12, 20).position, Anchors("zara2").predict(here, 12, 20).position)
     assert np.array_equal(Anchors().predict(here, 12, 20).position, Anchors("all").predict(here, 12, 20).position)
-    assert "made is none of the five places" in Anchors().note(here)
+    assert "made is not named after a training place" in Anchors().note(here)
     assert Anchors().note(there) == ""
 
 
 def test_places_are_told_by_the_names_of_recordings() -> None:
     assert [fold_of(f"{begins[0]}.txt") for begins in FOLDS.values()] == list(FOLDS)
     assert fold_of("uni_examples.txt") == "all"
-    assert kept_out("univ", "students003_train.txt")
-    assert not kept_out("univ", "crowds_zara01_train.txt")
-    assert not kept_out("all", "students003_train.txt")
+    assert is_held_out("univ", "students003_train.txt")
+    assert not is_held_out("univ", "crowds_zara01_train.txt")
+    assert not is_held_out("all", "students003_train.txt")
 
 
 def test_floor_on_a_recording(recorded: Callable[[str], Trajectories]) -> None:
@@ -110,7 +110,7 @@ def test_floor_on_a_recording(recorded: Callable[[str], Trajectories]) -> None:
 
 def test_centres_are_those_of_heaps() -> None:
     heaps = np.repeat(np.array([[0.0, 0.0], [5.0, 0.0], [0.0, 5.0]]), [50, 30, 20], axis=0)
-    found, share = centres(heaps + stream(0, "heaps").normal(0.0, 0.01, heaps.shape), 3)
+    found, share = cluster_centers(heaps + stream(0, "heaps").normal(0.0, 0.01, heaps.shape), 3)
     np.testing.assert_allclose(found, [[0, 0], [5, 0], [0, 5]], atol=0.02)
     np.testing.assert_allclose(share, [0.5, 0.3, 0.2])
 
@@ -124,13 +124,13 @@ def test_wrong_wishes_are_one_sentence(crowd: Maker, tmp_path) -> None:
         Anchors(shapes=np.zeros((3, 8, 2)), share=np.ones(3) / 3)
     with pytest.raises(InputError, match="too few for 20 shapes"):
         Anchors.fit()
-    with pytest.raises(InputError, match="learning needs 12 rows ahead"):
+    with pytest.raises(InputError, match="training requires 12 future rows"):
         Anchors.fit((crowd(), crowd()))
     (tmp_path / "bad.npz").write_bytes(b"PK\x03\x04 not an archive")
-    with pytest.raises(DataError, match=r"bad\.npz cannot be read as learned numbers"):
-        read_numbers(tmp_path / "bad.npz")
-    with pytest.raises(DataError, match="there is no file"):
-        read_numbers(tmp_path / "none.npz")
+    with pytest.raises(DataError, match=r"bad\.npz is not a file of weights"):
+        read_weights(tmp_path / "bad.npz")
+    with pytest.raises(DataError, match="does not exist"):
+        read_weights(tmp_path / "none.npz")
     np.savez(tmp_path / "nan.npz", shapes=np.full(3, np.nan))
-    with pytest.raises(DataError, match="shapes holds numbers that are not finite"):
-        read_numbers(tmp_path / "nan.npz")
+    with pytest.raises(DataError, match="shapes has values that are not finite"):
+        read_weights(tmp_path / "nan.npz")

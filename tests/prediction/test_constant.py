@@ -139,3 +139,20 @@ def test_impossible_parameters_are_refused() -> None:
         SampledConstantVelocity(heading_sd=-0.1)
     with pytest.raises(InputError, match="speed_sd = inf"):
         SampledConstantVelocity(speed_sd=math.inf)
+
+
+def test_the_speed_factor_is_clipped_at_zero(crowd: Maker) -> None:
+    """With a large spread almost half of the factors would be negative: nobody may walk backwards."""
+    past = crowd(3, holes=0.0)
+    forecast = SampledConstantVelocity(heading_sd=0.0, speed_sd=5.0).predict(past, 3, 200, stream(1))
+    straight = ConstantVelocity().predict(past, 1)
+    here = past.present[:, -1]
+    now = past.position[:, -1]
+    step = straight.position[:, 0, 0] - now
+    moved = forecast.position[:, :, 0] - now[:, None]
+    factor = ((moved * step[:, None]).sum(-1) / np.maximum((step**2).sum(-1), 1e-12)[:, None])[
+        np.broadcast_to((here & ((step**2).sum(-1) > 1e-6))[:, None], moved.shape[:-1])
+    ]
+    assert factor.min() >= -1e-9
+    assert 0.3 < np.mean(np.abs(factor) < 1e-9) < 0.55  # P(1 + 5 z < 0) = 0.42
+    assert factor.max() > 5.0

@@ -6,13 +6,13 @@ import math
 import numpy as np
 import pytest
 
-from crowdbot.benchmark import Task, evaluate, sweep
+from crowdbot.benchmark import DegradedTask, evaluate, sweep_degradations
 from crowdbot.core import DataError, InputError, stream
 from crowdbot.data import Trajectories
 from crowdbot.data.degrade import (
     GHOST,
     Chain,
-    Degraded,
+    DegradedTracks,
     FalseTracks,
     GaussianNoise,
     IdentitySwitches,
@@ -20,7 +20,7 @@ from crowdbot.data.degrade import (
     MissingFrames,
     Occlusion,
 )
-from crowdbot.prediction import ConstantVelocity, Kalman, SampledConstantVelocity, Simulated, seen_windows
+from crowdbot.prediction import ConstantVelocity, Kalman, SampledConstantVelocity, Simulated, degraded_windows
 
 FIELDS = ("position", "present", "scored", "robot", "id", "frame")
 
@@ -34,14 +34,14 @@ def _line(ids=(1, 2), rows=8, gap=2.0, **more):
 def _without(tracks, *gone):
     """The recording without the rows (frame, id)."""
     keep = [(f, i) not in gone for f, i in zip(tracks.frame.tolist(), tracks.id.tolist(), strict=True)]
-    return Degraded.of(tracks).kept(np.array(keep))
+    return DegradedTracks.of(tracks).kept(np.array(keep))
 
 
 @pytest.mark.parametrize("protocol", ["all", "sgan", "partial", "timesplit"])
 def test_what_is_not_degraded_is_seen_as_it_was(recorded, protocol):
     tracks = recorded("crowds_zara01")
     past, future = tracks.windows(8, 12, protocol)
-    seen = seen_windows(past, future, Degraded.of(tracks), carry=2)
+    seen = degraded_windows(past, future, DegradedTracks.of(tracks), carry=2)
     assert seen.asked == seen.predictable == future.scored.sum()
     for clean, again in ((past, seen.past), (future, seen.future)):
         assert all(np.array_equal(getattr(clean, name), getattr(again, name)) for name in FIELDS)
@@ -51,7 +51,9 @@ def test_what_is_not_degraded_is_seen_as_it_was(recorded, protocol):
 def test_the_level_that_changes_nothing_is_evaluate(recorded, predictor):
     tracks = recorded("biwi_hotel")
     clean = evaluate(predictor, *tracks.windows(), samples=3, seed=4)
-    ((score,),) = sweep([tracks], [GaussianNoise()], [predictor], [0.0], Task(samples=3, seed=4, draws=2))
+    ((score,),) = sweep_degradations(
+        [tracks], [GaussianNoise()], [predictor], [0.0], DegradedTask(samples=3, seed=4, draws=2)
+    )
     assert (score.score.ade, score.score.fde, score.score.horizon) == (clean.ade, clean.fde, clean.horizon)
     assert (score.coverage, score.asked, score.low, score.high) == (1.0, clean.persons, clean.ade, clean.ade)
 
@@ -93,7 +95,7 @@ def test_what_is_seen_against_a_slow_twin(recorded, carry):
     chain = Chain((MissingFrames(0.3, 2.0), IdentitySwitches(1.0, 1.0), FalseTracks(1.0), GaussianNoise(0.1)))
     degraded = chain.apply(tracks, stream(2))
     past, future = tracks.windows()
-    seen = seen_windows(past, future, degraded, carry)
+    seen = degraded_windows(past, future, degraded, carry)
     slow = _slow(past, future, degraded, carry)
     assert seen.predictable == sum(scored for window in slow for _, _, scored in window.values())
     assert 0.5 * seen.asked < seen.predictable < seen.asked
@@ -121,7 +123,7 @@ def test_what_is_seen_against_a_slow_twin(recorded, carry):
 def test_who_is_not_seen_at_the_last_row_is_asked_for_but_not_scored():
     tracks = _line()
     past, future = tracks.windows(4, 4)
-    seen = seen_windows(past, future, _without(tracks, (3, 2)))
+    seen = degraded_windows(past, future, _without(tracks, (3, 2)))
     assert (seen.asked, seen.predictable) == (2, 1)
     assert seen.past.id.tolist() == [[1]]
     score = evaluate(ConstantVelocity(), seen.past, seen.future)
@@ -133,11 +135,11 @@ def test_who_is_carried_walks_on():
     tracks = _line()
     past, future = tracks.windows(4, 4)
     lost = _without(tracks, (2, 2), (3, 2))
-    assert seen_windows(past, future, lost, carry=1).predictable == 1
-    seen = seen_windows(past, future, lost, carry=2)
+    assert degraded_windows(past, future, lost, carry=1).predictable == 1
+    seen = degraded_windows(past, future, lost, carry=2)
     assert seen.predictable == 2
     assert seen.past.position[0, :, 1].tolist() == [[0.0, 2.0], [0.5, 2.0], [1.0, 2.0], [1.5, 2.0]]
-    once = seen_windows(past, future, _without(tracks, (0, 2), (2, 2), (3, 2)), carry=2)
+    once = degraded_windows(past, future, _without(tracks, (0, 2), (2, 2), (3, 2)), carry=2)
     assert once.past.present[0, :, 1].tolist() == [False, True, True, True]
     assert once.past.position[0, -1, 1].tolist() == [0.5, 2.0]
 
@@ -149,7 +151,7 @@ def test_a_switched_track_is_scored_against_who_is_at_its_place_now():
     )
     names = np.where(tracks.frame >= 3, 3 - tracks.id, tracks.id)
     past, future = tracks.windows(4, 4)
-    seen = seen_windows(past, future, Degraded.of(tracks).renamed(names))
+    seen = degraded_windows(past, future, DegradedTracks.of(tracks).relabel(names))
     assert seen.predictable == 2
     assert seen.past.position[0, :, 0, 1].tolist() == [0.0, 0.0, 0.0, 0.3]
     assert seen.future.position[0, :, 0, 1].tolist() == [0.3] * 4
@@ -160,7 +162,7 @@ def test_ghosts_are_company_that_is_never_scored():
     tracks = _line(rows=20)
     haunted = FalseTracks(rate=5.0, life=8.0).apply(tracks, stream(0))
     past, future = tracks.windows(8, 12)
-    seen = seen_windows(past, future, haunted)
+    seen = degraded_windows(past, future, haunted)
     assert seen.past.id.shape[1] > 2
     assert seen.future.scored.sum() == seen.asked == 2
     assert not seen.future.present[0, :, 2:].any()
@@ -175,14 +177,18 @@ def test_predictors_do_not_see_the_future(recorded):
     later = degraded.tracks.frame > last
     moved = dataclasses.replace(degraded.tracks, x=np.where(later, -3.0, degraded.tracks.x))
     one, other = (
-        seen_windows(past[40:41], future[40:41], seen) for seen in (degraded, Degraded(moved, degraded.truth))
+        degraded_windows(past[40:41], future[40:41], seen) for seen in (degraded, DegradedTracks(moved, degraded.truth))
     )
     assert all(np.array_equal(getattr(one.past, name), getattr(other.past, name)) for name in FIELDS)
 
 
 def test_errors_rise_with_noise_and_the_filter_stands_it_best(recorded):
     predictors = [ConstantVelocity(), Kalman(), Simulated()]
-    levels = list(sweep([recorded("crowds_zara01")], [GaussianNoise()], predictors, task=Task(seed=1, draws=2)))
+    levels = list(
+        sweep_degradations(
+            [recorded("crowds_zara01")], [GaussianNoise()], predictors, task=DegradedTask(seed=1, draws=2)
+        )
+    )
     ade = np.array([[score.score.ade for score in scores] for scores in levels])
     assert (np.diff(ade, axis=0) > 0.0).all()
     assert ade[0] == pytest.approx([0.427, 0.443, 0.427], abs=1e-3)
@@ -194,22 +200,25 @@ def test_errors_rise_with_noise_and_the_filter_stands_it_best(recorded):
 def test_a_sweep_repeats_and_tells_how_far_it_is(recorded):
     told = []
     tracks = recorded("biwi_hotel")
-    task = Task(seed=3, draws=2)
+    task = DegradedTask(seed=3, draws=2)
     parts = ([IdentitySwitches(), LateStart()], [ConstantVelocity()])
-    one = list(sweep([tracks], *parts, task=task, progress=lambda *what: told.append(what)))
-    two = list(sweep([tracks], *parts, task=task))
+    one = list(sweep_degradations([tracks], *parts, task=task, progress=lambda *what: told.append(what)))
+    two = list(sweep_degradations([tracks], *parts, task=task))
     assert [[s.score.ade for s in scores] for scores in one] == [[s.score.ade for s in scores] for scores in two]
     assert told[0] == ("identity-switches", 0.0)
     assert told[-1] == ("late-start", 1.0)
-    other = list(sweep([tracks], *parts, task=Task(seed=4, draws=2)))
+    other = list(sweep_degradations([tracks], *parts, task=DegradedTask(seed=4, draws=2)))
     assert one[2][0].score.ade != other[2][0].score.ade
 
 
 def test_two_recordings_count_together(recorded):
     hotel, zara = recorded("biwi_hotel"), recorded("crowds_zara01")
-    ((both,),) = sweep([hotel, zara], [MissingFrames()], [ConstantVelocity()], [0.3], Task(draws=2))
+    ((both,),) = sweep_degradations(
+        [hotel, zara], [MissingFrames()], [ConstantVelocity()], [0.3], DegradedTask(draws=2)
+    )
     alone = [
-        next(sweep([one], [MissingFrames()], [ConstantVelocity()], [0.3], Task(draws=2)))[0] for one in (hotel, zara)
+        next(sweep_degradations([one], [MissingFrames()], [ConstantVelocity()], [0.3], DegradedTask(draws=2)))[0]
+        for one in (hotel, zara)
     ]
     assert both.asked == sum(one.asked for one in alone)
     assert both.score.persons == sum(one.score.persons for one in alone)
@@ -221,7 +230,7 @@ def test_two_recordings_count_together(recorded):
 
 def test_only_every_such_window_is_predicted(recorded):
     hotel = recorded("biwi_hotel")
-    ((some,),) = sweep([hotel], [MissingFrames()], [ConstantVelocity()], [0.0], Task(every=7))
+    ((some,),) = sweep_degradations([hotel], [MissingFrames()], [ConstantVelocity()], [0.0], DegradedTask(every=7))
     past, future = hotel.windows()
     alone = evaluate(ConstantVelocity(), past[::7], future[::7])
     assert some.asked == some.score.persons == alone.persons < future.scored.sum() / 5
@@ -231,7 +240,7 @@ def test_only_every_such_window_is_predicted(recorded):
 def test_nobody_to_predict_is_a_coverage_of_none(recorded):
     tracks = _line(rows=20)
     for degradation, level in ((MissingFrames(), 1.0), (Occlusion(eye=(500.0, 0.0)), 1.0), (LateStart(), 9)):
-        ((score,),) = sweep([tracks], [degradation], [ConstantVelocity()], [level])
+        ((score,),) = sweep_degradations([tracks], [degradation], [ConstantVelocity()], [level])
         assert score.score is None
         assert score.coverage == 0.0
         assert score.asked == 2
@@ -242,10 +251,10 @@ def test_nobody_to_predict_is_a_coverage_of_none(recorded):
 def test_wrong_sweeps_are_one_sentence():
     tracks = _line(rows=20)
     with pytest.raises(InputError, match=r"GaussianNoise: sd = -0\.1"):
-        next(sweep([tracks], [GaussianNoise()], [ConstantVelocity()], [-0.1]))
+        next(sweep_degradations([tracks], [GaussianNoise()], [ConstantVelocity()], [-0.1]))
     with pytest.raises(DataError, match="line has no robot to look from"):
-        next(sweep([tracks], [GaussianNoise(), Occlusion()], [ConstantVelocity()]))
+        next(sweep_degradations([tracks], [GaussianNoise(), Occlusion()], [ConstantVelocity()]))
     with pytest.raises(InputError, match="carry = -1"):
-        Task(carry=-1)
+        DegradedTask(carry=-1)
     with pytest.raises(InputError, match="draws = 0 must be at least 1"):
-        Task(draws=0)
+        DegradedTask(draws=0)

@@ -34,7 +34,7 @@ def slow_filter(
         begin = [r, kalman.speed**2, kalman.acceleration**2]
     n = len(begin)
     F, Q, H = np.kron(step, eye), np.kron(push, eye), np.kron(np.eye(n)[:1], eye)
-    state, P, surprise = None, None, 0.0
+    state, P, negative_log_likelihood = None, None, 0.0
     for row in rows:
         if state is not None:
             state, P = F @ state, F @ P @ F.T + Q
@@ -45,10 +45,12 @@ def slow_filter(
             continue
         S = H @ P @ H.T + r * eye
         wrong = row - H @ state
-        surprise += 0.5 * (wrong @ np.linalg.solve(S, wrong) + math.log(np.linalg.det(2.0 * math.pi * S)))
+        negative_log_likelihood += 0.5 * (
+            wrong @ np.linalg.solve(S, wrong) + math.log(np.linalg.det(2.0 * math.pi * S))
+        )
         gain = P @ H.T @ np.linalg.inv(S)
         state, P = state + gain @ wrong, (np.eye(2 * n) - gain @ H) @ P
-    return state, surprise
+    return state, negative_log_likelihood
 
 
 FILTERS = pytest.mark.parametrize(
@@ -63,12 +65,12 @@ FILTERS = pytest.mark.parametrize(
 def test_the_filter_equals_its_matrix_twin(crowd: Maker, holes: float, kalman: Kalman | KalmanAcceleration) -> None:
     past = crowd(2, holes=holes)
     forecast = kalman.predict(past, 3)
-    surprise, rows_after_first = 0.0, 0
+    negative_log_likelihood, rows_after_first = 0.0, 0
     for w, a in np.argwhere(past.present.any(axis=1)):
         rows = [past.position[w, t, a] if past.present[w, t, a] else None for t in range(8)]
         state, own = slow_filter(rows, kalman, past.dt)
         if not past.robot[w, a]:
-            surprise += own
+            negative_log_likelihood += own
             rows_after_first += sum(row is not None for row in rows) - 1
         if rows[-1] is not None:
             motion = np.zeros((3, 2))
@@ -76,7 +78,7 @@ def test_the_filter_equals_its_matrix_twin(crowd: Maker, holes: float, kalman: K
             time = [(k + 1) * past.dt for k in range(3)]
             path = [motion[0] + motion[1] * t + motion[2] * t**2 / 2 for t in time]
             np.testing.assert_allclose(forecast.position[w, 0, :, a], path, atol=1e-9)
-    assert kalman.surprise(past) == pytest.approx(surprise / rows_after_first, abs=1e-9)
+    assert kalman.negative_log_likelihood(past) == pytest.approx(negative_log_likelihood / rows_after_first, abs=1e-9)
 
 
 def walked(windows: Maker, acceleration: float, measurement: float, speed: float, people: int = 4000) -> Windows:
@@ -100,7 +102,7 @@ def test_the_fit_finds_the_noise_that_was_put_in(windows: Maker) -> None:
     assert kalman.acceleration == pytest.approx(0.4, rel=0.05)
     assert kalman.measurement == pytest.approx(0.06, rel=0.05)
     assert kalman.speed == pytest.approx(1.1, rel=0.05)
-    assert kalman.surprise(past) <= Kalman(0.4, 0.06, 1.1).surprise(past) + 1e-3
+    assert kalman.negative_log_likelihood(past) <= Kalman(0.4, 0.06, 1.1).negative_log_likelihood(past) + 1e-3
 
 
 def test_the_fit_of_the_other_filter_finds_its_noise(windows: Maker) -> None:
@@ -118,8 +120,8 @@ def test_the_fit_of_the_other_filter_finds_its_noise(windows: Maker) -> None:
     fitted = KalmanAcceleration.fit(past)
     for name in ("jerk", "measurement", "speed", "acceleration"):
         assert getattr(fitted, name) == pytest.approx(getattr(true, name), rel=0.1), name
-    assert fitted.surprise(past) <= true.surprise(past) + 1e-6
-    assert fitted.surprise(past) < Kalman.fit(past).surprise(past)
+    assert fitted.negative_log_likelihood(past) <= true.negative_log_likelihood(past) + 1e-6
+    assert fitted.negative_log_likelihood(past) < Kalman.fit(past).negative_log_likelihood(past)
 
 
 def test_without_noise_the_other_filter_is_constant_acceleration(windows: Maker) -> None:
@@ -152,7 +154,7 @@ def test_smoothing_helps_where_tracks_are_noisy(recorded: Callable[[str], object
     past, _ = recorded("biwi_hotel").windows(observe=8, predict=12, protocol="all")  # type: ignore[attr-defined]
     fitted = Kalman.fit(past)
     assert 0.015 < fitted.measurement < 0.035
-    assert fitted.surprise(past) < Kalman().surprise(past)
+    assert fitted.negative_log_likelihood(past) < Kalman().negative_log_likelihood(past)
 
 
 @pytest.fixture(scope="module")
@@ -174,14 +176,14 @@ def test_the_defaults_are_the_fit_that_the_docs_name(training: list[Windows]) ->
 
 def test_the_defaults_of_the_other_filter_are_the_most_likely_ones(training: list[Windows]) -> None:
     best = KalmanAcceleration()
-    cost = best.surprise(*training)
+    cost = best.negative_log_likelihood(*training)
     for name in ("jerk", "measurement", "speed"):
         for ratio in (1.03, 1.0 / 1.03):
             other = dataclasses.replace(best, **{name: getattr(best, name) * ratio})
-            assert other.surprise(*training) > cost, name
-    assert dataclasses.replace(best, acceleration=0.05).surprise(*training) > cost
+            assert other.negative_log_likelihood(*training) > cost, name
+    assert dataclasses.replace(best, acceleration=0.05).negative_log_likelihood(*training) > cost
     assert cost == pytest.approx(-1.374, abs=1e-3)
-    assert Kalman().surprise(*training) == pytest.approx(-1.482, abs=1e-3)
+    assert Kalman().negative_log_likelihood(*training) == pytest.approx(-1.482, abs=1e-3)
 
 
 def test_impossible_parameters_and_empty_training_data_are_refused(windows: Maker) -> None:
@@ -189,7 +191,7 @@ def test_impossible_parameters_and_empty_training_data_are_refused(windows: Make
         Kalman(measurement=0)
     with pytest.raises(InputError, match="kalman-acceleration: jerk = inf must be finite and above 0"):
         KalmanAcceleration(jerk=math.inf)
-    with pytest.raises(InputError, match="at least one person who is seen at two rows"):
+    with pytest.raises(InputError, match="at least one person who is observed at two rows"):
         Kalman.fit(windows(np.zeros((2, 1, 3, 2))))
-    with pytest.raises(InputError, match="at least one person who is seen at two rows"):
+    with pytest.raises(InputError, match="at least one person who is observed at two rows"):
         Kalman.fit()

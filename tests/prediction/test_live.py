@@ -26,7 +26,7 @@ def test_a_stream_is_predicted_as_the_same_window_of_a_recording(
     live = Live(predictor, dt=tracks.dt)
     for frame in frames:
         here = tracks.frame == frame
-        live.see(tracks.id[here], tracks.position[here])
+        live.update(tracks.id[here], tracks.position[here])
         forecast = live.predict(12)
         assert forecast.valid.all()
         assert forecast.position.shape == (1, 1, 12, here.sum(), 2)
@@ -39,13 +39,13 @@ def test_a_stream_is_predicted_as_the_same_window_of_a_recording(
 
 def test_people_come_and_go_and_are_missed_for_a_while() -> None:
     live = Live(ConstantVelocity(), dt=0.5)
-    live.see([1, 2], [[0.0, 0.0], [9.0, 0.0]])
-    live.see([2, 3], [[9.0, 0.5], [5.0, 5.0]])
-    live.see([3, 1], [[5.0, 5.0], [2.0, 0.0]])
+    live.update([1, 2], [[0.0, 0.0], [9.0, 0.0]])
+    live.update([2, 3], [[9.0, 0.5], [5.0, 5.0]])
+    live.update([3, 1], [[5.0, 5.0], [2.0, 0.0]])
     assert live.ids.tolist() == [1, 3]
     assert live.past().present[0].tolist() == [[True, False], [False, True], [True, True]]
     np.testing.assert_allclose(live.predict(1).position[0, 0, 0], [[3.0, 0.0], [5.0, 5.0]])
-    live.see([], [])
+    live.update([], [])
     assert live.predict(3).position.shape == (1, 1, 3, 0, 2)
 
 
@@ -57,7 +57,7 @@ def test_a_calibrated_crowd_begins_with_the_frame_before(recorded: Callable[[str
         live = Live(Simulated(cost="absolute", search="random-search", budget=40, substep=0.4), dt=tracks.dt)
         for frame in frames:
             here = tracks.frame == frame
-            live.see(tracks.id[here], tracks.position[here])
+            live.update(tracks.id[here], tracks.position[here])
             if not warm:
                 live._memory = None
             live.predict(1)
@@ -69,7 +69,7 @@ def test_a_calibrated_crowd_begins_with_the_frame_before(recorded: Callable[[str
 def test_the_prediction_answers_for_the_plan_of_the_robot() -> None:
     live = Live(Simulated(substep=0.1), dt=0.4)
     for row in range(4):
-        live.see([5, 9], [[0.4 * row, 0.0], [6.0, 0.0]], robots=[9])
+        live.update([5, 9], [[0.4 * row, 0.0], [6.0, 0.0]], robots=[9])
     left = [[6.0 - 0.5 * step, 0.25 * step] for step in range(1, 13)]
     right = [[6.0 - 0.5 * step, -0.25 * step] for step in range(1, 13)]
     straight = [[6.0 - 0.5 * step, 0.02] for step in range(1, 13)]
@@ -82,6 +82,41 @@ def test_the_prediction_answers_for_the_plan_of_the_robot() -> None:
         there = live.predict(12, plans={9: plan}).position[0, 0]
         np.testing.assert_allclose(there[:, 1], plan)
         assert np.linalg.norm(there[:, 0] - ahead[:, 0], axis=-1).max() > 0.05
+
+
+class Counter(ConstantVelocity):
+    """Remembers how often it has predicted."""
+
+    def follow(self, past, steps, samples=1, rng=None, memory=None):  # type: ignore[no-untyped-def]
+        return self.predict(past, steps, samples, rng), (memory or 0) + 1
+
+
+def test_a_query_with_a_plan_leaves_the_memory_alone() -> None:
+    live = Live(Counter(), dt=0.4)
+    live.update([5, 9], [[0.0, 0.0], [6.0, 0.0]], robots=[9])
+    live.predict(3)
+    assert live._memory == 1
+    for _ in range(3):
+        live.predict(3, plans={9: [[5.0, 0.0]]})
+    assert live._memory == 1
+    live.predict(3)
+    assert live._memory == 2
+
+
+def test_a_query_with_a_plan_changes_no_later_forecast() -> None:
+    def forecasts(ask: bool) -> list[np.ndarray]:
+        crowd = Simulated(cost="absolute", search="random-search", budget=20, substep=0.4)
+        live = Live(crowd, dt=0.4, observe=4)
+        found = []
+        for row in range(6):
+            live.update([5, 9], [[0.4 * row, 0.1 * row], [6.0 - 0.3 * row, 0.0]], robots=[9])
+            if ask:
+                live.predict(3, plans={9: [[4.0, 1.0], [3.0, 2.0]]})
+            found.append(live.predict(3).position)
+        return found
+
+    for plain, asked in zip(forecasts(False), forecasts(True), strict=True):
+        np.testing.assert_array_equal(plain, asked)
 
 
 def test_a_plan_that_ends_leaves_the_robot_standing(windows: Maker) -> None:
@@ -104,15 +139,15 @@ def test_wrong_use_is_said_in_a_sentence(windows: Maker) -> None:
     with pytest.raises(InputError, match="live: 'anchor-net' is no predictor; give an object, such as crowdbot.Anchor"):
         Live("anchor-net", dt=0.4)  # type: ignore[arg-type]
     live = Live(ConstantVelocity(), dt=0.4)
-    with pytest.raises(InputError, match="nothing was seen yet"):
+    with pytest.raises(InputError, match="no row yet"):
         live.predict(3)
     with pytest.raises(InputError, match="2 identities and 1 positions"):
-        live.see([1, 2], [[0.0, 0.0]])
+        live.update([1, 2], [[0.0, 0.0]])
     with pytest.raises(InputError, match="position of 2 is not finite"):
-        live.see([1, 2], [[0.0, 0.0], [np.nan, 0.0]])
+        live.update([1, 2], [[0.0, 0.0], [np.nan, 0.0]])
     with pytest.raises(InputError, match=r"identities \[1, 1\] must be different"):
-        live.see([1, 1], [[0.0, 0.0], [1.0, 0.0]])
-    live.see([1], [[0.0, 0.0]])
+        live.update([1, 1], [[0.0, 0.0], [1.0, 0.0]])
+    live.update([1], [[0.0, 0.0]])
     with pytest.raises(InputError, match="the plan is for robot 4, who is in no window"):
         live.predict(3, plans={4: [[0.0, 0.0]]})
     with pytest.raises(InputError, match=r"the plan of robot 1 has shape \[0, 2\]"):

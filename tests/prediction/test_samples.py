@@ -51,11 +51,11 @@ def test_batches_hold_every_scene_once_and_are_of_about_the_wanted_size(two: Sam
 
 
 def test_some_scenes_can_be_chosen(two: Samples) -> None:
-    odd = two.chosen(np.arange(1, len(two), 2))
+    odd = two.select(np.arange(1, len(two), 2))
     one, other = odd.batch(np.arange(len(odd))), two.batch(np.arange(1, len(two), 2))
     assert all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
-    assert len(two.thinned(10)) == 10
-    assert odd.digest != two.digest == two.chosen(np.arange(len(two))).digest
+    assert len(two.subsample(10)) == 10
+    assert odd.digest != two.digest == two.select(np.arange(len(two))).digest
 
 
 @pytest.mark.parametrize(
@@ -103,4 +103,4 @@ def test_what_does_not_fit_together_is_said(files: dict[str, Recording], recordi
     with pytest.raises(InputError, match="there is no recording"):
         Samples.of([])
     assert short_recordings([fine]) == []
-    assert "s; learning asks for recordings of more than 3 minutes" in short_recordings([corridor])[0]
+    assert "s; more than 3 minutes are recommended for training" in short_recordings([corridor])[0]

@@ -31,7 +31,7 @@ def crowd_of(scheme: tuple[str, str, str], goal: Goal | None = None) -> Simulate
     return Simulated(model, goal or CurrentDirection(), cost, search, budget=12, substep=0.4)
 
 
-def predicted(scheme: tuple[str, str, str], past: Windows, samples: int = 1) -> Forecast:
+def run_job(scheme: tuple[str, str, str], past: Windows, samples: int = 1) -> Forecast:
     return crowd_of(scheme).predict(past, 4, samples, stream(5, "test"))
 
 
@@ -47,13 +47,13 @@ def test_what_is_scored_and_what_comes_later_is_never_read(
 ) -> None:
     past = crowd(holes=0.2)
     peeked = dataclasses.replace(past, scored=~past.scored)
-    assert np.array_equal(predicted(scheme, past).position, predicted(scheme, peeked).position)
+    assert np.array_equal(run_job(scheme, past).position, run_job(scheme, peeked).position)
     tracks = recorded("biwi_hotel")
     now = int(np.unique(tracks.frame)[300])
     later = tracks.frame > now
     x, y = np.where(later, 1e3, tracks.x), np.where(later, -1e3, tracks.y)
     spoilt = dataclasses.replace(tracks, x=x, y=y)
-    one, other = (predicted(scheme, each.past(frame=now)) for each in (tracks, spoilt))
+    one, other = (run_job(scheme, each.past(frame=now)) for each in (tracks, spoilt))
     assert np.array_equal(one.position, other.position)
 
 
@@ -62,8 +62,8 @@ def test_the_same_stream_gives_the_same_bytes_alone_or_in_a_batch(scheme: tuple[
     past = crowd(2, holes=0.1)
     for array in (past.position, past.present, past.id):
         array.setflags(write=False)
-    together = predicted(scheme, past)
-    assert np.array_equal(together.position, predicted(scheme, past).position)
+    together = run_job(scheme, past)
+    assert np.array_equal(together.position, run_job(scheme, past).position)
     rng = stream(5, "test")
     for window in range(len(past)):
         alone = crowd_of(scheme).predict(past[window : window + 1], 4, 1, rng)
@@ -73,12 +73,12 @@ def test_the_same_stream_gives_the_same_bytes_alone_or_in_a_batch(scheme: tuple[
 @every
 def test_short_tracks_nobody_and_no_window_are_fine(scheme: tuple[str, str, str], windows: Maker) -> None:
     past = windows([[[[1.0, 2.0], [5.0, 5.0], [np.nan, np.nan]]]])
-    assert np.allclose(predicted(scheme, past).position, past.position[:, None])
-    assert predicted(scheme, windows(np.zeros((2, 8, 0, 2)))).position.shape[3] == 0
-    assert predicted(scheme, windows(np.zeros((0, 8, 3, 2)))).position.shape[0] == 0
-    assert not predicted(scheme, windows(np.full((2, 8, 3, 2), np.nan))).valid.any()
+    assert np.allclose(run_job(scheme, past).position, past.position[:, None])
+    assert run_job(scheme, windows(np.zeros((2, 8, 0, 2)))).position.shape[3] == 0
+    assert run_job(scheme, windows(np.zeros((0, 8, 3, 2)))).position.shape[0] == 0
+    assert not run_job(scheme, windows(np.full((2, 8, 3, 2), np.nan))).valid.any()
     alone = windows(0.4 * np.arange(8.0)[None, :, None, None] * np.array([1.0, 0.0]))
-    assert np.all(np.isfinite(predicted(scheme, alone).position))
+    assert np.all(np.isfinite(run_job(scheme, alone).position))
 
 
 def test_ground_truth_goals_belong_to_their_windows(crowd: Maker) -> None:

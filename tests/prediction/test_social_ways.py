@@ -17,14 +17,14 @@ from crowdbot.data import Windows
 from crowdbot.prediction import SocialWays
 from crowdbot.prediction.social_ways import predictor as module
 from crowdbot.prediction.social_ways.config import SocialWaysConfig, config_of, preset
-from crowdbot.prediction.social_ways.inputs import sight_of
-from crowdbot.prediction.social_ways.network import Discriminator, Generator, Sight, social_features
+from crowdbot.prediction.social_ways.inputs import scene_input
+from crowdbot.prediction.social_ways.network import Discriminator, Generator, SceneInput, social_features
 from crowdbot.prediction.social_ways.predictor import SocialWaysNetwork
-from crowdbot.prediction.social_ways.training import SocialWaysTraining, augmented, learner, variety_loss
+from crowdbot.prediction.social_ways.training import SocialWaysTraining, augment, learner, variety_loss
 from crowdbot.prediction.training.checkpoint import load_checkpoint, save_checkpoint
-from crowdbot.prediction.training.loop import BEST, LAST, Schedule, train
+from crowdbot.prediction.training.loop import BEST, LAST, TrainingSchedule, train
 from crowdbot.prediction.training.samples import Samples
-from crowdbot.prediction.training.torch_backend import device_of, threads
+from crowdbot.prediction.training.torch_backend import torch_device, torch_threads
 
 Maker = Callable[..., Windows]
 TINY = SocialWaysConfig(hidden=8, pooled=4, noise=3, batch=8, variety_draws=3)
@@ -49,14 +49,14 @@ def walks(seed: int = 0, scenes: int = 12, rows: int = 20) -> Samples:
 
 @pytest.fixture(autouse=True, scope="module")
 def one_thread() -> Iterator[None]:
-    with threads(1):
+    with torch_threads(1):
         yield
 
 
 @pytest.fixture(scope="module")
 def checkpoint(one_thread: None, tmp_path_factory: pytest.TempPathFactory) -> str:
     folder = tmp_path_factory.mktemp("trained")
-    train(SocialWaysTraining(TINY, walks(), walks(1)), Schedule(updates=6, check_every=3), folder)
+    train(SocialWaysTraining(TINY, walks(), walks(1)), TrainingSchedule(updates=6, check_every=3), folder)
     return str(folder / BEST)
 
 
@@ -120,9 +120,9 @@ def test_those_who_part_are_closest_now() -> None:
     assert social_features(place, velocity)[0, 0, 1, 2].item() == pytest.approx(2.0)
 
 
-def sight(samples: Samples, model: SocialWaysTraining, scenes: list[int]) -> Sight:
+def sight(samples: Samples, model: SocialWaysTraining, scenes: list[int]) -> SceneInput:
     batch = samples.batch(np.array(scenes))
-    return sight_of(batch.position[:, :8], batch.here, model.config, model.scales)[0]
+    return scene_input(batch.position[:, :8], batch.here, model.config, model.scales)[0]
 
 
 def test_padding_and_company_of_other_scenes_change_nothing() -> None:
@@ -174,7 +174,8 @@ def test_the_variety_loss_takes_the_best_draw_of_each_person() -> None:
 ])  # fmt: skip
 def test_every_setting_trains(values: dict[str, object]) -> None:
     done = train(
-        SocialWaysTraining(dataclasses.replace(TINY, **values), walks(), walks(1)), Schedule(updates=3, check_every=3)
+        SocialWaysTraining(dataclasses.replace(TINY, **values), walks(), walks(1)),
+        TrainingSchedule(updates=3, check_every=3),
     )
     losses = set(done.rows[-1]) - {"update", "epoch", "seconds", "ade", "fde"}
     wanted = {"discriminator", "adversarial", "info", "l2", "variety"}
@@ -209,7 +210,7 @@ def test_looking_ahead_leaves_no_trace_in_the_discriminator() -> None:
 
 def test_a_killed_training_ends_with_the_same_bytes(tmp_path: Path) -> None:
     config = dataclasses.replace(TINY, unrolling_steps=1, average=0.5, use_variety_loss=True, mirror=True)
-    plan = Schedule(updates=7, check_every=3, keep_every=1, seed=5)
+    plan = TrainingSchedule(updates=7, check_every=3, keep_every=1, seed=5)
     train(SocialWaysTraining(config, walks(), walks(1), 5), plan, tmp_path / "whole")
 
     def stop(done: int, total: int) -> None:
@@ -228,7 +229,7 @@ def test_it_learns_straight_walks() -> None:
     config = dataclasses.replace(
         TINY, use_variety_loss=True, variety_weight=5.0, residual=False, generator_rate=1e-2, social=False, batch=32
     )
-    done = train(SocialWaysTraining(config, walks(0, 30), walks(1, 10)), Schedule(updates=40, check_every=10))
+    done = train(SocialWaysTraining(config, walks(0, 30), walks(1, 10)), TrainingSchedule(updates=40, check_every=10))
     assert min(row["ade"] for row in done.rows) < 0.7 * done.rows[0]["ade"]
 
 
@@ -243,7 +244,7 @@ def test_scenes_run_backwards_keep_who_is_known() -> None:
     samples = walks()
     scenes = samples.batch(np.arange(5))
     config = dataclasses.replace(TINY, reverse=True, mirror=True, scale_sd=0.2)
-    turned = [augmented(scenes, 8, config, stream(seed, "a")) for seed in range(8)]
+    turned = [augment(scenes, 8, config, stream(seed, "a")) for seed in range(8)]
     ratios = [float(np.ptp(one.position[0, :, 0, 0]) / np.ptp(scenes.position[0, :, 0, 0])) for one in turned]
     assert len(set(np.round(ratios, 6))) == 8
     assert all(0.4 <= ratio <= 2.5 for ratio in ratios)
@@ -266,10 +267,10 @@ def test_wrong_settings_are_said(monkeypatch: pytest.MonkeyPatch) -> None:
         == 5
     )
     with pytest.raises(InputError, match="unknown device 'gpu'; known are cpu, cuda"):
-        device_of("gpu")
+        torch_device("gpu")
     monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
     with pytest.raises(InputError, match="'cuda' is asked for, but torch sees 0 CUDA devices here; use cpu"):
-        device_of("cuda")
+        torch_device("cuda")
 
 
 # ---- in use
@@ -368,13 +369,11 @@ def test_a_robot_with_a_plan_walks_it(social: SocialWays, crowd: Maker) -> None:
 
 
 def test_what_does_not_fit_is_said(social: SocialWays, checkpoint: str, crowd: Maker, tmp_path: Path) -> None:
-    with pytest.raises(
-        InputError, match="has learned steps of 0.4 s, made has steps of 0.1 s; bring it there with --step 0.4"
-    ):
+    with pytest.raises(InputError, match="requires time steps of 0.4 s, made has 0.1 s; resample with --step 0.4"):
         social.predict(dataclasses.replace(crowd(), dt=0.1), 3)
-    with pytest.raises(InputError, match="has learned tracks in m, made is in px"):
+    with pytest.raises(InputError, match="requires tracks in m, made is in px"):
         social.predict(dataclasses.replace(crowd(), units="px"), 3)
-    with pytest.raises(InputError, match="cannot be read .No such file or directory.; crowdbot train makes one"):
+    with pytest.raises(InputError, match="cannot be read .No such file or directory.; give a file of crowdbot train"):
         SocialWays(str(tmp_path / "none.npz"))
     other = tmp_path / "other.npz"
     kept = load_checkpoint(checkpoint)

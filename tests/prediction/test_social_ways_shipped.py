@@ -11,7 +11,7 @@ import pytest
 from crowdbot.core import InputError, stream
 from crowdbot.data import Windows
 from crowdbot.prediction import SocialWays
-from crowdbot.prediction.joint_futures import kept_apart
+from crowdbot.prediction.joint_futures import separate_people
 from crowdbot.prediction.pretrained_weights import FOLDS
 
 Maker = Callable[..., Windows]
@@ -66,7 +66,10 @@ def test_nobody_is_moved_aside_through_a_wall(windows: Maker) -> None:
     past = walking(windows, (0.0, 0.0, 1.2, 0.0), (9.6, 0.02, -1.2, 0.0))
     place = np.stack([np.array([[1.2 * 0.4 * t, 0.0], [9.6 - 1.2 * 0.4 * t, 0.02]]) for t in range(1, 13)])[None, None]
     wall = np.array([[-1.0, -0.05], [12.0, -0.05], [12.0, -0.3], [-1.0, -0.3]])
-    free, walled = kept_apart(past, place, 0.25), kept_apart(dataclasses.replace(past, walls=(wall,)), place, 0.25)
+    free, walled = (
+        separate_people(past, place, 0.25),
+        separate_people(dataclasses.replace(past, walls=(wall,)), place, 0.25),
+    )
     assert free[0, 0, :, 0, 1].min() < -0.05
     assert np.array_equal(walled[..., 0, :], place[..., 0, :])
     assert np.array_equal(walled[..., 1, :], free[..., 1, :])
@@ -89,17 +92,21 @@ def test_the_name_of_a_recording_chooses_the_weights(windows: Maker) -> None:
     named, social = dataclasses.replace(past, source="biwi_hotel.txt"), SocialWays()
     assert (social.name, social.note(named)) == ("social-ways", "")
     assert np.array_equal(predicted(social, named), predicted(SocialWays("hotel"), past))
-    assert "none of the five places it knows, so the weights learned at all of them but eth" in social.note(past)
+    assert "not named after a training place; using the weights trained without eth" in social.note(past)
     assert np.array_equal(predicted(social, past), predicted(ETH, past))
 
 
 def test_what_does_not_fit_is_said_and_a_baseline_answers(windows: Maker) -> None:
     past, social = walking(windows, (0.0, 0.0, 1.0, 0.0)), SocialWays()
     pixels, fast = dataclasses.replace(past, units="px"), dataclasses.replace(past, dt=0.2)
-    assert "not in metres; a baseline answers instead" in social.note(pixels)
-    with pytest.warns(UserWarning, match="not in metres; sampled-constant-velocity answers instead"):
+    assert "not in metres; a baseline is used instead" in social.note(pixels)
+    with pytest.warns(UserWarning, match="not in metres; sampled-constant-velocity is used instead"):
         assert social.predict(pixels, 12, 3).samples == 3
-    with pytest.warns(UserWarning, match="learned at 0.4 s: bring it there with --step 0.4; constant-velocity answers"):
+    with pytest.warns(
+        UserWarning, match="the weights require 0.4 s: resample with --step 0.4; constant-velocity answers"
+    ):
         assert social.predict(fast, 12).samples == 1
-    with pytest.raises(InputError, match="crowdbot train makes one, and shipped are eth, hotel, univ, zara1, zara2"):
+    with pytest.raises(
+        InputError, match="give a file of crowdbot train, or auto, eth, hotel, univ, zara1, zara2 for shipped weights"
+    ):
         SocialWays("zara3")

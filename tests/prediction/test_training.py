@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core import InputError
 from crowdbot.prediction.training.checkpoint import load_checkpoint, save_checkpoint
-from crowdbot.prediction.training.loop import BEST, LAST, LOG, Schedule, Trainable, train
+from crowdbot.prediction.training.loop import BEST, LAST, LOG, Trainable, TrainingSchedule, train
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Mean(Trainable):
         self.value, self.speed = state["value"], state["speed"]
 
 
-PLAN = Schedule(updates=23, check_every=5, keep_every=3, seed=4)
+PLAN = TrainingSchedule(updates=23, check_every=5, keep_every=3, seed=4)
 
 
 def lines(folder: Path) -> list[dict[str, str]]:
@@ -109,7 +109,9 @@ def test_a_training_killed_at_any_moment_ends_with_the_same_bytes(
 
 def test_epochs_are_counted_and_the_best_weights_are_kept(tmp_path: Path) -> None:
     said: list[tuple[int, int]] = []
-    done = train(Mean(), Schedule(epochs=4, check_every=1), tmp_path, tick=lambda now, total: said.append((now, total)))
+    done = train(
+        Mean(), TrainingSchedule(epochs=4, check_every=1), tmp_path, tick=lambda now, total: said.append((now, total))
+    )
     assert (done.updates, done.rows[-1]["epoch"], said[-1]) == (20, 3.0, (20, 20))
     best = min(done.rows, key=lambda row: row["ade"])
     assert done.best is not None
@@ -120,7 +122,7 @@ def test_epochs_are_counted_and_the_best_weights_are_kept(tmp_path: Path) -> Non
 
 
 def test_it_stops_when_nothing_gets_better_and_stays_stopped(tmp_path: Path) -> None:
-    plan = Schedule(updates=500, check_every=1, patience=6)
+    plan = TrainingSchedule(updates=500, check_every=1, patience=6)
     done = train(Mean(), plan, tmp_path)
     assert done.stopped
     assert done.best is not None
@@ -130,8 +132,8 @@ def test_it_stops_when_nothing_gets_better_and_stays_stopped(tmp_path: Path) -> 
 
 
 def test_more_updates_may_be_asked_for_later(tmp_path: Path) -> None:
-    train(Mean(), Schedule(updates=10, check_every=5), tmp_path)
-    done = train(Mean(), Schedule(updates=20, check_every=5), tmp_path, resume=True)
+    train(Mean(), TrainingSchedule(updates=10, check_every=5), tmp_path)
+    done = train(Mean(), TrainingSchedule(updates=20, check_every=5), tmp_path, resume=True)
     assert [row["update"] for row in done.rows] == [5, 10, 15, 20]
 
 
@@ -144,7 +146,7 @@ def test_folders_of_other_trainings_are_left_alone(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"other data \(numbers, now others\)"):
         train(Mean(data="others"), PLAN, tmp_path, resume=True)
     with pytest.raises(InputError, match="with seed 4, not 0"):
-        train(Mean(), Schedule(updates=23), tmp_path, resume=True)
+        train(Mean(), TrainingSchedule(updates=23), tmp_path, resume=True)
 
 
 def test_a_training_that_began_before_a_setting_was_known_goes_on(tmp_path: Path) -> None:
@@ -161,15 +163,15 @@ def test_a_training_that_began_before_a_setting_was_known_goes_on(tmp_path: Path
 
 
 def test_wrong_schedules_and_losses_are_said() -> None:
-    with pytest.raises(InputError, match="either a number of updates or"):
-        Schedule()
+    with pytest.raises(InputError, match="either updates or epochs"):
+        TrainingSchedule()
     with pytest.raises(InputError, match="check every = 0 must be at least 1"):
-        Schedule(updates=1, check_every=0)
+        TrainingSchedule(updates=1, check_every=0)
     with pytest.raises(InputError, match="speed is not measured while training; there are update"):
-        train(Mean(), Schedule(updates=1, watch=("speed",)))
+        train(Mean(), TrainingSchedule(updates=1, watch=("speed",)))
     wild = Mean(Settings(1e200))
     with pytest.raises(InputError, match="the loss loss is .* at update"), np.errstate(over="ignore", invalid="ignore"):
-        train(wild, Schedule(updates=20))
+        train(wild, TrainingSchedule(updates=20))
 
 
 def test_checkpoints_hold_trees_and_say_what_is_wrong(tmp_path: Path) -> None:

@@ -13,10 +13,8 @@ from crowdbot.sensors import (
     Lidar2D,
     Lidar3D,
     Quantised,
-    Reading,
     RGBCamera,
     Schedule,
-    Waiting,
     preset,
 )
 from crowdbot.sensors.camera import distorted, pixel_directions, stereo_depth
@@ -45,7 +43,7 @@ class Painter:
 
 def test_depth_is_metric_and_along_the_axis():
     camera = DepthCamera(width=81, height=61, field_of_view=math.radians(70.0))
-    image = camera.measure(room(), SpatialPose.of((0.0, 0.0, 1.2)))
+    image = camera.read(room(), SpatialPose.of((0.0, 0.0, 1.2)))
     assert image.depth.shape == (1, 61, 81)
     on_wall = image.hit[0] == -2
     np.testing.assert_allclose(image.depth[0][on_wall], 4.0, rtol=0, atol=1e-9)
@@ -76,14 +74,14 @@ def test_images_are_bent_as_rays_are():
     bent = DepthCamera(width=160, height=120, range_max=50.0, distortion=BENT)
     pose = SpatialPose.of((0.0, 0.0, 1.2))
     scene = Scene.of([[900.0, 0.0]], walls=[[(4.0, -300.0), (4.0, 300.0)]])
-    by_rays, ideal = bent.measure(scene, pose), plain.measure(scene, pose)
+    by_rays, ideal = bent.read(scene, pose), plain.read(scene, pose)
     by_image = distorted(ideal.depth, bent.lens, fill=np.nan)
     same = np.isclose(by_rays.depth, by_image, atol=0.15) | np.isnan(by_image)
     assert np.mean(same) > 0.97
-    colours = RGBCamera(width=50, height=20, field_of_view=1.0).measure(scene, pose, source=Painter()).rgb
+    colours = RGBCamera(width=50, height=20, field_of_view=1.0).read(scene, pose, renderer=Painter()).rgb
     np.testing.assert_array_equal(colours[0, 5, :, 0], np.arange(50))
     shrunk = RGBCamera(width=50, height=20, field_of_view=1.0, distortion=(0.3, 0.0, 0.0, 0.0, 0.0))
-    shrunk = shrunk.measure(scene, pose, source=Painter()).rgb
+    shrunk = shrunk.read(scene, pose, renderer=Painter()).rgb
     assert shrunk.dtype == np.uint8
     assert shrunk[0, 10, 45, 0] < 45
 
@@ -116,7 +114,7 @@ def test_stereo_noise_grows_with_the_square_of_depth(z):
 def test_stereo_sees_nothing_at_infinity_and_keeps_what_is_too_near():
     assert stereo_depth(np.array([[np.inf, 1e9]]), 400.0, 0.05, 0.0, 1.0, None).tolist() == [[np.inf, np.inf]]
     camera = DepthCamera(width=8, height=6, baseline=0.05, disparity_noise=0.1, range_min=0.5)
-    near = camera.measure(Scene.of([[0.0, 0.0]], radius=0.5), Pose.of((0.0, 0.0), 0.0), stream(0))
+    near = camera.read(Scene.of([[0.0, 0.0]], radius=0.5), Pose.of((0.0, 0.0), 0.0), stream(0))
     assert np.all(near.depth == -np.inf)
     with pytest.raises(InputError, match="need a baseline above 0"):
         DepthCamera(disparity_noise=0.1)
@@ -132,23 +130,10 @@ def test_rate_and_delay_are_whole_ticks():
     plan = Schedule.of(Lidar2D(rate=4.0, delay=0.3), FreeClock(0.05))
     assert (plan.every, plan.late) == (5, 6)
     assert [tick for tick in range(16) if plan.measures(tick)] == [0, 5, 10, 15]
+    assert [plan.arrives(tick) for tick in (0, 5)] == [6, 11]
     for values, words in (({"rate": 3.0}, "period 0.333"), ({"delay": 0.02}, "delay 0.02 s")):
         with pytest.raises(InputError, match=words):
             Schedule.of(Lidar2D(**values), FreeClock(0.05))
-
-
-def test_readings_wait_for_their_delay():
-    line = Waiting(Schedule(every=2, late=3))
-    taken = []
-    for tick in range(10):
-        if line.schedule.measures(tick):
-            line.put(tick, Reading(float(tick), Pose.of((0.0, 0.0), 0.0)))
-        taken += [(tick, reading.time) for reading in line.take(tick)]
-    assert taken == [(3, 0.0), (5, 2.0), (7, 4.0), (9, 6.0)]
-    assert len(line.held) == 1
-    at_once = Waiting(Schedule(every=1, late=0))
-    at_once.put(4, Reading(4.0, Pose.of((0.0, 0.0), 0.0)))
-    assert [reading.time for reading in at_once.take(4)] == [4.0]
 
 
 @pytest.mark.parametrize("name", PRESETS)
@@ -164,7 +149,7 @@ def test_presets_measure_and_say_where_their_numbers_are_from(name):
     assert set(product.sources) <= set(type(product.sensor).__dataclass_fields__)
     assert set(product.assumed) < set(product.sources)
     scene = Scene.of([[1.4, 0.0]], walls=[[(4.0, -9.0), (4.0, 9.0)]])
-    reading = preset(name, noisy=True).measure(scene, Pose.of((0.0, 0.0), 0.0).lifted(1.0), stream(0))
+    reading = preset(name, noisy=True).read(scene, Pose.of((0.0, 0.0), 0.0).lifted(1.0), stream(0))
     values = reading.depth if name == "realsense-d435" else reading.ranges
     assert np.isfinite(values).any()
 

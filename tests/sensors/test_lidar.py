@@ -68,7 +68,7 @@ def test_equals_brute_force(seed, rays, field_of_view, heading, incidence, reach
     place = stream(seed, "sensor").uniform(-5.0, 5.0, (2, 2))
     lidar = Lidar2D(rays=rays, field_of_view=field_of_view, range_max=reach, max_incidence=incidence)
     pose = Pose.of(place, [heading, -heading])
-    scan = lidar.measure(scene, pose)
+    scan = lidar.read(scene, pose)
     ranges, hit = brute_force(lidar, scene, pose)
     np.testing.assert_allclose(scan.ranges, ranges, rtol=0, atol=1e-12)
     np.testing.assert_array_equal(scan.hit, hit)
@@ -89,8 +89,8 @@ def test_turning_and_shifting_everything_changes_nothing(seed, angle, dx, dy):
         carried(scene.position), radius=scene.radius, active=scene.active, walls=[carried(w) for w in walls]
     )
     place = stream(seed, "sensor").uniform(-3.0, 3.0, 2)
-    one = Lidar2D(rays=97).measure(here, Pose.of(place, 0.4))
-    two = Lidar2D(rays=97).measure(there, Pose.of(carried(place), 0.4 + angle))
+    one = Lidar2D(rays=97).read(here, Pose.of(place, 0.4))
+    two = Lidar2D(rays=97).read(there, Pose.of(carried(place), 0.4 + angle))
     same = np.isclose(one.ranges, two.ranges, rtol=0, atol=1e-7) | (one.ranges == two.ranges)
     assert np.mean(same) > 0.97  # a beam that grazes an edge may fall to either side
     assert np.mean(one.hit == two.hit) > 0.97
@@ -99,8 +99,8 @@ def test_turning_and_shifting_everything_changes_nothing(seed, angle, dx, dy):
 def test_turning_the_sensor_by_whole_beams_rolls_the_scan():
     scene = crowd(5)
     lidar = Lidar2D(rays=72)
-    straight = lidar.measure(scene, Pose.of((0.5, 0.2), 0.0)).ranges[0]
-    turned = lidar.measure(scene, Pose.of((0.5, 0.2), 7 * lidar.step)).ranges[0]
+    straight = lidar.read(scene, Pose.of((0.5, 0.2), 0.0)).ranges[0]
+    turned = lidar.read(scene, Pose.of((0.5, 0.2), 7 * lidar.step)).ranges[0]
     np.testing.assert_allclose(np.roll(turned, 7), straight, rtol=0, atol=1e-9)
 
 
@@ -108,17 +108,17 @@ def test_a_batch_gives_the_bytes_of_each_alone():
     lidar = Lidar2D(rays=128, noise=(Gaussian(0.02), Peak(0.05, 1.0)), resolution=0.01)
     scene = crowd(6, environments=5)
     place = stream(6, "sensor").uniform(-3.0, 3.0, (5, 2))
-    together = lidar.measure(scene, Pose.of(place, np.arange(5.0)), [stream(6, "scan", e) for e in range(5)])
+    together = lidar.read(scene, Pose.of(place, np.arange(5.0)), [stream(6, "scan", e) for e in range(5)])
     for e in range(5):
         alone = Scene.of(scene.position[e], radius=scene.radius[e], active=scene.active[e], walls=scene.walls)
-        scan = lidar.measure(alone, Pose.of(place[e], float(e)), stream(6, "scan", e))
+        scan = lidar.read(alone, Pose.of(place[e], float(e)), stream(6, "scan", e))
         assert scan.ranges.tobytes() == together.ranges[e].tobytes()
         assert scan.hit.tobytes() == together.hit[e].tobytes()
 
 
 def test_same_input_gives_the_same_bytes():
     lidar = Lidar2D(noise=Gaussian(0.02))
-    scans = [lidar.measure(crowd(7), Pose.of((0.0, 0.0), 0.0), stream(7, "scan")) for _ in range(2)]
+    scans = [lidar.read(crowd(7), Pose.of((0.0, 0.0), 0.0), stream(7, "scan")) for _ in range(2)]
     assert scans[0].ranges.tobytes() == scans[1].ranges.tobytes()
 
 
@@ -132,28 +132,28 @@ def test_angles():
 
 def test_too_near_is_minus_and_too_far_plus_infinite():
     scene = Scene.of([[0.54, 0.0], [0.0, 6.0], [-2.0, 0.0]], radius=0.5)
-    scan = Lidar2D(rays=4, range_min=0.1, range_max=5.0).measure(scene, Pose.of((0.0, 0.0), 0.0))
+    scan = Lidar2D(rays=4, range_min=0.1, range_max=5.0).read(scene, Pose.of((0.0, 0.0), 0.0))
     assert scan.ranges[0].tolist() == [1.5, np.inf, -np.inf, np.inf]
     assert scan.hit[0].tolist() == [2, NOTHING, 0, NOTHING]
 
 
 def test_the_limits_themselves_are_measured():
     scene = Scene.of([[2.5, 0.0], [-4.5, 0.0]], radius=0.5)
-    scan = Lidar2D(rays=2, range_min=2.0, range_max=4.0).measure(scene, Pose.of((0.0, 0.0), 0.0))
+    scan = Lidar2D(rays=2, range_min=2.0, range_max=4.0).read(scene, Pose.of((0.0, 0.0), 0.0))
     assert scan.ranges[0].tolist() == [4.0, 2.0]
 
 
 def test_from_inside_a_disc_every_beam_is_too_near():
     scene = Scene.of([[0.1, 0.0], [3.0, 0.0]], radius=0.5)
-    scan = Lidar2D(rays=16, range_min=0.0).measure(scene, Pose.of((0.0, 0.0), 0.0))
+    scan = Lidar2D(rays=16, range_min=0.0).read(scene, Pose.of((0.0, 0.0), 0.0))
     assert np.all(scan.ranges == 0.0)
     assert np.all(scan.hit == 0)
-    assert np.all(Lidar2D(rays=16).measure(scene, Pose.of((0.0, 0.0), 0.0)).ranges == -np.inf)
+    assert np.all(Lidar2D(rays=16).read(scene, Pose.of((0.0, 0.0), 0.0)).ranges == -np.inf)
 
 
 def test_on_a_wall_the_beams_that_cross_it_are_too_near():
     scene = Scene.of([[50.0, 50.0]], walls=[[(-5.0, 0.0), (5.0, 0.0)]])
-    scan = Lidar2D(rays=8).measure(scene, Pose.of((0.0, 0.0), 0.1))
+    scan = Lidar2D(rays=8).read(scene, Pose.of((0.0, 0.0), 0.1))
     assert np.all(scan.ranges == -np.inf)
     assert np.all(scan.hit == WALL)
 
@@ -162,13 +162,13 @@ def test_on_a_wall_the_beams_that_cross_it_are_too_near():
 @pytest.mark.parametrize("place", [(0.0, 0.0), (0.5, -0.25), (-3.0, 2.0)])
 def test_no_beam_slips_through_a_corner(rays, place):
     square = Scene.of([[50.0, 50.0]], walls=[[(-4.0, -4.0), (-4.0, 4.0), (4.0, 4.0), (4.0, -4.0)]])
-    scan = Lidar2D(rays=rays, range_max=20.0).measure(square, Pose.of(place, 0.0))
+    scan = Lidar2D(rays=rays, range_max=20.0).read(square, Pose.of(place, 0.0))
     assert np.all(np.isfinite(scan.ranges))
 
 
 def test_a_room_has_its_shape():
     scene = Scene.of([[50.0, 50.0]], walls=[ROOM])
-    scan = Lidar2D(rays=720).measure(scene, Pose.of((1.0, 0.5), 2.0))
+    scan = Lidar2D(rays=720).read(scene, Pose.of((1.0, 0.5), 2.0))
     x, y = scan.points()[0].T
     on_side = np.minimum(np.abs(np.abs(x) - 4.0), np.abs(np.abs(y) - 3.0))
     assert np.max(on_side) < 1e-9
@@ -178,7 +178,7 @@ def test_a_room_has_its_shape():
 def test_beyond_the_incidence_limit_nothing_returns_and_nothing_shines_through():
     scene = Scene.of([[0.0, 8.0]], radius=0.5, walls=[[(-6.0, 1.0), (6.0, 1.0)]])
     lidar = Lidar2D(rays=181, field_of_view=math.pi, max_incidence=math.radians(50.5))
-    scan = lidar.measure(scene, Pose.of((0.0, 0.0), math.pi / 2))
+    scan = lidar.read(scene, Pose.of((0.0, 0.0), math.pi / 2))
     heard = np.isfinite(scan.ranges[0])
     np.testing.assert_array_equal(heard, np.abs(lidar.angles) <= math.radians(50.5))
     assert set(scan.hit[0][~heard].tolist()) == {NOTHING}
@@ -188,15 +188,15 @@ def test_beyond_the_incidence_limit_nothing_returns_and_nothing_shines_through()
 def test_incidence_on_a_disc():
     scene = Scene.of([[3.0, 0.0]], radius=1.0)
     lidar = Lidar2D(rays=2001, field_of_view=1.0, max_incidence=math.radians(30.0))
-    heard = np.abs(lidar.angles[np.isfinite(lidar.measure(scene, Pose.of((0.0, 0.0), 0.0)).ranges[0])])
+    heard = np.abs(lidar.angles[np.isfinite(lidar.read(scene, Pose.of((0.0, 0.0), 0.0)).ranges[0])])
     # sine rule: sin(incidence) = distance of centre * sin(beam angle) / radius
     assert heard.max() == pytest.approx(math.asin(math.sin(math.radians(30.0)) / 3.0), abs=1e-3)
 
 
 def test_resolution_rounds_and_stays_within_the_limits():
     scene = crowd(8)
-    fine = Lidar2D(rays=200).measure(scene, Pose.of((0.0, 0.0), 0.0)).ranges
-    coarse = Lidar2D(rays=200, resolution=0.25).measure(scene, Pose.of((0.0, 0.0), 0.0)).ranges
+    fine = Lidar2D(rays=200).read(scene, Pose.of((0.0, 0.0), 0.0)).ranges
+    coarse = Lidar2D(rays=200, resolution=0.25).read(scene, Pose.of((0.0, 0.0), 0.0)).ranges
     both = np.isfinite(fine)
     np.testing.assert_array_equal(both, np.isfinite(coarse))
     np.testing.assert_array_equal(coarse[both] % 0.25, 0.0)
@@ -207,8 +207,8 @@ def test_resolution_rounds_and_stays_within_the_limits():
 def test_noise_acts_on_what_was_hit_and_never_leaves_the_limits():
     scene = Scene.of([[50.0, 0.0]], walls=[ROOM])
     lidar = Lidar2D(rays=4000, range_max=4.5, noise=(Gaussian(0.05), Offset(0.1)))
-    clean = Lidar2D(rays=4000, range_max=4.5).measure(scene, Pose.of((0.0, 0.0), 0.0)).ranges
-    noisy = lidar.measure(scene, Pose.of((0.0, 0.0), 0.0), stream(1, "scan")).ranges
+    clean = Lidar2D(rays=4000, range_max=4.5).read(scene, Pose.of((0.0, 0.0), 0.0)).ranges
+    noisy = lidar.read(scene, Pose.of((0.0, 0.0), 0.0), stream(1, "scan")).ranges
     inside = clean < 4.0
     error = noisy[inside] - clean[inside]
     assert error.mean() == pytest.approx(0.1, abs=0.005)
@@ -220,7 +220,7 @@ def test_noise_acts_on_what_was_hit_and_never_leaves_the_limits():
 
 def test_noise_towards_the_sensor_can_read_too_near():
     scene = Scene.of([[1.0, 0.0]], radius=0.5)
-    scan = Lidar2D(rays=1, noise=Offset(-0.48)).measure(scene, Pose.of((0.0, 0.0), 0.0), stream(0))
+    scan = Lidar2D(rays=1, noise=Offset(-0.48)).read(scene, Pose.of((0.0, 0.0), 0.0), stream(0))
     assert scan.ranges.tolist() == [[-np.inf]]
     assert scan.hit.tolist() == [[0]]
 
@@ -228,13 +228,13 @@ def test_noise_towards_the_sensor_can_read_too_near():
 def test_absent_agents_and_the_carrier_are_not_seen_but_invisible_ones_are():
     scene = Scene.of([[0.0, 0.0], [2.0, 0.0], [4.0, 0.0]], radius=0.3, visible=[True, False, True])
     ahead = Lidar2D(rays=1)
-    assert ahead.measure(scene.without(0), Pose.of((0.0, 0.0), 0.0)).hit.tolist() == [[1]]
-    assert ahead.measure(scene.without(0).without(1), Pose.of((0.0, 0.0), 0.0)).hit.tolist() == [[2]]
+    assert ahead.read(scene.without(0), Pose.of((0.0, 0.0), 0.0)).hit.tolist() == [[1]]
+    assert ahead.read(scene.without(0).without(1), Pose.of((0.0, 0.0), 0.0)).hit.tolist() == [[2]]
 
 
 def test_seen_counts_who_returned_a_beam():
     scene = Scene.of([[0.0, 0.0], [2.0, 0.0], [4.0, 0.0], [0.0, 3.0]], radius=0.3)
-    scan = Lidar2D().measure(scene.without(0), Pose.of((0.0, 0.0), 0.0))
+    scan = Lidar2D().read(scene.without(0), Pose.of((0.0, 0.0), 0.0))
     assert isinstance(scan, Scan)
     assert scan.seen(4).tolist() == [[False, True, False, True]]
 
@@ -267,10 +267,10 @@ def test_wrong_values_are_explained(values, message):
 
 def test_a_pose_for_other_environments_is_refused():
     with pytest.raises(InputError, match="the pose has 1 places for 3 environments"):
-        Lidar2D().measure(crowd(0, environments=3), Pose.of((0.0, 0.0), 0.0))
+        Lidar2D().read(crowd(0, environments=3), Pose.of((0.0, 0.0), 0.0))
 
 
 def test_noise_without_randomness_is_refused():
     lidar = Lidar2D(noise=Noise.parse("gaussian(0.1)"))
     with pytest.raises(InputError, match="needs a generator"):
-        lidar.measure(crowd(0), Pose.of((0.0, 0.0), 0.0))
+        lidar.read(crowd(0), Pose.of((0.0, 0.0), 0.0))

@@ -23,8 +23,8 @@ class Stripes:
 
 
 def test_rays_show_what_the_depth_camera_labels():
-    labels = DepthCamera(**VIEW, range_min=0.0, range_max=50.0).measure(ROOM, EYE).hit
-    picture = RGBCamera(**VIEW, far=50.0, segmentation=True).measure(ROOM, EYE)
+    labels = DepthCamera(**VIEW, range_min=0.0, range_max=50.0).read(ROOM, EYE).hit
+    picture = RGBCamera(**VIEW, far=50.0, segmentation=True).read(ROOM, EYE)
     np.testing.assert_array_equal(picture.hit, labels)
     assert set(np.unique(picture.hit)) == {-3, -2, 0, 1} | ({-1} if -1 in labels else set())
     shown = {code: {tuple(pixel) for pixel in picture.rgb[picture.hit == code]} for code in (0, 1, -2)}
@@ -33,36 +33,36 @@ def test_rays_show_what_the_depth_camera_labels():
 
 
 def test_labels_come_only_when_asked_for_and_near_and_far_are_limits():
-    assert RGBCamera(**VIEW).measure(ROOM, EYE).hit is None
-    near = RGBCamera(**VIEW, far=3.5, segmentation=True).measure(ROOM, EYE).hit
+    assert RGBCamera(**VIEW).read(ROOM, EYE).hit is None
+    near = RGBCamera(**VIEW, far=3.5, segmentation=True).read(ROOM, EYE).hit
     assert not np.isin([1, -2], near).any()
     assert (near == 0).any()
 
 
 def test_a_source_is_shown_through_the_lens():
     source = Stripes()
-    plain = RGBCamera(**VIEW, segmentation=True).measure(ROOM, EYE, source=source)
+    plain = RGBCamera(**VIEW, segmentation=True).read(ROOM, EYE, renderer=source)
     np.testing.assert_array_equal(plain.rgb[0, 3, :, 1], np.arange(40))
     assert source.asked[1] is EYE
-    bent = RGBCamera(**VIEW, segmentation=True, distortion=(0.3, 0.0, 0.0, 0.0, 0.0)).measure(ROOM, EYE, source=source)
+    bent = RGBCamera(**VIEW, segmentation=True, distortion=(0.3, 0.0, 0.0, 0.0, 0.0)).read(ROOM, EYE, renderer=source)
     assert bent.rgb[0, 15, 36, 0] < 36
     assert np.all(np.abs(bent.hit[0].astype(int) - bent.rgb[0, ..., 0]) <= 1)
-    level = RGBCamera(**VIEW).measure(ROOM, Pose.of((1.0, 2.0), 0.5), source=source)
+    level = RGBCamera(**VIEW).read(ROOM, Pose.of((1.0, 2.0), 0.5), renderer=source)
     assert source.asked[1].position.tolist() == [[1.0, 2.0, 0.4]]
     assert level.pose.heading[0] == 0.5
 
 
 def test_noise_acts_on_the_values_and_stays_in_their_range():
-    plain = RGBCamera(**VIEW).measure(ROOM, EYE).rgb.astype(float)
-    brighter = RGBCamera(**VIEW, noise=Offset(20.0)).measure(ROOM, EYE, stream(0, "eye")).rgb
+    plain = RGBCamera(**VIEW).read(ROOM, EYE).rgb.astype(float)
+    brighter = RGBCamera(**VIEW, noise=Offset(20.0)).read(ROOM, EYE, stream(0, "eye")).rgb
     np.testing.assert_array_equal(brighter, np.minimum(plain + 20.0, 255.0))
-    grainy = RGBCamera(**VIEW, noise=Gaussian(4.0)).measure(ROOM, EYE, stream(0, "eye")).rgb
+    grainy = RGBCamera(**VIEW, noise=Gaussian(4.0)).read(ROOM, EYE, stream(0, "eye")).rgb
     inside = (plain > 20.0) & (plain < 235.0)
     assert np.std((grainy - plain)[inside]) == pytest.approx(4.0, rel=0.05)
-    lost = RGBCamera(**VIEW, noise=Dropout(1.0)).measure(ROOM, EYE, stream(0, "eye")).rgb
+    lost = RGBCamera(**VIEW, noise=Dropout(1.0)).read(ROOM, EYE, stream(0, "eye")).rgb
     assert not lost.any()
     with pytest.raises(InputError, match="needs a generator"):
-        RGBCamera(noise=Gaussian(1.0), width=4, height=3).measure(ROOM, EYE)
+        RGBCamera(noise=Gaussian(1.0), width=4, height=3).read(ROOM, EYE)
 
 
 @pytest.mark.parametrize(

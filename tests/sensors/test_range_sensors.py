@@ -31,7 +31,7 @@ def wall(distance, height=3.0):
 
 def one_value(sensor, scene, pose=HIGH, rng=None):
     """The smallest reading of a sensor and what it is of."""
-    reading = sensor.measure(scene, pose, rng)
+    reading = sensor.read(scene, pose, rng)
     values = reading.depth if isinstance(sensor, DepthCamera) else reading.ranges
     return float(values.min()), int(reading.hit.flat[int(np.argmin(values))])
 
@@ -102,7 +102,7 @@ def test_a_level_scan_through_space_equals_the_one_from_above():
     )
     lidar = Lidar2D(rays=720, range_max=20.0)
     pose = Pose.of(rng.uniform(-3, 3, (2, 2)), [0.4, -2.0])
-    above, through = lidar.measure(scene, pose), lidar.measure(scene, pose.lifted(1.0))
+    above, through = lidar.read(scene, pose), lidar.read(scene, pose.lifted(1.0))
     np.testing.assert_allclose(above.ranges, through.ranges, rtol=0, atol=1e-9)
     np.testing.assert_array_equal(above.hit, through.hit)
     np.testing.assert_allclose(above.incidence, through.incidence, rtol=0, atol=1e-6)
@@ -113,7 +113,7 @@ def test_a_level_scan_through_space_equals_the_one_from_above():
 def test_a_tilted_scan_sees_the_floor_in_a_straight_line():
     pitch, z = math.radians(15.0), 0.5
     lidar = Lidar2D(rays=181, field_of_view=math.pi * 0.6, range_max=30.0)
-    scan = lidar.measure(Scene.of([[500.0, 0.0]]), SpatialPose.of((1.0, 2.0, z), pitch=pitch, yaw=0.3))
+    scan = lidar.read(Scene.of([[500.0, 0.0]]), SpatialPose.of((1.0, 2.0, z), pitch=pitch, yaw=0.3))
     expected = z / (np.sin(pitch) * np.cos(lidar.angles))
     np.testing.assert_allclose(scan.ranges[0], expected, rtol=0, atol=1e-9)
     assert np.all(scan.hit == FLOOR)
@@ -129,19 +129,19 @@ def test_a_scan_at_knee_height_sees_two_legs_and_above_them_the_trunk():
     )  # fmt: skip
     scene = Scene.of([[2.0, 0.0]], radius=0.3, bodies=legs)
     lidar = Lidar2D(rays=201, field_of_view=0.4)
-    knee, chest = (lidar.measure(scene, SpatialPose.of((0.0, 0.0, z))) for z in (0.4, 1.2))
+    knee, chest = (lidar.read(scene, SpatialPose.of((0.0, 0.0, z))) for z in (0.4, 1.2))
     assert (np.diff(np.isfinite(knee.ranges[0]).astype(int)) == 1).sum() == 2
     assert set(knee.part[0].tolist()) == {-1, 1}
     assert (np.diff(np.isfinite(chest.ranges[0]).astype(int)) == 1).sum() == 1
     assert chest.ranges.min() == pytest.approx(1.82, abs=1e-12)
     assert set(chest.hit[0].tolist()) == {-1, 0}
-    planar = lidar.measure(scene, Pose.of((0.0, 0.0), 0.0))  # at the height of a usual mount
+    planar = lidar.read(scene, Pose.of((0.0, 0.0), 0.0))  # at the height of a usual mount
     assert planar.ranges.tobytes() == knee.ranges.tobytes()
 
 
 def test_rings_of_a_cloud_meet_a_wall_where_they_should():
     lidar = Lidar3D(elevations=(-0.2, 0.0, 0.3), columns=91, azimuth_from=-0.5, azimuth_to=0.5, range_max=50.0)
-    cloud = lidar.measure(wall(4.0), SpatialPose.of((0.0, 0.0, 1.0)))
+    cloud = lidar.read(wall(4.0), SpatialPose.of((0.0, 0.0, 1.0)))
     expected = 4.0 / (np.cos(cloud.azimuth) * np.cos(cloud.elevation[:, None]))
     np.testing.assert_allclose(cloud.ranges[0, :2], expected[:2], rtol=0, atol=1e-9)
     over = 1.0 + 4.0 * math.tan(0.3) / np.cos(cloud.azimuth) > 3.0
@@ -154,7 +154,7 @@ def test_rings_of_a_cloud_meet_a_wall_where_they_should():
 def test_a_cloud_is_told_in_the_sensors_frame():
     lidar = Lidar3D(columns=60)
     pose = SpatialPose.of((3.0, -2.0, 1.0), 0.2, -0.3, 2.0)
-    cloud = lidar.measure(wall(6.0), pose)
+    cloud = lidar.read(wall(6.0), pose)
     there = pose.position[0] + cloud.points()[0] @ pose.matrix[0].T
     np.testing.assert_allclose(cloud.points(in_world=True)[0], there, atol=1e-9)
     finite = np.isfinite(there[..., 0])
@@ -210,7 +210,7 @@ def test_the_zone_of_ultrasound_is_right_at_any_pose(place, turn):
             point = pose.position[0] + pose.matrix[0] @ local
             pin = Bodies.of(start=[point], end=[point], radius=[0.03], owner=[-1])
             scene = Scene.of([[900.0, 0.0]], bodies=pin)
-            echo = sensor.measure(scene, pose)
+            echo = sensor.read(scene, pose)
             assert (echo.hit.tolist() == [PROP]) == heard, (ahead, aside, roll)
             if heard:
                 assert echo.ranges[0] == pytest.approx(np.linalg.norm(local) - 0.03, abs=0.01)
@@ -218,7 +218,7 @@ def test_the_zone_of_ultrasound_is_right_at_any_pose(place, turn):
 
 def test_ultrasound_returns_the_nearest_of_several():
     scene = Scene.of([[2.0, 0.0], [1.2, 0.3], [-1.0, 0.0]], radius=0.2)
-    echo = Ultrasound(rays=2000).measure(scene, SpatialPose.of((0.0, 0.0, 1.0)))
+    echo = Ultrasound(rays=2000).read(scene, SpatialPose.of((0.0, 0.0, 1.0)))
     # the surface nearest to the sensor lies towards the middle of the disc, inside the zone
     assert echo.hit.tolist() == [1]
     assert echo.ranges[0] == pytest.approx(math.hypot(1.2, 0.3) - 0.2, abs=0.01)
@@ -235,7 +235,7 @@ def test_the_cone_of_infrared_turns_with_the_sensor(turn):
             local = 2.0 * np.array([math.cos(a), math.sin(a) * math.cos(roll), math.sin(a) * math.sin(roll)])
             point = pose.position[0] + pose.matrix[0] @ local
             scene = Scene.of([[900.0, 0.0]], bodies=Bodies.of(start=[point], end=[point], radius=[0.01], owner=[-1]))
-            assert (sensor.measure(scene, pose).hit.tolist() == [PROP]) == seen
+            assert (sensor.read(scene, pose).hit.tolist() == [PROP]) == seen
 
 
 def test_a_cone_is_covered_evenly():
@@ -250,7 +250,7 @@ def test_a_cone_is_covered_evenly():
 
 def test_dropped_returns_come_at_their_rate():
     lidar = Lidar2D(rays=20_000, range_max=50.0, noise=Dropout(0.1))
-    scan = lidar.measure(
+    scan = lidar.read(
         Scene.of([[900.0, 0.0]], walls=[[(-4, -4), (-4, 4), (4, 4), (4, -4)]]), Pose.of((0, 0), 0), stream(1)
     )
     assert np.mean(np.isinf(scan.ranges)) == pytest.approx(0.1, abs=4 * math.sqrt(0.09 / 20_000))

@@ -44,14 +44,13 @@ def arrays(reading):
 
 
 def measured(sensor, scene, pose, rng=None):
-    """One reading; of sensors that remember the third, after two moves."""
-    if not sensor.remembers:
-        return sensor.measure(scene, pose, rng)
-    last = None
-    for step in range(3):
+    """One reading; of sensors with state the third, after two moves."""
+    state = sensor.begin()
+    for step in range(3 if type(sensor) in (sensors.IMU, sensors.WheelOdometry) else 1):
         there = pose.mounted(0.1 * step, 0.02 * step * step, 0.0, 0.0, 0.0, 0.05 * step)
-        last = sensor.measure(scene.replace(time=0.1 * step), there, rng, last=last)
-    return last
+        view = sensors.SensorView(scene.replace(time=scene.time + 0.1 * step), there if step else pose)
+        reading, state = sensor.measure(view, state, rng)
+    return reading
 
 
 def assert_same_bytes(one, two, rows=slice(None)):
@@ -81,7 +80,7 @@ def test_a_planar_pose_is_enough(kind):
         Scene.of(np.arange(12.0).reshape(2, 3, 2), walls=[[(-1, -1), (9, -1)]]),
         Pose.of(np.zeros((2, 2)), 0.3),
     )
-    reading = small(kind).measure(scene, pose)
+    reading = small(kind).read(scene, pose)
     assert (reading.time, reading.pose) == (scene.time, pose)
     assert all(len(value) == 2 for value in arrays(reading).values())
 
@@ -164,12 +163,12 @@ def test_hostile_scenes_give_readings_without_surprise(kind):
 
 @every_sensor
 def test_a_wrong_pose_is_refused(kind):
-    with pytest.raises(InputError, match="the pose has 1 places for 3 environments"):
-        kind().measure(crowd(0, environments=3), Pose.of((0.0, 0.0), 0.0))
+    with pytest.raises(InputError, match="the pose has 1 rows for 3 environments"):
+        kind().read(crowd(0, environments=3), Pose.of((0.0, 0.0), 0.0))
     with pytest.raises(InputError, match="pose of the sensor is not finite"):
-        kind().measure(crowd(0), Pose.of((0.0, math.nan), 0.0))
+        kind().read(crowd(0), Pose.of((0.0, math.nan), 0.0))
     with pytest.raises(InputError, match="needs a generator"):
-        kind(noise=sensors.Gaussian(0.1)).measure(crowd(0), Pose.of((0.0, 0.0), 0.0))
+        kind(noise=sensors.Gaussian(0.1)).read(crowd(0), Pose.of((0.0, 0.0), 0.0))
 
 
 @pytest.mark.parametrize("name", sorted(RANGING - {"depth-camera"}))
@@ -218,3 +217,33 @@ def test_the_room_shows_its_contracts():
     assert set(NOISES) == set(EXAMPLES)
     assert all(hasattr(sensors, name) for name in sensors.__all__)
     assert len(set(sensors.__all__)) == len(sensors.__all__)
+
+
+@every_sensor
+def test_the_state_is_a_value_and_continues_the_sequence(kind):
+    """The same view and state give the same reading and state again: nothing is kept in the sensor."""
+    sensor, scene, pose = small(kind), crowd(7, environments=2), somewhere(7, 2)
+    first, state = sensor.measure(sensors.SensorView(scene, pose), sensor.begin())
+    later = sensors.SensorView(scene.replace(time=scene.time + 0.1), pose.mounted(0.1, 0.0, 0.0, 0.0, 0.0, 0.2))
+    one, after = sensor.measure(later, state)
+    two, again = sensor.measure(later, state)
+    assert_same_bytes(one, two)
+    assert (after is None) == (state is None) == (again is None)
+    assert_same_bytes(first, sensor.read(scene, pose))
+    assert (state is not None) == (kind in (sensors.IMU, sensors.WheelOdometry))
+
+
+def test_a_sensor_of_the_older_contract_says_what_to_write():
+    with pytest.raises(InputError, match=r"sensor Old: measure\(scene, pose, rng\) is an older contract; write"):
+
+        class Old(sensors.Sensor):
+            def measure(self, scene, pose, rng=None):
+                return sensors.Reading(scene.time, pose)
+
+
+@every_sensor
+def test_skins_are_asked_for_in_one_way(kind):
+    assert not kind().sees_skins
+    assert kind().with_skins().sees_skins == ("skins" in kind.__dataclass_fields__)
+    assert kind.spatial == (kind.__name__ in ("DepthCamera", "Infrared", "Lidar3D", "RGBCamera", "Ultrasound"))
+    assert kind.renders == (kind is sensors.RGBCamera)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 __all__ = ["KINDS", "RICH", "Kind", "planted", "told_apart"]
 
-RICH = """<trial name="rich" duration="20" capacity="600" berth="0.1" seed="3">
+RICH = """<trial name="rich" duration="20" capacity="600" robot-margin="0.1" seed="3">
   <stage walkable="-12,-6 12,-6 12,6 -12,6" wall-height="2.5">
     <wall points="-12,-5.8 -8,-5.8"/>
     <obstacle points="-1,4 1,4 1,5 -1,5"/>
@@ -39,7 +39,7 @@ RICH = """<trial name="rich" duration="20" capacity="600" berth="0.1" seed="3">
     <group size="2" share="0.5"/>
     <group size="1" share="1"/>
   </spawner>
-  <source name="west" zone="-11,1 -10,1 -10,3 -11,3" journey="through" rate="0.2" most="9" crowd="varied"/>
+  <source name="west" zone="-11,1 -10,1 -10,3 -11,3" journey="through" rate="0.2" max-count="9" crowd="varied"/>
   <source name="north" zone="2,3 4,3 4,5 2,5" goal="2,-5 4,-5 4,-4 2,-4" rate="0.1" begin="2" end="15"/>
   <exit name="east" zone="11,-4 12,-4 12,-2 11,-2"/>
   <portal name="door" zone="11,0 12,0 12,1 11,1" dx="-20"/>
@@ -82,7 +82,9 @@ GROUND = 'walkable="-12'
 KINDS = (
     # wrong values, missing and unknown attributes
     Kind('duration="20"', 'duration="-20"', "<trial> duration=.-20. must be above 0 s and at most 86400 s"),
-    Kind('berth="0.1"', 'breth="0.1"', "<trial> has no attribute 'breth', did you mean 'berth'"),
+    Kind(
+        'robot-margin="0.1"', 'robot-magin="0.1"', "<trial> has no attribute 'robot-magin', did you mean 'robot-margin'"
+    ),
     Kind('seed="3"', 'seed="three"', "<trial> seed=.three. is not a number"),
     Kind('wall-height="2.5"', 'wall-height="0"', "<stage> wall-height=.0. must be at least 0.001 m and at most 100 m"),
     Kind('points="-12,-5.8 -8,-5.8"', 'points="-12,-5.8"', "<wall> points=.* must be at least 2 different points"),
@@ -105,7 +107,7 @@ KINDS = (
     Kind('size="2"', 'size="0"', "<group> size=.0. must be at least 1 and at most 50"),
     Kind('size="1" ', "", "<group> needs the attribute 'size'"),
     Kind('rate="0.2"', 'rate="0,2"', "<source> rate=.0,2. is not a number"),
-    Kind('most="9"', 'most="-9"', "<source> most=.-9. must be at least 0"),
+    Kind('max-count="9"', 'max-count="-9"', "<source> max-count=.-9. must be at least 0"),
     Kind('begin="2" end="15"', 'begin="16" end="15"', "<source> begin 16 s must be before end 15 s"),
     Kind('dx="-20"', 'dx="0"', "<portal> needs dx or dy"),
     Kind(

@@ -80,7 +80,7 @@ def test_built_in_models_are_asked_once_and_others_one_by_one(monkeypatch: pytes
     compute_together(walks(3, [Asked()] * 3, [4, 4, 4]))
     assert Asked.seen == [1, 1, 1]
     Asked.seen.clear()
-    monkeypatch.setattr(Asked, "__module__", "crowdbot.models.orca")
+    monkeypatch.setattr(Asked, "__module__", "crowdbot.models.velocity_obstacles.orca")
     compute_together(walks(3, [Asked()] * 3, [4, 4, 4]))
     assert Asked.seen == [3]
 

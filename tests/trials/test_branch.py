@@ -14,7 +14,7 @@ from space_trials import LEAN, room
 from trial_texts import FLOW, GOOD
 
 from crowdbot.core import EpisodeError, InputError, TrialError
-from crowdbot.data import Tape
+from crowdbot.data import McapReader
 from crowdbot.recording import branch, read_episode, record, replay, run
 from crowdbot.trials import apply_values, parse_trial
 
@@ -37,7 +37,7 @@ def flowing(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def messages(path: Path, begin: float = 0.0) -> list[tuple[str, int, bytes]]:
     with path.open("rb") as stream:
-        return [(h.topic.topic, h.stamp, h.data) for h in Tape(stream).messages() if h.stamp >= round(begin * 1e9)]
+        return [(h.topic.topic, h.stamp, h.data) for h in McapReader(stream).messages() if h.stamp >= begin * 1e9]
 
 
 @pytest.mark.parametrize("at", [0.0, 0.1, 2.0, 3.9, 4.0])
@@ -82,7 +82,7 @@ def test_a_branch_with_changes_differs_from_then_on_and_replays(flowing: Path, t
     original = read_episode(flowing)
     changes = {
         "duration": 14,
-        "berth": 0.3,
+        "robot-margin": 0.3,
         "crowd[hurried].type": "orca",
         "limits.max-speed": 1.0,
         "source[west].rate": 2.0,
@@ -102,7 +102,7 @@ def test_a_branch_with_changes_differs_from_then_on_and_replays(flowing: Path, t
     assert read.times[1] == 6.2
     speeds = np.hypot(*read.velocity[5:, :4].reshape(-1, 2).T)
     assert speeds.max() < 1.0 + 1e-9
-    assert parse_trial(read.xml).berth == 0.3
+    assert parse_trial(read.xml).robot_margin == 0.3
     assert replay(tmp_path / "episode.mcap").equal
 
 

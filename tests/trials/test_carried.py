@@ -396,7 +396,7 @@ def test_a_robot_folder_keeps_its_code_as_code_and_no_caches(tmp_path: Path) -> 
     (tmp_path / "mine" / "more.py").write_text("")
     (tmp_path / "mine" / "__pycache__").mkdir()
     (tmp_path / "mine" / "__pycache__" / "more.pyc").write_text("")
-    robot = '<robot type="mine" equipped="false" x="0" y="0"><goal x="9" y="0"/>'
+    robot = '<robot type="mine" default-sensors="false" x="0" y="0"><goal x="9" y="0"/>'
     text = f'<trial name="t" duration="1"><crowd type="orca"/>{robot}'
     (tmp_path / "t.xml").write_text(f'{text}<navigator type="straight"/></robot></trial>')
     found = named_files(load_trial(tmp_path / "t.xml"))

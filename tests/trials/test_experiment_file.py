@@ -47,10 +47,10 @@ NUMBERS = st.none() | st.floats(-1e5, 1e5)
 SAID = {"name": NAMES, "text": TEXTS, "required": st.booleans()}
 OPTIONS = st.lists(st.builds(Option, value=NAMES, text=TEXTS), min_size=1, max_size=3)
 QUESTIONS = st.one_of(
-    st.builds(Choice, **SAID, several=st.booleans(), options=OPTIONS),
+    st.builds(Choice, **SAID, multiple=st.booleans(), options=OPTIONS),
     st.builds(Scale, **SAID, low=st.integers(-9, 0), high=st.integers(1, 9), low_text=TEXTS, high_text=TEXTS),
-    st.builds(Number, **SAID, unit=TEXTS, at_least=NUMBERS, at_most=NUMBERS, whole=st.booleans()),
-    st.builds(FreeText, **SAID, at_most=st.integers(1, 10_000)),
+    st.builds(Number, **SAID, unit=TEXTS, min=NUMBERS, max=NUMBERS, integer=st.booleans()),
+    st.builds(FreeText, **SAID, max_length=st.integers(1, 10_000)),
 )
 SCREENS = st.lists(
     st.builds(Screen, name=NAMES, text=TEXTS, file=TEXTS, questions=st.lists(QUESTIONS, max_size=2)), max_size=2
@@ -92,7 +92,7 @@ def test_what_is_shipped_is_right_and_reads_back(name: str) -> None:
 WRONG = """<experiment name="e" sed="3">
   <instructions name="hello" file="helo.txt">
     <scale name="a b" text="Well?" low="7" high="7"/>
-    <number name="age" text="Age?" at-least="40" at-most="20"/>
+    <number name="age" text="Age?" min="40" max="20"/>
     <number name="age" text=" "/>
     <choise name="hand" text="Hand?"/>
   </instructions>
@@ -128,7 +128,7 @@ def _wrong(tmp_path: Path) -> list[str]:
     [
         "e.xml:1: <experiment> has no attribute 'sed', did you mean 'seed'?; it takes name, about, seed, participants",
         'e.xml:3: <scale> name="a b" must match',
-        "e.xml:4: <number> has at-least above at-most",
+        "e.xml:4: <number> has min above max",
         "e.xml:5: <number> has an empty text; write what is asked",
         "e.xml:6: <choise> is no element of <instructions>, did you mean 'choice'?",
         'e.xml:8: <block> order="latin" must be fixed or random or latin-square',
@@ -399,11 +399,11 @@ def test_the_plan_puts_screens_around_trials() -> None:
 
 
 HAND = Choice(name="hand", text="?", options=[Option(value="left"), Option(value="right", text="Right")])
-SOME = Choice(name="some", text="?", several=True, required=False, options=HAND.options)
+SOME = Choice(name="some", text="?", multiple=True, required=False, options=HAND.options)
 EASE = Scale(name="ease", text="?", low=-2, high=2)
-AGE = Number(name="age", text="?", at_least=18, at_most=99, whole=True)
+AGE = Number(name="age", text="?", min=18, max=99, integer=True)
 SIZE = Number(name="size", text="?", unit="m", required=False)
-WORDS = FreeText(name="words", text="?", at_most=5, required=False)
+WORDS = FreeText(name="words", text="?", max_length=5, required=False)
 
 
 @pytest.mark.parametrize(

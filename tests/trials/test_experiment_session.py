@@ -49,8 +49,8 @@ from crowdbot.experiments import (
 )
 from crowdbot.recording import read_episode
 
-AGE = Number(name="age", text="How old are you?", at_least=18, whole=True)
-LIKED = Choice(name="liked", text="What?", several=True, options=[Option(value="speed"), Option(value="distance")])
+AGE = Number(name="age", text="How old are you?", min=18, integer=True)
+LIKED = Choice(name="liked", text="What?", multiple=True, options=[Option(value="speed"), Option(value="distance")])
 REMARK = FreeText(name="remark", text="Anything?", required=False)
 EXPERIMENT = Experiment(
     name="two",

@@ -39,7 +39,7 @@ FAR = [(6.0, 0.0), (8.0, 0.0), (8.0, 3.0)]
 
 def test_a_file_with_flows_is_the_tree() -> None:
     trial = parse_trial(FLOW)
-    assert (trial.substeps, trial.capacity, trial.berth, trial.symmetry) == (2, 10, 0.2, 0.001)
+    assert (trial.substeps, trial.capacity, trial.robot_margin, trial.heading_jitter) == (2, 10, 0.2, 0.001)
     assert trial.routing == Routing(radius=0.25, unreachable="nearest")
     assert trial.contact == Contact(variant="force", stiffness=50.0, iterations=4)
     assert trial.limits == Limits(max_speed=2.5, max_acceleration=5.0)
@@ -66,7 +66,7 @@ def test_reading_what_was_written_gives_the_same_flow() -> None:
 def test_what_is_left_out_is_not_written() -> None:
     text = trial_xml(Trial(name="plain", duration=1, crowd=ORCA()))
     assert '<crowd type="orca"/>' in text
-    assert not any(word in text for word in ("routing", "contact", "limits", "capacity", "berth", 'name=""'))
+    assert not any(word in text for word in ("routing", "contact", "limits", "capacity", "robot-margin", 'name=""'))
 
 
 amounts = st.floats(0.01, 50.0)
@@ -91,8 +91,8 @@ def flows(draw: st.DrawFn) -> Trial:
         duration=draw(st.floats(0.2, 30.0)),
         substeps=draw(st.integers(1, 10_000)),
         capacity=draw(st.one_of(st.none(), st.integers(3, 100))),
-        berth=draw(st.floats(0.0, 2.0)),
-        symmetry=draw(st.floats(0.0, 3.0)),
+        robot_margin=draw(st.floats(0.0, 2.0)),
+        heading_jitter=draw(st.floats(0.0, 3.0)),
         crowd=draw(st.sampled_from([ORCA(), crowds, Crowds((ORCA(),), names=(name,))])),
         routing=draw(st.one_of(st.none(), st.builds(Routing, radius=st.floats(0.1, 0.4)))),
         contact=draw(st.one_of(st.none(), st.builds(Contact, stiffness=amounts, iterations=st.integers(1, 9)))),
@@ -102,7 +102,9 @@ def flows(draw: st.DrawFn) -> Trial:
         spawners=[Spawner(count=draw(st.integers(0, 3)), zone=ZONE, journey=name, crowd=name)],
         sources=[
             Source(zone=ZONE, goal=FAR, rate=draw(amounts), begin=begin, end=begin + draw(amounts)),
-            Source(zone=ZONE, journey=other.name, rate=draw(amounts), timing="regular", most=draw(st.integers(0, 9))),
+            Source(
+                zone=ZONE, journey=other.name, rate=draw(amounts), timing="regular", max_count=draw(st.integers(0, 9))
+            ),
         ],
         exits=draw(st.sampled_from([[], [Exit(zone=FAR)]])),
     )  # fmt: skip
@@ -154,8 +156,12 @@ MISTAKES = {
     "limit that is none": ('max-speed="2.5"', 'max-speed="none"', r':11: <limits> max-speed="none" is not a number'),
     "twice": ("<limits ", "<contact/><limits ", r":11: <contact> stands in <trial> twice; one is allowed"),
     "substeps": ('substeps="2"', 'substeps="0"', r':2: <trial> substeps="0" must be at least 1'),
-    "symmetry": ('symmetry="0.001"', 'symmetry="4"', r':2: <trial> symmetry="4" must be at most 3.14159 rad'),
-    "berth": ('berth="0.2"', 'berth="-1"', r':2: <trial> berth="-1" must be at least 0 m'),
+    "heading-jitter": (
+        'heading-jitter="0.001"',
+        'heading-jitter="4"',
+        r':2: <trial> heading-jitter="4" must be at most 3.14159 rad',
+    ),
+    "robot-margin": ('robot-margin="0.2"', 'robot-margin="-1"', r':2: <trial> robot-margin="-1" must be at least 0 m'),
     "capacity": (
         'capacity="10"',
         'capacity="3"',
@@ -223,15 +229,15 @@ MISTAKES = {
     "rate": ('rate="0.9"', 'rate="0"', r':22: <source> rate="0" must be above 0 1/s'),
     "timing": ('"regular"', '"regulr"', r':23: <source> timing="regulr" must be poisson or regular, did you mean'),
     "end before begin": ('begin="2"', 'begin="20"', r":23: <source> begin 20 s must be before end 15 s"),
-    "most": ('most="90"', 'most="-1"', r':22: <source> most="-1" must be at least 0'),
+    "max-count": ('max-count="90"', 'max-count="-1"', r':22: <source> max-count="-1" must be at least 0'),
     "radius of a body": (
         'radius="0.2"',
         'radius="uniform(0, 1)"',
         r"must be above 0 m and at most 5 m, and it reaches from 0 to 1",
     ),
     "crowd of people": (
-        'most="90"',
-        'begin="1" speed="1" radius="2" most="9" arrival="leave"',
+        'max-count="90"',
+        'begin="1" speed="1" radius="2" max-count="9" arrival="leave"',
         r":22: <source> zone of 6.00 m2",
     ),
     "source outside": ("-7.5,-3 -6.5,-3", "-9.5,-3 -6.5,-3", r":22: <source> zone reaches outside the walkable area"),
@@ -247,7 +253,7 @@ MISTAKES = {
     ),
     "exit outside": ("6.5,-4 8,-4 8,4 6.5,4", "16,-4 18,-4 18,4", r":25: <exit> zone lies outside the walkable area"),
     "too many come": (
-        'rate="0.9" most="90"',
+        'rate="0.9" max-count="90"',
         'rate="9999"',
         r"<source> lets people in, about 1\d{5} together with other",
     ),
@@ -326,8 +332,8 @@ def test_flows_made_in_python_are_checked_too() -> None:
         Trial(name="t", duration=1, crowd=ORCA(), sources=Source(zone=ZONE, goal=FAR, rate=1))  # type: ignore[arg-type]
     with pytest.raises(InputError, match="Trial: crowd is a tuple, it must be a CrowdModel"):
         Trial(name="t", duration=1, crowd=(ORCA(),))  # type: ignore[arg-type]
-    with pytest.raises(InputError, match=r'Source: most="1.5" is not a int'):
-        Source(zone=ZONE, goal=FAR, rate=1, most=1.5)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=r'Source: max_count="1.5" is not a int'):
+        Source(zone=ZONE, goal=FAR, rate=1, max_count=1.5)  # type: ignore[arg-type]
     unnamed = Trial(name="t", duration=1, crowd=ORCA(), sources=[Source(zone=ZONE, goal=FAR, rate=1, crowd="calm")])
     with pytest.raises(TrialError, match=r"trial 't': source crowd=\"calm\" is not the name of a crowd; no crowd has"):
         check_trial(unnamed)
@@ -354,4 +360,4 @@ def test_the_older_trials_are_as_they_were() -> None:
     assert (trial.routing, trial.contact, trial.limits, trial.journeys, trial.sources, trial.exits) == (
         None, None, None, (), (), (),
     )  # fmt: skip
-    assert (trial.berth, trial.symmetry, trial.substeps, trial.capacity) == (0.1, 0.0, 1, None)
+    assert (trial.robot_margin, trial.heading_jitter, trial.substeps, trial.capacity) == (0.1, 0.0, 1, None)

@@ -197,9 +197,9 @@ def test_people_come_in_by_sources() -> None:
     assert come == pytest.approx([1.0, 3.0, 5.0, 7.0, 9.0])
     assert (episode.outcome, episode.robots, episode.ids.tolist()) == ("finished", (), [0, 1, 2, 3, 4])
     assert not episode.active[-1].all()
-    stay = run(trial(sources=[dataclasses.replace(evenly, arrival="stay", most=2)], duration=15.0))
+    stay = run(trial(sources=[dataclasses.replace(evenly, arrival="stay", max_count=2)], duration=15.0))
     assert stay.active[-1].tolist() == [True, True]
-    nobody = run(trial(sources=[dataclasses.replace(evenly, most=0)]))
+    nobody = run(trial(sources=[dataclasses.replace(evenly, max_count=0)]))
     assert nobody.position.shape == (201, 0, 2)
 
 
@@ -207,7 +207,7 @@ def test_people_of_a_spawner_and_a_source_do_not_leave_for_one_another() -> None
     """Who takes the place of somebody with a goal zone is not sent out in that zone."""
     first = Spawner(count=1, zone=box(0, 0, 0.1, 0.1), goal=box(2, 0), speed=1.5)
     through = Journey(name="through", then="stay", stops=[Point(6, 0.5)])
-    second = Source(zone=box(-1, 0), journey="through", rate=1.0, timing="regular", begin=4.0, most=1, speed=1.5)
+    second = Source(zone=box(-1, 0), journey="through", rate=1.0, timing="regular", begin=4.0, max_count=1, speed=1.5)
     episode = run(trial(spawners=[first], sources=[second], journeys=[through], capacity=1, duration=12.0))
     assert episode.active[-1].tolist() == [False, True]
     assert episode.position[-1, 1] == pytest.approx([6.0, 0.5], abs=0.1)
@@ -244,7 +244,7 @@ def test_people_walk_by_the_model_of_their_crowd() -> None:
 
 def test_people_of_a_source_walk_by_the_model_of_their_crowd() -> None:
     crowds = Crowds((ORCA(), SocialForce()), names=("calm", "hurried"))
-    one = Source(zone=box(0, 0), goal=box(9, 0), rate=1.0, timing="regular", crowd="hurried", most=3)
+    one = Source(zone=box(0, 0), goal=box(9, 0), rate=1.0, timing="regular", crowd="hurried", max_count=3)
     simulation = Simulation(trial(crowd=crowds, sources=[one]), 0)
     for _ in range(60):
         simulation.step()
@@ -258,11 +258,11 @@ def test_the_world_is_as_the_trial_says() -> None:
     assert made.limits == world.CrowdLimits(2.5, 5.0)
     assert made.router is not None
     assert (made.router.radius, made.router.unreachable) == (0.25, "nearest")
-    assert (made.berth, made.symmetry, made.substeps) == (0.2, 0.001, 2)
+    assert (made.robot_margin, made.heading_jitter, made.substeps) == (0.2, 0.001, 2)
     assert [way.corners for way in made.exits] == [tuple(WHOLE.exits[0].zone)]
     plain = Simulation(trial(), 1).world
     assert (plain.contact, plain.limits, plain.router, plain.journeys) == (None, None, None, None)
-    assert (plain.berth, plain.symmetry, plain.substeps, plain.exits) == (0.1, 0.0, 1, [])
+    assert (plain.robot_margin, plain.heading_jitter, plain.substeps, plain.exits) == (0.1, 0.0, 1, [])
 
 
 @dataclasses.dataclass(frozen=True)
@@ -281,7 +281,7 @@ def test_an_old_scan_does_not_show_who_took_the_place_of_somebody() -> None:
     lidar = Mount(sensor=Lidar2D(rays=180, range_max=5.0, rate=0.25))
     bot = Robot(x=0, y=0, goal=Goal(0, 50), drive=DifferentialDrive(), navigator=Spy(told), sensors=[lidar])
     near = Spawner(count=1, zone=box(2, 0, 0.1, 0.1), goal=box(2, 3), speed=1.5)
-    far = Source(zone=box(40, 0), goal=box(60, 0), rate=1.0, timing="regular", most=1, speed=1.0)
+    far = Source(zone=box(40, 0), goal=box(60, 0), rate=1.0, timing="regular", max_count=1, speed=1.0)
     episode = run(trial(spawners=[near], sources=[far], robots=[bot], capacity=1, duration=3.9))
     seen = {len(one.people) for one in told}
     assert seen == {0, 1}

@@ -244,7 +244,7 @@ def test_conditions_end_a_trial() -> None:
 
 def test_a_trial_with_sources_is_not_empty_before_the_last_has_come() -> None:
     text = FLOW.replace('duration="20"', 'duration="40"').replace("<end ", '<end empty="true" ')
-    text = text.replace('most="90"', 'end="6"').replace('end="15"', 'end="9"')
+    text = text.replace('max-count="90"', 'end="6"').replace('end="15"', 'end="9"')
     given = parse_trial(text)
     episode = run(dataclasses.replace(given, robots=()), seed=1)
     assert episode.times[-1] > 9.0 or episode.outcome == "finished"

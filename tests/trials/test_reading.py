@@ -90,8 +90,8 @@ def trials(draw: st.DrawFn) -> Trial:
     typed = Robot(
         name=draw(st.from_regex(r"\A[A-Za-z][A-Za-z0-9_]{0,6}\Z")),
         type=draw(st.sampled_from(["pepper", "turtlebot2", "qolo"])),
-        rates="nearest",
-        equipped=(equipped := draw(st.booleans())),
+        sensor_rates="nearest",
+        default_sensors=(equipped := draw(st.booleans())),
         cameras=equipped and draw(st.booleans()),
         x=draw(numbers),
         y=draw(numbers),

@@ -129,10 +129,12 @@ def test_no_class_of_readings_is_forgotten() -> None:
 def test_every_class_of_readings_comes_back(kind: type[Reading], place: str) -> None:
     sensor = SENSORS[kind.__name__]
     pose: Any = Pose.of((0.1, 0.0), 0.3)
+    state = sensor.begin()
     for number in range(2):
         if place == "in space":
             pose = Pose.of((0.1 + 0.2 * number, 0.0), 0.3).lifted(0.7, 0.02, 0.1)
-        reading = sensor.measure(SCENE.replace(time=0.05 * number), pose, np.random.default_rng(number))
+        view = sensors.SensorView(SCENE.replace(time=0.05 * number), pose)
+        reading, state = sensor.measure(view, state, np.random.default_rng(number))
         assert type(reading) is kind
         read = back(reading, sensor)
         assert type(read) is kind

@@ -20,9 +20,9 @@ from trial_texts import GOOD, changed
 
 import crowdbot
 from crowdbot import data
-from crowdbot.core import EpisodeError, InputError, Pose, Scene
+from crowdbot.core import EpisodeError, InputError
 from crowdbot.recording import Recorded, read_episode, run
-from crowdbot.sensors import Reading, Sensor
+from crowdbot.sensors import Reading, Sensor, SensorView
 from crowdbot.simulation import Episode
 from crowdbot.trials import Mount, parse_trial
 
@@ -184,8 +184,8 @@ def test_ctrl_c_from_the_keyboard_leaves_a_whole_file(tmp_path: Path) -> None:
 class Thermometer(Sensor):
     """Measures something that has no message."""
 
-    def measure(self, scene: Scene, pose: Pose, rng: Any = None) -> Reading:
-        return Reading(scene.time, pose)
+    def measure(self, view: SensorView, state: None, rng: Any = None) -> tuple[Reading, None]:
+        return Reading(view.time, view.pose), None
 
 
 def test_a_run_that_fails_keeps_what_is_done(tmp_path: Path) -> None:

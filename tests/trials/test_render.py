@@ -70,7 +70,7 @@ def test_the_overview_has_the_whole_stage_in_view_and_the_feet_of_people(name: s
 @pytest.mark.usefixtures("drawing")
 def test_the_depth_camera_of_pepper_does_not_see_its_own_eye() -> None:
     inside = '<goal x="9" y="0"/><navigator type="straight"/>'
-    robot = f'<robot name="pepper" type="pepper" x="0" y="0" rates="nearest">{inside}</robot>'
+    robot = f'<robot name="pepper" type="pepper" x="0" y="0" sensor-rates="nearest">{inside}</robot>'
     stage = '<stage walkable="-2,-4 10,-4 10,4 -2,4"/><crowd type="orca"/>'
     trial = parse_trial(f'<trial name="t" duration="1">{stage}{robot}</trial>')
     (shot,) = shots(trial, "pepper/depth", Take(0.0), segmentation=True)

@@ -21,7 +21,7 @@ ROOM = """<trial name="ride" duration="4" seed="3" step="0.05">
     <goal x="5" y="-2"/><drive type="differential-drive"/><navigator type="straight"/>
     <sensor name="scan" type="lidar2d" rays="2" z="0.9" heading="2.356" field-of-view="0.02"/>
   </robot>
-  <robot name="chair" type="wheelchair" rider="woman-36" equipped="false" x="-1" y="0" heading="0.3">
+  <robot name="chair" type="wheelchair" rider="woman-36" default-sensors="false" x="-1" y="0" heading="0.3">
     <goal x="4" y="0"/><navigator type="orca" speed="0.8"/>
   </robot>
   <camera name="side" x="-0.5" y="-3.4" z="1.5" heading="1.57" pitch="0.2" width="96" height="72"/>

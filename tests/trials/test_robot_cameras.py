@@ -22,7 +22,7 @@ CAMERAS = {
 
 def made(name: str, **more: object) -> Robot:
     """Return a robot of a type."""
-    return Robot(type=name, x=0, y=0, goal=Goal(5, 0), navigator=Straight(), rates="nearest", **more)
+    return Robot(type=name, x=0, y=0, goal=Goal(5, 0), navigator=Straight(), sensor_rates="nearest", **more)
 
 
 def cameras(robot: Robot) -> list[str]:
@@ -39,7 +39,7 @@ def test_cameras_of_a_type_come_when_they_are_asked_for(name: str) -> None:
 
 
 def test_who_asks_for_cameras_that_are_not_there_is_told() -> None:
-    for name, more in (("wheelchair", {}), ("pepper", {"equipped": False})):
+    for name, more in (("wheelchair", {}), ("pepper", {"default_sensors": False})):
         with pytest.raises(InputError, match=re.escape('has cameras="true" but none would come: it needs a type with')):
             made(name, cameras=True, **more)
 
@@ -47,7 +47,7 @@ def test_who_asks_for_cameras_that_are_not_there_is_told() -> None:
 TRIAL = """<trial name="look" duration="0.2" step="0.1" seed="1" {world}>
   <agent x="2" y="0.3" goal="-3,0"/>
   <agent x="3" y="-0.5" goal="-3,0"/>
-  <robot type="cuybot" rates="nearest" {cameras} x="0" y="0">
+  <robot type="cuybot" sensor-rates="nearest" {cameras} x="0" y="0">
     <goal x="5" y="0"/>
     <navigator type="straight"/>
   </robot>

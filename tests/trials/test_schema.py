@@ -50,7 +50,7 @@ ALL = """<trial name="all" duration="5" capacity="20">
   <journey name="lap" then="again"><zone points="1,1 2,1 2,2" aim="random"/></journey>
   <agent x="1" y="1" heading="-2" goal="3,3" group="0"><parameter name="time-horizon" value="2"/></agent>
   <spawner count="2" zone="1,1 2,1 2,2" stands="true"><group size="2" share="0.5"/></spawner>
-  <recorded data="a.txt" fps="2.5" mode="reactive" without="1 2"/>
+  <recorded data="a.txt" fps="2.5" mode="reactive" exclude="1 2"/>
   <portal zone="1,1 2,1 2,2" dx="1"/>
   <end empty="true"><when what="people" below="2" outcome="success"/></end>
   <recording period="0.2"/>

@@ -18,7 +18,7 @@ from crowdbot.core import Clock, ExternalClock, FreeClock, InputError, PacedCloc
 from crowdbot.models import ORCA
 from crowdbot.navigation import Navigator, Observation
 from crowdbot.recording import opened, read_episode, record
-from crowdbot.sensors import Lidar2D, Scan
+from crowdbot.sensors import Lidar2D, SensorView
 from crowdbot.simulation import Frame, Running, Simulation, Tally
 from crowdbot.trials import Trial, parse_trial
 from crowdbot.world import DifferentialDrive
@@ -49,9 +49,9 @@ class Wheels(DifferentialDrive):
 
 @dataclasses.dataclass(frozen=True)
 class Eye(Lidar2D):
-    def measure(self, scene: Scene, pose: Pose, rng: Any = None) -> Scan:
-        EVENTS.append(("sensors", scene.time))
-        return super().measure(scene, pose, rng)
+    def measure(self, view: SensorView, state: Any, rng: Any = None) -> Any:
+        EVENTS.append(("sensors", view.time))
+        return super().measure(view, state, rng)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -251,8 +251,8 @@ WRONG = {
     "a link of nobody": ('robot="pepper" link="Head"', 'link="Head"', r"link=\"Head\" needs robot"),
     "a camera twice": ('camera name="head"', 'camera name="door"', r"name 'door' is taken by another camera"),
     "a rate of a type": (
-        'rates="nearest" ',
-        'rates="exact" ',
+        'sensor-rates="nearest" ',
+        'sensor-rates="exact" ',
         r"sensors of its type that do not measure after whole time steps of 0.04 s: base_laser_front 6.66667 Hz, .*",
     ),
     "a delay": ('delay="0.08"', 'delay="0.07"', r"delay 0.07 s is not a whole number of time steps"),
@@ -290,7 +290,7 @@ def test_a_robot_of_a_folder_beside_the_trial(tmp_path: Path) -> None:
     copytree(_assets("turtlebot2"), home / "mine")
     (home / "deep").mkdir()
     text = ROOM.replace('<robot name="puck"', '<robot name="puck" type="mine"').replace(' height="0.4" mass="15"', "")
-    text = text.replace('<drive type="differential-drive"/>', "").replace('latency="0.12" ', 'equipped="false" ')
+    text = text.replace('<drive type="differential-drive"/>', "").replace('latency="0.12" ', 'default-sensors="false" ')
     (home / "trial.xml").write_text(text)
     (home / "deep" / "trial.xml").write_text(text.replace('type="mine"', 'type="../mine"'))
     trial = load_trial(home / "trial.xml")

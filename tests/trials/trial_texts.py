@@ -24,7 +24,7 @@ GOOD = """<?xml version="1.0" encoding="UTF-8"?>
 """
 
 FLOW = """<?xml version="1.0" encoding="UTF-8"?>
-<trial name="flow" duration="20" step="0.05" substeps="2" seed="2" capacity="10" berth="0.2" symmetry="0.001">
+<trial name="flow" duration="20" step="0.05" substeps="2" seed="2" capacity="10" robot-margin="0.2" heading-jitter="0.001">
   <stage walkable="-8,-4 8,-4 8,4 -8,4">
     <wall points="0,-4 0,-1"/>
     <wall points="0,1 0,4"/>
@@ -44,7 +44,7 @@ FLOW = """<?xml version="1.0" encoding="UTF-8"?>
   </journey>
   <spawner name="hall" count="3" zone="-4,-3 -3,-3 -3,3 -4,3" journey="through" crowd="hurried"/>
   <spawner name="back" count="1" zone="4,1 5,1 5,2 4,2" goal="-5,-1 -4,-1 -4,1 -5,1"/>
-  <source name="west" zone="-7.5,-3 -6.5,-3 -6.5,3 -7.5,3" journey="through" rate="0.9" most="90" crowd="hurried"/>
+  <source name="west" zone="-7.5,-3 -6.5,-3 -6.5,3 -7.5,3" journey="through" rate="0.9" max-count="90" crowd="hurried"/>
   <source name="north" zone="-4,2 -1,2 -1,3.5 -4,3.5" goal="-4,-3.5 -1,-3.5 -1,-2 -4,-2" rate="0.5" timing="regular"
     begin="2" end="15" speed="uniform(1, 1.4)" radius="0.2"/>
   <exit name="east" zone="6.5,-4 8,-4 8,4 6.5,4"/>

@@ -12,26 +12,26 @@ from hypothesis import strategies as st
 from crowdbot.cli import validate as command
 from crowdbot.core import DataError, InputError, Scene, UnknownName, stream
 from crowdbot.models import ORCA, CollisionFreeSpeed, CrowdModel
-from crowdbot.validation import CHECKS, chosen, validate, write_page
+from crowdbot.validation import CHECKS, select_models, validate, write_page
 from crowdbot.validation.bottleneck import BOTTLENECK, _flow, crossings
 from crowdbot.validation.corridor import CORRIDOR, corridor_crowd
 from crowdbot.validation.lanes import LANES, NARROW, lane_order
 from crowdbot.validation.literature import BOTTLENECK_FLOWS, line_speed, weidmann_speed
-from crowdbot.validation.recording import measured
+from crowdbot.validation.recording import measure_recordings
 from crowdbot.validation.rimea import CORRIDOR_TIME
 from crowdbot.validation.run import _read
 from crowdbot.validation.scenario import (
     RADIUS,
     STEP,
-    Walk,
+    CrowdTracks,
     corridor_walls,
     deepest_overlap,
     gate,
     inside_solids,
     opening,
     share,
+    simulate_periodic,
     starts,
-    walk_round,
 )
 from crowdbot.validation.single_file import SINGLE_FILE, _overtakings
 
@@ -124,13 +124,13 @@ def _file(x, length):
 
 
 def test_the_way_round_goes_on_growing():
-    walk = walk_round(Straight(), _file([1.0], 20.0), 20.0, 40.0, stream(0), _quiet)
+    walk = simulate_periodic(Straight(), _file([1.0], 20.0), 20.0, 40.0, stream(0), _quiet)
     assert walk.times[-1] == pytest.approx(40.0)
     assert walk.position[-1, 0, 0, 0] == pytest.approx(1.0 + 40.0 * 1.34)
 
 
 def test_people_see_each_other_across_the_seam():
-    walk = walk_round(CollisionFreeSpeed(), _file([19.6, 0.4], 20.0), 20.0, STEP * 4, stream(0), _quiet)
+    walk = simulate_periodic(CollisionFreeSpeed(), _file([19.6, 0.4], 20.0), 20.0, STEP * 4, stream(0), _quiet)
     moved = walk.position[1, 0, :, 0] - walk.position[0, 0, :, 0]
     assert moved[0] < 0.5 * moved[1]
 
@@ -139,7 +139,7 @@ def test_a_closed_track_has_no_seam():
     x = np.arange(12) * 20.0 / 12.0 + stream(3, "x").uniform(-0.3, 0.3, 12)
     ways = []
     for shift in (0.0, 7.3):
-        walk = walk_round(CollisionFreeSpeed(), _file((x + shift) % 20.0, 20.0), 20.0, 6.0, stream(0), _quiet)
+        walk = simulate_periodic(CollisionFreeSpeed(), _file((x + shift) % 20.0, 20.0), 20.0, 6.0, stream(0), _quiet)
         ways.append(walk.position[-1, 0, :, 0] - walk.position[0, 0, :, 0])
     assert ways[0] == pytest.approx(ways[1], abs=1e-6)
 
@@ -159,7 +159,7 @@ def test_an_opening_is_aimed_at_where_a_body_fits():
 
 def test_shares_overlaps_and_walls_are_counted():
     place = np.array([[[[0.0, 0.0], [0.3, 0.0], [5.0, 5.0]]], [[[0.0, 0.0], [0.3, 0.0], [5.5, 5.0]]]])
-    walk = Walk(np.array([0.0, 1.0]), place, np.ones((2, 1, 3), dtype=bool))
+    walk = CrowdTracks(np.array([0.0, 1.0]), place, np.ones((2, 1, 3), dtype=bool))
     assert deepest_overlap(walk) == pytest.approx(0.1)
     assert deepest_overlap(walk, length=5.2) == pytest.approx(0.1)
     assert inside_solids(walk, [(5.2, 4.0, 6.0, 6.0)]) == pytest.approx(1.0 / 3.0)
@@ -175,7 +175,7 @@ def test_overtaking_is_changing_order_or_lapping():
 
 def test_flow_is_persons_over_time():
     x = np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [3.0, 2.0, 0.0], [3.0, 3.0, 2.0]])
-    walk = Walk(np.arange(4.0), np.stack([x, 0.0 * x], axis=-1)[:, None], np.ones((4, 1, 3), dtype=bool))
+    walk = CrowdTracks(np.arange(4.0), np.stack([x, 0.0 * x], axis=-1)[:, None], np.ones((4, 1, 3), dtype=bool))
     times = crossings(walk, 1.0)
     assert times.tolist() == [1.0, 2.0, 3.0]
     assert _flow(times, 3, 60.0) == (1.0, 3)
@@ -234,7 +234,7 @@ def test_two_way_crowds_are_half_and_half():
 
 
 def test_recordings_say_what_is_published(recordings):
-    people = measured(recordings, _quiet)
+    people = measure_recordings(recordings, _quiet)
     assert people["missing"] == []
     assert people["single-file"]["distance"] < 0.10
     flows = {door["width"]: door["flow"] for door in people["bottleneck"]}
@@ -247,9 +247,9 @@ def test_recordings_say_what_is_published(recordings):
 
 def test_a_folder_without_recordings_is_refused(tmp_path):
     with pytest.raises(DataError, match="holds none of the recordings that are compared with: .*n56_cam1.csv"):
-        measured(tmp_path, _quiet)
+        measure_recordings(tmp_path, _quiet)
     with pytest.raises(DataError, match="is no folder; --data names the one"):
-        measured(tmp_path / "nowhere", _quiet)
+        measure_recordings(tmp_path / "nowhere", _quiet)
 
 
 # The page
@@ -267,20 +267,20 @@ def test_half_a_file_is_no_result(tmp_path, text):
 def done(tmp_path_factory):
     out = tmp_path_factory.mktemp("page")
     said = []
-    models, _ = chosen(["orca"])
+    models, _ = select_models(["orca"])
     found = validate({**models, "lost": Lost()}, out / "validation", None, True, lambda *what: said.append(what))
     return out, found, said
 
 
 def test_every_model_that_can_be_is_chosen():
-    models, skipped = chosen()
+    models, skipped = select_models()
     assert {"orca", "social-force", "collision-free-speed"} <= set(models)
     assert "models" in skipped["mixture"]
     assert set(models).isdisjoint(skipped)
     with pytest.raises(UnknownName, match="did you mean 'orca'"):
-        chosen(["orcaa"])
+        select_models(["orcaa"])
     with pytest.raises(InputError, match="mixture has no default for models"):
-        chosen(["mixture"])
+        select_models(["mixture"])
 
 
 def test_progress_is_told_for_each_model(done):
@@ -298,7 +298,7 @@ def test_a_model_that_fails_is_told_not_hidden(done):
 
 def test_a_rerun_reads_and_a_fresh_run_finds_the_same(done, tmp_path):
     out, found, _ = done
-    models, _ = chosen(["orca"])
+    models, _ = select_models(["orca"])
     before = (out / "validation" / "orca.json").stat().st_mtime_ns
     again = validate(models, out / "validation", None, True)
     assert (out / "validation" / "orca.json").stat().st_mtime_ns == before
@@ -309,7 +309,7 @@ def test_a_rerun_reads_and_a_fresh_run_finds_the_same(done, tmp_path):
 
 
 def test_an_interrupted_run_goes_on(done, tmp_path):
-    models, _ = chosen(["orca"])
+    models, _ = select_models(["orca"])
 
     def interrupted(what, part):
         if part > 3.5 / len(CHECKS):

@@ -14,21 +14,21 @@ _MODULES = {
     "report": ("Predicted", "write_report"),
     "prediction": (
         "DegradedScore",
-        "Frames",
-        "Part",
-        "Piece",
-        "Result",
-        "Study",
-        "Task",
-        "animate",
-        "draw_degraded",
+        "FrameResults",
+        "JobResult",
+        "EvaluationJob",
+        "PredictorResult",
+        "Evaluation",
+        "DegradedTask",
+        "animate_window",
+        "plot_degraded",
         "evaluate",
         "plot_errors",
         "plot_frames",
-        "sweep",
+        "sweep_degradations",
     ),
     "speed": ("SpeedRow", "measure", "measurements"),
-    "toy_gan": ("METHODS", "Run", "ToyStudy", "plot_measures", "plot_samples", "with_values"),
+    "toy_gan": ("METHODS", "GanRun", "GanComparison", "plot_measures", "plot_samples", "with_settings"),
 }
 _HOME = {name: module for module, names in _MODULES.items() for name in names}
 
@@ -52,26 +52,26 @@ if TYPE_CHECKING:
     from .demo import Demo as Demo
     from .demo import run_demo as run_demo
     from .prediction import DegradedScore as DegradedScore
-    from .prediction import Frames as Frames
-    from .prediction import Part as Part
-    from .prediction import Piece as Piece
-    from .prediction import Result as Result
-    from .prediction import Study as Study
-    from .prediction import Task as Task
-    from .prediction import animate as animate
-    from .prediction import draw_degraded as draw_degraded
+    from .prediction import DegradedTask as DegradedTask
+    from .prediction import Evaluation as Evaluation
+    from .prediction import EvaluationJob as EvaluationJob
+    from .prediction import FrameResults as FrameResults
+    from .prediction import JobResult as JobResult
+    from .prediction import PredictorResult as PredictorResult
+    from .prediction import animate_window as animate_window
     from .prediction import evaluate as evaluate
+    from .prediction import plot_degraded as plot_degraded
     from .prediction import plot_errors as plot_errors
     from .prediction import plot_frames as plot_frames
-    from .prediction import sweep as sweep
+    from .prediction import sweep_degradations as sweep_degradations
     from .report import Predicted as Predicted
     from .report import write_report as write_report
     from .speed import SpeedRow as SpeedRow
     from .speed import measure as measure
     from .speed import measurements as measurements
     from .toy_gan import METHODS as METHODS
-    from .toy_gan import Run as Run
-    from .toy_gan import ToyStudy as ToyStudy
+    from .toy_gan import GanComparison as GanComparison
+    from .toy_gan import GanRun as GanRun
     from .toy_gan import plot_measures as plot_measures
     from .toy_gan import plot_samples as plot_samples
-    from .toy_gan import with_values as with_values
+    from .toy_gan import with_settings as with_settings

@@ -3,7 +3,6 @@
 from .absolute import Absolute
 from .annealing import Annealing
 from .calibrator import Calibrator
-from .campaign import Campaign, FittedPiece
 from .cma_es import CMAES
 from .cooling import Cooling, Geometric
 from .cost import Cost
@@ -12,45 +11,46 @@ from .futures import futures
 from .genetic import Genetic
 from .greedy import Greedy
 from .inter_pedestrian import InterPedestrian
-from .named import goal_for, kind_of_goal, named_cost, named_goal, named_model, named_search
-from .prior import PopulationPrior
+from .parameter_space import ParameterSpace
+from .population_prior import PopulationPrior
 from .progressive import Progressive
 from .random_search import RandomSearch
-from .rehearsal import Rehearsal, Walked
+from .recording_calibration import CalibrationChunk, RecordingCalibration
+from .resimulation import ResimulatedTracks, Resimulation
 from .rollout import Rollout
-from .search import Found, Search
-from .space import Space
+from .scheme_parts import goal_class, goal_for, resolve_cost, resolve_goal, resolve_model, resolve_search
+from .search import Search, SearchResult
 from .weighted_sum import WeightedSum
 
 __all__ = [
     "CMAES",
     "Absolute",
     "Annealing",
+    "CalibrationChunk",
     "Calibrator",
-    "Campaign",
     "Cooling",
     "Cost",
     "Fit",
-    "FittedPiece",
-    "Found",
     "Genetic",
     "Geometric",
     "Greedy",
     "InterPedestrian",
+    "ParameterSpace",
     "PopulationPrior",
     "Progressive",
     "RandomSearch",
-    "Rehearsal",
+    "RecordingCalibration",
+    "ResimulatedTracks",
+    "Resimulation",
     "Rollout",
     "Search",
-    "Space",
-    "Walked",
+    "SearchResult",
     "WeightedSum",
     "futures",
+    "goal_class",
     "goal_for",
-    "kind_of_goal",
-    "named_cost",
-    "named_goal",
-    "named_model",
-    "named_search",
+    "resolve_cost",
+    "resolve_goal",
+    "resolve_model",
+    "resolve_search",
 ]

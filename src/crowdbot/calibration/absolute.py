@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .cost import Cost, mean_over_rows
-from .rehearsal import Walked
+from .resimulation import ResimulatedTracks
 
 __all__ = ["Absolute"]
 
@@ -22,9 +22,9 @@ class Absolute(Cost):
     Source: Wolinski et al. (2014), doi 10.1111/cgf.12328.
     """
 
-    def measure(self, walked: Walked) -> NDArray[np.float64]:
+    def measure(self, tracks: ResimulatedTracks) -> NDArray[np.float64]:
         """Return the mean distance of every candidate and person, see :meth:`Cost.measure`."""
-        past = walked.past
-        away = walked.once - past.position[:, 1:]
+        past = tracks.past
+        away = tracks.once - past.position[:, 1:]
         counted = past.present[:, 1:] & (past.present[:, 0] & ~past.robot)[:, None]
         return mean_over_rows(np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2), counted)

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Paper
 
 from .cooling import Cooling, Geometric
-from .ledger import Floats, Ledger, own_best
 from .search import Search
+from .search_state import Floats, SearchState, own_best
 
 __all__ = ["Annealing"]
 
@@ -71,49 +71,49 @@ class Annealing(Search):
         if not 0.0 < self.moved <= 1.0:
             raise InputError(f"annealing: moved = {self.moved} of the people must be above 0 and at most 1")
 
-    def explore(self, ledger: Ledger, pool: Floats, cost: Floats) -> None:
-        """Walk all chains, see :meth:`Search.explore`."""
-        first = ledger.anywhere(min(self.chains, ledger.left))
-        pool, cost = np.concatenate([pool, first]), np.concatenate([cost, ledger.evaluate(first)])
-        pool = np.clip(pool, ledger.low, ledger.high)
-        here, energy = _cheapest(pool, cost, len(cost), self.chains)
-        here, energy, best, spread = ledger.settle(here, energy, here[:1], _spread(cost))
+    def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
+        """Walk all chains, see :meth:`Search.search`."""
+        first = state.sample_uniform(min(self.chains, state.left))
+        population, cost = np.concatenate([population, first]), np.concatenate([cost, state.evaluate(first)])
+        population = np.clip(population, state.low, state.high)
+        here, energy = _cheapest(population, cost, len(cost), self.chains)
+        here, energy, best, spread = state.drop_finished(here, energy, here[:1], _spread(cost))
         step = 0
-        while ledger.left > 1:
-            there, moved = self._moved(ledger, here)
-            crowds = np.concatenate([best, there])[: ledger.left - 1]
-            measured = ledger.evaluate(crowds)
+        while state.left > 1:
+            there, moved = self._moved(state, here)
+            crowds = np.concatenate([best, there])[: state.left - 1]
+            measured = state.evaluate(crowds)
             best, _ = own_best(crowds, measured)
             if len(crowds) > self.chains:
                 step += 1
-                limit = self.cooling.at(ledger.progress) * spread * _tolerated(ledger, self.chains)
+                limit = self.cooling.at(state.progress) * spread * _tolerated(state, self.chains)
                 accepted = (measured[1:] <= energy + limit) | ~moved
                 here = np.where(accepted[..., None], there, here)
                 energy = np.where(accepted, measured[1:], energy)
                 if self.exchange and step % self.exchange == 0:
                     here, energy = _cheapest(here, energy, (self.chains + 1) // 2, self.chains)
-            here, energy, best, spread = ledger.settle(here, energy, best, spread)
-        if ledger.left:
-            ledger.evaluate(best)
-            ledger.settle()
+            here, energy, best, spread = state.drop_finished(here, energy, best, spread)
+        if state.left:
+            state.evaluate(best)
+            state.drop_finished()
 
-    def _moved(self, ledger: Ledger, here: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+    def _moved(self, state: SearchState, here: Floats) -> tuple[Floats, NDArray[np.bool_]]:
         """Return where the chains might go, and whose parameters ``[chains, L, N]`` change."""
         C, _, N, D = here.shape
-        chance = ledger.draw(lambda rng: rng.random((C, N, 4)))
-        away = ledger.draw(lambda rng: rng.standard_normal((C, N, 1)))
-        moved = chance[..., 0] < 1.0 + (self.moved - 1.0) * ledger.progress
+        chance = state.draw(lambda rng: rng.random((C, N, 4)))
+        away = state.draw(lambda rng: rng.standard_normal((C, N, 1)))
+        moved = chance[..., 0] < 1.0 + (self.moved - 1.0) * state.progress
         which = (chance[..., 1] * D).astype(np.int64)[..., None] == np.arange(D)
-        near = ledger.folded(here + self.reach.at(ledger.progress) * ledger.span * away)
-        anywhere = ledger.inside(chance[..., 2, None])
-        there = np.where(chance[..., 3, None] < ANYWHERE, anywhere, near)
+        near = state.fold(here + self.reach.at(state.progress) * state.span * away)
+        sample_uniform = state.scale_to_box(chance[..., 2, None])
+        there = np.where(chance[..., 3, None] < ANYWHERE, sample_uniform, near)
         return np.where(which & moved[..., None], there, here), moved
 
 
-def _cheapest(pool: Floats, cost: Floats, count: int, chains: int) -> tuple[Floats, Floats]:
+def _cheapest(population: Floats, cost: Floats, count: int, chains: int) -> tuple[Floats, Floats]:
     """Return everyone's ``count`` cheapest parameters and their costs, again and again for so many chains."""
     row = np.argsort(cost, axis=0, kind="stable")[np.arange(chains) % count]
-    return np.take_along_axis(pool, row[..., None], axis=0), np.take_along_axis(cost, row, axis=0)
+    return np.take_along_axis(population, row[..., None], axis=0), np.take_along_axis(cost, row, axis=0)
 
 
 def _spread(cost: Floats) -> Floats:
@@ -125,7 +125,7 @@ def _spread(cost: Floats) -> Floats:
     return np.where(finite, high, 0.0)[None] - np.where(finite, low, 0.0)[None]
 
 
-def _tolerated(ledger: Ledger, chains: int) -> Floats:
+def _tolerated(state: SearchState, chains: int) -> Floats:
     """Return by how many temperatures everyone lets his cost grow; exponential: more than x has chance ``exp(-x)``."""
-    people = ledger.best.shape[1]
-    return ledger.draw(lambda rng: rng.standard_exponential((chains, people)))
+    people = state.best.shape[1]
+    return state.draw(lambda rng: rng.standard_exponential((chains, people)))

@@ -18,12 +18,12 @@ from crowdbot.models.goals import Goal
 
 from .cost import Cost
 from .fit import Fit
-from .named import named_cost, named_goal, named_model, named_search
-from .prior import PopulationPrior
-from .rehearsal import Rehearsal
+from .parameter_space import RADIUS, ParameterSpace
+from .population_prior import PopulationPrior
+from .resimulation import Resimulation
 from .rollout import Rollout
-from .search import Found, Search
-from .space import RADIUS, Space
+from .scheme_parts import resolve_cost, resolve_goal, resolve_model, resolve_search
+from .search import Search, SearchResult
 
 __all__ = ["Calibrator"]
 
@@ -73,10 +73,10 @@ class Calibrator:
 
     def __post_init__(self) -> None:
         for name, value in (
-            ("model", named_model(self.model)),
-            ("cost", named_cost(self.cost)),
-            ("search", named_search(self.search)),
-            ("goal", named_goal(self.goal)),
+            ("model", resolve_model(self.model)),
+            ("cost", resolve_cost(self.cost)),
+            ("search", resolve_search(self.search)),
+            ("goal", resolve_goal(self.goal)),
         ):
             object.__setattr__(self, name, value)
         if self.budget < 1:
@@ -86,9 +86,9 @@ class Calibrator:
         _ = self.space, self.rollout  # says what is wrong with a name or a number
 
     @property
-    def space(self) -> Space:
+    def space(self) -> ParameterSpace:
         """What is calibrated."""
-        return Space(cast(CrowdModel, self.model), tuple(self.free), self.shared)
+        return ParameterSpace(cast(CrowdModel, self.model), tuple(self.free), self.shared)
 
     @property
     def rollout(self) -> Rollout:
@@ -151,11 +151,11 @@ class Calibrator:
         Windows in which nobody can be compared keep the given values and have the cost NaN.
         """
         space, begin = self.space, time.perf_counter()
-        given = space.given(past, self.rollout)
+        given = space.initial_values(past, self.rollout)
         starts = self._starts(past, given, start)
         size = max(1, AGENTS_AT_ONCE // (CANDIDATES * max(1, past.position.shape[2])))
         counted = np.zeros(past.id.shape, dtype=np.bool_)
-        found: list[Found] = []
+        found: list[SearchResult] = []
         for first in range(0, len(past), size):
             part = slice(first, first + size)
             task = _Task(self, past[part], given[part], _part_of(progress, first, len(past), self.budget))
@@ -170,7 +170,7 @@ class Calibrator:
         parts: list[_Task] = []
         for past in pasts:
             size = max(1, AGENTS_AT_ONCE // max(1, past.position.shape[2]))
-            given = space.given(past, self.rollout)
+            given = space.initial_values(past, self.rollout)
             parts += [
                 _Task(self, past[first : first + size], given[first : first + size], None)
                 for first in range(0, len(past), size)
@@ -185,23 +185,23 @@ class Calibrator:
         return dataclasses.replace(fit, windows=windows)
 
     def _fit(
-        self, found: list[Found], given: Floats, past: Windows | None, counted: NDArray[np.bool_], begin: float
+        self, found: list[SearchResult], given: Floats, past: Windows | None, counted: NDArray[np.bool_], begin: float
     ) -> Fit:
-        def joined(name: str, empty: tuple[int, ...]) -> NDArray[Any]:
+        def merge(name: str, empty: tuple[int, ...]) -> NDArray[Any]:
             return np.concatenate([getattr(one, name) for one in found] or [np.zeros(empty)])
 
-        history = joined("history", (0, self.budget))
+        history = merge("history", (0, self.budget))
         return Fit(
             scheme=self.scheme,
             space=self.space,
             base=self.rollout,
-            values=joined("best", given.shape),
+            values=merge("best", given.shape),
             given=given,
             id=np.full(counted.shape, -1, dtype=np.int64) if past is None else past.id,
             counted=counted,
-            cost=joined("cost", (0,)),
+            cost=merge("cost", (0,)),
             given_cost=history[:, 0],
-            evaluations=joined("evaluations", (0,)).astype(np.int64),
+            evaluations=merge("evaluations", (0,)).astype(np.int64),
             history=history,
             seconds=time.perf_counter() - begin,
             windows=len(found) if past is None else len(past),
@@ -229,15 +229,15 @@ class _Task:
             raise InputError(f"calibration needs at least 2 observed rows, {past.source} has {past.position.shape[1]}")
         self.calibrator, self.space = calibrator, calibrator.space
         self.given, self.report = given, report
-        self.rehearsal = Rehearsal(calibrator.rollout, past)
+        self.resimulation = Resimulation(calibrator.rollout, past)
         self.counted = np.zeros(past.id.shape, dtype=np.bool_)
         self.done = 0
 
     def __call__(self, values: Floats, which: Integers) -> Floats:
         people = max(1, values.shape[2] * len(which))
         size = max(1, AGENTS_AT_ONCE // people)
-        pieces = [self._measured(values[first : first + size], which) for first in range(0, len(values), size)]
-        cost = np.concatenate(pieces)
+        chunks = [self._measure(values[first : first + size], which) for first in range(0, len(values), size)]
+        cost = np.concatenate(chunks)
         if self.calibrator.prior is not None:
             cost = cost + self.calibrator.prior.penalty(self.space, values, self.given[which])
         self.counted[which] |= np.any(~np.isnan(cost), axis=0)
@@ -246,15 +246,15 @@ class _Task:
             self.report(self.done)
         return cost
 
-    def _measured(self, values: Floats, which: Integers) -> Floats:
+    def _measure(self, values: Floats, which: Integers) -> Floats:
         A, D = self.given.shape[1:]
         everyone = np.broadcast_to(values, (len(values), len(which), A, D))
 
         def candidate(rollout: Rollout, scene: Scene, copies: int) -> tuple[Rollout, Scene]:
             each = np.repeat(everyone, copies, axis=1).reshape(len(values) * len(which) * copies, A, D)
-            return self.space.dressed(rollout, scene, each)
+            return self.space.apply_to_scene(rollout, scene, each)
 
-        return cast(Cost, self.calibrator.cost).measure(self.rehearsal.walked(candidate, len(values), which))
+        return cast(Cost, self.calibrator.cost).measure(self.resimulation.resimulate(candidate, len(values), which))
 
 
 class _SharedTask:

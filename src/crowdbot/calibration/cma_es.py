@@ -9,8 +9,8 @@ import numpy as np
 
 from crowdbot.core import InputError, Paper
 
-from .ledger import Floats, Ledger, own_best
 from .search import Search
+from .search_state import Floats, SearchState, own_best
 
 __all__ = ["CMAES"]
 
@@ -52,33 +52,33 @@ class CMAES(Search):
         if not 0.0 < self.width <= 1.0:
             raise InputError(f"cmaes: width = {self.width} sides of the box must be above 0 and at most 1")
 
-    def explore(self, ledger: Ledger, pool: Floats, cost: Floats) -> None:
-        """Ask all optimisers, evaluate, tell them, see :meth:`Search.explore`."""
-        side = np.where(ledger.span > 0.0, ledger.span, 1.0)
-        best, _ = own_best(pool, cost)
-        begin = np.clip((best[0] - ledger.low) / side, 0.0, 1.0)
+    def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
+        """Ask all optimisers, evaluate, tell them, see :meth:`Search.search`."""
+        side = np.where(state.span > 0.0, state.span, 1.0)
+        best, _ = own_best(population, cost)
+        begin = np.clip((best[0] - state.low) / side, 0.0, 1.0)
         optimisers = {
-            (problem, person): self._optimiser(begin[row, person], ledger.rngs[problem])
-            for row, problem in enumerate(ledger.live.tolist())
-            for person in np.flatnonzero(ledger.counts[row]).tolist()
+            (problem, person): self._optimiser(begin[row, person], state.rngs[problem])
+            for row, problem in enumerate(state.live.tolist())
+            for person in np.flatnonzero(state.counts[row]).tolist()
         }
-        while ledger.left:
-            rows = {problem: row for row, problem in enumerate(ledger.live.tolist())}
-            place = np.zeros((self.population + 1, len(rows), *ledger.best.shape[1:]))
+        while state.left:
+            rows = {problem: row for row, problem in enumerate(state.live.tolist())}
+            place = np.zeros((self.population + 1, len(rows), *state.best.shape[1:]))
             ours = [(key, (slice(1, None), rows[key[0]], key[1])) for key in optimisers if key[0] in rows]
             for key, where in ours:
                 optimiser = optimisers[key]
                 place[0][where[1:]] = np.clip(optimiser.mean, 0.0, 1.0)
                 place[where] = [optimiser.ask() for _ in range(self.population)]
-            measured = ledger.evaluate(ledger.inside(place))
-            if not ledger.left:
+            measured = state.evaluate(state.scale_to_box(place))
+            if not state.left:
                 break
             for key, where in ours:
                 optimisers[key].tell(list(zip(place[where], measured[where].tolist(), strict=True)))
                 if optimisers[key].should_stop():
-                    rng = ledger.rngs[key[0]]
+                    rng = state.rngs[key[0]]
                     optimisers[key] = self._optimiser(rng.random(len(side)), rng)
-            ledger.settle()
+            state.drop_finished()
 
     def _optimiser(self, mean: Floats, rng: np.random.Generator) -> Any:
         """Return an optimiser in the unit box that begins at ``mean``."""

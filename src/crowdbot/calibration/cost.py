@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Paper
 
-from .rehearsal import Walked
+from .resimulation import ResimulatedTracks
 
 __all__ = ["METRICS", "Cost", "mean_over_rows"]
 
@@ -34,7 +34,7 @@ class Cost(ABC):
     paper: ClassVar[Paper] = METRICS
 
     @abstractmethod
-    def measure(self, walked: Walked) -> Floats:
+    def measure(self, tracks: ResimulatedTracks) -> Floats:
         """Return the cost ``[P, W, A]`` [m] of every candidate and person; NaN for people that do not count.
 
         Who counts follows from the recording, not from the candidate. Robots never count.

@@ -13,8 +13,8 @@ from crowdbot.data import Forecast, Windows
 from crowdbot.models import CrowdModel
 
 from .futures import futures
+from .parameter_space import PREFERRED_SPEED, ParameterSpace
 from .rollout import Rollout
-from .space import PREFERRED_SPEED, Space
 
 __all__ = ["Fit"]
 
@@ -42,7 +42,7 @@ class Fit:
     """
 
     scheme: str
-    space: Space
+    space: ParameterSpace
     base: Rollout = field(repr=False)
     values: Floats = field(repr=False)
     given: Floats = field(repr=False)
@@ -73,7 +73,7 @@ class Fit:
     @property
     def rollout(self) -> Rollout:
         """The calibrated crowd of the windows that it was calibrated on."""
-        return self.space.applied(self.base, self.values[0, 0] if self.shared else self.values)
+        return self.space.apply(self.base, self.values[0, 0] if self.shared else self.values)
 
     @property
     def shared_rollout(self) -> Rollout:
@@ -102,7 +102,7 @@ class Fit:
         Who was calibrated has the values of the latest window with them; everyone else the median of all, and the
         observed preferred speed.
         """
-        given = self.space.given(past, self.base)
+        given = self.space.initial_values(past, self.base)
         if self.shared:
             return np.broadcast_to(self.values, given.shape)
         if np.array_equal(past.id, self.id):
@@ -139,7 +139,7 @@ class Fit:
         self, past: Windows, steps: int, samples: int, rngs: Sequence[np.random.Generator], name: str
     ) -> Forecast:
         """Return the forecast under a name; ``rngs`` is one generator for every window."""
-        rollout = self.space.applied(self.base, self.values[0, 0] if self.shared else self.values_of(past))
+        rollout = self.space.apply(self.base, self.values[0, 0] if self.shared else self.values_of(past))
         place, weight = futures(rollout, past, steps, samples, rngs)
         made = Forecast.of(place, past.present[:, -1], past.dt, name)
         return Forecast(made.position, weight, made.valid, past.dt, name)

@@ -30,12 +30,14 @@ def futures(
     """
     choices = rollout.goal.choices(past) if samples > 1 else None
     if choices is None or choices.weight.shape[-1] < 2 or not np.any(past.present[:, -1:]):
-        return rollout.ahead(past, steps)[:, None], np.ones((len(past), 1))
+        return rollout.predict_positions(past, steps)[:, None], np.ones((len(past), 1))
     W, A = past.present.shape[0], past.present.shape[2]
-    chosen = np.stack([_drawn(weight, samples, rng) for weight, rng in zip(choices.weight, rngs, strict=True)], axis=1)
-    weight = np.stack([_merged(chosen[:, w]) for w in range(W)])
+    chosen = np.stack(
+        [_draw_destinations(weight, samples, rng) for weight, rng in zip(choices.weight, rngs, strict=True)], axis=1
+    )
+    weight = np.stack([_merge_weights(chosen[:, w]) for w in range(W)])
     goal = np.take_along_axis(choices.position[None], chosen[..., None, None], axis=3)[:, :, :, 0]
-    copied = _copied(rollout, samples)
+    copied = _repeat(rollout, samples)
     start = _base(rollout, past).environments(np.tile(np.arange(W), samples))
     here = start.active & ~start.external
     start = start.replace(goal=np.where(here[..., None], goal.reshape(samples * W, A, 2), start.goal))
@@ -47,7 +49,7 @@ def _base(rollout: Rollout, past: Windows) -> Scene:
     return rollout.scene(past, past.position.shape[1] - 1)
 
 
-def _drawn(weight: Floats, samples: int, rng: np.random.Generator) -> NDArray[np.int64]:
+def _draw_destinations(weight: Floats, samples: int, rng: np.random.Generator) -> NDArray[np.int64]:
     """Return one destination for every sample and person ``[K, A]``, from their probabilities ``[A, G]``."""
     total = np.cumsum(weight, axis=1)
     place = (np.arange(samples)[:, None] + rng.random(len(weight))) / samples * np.maximum(total[:, -1], 1e-300)
@@ -55,7 +57,7 @@ def _drawn(weight: Floats, samples: int, rng: np.random.Generator) -> NDArray[np
     return np.asarray(rng.permuted(np.minimum(index, weight.shape[1] - 1), axis=0), dtype=np.int64)
 
 
-def _merged(chosen: NDArray[np.int64]) -> Floats:
+def _merge_weights(chosen: NDArray[np.int64]) -> Floats:
     """Return the weight of each future ``[K]``: equal ones count at the first of them."""
     _, first, count = np.unique(chosen, axis=0, return_index=True, return_counts=True)
     weight = np.zeros(len(chosen))
@@ -63,7 +65,7 @@ def _merged(chosen: NDArray[np.int64]) -> Floats:
     return weight
 
 
-def _copied(rollout: Rollout, copies: int) -> Rollout:
+def _repeat(rollout: Rollout, copies: int) -> Rollout:
     """Return the rollout of ``copies`` of the windows: what is ``[W, A]`` is repeated along E."""
 
     def repeated(value: object) -> object:

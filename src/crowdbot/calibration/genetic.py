@@ -9,8 +9,8 @@ import numpy as np
 
 from crowdbot.core import InputError, Paper
 
-from .ledger import Floats, Ledger
 from .search import Search
+from .search_state import Floats, SearchState
 
 __all__ = ["Genetic"]
 
@@ -74,53 +74,53 @@ class Genetic(Search):
         if not 0.0 < self.bred <= 1.0:
             raise InputError(f"genetic: bred = {self.bred} of the people must be above 0 and at most 1")
 
-    def explore(self, ledger: Ledger, pool: Floats, cost: Floats) -> None:
-        """Breed generation after generation, see :meth:`Search.explore`."""
-        first = self._first(ledger, pool)
-        pool, cost = np.concatenate([pool, first]), np.concatenate([cost, ledger.evaluate(first)])
-        pool = np.clip(pool, ledger.low, ledger.high)
-        pool, cost, age = self._fittest(pool, cost, np.zeros_like(cost))
-        pool, cost, age = ledger.settle(pool, cost, age)
-        while ledger.left:
-            children = self._children(ledger, pool)
-            children[0] = pool[0]
-            measured = ledger.evaluate(children)
-            pool, cost = np.concatenate([children, pool]), np.concatenate([measured, cost])
+    def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
+        """Breed generation after generation, see :meth:`Search.search`."""
+        first = self._first(state, population)
+        population, cost = np.concatenate([population, first]), np.concatenate([cost, state.evaluate(first)])
+        population = np.clip(population, state.low, state.high)
+        population, cost, age = self._fittest(population, cost, np.zeros_like(cost))
+        population, cost, age = state.drop_finished(population, cost, age)
+        while state.left:
+            children = self._children(state, population)
+            children[0] = population[0]
+            measured = state.evaluate(children)
+            population, cost = np.concatenate([children, population]), np.concatenate([measured, cost])
             age = np.concatenate([np.zeros_like(measured), age + 1.0])
-            pool, cost, age = self._fittest(pool, cost, age)
-            pool, cost, age = ledger.settle(pool, cost, age)
+            population, cost, age = self._fittest(population, cost, age)
+            population, cost, age = state.drop_finished(population, cost, age)
 
-    def _first(self, ledger: Ledger, start: Floats) -> Floats:
+    def _first(self, state: SearchState, start: Floats) -> Floats:
         """Return a first pool: half around the starts, half anywhere."""
-        first = ledger.anywhere(min(self.population, ledger.left))
+        first = state.sample_uniform(min(self.population, state.left))
         near = len(first) // 2
         shape = (near, *first.shape[2:])
-        away = ledger.draw(lambda rng: rng.standard_normal(shape))
-        first[:near] = ledger.folded(start[np.arange(near) % len(start)] + NEAR * ledger.span * away)
+        away = state.draw(lambda rng: rng.standard_normal(shape))
+        first[:near] = state.fold(start[np.arange(near) % len(start)] + NEAR * state.span * away)
         return first
 
-    def _fittest(self, pool: Floats, cost: Floats, age: Floats) -> tuple[Floats, Floats, Floats]:
+    def _fittest(self, population: Floats, cost: Floats, age: Floats) -> tuple[Floats, Floats, Floats]:
         """Return everyone's best genes, the best first, but those whose costs are too old."""
         cost = np.where(age < self.memory, cost, np.inf)
         row = np.argsort(cost, axis=0, kind="stable")[: self.population]
-        genes = np.take_along_axis(pool, row[..., None], axis=0)
+        genes = np.take_along_axis(population, row[..., None], axis=0)
         return genes, np.take_along_axis(cost, row, axis=0), np.take_along_axis(age, row, axis=0)
 
-    def _children(self, ledger: Ledger, pool: Floats) -> Floats:
+    def _children(self, state: SearchState, population: Floats) -> Floats:
         # The last evaluation is one child, everyone's own best; so the one before leaves it.
-        count = max(1, min(self.population, ledger.left - 1))
-        M, _, N, D = pool.shape
-        chance = ledger.draw(lambda rng: rng.random((count, N, 4)))
+        count = max(1, min(self.population, state.left - 1))
+        M, _, N, D = population.shape
+        chance = state.draw(lambda rng: rng.random((count, N, 4)))
         rank = (M * chance[..., 0:2] ** PRESSURE).astype(np.int64)
-        mother = np.take_along_axis(pool, rank[..., 0, None], axis=0)
-        father = np.take_along_axis(pool, rank[..., 1, None], axis=0)
-        place = ledger.draw(lambda rng: rng.random((count, N, D)))
+        mother = np.take_along_axis(population, rank[..., 0, None], axis=0)
+        father = np.take_along_axis(population, rank[..., 1, None], axis=0)
+        place = state.draw(lambda rng: rng.random((count, N, D)))
         blend = (1.0 + 2.0 * OVERSHOOT) * place - OVERSHOOT
         share = np.where(chance[..., 2, None] < 0.5, blend, np.rint(place))
         children = mother + share * (father - mother)
-        mutated = ledger.draw(lambda rng: rng.random((count, N, D))) * D < 1.0
-        width = MUTATION * (1.0 - ledger.progress) ** 2 + FINEST
-        change = ledger.draw(lambda rng: rng.standard_normal((count, N, D)))
-        children = ledger.folded(children + np.where(mutated, width * ledger.span * change, 0.0))
-        bred = chance[..., 3] < 1.0 + (self.bred - 1.0) * ledger.progress
-        return np.where(bred[..., None], children, ledger.incumbent())
+        mutated = state.draw(lambda rng: rng.random((count, N, D))) * D < 1.0
+        width = MUTATION * (1.0 - state.progress) ** 2 + FINEST
+        change = state.draw(lambda rng: rng.standard_normal((count, N, D)))
+        children = state.fold(children + np.where(mutated, width * state.span * change, 0.0))
+        bred = chance[..., 3] < 1.0 + (self.bred - 1.0) * state.progress
+        return np.where(bred[..., None], children, state.incumbent())

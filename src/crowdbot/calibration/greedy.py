@@ -9,8 +9,8 @@ import numpy as np
 
 from crowdbot.core import InputError, Paper
 
-from .ledger import Floats, Integers, Ledger
 from .search import Search
+from .search_state import Floats, Integers, SearchState
 
 __all__ = ["Greedy"]
 
@@ -56,36 +56,36 @@ class Greedy(Search):
         if self.trials < 1:
             raise InputError(f"greedy: trials = {self.trials} new values must be at least 1")
 
-    def explore(self, ledger: Ledger, pool: Floats, cost: Floats) -> None:
-        """Visit parameter after parameter, see :meth:`Search.explore`."""
-        order = self._order(ledger)
+    def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
+        """Visit parameter after parameter, see :meth:`Search.search`."""
+        order = self._order(state)
         visit = 0
-        while ledger.left:
-            present = ledger.incumbent()
+        while state.left:
+            present = state.incumbent()
             _, L, _, D = present.shape
-            length = ledger.counts.sum(axis=1) * D
+            length = state.counts.sum(axis=1) * D
             gene = np.take_along_axis(order[0], (visit % length)[:, None], axis=1)[:, 0].astype(np.int64)
             person, parameter = gene // D, gene % D
             crowds = np.repeat(present, self.trials, axis=0)
             value = present[0, np.arange(L), person, parameter]
-            crowds[:, np.arange(L), person, parameter] = self._values(ledger, value, parameter)
-            ledger.evaluate(crowds)
-            (order,) = ledger.settle(order)
+            crowds[:, np.arange(L), person, parameter] = self._values(state, value, parameter)
+            state.evaluate(crowds)
+            (order,) = state.drop_finished(order)
             visit += 1
 
-    def _order(self, ledger: Ledger) -> Floats:
+    def _order(self, state: SearchState) -> Floats:
         """Return in which order parameters are visited, ``[1, L, N * D]`` numbers ``person * D + parameter``."""
-        _, N, D = ledger.best.shape
-        chance = ledger.draw(lambda rng: rng.random((1, N * D)))
-        chance = np.where(np.repeat(ledger.counts, D, axis=1), chance, np.inf)
+        _, N, D = state.best.shape
+        chance = state.draw(lambda rng: rng.random((1, N * D)))
+        chance = np.where(np.repeat(state.counts, D, axis=1), chance, np.inf)
         return np.argsort(chance, axis=2, kind="stable").astype(np.float64)
 
-    def _values(self, ledger: Ledger, present: Floats, parameter: Integers) -> Floats:
+    def _values(self, state: SearchState, present: Floats, parameter: Integers) -> Floats:
         """Return new values ``[trials, L]`` for a parameter of each problem."""
-        low, high, side = ledger.low[parameter], ledger.high[parameter], ledger.span[parameter]
-        chance = ledger.draw(lambda rng: rng.random(self.trials))
-        away = ledger.draw(lambda rng: rng.standard_normal(self.trials))
+        low, high, side = state.low[parameter], state.high[parameter], state.span[parameter]
+        chance = state.draw(lambda rng: rng.random(self.trials))
+        away = state.draw(lambda rng: rng.standard_normal(self.trials))
         near = present + np.exp(np.log(NARROWEST) * chance) * side * away
-        anywhere = (np.arange(self.trials) % 2 == 0)[:, None]
-        values: Floats = np.clip(np.where(anywhere, low + side * chance, near), low, high)
+        sample_uniform = (np.arange(self.trials) % 2 == 0)[:, None]
+        values: Floats = np.clip(np.where(sample_uniform, low + side * chance, near), low, high)
         return values

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import kernel
 
 from .cost import Cost
-from .rehearsal import Walked
+from .resimulation import ResimulatedTracks
 
 __all__ = ["InterPedestrian"]
 
@@ -51,9 +51,9 @@ class InterPedestrian(Cost):
     Source: Wolinski et al. (2014), doi 10.1111/cgf.12328.
     """
 
-    def measure(self, walked: Walked) -> Floats:
+    def measure(self, tracks: ResimulatedTracks) -> Floats:
         """Return the mean difference of every candidate and person, see :meth:`Cost.measure`."""
-        past, simulated = walked.past, np.ascontiguousarray(walked.once)
+        past, simulated = tracks.past, np.ascontiguousarray(tracks.once)
         counted = past.present[:, 1:] & (past.present[:, 0] & ~past.robot)[:, None]
         others = np.where(counted, counted.sum(axis=2, keepdims=True) - 1, 0).sum(axis=1)
         total = np.zeros((*simulated.shape[:2], simulated.shape[3]))

@@ -8,8 +8,8 @@ import numpy as np
 
 from crowdbot.core import InputError
 
-from .ledger import Floats, Ledger, own_best
 from .search import Search
+from .search_state import Floats, SearchState, own_best
 
 __all__ = ["RandomSearch"]
 
@@ -37,14 +37,14 @@ class RandomSearch(Search):
         if self.batch < 1:
             raise InputError(f"random-search: batch = {self.batch} candidates must be at least 1")
 
-    def explore(self, ledger: Ledger, pool: Floats, cost: Floats) -> None:
-        """Draw and evaluate until one evaluation is left, see :meth:`Search.explore`."""
-        best, least = own_best(pool, cost)
-        while ledger.left > 1:
-            drawn = ledger.anywhere(min(self.batch, ledger.left - 1))
-            cost = ledger.evaluate(drawn)
+    def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
+        """Draw and evaluate until one evaluation is left, see :meth:`Search.search`."""
+        best, least = own_best(population, cost)
+        while state.left > 1:
+            drawn = state.sample_uniform(min(self.batch, state.left - 1))
+            cost = state.evaluate(drawn)
             best, least = own_best(np.concatenate([best, drawn]), np.concatenate([least, cost]))
-            best, least = ledger.settle(best, least)
-        if ledger.left:
-            ledger.evaluate(best)
-            ledger.settle()
+            best, least = state.drop_finished(best, least)
+        if state.left:
+            state.evaluate(best)
+            state.drop_finished()

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, Walls
-from crowdbot.data import Windows, bridged, slice_rows
+from crowdbot.data import Windows, fill_gaps, slice_rows
 from crowdbot.models import CrowdModel
 from crowdbot.models.goals import Goal
 
@@ -64,7 +64,7 @@ class Rollout:
             raise InputError(
                 f"{past.source} is in {past.units}: crowd models walk in metres, give the recording a scale"
             )
-        whole = bridged(past)
+        whole = fill_gaps(past)
         known = slice_rows(whole, 0, max(row, 1) + 1)
         velocity = self.goal.velocity(known)
         here = whole.present[:, row]
@@ -79,9 +79,9 @@ class Rollout:
             walls=Walls.of(past.walls),
         )
         observed = np.sqrt(velocity[..., 0] ** 2 + velocity[..., 1] ** 2)
-        return with_speed(scene, observed if self.preferred_speed is None else self.preferred_speed)
+        return set_preferred_speed(scene, observed if self.preferred_speed is None else self.preferred_speed)
 
-    def ahead(self, past: Windows, steps: int, rng: np.random.Generator | None = None) -> Floats:
+    def predict_positions(self, past: Windows, steps: int, rng: np.random.Generator | None = None) -> Floats:
         """Return where everyone present at the last row goes: ``[W, steps, A, 2]`` [m]."""
         if not np.any(past.present[:, -1:]):
             return np.zeros((len(past), steps, *past.position.shape[2:]))
@@ -97,11 +97,11 @@ class Rollout:
                 known = ~np.isnan(planned[..., 0]) & scene.external
                 toward = (planned - scene.position) / past.dt
                 scene = scene.replace(velocity=np.where(known[..., None], toward, scene.velocity))
-            scene = self.advanced(scene, past.dt, rng)
+            scene = self.advance(scene, past.dt, rng)
             place[:, step] = scene.position
         return place
 
-    def advanced(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
+    def advance(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
         """Return the scene one row later, in equal steps of at most ``substep``."""
         count = max(1, math.ceil(dt / self.substep - 1e-9))
         for _ in range(count):
@@ -109,6 +109,6 @@ class Rollout:
         return scene
 
 
-def with_speed(scene: Scene, speed: Floats) -> Scene:
+def set_preferred_speed(scene: Scene, speed: Floats) -> Scene:
     """Return the scene in which people prefer ``speed`` [E, A] and can go somewhat faster than that."""
     return scene.replace(preferred_speed=speed, max_speed=np.maximum(HASTE * speed, STANDING_HASTE))

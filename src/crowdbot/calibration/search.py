@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .ledger import Ledger
+from .search_state import SearchState
 
-__all__ = ["Floats", "Found", "Function", "Integers", "Search", "check_box"]
+__all__ = ["Floats", "Function", "Integers", "Search", "SearchResult", "check_box"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -28,7 +28,7 @@ Function = Callable[[Floats, Integers], Floats]
 
 
 @dataclass(frozen=True)
-class Found:
+class SearchResult:
     """What a search found in W problems.
 
     Fields:
@@ -72,7 +72,7 @@ class Search(ABC):
         rngs: Sequence[np.random.Generator],
         budget: int,
         start: Floats,
-    ) -> Found:
+    ) -> SearchResult:
         """Return the best candidate of every problem among at most ``budget`` evaluations.
 
         Args:
@@ -90,16 +90,16 @@ class Search(ABC):
         low, high, start = (np.asarray(values, dtype=float) for values in (low, high, start))
         check_box(low, high, budget)
         check_start(start, len(low), len(rngs))
-        ledger = Ledger(function, low, high, rngs, budget, start[0], self.tolerance, self.patience)
-        if ledger.left:
-            cost = ledger.evaluate(start)
-            pool, cost = ledger.settle(start[: len(cost)], cost)
-        if ledger.left:
-            self.explore(ledger, pool, cost)
-        return Found(ledger.best, ledger.cost, ledger.evaluations, ledger.history)
+        state = SearchState(function, low, high, rngs, budget, start[0], self.tolerance, self.patience)
+        if state.left:
+            cost = state.evaluate(start)
+            population, cost = state.drop_finished(start[: len(cost)], cost)
+        if state.left:
+            self.search(state, population, cost)
+        return SearchResult(state.best, state.cost, state.evaluations, state.history)
 
     @abstractmethod
-    def explore(self, ledger: Ledger, pool: Floats, cost: Floats) -> None:
+    def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
         """Evaluate candidates until nothing is left; the ledger keeps the best.
 
         Args:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 
 from .cost import Cost
-from .rehearsal import Walked
+from .resimulation import ResimulatedTracks
 
 __all__ = ["WeightedSum"]
 
@@ -44,9 +44,9 @@ class WeightedSum(Cost):
         if not all(0.0 <= weight < math.inf for weight in self.weights) or sum(self.weights) == 0.0:
             raise InputError(f"weighted-sum: weights {self.weights} must be finite, not below 0 and not all 0")
 
-    def measure(self, walked: Walked) -> NDArray[np.float64]:
+    def measure(self, tracks: ResimulatedTracks) -> NDArray[np.float64]:
         """Return the weighted sum for every candidate and person, see :meth:`Cost.measure`."""
         return reduce(
             np.add,
-            (weight * part.measure(walked) for part, weight in zip(self.parts, self.weights, strict=True)),
+            (weight * part.measure(tracks) for part, weight in zip(self.parts, self.weights, strict=True)),
         )

@@ -1,57 +1,137 @@
-"""Floor 8: the command line. Each command is a module here with ``arguments(parser)`` and ``main(options)``."""
+"""The command line. Each command is a module of this package with ``arguments(parser)`` and ``main(options)``."""
 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import importlib
+import io
 import os
+import shlex
 import sys
+import tempfile
+import traceback
 from collections.abc import Sequence
 
 __all__ = ["main"]
 
 COMMANDS = {
-    "demo": "the main job on built-in input, then a report",
+    "demo": "run a demonstration on built-in data and write a report",
     "run": "run one trial and record it",
-    "render": "make an image or a film of a trial",
+    "render": "render a trial as an image or a video",
     "replay": "run a recorded episode again and check its digest",
-    "branch": "go on from an instant of a recorded episode, with other values",
-    "repair": "give the file of a run that was killed its end and its index",
+    "branch": "continue a recorded episode from a given time with other values",
+    "repair": "repair the episode file of a run that was killed",
     "export": "write an episode as a table, Parquet or CSV",
-    "experiment": "run trials with participants, with screens and questions around them",
+    "experiment": "run trials with participants, with screens and questionnaires",
     "predict": "score predictors on recordings of people",
     "calibrate": "fit the parameters of a crowd model to recordings of people",
-    "train": "learn a predictor from recordings of people",
-    "study": "compare GANs on the toy set of the report: which find all the ways that people may go",
-    "degrade": "score predictors on noisy, hidden, swapped and false tracks, or write such a recording",
-    "list": "name what is built in: models, predictors, trials, ...",
-    "new": "write a trial to begin with, or one from a recording, or import one",
-    "check": "read a trial or a robot and say everything that is wrong with it",
+    "train": "train a predictor on recordings of people",
+    "study": "compare GANs on a toy dataset with several modes",
+    "degrade": "score predictors on degraded tracks, or write a degraded recording",
+    "list": "list built-in models, predictors, trials, ...",
+    "new": "write a new trial, create one from a recording, or import one",
+    "check": "report all errors in a trial or robot file",
     "cite": "print the papers behind a name",
     "bench": "measure speed on this machine",
-    "validate": "hold the crowd models against experiments with people",
+    "validate": "compare the crowd models with experiments with people",
 }
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command and return the exit status: 0 done, 1 the check failed, 2 wrong input, 130 interrupted."""
-    words = [*(sys.argv[1:] if arguments is None else arguments)]
-    options = _parser(words).parse_args(words)
-    from crowdbot.core import CrowdbotError
+    """Run one command and return the exit status.
 
+    The status is 0 if the command succeeded, 1 if a check failed or the program has a bug, 2 for wrong input, and 130
+    after an interruption.
+    """
+    words = [*(sys.argv[1:] if arguments is None else arguments)]
+    debug = os.environ.get("CROWDBOT_DEBUG", "0") not in ("", "0")
+    _open_standard_streams()
     try:
+        options = _parser(words).parse_args(words)
+        debug |= options.debug
         status: int = options.main(options)
         sys.stdout.flush()
         return status
-    except CrowdbotError as error:
-        print(f"crowdbot: {error}", file=sys.stderr)
-        return 2
+    except SystemExit as end:  # of --help, --version and wrong options
+        try:
+            sys.stdout.flush()
+        except OSError:
+            _discard_output()
+        if isinstance(end.__context__, BrokenPipeError):  # as rich ends on it
+            return 0
+        raise
+    except BrokenPipeError:  # the reader of the output has ended, as with `| head`
+        _discard_output()
+        return 0
     except KeyboardInterrupt:
         print("crowdbot: interrupted", file=sys.stderr)
         return 130
-    except BrokenPipeError:  # the reader of our output has gone, as with `| head`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
+    except Exception as error:
+        return _report(error, debug)
+
+
+def _open_standard_streams() -> None:
+    """Replace closed standard streams by the null device, and let the output print what its encoding lacks as ``?``."""
+    if None in (sys.stdin, sys.stdout, sys.stderr):
+        while (free := os.open(os.devnull, os.O_RDWR)) <= 2:  # the lowest free number; 0 to 2 are the standard streams
+            os.set_inheritable(free, True)
+        os.close(free)
+        sys.stdin = sys.stdin or open(0, encoding="utf-8", closefd=False)  # noqa: SIM115
+        sys.stdout = sys.stdout or open(1, "w", encoding="utf-8", closefd=False)  # noqa: SIM115
+        sys.stderr = sys.stderr or open(2, "w", encoding="utf-8", closefd=False)  # noqa: SIM115
+    if isinstance(sys.stdout, io.TextIOWrapper) and sys.stdout.errors == "strict":
+        sys.stdout.reconfigure(errors="replace")
+
+
+def _discard_output() -> None:
+    """Send what is left of the output to the null device: it cannot be written, and Python tries again at its end."""
+    null = os.open(os.devnull, os.O_WRONLY)
+    with contextlib.suppress(OSError):  # a stream that is no file
+        os.dup2(null, sys.stdout.fileno())
+    os.close(null)
+
+
+def _report(error: Exception, debug: bool) -> int:
+    """Print one sentence about an error, with its trace if ``debug``, and return the exit status."""
+    from crowdbot.core import CrowdbotError
+
+    if debug:
+        traceback.print_exception(error)
+    status, message = 2, str(error)
+    if isinstance(error, EOFError):
+        message = "standard input ended before all questions were answered"
+    elif isinstance(error, OSError) and not isinstance(error, CrowdbotError) and error.strerror:
+        message = f"{error.filename or 'standard output'}: {error.strerror}"
+    elif not isinstance(error, CrowdbotError):
+        status, message = 1, _describe(error, debug)
+    print(f"crowdbot: {message}", file=sys.stderr)
+    if isinstance(error, OSError):
+        try:
+            sys.stdout.flush()
+        except OSError:
+            _discard_output()
+    return status
+
+
+def _describe(error: Exception, debug: bool) -> str:
+    """Return a sentence about an error that nobody expected, and write its trace into a file unless it was printed."""
+    frames = traceback.extract_tb(error.__traceback__)
+    what = " ".join(f"{type(error).__name__}: {error}".split()).removesuffix(":")
+    place = f" ({frames[-1].filename}, line {frames[-1].lineno})" if frames else ""
+    bug = f"{what}{place}; this is a bug in crowdbot or in your code"
+    if debug:
+        return bug
+    try:
+        with tempfile.NamedTemporaryFile(
+            "w", prefix="crowdbot-trace-", suffix=".txt", delete=False, encoding="utf-8", errors="backslashreplace"
+        ) as file:
+            file.write(f"{shlex.join(['crowdbot', *sys.argv[1:]])}\n\n")
+            traceback.print_exception(error, file=file)
+    except OSError:
+        traceback.print_exception(error)
+        return bug
+    return f"{bug}; the trace is in {file.name}"
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
@@ -60,16 +140,19 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="crowdbot",
         description="Predict how a crowd moves in the next seconds, and test robots in simulated crowds.",
-        epilog="crowdbot COMMAND --help tells more. Start with: crowdbot demo",
+        epilog="Run crowdbot COMMAND --help for the options of a command. Start with: crowdbot demo",
         allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=f"crowdbot {__version__}")
+    trace = "print the trace of an error (also: CROWDBOT_DEBUG=1)"
+    parser.add_argument("--debug", action="store_true", help=trace)
     commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="command")
     wanted = next((word for word in words if not word.startswith("-")), None)
     for name, line in COMMANDS.items():
         command = commands.add_parser(name, help=line, description=line[0].upper() + line[1:] + ".", allow_abbrev=False)
         if name == wanted:  # only the chosen command is imported, so that --help stays fast
             module = importlib.import_module(f"crowdbot.cli.{name}")
+            command.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help=trace)
             module.arguments(command)
             command.set_defaults(main=module.main)
     return parser

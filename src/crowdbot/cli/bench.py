@@ -10,10 +10,12 @@ from .output import add_json, number, print_json, print_table, progress
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("names", metavar="NAME", nargs="*", help="which measurements; none means all")
-    parser.add_argument("--repeats", type=int, default=7, help="timed repeats of each, after a warm-up (default 7)")
-    parser.add_argument("--data", type=Path, metavar="PATH", help="recording for scheme-frame (default: a made crowd)")
-    parser.add_argument("--out", type=Path, metavar="FILE.json", help="also write the rows to a file")
+    parser.add_argument("names", metavar="NAME", nargs="*", help="measurements (default: all)")
+    parser.add_argument("--repeats", type=int, default=7, help="timed repetitions after a warm-up (default: 7)")
+    parser.add_argument(
+        "--data", type=Path, metavar="PATH", help="recording for scheme-frame (default: a simulated crowd)"
+    )
+    parser.add_argument("--out", type=Path, metavar="FILE.json", help="output file for the rows (default: none)")
     add_json(parser)
 
 

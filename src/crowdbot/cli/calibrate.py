@@ -1,4 +1,4 @@
-"""``crowdbot calibrate``: which parameters make a crowd model walk like the people of a recording."""
+"""``crowdbot calibrate``: fit the parameters of a crowd model to recordings of people."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .recordings import add_recordings, recordings, tell_notes
 from .schemes import add_scheme, assignments, crowd_model, frame_line, named_search, prior
 
 if TYPE_CHECKING:
-    from crowdbot.calibration import Calibrator, Fit, FittedPiece
+    from crowdbot.calibration import CalibrationChunk, Calibrator, Fit
     from crowdbot.data import Recording
 
 
@@ -20,12 +20,18 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_recordings(parser)
     add_scheme(parser, many=False)
     add = parser.add_argument
-    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="parameters of the crowd model before the fit")
-    add("--shared", action="store_true", help="one set of parameters for everyone instead of each person's own")
-    add("--workers", type=int, default=1, metavar="N", help="processes (default 1)")
-    add("--cluster", metavar="ADDRESS", help="run on a Ray cluster, such as auto; needs crowdbot[cluster]")
-    add("--out", type=Path, metavar="DIR", help="write parameters and prior there; run again to go on after a stop")
-    add("--seed", type=int, default=0, help="seed of the search")
+    add(
+        "--set",
+        nargs="+",
+        default=[],
+        metavar="NAME=VALUE",
+        help="initial parameters of the crowd model (default: none)",
+    )
+    add("--shared", action="store_true", help="one common set of parameters instead of individual ones")
+    add("--workers", type=int, default=1, metavar="N", help="number of processes (default: 1)")
+    add("--cluster", metavar="ADDRESS", help="address of a Ray cluster, such as auto; requires crowdbot[cluster]")
+    add("--out", type=Path, metavar="DIR", help="folder for parameters, prior and resumable results (default: none)")
+    add("--seed", type=int, default=0, help="random seed (default: 0)")
     add_json(parser)
 
 
@@ -50,10 +56,10 @@ def main(options: argparse.Namespace) -> int:
 
 
 def _calibrator(options: argparse.Namespace) -> tuple[Calibrator, str | None]:
-    """Return what calibrates, and the name of the goal when it needs the recording."""
-    from crowdbot.calibration import Calibrator, kind_of_goal
+    """Return the calibrator, and the name of the goal if it depends on the recording."""
+    from crowdbot.calibration import Calibrator, goal_class
 
-    kind = kind_of_goal(options.goal or "current-direction")
+    kind = goal_class(options.goal or "current-direction")
     late = kind.knows_future or kind.learns
     parts: dict[str, Any] = {} if late or options.goal is None else {"goal": options.goal}
     parts |= {"cost": options.cost} if options.cost else {}
@@ -72,12 +78,12 @@ def _calibrator(options: argparse.Namespace) -> tuple[Calibrator, str | None]:
 def _each(
     calibrator: Calibrator, goal: str | None, recording: Recording, options: argparse.Namespace, report: Progress
 ) -> Fit:
-    from crowdbot.calibration import Campaign
+    from crowdbot.calibration import RecordingCalibration
     from crowdbot.core import InputError
 
-    campaign = Campaign(recording, calibrator, goal, options.seed)
+    campaign = RecordingCalibration(recording, calibrator, goal, options.seed)
     keep = None if options.out is None else options.out / "parts"
-    pieces: list[FittedPiece] = []
+    pieces: list[CalibrationChunk] = []
     whole, done = len(campaign.past), 0
     report(recording.name, 0.0)
     if not options.json:
@@ -88,7 +94,7 @@ def _each(
         if not options.json:
             _tell(piece)
         report(recording.name, done / whole)
-    fit = campaign.joined(pieces)
+    fit = campaign.merge(pieces)
     if fit.persons == 0:
         raise InputError(
             f"{recording.path}: nobody in {fit.windows} windows can be compared by {fit.scheme.split(', ')[1]};"
@@ -111,13 +117,15 @@ def _shared(
 
     if goal is not None:
         if len(found) > 1:
-            raise InputError(f"{goal} belongs to one recording: calibrate them one by one, not {len(found)} together")
+            raise InputError(
+                f"the goal {goal} depends on the recording: calibrate one recording at a time, not {len(found)}"
+            )
         calibrator = dataclasses.replace(calibrator, goal=goal_for(goal, found[0]))
     pasts = [one.windows[0] for one in found]
     return calibrator.fit(pasts, options.seed, lambda share: report("shared parameters", share))
 
 
-def _tell(piece: FittedPiece) -> None:
+def _tell(piece: CalibrationChunk) -> None:
     arrays = piece.arrays
     seconds = float(arrays["seconds"].sum()) / max(1, piece.last - piece.first)
     for frame, people, cost, count in zip(
@@ -136,7 +144,7 @@ def _table(name: str, fit: Fit) -> None:
     ]
     caption = (
         f"mean cost {np.nanmean(fit.cost):.4f} m, {np.nanmean(fit.given_cost):.4f} m before;"
-        f" {fit.persons} persons in {fit.windows} windows, {int(fit.evaluations.sum())} crowds tried,"
+        f" {fit.persons} persons in {fit.windows} windows, {int(fit.evaluations.sum())} evaluations,"
         f" {fit.seconds:.1f} s"
     )
     middle = ("shared", "", "unit") if fit.shared else ("median", "sd over people", "unit")
@@ -144,7 +152,7 @@ def _table(name: str, fit: Fit) -> None:
 
 
 def as_json(fit: Fit) -> dict[str, Any]:
-    """Return what ``--json`` prints of a fit."""
+    """Return the output of ``--json`` for a fit."""
     import numpy as np
 
     return {
@@ -161,7 +169,7 @@ def as_json(fit: Fit) -> dict[str, Any]:
 
 
 def _written(folder: Path, fits: dict[str, Fit], shared: bool) -> None:
-    """Write the summary, everyone's parameters and, of each person's own, the population prior."""
+    """Write the summary and, for individual parameters, the table of parameters and the population prior."""
     from crowdbot.calibration import PopulationPrior
 
     folder.mkdir(parents=True, exist_ok=True)
@@ -170,7 +178,7 @@ def _written(folder: Path, fits: dict[str, Fit], shared: bool) -> None:
     names = ["calibration.json"]
     if not shared:
         _people(fits).to_parquet(folder / "parameters.parquet", index=False)
-        PopulationPrior.learned(list(fits.values())).save(folder / "prior.json")
+        PopulationPrior.from_fits(list(fits.values())).save(folder / "prior.json")
         names += ["parameters.parquet", "prior.json"]
     note(f"wrote {', '.join(names)} in {folder}")
 

@@ -1,4 +1,4 @@
-"""``crowdbot degrade``: score predictors on recordings as a tracker sees them, or write such a recording."""
+"""``crowdbot degrade``: evaluate predictors on degraded recordings, or write a degraded recording."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, json_text, note, print_json, print_table, progress
 from .recordings import add_recordings, horizon, recordings, tell_notes
-from .schemes import add_scheme, assignments, recipes
+from .schemes import add_scheme, assignments, predictor_specs
 
 if TYPE_CHECKING:
-    from crowdbot.benchmark import DegradedScore, Task
+    from crowdbot.benchmark import DegradedScore, DegradedTask
     from crowdbot.data import Recording, Trajectories
     from crowdbot.data.degrade import Chain, Degradation
     from crowdbot.prediction import Predictor
@@ -30,24 +30,45 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         required=True,
         metavar="NAME",
-        help="crowdbot list degradations, each swept alone; A+B: one after the other, A is swept; all: every one",
+        help="degradations, see `crowdbot list degradations`; A+B applies both and sweeps A; all: every degradation",
     )
-    add("--levels", nargs="+", type=float, metavar="X", help="levels of the sweep (default: its own)")
-    add("--predictor", nargs="+", metavar="NAME", help="names or file.py:Name (default: all that need no PyTorch)")
+    add("--levels", nargs="+", type=float, metavar="X", help="levels of the sweep (default: from the degradation)")
+    add(
+        "--predictor",
+        nargs="+",
+        metavar="NAME",
+        help="predictors, by name or file.py:Name (default: all that require no PyTorch)",
+    )
     add_scheme(parser, many=True)
-    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="of the degradation, also occlusion.eye=3,1.5")
-    add("--out", type=Path, metavar="DIR", help="folder for degraded.json, degraded.png and degraded.svg")
-    add("--write", type=Path, metavar="FILE", help="write the degraded recording and score nothing")
-    add("--draws", type=int, default=3, metavar="N", help="how often each level is drawn; the band (default 3)")
-    add("--carry", type=int, default=0, metavar="ROWS", help="walk on who is lost at the last row, so long (default 0)")
-    add("--samples", type=int, default=1, metavar="K", help="futures drawn from a predictor that samples")
-    add("--best-of", default="person", metavar="RULE", help="how the best of K is chosen: person, scene or same")
-    add("--seed", type=int, default=0, help="seed of the degradation, and of predictors that sample")
+    add(
+        "--set",
+        nargs="+",
+        default=[],
+        metavar="NAME=VALUE",
+        help="parameters of the degradation, such as occlusion.eye=3,1.5 (default: none)",
+    )
+    add(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="folder for degraded.json, degraded.png and degraded.svg (default: none)",
+    )
+    add("--write", type=Path, metavar="FILE", help="output file for the degraded recording, without evaluation")
+    add("--draws", type=int, default=3, metavar="N", help="random draws per level (default: 3)")
+    add("--carry", type=int, default=0, metavar="ROWS", help="rows for which lost tracks are extrapolated (default: 0)")
+    add("--samples", type=int, default=1, metavar="K", help="number of futures per person (default: 1)")
+    add(
+        "--best-of",
+        default="person",
+        metavar="RULE",
+        help="selection of the best of K futures: person, scene or same (default: person)",
+    )
+    add("--seed", type=int, default=0, help="random seed (default: 0)")
     add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:
-    """Score the predictors level by level, or write the degraded recording."""
+    """Evaluate the predictors level by level, or write the degraded recording."""
     values = assignments(options.set)
     degradations = read_degradations(options.by, values)
     if options.write is not None:
@@ -73,16 +94,16 @@ def main(options: argparse.Namespace) -> int:
         tell_notes(found)
         _tables(done, tracks, task, files)
     if interrupted:
-        kept = f" and kept in {options.out}" if files else ""
-        note(f"the levels that were done before the interrupt are shown{kept}")
+        kept = f" and stored in {options.out}" if files else ""
+        note(f"results up to the interruption are shown{kept}")
         raise KeyboardInterrupt
     return 0
 
 
 def read_degradations(words: Sequence[str], values: Mapping[str, str]) -> list[Degradation | Chain]:
-    """Return what ``--by`` names, with the parameters of ``--set``.
+    """Return the degradations of ``--by`` with the parameters of ``--set``.
 
-    A parameter goes to everything that has it; ``occlusion.eye`` goes to the one.
+    A parameter applies to all degradations that have it; ``occlusion.eye`` applies to one.
     """
     from crowdbot.core import builtin_classes, find_class, from_attributes
     from crowdbot.data import degrade
@@ -106,7 +127,7 @@ def _fields(kind: type) -> list[str]:
 
 
 def _own(kind: type, values: Mapping[str, str]) -> dict[str, str]:
-    """Return those values that are meant for this degradation."""
+    """Return the values that apply to a degradation."""
     from crowdbot.core import kebab
 
     split = {key: key.replace("_", "-").rpartition(".") for key in values}
@@ -150,7 +171,7 @@ def _check_sweep(
 
 
 def _predictors(options: argparse.Namespace, found: Sequence[Recording]) -> list[Predictor]:
-    """Return what is scored; a goal that learns does so from the clean begin of the one recording."""
+    """Return the predictors; learned goals are estimated from the first part of the clean recording."""
     from crowdbot import prediction
     from crowdbot.core import InputError, builtin_classes, required_fields
 
@@ -162,20 +183,18 @@ def _predictors(options: argparse.Namespace, found: Sequence[Recording]) -> list
     )
     options.predictor = [*dict.fromkeys(options.predictor or plain)]
     options.set = []  # they are parameters of the degradation here
-    made = recipes(options)
+    made = predictor_specs(options)
     late = next((one.goal for one in made if one.goal is not None), None)
     if late is not None and len(found) > 1:
-        raise InputError(
-            f"the goal {late} belongs to one recording: degrade them one by one, not {len(found)} together"
-        )
-    return [one.prepared(found[0]) for one in made]
+        raise InputError(f"the goal {late} depends on the recording: give one recording, not {len(found)}")
+    return [one.build(found[0]) for one in made]
 
 
-def _task(options: argparse.Namespace) -> Task:
-    from crowdbot.benchmark import Task
+def _task(options: argparse.Namespace) -> DegradedTask:
+    from crowdbot.benchmark import DegradedTask
 
     names = ("observe", "predict", "protocol", "near", "samples", "best_of", "seed", "carry", "draws", "every")
-    return Task(**{name: getattr(options, name) for name in names})
+    return DegradedTask(**{name: getattr(options, name) for name in names})
 
 
 def _sweep(
@@ -183,22 +202,22 @@ def _sweep(
     recordings: Sequence[Trajectories],
     degradations: Sequence[Degradation | Chain],
     predictors: Sequence[Predictor],
-    task: Task,
+    task: DegradedTask,
     report: Progress,
     done: dict[str, list[DegradedScore]],
 ) -> None:
-    """Fill ``done``, degradation by degradation, and keep the file up to date."""
-    from crowdbot.benchmark import sweep
+    """Fill ``done`` level by level and update the output file."""
+    from crowdbot.benchmark import sweep_degradations
 
-    for found in sweep(recordings, degradations, predictors, options.levels, task, report):
+    for found in sweep_degradations(recordings, degradations, predictors, options.levels, task, report):
         done.setdefault(found[0].degradation.name, []).extend(found)
         _keep(options, done, task, complete=False, plot=False)
 
 
 def _keep(
-    options: argparse.Namespace, done: Mapping[str, list[DegradedScore]], task: Task, complete: bool, plot: bool
+    options: argparse.Namespace, done: Mapping[str, list[DegradedScore]], task: DegradedTask, complete: bool, plot: bool
 ) -> list[Path]:
-    """Write what is done into the folder ``--out`` and return the files."""
+    """Write the results to the folder ``--out`` and return the files."""
     from crowdbot.core import InputError
 
     if options.out is None:
@@ -211,22 +230,22 @@ def _keep(
         os.replace(draft, file)
         if not plot:
             return [file]
-        from crowdbot.benchmark import draw_degraded
+        from crowdbot.benchmark import plot_degraded
 
-        return [file, *draw_degraded(list(done.values()), options.out, _title(options, task))]
+        return [file, *plot_degraded(list(done.values()), options.out, _title(options, task))]
     except OSError as error:
         raise InputError(f"--out {options.out} cannot be written: {error.strerror or error}") from None
 
 
-def _title(options: argparse.Namespace, task: Task) -> str:
+def _title(options: argparse.Namespace, task: DegradedTask) -> str:
     names = ", ".join(path.name for path in options.data)
     return f"{names}: protocol {task.protocol}, {task.observe} observed + {task.predict} predicted rows"
 
 
 def _page(
-    options: argparse.Namespace, done: Mapping[str, list[DegradedScore]], task: Task, complete: bool
+    options: argparse.Namespace, done: Mapping[str, list[DegradedScore]], task: DegradedTask, complete: bool
 ) -> dict[str, Any]:
-    """Return what ``degraded.json`` and ``--json`` say."""
+    """Return the content of ``degraded.json`` and ``--json``."""
     import dataclasses
 
     return {
@@ -237,7 +256,7 @@ def _page(
             name: {
                 "level": scores[0].degradation.level,
                 "unit": scores[0].degradation.unit,
-                "parameters": scores[0].degradation.told(level=False),
+                "parameters": scores[0].degradation.describe(level=False),
                 "rows": [score.as_dict() for score in scores],
             }
             for name, scores in done.items()
@@ -246,7 +265,10 @@ def _page(
 
 
 def _tables(
-    done: Mapping[str, list[DegradedScore]], recordings: Sequence[Trajectories], task: Task, files: Sequence[Path]
+    done: Mapping[str, list[DegradedScore]],
+    recordings: Sequence[Trajectories],
+    task: DegradedTask,
+    files: Sequence[Path],
 ) -> None:
     names = ", ".join(tracks.name for tracks in recordings)
     units = recordings[0].units
@@ -256,7 +278,7 @@ def _tables(
     for name, scores in done.items():
         degradation = scores[0].degradation
         unit = "" if degradation.unit in ("1", degradation.level) else f" [{degradation.unit}]"
-        rest = ", ".join(f"{key} = {word}" for key, word in degradation.told(level=False).items())
+        rest = ", ".join(f"{key} = {word}" for key, word in degradation.describe(level=False).items())
         predictors = list(dict.fromkeys(score.predictor for score in scores))
         rows = []
         for level in dict.fromkeys(score.level for score in scores):
@@ -268,7 +290,7 @@ def _tables(
             (f"{degradation.level}{unit}", "predicted", *map(_head, predictors)),
             rows,
             caption=f"protocol {task.protocol}, {rows_and_seconds}{best};"
-            f" {scores[0].asked} persons asked for, means over those who could be predicted;"
+            f" {scores[0].asked} persons, means over the predicted ones;"
             f" {max(score.draws for score in scores)} draws, seed {task.seed}{carried}",
         )
     for file in files:
@@ -276,7 +298,7 @@ def _tables(
 
 
 def _head(predictor: str) -> str:
-    """Return a name broken at its hyphens, so that many columns find place."""
+    """Return a name with line breaks at its hyphens."""
     import textwrap
 
     return "\n".join(textwrap.wrap(predictor, 16))
@@ -287,16 +309,16 @@ def _errors(score: DegradedScore) -> str:
 
 
 def _write(options: argparse.Namespace, degradations: Sequence[Degradation | Chain]) -> int:
-    """Write one degraded recording, and say what was done to it."""
+    """Write one degraded recording and print a summary."""
     import dataclasses
 
     from crowdbot.core import InputError, stream
     from crowdbot.data import save
 
     if options.predictor or options.out is not None:
-        raise InputError("--write makes a recording and scores nothing; leave out --predictor and --out")
+        raise InputError("--write does not evaluate predictors; omit --predictor and --out")
     if len(options.data) > 1 or len(degradations) > 1 or len(options.levels or ()) > 1:
-        raise InputError("--write makes one recording: one --data, one --by (chain with A+B) and one of --levels")
+        raise InputError("--write requires exactly one --data, one --by (chain with A+B) and at most one of --levels")
     degradation = degradations[0].at(options.levels[0]) if options.levels else degradations[0]
     clean = recordings(options)[0].tracks
     seen = degradation.apply(clean, stream(options.seed, "degrade", 0))
@@ -304,7 +326,7 @@ def _write(options: argparse.Namespace, degradations: Sequence[Degradation | Cha
     save(dataclasses.replace(seen.tracks, note="; ".join(filter(None, (clean.note, told)))), options.write)
     counts = {"rows": (len(clean), len(seen.tracks)), "tracks": (len(clean.ids), len(seen.tracks.ids))}
     if options.json:
-        parameters = {"name": degradation.name, "parameters": degradation.told(), "seed": options.seed}
+        parameters = {"name": degradation.name, "parameters": degradation.describe(), "seed": options.seed}
         print_json({"file": str(options.write), "degradation": parameters, **counts})
         return 0
     print(told)

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from .output import Progress, add_json, note, print_json, print_table, progress
 from .recordings import add_recordings, horizon, recordings, tell_notes
-from .schemes import add_scheme, frame_line, recipes
+from .schemes import add_scheme, frame_line, predictor_specs
 
 if TYPE_CHECKING:
-    from crowdbot.benchmark import Part, Piece, Result, Study
+    from crowdbot.benchmark import Evaluation, EvaluationJob, JobResult, PredictorResult
     from crowdbot.metrics import Score
 
 
@@ -22,68 +22,99 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add(
         "--predictor", nargs="+", default=["constant-velocity"], metavar="NAME",
-        help="one or several: crowdbot list predictors, or file.py:Name (default constant-velocity)",
+        help="predictors: names from `crowdbot list predictors`, or file.py:Name (default: constant-velocity)",
     )  # fmt: skip
     add_scheme(parser, many=True)
-    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="parameters of the predictor or its crowd model")
-    add("--samples", type=int, default=1, metavar="K", help="futures drawn from a predictor that samples")
-    add("--best-of", default="person", metavar="RULE", help="how the best of K is chosen: person, scene or same")
-    add("--live", action="store_true", help="frame by frame: calibrations begin with the fit of the frame before")
-    add("--workers", type=int, default=1, metavar="N", help="processes (default 1)")
-    add("--cluster", metavar="ADDRESS", help="run on a Ray cluster, such as auto; needs crowdbot[cluster]")
-    add("--out", type=Path, metavar="DIR", help="write tables and plots there; run again to go on after a stop")
-    add("--animate", type=int, metavar="FRAME", help="with --out: also an animation of the predictions at this frame")
-    add("--seed", type=int, default=0, help="seed of predictors that sample or search")
+    add(
+        "--set",
+        nargs="+",
+        default=[],
+        metavar="NAME=VALUE",
+        help="parameters of the predictor or its crowd model (default: none)",
+    )
+    add("--samples", type=int, default=1, metavar="K", help="number of futures per person (default: 1)")
+    add(
+        "--best-of",
+        default="person",
+        metavar="RULE",
+        help="selection of the best of K futures: person, scene or same (default: person)",
+    )
+    add(
+        "--live",
+        action="store_true",
+        help="frame-by-frame prediction; each calibration starts from the fit of the previous frame",
+    )
+    add("--workers", type=int, default=1, metavar="N", help="number of processes (default: 1)")
+    add("--cluster", metavar="ADDRESS", help="address of a Ray cluster, such as auto; requires crowdbot[cluster]")
+    add("--out", type=Path, metavar="DIR", help="folder for tables, plots and resumable results (default: none)")
+    add("--animate", type=int, metavar="FRAME", help="frame to animate; requires --out")
+    add("--seed", type=int, default=0, help="random seed (default: 0)")
     add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:
-    """Score every predictor on every recording and on all together."""
-    from crowdbot.benchmark import Study
+    """Evaluate every predictor on every recording."""
+    from crowdbot.benchmark import Evaluation
     from crowdbot.core import InputError
 
     if options.animate is not None and options.out is None:
-        raise InputError("--animate writes a file: say where with --out DIR")
+        raise InputError("--animate requires --out DIR")
     found = recordings(options)
-    study = Study(found, recipes(options), options.samples, options.best_of, options.seed, options.live)
+    evaluation = Evaluation(
+        found, predictor_specs(options), options.samples, options.best_of, options.seed, options.live
+    )
     if options.animate is not None:
-        study.window_at(options.animate)  # says now, not after the work, that there is none
+        evaluation.window_at(options.animate)  # fails before the evaluation starts
     keep = None if options.out is None else options.out / "parts"
     with progress(options.json) as report, warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message=".* answers instead$")  # a note says it, once
-        done = _done(study, options, keep, report)
-    results = study.results(done)
+        warnings.filterwarnings("ignore", message=".* is used instead$")  # a note says it, once
+        try:
+            done = _done(evaluation, options, keep, report)
+        except KeyboardInterrupt:
+            note(_resume_hint(evaluation, keep))
+            raise
+    results = evaluation.results(done)
     if options.out is not None:
-        _written(options, study, results)
+        _written(options, evaluation, results)
     if options.json:
-        print_json(as_json(study, results))
+        print_json(as_json(evaluation, results))
         return 0
     tell_notes(found)
     for sentence in _notes(results):
         note(sentence)
-    _tables(options, study, results)
+    _tables(options, evaluation, results)
     return 0
 
 
-def _notes(results: list[Result]) -> list[str]:
-    """Return what predictors say about the recordings, each sentence once."""
-    said = (one.recipe.predictor.note(one.recording.windows[0]) for one in results)
+def _resume_hint(evaluation: Evaluation, keep: Path | None) -> str:
+    """Return what an interrupted run has stored and how to resume it."""
+    if keep is None:
+        return "nothing is stored; add --out DIR to make a run that can be resumed"
+    stored, total = evaluation.count_stored(keep), len(evaluation.jobs())
+    return f"{stored} of {total} jobs are stored in {keep}; run the same command again to resume"
+
+
+def _notes(results: list[PredictorResult]) -> list[str]:
+    """Return the notes of the predictors about the recordings, without duplicates."""
+    said = (one.spec.predictor.note(one.recording.windows[0]) for one in results)
     return [sentence for sentence in dict.fromkeys(said) if sentence]
 
 
-def _done(study: Study, options: argparse.Namespace, keep: Path | None, report: Progress) -> list[tuple[Piece, Part]]:
-    """Run the study; each frame of a calibrated crowd is one line as soon as it is known."""
-    pieces = study.pieces()
+def _done(
+    evaluation: Evaluation, options: argparse.Namespace, keep: Path | None, report: Progress
+) -> list[tuple[EvaluationJob, JobResult]]:
+    """Run the evaluation; print one line per frame of a calibrated crowd."""
+    jobs = evaluation.jobs()
     whole: dict[tuple[str, str], int] = {}
-    for piece in pieces:
-        whole[piece.label] = whole.get(piece.label, 0) + piece.last - piece.first
-    done: list[tuple[Piece, Part]] = []
+    for job in jobs:
+        whole[job.label] = whole.get(job.label, 0) + job.last - job.first
+    done: list[tuple[EvaluationJob, JobResult]] = []
     share: dict[tuple[str, str], int] = {}
     said = False
-    for piece, part in study.run(options.workers, options.cluster, keep):
-        done.append((piece, part))
-        share[piece.label] = share.get(piece.label, 0) + piece.last - piece.first
-        report(" ".join(piece.label), share[piece.label] / whole[piece.label])
+    for job, part in evaluation.run(options.workers, options.cluster, keep):
+        done.append((job, part))
+        share[job.label] = share.get(job.label, 0) + job.last - job.first
+        report(" ".join(job.label), share[job.label] / whole[job.label])
         if not options.json and part.frames.calibrated:
             if not said:
                 note(frame_line())
@@ -92,29 +123,30 @@ def _done(study: Study, options: argparse.Namespace, keep: Path | None, report: 
     return done
 
 
-def _frame_lines(part: Part) -> None:
+def _frame_lines(part: JobResult) -> None:
     frames = part.frames
     for row in zip(frames.frame, frames.people, frames.cost, frames.evaluations, frames.seconds, strict=True):
         note(frame_line(*row))
 
 
-def _tables(options: argparse.Namespace, study: Study, results: list[Result]) -> None:
-    """Print one table a predictor, or with several predictors one a recording."""
+def _tables(options: argparse.Namespace, evaluation: Evaluation, results: list[PredictorResult]) -> None:
+    """Print one table for one predictor, or one table per recording for several."""
     from crowdbot.metrics import Score
 
     best = f", best of {options.samples} per {options.best_of}" if options.samples > 1 else ""
-    caption = f"protocol {study.recordings[0].protocol}{best}; means over persons, 95 % by drawing persons"
-    if len(study.recipes) == 1:
+    protocol = evaluation.recordings[0].protocol
+    caption = f"protocol {protocol}{best}; means over persons, 95 % intervals by bootstrap over persons"
+    if len(evaluation.specs) == 1:
         scores = [result.score for result in results]
         rows = [result.recording.name for result in results]
         if len(scores) > 1:
             scores.append(Score.total(scores))
             rows.append("together")
-        steps = [one.tracks.dt for one in study.recordings]
+        steps = [one.tracks.dt for one in evaluation.recordings]
         reach = horizon(steps, options.observe, options.predict)
-        _table(f"{study.recipes[0].name}, {reach}", "recording", rows, scores, caption)
+        _table(f"{evaluation.specs[0].name}, {reach}", "recording", rows, scores, caption)
         return
-    for recording in study.recordings:
+    for recording in evaluation.recordings:
         own = [result for result in results if result.recording is recording]
         title = f"{recording.name}, {horizon([recording.tracks.dt], options.observe, options.predict)}"
         _table(title, "predictor", [result.label for result in own], [r.score for r in own], caption)
@@ -128,39 +160,39 @@ def _table(title: str, head: str, rows: list[str], scores: list[Score], caption:
     print_table(title, (head, *heads), cells, caption=caption)
 
 
-def as_json(study: Study, results: list[Result]) -> dict[str, Any]:
-    """Return the object that ``--json`` prints."""
+def as_json(evaluation: Evaluation, results: list[PredictorResult]) -> dict[str, Any]:
+    """Return the output of ``--json``."""
     from crowdbot.metrics import Score
 
     return {
-        "protocol": study.recordings[0].protocol,
-        "observe": study.recordings[0].observe,
-        "predict": study.recordings[0].predict,
-        "seed": study.seed,
+        "protocol": evaluation.recordings[0].protocol,
+        "observe": evaluation.recordings[0].observe,
+        "predict": evaluation.recordings[0].predict,
+        "seed": evaluation.seed,
         "results": [
             {
-                "predictor": recipe.name,
-                "notes": _notes([one for one in results if one.recipe is recipe]),
-                "total": Score.total([one.score for one in results if one.recipe is recipe]).as_dict(),
-                "data": {one.recording.path: one.score.as_dict() for one in results if one.recipe is recipe},
+                "predictor": spec.name,
+                "notes": _notes([one for one in results if one.spec is spec]),
+                "total": Score.total([one.score for one in results if one.spec is spec]).as_dict(),
+                "data": {one.recording.path: one.score.as_dict() for one in results if one.spec is spec},
             }
-            for recipe in study.recipes
+            for spec in evaluation.specs
         ],
     }
 
 
-def _written(options: argparse.Namespace, study: Study, results: list[Result]) -> None:
-    """Write the scores, every frame, the plots and, when asked for, the animation."""
-    from crowdbot.benchmark import animate, plot_errors, plot_frames
+def _written(options: argparse.Namespace, evaluation: Evaluation, results: list[PredictorResult]) -> None:
+    """Write the scores, the results by frame, the plots and the animation, if requested."""
+    from crowdbot.benchmark import animate_window, plot_errors, plot_frames
 
     from .output import json_text
 
-    scores = json_text(as_json(study, results))
+    scores = json_text(as_json(evaluation, results))
     (options.out / "scores.json").write_text(scores + "\n", encoding="utf-8")
-    study.table(results).to_parquet(options.out / "frames.parquet", index=False)
+    evaluation.table(results).to_parquet(options.out / "frames.parquet", index=False)
     plot_errors(results, options.out / "errors.png")
     plot_frames(results, options.out / "frames.png")
     names = ["scores.json", "frames.parquet", "errors.png", "frames.png"]
     if options.animate is not None:
-        names += [animate(study, options.animate, options.out / f"frame-{options.animate}.gif").name]
+        names += [animate_window(evaluation, options.animate, options.out / f"frame-{options.animate}.gif").name]
     note(f"wrote {', '.join(names)} in {options.out}")

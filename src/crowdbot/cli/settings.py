@@ -23,7 +23,7 @@ def add_settings(parser: argparse._ActionsContainer) -> None:
         action="append",
         default=[],
         metavar="NAME=VALUE",
-        help="a parameter of a built-in trial (density=0.5), or a value by its path (spawner[1]/count=20); repeatable",
+        help="parameter of a built-in trial (density=0.5) or value by its path (spawner[1]/count=20); repeatable",
     )
 
 
@@ -32,7 +32,7 @@ def add_world(parser: argparse._ActionsContainer) -> None:
     parser.add_argument(
         "--world",
         metavar="NAME",
-        help="planar: discs in the plane, or physics: bodies with forces between them (default: the trial's own)",
+        help="planar (discs in the plane) or physics (bodies with contact forces) (default: from the trial)",
     )
 
 
@@ -57,7 +57,7 @@ def settings(options: argparse.Namespace) -> dict[str, str]:
     world = getattr(options, "world", None)
     if world is not None:
         if "world" in found:
-            raise InputError(f"--world {world} and --set world={found['world']} are both given; leave one out")
+            raise InputError(f"--world {world} and --set world={found['world']} conflict; give one of them")
         if world not in WORLDS:
             raise InputError(f"--world {world} must be {' or '.join(WORLDS)}{did_you_mean(world, WORLDS)}")
         found["world"] = world

@@ -1,4 +1,4 @@
-"""``crowdbot study gan``: which GAN finds all the ways that people may go, on the toy set of the report."""
+"""``crowdbot study gan``: compare GANs against mode collapse on the toy data of the report."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .output import add_json, json_text, note, number, print_json, print_table, 
 from .schemes import assignments
 
 if TYPE_CHECKING:
-    from crowdbot.benchmark import Run, ToyStudy
+    from crowdbot.benchmark import GanComparison, GanRun
 
 STUDIES = ("gan",)
 
@@ -18,34 +18,46 @@ STUDIES = ("gan",)
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     add = parser.add_argument
-    add("what", metavar="NAME", help=f"which study: {', '.join(STUDIES)}")
-    add("--methods", nargs="+", metavar="NAME", help="of the study (default: the seven of the report, and ours)")
-    add("--seeds", type=int, default=3, metavar="N", help="trainings of each method (default 3)")
-    add("--updates", type=int, default=20_000, metavar="N", help="of each training (default 20000)")
-    add("--check-every", type=int, default=500, metavar="N", help="updates between measurements (default 500)")
-    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="settings for all methods, such as hidden=64")
-    add("--workers", type=int, default=1, metavar="N", help="processes (default 1)")
-    add("--device", default="cpu", metavar="NAME", help="cpu or cuda (default cpu)")
-    add("--out", type=Path, required=True, metavar="DIR", help="trainings, tables and pictures; again to go on")
+    add("what", metavar="NAME", help=f"study: {', '.join(STUDIES)}")
+    add("--methods", nargs="+", metavar="NAME", help="GAN methods (default: all)")
+    add("--seeds", type=int, default=3, metavar="N", help="number of seeds per method (default: 3)")
+    add("--updates", type=int, default=20_000, metavar="N", help="updates per training (default: 20000)")
+    add("--check-every", type=int, default=500, metavar="N", help="updates between measurements (default: 500)")
+    add(
+        "--set",
+        nargs="+",
+        default=[],
+        metavar="NAME=VALUE",
+        help="settings of all methods, such as hidden=64 (default: none)",
+    )
+    add("--workers", type=int, default=1, metavar="N", help="number of processes (default: 1)")
+    add("--device", default="cpu", metavar="NAME", help="cpu or cuda (default: cpu)")
+    add(
+        "--out",
+        type=Path,
+        required=True,
+        metavar="DIR",
+        help="folder for trainings, tables and plots; resumes if it exists",
+    )
     add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:
-    """Train every method with every seed, measure, and draw."""
-    from crowdbot.benchmark import METHODS, ToyStudy, with_values
+    """Train every method with every seed, then write tables and plots."""
+    from crowdbot.benchmark import METHODS, GanComparison, with_settings
     from crowdbot.core import UnknownName
-    from crowdbot.prediction import device_of
+    from crowdbot.prediction import torch_device
 
     if options.what not in STUDIES:
         raise UnknownName("study", options.what, STUDIES)
     for name in options.methods or ():
         if name not in METHODS:
             raise UnknownName("method", name, METHODS)
-    device_of(options.device)
+    torch_device(options.device)
     methods, seeds = tuple(options.methods or METHODS), tuple(range(options.seeds))
-    study = ToyStudy(methods, seeds, options.updates, options.check_every, device=options.device)
-    study = with_values(study, assignments(options.set))
-    runs: list[Run] = []
+    study = GanComparison(methods, seeds, options.updates, options.check_every, device=options.device)
+    study = with_settings(study, assignments(options.set))
+    runs: list[GanRun] = []
     with progress(options.json) as report:
         for run in study.run(options.out / "trainings", options.workers):
             runs.append(run)
@@ -53,7 +65,7 @@ def main(options: argparse.Namespace) -> int:
     return _said(options, study, runs)
 
 
-def _said(options: argparse.Namespace, study: ToyStudy, runs: list[Run]) -> int:
+def _said(options: argparse.Namespace, study: GanComparison, runs: list[GanRun]) -> int:
     from crowdbot.benchmark import plot_measures, plot_samples
 
     ideal = study.ideal()

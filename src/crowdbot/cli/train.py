@@ -1,4 +1,4 @@
-"""``crowdbot train``: learn a predictor from recordings of people."""
+"""``crowdbot train``: train a predictor on recordings of people."""
 
 from __future__ import annotations
 
@@ -13,51 +13,76 @@ from .schemes import assignments
 
 if TYPE_CHECKING:
     from crowdbot.data import Recording
-    from crowdbot.prediction import Row, Samples, Trained
+    from crowdbot.prediction import LogRow, Samples, TrainingResult
 
 LEARNERS = ("anchor-net", "social-ways")
 EPOCHS = 100
-"""Epochs when neither these nor updates are given."""
+"""Default number of epochs."""
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("what", metavar="NAME", help=f"what learns: {', '.join(LEARNERS)}")
+    parser.add_argument("what", metavar="NAME", help=f"predictor: {', '.join(LEARNERS)}")
     add_recordings(parser)
     add = parser.add_argument
-    add("--check", nargs="+", type=Path, metavar="PATH", help="recordings to watch errors on (default: see --hold)")
-    add("--hold", type=float, default=0.2, metavar="SHARE", help="without --check: the last part in time (default 0.2)")
-    add("--leave-out", metavar="NAME", help="learn from all but eth, hotel, univ, zara1, zara2, or files of this name")
-    add("--out", type=Path, required=True, metavar="DIR", help="weights, log and what is needed to go on")
-    add("--resume", action="store_true", help="go on from what DIR holds")
-    add("--epochs", type=int, metavar="N", help=f"times that everything is seen (default {EPOCHS})")
-    add("--updates", type=int, metavar="N", help="in place of epochs")
-    add("--check-every", type=int, default=200, metavar="N", help="updates between checks (default 200)")
-    add("--patience", type=int, metavar="N", help="stop after so many checks without a better one")
-    add("--settings", metavar="NAME", help="named settings (social-ways: report, variety, modes; default report)")
-    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="single settings")
-    add("--device", default="cpu", metavar="NAME", help="cpu, cuda or cuda:N (default cpu)")
-    add("--threads", type=int, default=1, metavar="N", help="of torch; the bytes depend on it (default 1)")
-    add("--tensorboard", action="store_true", help="also write events for TensorBoard into DIR")
-    add("--seed", type=int, default=0, help="of first weights, order and noise")
+    add("--check", nargs="+", type=Path, metavar="PATH", help="validation recordings (default: see --hold)")
+    add(
+        "--hold",
+        type=float,
+        default=0.2,
+        metavar="SHARE",
+        help="validation share at the end of each recording, without --check (default: 0.2)",
+    )
+    add(
+        "--leave-out",
+        metavar="NAME",
+        help="excluded test set: eth, hotel, univ, zara1, zara2 or a file name (default: none)",
+    )
+    add("--out", type=Path, required=True, metavar="DIR", help="folder for weights, log and training state")
+    add("--resume", action="store_true", help="continue the training in DIR")
+    add("--epochs", type=int, metavar="N", help=f"number of epochs (default: {EPOCHS})")
+    add("--updates", type=int, metavar="N", help="number of updates, instead of --epochs")
+    add("--check-every", type=int, default=200, metavar="N", help="updates between validations (default: 200)")
+    add(
+        "--patience",
+        type=int,
+        metavar="N",
+        help="validations without improvement before early stopping (default: none)",
+    )
+    add("--settings", metavar="NAME", help="preset (social-ways: report, variety or modes; default: report)")
+    add("--set", nargs="+", default=[], metavar="NAME=VALUE", help="single settings (default: none)")
+    add("--device", default="cpu", metavar="NAME", help="cpu, cuda or cuda:N (default: cpu)")
+    add(
+        "--threads", type=int, default=1, metavar="N", help="PyTorch threads; results depend on it bitwise (default: 1)"
+    )
+    add("--tensorboard", action="store_true", help="write TensorBoard events to DIR")
+    add("--seed", type=int, default=0, help="random seed (default: 0)")
     add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:
-    """Learn, and say where the weights are."""
+    """Train and print where the weights are."""
     from crowdbot.core import InputError, UnknownName
-    from crowdbot.prediction import BEST, LAST, Schedule, make_learner, short_recordings, threads, torch_module, train
+    from crowdbot.prediction import (
+        BEST,
+        LAST,
+        TrainingSchedule,
+        make_learner,
+        short_recordings,
+        torch_module,
+        torch_threads,
+        train,
+    )
 
     if options.what not in LEARNERS:
         raise UnknownName("learned predictor", options.what, LEARNERS)
     if options.resume and not (options.out / LAST).is_file():
         raise InputError(
-            f"--out {options.out} holds no training to go on with (there is no {LAST} in it); give the folder of one,"
-            " or begin one without --resume"
+            f"--out {options.out} has no {LAST}: nothing to resume; give the folder of a training, or omit --resume"
         )
-    torch_module()  # said before anything is read
+    torch_module()  # fails before the recordings are read
     epochs = EPOCHS if options.updates is None and options.epochs is None else options.epochs
-    schedule = Schedule(
+    schedule = TrainingSchedule(
         options.updates, epochs, options.check_every, options.check_every, ("ade", "fde"), options.patience,
         options.seed,
     )  # fmt: skip
@@ -71,15 +96,17 @@ def main(options: argparse.Namespace) -> int:
         options.what, options.settings, assignments(options.set), samples, check, options.seed, options.device
     )
     if not options.json:
-        note(f"{options.what} learns {samples.people} futures in {len(samples)} windows of {len(learned)} recordings")
-    with threads(options.threads), _events(options) as written:
+        note(
+            f"training {options.what} on {samples.people} futures in {len(samples)} windows, {len(learned)} recordings"
+        )
+    with torch_threads(options.threads), _events(options) as written:
         done = train(model, schedule, options.out, options.resume, _told(options.json, written))
     _said(options, done, options.out / BEST, left)
     return 0
 
 
 def _samples(options: argparse.Namespace) -> tuple[tuple[Recording, ...], tuple[Samples, Samples], list[str]]:
-    """Return what is learned from, the samples to learn from and to watch, and the files that are left out."""
+    """Return the training recordings, the training and validation samples, and the excluded files."""
     from crowdbot.prediction import Samples, leave_out, split_in_time
 
     found, left = list(recordings(options)), list[Any]()
@@ -94,7 +121,7 @@ def _samples(options: argparse.Namespace) -> tuple[tuple[Recording, ...], tuple[
 
 
 class _Events:
-    """Events for TensorBoard, or nothing."""
+    """TensorBoard events, or nothing."""
 
     def __init__(self, writer: Any = None) -> None:
         self.writer = writer
@@ -106,8 +133,8 @@ class _Events:
         if self.writer is not None:
             self.writer.close()
 
-    def add(self, row: Row) -> None:
-        """Write the numbers of one line of the log."""
+    def add(self, row: LogRow) -> None:
+        """Write one row of the log."""
         if self.writer is not None:
             for name, value in row.items():
                 if name not in ("update", "epoch"):
@@ -123,13 +150,13 @@ def _events(options: argparse.Namespace) -> _Events:
         from torch.utils.tensorboard import SummaryWriter
     except ImportError:
         raise InputError(
-            "--tensorboard needs TensorBoard: pip install tensorboard; log.csv is written anyway"
+            "--tensorboard requires TensorBoard: pip install tensorboard; log.csv is always written"
         ) from None
     return _Events(SummaryWriter(str(options.out)))
 
 
-def _told(quiet: bool, events: _Events) -> Callable[[Row], None]:
-    def told(row: Row) -> None:
+def _told(quiet: bool, events: _Events) -> Callable[[LogRow], None]:
+    def told(row: LogRow) -> None:
         events.add(row)
         if not quiet:
             words = [f"{name} {value:.4f}" for name, value in row.items() if name not in ("update", "epoch", "seconds")]
@@ -138,7 +165,7 @@ def _told(quiet: bool, events: _Events) -> Callable[[Row], None]:
     return told
 
 
-def _said(options: argparse.Namespace, done: Trained, file: Path, left: list[str]) -> None:
+def _said(options: argparse.Namespace, done: TrainingResult, file: Path, left: list[str]) -> None:
     best = done.rows[done.best] if done.best is not None else {}
     if options.json:
         print_json(
@@ -151,9 +178,11 @@ def _said(options: argparse.Namespace, done: Trained, file: Path, left: list[str
     ]
     rows.append(("last", *(number(done.rows[-1].get(name)) for name in ("update", "ade", "fde"))))
     caption = f"{done.updates} updates in {done.seconds:.0f} s{', stopped early' if done.stopped else ''}; on {file}"
-    print_table(f"{options.what}, best of 20 on what is watched", ("", "update", "ADE [m]", "FDE [m]"), rows, caption)
+    print_table(
+        f"{options.what}, best of 20 on the validation data", ("", "update", "ADE [m]", "FDE [m]"), rows, caption
+    )
     from crowdbot.prediction import WEIGHTS_FIELDS
 
     data = " ".join(left) or "PATH"
     said = f"--predictor {options.what} --set {WEIGHTS_FIELDS[options.what]}={file}"
-    note(f"to score it: crowdbot predict {said} --samples 20 --data {data}")
+    note(f"evaluate with: crowdbot predict {said} --samples 20 --data {data}")

@@ -1,4 +1,4 @@
-"""``crowdbot validate``: hold the crowd models against experiments and write the page about it."""
+"""``crowdbot validate``: compare crowd models with experiments and write a page of results."""
 
 from __future__ import annotations
 
@@ -10,26 +10,28 @@ from .output import add_json, note, print_json, print_table, progress
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("--models", metavar="A,B", help="which models, by name or address (default: all)")
-    parser.add_argument("--data", type=Path, metavar="DIR", help="folder of recordings to compare with")
+    parser.add_argument("--models", metavar="A,B", help="models, by name or address (default: all)")
     parser.add_argument(
-        "--out", type=Path, default=Path("validate"), metavar="DIR", help="folder of the page (default validate)"
+        "--data", type=Path, metavar="DIR", help="folder of reference recordings (default: published curves only)"
     )
-    parser.add_argument("--quick", action="store_true", help="few people and short runs, to see that it works")
+    parser.add_argument(
+        "--out", type=Path, default=Path("validate"), metavar="DIR", help="output folder (default: validate)"
+    )
+    parser.add_argument("--quick", action="store_true", help="small and short runs, for a test of the installation")
     add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:
     """Run the checks, write the page and print the table."""
-    from crowdbot.validation import CHECKS, chosen, validate, write_page
+    from crowdbot.validation import CHECKS, select_models, validate, write_page
 
-    models, skipped = chosen([name for name in (options.models or "").split(",") if name])
+    models, skipped = select_models([name for name in (options.models or "").split(",") if name])
     kept = options.out / "validation"
     try:
         with progress(options.json) as report:
             done = validate(models, kept, options.data, options.quick, report, skipped)
     except KeyboardInterrupt:
-        note(f"what is done is kept in {kept}; the same command goes on from there")
+        note(f"results are stored in {kept}; run the same command again to resume")
         raise
     page = write_page(done, options.out, _command(options))
     if options.json:
@@ -39,7 +41,7 @@ def main(options: argparse.Namespace) -> int:
     for model, checks in done.outcomes.items():
         wrong = [c.title for c in CHECKS if not checks[c.name].verdict.passed]
         rows.append((model, f"{len(CHECKS) - len(wrong)} of {len(CHECKS)}", ", ".join(wrong) or "-"))
-    print_table("validation", ("model", "passed", "criteria that do not hold"), rows)
+    print_table("validation", ("model", "passed", "failed criteria"), rows)
     for model, why in skipped.items():
         print(f"not run   {model}: {why}")
     print(f"page      {page}")
@@ -47,7 +49,7 @@ def main(options: argparse.Namespace) -> int:
 
 
 def _command(options: argparse.Namespace) -> str:
-    """Return the words that make the same page, without paths of this machine."""
+    """Return the command that generates the page, without local paths."""
     words = ["crowdbot validate"]
     if options.models:
         words.append(f"--models {options.models}")

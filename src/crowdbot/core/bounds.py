@@ -1,4 +1,4 @@
-"""Bounds: what a number may be, and the one sentence that tells all of it."""
+"""Bounds: the range of allowed numbers, and its text for messages."""
 
 from __future__ import annotations
 
@@ -15,42 +15,42 @@ __all__ = ["Bounds", "check_number"]
 
 @dataclass(frozen=True)
 class Bounds:
-    """The lowest and the highest number that is allowed, of which either may be missing; never NaN or infinity.
+    """The range of allowed numbers; each end is optional. NaN and infinity are never allowed.
 
     Fields:
-        unit: of the number, for people.
-        at_least, above: the lowest number, or what it must be above.
-        at_most, below: the highest number, or what it must be below.
-        whole: whether it must be a whole number.
+        unit: of the number, for messages.
+        min, exclusive_min: lower end, allowed itself or not.
+        max, exclusive_max: upper end, allowed itself or not.
+        whole: whether the number must be whole.
 
-    >>> Bounds("s", above=0.0, at_most=60.0).allowed(), Bounds("m", at_least=0.0).allowed()
+    >>> Bounds("s", exclusive_min=0.0, max=60.0).allowed(), Bounds("m", min=0.0).allowed()
     ('above 0 s and at most 60 s', 'finite and at least 0 m, without an upper limit')
-    >>> Bounds(at_least=1, at_most=9, whole=True).allowed(), Bounds().allowed()
+    >>> Bounds(min=1, max=9, whole=True).allowed(), Bounds().allowed()
     ('a whole number of at least 1 and at most 9', 'finite')
     """
 
     unit: str = ""
-    at_least: float | None = None
-    above: float | None = None
-    at_most: float | None = None
-    below: float | None = None
+    min: float | None = None
+    exclusive_min: float | None = None
+    max: float | None = None
+    exclusive_max: float | None = None
     whole: bool = False
 
     def holds(self, value: Any) -> bool:
-        """Return whether a number, or every one of an array, is allowed."""
+        """Return whether a number, or every number of an array, is allowed."""
         if isinstance(value, int | float):
-            return bool(self._right(value))
+            return bool(self._contains(value))
         try:
             numbers = np.asarray(value, dtype=np.float64)
         except (TypeError, ValueError):
             return False
-        return bool(np.all(self._right(numbers)))
+        return bool(np.all(self._contains(numbers)))
 
     def allowed(self, high_first: bool = False) -> str:
-        """Return what is allowed, after ``must be``; the upper end comes first when that is asked for."""
-        low = [f"{word} {self._amount(end)}" for word, end in (("above", self.above), ("at least", self.at_least))
+        """Return the text that follows ``must be`` in a message, with the upper end first if ``high_first``."""
+        low = [f"{word} {self._amount(end)}" for word, end in (("above", self.exclusive_min), ("at least", self.min))
                if end is not None]  # fmt: skip
-        high = [f"{word} {self._amount(end)}" for word, end in (("below", self.below), ("at most", self.at_most))
+        high = [f"{word} {self._amount(end)}" for word, end in (("below", self.exclusive_max), ("at most", self.max))
                 if end is not None]  # fmt: skip
         ends = " and ".join([*high, *low] if high_first else [*low, *high])
         if self.whole:
@@ -62,12 +62,14 @@ class Bounds:
     def worst(self, value: Any) -> float:
         """Return the first number of a value that is not allowed."""
         numbers = np.asarray(value, dtype=np.float64)
-        return float(numbers[~self._right(numbers)].flat[0])
+        return float(numbers[~self._contains(numbers)].flat[0])
 
-    def _right(self, numbers: Any) -> Any:
-        right = (numbers > _or(self.above, -math.inf)) & (numbers < _or(self.below, math.inf))
-        right = right & (numbers >= _or(self.at_least, -math.inf)) & (numbers <= _or(self.at_most, math.inf))
-        return right & (numbers == np.floor(numbers)) if self.whole else right
+    def _contains(self, numbers: Any) -> Any:
+        inside = (numbers > _default(self.exclusive_min, -math.inf)) & (
+            numbers < _default(self.exclusive_max, math.inf)
+        )
+        inside = inside & (numbers >= _default(self.min, -math.inf)) & (numbers <= _default(self.max, math.inf))
+        return inside & (numbers == np.floor(numbers)) if self.whole else inside
 
     def _amount(self, value: float) -> str:
         number = f"{value:.0f}" if value == round(value) and abs(value) < 1e8 else f"{value:.6g}"
@@ -80,23 +82,25 @@ def check_number(
     value: Any,
     unit: str = "",
     *,
-    at_least: float | None = None,
-    above: float | None = None,
-    at_most: float | None = None,
-    below: float | None = None,
+    min: float | None = None,
+    exclusive_min: float | None = None,
+    max: float | None = None,
+    exclusive_max: float | None = None,
     whole: bool = False,
 ) -> None:
-    """Raise :class:`InputError` unless a number of ``owner``, or each of an array, is allowed; see :class:`Bounds`.
+    """Raise :class:`InputError` unless a number of ``owner``, or every number of an array, is within the bounds.
 
-    >>> check_number("Lidar2D", "rate", 0.0, "Hz", above=0.0)
+    The arguments are the fields of :class:`Bounds`.
+
+    >>> check_number("Lidar2D", "rate", 0.0, "Hz", exclusive_min=0.0)
     Traceback (most recent call last):
     crowdbot.core.errors.InputError: Lidar2D: rate = 0.0 Hz must be finite and above 0 Hz, without an upper limit
     """
-    bounds = Bounds(unit, at_least, above, at_most, below, whole)
+    bounds = Bounds(unit, min, exclusive_min, max, exclusive_max, whole)
     if not bounds.holds(value):
         shown = f"{value} {unit}".rstrip()
         raise InputError(f"{owner}: {name} = {shown} must be {bounds.allowed()}")
 
 
-def _or(value: float | None, other: float) -> float:
+def _default(value: float | None, other: float) -> float:
     return other if value is None else value

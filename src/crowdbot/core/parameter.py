@@ -1,4 +1,4 @@
-"""Parameters of models: one table serves docs, command line, XML and calibration.
+"""Parameters of models: one table for docs, command line, XML and calibration.
 
 A model is a frozen dataclass whose fields are made by :func:`parameter`. A value is a number for all agents, or an
 array that broadcasts to ``[E, A]``.
@@ -24,7 +24,7 @@ PerAgent = float | NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Parameter:
-    """One row of a parameter table: ``low`` and ``high`` are the calibration box, ``bounds`` what is allowed."""
+    """One row of a parameter table: ``low`` and ``high`` limit calibration, ``min`` and ``max`` any value."""
 
     name: str
     unit: str
@@ -32,13 +32,13 @@ class Parameter:
     low: float
     high: float
     source: str
-    minimum: float = 0.0
-    maximum: float | None = None
+    min: float = 0.0
+    max: float | None = None
 
     def bounds(self, largest: float | None = None) -> Bounds:
-        """Return what is allowed; ``largest`` is the highest number when the parameter has none of its own."""
-        highest = largest if self.maximum is None else self.maximum
-        return Bounds("" if self.unit == "1" else self.unit, at_least=self.minimum, at_most=highest)
+        """Return the allowed range; ``largest`` is its upper end if the parameter has none of its own."""
+        highest = largest if self.max is None else self.max
+        return Bounds("" if self.unit == "1" else self.unit, min=self.min, max=highest)
 
 
 def parameter(
@@ -48,20 +48,20 @@ def parameter(
     low: float,
     high: float,
     source: str,
-    minimum: float = 0.0,
-    maximum: float | None = None,
+    min: float = 0.0,
+    max: float | None = None,
 ) -> Any:
     """Make the dataclass field of one parameter.
 
     Args:
-        default: value when none is given.
-        unit: SI unit, ``1`` when it has none.
-        low, high: calibration box.
+        default: value if none is given.
+        unit: SI unit, ``1`` if it has none.
+        low, high: limits for calibration.
         source: where the default comes from.
-        minimum: smallest allowed value.
-        maximum: largest allowed value, None when it has none of its own.
+        min: smallest allowed value.
+        max: largest allowed value; None leaves it to the model.
     """
-    row = Parameter("", unit, default, low, high, source, minimum, maximum)
+    row = Parameter("", unit, default, low, high, source, min, max)
     return dataclasses.field(default=default, metadata={"parameter": row})
 
 

@@ -19,7 +19,7 @@ from collections.abc import Callable
 from typing import Any
 
 from numba.core import compiler_lock, config
-from numba.np.ufunc.parallel import threading_layer
+from numba.np.ufunc import parallel
 
 __all__ = ["ParallelKernel", "prefer_safe_layers"]
 
@@ -29,6 +29,7 @@ PATIENCE = 10.0
 
 _entry = threading.RLock()
 _compiling: Any = compiler_lock.global_compiler_lock
+_layer: Any = parallel.threading_layer
 _running: set[object] = set()
 
 
@@ -85,7 +86,7 @@ class ParallelKernel:
 def _is_thread_safe() -> bool:
     """Return whether numba has started its threads, on a layer that several Python threads may enter."""
     try:
-        return bool(threading_layer() != "workqueue")
+        return bool(_layer() != "workqueue")
     except ValueError:  # not started yet
         return False
 

@@ -6,6 +6,7 @@ import concurrent.futures.process
 import contextlib
 import multiprocessing
 import os
+import signal
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
@@ -88,7 +89,9 @@ def _in_processes(function: Callable[[Job], Result], jobs: Sequence[Job], worker
     left = dict(enumerate(jobs))
     for _ in range(ATTEMPTS):
         with _threads_shared(workers):
-            pool = concurrent.futures.ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"))
+            pool = concurrent.futures.ProcessPoolExecutor(
+                workers, multiprocessing.get_context("spawn"), initializer=_ignore_interrupts
+            )
             running = {pool.submit(function, job): number for number, job in left.items()}
         try:
             for done in concurrent.futures.as_completed(running):
@@ -96,6 +99,10 @@ def _in_processes(function: Callable[[Job], Result], jobs: Sequence[Job], worker
                     result = done.result()
                     del left[running[done]]
                     yield running[done], result
+        except BaseException:  # an interruption, or the caller stops early: do not wait for running jobs
+            for process in list((pool._processes or {}).values()):
+                process.terminate()
+            raise
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
         if not left:
@@ -104,6 +111,11 @@ def _in_processes(function: Callable[[Job], Result], jobs: Sequence[Job], worker
         f"{len(left)} of {len(jobs)} jobs were lost: their processes died {ATTEMPTS} times (out of memory?);"
         " use fewer workers"
     )
+
+
+def _ignore_interrupts() -> None:
+    """Leave Ctrl-C to the main process, which ends this one."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 @contextlib.contextmanager

@@ -2,11 +2,11 @@
 
 from .forecast import Forecast
 from .load import FORMATS, load
-from .motion import bridged, observed_velocity, slice_rows, steady_velocity
+from .mcap_reader import MCAP_MAGIC, McapError, McapOpcode, McapReader, has_summary, read_attachment
+from .motion import fill_gaps, observed_velocity, slice_rows, steady_velocity
 from .protocols import PROTOCOLS
 from .recording import Recording
 from .save import save
-from .tape import MAGIC, Kind, Tape, TapeError, attachment, is_whole
 from .time_base import RowRateError
 from .trajectories import PrimaryScene, Trajectories
 from .ucy import TO_METRES as UCY_TO_METRES
@@ -14,23 +14,23 @@ from .windows import Windows
 
 __all__ = [
     "FORMATS",
-    "MAGIC",
+    "MCAP_MAGIC",
     "PROTOCOLS",
     "UCY_TO_METRES",
     "Forecast",
-    "Kind",
+    "McapError",
+    "McapOpcode",
+    "McapReader",
     "PrimaryScene",
     "Recording",
     "RowRateError",
-    "Tape",
-    "TapeError",
     "Trajectories",
     "Windows",
-    "attachment",
-    "bridged",
-    "is_whole",
+    "fill_gaps",
+    "has_summary",
     "load",
     "observed_velocity",
+    "read_attachment",
     "save",
     "slice_rows",
     "steady_velocity",

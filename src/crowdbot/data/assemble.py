@@ -54,7 +54,7 @@ def assemble(
     """
     name = source.name
     if np.size(frame) > MAX_ROWS:
-        raise DataError(f"{name} has {np.size(frame)} rows, more than the {MAX_ROWS} that are read; cut it in time")
+        raise DataError(f"{name} has {np.size(frame)} rows, more than the limit of {MAX_ROWS}; split it in time")
     frames = integers(frame, "frame", name, line)
     ids = integers(id, "id", name, line)
     place = [floats(x, "x", name), floats(y, "y", name)]

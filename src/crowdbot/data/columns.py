@@ -1,4 +1,4 @@
-"""Named columns under the names that people give them: ids, frames or times, positions, labels."""
+"""Named columns and their usual names: ids, frames or times, positions, labels."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ NAMES = {meaning: names.split() for meaning, names in _NAMES.items()}
 
 WITH_UNIT = re.compile(r"^(.*?[a-z])[\s_/]*[\[(/_\s]\s*(mm|cm|m|px)\s*[\])]?$")
 SLOWEST, FASTEST = 1000.0, 1e-4
-"""Rows of a track are between so many seconds apart; anything else is no time in seconds."""
+"""Range of the time step [s]; other values are not times in seconds."""
 
 
 def find_columns(names: list[str]) -> tuple[dict[str, str], str]:
-    """Return the column of each known meaning, and the unit that x and y carry in their names.
+    """Return the column of each known quantity, and the unit in the names of x and y.
 
     >>> find_columns(["ID", "Frame", "x [cm]", "y [cm]"])
     ({'id': 'ID', 'frame': 'Frame', 'x': 'x [cm]', 'y': 'y [cm]'}, 'cm')
@@ -63,7 +63,7 @@ def find_columns(names: list[str]) -> tuple[dict[str, str], str]:
 
 
 def check_columns(found: dict[str, str], names: list[str], name: str) -> None:
-    """Raise :class:`DataError` with the missing columns, those there are, and what they may be called."""
+    """Raise :class:`DataError` with the missing columns, the existing ones, and the accepted names."""
     missing = [meaning for meaning in ("id", "x", "y") if meaning not in found]
     if not {"frame", "time"} & set(found):
         missing.append("frame")
@@ -77,7 +77,7 @@ def numbers(values: NDArray[Any], column: str, name: str, line: Lines) -> NDArra
     """Return a column as float64; an empty cell is NaN.
 
     Raises:
-        DataError: a cell holds something else than a number.
+        DataError: a cell is not a number.
     """
     try:
         return values.astype(np.float64)
@@ -90,7 +90,7 @@ def numbers(values: NDArray[Any], column: str, name: str, line: Lines) -> NDArra
 
 
 def ids(values: NDArray[Any], column: str, name: str, line: Lines) -> tuple[NDArray[np.int64], str]:
-    """Return ids; words are numbered from 1 in the order of appearance, and the note says so."""
+    """Return ids and a note; words are numbered from 1 in order of appearance."""
     read = [_number(value) for value in values.tolist()]
     empty = next((index for index, value in enumerate(read) if value is not None and np.isnan(value)), None)
     if empty is not None:
@@ -131,7 +131,7 @@ def frames_of_times(
         DataError: a time is missing, or the times of a track are not regular.
     """
     if len(time) == 0:
-        raise DataError(f"{name} holds no row of any track")
+        raise DataError(f"{name} has no rows")
     if not np.all(np.isfinite(time)):
         raise DataError(f"{where(name, int(np.argmin(np.isfinite(time))), line)}: its time is missing")
     order = np.lexsort((time, id))
@@ -140,7 +140,7 @@ def frames_of_times(
         raise DataError(f"{name}: no track has rows at two times, so its frame rate is unknown; give fps")
     dt = float(np.median(steps)) if fps is None else 1.0 / fps
     if not FASTEST <= dt <= SLOWEST:
-        raise DataError(f"{name}: rows of a track are {dt:.4g} apart in time; times must be in seconds")
+        raise DataError(f"{name}: the time step is {dt:.4g}; times must be in seconds")
     since = time - time.min()
     frame = np.rint(since / dt)
     if fps is None:
@@ -150,8 +150,8 @@ def frames_of_times(
     if off.max() > 0.25 * dt:
         index = int(np.argmax(off))
         raise DataError(
-            f"{where(name, index, line)}: time {time[index]} is {off[index]:.3g} s away from steps of {dt:.4g} s;"
-            " give fps, or bring the tracks to regular times first"
+            f"{where(name, index, line)}: time {time[index]} is {off[index]:.3g} s off a regular step of {dt:.4g} s;"
+            " give fps, or resample the tracks to regular times"
         )
     return frame.astype(np.int64), _short(1.0 / dt)
 
@@ -166,6 +166,6 @@ def _number(value: Any) -> float | None:
 
 
 def _short(rate: float) -> float:
-    """Return the rate without the last digits that dividing times has left: 2.5000000000000004 is 2.5."""
+    """Return the rate without rounding errors: 2.5000000000000004 is 2.5."""
     short = float(f"{rate:.12g}")
     return short if abs(short - rate) < 1e-14 * rate else rate

@@ -1,8 +1,8 @@
-"""Our own recordings of trials, MCAP with ROS 2 messages: the people and the robots of an episode as tracks.
+"""Episodes, our recordings of trials: MCAP with ROS 2 messages; people and robots become tracks.
 
-Read are ``/people`` (people_msgs/msg/People; a person's name is the id), every ``.../odom`` (nav_msgs/msg/Odometry, a
-robot, pose in the frame of the world), and of the metadata record ``crowdbot`` the ``walls`` (JSON list of rings) and
-the ids of ``robots``. The file of a run that was killed is read as far as it goes.
+The reader uses ``/people`` (people_msgs/msg/People, the name is the id), every ``.../odom`` (nav_msgs/msg/Odometry of
+a robot, in the world frame), and ``walls`` (JSON list of rings) and ``robots`` (ids) of the metadata record
+``crowdbot``. The file of a killed run is read up to its last complete record. Frames number the messages on /people.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError
 
 from .assemble import assemble
+from .mcap_reader import McapChannel, McapError, McapReader, has_summary
 from .reader import Reader, ReadOptions
 from .source import Source, parse_errors
-from .tape import Tape, TapeError, Topic, is_whole
 from .trajectories import Trajectories
 
 __all__ = ["READER"]
@@ -31,8 +31,8 @@ SECOND = 1_000_000_000
 
 
 @dataclass
-class _Heard:
-    """What the messages say: stamps [ns] of /people, persons with the number of their message, poses by topic."""
+class _EpisodeData:
+    """Content of the messages: stamps [ns] of /people, persons with the number of their message, poses by topic."""
 
     stamps: list[int] = field(default_factory=list)
     persons: list[tuple[int, str, float, float]] = field(default_factory=list)
@@ -43,15 +43,15 @@ class _Heard:
 
 
 def read(source: Source, options: ReadOptions) -> Trajectories:
-    """Read people and robots; robots without an id get one above all people's, in the order of their channels."""
+    """Read people and robots; robots without an id get ids above those of people, in channel order."""
     with parse_errors(source, "MCAP"):
-        heard = _listen(source)
-    stamps = np.asarray(heard.stamps, dtype=np.int64)
+        messages = _read_messages(source)
+    stamps = np.asarray(messages.stamps, dtype=np.int64)
     period, frames = _frames(source.name, stamps)
-    message = np.asarray([person[0] for person in heard.persons], dtype=np.int64)
-    columns = [_numbered([person[1] for person in heard.persons]), frames[message]]
-    columns += [np.asarray([person[axis] for person in heard.persons]) for axis in (2, 3)]
-    robots = _robots(heard, stamps, frames, columns[0])
+    message = np.asarray([person[0] for person in messages.persons], dtype=np.int64)
+    columns = [_number_names([person[1] for person in messages.persons]), frames[message]]
+    columns += [np.asarray([person[axis] for person in messages.persons]) for axis in (2, 3)]
+    robots = _robots(messages, stamps, frames, columns[0])
     id, frame, x, y = (np.concatenate(parts) for parts in zip(columns, *robots, strict=True))
     return assemble(
         source,
@@ -62,51 +62,51 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         y=y,
         row_rate=SECOND / period,
         frame_step=1,
-        note="the run was killed before its end" if heard.cut else "",
-        walls=_walls(source.name, heard.walls),
+        note="the run was killed before its end" if messages.cut else "",
+        walls=_walls(source.name, messages.walls),
         robots=frozenset(int(robot[0][0]) for robot in robots),
     )
 
 
-def _listen(source: Source) -> _Heard:
+def _read_messages(source: Source) -> _EpisodeData:
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     store = get_typestore(Stores.ROS2_HUMBLE)
-    heard, wanted = _Heard(), dict[Topic, bool]()
+    messages, wanted = _EpisodeData(), dict[McapChannel, bool]()
     with source.path.open("rb") as file:
-        tape = Tape(file)
+        tape = McapReader(file)
         for topic, _, data in tape.messages():
             if topic not in wanted:
-                wanted[topic] = _wanted(topic.topic, topic.kind)
+                wanted[topic] = _is_wanted(topic.topic, topic.kind)
                 if wanted[topic]:
                     types = get_types_from_msg(topic.text, topic.kind)
                     store.register({name: definition for name, definition in types.items() if name not in store.types})
             if wanted[topic]:
-                _take(heard, topic.topic, store.deserialize_cdr(data, topic.kind))
+                _add_message(messages, topic.topic, store.deserialize_cdr(data, topic.kind))
         known = tape.metadata.get(METADATA, {})
-        if "format" not in known and not is_whole(file):
-            raise TapeError("it has no summary section")
+        if "format" not in known and not has_summary(file):
+            raise McapError("it has no summary section")
     if not any(topic.topic == PEOPLE for topic, chosen in wanted.items() if chosen):
         held = ", ".join(sorted(topic.topic for topic in tape.topics.values())) or "no topics"
         raise DataError(f"{source.name} has no topic {PEOPLE} of {PEOPLE_TYPE}; it has {held}")
-    heard.cut = "format" in known and ENDING not in tape.metadata and "digest" not in known
-    heard.walls, heard.robots = known.get("walls", "[]"), known.get("robots", "[]")
-    return heard
+    messages.cut = "format" in known and ENDING not in tape.metadata and "digest" not in known
+    messages.walls, messages.robots = known.get("walls", "[]"), known.get("robots", "[]")
+    return messages
 
 
-def _wanted(topic: str, kind: str) -> bool:
+def _is_wanted(topic: str, kind: str) -> bool:
     return (topic == PEOPLE and kind == PEOPLE_TYPE) or (topic.endswith(ODOMETRY_ENDING) and kind == ODOMETRY_TYPE)
 
 
-def _take(heard: _Heard, topic: str, message: Any) -> None:
+def _add_message(messages: _EpisodeData, topic: str, message: Any) -> None:
     stamp = message.header.stamp.sec * SECOND + message.header.stamp.nanosec
     if topic == PEOPLE:
-        number = len(heard.stamps)
-        heard.stamps.append(stamp)
-        heard.persons += [(number, p.name, p.position.x, p.position.y) for p in message.people]
+        number = len(messages.stamps)
+        messages.stamps.append(stamp)
+        messages.persons += [(number, p.name, p.position.x, p.position.y) for p in message.people]
     else:
         place = message.pose.pose.position
-        heard.poses.setdefault(topic, []).append((stamp, place.x, place.y))
+        messages.poses.setdefault(topic, []).append((stamp, place.x, place.y))
 
 
 def _frames(name: str, stamps: NDArray[np.int64]) -> tuple[float, NDArray[np.int64]]:
@@ -116,18 +116,18 @@ def _frames(name: str, stamps: NDArray[np.int64]) -> tuple[float, NDArray[np.int
     steps = np.diff(stamps)
     if np.any(steps <= 0):
         index = int(np.argmax(steps <= 0)) + 1
-        raise DataError(f"{name}: the stamp of message {index + 1} on {PEOPLE} is not after the one before")
+        raise DataError(f"{name}: the stamp of message {index + 1} on {PEOPLE} is not later than the previous one")
     period = float(np.median(steps))
     frames = np.rint((stamps - stamps[0]) / period).astype(np.int64)
     if np.any(np.diff(frames) == 0):
         raise DataError(
-            f"{name}: the stamps on {PEOPLE} are not regular, some are far nearer than {period / 1e6:.3g} ms"
+            f"{name}: the stamps on {PEOPLE} are not regular, some steps are far shorter than {period / 1e6:.3g} ms"
         )
     return period, frames
 
 
-def _numbered(names: list[str]) -> NDArray[np.int64]:
-    """Return the names as numbers; when one is a word, all are numbered from 1 in the order of appearance."""
+def _number_names(names: list[str]) -> NDArray[np.int64]:
+    """Return names as numbers; if one is a word, all are numbered from 1 in order of appearance."""
     if all(name.lstrip("-").isdecimal() and len(name) < 18 for name in names):
         return np.asarray([int(name) for name in names], dtype=np.int64)
     known = {name: number for number, name in enumerate(dict.fromkeys(names), 1)}
@@ -135,12 +135,12 @@ def _numbered(names: list[str]) -> NDArray[np.int64]:
 
 
 def _robots(
-    heard: _Heard, stamps: NDArray[np.int64], frames: NDArray[np.int64], people: NDArray[np.int64]
+    messages: _EpisodeData, stamps: NDArray[np.int64], frames: NDArray[np.int64], people: NDArray[np.int64]
 ) -> list[list[NDArray[Any]]]:
     """Return id, frame, x, y of every robot at the stamps of /people, interpolated between its own."""
     found = []
-    tracks = {topic: sorted(poses) for topic, poses in heard.poses.items() if poses}
-    for id, poses in zip(_robot_ids(heard, [*tracks], people), tracks.values(), strict=True):
+    tracks = {topic: sorted(poses) for topic, poses in messages.poses.items() if poses}
+    for id, poses in zip(_robot_ids(messages, [*tracks], people), tracks.values(), strict=True):
         own = np.asarray([pose[0] - int(stamps[0]) for pose in poses], dtype=np.float64)
         at = (stamps - stamps[0]).astype(np.float64)
         inside = (at >= own[0]) & (at <= own[-1])
@@ -150,10 +150,10 @@ def _robots(
     return found
 
 
-def _robot_ids(heard: _Heard, topics: list[str], people: NDArray[np.int64]) -> list[int]:
-    """Return the ids that the metadata gives to robots when they are good for all, else new ones above all people's."""
+def _robot_ids(messages: _EpisodeData, topics: list[str], people: NDArray[np.int64]) -> list[int]:
+    """Return the ids of robots in the metadata if all are valid, else new ids above those of people."""
     try:
-        known = {f"/{robot['name']}{ODOMETRY_ENDING}": robot["id"] for robot in json.loads(heard.robots)}
+        known = {f"/{robot['name']}{ODOMETRY_ENDING}": robot["id"] for robot in json.loads(messages.robots)}
     except (ValueError, TypeError, KeyError, RecursionError):
         known = {}
     ids = [known.get(topic) for topic in topics]

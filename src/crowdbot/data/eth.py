@@ -36,7 +36,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
     """Read an obsmat; when half of the numbers are above 50 they are taken as pixels."""
     values, line = source.table(8)
     if len(values) == 0:
-        raise DataError(f"{source.name} holds no row of any track")
+        raise DataError(f"{source.name} has no rows")
     x, y = values[:, 2], values[:, 4]
     pixels = bool(np.median(np.abs(values[:, 2:5:2])) > ROOM)
     return assemble(

@@ -1,4 +1,4 @@
-"""Forecast: where people are expected to be, as weighted samples."""
+"""Forecast: predicted positions as weighted samples."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class Forecast:
 
     Fields:
         position: ``[W, K, T, A, 2]`` [m]: windows, samples, future steps 1..T, people in the order of the past; 0
-            where a person was not predicted.
+            for people without a prediction.
         weight: ``[W, K]``, each row sums to 1.
         valid: ``[W, A]`` bool: people that were predicted (present at the last observed step).
         dt: time step [s].
-        predictor: name of what made it.
+        predictor: name of the predictor.
 
     Raises:
         InputError: the shapes do not fit, or a position of a predicted person is not finite.

@@ -36,7 +36,7 @@ def read_hdf5(source: Source, options: ReadOptions) -> Trajectories:
             found = ", ".join(table.dtype.names or ()) or "no named columns"
             raise DataError(f"{source.name}: table 'trajectory' lacks {', '.join(missing)}; it has {found}")
         if table.size > MAX_ROWS:
-            raise DataError(f"{source.name} has {table.size} rows, more than the {MAX_ROWS} that are read")
+            raise DataError(f"{source.name} has {table.size} rows, more than the limit of {MAX_ROWS}")
         columns: dict[str, Any] = {column: np.asarray(table[column]) for column in COLUMNS}
         fps = table.attrs.get("fps", file.attrs.get("fps"))
         unit = UNIT.search(str(table.attrs.get("x", "")))
@@ -65,10 +65,10 @@ def read_sqlite(source: Source, options: ReadOptions) -> Trajectories:
             )
         query = "SELECT id, frame, pos_x, pos_y FROM trajectory_data LIMIT ?"
         rows = base.execute(query, (MAX_ROWS + 1,)).fetchall()
-        told = dict(base.execute("SELECT key, value FROM metadata"))
+        metadata = dict(base.execute("SELECT key, value FROM metadata"))
         area = base.execute("SELECT wkt FROM geometry").fetchone() if "geometry" in held else None
     id, frame, x, y = (np.asarray(column) for column in zip(*rows, strict=True)) if rows else np.empty((4, 0))
-    fps = told.get("fps")
+    fps = metadata.get("fps")
     return assemble(
         source,
         options,

@@ -78,11 +78,11 @@ def load(
     check_units(units)
     options = ReadOptions(None if fps is None else check_fps(fps), units, time_base)
     source = Source.of(Path(path))
-    reader = next((reader for reader in _READERS if reader.name == format), None) or _sniffed(source)
+    reader = next((reader for reader in _READERS if reader.name == format), None) or _detect(source)
     return reader.read(source, options)
 
 
-def _sniffed(source: Source) -> Reader:
+def _detect(source: Source) -> Reader:
     for reader in _READERS:
         if reader.sniff(source):
             return reader

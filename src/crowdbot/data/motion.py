@@ -1,4 +1,4 @@
-"""How fast people were walking, as it can be seen in the rows of a window."""
+"""Velocities estimated from the observed rows of windows, and gap filling."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 
 from .windows import Windows
 
-__all__ = ["bridged", "observed_velocity", "slice_rows", "steady_velocity"]
+__all__ = ["fill_gaps", "observed_velocity", "slice_rows", "steady_velocity"]
 
 COMPANY = 8.0
-"""So many people of the window count beside a person's own rows: few rows of one track say little of its noise."""
+"""Weight of the errors of the whole window, in rows: few rows of one track say little about its noise."""
 TRUST = 20.0
-"""Power of the errors by which averages are weighed."""
+"""Exponent of the errors in the weights of averages."""
 CHUNK_NUMBERS = 2_000_000
-"""About so many numbers are compared at once."""
+"""Size of a chunk [numbers]."""
 
 
 def slice_rows(windows: Windows, first: int, last: int) -> Windows:
@@ -30,15 +30,15 @@ def slice_rows(windows: Windows, first: int, last: int) -> Windows:
     )
 
 
-def bridged(windows: Windows) -> Windows:
-    """Return the windows with the holes of every track filled by a straight, even walk; ends are left as they are.
+def fill_gaps(windows: Windows) -> Windows:
+    """Return the windows with gaps inside tracks filled by linear interpolation.
 
     >>> import numpy as np
     >>> here = np.array([True, False, False, True, False])[None, :, None]
     >>> track = np.array([0.0, 0.0, 0.0, 6.0, 0.0])[None, :, None, None] * np.ones(2)
     >>> nobody = np.zeros((1, 1), dtype=bool)
     >>> windows = Windows(track, here, nobody, nobody, np.array([[7]]), np.arange(5)[None], 0.4, "all", "street")
-    >>> bridged(windows).position[0, :, 0, 0].tolist()
+    >>> fill_gaps(windows).position[0, :, 0, 0].tolist()
     [0.0, 2.0, 4.0, 6.0, 0.0]
     """
     present = windows.present
@@ -58,12 +58,12 @@ def bridged(windows: Windows) -> Windows:
 
 
 def observed_velocity(past: Windows, displacements: int = 1) -> NDArray[np.float64]:
-    """Return ``[W, A, 2]`` [m/s]: the mean velocity of every person over the last ``displacements`` steps.
+    """Return the mean velocity of every person over the last ``displacements`` steps, ``[W, A, 2]`` [m/s].
 
-    Holes are bridged; a track that begins later counts from its begin. Who was seen at the last row only, or is not
-    there at the last row, gets 0.
+    Gaps are filled; a track that begins later counts from its first row. People who are present at the last row only,
+    or absent at the last row, get 0.
     """
-    known = bridged(past)
+    known = fill_gaps(past)
     now = known.position.shape[1] - 1
     first = max(0, now - displacements)
     since = first + np.argmax(known.present[:, first:], axis=1)
@@ -74,12 +74,11 @@ def observed_velocity(past: Windows, displacements: int = 1) -> NDArray[np.float
 
 
 def steady_velocity(past: Windows) -> NDArray[np.float64]:
-    """Return ``[W, A, 2]`` [m/s]: a velocity that averages as much as the noise of the tracks asks for.
+    """Return a velocity averaged according to the noise of the tracks, ``[W, A, 2]`` [m/s].
 
-    The means of the last 1, 2, 3, ... displacements are weighed by how well each would have foretold the observed
-    rows from earlier ones: on smooth tracks the last displacement wins, on noisy or swaying ones a long mean. The
-    errors of everyone in the window are shared, as all are seen by the same eye. Holes are bridged; who was seen at
-    the last row only, or is not there at the last row, gets 0.
+    The means of the last 1, 2, 3, ... displacements are weighted by how well each predicts observed rows from earlier
+    ones: smooth tracks use the last displacement, noisy or swaying ones a long mean. The errors of all people in the
+    window are pooled. Gaps are filled; people who are present at the last row only, or absent at the last row, get 0.
 
     >>> import numpy as np
     >>> x = np.array([0.0, 1.1, 1.9, 3.1, 3.9, 5.1, 5.9, 7.1])  # one metre a row, off by 0.1 m to and fro
@@ -89,29 +88,29 @@ def steady_velocity(past: Windows) -> NDArray[np.float64]:
     >>> round(float(observed_velocity(windows)[0, 0, 0]), 2), round(float(steady_velocity(windows)[0, 0, 0]), 2)
     (1.2, 1.0)
     """
-    known = bridged(past)
+    known = fill_gaps(past)
     W, T, A, _ = known.position.shape
     velocity = np.zeros((W, A, 2))
     lengths = _lengths(T - 1)
     size = max(1, CHUNK_NUMBERS // max(1, T * len(lengths) * A * 2))
     for first in range(0, W, size):
         part = slice(first, first + size)
-        velocity[part] = _weighed(known.position[part], known.present[part], lengths)
+        velocity[part] = _weighted_mean(known.position[part], known.present[part], lengths)
     return velocity / past.dt
 
 
 def _lengths(most: int) -> NDArray[np.int64]:
-    """Return how many displacements are averaged: every number up to 7, then in steps of a third."""
+    """Return the numbers of displacements to average: all up to 7, then growing by a third."""
     found = list(range(1, min(most, 7) + 1))
     while found and found[-1] < most:
         found.append(min(most, max(found[-1] + 1, found[-1] * 4 // 3)))
     return np.asarray(found, dtype=np.int64)
 
 
-def _weighed(
+def _weighted_mean(
     position: NDArray[np.float64], present: NDArray[np.bool_], lengths: NDArray[np.int64]
 ) -> NDArray[np.float64]:
-    """Return the weighed mean displacement ``[W, A, 2]`` [m] of bridged tracks."""
+    """Return the weighted mean displacement ``[W, A, 2]`` [m] of tracks without gaps."""
     rows = position.shape[1]
     if rows < 2:
         return np.zeros_like(position[:, 0])
@@ -121,7 +120,7 @@ def _weighed(
     since = np.maximum(row[:, None] - lengths, 0)
     count = np.clip(row[:, None, None] - begin[:, None, None], 1, lengths[:, None])  # [W, T, K, A]
     mean = (whole[:, :, None] - whole[:, since]) / count[..., None]
-    error, seen = _hindsight(whole, present, mean, begin)
+    error, seen = _hindcast_errors(whole, present, mean, begin)
     people = np.maximum(np.sum(seen > 0.0, axis=-1), 1)[:, None]
     usual = np.sum(error, axis=-1) / people, np.sum(seen, axis=-1)[:, None] / people
     shared = (error + COMPANY * usual[0][..., None]) / np.maximum(seen[:, None] + COMPANY * usual[1][..., None], 1.0)
@@ -132,10 +131,10 @@ def _weighed(
     return np.where(present[:, -1, :, None], best, 0.0)
 
 
-def _hindsight(
+def _hindcast_errors(
     whole: NDArray[np.float64], present: NDArray[np.bool_], mean: NDArray[np.float64], begin: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the squared errors ``[W, K, A]`` [m²] with which means foretell later rows, and how many ``[W, A]``."""
+    """Return squared prediction errors of the means on observed rows ``[W, K, A]`` [m²], and counts ``[W, A]``."""
     W, T, A = present.shape
     error, seen = np.zeros((W, mean.shape[2], A)), np.zeros((W, A))
     walked = present & (np.arange(T)[:, None] > begin[:, None])  # a mean exists from the second row of a track on

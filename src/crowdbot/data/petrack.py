@@ -32,8 +32,8 @@ COLUMNS = re.compile(r"^#\s*id\s+frame\b", re.IGNORECASE)
 def sniff(source: Source) -> bool:
     """Return whether a header names PeTrack or its columns, or the rows are id frame x y z without a header."""
     header = _header(source)
-    told = any("petrack" in line.lower() or COLUMNS.match(line) or FPS.search(line) for line in header)
-    return source.numeric(5) or (told and source.numeric(4))
+    is_petrack = any("petrack" in line.lower() or COLUMNS.match(line) or FPS.search(line) for line in header)
+    return source.numeric(5) or (is_petrack and source.numeric(4))
 
 
 def read(source: Source, options: ReadOptions) -> Trajectories:
@@ -45,7 +45,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
     if values.shape[1] not in (4, 5):
         raise DataError(f"{source.name} has {values.shape[1]} columns, PeTrack has id frame x y and perhaps z")
     fps, unit = FPS.search(header), UNIT.search(header)
-    units, guess = (unit.group(1).lower(), "") if unit else _guessed_units(values)
+    units, guess = (unit.group(1).lower(), "") if unit else _guess_units(values)
     notes = [] if options.units else [guess]
     if fps is None and options.fps is None and not header:
         notes.append("no frame rate in the file: 16 frames a second are assumed, as in HERMES; fps overrides it")
@@ -56,7 +56,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         frame=values[:, 1],
         x=values[:, 2],
         y=values[:, 3],
-        fps=_told(fps, source.name) if fps else (None if header else HERMES_FPS),
+        fps=_parse_fps(fps, source.name) if fps else (None if header else HERMES_FPS),
         units=units,
         note="; ".join(note for note in notes if note),
         line=line,
@@ -67,14 +67,14 @@ def _header(source: Source) -> list[str]:
     return [line.strip() for line in source.lines if line.lstrip().startswith("#")]
 
 
-def _told(fps: re.Match[str], name: str) -> float:
+def _parse_fps(fps: re.Match[str], name: str) -> float:
     try:
         return float(fps.group(1))
     except ValueError:
         raise DataError(f"{name}: the header's frame rate {fps.group(1)!r} is not a number; give fps") from None
 
 
-def _guessed_units(values: NDArray[np.float64]) -> tuple[str, str]:
+def _guess_units(values: NDArray[np.float64]) -> tuple[str, str]:
     size = float(np.nanmax(np.abs(values[:, 2:4]), initial=0.0))
     units = "cm" if size > ROOM else "m"
     return units, f"no unit in the file: coordinates up to {size:.0f} are taken as {units}; units overrides it"

@@ -1,7 +1,7 @@
-"""Windows out of a recording, as the protocols of trajectory prediction cut them.
+"""Protocols of trajectory prediction: which windows of a recording are cut, and who is scored.
 
-Part of every protocol: windows of neighbouring rows, one for every last observed instant; a person is scored who is
-there at every row that the protocol asks for. Numbers of different protocols cannot be compared.
+Every protocol cuts one window of consecutive rows per last observed instant, and scores the people who are present at
+all rows that it requires. Results of different protocols are not comparable.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ from .windows import Windows
 __all__ = ["LATE", "PROTOCOLS", "cut_past", "cut_windows"]
 
 PROTOCOLS = {
-    "all": "every window with a person at all rows; holes where nobody is present are stepped over",
+    "all": "every window with a person at all rows; frames without people are skipped",
     "sgan": "as all, but windows with at least two such persons, as the loader of SGAN does (Gupta et al. 2018)",
     "partial": "futures that end early count from 2 rows on, at the rows there are (Schöller et al. 2020)",
     "timesplit": "windows of exact time steps, the last fifth in time (the split of Social Ways, Amirian et al. 2019)",
     "timesplit-train": "the first four fifths that timesplit leaves for training",
 }
 LATE = {
-    "skip": "people who came during the observed part are left out",
-    "extrapolate": "they are walked backwards with their first velocity, as company that is not scored",
+    "skip": "people who appear during the observed part are left out",
+    "extrapolate": "they are extrapolated backwards with their first velocity; they are not scored",
 }
 
 SHORTEST_FUTURE = 2
-"""Rows of future from which protocol ``partial`` counts a person."""
+"""Fewest future rows of a scored person in protocol ``partial``."""
 MAX_BYTES = 4 * 1024**3
-"""Windows that would fill more memory are refused."""
+"""Largest memory of windows [bytes]."""
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -44,7 +44,7 @@ Bools = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class _Rows:
-    """A recording by runs: rows by id, then frame, and whether each belongs to a robot."""
+    """The rows of a recording by id, then frame, with their runs, and whether each is a robot."""
 
     runs: Runs
     id: Integers
@@ -69,11 +69,11 @@ def cut_windows(
     scored = (rows.runs.behind >= observe) & (rows.runs.ahead >= need) & ~rows.robot
     if not np.any(scored):
         raise DataError(_why_none(tracks, rows, observe, need, protocol))
-    scored = _admitted(tracks, rows, scored, protocol)
+    scored = _apply_protocol(tracks, rows, scored, protocol)
     if near is not None:
         scored = _near_robot(tracks, rows, scored, near)
     chosen = np.unique(rows.runs.instant[scored])
-    return _filled(tracks, rows, chosen, scored, observe, predict, protocol, late)
+    return _fill_windows(tracks, rows, chosen, scored, observe, predict, protocol, late)
 
 
 def cut_past(tracks: TrackTable, observe: int, frame: int | None, late: str) -> Windows:
@@ -92,7 +92,7 @@ def cut_past(tracks: TrackTable, observe: int, frame: int | None, late: str) -> 
             f" asked for, and the longest there has {rows.runs.behind[here].max()}"
         )
     chosen = np.asarray([instant])
-    return _filled(tracks, rows, chosen, np.zeros(len(here), np.bool_), observe, 1, "none", late)[0]
+    return _fill_windows(tracks, rows, chosen, np.zeros(len(here), np.bool_), observe, 1, "none", late)[0]
 
 
 def _check(tracks: TrackTable, observe: int, predict: int, protocol: str, near: float | None, late: str) -> None:
@@ -112,8 +112,8 @@ def _check(tracks: TrackTable, observe: int, predict: int, protocol: str, near: 
         raise DataError(f"{tracks.name} is in pixels, near is in metres; turn it into metres first")
 
 
-def _admitted(tracks: TrackTable, rows: _Rows, scored: Bools, protocol: str) -> Bools:
-    """Return who is scored after the protocol has chosen among the windows."""
+def _apply_protocol(tracks: TrackTable, rows: _Rows, scored: Bools, protocol: str) -> Bools:
+    """Return who is scored in the windows that the protocol selects."""
     instants = rows.runs.instant
     if protocol == "sgan":
         crowd = np.bincount(instants[scored], minlength=len(rows.runs.frames))
@@ -153,7 +153,7 @@ def _shortest(observe: int, late: str) -> int:
     return observe if late == "skip" else min(2, observe)
 
 
-def _filled(
+def _fill_windows(
     tracks: TrackTable,
     rows: _Rows,
     chosen: Integers,
@@ -215,16 +215,16 @@ def _part(
     position = np.zeros((shape[0], len(offsets), shape[1], 2))
     present = np.zeros(position.shape[:3], np.bool_)
     for step, offset in enumerate(offsets):
-        there, place = _places(rows, members, offset)
+        there, place = _positions(rows, members, offset)
         position[window[there], step, slot[there]] = place
         present[window[there], step, slot[there]] = True
     return position, present
 
 
-def _places(rows: _Rows, members: NDArray[np.intp], offset: int) -> tuple[Bools, Floats]:
-    """Return which members have a place ``offset`` rows after the last observed one, and these places [n, 2].
+def _positions(rows: _Rows, members: NDArray[np.intp], offset: int) -> tuple[Bools, Floats]:
+    """Return which members have a position ``offset`` rows after the last observed row, and the positions [n, 2].
 
-    Every member has one at observed rows: before the begin of a run it walks backwards with its first velocity.
+    Observed rows before the start of a run are extrapolated backwards with its first velocity.
     """
     if offset > 0:
         there = rows.runs.ahead[members] >= offset
@@ -240,7 +240,7 @@ def _places(rows: _Rows, members: NDArray[np.intp], offset: int) -> tuple[Bools,
 
 
 def _frames(tracks: TrackTable, rows: _Rows, chosen: Integers, observe: int, predict: int, protocol: str) -> Integers:
-    """Return the frames [W, observe + predict]; after the end of the file they go on in steps."""
+    """Return the frames [W, observe + predict]; they continue after the end of the file."""
     offsets = np.arange(1 - observe, predict + 1)
     frames, step = rows.runs.frames, tracks.frame_step
     if protocol.startswith("timesplit"):
@@ -251,10 +251,10 @@ def _frames(tracks: TrackTable, rows: _Rows, chosen: Integers, observe: int, pre
 
 
 def _why_none(tracks: TrackTable, rows: _Rows, observe: int, need: int, protocol: str) -> str:
-    """Return why no person can be scored, with the numbers that tell the user what to change."""
+    """Return the reason why no person can be scored, with the lengths of the tracks."""
     people = ~rows.robot
     if not np.any(people):
-        return f"{tracks.name} holds robots only, there is nobody to predict"
+        return f"{tracks.name} has only robots, there are no people to predict"
     longest = int(rows.runs.behind[people].max())
     lengths = np.unique(rows.id[people], return_counts=True)[1]
     crowd = np.unique(rows.runs.instant, return_counts=True)[1]

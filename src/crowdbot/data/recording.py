@@ -1,4 +1,4 @@
-"""Recording: a file and how windows are cut out of it, as one value that worker processes can be given."""
+"""Recording: a file with its loading and window options, as one value for worker processes."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from .windows import Windows
 __all__ = ["Recording"]
 
 EPISODE_STEP = 0.4
-"""A recorded trial has no annotation rate of its own: it is scored at the field's 0.4 s."""
+"""Time step [s] of recorded trials, which have no annotation rate."""
 
 
 @dataclass(frozen=True)
 class Recording:
-    """Where people were recorded, and which windows of it are predicted.
+    """A file of tracks and the windows that are predicted.
 
     Fields:
         path, fps, format, units, time_base: as of :func:`crowdbot.load`.
-        step: rows are so far apart [s] by interpolation; None keeps those of the file, recorded trials have 0.4.
+        step: time step after resampling [s]; None keeps that of the file, and takes 0.4 for recorded trials.
         observe, predict, protocol, near, late: as of :meth:`Trajectories.windows`.
-        learn: share of the recording, from its begin on, that goals may learn from and that is not predicted.
-        every: only every so many-th window is predicted.
+        learn: first share of the recording, for learning goals; it is not predicted.
+        every: only every n-th window is predicted.
 
     Raises:
-        InputError: the share is not from 0 to below 1, every is below 1, or nothing was kept to learn from.
+        InputError: ``learn`` is not in [0, 1), or ``every`` is below 1.
     """
 
     path: str
@@ -56,15 +56,15 @@ class Recording:
 
     @property
     def tracks(self) -> Trajectories:
-        """The whole recording, in metres when its scale is known, at the wanted step."""
+        """The whole recording, in metres if its scale is known, at the time step ``step``."""
         return _tracks(self)
 
     @property
     def known(self) -> Trajectories:
-        """The part that may be learned from."""
+        """The part for learning."""
         if self.learn == 0.0:
             raise InputError(
-                f"{self.path}: nothing was kept to learn from; keep the first part of the recording with --learn 0.5"
+                f"{self.path}: there is no part to learn from; reserve the first part of the recording with --learn 0.5"
             )
         return self.tracks.split(self.learn)[0]
 

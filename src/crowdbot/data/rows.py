@@ -1,6 +1,6 @@
-"""Rows of tracks as plain arrays: what is allowed in them, and how they follow one another.
+"""Rows of tracks as plain arrays: checks, and runs of consecutive rows.
 
-A run is a stretch of one track without a hole. Everything that is cut out of a recording is cut out of runs.
+A run is a part of one track without gaps. Windows are cut from runs.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ LARGEST = 2.0**53
 
 
 def where(name: str, index: int, line: Integers | None) -> str:
-    """Return the place of a row in words: its line in the file when known, else its row, counted from 1."""
+    """Return the location of a row for messages: its line in the file if known, else its row, counted from 1."""
     return f"{name} row {index + 1}" if line is None else f"{name} line {int(line[index])}"
 
 
@@ -53,7 +53,7 @@ def floats(values: ArrayLike, what: str, name: str) -> Floats:
     try:
         return np.asarray(values, dtype=np.float64)
     except (ValueError, TypeError):
-        raise DataError(f"{name}: the column of {what} holds something else than numbers") from None
+        raise DataError(f"{name}: the column {what} must hold numbers") from None
 
 
 def check_rows(
@@ -62,31 +62,31 @@ def check_rows(
     """Return the order that sorts the rows by frame, then id.
 
     Raises:
-        DataError: there is no row, a coordinate is not finite, or a (frame, id) pair stands twice.
+        DataError: there are no rows, a coordinate is not finite, or a (frame, id) pair is duplicated.
     """
     if len(frame) == 0:
-        raise DataError(f"{name} holds no row of any track")
+        raise DataError(f"{name} has no rows")
     for axis, values in (("x", x), ("y", y)):
         wrong = ~np.isfinite(values)
         if np.any(wrong):
             index = int(np.argmax(wrong))
             raise DataError(
                 f"{where(name, index, line)}: {axis} is {values[index]} for frame {frame[index]}, id {id[index]};"
-                " coordinates must be finite, leave out rows without a position"
+                " coordinates must be finite, remove rows without a position"
             )
     order = np.lexsort((id, frame))
     twice = (np.diff(frame[order]) == 0) & (np.diff(id[order]) == 0)
     if np.any(twice):
         index = int(np.min(order[1:][twice]))
         raise DataError(
-            f"{where(name, index, line)}: frame {frame[index]}, id {id[index]} stands there a second time;"
-            " a person has one position in a frame, keep one of the rows"
+            f"{where(name, index, line)}: frame {frame[index]}, id {id[index]} is a duplicate;"
+            " a person has one position per frame, remove the other row"
         )
     return order
 
 
 def frame_step(id: Integers, frame: Integers) -> int:
-    """Return how many frames of the counter lie between the rows of a track: the most frequent difference.
+    """Return the frames between two rows of a track: the most frequent difference.
 
     >>> frame_step(np.array([1, 1, 1, 2]), np.array([0, 10, 20, 10]))
     10
@@ -103,12 +103,12 @@ def frame_step(id: Integers, frame: Integers) -> int:
 
 @dataclass(frozen=True)
 class Runs:
-    """Rows sorted by id, then frame, and how far each stands from the ends of its run.
+    """Rows sorted by id, then frame, and their positions in their runs.
 
     Fields:
         order: ``[N]`` the rows of the table in this order.
         instant: ``[N]`` position of the row's frame among the existing frames of the file.
-        behind: ``[N]`` rows of the run up to this one, itself included.
+        behind: ``[N]`` rows of the run up to and including this one.
         ahead: ``[N]`` rows of the run after this one.
         frames: ``[F]`` the existing frames.
     """
@@ -125,8 +125,8 @@ def runs(id: Integers, frame: Integers, step: int | None = None) -> Runs:
 
     Args:
         id, frame: ``[N]``.
-        step: rows of a run lie exactly so many frames apart; None takes neighbours among the existing frames, so that
-            frames in which nobody is present make no hole (the loader of SGAN and its followers).
+        step: frames between two rows of a run; None takes neighbours among the existing frames, so frames without
+            people are not gaps (as in the loader of SGAN).
     """
     order = np.lexsort((frame, id))
     own, count = id[order], len(order)

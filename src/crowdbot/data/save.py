@@ -1,4 +1,4 @@
-"""Write a recording: the whole file or nothing."""
+"""Write a recording atomically."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ SCENE_ROWS = 21
 
 
 def save(tracks: Trajectories, path: str | PathLike[str], format: str | None = None) -> None:
-    """Write tracks; rows come back exactly, coordinates to the last bit.
+    """Write tracks; loading restores all rows exactly.
 
-    What travels beside the rows differs: ``parquet`` keeps everything; ``csv`` keeps the time of each row, labels,
-    which tracks are robots, and pixels (as ``x_px``); ``trajnetpp`` keeps frame rate and scenes, and writes a scene
-    for every 21 rows of a track when there are none; ``sgan`` (text: frame id x y) keeps the rows only.
+    The formats differ in what they keep: ``parquet`` keeps everything; ``csv`` the rows, their times [s], labels,
+    robots, and pixels (as ``x_px``); ``trajnetpp`` the rows, the row rate and the scenes (without scenes, one per 21
+    rows of a track); ``sgan`` (text: frame id x y) the rows only, so loading may need ``fps=tracks.fps``.
 
     Args:
-        tracks: what to write.
-        path: file to write; its ending chooses the format: .txt, .csv, .parquet or .ndjson.
-        format: ``sgan``, ``csv``, ``parquet`` or ``trajnetpp``, when the ending should not choose.
+        tracks: the recording.
+        path: output file; its suffix selects the format: .txt, .csv, .parquet or .ndjson.
+        format: ``sgan``, ``csv``, ``parquet`` or ``trajnetpp`` (default: by the suffix).
 
     Raises:
         InputError: the format is unknown.
-        DataError: the file cannot be written; what was there before is then untouched.
+        DataError: the file cannot be written; an existing file is unchanged.
     """
     path = Path(path)
     if format is not None and format not in _WRITERS:
@@ -45,7 +45,7 @@ def save(tracks: Trajectories, path: str | PathLike[str], format: str | None = N
         raise InputError(f"unknown format {format!r} to write{near}; known are {', '.join(_WRITERS)}")
     name = format or SUFFIXES.get(path.suffix.lower())
     if name is None:
-        raise InputError(f"{path}: the ending {path.suffix!r} says no format; endings are {', '.join(SUFFIXES)}")
+        raise InputError(f"{path}: no format has the suffix {path.suffix!r}; suffixes are {', '.join(SUFFIXES)}")
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         with part.open("xb") as file:
@@ -143,4 +143,4 @@ _WRITERS: dict[str, Callable[[Trajectories, IO[bytes]], None]] = {
     "trajnetpp": _write_trajnetpp,
 }
 SUFFIXES = {".txt": "sgan", ".csv": "csv", ".parquet": "parquet", ".ndjson": "trajnetpp"}
-"""Endings of files, and the format that each is written in."""
+"""File suffixes and their formats."""

@@ -44,15 +44,15 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         x=values[:, 2],
         y=values[:, 3],
         fps=fps,
-        note="; ".join(part for part in (note, base, _exchanged(values)) if part),
+        note="; ".join(part for part in (note, base, _exchange_warning(values)) if part),
         line=line,
     )
 
 
-def _exchanged(values: NDArray[np.float64]) -> str:
+def _exchange_warning(values: NDArray[np.float64]) -> str:
     """Return a warning when people would walk far more smoothly if the first column were the id."""
-    told, other = _jump(values[:, 1], values[:, 0], values), _jump(values[:, 0], values[:, 1], values)
-    if told is None or other is None or not told > SMOOTHER * other:
+    given_order, swapped_order = _jump(values[:, 1], values[:, 0], values), _jump(values[:, 0], values[:, 1], values)
+    if given_order is None or swapped_order is None or not given_order > SMOOTHER * swapped_order:
         return ""
     return "id and frame look exchanged (read as frame id x y); format petrack reads id frame x y"
 

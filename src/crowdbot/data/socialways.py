@@ -1,6 +1,7 @@
 """Social Ways arrays, ``data_8_12.npz``: obsvs [N, T, 2], preds [N, T, 2], times [N, 1] (amiryanj/socialways).
 
-Every row of the arrays is a cut of a track, so every one gets its own id; the file tells neither frame rate nor unit.
+Every row of the arrays is a part of a track and gets its own id. Frames number the rows, so ``fps`` is rows per second.
+The file has neither a frame rate nor units.
 """
 
 from __future__ import annotations
@@ -61,7 +62,7 @@ def _arrays(source: Source) -> dict[str, NDArray[np.generic]]:
         with zipfile.ZipFile(source.path) as packed:
             size = sum(part.file_size for part in packed.infolist())
         if size > MAX_BYTES:
-            raise DataError(f"{source.name} unpacks to {size} bytes, more than the {MAX_BYTES} that are read")
+            raise DataError(f"{source.name} unpacks to {size} bytes, more than the limit of {MAX_BYTES}")
         with np.load(source.path, allow_pickle=False) as unpacked:
             return {name: np.asarray(unpacked[name]) for name in unpacked.files}
 

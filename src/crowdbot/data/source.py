@@ -1,4 +1,4 @@
-"""A file before it is understood: its beginning, its text, its columns of numbers; and what a reader of it is."""
+"""Source: an input file with its first bytes, its text and its numeric columns."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from crowdbot.core import DataError, InputError
 __all__ = ["MAX_BYTES", "MAX_ROWS", "Source", "parse_errors"]
 
 MAX_BYTES = 2 * 1024**3
-"""Larger files are refused: cut them in time first."""
+"""Largest file [bytes]."""
 MAX_ROWS = 20_000_000
-"""Larger tables are refused, also when compression makes their file small."""
+"""Largest number of rows of a table, compressed or not."""
 HEAD = 64 * 1024
 
 MAGIC = {
@@ -33,14 +33,14 @@ MAGIC = {
 
 @dataclass(frozen=True)
 class Source:
-    """A file that exists, holds something, and is not too large."""
+    """An existing, non-empty file of at most 2 GiB."""
 
     path: Path
     head: bytes
 
     @classmethod
     def of(cls, path: Path) -> Source:
-        """Open a file far enough to see what it is.
+        """Open a file and read its first bytes.
 
         Raises:
             DataError: it is missing, a folder, empty, larger than 2 GiB, or cannot be read.
@@ -50,7 +50,7 @@ class Source:
         try:
             size = path.stat().st_size
             if size > MAX_BYTES:
-                raise DataError(f"{path} has {size} bytes, more than the {MAX_BYTES} that are read; cut it in time")
+                raise DataError(f"{path} has {size} bytes, more than the limit of {MAX_BYTES}; split it in time")
             with path.open("rb") as file:
                 head = file.read(HEAD)
         except FileNotFoundError:
@@ -78,10 +78,10 @@ class Source:
 
     @cached_property
     def lines(self) -> list[str]:
-        """The first lines of a text that are not blank, without a last one that may be cut."""
+        """The first non-blank lines of a text, without an incomplete last line."""
         if self.kind != "text":
             return []
-        text = _decoded(self.head)
+        text = _decode(self.head)
         lines = text.splitlines()
         if len(self.head) == HEAD and len(lines) > 1:
             lines = lines[:-1]
@@ -89,7 +89,7 @@ class Source:
 
     @cached_property
     def rows(self) -> list[list[str]]:
-        """The first lines that are no comment, split at white space and commas."""
+        """The first lines that are not comments, split at white space and commas."""
         return [_split(line) for line in self.lines if not line.lstrip().startswith("#")][:50]
 
     def numeric(self, columns: int) -> bool:
@@ -100,8 +100,8 @@ class Source:
         """Return the whole text."""
         data = self.path.read_bytes()
         if b"\x00" in data:
-            raise DataError(f"{self.path} holds binary bytes after a beginning of text; the file is damaged")
-        return _decoded(data)
+            raise DataError(f"{self.path} has binary bytes after text; the file is damaged")
+        return _decode(data)
 
     def table(self, columns: int, text: str | None = None) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Return the numbers ``[N, columns]`` of a text and the line ``[N]`` of each row; "#" begins a comment.
@@ -121,13 +121,13 @@ class Source:
         except ValueError:
             values = np.empty((0, 0))
         if values.shape != (len(lines), columns):
-            raise DataError(_first_wrong(self.name, lines, line, columns))
+            raise DataError(_describe_first_error(self.name, lines, line, columns))
         return values, line
 
 
 @contextlib.contextmanager
 def parse_errors(source: Source, kind: str) -> Iterator[None]:
-    """Turn whatever the parser of a binary format stumbles over into one sentence.
+    """Convert any exception of a parser of a binary format to a :class:`DataError`.
 
     Raises:
         DataError: the file is cut short, damaged, or not of this kind.
@@ -138,10 +138,10 @@ def parse_errors(source: Source, kind: str) -> Iterator[None]:
         raise
     except Exception as error:  # parsers of damaged files raise anything: KeyError, UnicodeError, NotImplementedError
         lines = str(error).splitlines() or [type(error).__name__]
-        raise DataError(f"{source.name} cannot be read as {kind}, it is cut short or damaged: {lines[0]}") from None
+        raise DataError(f"{source.name} cannot be read as {kind}, it is truncated or damaged: {lines[0]}") from None
 
 
-def _first_wrong(name: str, lines: list[str], line: NDArray[np.int64], columns: int) -> str:
+def _describe_first_error(name: str, lines: list[str], line: NDArray[np.int64], columns: int) -> str:
     for number, words in zip(line.tolist(), map(str.split, lines), strict=True):
         if len(words) != columns:
             return f"{name} line {number} has {len(words)} columns, the others have {columns}"
@@ -151,8 +151,8 @@ def _first_wrong(name: str, lines: list[str], line: NDArray[np.int64], columns: 
     return f"{name} does not hold {columns} columns of numbers"
 
 
-def _decoded(data: bytes) -> str:
-    """Return the text; old files with a name in Latin-1 in a comment are read as that."""
+def _decode(data: bytes) -> str:
+    """Return the text, as UTF-8 or else Latin-1 (names in comments of old files)."""
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:

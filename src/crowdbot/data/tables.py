@@ -38,7 +38,7 @@ NAME = re.compile(r"^[A-Za-z_][\w .:/()\[\]-]*$")
 
 
 def sniff_csv(source: Source) -> bool:
-    """Return whether the first line holds names: two of them known, or as many words as the line below has values."""
+    """Return whether the first line has column names: two known names, or one word per value of the next line."""
     lines = _uncommented(source)
     if not lines:
         return False
@@ -50,7 +50,7 @@ def sniff_csv(source: Source) -> bool:
 
 
 def read_csv(source: Source, options: ReadOptions) -> Trajectories:
-    """Read a table with a line of names, parted by commas, semicolons, tabs or blanks; "#" begins a comment."""
+    """Read a table with a line of names; delimiters are commas, semicolons, tabs or blanks, "#" begins a comment."""
     head = _uncommented(source)
     if not head:
         raise DataError(f"{source.name} is not a text with a line of column names")
@@ -78,16 +78,16 @@ def read_csv(source: Source, options: ReadOptions) -> Trajectories:
 
 
 def read_parquet(source: Source, options: ReadOptions) -> Trajectories:
-    """Read a Parquet table; one written by crowdbot keeps everything that stands beside its columns."""
+    """Read a Parquet table; files of crowdbot keep all fields in their metadata."""
     import pyarrow.parquet as pq
 
     with parse_errors(source, "Parquet"), pq.ParquetFile(source.path) as file:
         count = file.metadata.num_rows
         if count > MAX_ROWS:
-            raise DataError(f"{source.name} has {count} rows, more than the {MAX_ROWS} that are read")
+            raise DataError(f"{source.name} has {count} rows, more than the limit of {MAX_ROWS}")
         table = file.read()
         columns = {name: table.column(name).to_numpy() for name in table.column_names}
-    return _tracks(source, options, columns, _told(source.name, table.schema.metadata or {}), None)
+    return _tracks(source, options, columns, _metadata_fields(source.name, table.schema.metadata or {}), None)
 
 
 def _uncommented(source: Source) -> list[str]:
@@ -102,7 +102,7 @@ def _words(line: str) -> list[str]:
     return [word.strip().strip('"') for word in line.split(_delimiter(line))]
 
 
-def _tracks(source: Source, options: ReadOptions, columns: Columns, told: dict[str, Any], line: Lines) -> Trajectories:
+def _tracks(source: Source, options: ReadOptions, columns: Columns, extra: dict[str, Any], line: Lines) -> Trajectories:
     name = source.name
     found, units = find_columns(list(columns))
     check_columns(found, list(columns), name)
@@ -123,32 +123,32 @@ def _tracks(source: Source, options: ReadOptions, columns: Columns, told: dict[s
         "labels": {key: label for key, label in named.items() if label != ROBOT},
         "robots": frozenset(key for key, label in named.items() if label == ROBOT),
     }
-    return assemble(source, options, id=id, frame=frame, x=values["x"], y=values["y"], line=line, **{**beside, **told})
+    return assemble(source, options, id=id, frame=frame, x=values["x"], y=values["y"], line=line, **{**beside, **extra})
 
 
-def _told(name: str, metadata: dict[bytes, bytes]) -> dict[str, Any]:
-    """Return the fields that a file written by crowdbot keeps beside the columns."""
+def _metadata_fields(name: str, metadata: dict[bytes, bytes]) -> dict[str, Any]:
+    """Return the fields that crowdbot writes to the metadata of a table."""
     try:
-        told = json.loads(metadata.get(b"crowdbot", b"{}"))
-        if not told:
+        extra = json.loads(metadata.get(b"crowdbot", b"{}"))
+        if not extra:
             return {}
         return {
-            "row_rate": float(told["frame_rate"]),
-            "frame_step": int(told["frame_step"]),
-            "units": str(told["units"]),
-            "note": str(told["note"]),
-            "homography": None if told["homography"] is None else np.asarray(told["homography"], dtype=np.float64),
-            "robots": frozenset(map(int, told["robots"])),
-            "walls": tuple(np.asarray(ring, dtype=np.float64) for ring in told["walls"]),
-            "labels": {int(key): str(label) for key, label in told["labels"]},
-            "scenes": tuple(_scene(scene) for scene in told["scenes"]),
+            "row_rate": float(extra["frame_rate"]),
+            "frame_step": int(extra["frame_step"]),
+            "units": str(extra["units"]),
+            "note": str(extra["note"]),
+            "homography": None if extra["homography"] is None else np.asarray(extra["homography"], dtype=np.float64),
+            "robots": frozenset(map(int, extra["robots"])),
+            "walls": tuple(np.asarray(ring, dtype=np.float64) for ring in extra["walls"]),
+            "labels": {int(key): str(label) for key, label in extra["labels"]},
+            "scenes": tuple(_scene(scene) for scene in extra["scenes"]),
         }
     except (ValueError, TypeError, KeyError, IndexError) as error:
-        raise DataError(f"{name}: what crowdbot wrote beside the columns is damaged: {error!r}") from None
+        raise DataError(f"{name}: the metadata written by crowdbot is damaged: {error!r}") from None
 
 
-def _scene(told: list[Any]) -> PrimaryScene:
-    id, person, first, last, tag = told
+def _scene(extra: list[Any]) -> PrimaryScene:
+    id, person, first, last, tag = extra
     return PrimaryScene(int(id), int(person), int(first), int(last), tuple(map(int, tag)))
 
 

@@ -22,6 +22,8 @@ CONVENTIONAL_FPS = {6: 15.0, 10: 25.0, 12: 30.0}
 MAX_FPS = 10_000.0
 LONG_ROW, LONGEST_ROW = 1.0, 2.0
 """Time step [s] above which the speed decides whether ``fps`` is a row rate, and above which it always is one."""
+MIN_ROW_RATE, MAX_ROW_RATE = 0.5, 15.0
+"""Range of row rates of recordings of people [1/s]; another ``fps`` is not taken for one."""
 SLOWEST, FASTEST = 0.02, 5.0
 """Range of the median speed of people [m/s]."""
 
@@ -84,14 +86,14 @@ def check_speeds(tracks: Trajectories, options: ReadOptions) -> str:
     """Return a warning if the median speed is impossible for people, else an empty text.
 
     Raises:
-        RowRateError: the time step is above 2 s with ``options.fps`` as frames per second, or above 1 s at an
-            impossible speed, and the same number is possible as rows per second.
+        RowRateError: ``options.fps`` is 0.5 to 15 and makes the time step longer than 2 s, or longer than 1 s at a
+            speed that is impossible, but possible with the same number as rows per second.
     """
     speed = _median_speed(tracks)
     fps, step = options.fps, tracks.frame_step
     if fps is not None and step > 1:
         slow = tracks.dt > LONG_ROW and _impossible(speed) and not _impossible(speed * step)
-        if 1.0 / fps <= LONGEST_ROW and (tracks.dt > LONGEST_ROW or slow):
+        if MIN_ROW_RATE <= fps <= MAX_ROW_RATE and (tracks.dt > LONGEST_ROW or slow):
             moved = "" if math.isnan(speed) else f" and the median speed {speed:.2g} m/s"
             raise RowRateError(
                 f"{tracks.name}: fps {fps:g} makes the time step {tracks.dt:.4g} s ({step} frames per row){moved};"
@@ -111,8 +113,8 @@ def _median_speed(tracks: Trajectories) -> float:
     with np.errstate(over="ignore", invalid="ignore"):
         velocity = tracks.velocities()[people]
         speed = np.hypot(velocity[:, 0], velocity[:, 1])
-    known = speed[~np.isnan(speed)]
-    return float(np.median(known)) if len(known) else math.nan
+        known = speed[~np.isnan(speed)]
+        return float(np.median(known)) if len(known) else math.nan
 
 
 def _impossible(speed: float) -> bool:

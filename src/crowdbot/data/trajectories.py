@@ -61,15 +61,15 @@ class Trajectories(TrackTable):
     """
 
     def track(self, id: int) -> Trajectories:
-        """Return the rows of one person or robot.
+        """Return the track of one person or robot.
 
         Raises:
-            DataError: nobody has this id.
+            DataError: the id does not exist.
         """
         return self.only(ids=[id])
 
     def only(self, *labels: str, ids: Iterable[int] | None = None) -> Trajectories:
-        """Return the tracks with one of the labels, or with one of the ids.
+        """Return the tracks with one of the labels or ids.
 
         Raises:
             DataError: no track has such a label or id.
@@ -91,9 +91,9 @@ class Trajectories(TrackTable):
         """Return a first part and the rest.
 
         Args:
-            fraction: share of the first part, above 0 and below 1.
-            by: ``time`` cuts at a frame, so that one walking over the border is in both parts; ``person`` gives the
-                first part the people who appeared first, so that nobody is in both (robots are in both).
+            fraction: share of the first part, in (0, 1).
+            by: ``time`` cuts at a frame, so a track across the border is in both parts; ``person`` puts the people who
+                appear first into the first part, so no person is in both (robots are).
 
         Raises:
             InputError: fraction or by is not allowed.
@@ -120,68 +120,67 @@ class Trajectories(TrackTable):
         """Return the tracks in metres.
 
         Args:
-            transform: metres per pixel, or a homography ``[3, 3]`` from (x, y, 1) to metres; default: the one that
-                came with the recording.
+            transform: metres per pixel, or a homography ``[3, 3]`` from (x, y, 1) to metres; default: that of the
+                recording.
 
         Raises:
             DataError: there is no transform, the tracks are in metres already, or a point goes to infinity.
         """
         if self.units == "m":
-            raise DataError(f"{self.name} is in metres already; load it with units='px' when its numbers are pixels")
+            raise DataError(f"{self.name} is already in metres; load it with units='px' if its coordinates are pixels")
         known = self.homography if transform is None else np.asarray(transform, dtype=np.float64)
         if known is None:
             raise DataError(f"{self.name} is in pixels and has no homography; give metres per pixel or a 3 x 3 matrix")
         matrix = np.diag([float(known), float(known), 1.0]) if known.ndim == 0 else known
         if matrix.shape != (3, 3) or not np.all(np.isfinite(matrix)) or abs(np.linalg.det(matrix)) < 1e-300:
             raise DataError(f"{self.name}: the transform must be a scale above 0 or an invertible 3 x 3 matrix")
-        walls = tuple(_mapped(ring, matrix) for ring in self.walls)
-        place = _mapped(self.position, matrix)
+        walls = tuple(_transform(ring, matrix) for ring in self.walls)
+        place = _transform(self.position, matrix)
         return dataclasses.replace(self, x=place[:, 0], y=place[:, 1], units="m", homography=matrix, walls=walls)
 
     def resample(self, dt: float, gap: float | None = None) -> Trajectories:
-        """Return the tracks at steps of ``dt`` [s] from the first frame on, interpolated linearly.
+        """Return the tracks at a time step ``dt`` [s] from the first frame on, by linear interpolation.
 
-        A position between two rows knows the later one: make steps longer with it, not shorter, where the future must
-        stay hidden.
+        Interpolation uses the next row, which leaks the future into shorter steps; for prediction use longer steps.
 
         Args:
             dt: new time step [s].
-            gap: longest hole inside a track [s] that is bridged; default the longer of ``dt`` and one old step. Nothing
-                is ever added before the first or after the last row of a track.
+            gap: longest gap inside a track that is interpolated [s] (default: the longer of ``dt`` and the old step).
+                Tracks are never extrapolated.
 
         Raises:
             InputError: dt or gap is not above 0.
-            DataError: the steps are so short that there would be more than 20 million rows.
+            DataError: there would be more than 20 million rows.
         """
         return resample(self, dt, gap)
 
     def windows(
         self, observe: int = 8, predict: int = 12, protocol: str = "all", near: float | None = None, late: str = "skip"
     ) -> tuple[Windows, Windows]:
-        """Return the observed and the future part of every window that a protocol counts.
+        """Return the observed and the future part of every window of a protocol.
 
-        ``past`` holds everyone who can be used at the last observed step, by id, whether or not their future is known;
-        who is scored stands in ``future.scored`` only.
+        ``past`` contains everyone present at the last observed row, by id, also people without a known future; only
+        ``future.scored`` has the people who are scored.
 
         Args:
             observe, predict: rows of the two parts.
             protocol: ``all``, ``sgan``, ``partial``, ``timesplit`` or ``timesplit-train``: see ``PROTOCOLS``.
-            near: score only people within so many metres of a robot at the last observed step.
-            late: people who came during the observed part are left out (``skip``) or, from two rows on, walked
-                backwards with their first velocity (``extrapolate``); they are company, never scored.
+            near: score only people within this distance of a robot at the last observed row [m].
+            late: people who appear during the observed part are left out (``skip``) or, from two rows on,
+                extrapolated backwards with their first velocity (``extrapolate``); they are never scored.
 
         Raises:
             InputError: an argument is not allowed.
-            DataError: no window was found, and why.
+            DataError: there is no window; the message has the reason.
         """
         return cut_windows(self, observe, predict, protocol, near, late)
 
     def past(self, observe: int = 8, frame: int | None = None, late: str = "extrapolate") -> Windows:
-        """Return one window with everyone at ``frame`` (default: the last), for predicting what nobody has seen yet.
+        """Return one window with everyone at ``frame`` (default: the last), for predicting an unknown future.
 
         Raises:
             InputError: an argument is not allowed.
-            DataError: the frame does not exist, or nobody there was seen for long enough.
+            DataError: the frame does not exist, or no track there is long enough.
         """
         return cut_past(self, observe, frame, late)
 
@@ -224,7 +223,7 @@ class Trajectories(TrackTable):
         )
 
 
-def _mapped(points: Floats, matrix: Floats) -> Floats:
+def _transform(points: Floats, matrix: Floats) -> Floats:
     flat = np.column_stack([points, np.ones(len(points))]) @ matrix.T
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(flat[:, :2] / flat[:, 2:])

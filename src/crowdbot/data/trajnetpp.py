@@ -1,4 +1,6 @@
-"""TrajNet++ ndjson: one JSON object a line, scenes and rows of tracks.
+"""TrajNet++ ndjson: one JSON object per line, scenes and rows of tracks.
+
+The key "fps" of a scene is rows per second; frames have their own step (10 in ETH/UCY, 12 in SDD).
 
 Kothari, Kreiss, Alahi (2021), https://doi.org/10.1109/TITS.2021.3069362
 """
@@ -59,7 +61,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
         frame=frame,
         x=x,
         y=y,
-        row_rate=_row_fps(source.name, scenes, options),
+        row_rate=_row_rate(source.name, scenes, options),
         line=lines,
         scenes=tuple(_scene(source.name, scene) for scene in scenes),
     )
@@ -91,11 +93,11 @@ def _value(record: dict[str, Any], key: str, name: str, number: int) -> float:
     return float(value) if key in "xy" else value
 
 
-def _row_fps(name: str, scenes: list[dict[str, Any]], options: ReadOptions) -> float | None:
-    told = sorted({float(s["fps"]) for s in scenes if isinstance(s.get("fps"), int | float)})
-    if len(told) > 1 and options.fps is None:
-        raise DataError(f"{name}: its scenes tell {len(told)} frame rates, {told[0]} to {told[-1]}; give fps")
-    return told[0] if told else None
+def _row_rate(name: str, scenes: list[dict[str, Any]], options: ReadOptions) -> float | None:
+    rates = sorted({float(s["fps"]) for s in scenes if isinstance(s.get("fps"), int | float)})
+    if len(rates) > 1 and options.fps is None:
+        raise DataError(f"{name}: its scenes have {len(rates)} values of fps, {rates[0]} to {rates[-1]}; give fps")
+    return rates[0] if rates else None
 
 
 def _scene(name: str, scene: dict[str, Any]) -> PrimaryScene:

@@ -17,12 +17,14 @@ from crowdbot.core import DataError
 
 from .assemble import assemble
 from .reader import Reader, ReadOptions
-from .source import MAX_ROWS, Source
+from .source import Source
 from .trajectories import Trajectories
 
 __all__ = ["READER", "TO_METRES"]
 
 VIDEO_FPS = 25.0
+MAX_INTERPOLATED = 2_000_000
+"""Most rows after interpolation, ten times those of the longest UCY recording: two lines can span any time."""
 
 TO_METRES = np.array([[0.02104, 0.0, 7.577], [0.0, 0.02386, 6.873], [0.0, 0.0, 1.0]])
 """From vsp pixels to the metres of the leave-one-out text files, fitted to zara01, zara02 and students003.
@@ -45,9 +47,12 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
     """Read the splines; the id of a person is the number of the spline, from 1, as in the published text files."""
     splines = _splines(source)
     spans = sum(float(np.ptp(points[:, 2])) for points in splines if len(points))
-    if spans > MAX_ROWS:
-        raise DataError(f"{source.name} spans {spans:.0f} rows, more than the {MAX_ROWS} that are read")
-    parts = [_interpolated(points, number) for number, points in enumerate(splines, 1) if len(points)]
+    if spans > MAX_INTERPOLATED:
+        raise DataError(
+            f"{source.name}: its splines span {spans:.0f} frames, at most {MAX_INTERPOLATED} are read;"
+            " a frame of a control point may be damaged"
+        )
+    parts = [_interpolate(points, number) for number, points in enumerate(splines, 1) if len(points)]
     if not parts:
         raise DataError(f"{source.name} holds no control point of any spline")
     id, frame, x, y = (np.concatenate(column) for column in zip(*parts, strict=True))
@@ -107,7 +112,7 @@ def _point(name: str, number: int, words: str) -> list[float]:
     return [x, y, frame]
 
 
-def _interpolated(points: NDArray[np.float64], number: int) -> tuple[NDArray[np.float64], ...]:
+def _interpolate(points: NDArray[np.float64], number: int) -> tuple[NDArray[np.float64], ...]:
     """Return id, frame, x, y at every whole frame between the first and the last control point."""
     points = points[np.argsort(points[:, 2], kind="stable")]
     frame = np.arange(np.ceil(points[0, 2]), np.floor(points[-1, 2]) + 1)

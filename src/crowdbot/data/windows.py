@@ -1,4 +1,4 @@
-"""Windows: a stretch of time cut out of a recording, batched over windows and padded over people."""
+"""Windows: parts of a recording with the same number of rows, batched over windows and padded over people."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ __all__ = ["Windows"]
 
 @dataclass(frozen=True)
 class Windows:
-    """The same stretch of W windows: W windows, T times, A people (padded).
+    """W windows with T rows and A people (padded).
 
     Fields:
-        position: ``[W, T, A, 2]`` [m]; 0 where a person is not present.
+        position: ``[W, T, A, 2]`` [m]; 0 where a person is absent.
         present: ``[W, T, A]`` bool.
-        scored: ``[W, A]`` bool, the people that the protocol counts; a predictor must not look at it.
-        robot: ``[W, A]`` bool, tracks that are robots: seen by predictors, never scored.
+        scored: ``[W, A]`` bool, people who are scored; predictors must not use it.
+        robot: ``[W, A]`` bool, tracks of robots: input of predictors, never scored.
         id: ``[W, A]`` int64, identity in the recording, -1 for padding.
         frame: ``[W, T]`` int64, frame counter of the recording.
-        dt: time step [s].
-        protocol: name of the protocol that cut the windows.
+        dt: time between rows [s].
+        protocol: name of the protocol.
         source: name of the recording.
-        walls: rings ``[N, 2]`` [m] of what cannot be walked on, empty when unknown.
-        units: ``m``, or ``px`` when the recording was not turned into metres: then every [m] above is pixels.
-        plan: ``[W, S, A, 2]`` [m], where robots are known to be at the next S rows, NaN for everyone else; or None.
+        walls: rings ``[N, 2]`` [m] around areas that are not walkable; empty if unknown.
+        units: ``m``, or ``px`` for recordings in pixels: then every [m] above is pixels.
+        plan: ``[W, S, A, 2]`` [m], planned positions of robots at the next S rows, NaN for everyone else; or None.
     """
 
     position: NDArray[np.float64]
@@ -55,10 +55,10 @@ class Windows:
         arrays = {n: getattr(self, n)[chosen] for n in ("position", "present", "scored", "robot", "id", "frame")}
         return dataclasses.replace(self, **arrays, plan=None if self.plan is None else self.plan[chosen])
 
-    def planned(self, plans: Mapping[int, ArrayLike]) -> Windows:
-        """Return the windows with the known next rows of some robots: ``plans`` is identity -> ``[S, 2]`` [m].
+    def with_plans(self, plans: Mapping[int, ArrayLike]) -> Windows:
+        """Return the windows with plans of robots: ``plans`` maps an id to its next positions ``[S, 2]`` [m].
 
-        Predictors answer for this plan: the robot moves along it, crowd models react, and at its end it stands.
+        Predictors condition on the plan: the robot follows it and stops at its end, and crowd models react.
 
         Raises:
             InputError: the plans differ in length, are empty or not finite, or an identity is in no window.
@@ -66,7 +66,7 @@ class Windows:
         >>> here = np.ones((1, 2, 1), dtype=bool)
         >>> past = Windows(np.zeros((1, 2, 1, 2)), here, ~here[:, 0], here[:, 0], np.array([[7]]),
         ...     np.array([[0, 10]]), 0.4, "all", "street")
-        >>> past.planned({7: [[0.0, 0.4], [0.0, 0.8]]}).plan[0, :, 0].tolist()
+        >>> past.with_plans({7: [[0.0, 0.4], [0.0, 0.8]]}).plan[0, :, 0].tolist()
         [[0.0, 0.4], [0.0, 0.8]]
         """
         rows = {who: np.asarray(plan, dtype=float) for who, plan in plans.items()}
@@ -88,7 +88,7 @@ class Windows:
         return dataclasses.replace(self, plan=known)
 
     def plan_at(self, step: int) -> NDArray[np.float64]:
-        """Return where planned robots are ``step`` rows ahead (from 1), ``[W, A, 2]`` [m], NaN for everyone else."""
+        """Return planned positions ``step`` rows ahead (from 1), ``[W, A, 2]`` [m], NaN for everyone else."""
         if self.plan is None:
             return np.full((len(self), self.present.shape[2], 2), np.nan)
         return self.plan[:, min(step, self.plan.shape[1]) - 1]

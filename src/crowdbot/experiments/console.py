@@ -225,7 +225,7 @@ def _asked(question: Question) -> str:
     lines = [_wrapped(CONTROL.sub("", question.text))]
     if isinstance(question, Choice):
         lines += [f"  {k}  {CONTROL.sub('', option.label)}" for k, option in enumerate(question.options, 1)]
-        hint = "numbers with commas between" if question.several else "a number"
+        hint = "numbers with commas between" if question.multiple else "a number"
     else:
         hint = CONTROL.sub("", question.hint)
     return "\n" + "\n".join(lines) + f"\n  ({hint}{'' if question.required else ', or nothing'})\n"

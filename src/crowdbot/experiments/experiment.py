@@ -23,7 +23,7 @@ class Screen:
     name: str = attribute(about="name of the screen in the answers", pattern=SHORT)
     text: str = attribute("", about="what is shown, for a line or two")
     file: str = attribute("", about="what is shown: a .txt or .html file in the folder of the experiment")
-    questions: tuple[Question, ...] = children(QUESTIONS, about="what is asked", at_most=100)
+    questions: tuple[Question, ...] = children(QUESTIONS, about="what is asked", max=100)
 
     def __post_init__(self) -> None:
         check(self)
@@ -35,11 +35,9 @@ class TrialEntry:
 
     name: str = attribute(about="name of the trial in this experiment", pattern=SHORT)
     source: str = attribute(about="a trial file in the folder of the experiment, or a built-in trial")
-    seed: int | None = attribute(
-        None, about="seed of the trial; its own when left out", at_least=-(2**53), at_most=2**53
-    )
-    before: tuple[Screen, ...] = children("before", about="screens before this trial", at_most=100)
-    after: tuple[Screen, ...] = children("after", about="screens after this trial", at_most=100)
+    seed: int | None = attribute(None, about="seed of the trial; its own when left out", min=-(2**53), max=2**53)
+    before: tuple[Screen, ...] = children("before", about="screens before this trial", max=100)
+    after: tuple[Screen, ...] = children("after", about="screens after this trial", max=100)
 
     def __post_init__(self) -> None:
         check(self)
@@ -60,13 +58,13 @@ class Block:
 
     name: str = attribute(about="name of the block", pattern=SHORT)
     order: str = attribute("fixed", about="order of the trials", choices=ORDERS)
-    repetitions: int = attribute(1, about="how often all trials are gone through", at_least=1, at_most=1000)
+    repetitions: int = attribute(1, about="how often all trials are gone through", min=1, max=1000)
     seeds: str = attribute("by-repetition", about="when crowds are drawn anew", choices=SEEDS)
-    instructions: tuple[Screen, ...] = children("instructions", about="screens before the block", at_most=100)
-    before: tuple[Screen, ...] = children("before", about="screens before every trial", at_most=100)
-    trials: tuple[TrialEntry, ...] = children("trial", about="the trials", at_least=1, at_most=1000)
-    after: tuple[Screen, ...] = children("after", about="screens after every trial", at_most=100)
-    transitions: tuple[Screen, ...] = children("transition", about="screens between two trials", at_most=100)
+    instructions: tuple[Screen, ...] = children("instructions", about="screens before the block", max=100)
+    before: tuple[Screen, ...] = children("before", about="screens before every trial", max=100)
+    trials: tuple[TrialEntry, ...] = children("trial", about="the trials", min=1, max=1000)
+    after: tuple[Screen, ...] = children("after", about="screens after every trial", max=100)
+    transitions: tuple[Screen, ...] = children("transition", about="screens between two trials", max=100)
 
     def __post_init__(self) -> None:
         check(self)
@@ -95,11 +93,11 @@ class Experiment:
 
     name: str = attribute(about="name of the experiment", pattern=r"\S.{0,79}")
     about: str = attribute("", about="one line for people")
-    seed: int = attribute(0, about="seed of random orders", at_least=-(2**53), at_most=2**53)
-    participants: int | None = attribute(None, about="how many participants there will be", at_least=1, at_most=100_000)
-    instructions: tuple[Screen, ...] = children("instructions", about="first screens", at_most=100)
-    blocks: tuple[Block, ...] = children("block", about="trials that are ordered together", at_least=1, at_most=100)
-    endings: tuple[Screen, ...] = children("ending", about="last screens", at_most=100)
+    seed: int = attribute(0, about="seed of random orders", min=-(2**53), max=2**53)
+    participants: int | None = attribute(None, about="how many participants there will be", min=1, max=100_000)
+    instructions: tuple[Screen, ...] = children("instructions", about="first screens", max=100)
+    blocks: tuple[Block, ...] = children("block", about="trials that are ordered together", min=1, max=100)
+    endings: tuple[Screen, ...] = children("ending", about="last screens", max=100)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     """Where screens and trials lie; not part of the tree."""
 

@@ -6,7 +6,7 @@ import dataclasses
 from pathlib import Path
 
 from crowdbot.core import TrialError, format_xml
-from crowdbot.trials import Reader, element_from, parse_trial_xml
+from crowdbot.trials import Reader, element_from, parse_trial_xml, update_names
 
 from .checks import everything, problems_of
 from .experiment import Experiment
@@ -45,6 +45,7 @@ name, order, repetitions, seeds
     reader = Reader(place, folder or Path.cwd(), trust)
     if root.tag != ROOT:
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
+    update_names(root, place)
     experiment = reader.element(Experiment, root)
     for thing, sentence in problems_of(reader.made, folder, trust) if whole else []:
         reader.say(reader.lines[id(thing)], reader.words[id(thing)], sentence)

@@ -97,14 +97,14 @@ class Choice(Question):
     crowdbot.core.errors.InputError: "lefd" is no answer to 'hand', did you mean 'left'?; it must be left or right
     """
 
-    several: bool = attribute(False, about="whether more than one may be chosen")
-    options: tuple[Option, ...] = children("option", about="the answers", at_least=1, at_most=100)
+    multiple: bool = attribute(False, about="whether more than one may be chosen")
+    options: tuple[Option, ...] = children("option", about="the answers", min=1, max=100)
 
     @property
     def hint(self) -> str:
         """The options."""
         values = [option.value for option in self.options]
-        return f"some of {', '.join(values)}" if self.several else " or ".join(values)
+        return f"some of {', '.join(values)}" if self.multiple else " or ".join(values)
 
     def problem(self) -> str:
         """Return also whether two options are recorded by the same value."""
@@ -115,7 +115,7 @@ class Choice(Question):
     def _typed(self, text: str) -> Any:
         words = [word for word in re.split(r"[\s,;]+", text) if word]
         values = [self._by_number(word) for word in words]
-        return values if self.several else values[0] if len(values) == 1 else text
+        return values if self.multiple else values[0] if len(values) == 1 else text
 
     def _by_number(self, word: str) -> str:
         row = int(word) if re.fullmatch("[0-9]{1,3}", word) else 0
@@ -123,14 +123,14 @@ class Choice(Question):
 
     def _taken(self, value: Any) -> Answer:
         known = [option.value for option in self.options]
-        given = list(value) if self.several and isinstance(value, list | tuple) else [value]
+        given = list(value) if self.multiple and isinstance(value, list | tuple) else [value]
         for one in given:
             if not isinstance(one, str) or one not in known:
                 meant = did_you_mean(str(one), known)
                 raise InputError(
                     f"{shown(one)} is no answer to {self.name!r}{f'{meant};' if meant else ','} it must be {self.hint}"
                 )
-        if not self.several:
+        if not self.multiple:
             return known[known.index(given[0])]
         return tuple(name for name in known if name in given)
 
@@ -144,8 +144,8 @@ class Scale(Question):
     crowdbot.core.errors.InputError: "8" is no answer to 'ease', it must be a whole number from 1 to 7
     """
 
-    low: int = attribute(1, about="lowest step", at_least=-1000, at_most=1000)
-    high: int = attribute(7, about="highest step", at_least=-1000, at_most=1000)
+    low: int = attribute(1, about="lowest step", min=-1000, max=1000)
+    high: int = attribute(7, about="highest step", min=-1000, max=1000)
     low_text: str = attribute("", about="what the lowest step means")
     high_text: str = attribute("", about="what the highest step means")
 
@@ -172,28 +172,28 @@ class Scale(Question):
 class Number(Question):
     """A number within limits.
 
-    >>> Number(name="age", text="How old are you?", at_least=18, whole=True).read("27")
+    >>> Number(name="age", text="How old are you?", min=18, integer=True).read("27")
     27
     """
 
     unit: str = attribute("", about="unit of the answer, for people")
-    at_least: float | None = attribute(None, about="lowest answer")
-    at_most: float | None = attribute(None, about="highest answer")
-    whole: bool = attribute(False, about="whether it must be a whole number")
+    min: float | None = attribute(None, about="lowest answer")
+    max: float | None = attribute(None, about="highest answer")
+    integer: bool = attribute(False, about="whether it must be a whole number")
 
     @property
     def hint(self) -> str:
         """The limits."""
-        words = ["a whole number" if self.whole else "a number"]
+        words = ["a whole number" if self.integer else "a number"]
         words += [f"in {self.unit}"] if self.unit else []
-        words += [f"at least {plain(self.at_least)}"] if self.at_least is not None else []
-        words += [f"at most {plain(self.at_most)}"] if self.at_most is not None else []
+        words += [f"at least {plain(self.min)}"] if self.min is not None else []
+        words += [f"at most {plain(self.max)}"] if self.max is not None else []
         return ", ".join(words)
 
     def problem(self) -> str:
         """Return also whether the limits leave an answer."""
-        empty = self.at_least is not None and self.at_most is not None and self.at_least > self.at_most
-        return super().problem() or ("has at-least above at-most" if empty else "")
+        empty = self.min is not None and self.max is not None and self.min > self.max
+        return super().problem() or ("has min above max" if empty else "")
 
     def _typed(self, text: str) -> Any:
         try:
@@ -204,11 +204,11 @@ class Number(Question):
     def _taken(self, value: Any) -> Answer:
         if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= 1e15:
             raise self._refuse(value)
-        low = self.at_least is not None and value < self.at_least
-        high = self.at_most is not None and value > self.at_most
-        if low or high or (self.whole and value != int(value)):
+        low = self.min is not None and value < self.min
+        high = self.max is not None and value > self.max
+        if low or high or (self.integer and value != int(value)):
             raise self._refuse(plain(value))
-        return int(value) if self.whole else float(value)
+        return int(value) if self.integer else float(value)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -219,15 +219,15 @@ class FreeText(Question):
     'no'
     """
 
-    at_most: int = attribute(2000, about="most characters", at_least=1, at_most=10_000)
+    max_length: int = attribute(2000, about="most characters", min=1, max=10_000)
 
     @property
     def hint(self) -> str:
         """How long it may be."""
-        return f"a text of at most {self.at_most} characters"
+        return f"a text of at most {self.max_length} characters"
 
     def _taken(self, value: Any) -> Answer:
-        if not isinstance(value, str) or len(value) > self.at_most:
+        if not isinstance(value, str) or len(value) > self.max_length:
             raise self._refuse(value)
         if UNWRITABLE.search(value):
             raise InputError(f"the answer to {self.name!r} holds a control character; write it without")

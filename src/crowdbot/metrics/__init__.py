@@ -1,16 +1,19 @@
-"""Floor 2: what is measured. Errors, likelihood and collisions of forecasts, and how robots moved among people."""
+"""Metrics: errors, likelihood and collisions of forecasts, and navigation metrics of robots among people."""
 
+from .agent_states import AgentStates
 from .collisions import accompanied, collided, collision_share
+from .contact_tracker import ContactTracker
 from .contacts import ContactEvent, cause_of, contact_events
 from .displacement import ade, best_of, distances, fde, miss_rate
 from .earth_mover import earth_mover_distance
 from .energy import energy_score
+from .incremental import NavigationMetrics, Outcome
 from .interval import Intervals, bootstrap_interval
 from .likelihood import kde_nll
 from .mahalanobis import mahalanobis
 from .modes import mode_count, mode_coverage, mode_shares
 from .motion import heading_change, jerk, longest_stall, path_efficiency, path_length, stalled_time
-from .navigation import NAVIGATION_METRICS, Outcome, navigation_metrics, outcome
+from .navigation import NAVIGATION_METRICS, navigation_metrics, outcome
 from .nearest_neighbor import nearest_neighbor_accuracy
 from .persons import PersonErrors, error_over_horizon, person_errors
 from .proximity import (
@@ -27,8 +30,11 @@ from .score import Score, score
 
 __all__ = [
     "NAVIGATION_METRICS",
+    "AgentStates",
     "ContactEvent",
+    "ContactTracker",
     "Intervals",
+    "NavigationMetrics",
     "Outcome",
     "PersonErrors",
     "Score",

@@ -3,26 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .contacts import contact_events
-from .motion import heading_change, jerk, longest_stall, path_efficiency, path_length, stalled_time
-from .proximity import (
-    clearance,
-    local_density,
-    personal_space_compliance,
-    proxemic_shares,
-    swept_clearance,
-    time_to_collision,
-    wall_clearance,
-)
+from .agent_states import AgentStates
+from .incremental import NavigationMetrics, Outcome
 
-__all__ = ["NAVIGATION_METRICS", "Outcome", "navigation_metrics", "outcome"]
+__all__ = ["NAVIGATION_METRICS", "navigation_metrics", "outcome"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -64,13 +54,6 @@ NAVIGATION_METRICS: dict[str, tuple[str, str]] = {
 """Unit and definition of every key of :func:`navigation_metrics`, in order."""
 
 
-class Outcome(NamedTuple):
-    """How an episode ended: ``success``, ``collision`` or ``timeout``, and at which sample that was decided."""
-
-    name: str
-    sample: int
-
-
 def outcome(
     times: Floats,
     position: Floats,
@@ -94,14 +77,8 @@ def outcome(
     >>> outcome(np.arange(2.0), p, np.full(2, 0.3), np.ones((2, 2), bool), 0, np.array([1.1, 0.0]), tolerance=0.2)
     Outcome(name='success', sample=1)
     """
-    near = np.min(swept_clearance(times, position, radius, active, robot), axis=1)
-    if walls is not None:
-        near = np.minimum(near, wall_clearance(position[:, robot], float(radius[robot]), walls))
-    away = position[:, robot] - goal
-    arrived = np.hypot(away[:, 0], away[:, 1]) < tolerance
-    for k in np.flatnonzero(((near < 0.0) | arrived) & (times - times[0] <= time_limit)):
-        return Outcome("collision" if near[k] < 0.0 else "success", int(k))
-    return Outcome("timeout", int(np.flatnonzero(times - times[0] <= time_limit)[-1]))
+    still = np.zeros_like(position)
+    return _metrics(times, position, still, radius, active, robot, goal, tolerance, None, walls, time_limit).outcome
 
 
 def navigation_metrics(
@@ -138,85 +115,33 @@ def navigation_metrics(
         InputError: shapes do not fit, times do not increase, the robot is absent at some sample or a value is NaN.
     """
     _check(times, position, velocity, radius, active, robot)
-    goal = np.asarray(goal, dtype=np.float64)
-    ended = outcome(times, position, radius, active, robot, goal, tolerance, walls=walls, time_limit=time_limit)
-    end = _end(times, position[:, robot], goal, tolerance, time_limit)
-    times, position, velocity, active = times[:end], position[:end], velocity[:end], active[:end]
-    turned = _directions(velocity[:, robot]) if heading is None else heading[:end]
-    duration = float(times[-1] - times[0])
-    first, last = (math.dist(position[k, robot], goal) for k in (0, -1))
-    jerks = jerk(times, velocity[:, robot])
-    return {
-        **{name: float(ended.name == name) for name in ("success", "collision", "timeout")},
-        "duration": duration,
-        "time_to_goal": duration if ended.name == "success" else math.nan,
-        "goal_progress": 1.0 - last / first if first > 0.0 else 1.0,
-        "path_length": path_length(position[:, robot]),
-        "path_efficiency": path_efficiency(position[:, robot]),
-        **_nearness(times, position, radius, active, robot),
-        "min_wall_clearance": _wall_gap(position[:, robot], float(radius[robot]), walls),
-        **_contacts(times, position, velocity, radius, active, robot),
-        **_foresight(position, velocity, radius, active, robot),
-        "stalled_time": stalled_time(times, velocity[:, robot]),
-        "longest_stall": longest_stall(times, velocity[:, robot]),
-        "mean_jerk": float(np.mean(jerks)) if len(jerks) else math.nan,
-        "max_jerk": float(np.max(jerks)) if len(jerks) else math.nan,
-        "heading_change": heading_change(turned),
-    }
+    return _metrics(
+        times, position, velocity, radius, active, robot, goal, tolerance, heading, walls, time_limit
+    ).result()
 
 
-def _nearness(times: Floats, position: Floats, radius: Floats, active: Bools, robot: int) -> dict[str, float]:
-    swept = np.min(swept_clearance(times, position, radius, active, robot), axis=1)
-    nearest = np.min(clearance(position, radius, active, robot), axis=1)
-    someone = np.isfinite(nearest)
-    density = local_density(position, active, robot)
-    return {
-        "min_clearance": float(np.min(swept)),
-        "min_clearance_time": float(times[np.argmin(swept)]) if np.any(np.isfinite(swept)) else math.nan,
-        "mean_nearest_distance": float(np.mean(nearest[someone])) if np.any(someone) else math.inf,
-        "personal_space_compliance": personal_space_compliance(nearest),
-        **{f"{zone}_share": share for zone, share in proxemic_shares(nearest).items()},
-        "local_density": float(np.mean(density)),
-        "max_local_density": float(np.max(density)),
-    }
-
-
-def _contacts(
-    times: Floats, position: Floats, velocity: Floats, radius: Floats, active: Bools, robot: int
-) -> dict[str, float]:
-    events = contact_events(times, position, velocity, radius, active, robot)
-    return {
-        "contacts": float(len(events)),
-        "robot_caused_contacts": float(sum(event.cause == "robot" for event in events)),
-        "person_caused_contacts": float(sum(event.cause == "person" for event in events)),
-        "contact_time": sum((event.end - event.begin for event in events), 0.0),
-        "max_penetration": max((event.depth for event in events), default=0.0),
-        "max_impact_speed": max((event.impact_speed for event in events), default=0.0),
-    }
-
-
-def _foresight(position: Floats, velocity: Floats, radius: Floats, active: Bools, robot: int) -> dict[str, float]:
-    soonest = np.min(time_to_collision(position, velocity, radius, active, robot), axis=1)
-    return {
-        "min_ttc": float(np.min(soonest)),
-        "ttc_below_1s": float(np.mean(soonest < 1.0)),
-        "ttc_below_3s": float(np.mean(soonest < 3.0)),
-    }
-
-
-def _wall_gap(position: Floats, radius: float, walls: Floats | None) -> float:
-    return math.inf if walls is None else float(np.min(wall_clearance(position, radius, walls)))
-
-
-def _end(times: Floats, position: Floats, goal: Floats, tolerance: float, time_limit: float) -> int:
-    arrived = np.flatnonzero(np.hypot(position[:, 0] - goal[0], position[:, 1] - goal[1]) < tolerance)
-    within = int(np.count_nonzero(times - times[0] <= time_limit))
-    return min(within, int(arrived[0]) + 1) if len(arrived) else within
-
-
-def _directions(velocity: Floats) -> Floats:
-    moving = np.hypot(velocity[:, 0], velocity[:, 1]) > 0.05
-    return np.asarray(np.arctan2(velocity[moving, 1], velocity[moving, 0]))
+def _metrics(
+    times: Floats,
+    position: Floats,
+    velocity: Floats,
+    radius: Floats,
+    active: Bools,
+    robot: int,
+    goal: Floats,
+    tolerance: float,
+    heading: Floats | None,
+    walls: Floats | None,
+    time_limit: float,
+) -> NavigationMetrics:
+    """Return the metrics of a log, record by record."""
+    metrics = NavigationMetrics(robot, float(radius[robot]), goal, tolerance, walls=walls, time_limit=time_limit)
+    for k in range(len(times)):
+        here = np.flatnonzero(active[k])
+        headings = np.full(len(here), np.nan)
+        if heading is not None:
+            headings[here == robot] = heading[k]
+        metrics.update(AgentStates(float(times[k]), here, position[k, here], velocity[k, here], headings, radius[here]))
+    return metrics
 
 
 def _check(times: Floats, position: Floats, velocity: Floats, radius: Floats, active: Bools, robot: int) -> None:

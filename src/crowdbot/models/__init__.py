@@ -1,23 +1,23 @@
 """Models of walking people: how each agent of a scene chooses its next velocity, and where it wants to go."""
 
 from . import costs
-from .anticipation_velocity import AnticipationVelocity
-from .boids import Boids
-from .collision_free_speed import CollisionFreeSpeed
-from .cost_model import CostModel
-from .escape_panic import EscapePanic
+from .costs.cost_model import CostModel
+from .forces.boids import Boids
+from .forces.escape_panic import EscapePanic
+from .forces.group_force import GroupForce
+from .forces.power_law import PowerLaw
+from .forces.social_force import SocialForce
 from .goals import CurrentDirection, Goal, GroundTruth
-from .group_force import GroupForce
-from .heuristics import Heuristics
 from .mixture import Mixture
 from .model import CrowdModel
-from .orca import ORCA
-from .pledestrians import PLEdestrians
-from .power_law import PowerLaw
-from .social_force import SocialForce
-from .tangent import Tangent
-from .vbm import VBM
-from .vog import VOG
+from .speed_models.anticipation_velocity import AnticipationVelocity
+from .speed_models.collision_free_speed import CollisionFreeSpeed
+from .velocity_obstacles.orca import ORCA
+from .velocity_obstacles.pledestrians import PLEdestrians
+from .velocity_obstacles.vog import VOG
+from .vision.heuristics import Heuristics
+from .vision.tangent import Tangent
+from .vision.vbm import VBM
 
 __all__ = [
     "ORCA",

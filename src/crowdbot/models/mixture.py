@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, Scene
 
-from .model import CrowdModel, kept
+from .model import CrowdModel, initial_velocity
 
 __all__ = ["MODEL", "Mixture"]
 
@@ -68,7 +68,7 @@ class Mixture(CrowdModel):
         for model in self.models:
             if not isinstance(model, CrowdModel):
                 raise InputError(f"Mixture: {model!r} is not a crowd model")
-        self._checked(np.asarray(self.which))
+        self._check_indices(np.asarray(self.which))
 
     @property
     def memory_at_start(self) -> Mapping[str, float]:
@@ -79,7 +79,7 @@ class Mixture(CrowdModel):
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s], each agent's from its own model."""
         own = self.of(scene)
-        out = kept(scene)
+        out = initial_velocity(scene)
         for k, model in enumerate(self.models):
             out = np.where((own == k)[..., None], model.velocity(scene, dt, rng), out)
         return out
@@ -99,12 +99,12 @@ class Mixture(CrowdModel):
             position=merged(lambda one: one.position),
             velocity=merged(lambda one: one.velocity),
             heading=merged(lambda one: one.heading),
-            memory=_remembered(scene, after, own),
+            memory=_memory(scene, after, own),
         )
 
     def of(self, scene: Scene) -> Numbers:
         """Return ``[E, A]``: the index of the model that each agent of a scene walks by."""
-        which = self._checked(np.asarray(scene.memory.get(MODEL, self.which)))
+        which = self._check_indices(np.asarray(scene.memory.get(MODEL, self.which)))
         try:
             return np.broadcast_to(which, scene.shape)
         except ValueError:
@@ -113,7 +113,7 @@ class Mixture(CrowdModel):
                 f" {list(scene.shape)}: it must name a model for every agent"
             ) from None
 
-    def _checked(self, which: NDArray[Any]) -> Numbers:
+    def _check_indices(self, which: NDArray[Any]) -> Numbers:
         whole = which.astype(np.int64) if which.dtype.kind in "iuf" and np.all(np.isfinite(which)) else None
         if whole is None or np.any(whole != which):
             raise InputError(f"Mixture: which = {which.tolist()} holds something that is no whole number")
@@ -125,7 +125,7 @@ class Mixture(CrowdModel):
         return whole
 
 
-def _remembered(scene: Scene, after: Sequence[Scene], own: Numbers) -> dict[str, Floats]:
+def _memory(scene: Scene, after: Sequence[Scene], own: Numbers) -> dict[str, Floats]:
     """Return the memory of all models: where several write under one name, each agent's own model has the say."""
     memory = dict(scene.memory)
     written: set[str] = set()

@@ -14,7 +14,17 @@ from numpy.typing import NDArray
 from crowdbot.core import SMALL, Bounds, InputError, Neighbors, Paper, PerAgent, Scene, check_parameters, per_agent
 from crowdbot.core.neighbors import nearest
 
-__all__ = ["CrowdModel", "check_limit", "kept", "neighbors_of", "rows", "speed_limit", "spread", "walkers", "wishes"]
+__all__ = [
+    "CrowdModel",
+    "check_limit",
+    "desired_velocity",
+    "initial_velocity",
+    "launch",
+    "movable",
+    "neighbors_of",
+    "rows",
+    "speed_limit",
+]
 
 LARGEST = 1e9
 """No position [m], speed [m/s] or parameter may be larger: beyond it squares of squares overflow."""
@@ -37,7 +47,7 @@ class CrowdModel(abc.ABC):
     ...     paper = Paper("Nobody", 2020, "Walking straight", "Nowhere")
     ...
     ...     def velocity(self, scene, dt, rng=None):
-    ...         return wishes(scene, dt)
+    ...         return desired_velocity(scene, dt)
     >>> scene = Scene.of([[0.0, 0.0]], goal=[[9.0, 0.0]], preferred_speed=1.0)
     >>> Straight().step(scene, 0.5).position.tolist()
     [[[0.5, 0.0]]]
@@ -68,12 +78,12 @@ class CrowdModel(abc.ABC):
         return scene.advanced(self.velocity(scene, dt, rng), dt)
 
 
-def walkers(scene: Scene) -> NDArray[np.bool_]:
+def movable(scene: Scene) -> NDArray[np.bool_]:
     """Return ``[E, A]``: the agents that a model moves, active and not external."""
     return np.asarray(scene.active & ~scene.external)
 
 
-def wishes(scene: Scene, dt: float) -> Floats:
+def desired_velocity(scene: Scene, dt: float) -> Floats:
     """Return the desired velocities ``[E, A, 2]`` [m/s], 0 for absent agents, after a check of everything models read.
 
     Raises:
@@ -90,7 +100,7 @@ def wishes(scene: Scene, dt: float) -> Floats:
     return desired
 
 
-def kept(scene: Scene) -> Floats:
+def initial_velocity(scene: Scene) -> Floats:
     """Return velocities ``[E, A, 2]`` [m/s] for a model to fill: external agents keep theirs, all others have 0."""
     return np.where((scene.active & scene.external)[..., None], scene.velocity, 0.0)
 
@@ -99,7 +109,7 @@ def check_limit(model: CrowdModel, max_speed: PerAgent | None) -> None:
     """Raise :class:`InputError` unless a model's own maximum speed is None, or finite and not below 0."""
     if max_speed is None:
         return
-    bounds = Bounds("m/s", at_least=0.0, at_most=LARGEST)
+    bounds = Bounds("m/s", min=0.0, max=LARGEST)
     if not bounds.holds(max_speed):
         raise InputError(
             f"{type(model).__name__}: max_speed = {bounds.worst(max_speed)} [m/s] is not allowed, it must be"
@@ -125,7 +135,7 @@ def rows(value: NDArray[Any]) -> NDArray[Any]:
     return np.require(value, requirements=["C", "W"]).reshape(E * A, *value.shape[2:])
 
 
-def spread(whole: Callable[..., None], part: Callable[..., None], out: Floats, *values: Any) -> None:
+def launch(whole: Callable[..., None], part: Callable[..., None], out: Floats, *values: Any) -> None:
     """Fill the rows of ``out`` [E * A, ...] by a kernel: all by one thread when they are few, else by all threads.
 
     Args:

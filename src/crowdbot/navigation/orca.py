@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from crowdbot import models
 from crowdbot.core import InputError, Paper, Scene, Twist, check_number
 
-from .navigator import SLOWING_TIME, Navigator, Observation
+from .navigator import Navigator
+from .observation import SLOWING_TIME, Observation
 from .reachable import reachable
 
 __all__ = ["ORCA"]
@@ -73,8 +74,8 @@ class ORCA(Navigator):
 
     def __post_init__(self) -> None:
         for name, unit in UNITS.items():
-            check_number("navigator ORCA", name, getattr(self, name), unit, above=0.0)
-        check_number("navigator ORCA", "safety", self.safety, "m", at_least=0.0)
+            check_number("navigator ORCA", name, getattr(self, name), unit, exclusive_min=0.0)
+        check_number("navigator ORCA", "safety", self.safety, "m", min=0.0)
         if self.share not in (0.5, 1.0):
             raise InputError(f"navigator ORCA: share = {self.share} must be 0.5 or 1")
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from crowdbot.core import Twist, kernel
 from crowdbot.core.geometry import nearest_on_segment
 
-from .navigator import Observation
+from .observation import Observation
 
 __all__ = ["Caution", "reachable"]
 

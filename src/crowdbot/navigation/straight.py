@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from crowdbot.core import Twist, check_number
 
-from .navigator import Navigator, Observation
+from .navigator import Navigator
+from .observation import Observation
 
 __all__ = ["Straight"]
 
@@ -32,7 +33,7 @@ class Straight(Navigator):
     speed: float = 1.0
 
     def __post_init__(self) -> None:
-        check_number("Straight", "speed", self.speed, "m/s", above=0.0)
+        check_number("Straight", "speed", self.speed, "m/s", exclusive_min=0.0)
 
     def act(self, observation: Observation) -> Twist:
         """Return the twist towards the goal."""

@@ -9,32 +9,32 @@ from typing import TYPE_CHECKING, Any
 
 from .anchor_net import AnchorNet, Anchors, Modes
 from .constant import ConstantAcceleration, ConstantVelocity, LeastSquares, SampledConstantVelocity
-from .degraded import Seen, seen_windows
+from .degraded import DegradedWindows, degraded_windows
 from .kalman import Kalman, KalmanAcceleration
 from .learned_predictor import LearnedPredictor
 from .learners import WEIGHTS_FIELDS, make_learner
 from .live import Live
 from .predictor import Predictor, window_streams
-from .predictor_spec import Recipe
+from .predictor_spec import PredictorSpec
 from .simulated import Simulated
 from .social_ways import PRESETS, STEADY, SocialWays, SocialWaysConfig
 from .training import (
     BEST,
     LAST,
     LOG,
-    Row,
+    LogRow,
     Samples,
-    Schedule,
     Trainable,
-    Trained,
-    device_of,
+    TrainingResult,
+    TrainingSchedule,
     leave_out,
     load_checkpoint,
     save_checkpoint,
     short_recordings,
     split_in_time,
-    threads,
+    torch_device,
     torch_module,
+    torch_threads,
     train,
 )
 
@@ -52,34 +52,34 @@ __all__ = [
     "Anchors",
     "ConstantAcceleration",
     "ConstantVelocity",
+    "DegradedWindows",
     "Kalman",
     "KalmanAcceleration",
     "LearnedPredictor",
     "LeastSquares",
     "Live",
+    "LogRow",
     "Modes",
     "Predictor",
-    "Recipe",
-    "Row",
+    "PredictorSpec",
     "SampledConstantVelocity",
     "Samples",
-    "Schedule",
-    "Seen",
     "Simulated",
     "SocialWays",
     "SocialWaysConfig",
     "Trainable",
-    "Trained",
-    "device_of",
+    "TrainingResult",
+    "TrainingSchedule",
+    "degraded_windows",
     "leave_out",
     "load_checkpoint",
     "make_learner",
     "save_checkpoint",
-    "seen_windows",
     "short_recordings",
     "split_in_time",
-    "threads",
+    "torch_device",
     "torch_module",
+    "torch_threads",
     "train",
     "window_streams",
 ]

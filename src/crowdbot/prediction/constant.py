@@ -1,4 +1,4 @@
-"""Predictors that keep a motion constant: velocity, fitted line, acceleration, and a velocity with a random turn."""
+"""Baselines: constant velocity, least squares, constant acceleration, sampled constant velocity."""
 
 from __future__ import annotations
 
@@ -27,11 +27,14 @@ SCHOLLER = Paper(
 
 @dataclass(frozen=True)
 class ConstantVelocity(Predictor):
-    """Everyone goes on with the mean velocity of their last ``displacements`` steps.
+    """Constant velocity: the mean of the last ``displacements`` displacements.
 
-    One displacement is the strongest simple baseline on smooth tracks; more of them help on noisy ones, and as many as
-    there are, or more, mean the whole observed track. Holes are bridged by an even walk, tracks that begin late count
-    from their begin, and somebody seen at the last row only is expected to stand. Deterministic: K = 1.
+    One displacement is the strongest simple baseline on smooth tracks; more of them reduce noise. Values above the
+    number of observed rows use the whole track. Missing rows are interpolated linearly. The velocity of people who are
+    observed at the last row only is zero. Deterministic: K = 1.
+
+    Fields:
+        displacements: number of displacements in the mean, at least 1.
 
     Paper: Schöller et al. (2020), doi 10.1109/LRA.2020.2969925.
 
@@ -54,7 +57,7 @@ class ConstantVelocity(Predictor):
             raise InputError(f"constant velocity: displacements = {self.displacements} must be at least 1")
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return where people will be, see :meth:`Predictor.predict`."""
+        """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
         velocity = observed_velocity(past, self.displacements)
         time = past.dt * np.arange(1, steps + 1)
@@ -64,14 +67,12 @@ class ConstantVelocity(Predictor):
 
 @dataclass(frozen=True)
 class LeastSquares(Predictor):
-    """Everyone goes on along the straight, even walk that fits all rows at which they were seen with least squares.
+    """Linear regression over all observed rows of each person.
 
-    Only rows that were seen are fitted; with two of them it is the line through both, and somebody seen at one row is
-    expected to stand. Deterministic: K = 1.
+    The velocity of people who are observed at one row only is zero. Deterministic: K = 1.
 
     Fields:
-        anchored: False: the walk goes on from where the fitted line is now, as the linear regression of the literature;
-            True: from where the person was last seen, with the velocity of the line.
+        anchored: False: start at the fitted line, as in the literature; True: start at the last observed position.
 
     >>> import numpy as np
     >>> here = np.ones((1, 3, 1), dtype=bool)
@@ -86,14 +87,14 @@ class LeastSquares(Predictor):
     anchored: bool = False
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return where people will be, see :meth:`Predictor.predict`."""
+        """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
         now = past.position[:, -1, None]
         there = past.present[..., None]
         row = np.arange(1 - past.present.shape[1], 1.0)[:, None, None]
         count = np.maximum(there.sum(axis=1, keepdims=True), 1)
         middle = np.sum(there * row, axis=1, keepdims=True) / count
-        away = np.where(there, past.position - now, 0.0)  # from now: far from the origin nothing is lost
+        away = np.where(there, past.position - now, 0.0)  # relative to the last position, for precision
         late = np.where(there, row - middle, 0.0)
         spread = np.sum(late * late, axis=1, keepdims=True)
         velocity = np.sum(late * away, axis=1, keepdims=True) / np.where(spread > 0.0, spread, 1.0)
@@ -104,15 +105,14 @@ class LeastSquares(Predictor):
 
 @dataclass(frozen=True)
 class ConstantAcceleration(Predictor):
-    """Everyone goes on with the last change of their velocity, step by step.
+    """Constant acceleration, from the last three observed rows of each person.
 
-    The last three rows at which a person was seen give two displacements and their difference; with two rows the
-    velocity is kept, with one the place. Deterministic: K = 1. On tracks at 0.4 s it is a bad predictor, kept because
-    it is asked for.
+    Two observed rows give constant velocity, one row a constant position. Deterministic: K = 1. Inaccurate on tracks
+    with a time step of 0.4 s; included for comparison.
     """
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return where people will be, see :meth:`Predictor.predict`."""
+        """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
         velocity, acceleration = _last_motion(past)
         count = np.arange(1.0, steps + 1.0)[:, None, None]
@@ -122,15 +122,15 @@ class ConstantAcceleration(Predictor):
 
 @dataclass(frozen=True)
 class SampledConstantVelocity(Predictor):
-    """Futures of constant velocity whose heading and speed are drawn once for each person and sample.
+    """Constant velocity with a random heading and speed for each person and sample.
 
-    The heading turns by a normal angle, the speed is multiplied by a normal factor around 1 (not below 0). No
-    training at all: the floor that every generative predictor has to beat.
+    The heading is rotated by a normally distributed angle; the speed is multiplied by a normally distributed factor
+    with mean 1, clipped at 0. A baseline for generative predictors that requires no training.
 
     Fields:
-        heading_sd: standard deviation of the turn [rad], 25 degrees as in the paper.
+        heading_sd: standard deviation of the angle [rad]; 25 degrees as in the paper.
         speed_sd: standard deviation of the factor [1].
-        displacements: last displacements that are averaged.
+        displacements: number of displacements in the mean velocity.
 
     Paper: Schöller et al. (2020), doi 10.1109/LRA.2020.2969925 (heading); the factor is common practice.
     """
@@ -150,30 +150,30 @@ class SampledConstantVelocity(Predictor):
             raise InputError(f"sampled constant velocity: displacements = {self.displacements} must be at least 1")
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return where people will be, see :meth:`Predictor.predict`."""
+        """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
         W, _, A, _ = past.position.shape
         here = past.present[:, -1]
         drawn = np.zeros((W, samples, A, 2))
         for window, own in enumerate(window_streams(rng, W)):
-            # neither padding nor a larger number of samples changes what is drawn first
+            # draws are independent of the padding and of the number of samples
             drawn[window][:, here[window]] = own.standard_normal((samples, int(here[window].sum()), 2))
         turn = self.heading_sd * drawn[..., 0]
         factor = np.maximum(0.0, 1.0 + self.speed_sd * drawn[..., 1])
-        velocity = _turned(observed_velocity(past, self.displacements)[:, None], turn) * factor[..., None]
+        velocity = _rotate(observed_velocity(past, self.displacements)[:, None], turn) * factor[..., None]
         time = past.dt * np.arange(1, steps + 1)
         place = past.position[:, -1, None, None] + velocity[:, :, None] * time[:, None, None]
         return self.forecast(past, place)
 
 
-def _turned(vector: NDArray[np.float64], angle: NDArray[np.float64]) -> NDArray[np.float64]:
+def _rotate(vector: NDArray[np.float64], angle: NDArray[np.float64]) -> NDArray[np.float64]:
     cos, sin = np.cos(angle), np.sin(angle)
     x, y = vector[..., 0], vector[..., 1]
     return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
 
 
 def _last_motion(past: Windows) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the last displacement [m] and its last change [m], both ``[W, A, 2]`` and per row."""
+    """Return the last displacement and its last change [m], both ``[W, A, 2]`` per row."""
     now = past.position.shape[1] - 1
     seen = past.present[:, now].astype(np.int64)
     place = np.zeros((3, *past.position[:, now].shape))

@@ -1,4 +1,4 @@
-"""Predictors on degraded recordings: the past as a tracker sees it, the future as it was."""
+"""Windows of degraded recordings: observations as a tracker sees them, ground truth as future."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.data import Windows
-from crowdbot.data.degrade import GHOST, Degraded
+from crowdbot.data.degrade import GHOST, DegradedTracks
 
-__all__ = ["Seen", "seen_windows"]
+__all__ = ["DegradedWindows", "degraded_windows"]
 
 Integers = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class Seen:
-    """Windows as they are seen in a degraded recording.
+class DegradedWindows:
+    """Windows of a degraded recording with the ground truth of the clean recording.
 
     Fields:
-        past: rows of the degraded recording, people in slots by the ids that they have there.
-        future: who is truly at the place of each slot: ``scored`` and where they go; ghosts go nowhere.
-        asked: number of scored persons of the clean windows.
-        predictable: how many of them are seen at the last observed row, so that they can be predicted.
+        past: rows of the degraded recording, in slots sorted by the ids of the degraded tracks.
+        future: ground truth of the person at the position of each slot; false tracks have none.
+        asked: number of scored persons in the clean windows.
+        predictable: number of these persons that are observed at the last row.
     """
 
     past: Windows
@@ -35,25 +35,25 @@ class Seen:
     predictable: int
 
 
-def seen_windows(past: Windows, future: Windows, degraded: Degraded, carry: int = 0) -> Seen:
-    """Return clean windows as they are seen in the degraded recording.
+def degraded_windows(past: Windows, future: Windows, degraded: DegradedTracks, carry: int = 0) -> DegradedWindows:
+    """Return the windows of a degraded recording that correspond to clean windows.
 
-    In a window are those people of the clean one who are seen at its last observed row, and every ghost that is. A
-    track brings the rows that it has under its id, whoever they belonged to. It is scored against the person who is
-    truly at its place at the last row. Nobody else is predicted: a person who is not seen there counts as asked only.
+    A window contains the people that are observed at its last row, and all false tracks at that row. A track keeps the
+    rows under its id, regardless of whom they belong to. It is scored against the person at its position at the last
+    row. People who are not observed at the last row are not predicted; they count in ``asked`` only.
 
-    With ``carry``, a person seen last up to so many rows before the last one is walked on to it with the velocity of
-    their last two seen rows, as trackers do for a while; ghosts are not.
+    With ``carry``, tracks that end at most that many rows before the last row are extrapolated with the velocity of
+    their last two observed rows. False tracks are not extrapolated.
 
     Args:
         past, future: windows of the clean recording.
-        degraded: what is seen of it.
-        carry: rows.
+        degraded: the degraded recording.
+        carry: maximum number of extrapolated rows.
 
     >>> from crowdbot.data.degrade import LateStart
     >>> tracks = Trajectories([7] * 4, range(4), range(4), [0.0] * 4, row_rate=2.5)
     >>> clean = tracks.windows(observe=2, predict=2)
-    >>> seen = seen_windows(*clean, LateStart(1).apply(tracks))
+    >>> seen = degraded_windows(*clean, LateStart(1).apply(tracks))
     >>> seen.past.present[:, :, 0].tolist(), seen.predictable, seen.asked
     ([[False, True]], 1, 1)
     """
@@ -78,7 +78,7 @@ def seen_windows(past: Windows, future: Windows, degraded: Degraded, carry: int 
     there[who[0], :, who[1]] = future.present[who[0], :, clean[real]]
     scored[who] = future.scored[who[0], clean[real]]
     seen: dict[str, Any] = {"id": id, "robot": robot}
-    return Seen(
+    return DegradedWindows(
         dataclasses.replace(past, position=position, present=present, scored=np.zeros_like(scored), **seen),
         dataclasses.replace(future, position=then, present=there, scored=scored, **seen),
         asked=int(future.scored.sum()),
@@ -88,9 +88,9 @@ def seen_windows(past: Windows, future: Windows, degraded: Degraded, carry: int 
 
 @dataclass(frozen=True)
 class _Table:
-    """The rows of a degraded recording, found by frame and id, and the people of clean windows."""
+    """Index of a degraded recording by frame and id, with the people of the clean windows."""
 
-    degraded: Degraded
+    degraded: DegradedTracks
     past: Windows
     frames: Integers
     first: Integers
@@ -98,7 +98,7 @@ class _Table:
     key: Integers
 
     @classmethod
-    def of(cls, past: Windows, degraded: Degraded) -> _Table:
+    def of(cls, past: Windows, degraded: DegradedTracks) -> _Table:
         tracks = degraded.tracks
         frames, first, place = np.unique(tracks.frame, return_index=True, return_inverse=True)
         ids, number = np.unique(tracks.id, return_inverse=True)
@@ -106,7 +106,7 @@ class _Table:
         return cls(degraded, past, frames, np.append(first, len(tracks)), ids, key)
 
     def chosen(self, carry: int) -> tuple[Integers, Integers, Integers]:
-        """Return window, last seen row and slot among the clean people (-1 for a ghost) of everyone to be shown."""
+        """Return window, last observed row and clean slot (-1 for a false track) of all tracks in the windows."""
         window, row, clean = self._at(0)
         for back in range(1, min(carry, self.past.position.shape[1] - 1) + 1):
             more, older, person = self._at(back)
@@ -119,7 +119,7 @@ class _Table:
         return window, row, clean
 
     def _at(self, back: int) -> tuple[Integers, Integers, Integers]:
-        """Return the same of everyone who is seen ``back`` rows before the last observed one."""
+        """Return the same for the tracks observed ``back`` rows before the last row."""
         frame = self.past.frame[:, -1 - back]
         place = np.minimum(np.searchsorted(self.frames, frame), len(self.frames) - 1)
         count = np.where(self.frames[place] == frame, self.first[place + 1] - self.first[place], 0)
@@ -131,7 +131,7 @@ class _Table:
         return window[kept], row[kept], clean[kept]
 
     def _slots(self, window: Integers, truth: Integers) -> Integers:
-        """Return the slots of people in their clean windows, -1 for who is not there."""
+        """Return the slots of people in the clean windows, -1 if absent."""
         member, slot = np.nonzero(self.past.present[:, -1])
         people = np.unique(np.concatenate([self.past.id[member, slot], truth]))
         known = member * len(people) + np.searchsorted(people, self.past.id[member, slot])
@@ -158,7 +158,7 @@ class _Table:
 
 
 def _coast(position: NDArray[np.float64], present: Bools, window: Integers, slot: Integers) -> None:
-    """Walk tracks that end before the last row on to it, with the velocity of their last two rows."""
+    """Extrapolate tracks to the last row with the velocity of their last two rows."""
     T = position.shape[1]
     for w, a in zip(window.tolist(), slot.tolist(), strict=True):
         if present[w, -1, a]:

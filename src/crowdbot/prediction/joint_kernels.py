@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 
-__all__ = ["arrange", "crossing", "part_ways"]
+__all__ = ["assign_futures", "first_crossing", "separate_paths"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -23,7 +23,7 @@ FLAT = 1e-9
 
 @kernel
 def _boxes(path: Floats, room: float) -> Floats:  # pragma: no cover - compiled
-    """Return ``[A, K + 1, 4]``: least x, y and largest x, y [m] of every path, grown by ``room``; last those of all."""
+    """Return bounding boxes ``[A, K + 1, 4]`` [m] of all paths, expanded by ``room``; the last one contains all K."""
     A, K, T, _ = path.shape
     box = np.empty((A, K + 1, 4))
     for a in range(A):
@@ -39,21 +39,21 @@ def _boxes(path: Floats, room: float) -> Floats:  # pragma: no cover - compiled
 
 
 @kernel
-def _apart(one: Floats, other: Floats) -> bool:  # pragma: no cover - compiled
+def _disjoint(one: Floats, other: Floats) -> bool:  # pragma: no cover - compiled
     return bool(one[2] < other[0] or other[2] < one[0] or one[3] < other[1] or other[3] < one[1])
 
 
 @kernel
-def _meeting(
+def _find_collisions(
     path: Floats, a: int, b: int, box: Floats, limit: float, hit: Bools
 ) -> bool:  # pragma: no cover - compiled
-    """Write ``[K, K]`` whether two people collide in each pair of their futures; return whether they do in any."""
+    """Write the collision matrix ``[K, K]`` of the futures of two people; return whether any pair collides."""
     K, T = path.shape[1], path.shape[2]
     found = False
     for k in range(K):
         for j in range(K):
             hit[k, j] = False
-            if _apart(box[a, k], box[b, j]):
+            if _disjoint(box[a, k], box[b, j]):
                 continue
             for t in range(T):
                 dx, dy = path[a, k, t, 0] - path[b, j, t, 0], path[a, k, t, 1] - path[b, j, t, 1]
@@ -65,12 +65,12 @@ def _meeting(
 
 
 @kernel
-def arrange(path: Floats, limit: float, order: float, sweeps: int) -> Integers:  # pragma: no cover - compiled
-    """Return ``[A, K]``: which own future each of A people takes in each of K joint futures, each exactly once.
+def assign_futures(path: Floats, limit: float, order: float, sweeps: int) -> Integers:  # pragma: no cover - compiled
+    """Return ``[A, K]``: the future of each person in each of K joint futures; each future is used exactly once.
 
-    The futures ``[A, K, T, 2]`` [m] stand sorted, the likeliest first. People who would come nearer than ``limit`` [m]
-    to others exchange two of their own futures between two joint ones, one person after the other, as long as that
-    makes fewer collisions; leaving the order costs ``order`` times the square of how far, in shares of K.
+    The futures ``[A, K, T, 2]`` [m] are sorted by decreasing probability. One person after the other, two futures are
+    exchanged between two joint futures while this reduces the number of collisions, that is, distances below ``limit``
+    [m]. A permuted future costs ``order * (displacement / K)**2``.
     """
     A, K = path.shape[0], path.shape[1]
     box = _boxes(path, 0.5 * limit)
@@ -82,13 +82,13 @@ def arrange(path: Floats, limit: float, order: float, sweeps: int) -> Integers: 
     count = 0
     for a in range(A):
         for b in range(a + 1, A):
-            if not _apart(box[a, K], box[b, K]):
+            if not _disjoint(box[a, K], box[b, K]):
                 one[count], other[count] = a, b
                 count += 1
     hit = np.zeros((count, K, K), dtype=np.bool_)
     meet = np.zeros(count, dtype=np.bool_)
     for p in range(count):
-        meet[p] = _meeting(path, one[p], other[p], box, limit, hit[p])
+        meet[p] = _find_collisions(path, one[p], other[p], box, limit, hit[p])
     cost = np.empty((K, K))
     for _ in range(sweeps):
         changed = False
@@ -105,7 +105,7 @@ def arrange(path: Floats, limit: float, order: float, sweeps: int) -> Integers: 
                             if hit[p, m, choice[other[p], k]] if first else hit[p, choice[one[p], k], m]:
                                 cost[m, k] += 1.0
                                 clash = True
-            if clash and _exchanged(choice[a], cost):
+            if clash and _exchange(choice[a], cost):
                 changed = True
         if not changed:
             break
@@ -113,8 +113,8 @@ def arrange(path: Floats, limit: float, order: float, sweeps: int) -> Integers: 
 
 
 @kernel
-def _exchanged(choice: Integers, cost: Floats) -> bool:  # pragma: no cover - compiled
-    """Exchange futures of one person while it pays, ``cost[future, joint]``; return whether there was one."""
+def _exchange(choice: Integers, cost: Floats) -> bool:  # pragma: no cover - compiled
+    """Exchange futures of one person while the cost ``[future, joint]`` decreases; return whether any was exchanged."""
     K = len(choice)
     changed = False
     for _ in range(K):
@@ -135,12 +135,12 @@ def _exchanged(choice: Integers, cost: Floats) -> bool:  # pragma: no cover - co
 
 
 @kernel
-def part_ways(path: Floats, fixed: Bools, limit: float, rounds: int) -> Floats:  # pragma: no cover - compiled
-    """Return the paths ``[A, T, 2]`` [m] of one joint future with people who come too near moved aside.
+def separate_paths(path: Floats, fixed: Bools, limit: float, rounds: int) -> Floats:  # pragma: no cover - compiled
+    """Return the paths ``[A, T, 2]`` [m] of one joint future with a minimum distance between people.
 
-    Two people nearer than ``limit`` [m] at their closest step give way in opposite directions, half of what is missing
-    each; it grows evenly from now to that step, and stays. Who is ``fixed`` stays on the path. All give way at once,
-    again and again, so that the order of people does not matter.
+    Two people closer than ``limit`` [m] are moved in opposite directions at their closest step, by half of the missing
+    distance each. The offset grows linearly up to that step and stays constant afterwards. Agents in ``fixed`` are not
+    moved. All pairs move simultaneously in each round; the result does not depend on the order of people.
     """
     A, T, _ = path.shape
     out = path.copy()
@@ -161,7 +161,7 @@ def part_ways(path: Floats, fixed: Bools, limit: float, rounds: int) -> Floats: 
                 found = True
                 dx, dy = out[a, when, 0] - out[b, when, 0], out[a, when, 1] - out[b, when, 1]
                 away = math.sqrt(least)
-                if away < FLAT:  # head to head: each to the side of the other's way
+                if away < FLAT:  # same position: move across the direction of motion
                     dy, dx = out[a, T - 1, 0] - out[a, 0, 0], out[a, 0, 1] - out[a, T - 1, 1]
                     away = max(math.sqrt(dx * dx + dy * dy), FLAT)
                     least = 0.0
@@ -185,10 +185,10 @@ def part_ways(path: Floats, fixed: Bools, limit: float, rounds: int) -> Floats: 
 
 
 @kernel
-def crossing(start: Floats, path: Floats, one: Floats, other: Floats) -> Integers:  # pragma: no cover - compiled
-    """Return ``[N, K]`` the first step in which paths ``start [N, 2] + path [N, K, T, 2]`` cross a segment, T if none.
+def first_crossing(start: Floats, path: Floats, one: Floats, other: Floats) -> Integers:  # pragma: no cover - compiled
+    """Return ``[N, K]`` the first step at which a path ``start [N, 2] + path [N, K, T, 2]`` crosses a segment, else T.
 
-    The segments go from ``one`` to ``other`` ``[M, 2]`` [m].
+    The segments connect ``one [M, 2]`` and ``other [M, 2]`` [m].
     """
     N, K, T, _ = path.shape
     found = np.full((N, K), T, dtype=np.int64)

@@ -1,4 +1,4 @@
-"""Kalman filters of people who walk with a nearly constant velocity or acceleration, fitted to recordings."""
+"""Kalman filters with nearly constant velocity or acceleration, fitted to recordings."""
 
 from __future__ import annotations
 
@@ -28,26 +28,26 @@ KALMAN = Paper(
 
 @dataclass(frozen=True)
 class _Filter(Predictor):
-    """A filter of position and n - 1 of its derivatives; the last one is driven by white noise.
+    """Filter of position and n - 1 derivatives; the last derivative is driven by white noise.
 
-    A subclass names its noises as fields and says the three things below.
+    Subclasses define the noise parameters as fields.
     """
 
     paper: ClassVar[Paper] = KALMAN
     lowest: ClassVar[Mapping[str, float]] = {}
-    """Smallest noise that the fit tries; interpolated recordings have no measurement noise of their own."""
+    """Lower bounds of the fit; interpolated recordings have no measurement noise."""
     first_guess: ClassVar[Mapping[str, float]] = {}
-    """Where the fit begins."""
+    """Initial values of the fit."""
 
     @property
     @abstractmethod
     def _push(self) -> float:
-        """Root of the spectral density of what drives the last derivative."""
+        """Square root of the spectral density of the driving noise."""
 
     @property
     @abstractmethod
     def _start(self) -> tuple[float, ...]:
-        """Standard deviations of position and derivatives when somebody is seen for the first time."""
+        """Initial standard deviations of position and derivatives."""
 
     def __post_init__(self) -> None:
         for name in self.lowest:
@@ -56,9 +56,9 @@ class _Filter(Predictor):
                 raise InputError(f"{self.name.partition('(')[0]}: {name} = {value} must be finite and above 0")
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return where people will be, see :meth:`Predictor.predict`."""
+        """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
-        motion, _ = self._filtered(_rows_first(past.position), _rows_first(past.present), past.dt)
+        motion, _ = self._run_filter(_rows_first(past.position), _rows_first(past.present), past.dt)
         time = past.dt * np.arange(1, steps + 1)[:, None, None]
         terms = [value[:, None] * time**order / math.factorial(order) for order, value in enumerate(motion)]
         place = np.sum(terms[1:], axis=0) + terms[0]
@@ -66,78 +66,80 @@ class _Filter(Predictor):
 
     @classmethod
     def fit(cls, *pasts: Windows) -> Self:
-        """Return the filter under which the observed rows of training windows are most likely.
+        """Return the maximum-likelihood filter of the observed rows of training windows.
 
-        The likelihood of every row given the rows before it is maximised over the noises with a compass search on their
-        logarithms, down to 0.1 %. Robots are left out.
+        The likelihood of each row given the previous rows is maximized over the noise parameters with a compass search
+        on their logarithms, to a precision of 0.1 %. Robots are excluded.
 
         Raises:
-            InputError: nobody is seen at two rows.
+            InputError: nobody is observed at two rows.
         """
         tracks = [_tracks(past) for past in pasts]
         if sum(len(track.present.T) for track in tracks) == 0:
-            raise InputError("kalman: a fit needs at least one person who is seen at two rows")
+            raise InputError("kalman: a fit requires at least one person who is observed at two rows")
         best = dict(cls.first_guess)
-        cost = _surprise(cls(**best), tracks)
+        cost = _negative_log_likelihood(cls(**best), tracks)
         factor = 4.0
         while factor > 1.001:
             improved = False
             for name in cls.lowest:
                 for ratio in (factor, 1.0 / factor):
                     trial = best | {name: max(best[name] * ratio, cls.lowest[name])}
-                    value = _surprise(cls(**trial), tracks)
+                    value = _negative_log_likelihood(cls(**trial), tracks)
                     if value < cost:
                         best, cost, improved = trial, value, True
             factor = factor if improved else math.sqrt(factor)
         return cls(**best)
 
-    def surprise(self, *pasts: Windows) -> float:
+    def negative_log_likelihood(self, *pasts: Windows) -> float:
         """Return the mean negative log-likelihood of a row (two coordinates) given the rows before it [nat]."""
-        return _surprise(self, [_tracks(past) for past in pasts])
+        return _negative_log_likelihood(self, [_tracks(past) for past in pasts])
 
-    def _filtered(self, position: Floats, present: NDArray[np.bool_], dt: float) -> tuple[list[Floats], float]:
-        """Return position and derivatives ``[..., 2]`` after the rows ``[T, ..., 2]``, and the sum of the surprise."""
+    def _run_filter(self, position: Floats, present: NDArray[np.bool_], dt: float) -> tuple[list[Floats], float]:
+        """Return position and derivatives ``[..., 2]`` after the rows, and the summed negative log-likelihood."""
         n, shape = len(self._start), present.shape[1:]
         drift, noise = _step(n, dt), self._push**2 * _noise(n, dt)
         measured = self._start[0] ** 2
         motion = [np.zeros((*shape, 2)) for _ in range(n)]
         spread = [[np.full(shape, self._start[i] ** 2 if i == j else 0.0) for j in range(n)] for i in range(n)]
-        started, surprise = np.zeros(shape, dtype=np.bool_), 0.0
+        started, negative_log_likelihood = np.zeros(shape, dtype=np.bool_), 0.0
         for seen, here in zip(position, present, strict=True):
-            motion = _carried(drift, motion)
-            later = _spread_later(drift, spread, noise)
+            motion = _propagate(drift, motion)
+            later = _predict_covariance(drift, spread, noise)
             spread = [[np.where(started, later[i][j], spread[i][j]) for j in range(n)] for i in range(n)]
             update = started & here
             expected = spread[0][0] + measured
             wrong = np.where(update[..., None], seen - motion[0], 0.0)
             length2 = wrong[..., 0] ** 2 + wrong[..., 1] ** 2
-            surprise += float(np.sum(np.where(update, np.log(expected) + length2 / (2.0 * expected), 0.0)))
+            negative_log_likelihood += float(
+                np.sum(np.where(update, np.log(expected) + length2 / (2.0 * expected), 0.0))
+            )
             gain = [np.where(update, spread[i][0] / expected, 0.0) for i in range(n)]
             motion = [value + gain[i][..., None] * wrong for i, value in enumerate(motion)]
             spread = [[spread[i][j] - gain[i] * spread[0][j] for j in range(n)] for i in range(n)]
             first = here & ~started
             motion[0] = np.where(first[..., None], seen, motion[0])
             started |= here
-        return motion, surprise
+        return motion, negative_log_likelihood
 
 
 @dataclass(frozen=True)
 class Kalman(_Filter):
-    """Everyone's position and velocity are filtered over the observed rows, then the velocity is kept.
+    """Kalman filter with nearly constant velocity (white acceleration noise).
 
-    The velocity is driven by white acceleration; x and y are independent and alike. Missing rows are bridged, and
-    somebody seen at one row only is expected to stand. Deterministic: K = 1.
+    Position and velocity are filtered over the observed rows; the forecast has constant velocity. x and y are
+    independent. Missing rows are skipped. The velocity of people observed once is zero. Deterministic: K = 1.
 
     Fields:
-        acceleration: root of the spectral density of the acceleration [m s^-1.5].
+        acceleration: square root of the spectral density of the acceleration [m s^-1.5].
         measurement: standard deviation of a measured coordinate [m].
-        speed: standard deviation of a velocity component before anything is seen of the motion [m/s].
+        speed: initial standard deviation of a velocity component [m/s].
 
-    The defaults are the most likely ones for six recordings that are in none of the five ETH/UCY test sets: the
-    training parts of zara03 and uni_examples (leave-one-out files), and hyang_4 to hyang_7 of the Stanford Drone
+    The defaults are the maximum-likelihood values for six recordings outside the five ETH/UCY test sets: the training
+    parts of zara03 and uni_examples (leave-one-out files), and hyang_4 to hyang_7 of the Stanford Drone
     Dataset in the TrajNet cut, all by ``Kalman.fit(*[load(file).windows()[0] for file in files])``. The first
-    two alone, which are interpolated, give 0.173, 0.0026 and 0.845; the other four 0.328, 0.0543 and 0.783: fit your
-    own tracker.
+    two alone, which are interpolated, give 0.173, 0.0026 and 0.845; the other four 0.328, 0.0543 and 0.783: fit the
+    filter to your own tracker.
 
     Paper: Kalman (1960), doi 10.1115/1.3662552.
 
@@ -167,20 +169,20 @@ class Kalman(_Filter):
 
 @dataclass(frozen=True)
 class KalmanAcceleration(_Filter):
-    """Everyone's position, velocity and acceleration are filtered over the observed rows, then the last is kept.
+    """Kalman filter with nearly constant acceleration (white jerk noise).
 
-    The acceleration is driven by white jerk, otherwise as :class:`Kalman`. It follows tracks more closely than a
-    constant velocity, and beyond the first second the kept acceleration leads far away: a baseline that is asked for.
+    Otherwise as :class:`Kalman`. It follows tracks more closely than the filter with constant velocity, but its errors
+    grow quickly beyond the first second. Included for comparison.
 
     Fields:
-        jerk: root of the spectral density of the jerk [m s^-2.5].
+        jerk: square root of the spectral density of the jerk [m s^-2.5].
         measurement: standard deviation of a measured coordinate [m].
-        speed: standard deviation of a velocity component before anything is seen of the motion [m/s].
-        acceleration: standard deviation of an acceleration component before anything is seen of it [m/s^2].
+        speed: initial standard deviation of a velocity component [m/s].
+        acceleration: initial standard deviation of an acceleration component [m/s^2].
 
-    The defaults are the most likely ones for the six recordings that :class:`Kalman` names, fitted in the same way. The
-    last is the smallest that the fit tries: people are best taken to walk evenly until they are seen to do otherwise.
-    A row is then less likely than under a constant velocity (mean log-likelihood 1.374 against 1.482 nat).
+    The defaults are the maximum-likelihood values for the six recordings of :class:`Kalman`. The last value is the
+    lower bound of the fit. The mean log-likelihood per row is below that of
+    :class:`Kalman` (1.374 against 1.482 nat).
 
     Paper: Kalman (1960), doi 10.1115/1.3662552.
 
@@ -228,27 +230,27 @@ def _tracks(past: Windows) -> _Tracks:
     )
 
 
-def _surprise(filter_: _Filter, tracks: list[_Tracks]) -> float:
-    total = sum(filter_._filtered(*track)[1] for track in tracks)
+def _negative_log_likelihood(filter_: _Filter, tracks: list[_Tracks]) -> float:
+    total = sum(filter_._run_filter(*track)[1] for track in tracks)
     rows = sum(int(np.sum(track.present)) - track.present.shape[1] for track in tracks)
     return float(total / rows + math.log(2.0 * math.pi))
 
 
 def _step(n: int, dt: float) -> Floats:
-    """Return the matrix ``[n, n]`` that carries position and derivatives over one row."""
+    """Return the transition matrix ``[n, n]`` of one row."""
     return np.array([[dt ** (j - i) / math.factorial(j - i) if j >= i else 0.0 for j in range(n)] for i in range(n)])
 
 
 def _noise(n: int, dt: float) -> Floats:
-    """Return the covariance ``[n, n]`` that white noise of density 1 on the last derivative adds over one row."""
+    """Return the process noise covariance ``[n, n]`` of one row for unit density."""
     left = [n - 1 - i for i in range(n)]
     return np.array(
         [[dt ** (p + q + 1) / ((p + q + 1) * math.factorial(p) * math.factorial(q)) for q in left] for p in left]
     )
 
 
-def _carried(drift: Floats, rows: list[Floats]) -> list[Floats]:
-    """Return the product of a triangular matrix and a column, without a library whose last bits depend on the batch."""
+def _propagate(drift: Floats, rows: list[Floats]) -> list[Floats]:
+    """Return the product of a triangular matrix and a column; its bits do not depend on the batch, unlike BLAS."""
     n = len(rows)
     found = []
     for i in range(n):
@@ -259,10 +261,10 @@ def _carried(drift: Floats, rows: list[Floats]) -> list[Floats]:
     return found
 
 
-def _spread_later(drift: Floats, spread: list[list[Floats]], noise: Floats) -> list[list[Floats]]:
+def _predict_covariance(drift: Floats, spread: list[list[Floats]], noise: Floats) -> list[list[Floats]]:
     """Return ``F P F' + Q``."""
-    columns = [_carried(drift, list(column)) for column in zip(*spread, strict=True)]
-    rows = [_carried(drift, list(row)) for row in zip(*columns, strict=True)]
+    columns = [_propagate(drift, list(column)) for column in zip(*spread, strict=True)]
+    rows = [_propagate(drift, list(row)) for row in zip(*columns, strict=True)]
     return [[value + noise[i, j] for j, value in enumerate(row)] for i, row in enumerate(rows)]
 
 

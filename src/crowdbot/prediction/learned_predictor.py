@@ -1,4 +1,4 @@
-"""What learned predictors share: a checkpoint that says what it fits, and tracks made whole for it."""
+"""LearnedPredictor: base class of predictors with weights in a checkpoint file."""
 
 from __future__ import annotations
 
@@ -13,33 +13,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
-from crowdbot.data import Windows, bridged
+from crowdbot.data import Windows, fill_gaps
 
 from .predictor import Predictor
-from .pretrained_weights import ALL, AUTO, FOLDS, STEP, fold_of, misfit, shipped
+from .pretrained_weights import ALL, AUTO, FOLDS, STEP, fold_of, incompatibility, pretrained_file
 
-__all__ = ["LearnedPredictor", "whole_tracks"]
+__all__ = ["LearnedPredictor", "complete_tracks"]
 
 Floats = NDArray[np.float64]
 
 ELSEWHERE = "eth"
-"""Shipped weights for places that are none of the five: those that saw all but this one, the smallest."""
+"""Fold of the shipped weights for other places: trained on all places except this one, the smallest."""
 TOLERANCE = 0.02
-"""Windows whose time step is off by more than this share do not fit."""
+"""Maximum relative difference of the time step."""
 
 
 @dataclass(frozen=True)
 class LearnedPredictor(Predictor):
-    """A predictor whose weights come from a file that ``crowdbot train`` made.
+    """A predictor with weights from a file of ``crowdbot train``.
 
     Fields:
-        checkpoint: the file; or a place (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``) for the shipped weights
-            that were learned without it; or ``auto``: without the place that the recording is named after.
+        checkpoint: file of the weights; or a place (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``) for the shipped
+            weights trained without it; or ``auto``: without the place of the recording, by its name.
         device: ``cpu``, ``cuda`` or ``cuda:N``.
-        digest: hash of the file, so that results which are kept belong to its content.
+        digest: hash of the file.
 
     Raises:
-        InputError: there is no such file.
+        InputError: the file cannot be read.
     """
 
     checkpoint: str = AUTO
@@ -53,8 +53,8 @@ class LearnedPredictor(Predictor):
             content = self.file("").read_bytes()
         except OSError as error:
             raise InputError(
-                f"the checkpoint {self.checkpoint!r} cannot be read ({error.strerror}); crowdbot train makes one, and"
-                f" shipped are {', '.join(FOLDS)}"
+                f"the checkpoint {self.checkpoint!r} cannot be read ({error.strerror}); give a file of crowdbot train,"
+                f" or auto, {', '.join(FOLDS)} for shipped weights"
             ) from None
         object.__setattr__(self, "digest", hashlib.blake2b(content, digest_size=4).hexdigest())
 
@@ -65,66 +65,66 @@ class LearnedPredictor(Predictor):
 
     @property
     def name(self) -> str:
-        """Name on the command line, followed by what weights it has: folder, file and hash when they are own ones."""
-        if self.shipped:
+        """Name on the command line with its weights: folder, file and hash for own weights."""
+        if self.is_pretrained:
             return self.kind + (f"(checkpoint={self.checkpoint})" if self.checkpoint != AUTO else "")
         file = Path(self.checkpoint)
         return f"{self.kind}({file.parent.name}/{file.name} {self.digest})"
 
     @property
-    def shipped(self) -> bool:
-        """Whether weights of the package are used."""
+    def is_pretrained(self) -> bool:
+        """Whether shipped weights are used."""
         return self.checkpoint in (AUTO, *FOLDS)
 
     def file(self, source: str) -> Path:
         """Return the file of the weights for a recording of this name."""
-        if not self.shipped:
+        if not self.is_pretrained:
             return Path(self.checkpoint)
         fold = fold_of(source) if self.checkpoint == AUTO else self.checkpoint
-        return shipped(self.kind, ELSEWHERE if fold == ALL else fold)
+        return pretrained_file(self.kind, ELSEWHERE if fold == ALL else fold)
 
     def note(self, past: Windows) -> str:
-        """Return what a user should know of forecasts of such windows in one sentence, or nothing."""
-        why = self.misfit(past)
+        """Return a one-sentence remark on forecasts of such windows, or an empty string."""
+        why = self.incompatibility(past)
         if why:
-            return f"{self.kind}: {why}; a baseline answers instead"
+            return f"{self.kind}: {why}; a baseline is used instead"
         if self.checkpoint == AUTO and fold_of(past.source) == ALL:
             return (
-                f"{self.kind}: {past.source} is none of the five places it knows, so the weights learned at all of them"
-                f" but {ELSEWHERE} are used"
+                f"{self.kind}: {past.source} is not named after a training place; using the weights trained without"
+                f" {ELSEWHERE}"
             )
         return ""
 
-    def misfit(self, past: Windows) -> str:
-        """Return why shipped weights do not fit these windows, or nothing; own weights speak for themselves."""
-        if not self.shipped:
+    def incompatibility(self, past: Windows) -> str:
+        """Return why shipped weights cannot be used with these windows, or an empty string."""
+        if not self.is_pretrained:
             return ""
         if past.units == "m" and abs(past.dt - STEP) > TOLERANCE * STEP:
             return (
-                f"{past.source} has steps of {past.dt:.4g} s, it was learned at {STEP} s:"
-                f" bring it there with --step {STEP}"
+                f"{past.source} has time steps of {past.dt:.4g} s; the weights require {STEP} s:"
+                f" resample with --step {STEP}"
             )
-        return misfit(past)
+        return incompatibility(past)
 
     @staticmethod
     def fits(past: Windows, facts: Mapping[str, Any], what: str) -> None:
-        """Raise :class:`InputError` unless windows have the time step and units that were learned."""
+        """Raise :class:`InputError` if windows have another time step or other units than the training data."""
         if abs(past.dt - facts["dt"]) > TOLERANCE * facts["dt"]:
             raise InputError(
-                f"{what} has learned steps of {facts['dt']:.4g} s, {past.source} has steps of {past.dt:.4g} s;"
-                f" bring it there with --step {facts['dt']:.4g} or Trajectories.resample"
+                f"{what} requires time steps of {facts['dt']:.4g} s, {past.source} has {past.dt:.4g} s;"
+                f" resample with --step {facts['dt']:.4g} or Trajectories.resample"
             )
         if past.units != facts["units"]:
-            raise InputError(f"{what} has learned tracks in {facts['units']}, {past.source} is in {past.units}")
+            raise InputError(f"{what} requires tracks in {facts['units']}, {past.source} is in {past.units}")
 
 
-def whole_tracks(past: Windows, rows: int) -> Floats:
-    """Return the last ``rows`` rows of everyone ``[W, rows, A, 2]`` [m], with what was not seen filled in.
+def complete_tracks(past: Windows, rows: int) -> Floats:
+    """Return the last ``rows`` rows of all agents ``[W, rows, A, 2]`` [m] without gaps.
 
-    Holes are bridged by an even walk; before the first row that was seen, people walk backwards with their first
-    velocity; who was seen once stood there all the time.
+    Gaps are interpolated linearly; rows before the first observed row are extrapolated with the first velocity. Agents
+    observed once have a constant position.
     """
-    known = bridged(past)
+    known = fill_gaps(past)
     have = known.position.shape[1]
     if have < rows:
         pad = ((0, 0), (rows - have, 0), (0, 0))

@@ -1,4 +1,4 @@
-"""Live: people as a tracker sees them, row by row, and where they will be."""
+"""Live: forecasts of a stream of tracked people."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ Row = tuple[NDArray[np.int64], Floats, frozenset[int]]
 
 
 class Live:
-    """Predicts a live stream of tracked people: one row after the other, at an even time step.
+    """Predicts a live stream of tracked people at a constant time step.
 
-    People may appear, vanish, be missed for some rows and come back: everyone who is in the last row is predicted from
-    the rows there are. A calibrated crowd begins with what it found at the row before.
+    People may appear, disappear, be missing for some rows and return. All people in the last row are predicted, from
+    the rows in which they were observed. A calibrated crowd starts each search from the previous result.
 
     Args:
-        predictor: any predictor whose goal does not look at the future.
+        predictor: any predictor whose goal does not require the future.
         dt: time between rows [s].
-        observe: how many rows are kept.
-        walls: rings ``[N, 2]`` [m] of what cannot be walked on.
-        seed: of predictors that draw or search.
+        observe: number of observed rows.
+        walls: rings ``[N, 2]`` [m] of obstacles.
+        seed: random seed.
 
     Raises:
-        InputError: ``dt`` is not above 0, fewer than one row is kept, or the predictor needs the future.
+        InputError: ``dt`` is not above 0, ``observe`` is below 1, or the predictor requires the future.
 
     >>> from crowdbot.prediction import ConstantVelocity
     >>> live = Live(ConstantVelocity(), dt=0.4)
-    >>> live.see([7], [[0.0, 0.0]])
-    >>> live.see([7, 9], [[0.4, 0.0], [3.0, 1.0]])
+    >>> live.update([7], [[0.0, 0.0]])
+    >>> live.update([7, 9], [[0.4, 0.0], [3.0, 1.0]])
     >>> live.predict(2).position[0, 0, :, 0].round(1).tolist(), live.ids.tolist()
     ([[0.8, 0.0], [1.2, 0.0]], [7, 9])
     """
@@ -69,14 +69,14 @@ class Live:
 
     @property
     def ids(self) -> NDArray[np.int64]:
-        """Identity of everyone in the last row, robots too, in the order of forecasts."""
+        """Identities of all agents in the last row, in the order of forecasts, including robots."""
         return self._rows[-1][0] if self._rows else np.zeros(0, dtype=np.int64)
 
-    def see(self, ids: ArrayLike, position: ArrayLike, robots: Iterable[int] = ()) -> None:
-        """Add a row: who is seen ``[N]`` and where ``[N, 2]`` [m]; ``robots`` names those who are robots.
+    def update(self, ids: ArrayLike, position: ArrayLike, robots: Iterable[int] = ()) -> None:
+        """Add a row: identities ``[N]`` and positions ``[N, 2]`` [m]; ``robots`` lists the identities of robots.
 
         Raises:
-            InputError: shapes do not fit, a position is not finite, an identity stands twice or is below 0.
+            InputError: shapes do not match, a position is not finite, or an identity is duplicate or negative.
         """
         who = np.asarray(ids, dtype=np.int64).reshape(-1)
         place = np.asarray(position, dtype=float).reshape(-1, 2)
@@ -91,7 +91,7 @@ class Live:
         self._count += 1
 
     def past(self, plans: Mapping[int, ArrayLike] | None = None) -> Windows:
-        """Return the rows that are kept, as one window of everyone in the last row."""
+        """Return the stored rows as one window of all agents in the last row."""
         who = self.ids
         T, A = len(self._rows), len(who)
         position, present = np.zeros((1, T, A, 2)), np.zeros((1, T, A), dtype=np.bool_)
@@ -106,22 +106,22 @@ class Live:
             position, present, nobody, np.isin(who, sorted(robots))[None], who[None], frame[None], self.dt, "live",
             "live stream", self.walls,
         )  # fmt: skip
-        return past.planned(plans) if plans else past
+        return past.with_plans(plans) if plans else past
 
     def predict(self, steps: int, samples: int = 1, plans: Mapping[int, ArrayLike] | None = None) -> Forecast:
-        """Return where everyone in the last row will be, in the order of :attr:`ids`.
+        """Return the forecast of all agents in the last row, in the order of :attr:`ids`.
 
         Args:
-            steps: rows ahead.
-            samples: futures, of predictors that have several.
-            plans: known next positions of robots, identity -> ``[S, 2]`` [m]: what if the robot goes there? What is
-                asked with a plan is not remembered for the next row.
+            steps: number of predicted rows.
+            samples: number of futures.
+            plans: planned positions of robots, identity -> ``[S, 2]`` [m]. A query with a plan does not change the
+                memory of the predictor.
 
         Raises:
-            InputError: nothing was seen yet, or a plan is for nobody in the last row.
+            InputError: no row yet, or a plan for an identity that is not in the last row.
         """
         if not self._rows:
-            raise InputError("live: nothing was seen yet; call see first")
+            raise InputError("live: no row yet; call update first")
         rng = stream(self._seed, "live", self._count)
         forecast, memory = self.predictor.follow(self.past(plans), steps, samples, rng, self._memory)
         if not plans:

@@ -1,4 +1,4 @@
-"""The contract of the room: a predictor says where the people of a window will be."""
+"""Predictor, the contract of this package: forecasts of the people in a window."""
 
 from __future__ import annotations
 
@@ -18,32 +18,32 @@ __all__ = ["Predictor", "window_streams"]
 
 @dataclass(frozen=True)
 class Predictor(ABC):
-    """Predicts everyone who is present at the last observed step of a window, robots too.
+    """Predicts all agents that are present at the last observed row of a window, including robots.
 
-    What a predictor must hold to:
-        It never reads ``past.scored``, nor anything but the observed rows. People may be missing at some observed rows,
-        or be seen at the last one only; windows may be padded, or empty. A window alone is predicted exactly as in a
-        batch, so what is random is drawn from :func:`window_streams`. A deterministic predictor returns K = 1 however
-        many samples are asked for: copies of one future are no samples.
+    Requirements:
+        Read observed rows only, and never ``past.scored``. Agents may be missing at some observed rows, or be present
+        at the last row only. Windows may be padded or empty. The forecast of a window is independent of the batch:
+        draw random numbers from :func:`window_streams`. A deterministic predictor returns K = 1 for any number of
+        samples.
     """
 
     @property
     def name(self) -> str:
-        """Name as on the command line, followed by the parameters that differ from their defaults."""
+        """Name on the command line, followed by the parameters that differ from their defaults."""
         return _spoken(self)
 
     @abstractmethod
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return where people will be.
+        """Return the forecast.
 
         Args:
             past: observed rows of W windows; the last row is now.
-            steps: how many rows to look ahead, at least 1.
-            samples: how many futures to draw, at least 1.
-            rng: source of randomness; None means ``stream(0, "predict")``.
+            steps: number of predicted rows, at least 1.
+            samples: number of futures, at least 1.
+            rng: random generator; None means ``stream(0, "predict")``.
 
         Raises:
-            InputError: there is no observed row, or steps or samples are below 1.
+            InputError: no observed row, or steps or samples below 1.
         """
 
     def follow(
@@ -54,23 +54,23 @@ class Predictor(ABC):
         rng: np.random.Generator | None = None,
         memory: Any = None,
     ) -> tuple[Forecast, Any]:
-        """Return the forecast, and what helps with the next frame of the same people.
+        """Return the forecast and a memory for the next frame of the same people.
 
         Args:
-            past, steps, samples, rng: as of :meth:`predict`.
-            memory: what this returned with the frame before, or None.
+            past, steps, samples, rng: arguments of :meth:`predict`.
+            memory: memory returned for the previous frame, or None.
         """
         return self.predict(past, steps, samples, rng), memory
 
     def note(self, past: Windows) -> str:
-        """Return what a user should know of forecasts of such windows in one sentence, or nothing."""
+        """Return a one-sentence remark on forecasts of such windows, or an empty string."""
         del past
         return ""
 
     def forecast(self, past: Windows, position: NDArray[np.float64]) -> Forecast:
-        """Return positions ``[W, K, T, A, 2]`` [m] as this predictor's forecast, valid for who is present now.
+        """Return positions ``[W, K, T, A, 2]`` [m] as a forecast of the agents present at the last row.
 
-        Robots whose plan is known are where it says.
+        Robots with a plan follow it.
         """
         if past.plan is not None:
             ahead = np.stack([past.plan_at(step) for step in range(1, position.shape[2] + 1)], axis=1)
@@ -79,7 +79,7 @@ class Predictor(ABC):
 
     @staticmethod
     def check(past: Windows, steps: int, samples: int = 1) -> None:
-        """Raise :class:`InputError` unless there is something observed and something to predict."""
+        """Raise :class:`InputError` if there is no observed row, or if steps or samples are below 1."""
         if past.position.shape[1] < 1:
             raise InputError("a prediction needs at least one observed row")
         if steps < 1 or samples < 1:
@@ -87,9 +87,9 @@ class Predictor(ABC):
 
 
 def window_streams(rng: np.random.Generator | None, count: int) -> list[np.random.Generator]:
-    """Return one generator for each of ``count`` windows, taking one number of ``rng`` for each.
+    """Return one generator for each of ``count`` windows; each consumes one number of ``rng``.
 
-    Hence windows predicted in two chunks with the same ``rng`` draw what they would have drawn in one.
+    The random numbers of a window are therefore independent of the chunks in which windows are predicted.
 
     >>> whole = [g.random() for g in window_streams(stream(1), 3)]
     >>> rng = stream(1)

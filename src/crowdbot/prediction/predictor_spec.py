@@ -1,4 +1,4 @@
-"""Recipe: a predictor that may have to be made for the recording it is used on."""
+"""PredictorSpec: a predictor that may depend on the recording it is applied to."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import cast
 
 import numpy as np
 
-from crowdbot.calibration import Calibrator, PopulationPrior, goal_for, kind_of_goal
+from crowdbot.calibration import Calibrator, PopulationPrior, goal_class, goal_for
 from crowdbot.core import InputError, kebab, stream
 from crowdbot.data import Recording, Windows
 from crowdbot.models import Goal
@@ -17,25 +17,25 @@ from crowdbot.models import Goal
 from .predictor import Predictor
 from .simulated import Simulated
 
-__all__ = ["Recipe"]
+__all__ = ["PredictorSpec"]
 
 LEARNING_WINDOWS = 60
-"""Priors and shared parameters are learned from about so many windows, evenly over the known part of a recording."""
+"""Number of windows, evenly spaced over the known part of a recording, for priors and shared parameters."""
 
 
 @dataclass(frozen=True)
-class Recipe:
-    """How a predictor is made for a recording.
+class PredictorSpec:
+    """Specification of a predictor, built for each recording with :meth:`build`.
 
     Fields:
-        predictor: what predicts.
-        goal: name of the goal of a simulated crowd when it needs the recording: the true destinations (for evaluation
-            only) or what is learned from a part of it; None leaves the predictor as it is.
-        prior: whether a calibrated crowd learns its population prior from that part.
-        shared: whether a calibrated crowd takes one set of parameters, fitted to that part, and fits nothing later.
+        predictor: the predictor.
+        goal: name of a goal that depends on the recording: true destinations (for evaluation only) or learned from
+            the known part of the recording; None leaves the predictor unchanged.
+        prior: estimate the population prior from the known part.
+        shared: use one common set of parameters, fitted to the known part.
 
     Raises:
-        InputError: the goal is unknown, or the predictor cannot use what is asked for.
+        InputError: unknown goal, or options that the predictor does not support.
     """
 
     predictor: Predictor
@@ -49,7 +49,7 @@ class Recipe:
             if not isinstance(crowd, Simulated):
                 name = kebab(type(crowd).__name__)
                 raise InputError(f"goals are for predictors that simulate a crowd; {name} has none")
-            kind_of_goal(self.goal)
+            goal_class(self.goal)
         for word in ("prior", "shared"):
             if getattr(self, word) and (not isinstance(crowd, Simulated) or crowd.calibrator is None):
                 raise InputError(f"{word} parameters belong to a calibration: name a cost and a search")
@@ -58,7 +58,7 @@ class Recipe:
 
     @property
     def name(self) -> str:
-        """Name of the predictor, with what is made for the recording."""
+        """Name of the predictor with the options of this specification."""
         made = [f"goal={self.goal}"] if self.goal is not None else []
         made += [word for word in ("prior", "shared") if getattr(self, word)]
         if not made:
@@ -68,15 +68,15 @@ class Recipe:
 
     @property
     def knows_future(self) -> bool:
-        """Whether its goal is told where people will be: then it is for evaluation only."""
+        """Whether the goal uses true future positions; such predictors are for evaluation only."""
         if not isinstance(self.predictor, Simulated):
             return False
         goal = self.predictor.goal
-        return kind_of_goal(self.goal).knows_future if self.goal is not None else bool(cast(Goal, goal).knows_future)
+        return goal_class(self.goal).knows_future if self.goal is not None else bool(cast(Goal, goal).knows_future)
 
     @property
     def label(self) -> str:
-        """Short name for tables and plots: model, then cost and search of a calibration, then the goal."""
+        """Short name for tables and plots: model, cost, search, goal."""
         crowd = self.predictor
         if not isinstance(crowd, Simulated):
             return crowd.name
@@ -87,7 +87,7 @@ class Recipe:
         return ", ".join(words)
 
     def check(self, recording: Recording, live: bool) -> None:
-        """Raise :class:`InputError` when the predictor cannot work on a recording, before any work is done."""
+        """Raise :class:`InputError` if the predictor cannot be used with a recording."""
         crowd = self.predictor
         if not isinstance(crowd, Simulated):
             return
@@ -102,33 +102,33 @@ class Recipe:
                 " predicting live; take current-direction, or leave out --live"
             )
 
-    def prepared(self, recording: Recording) -> Predictor:
+    def build(self, recording: Recording) -> Predictor:
         """Return the predictor for a recording.
 
         Raises:
-            InputError: something is learned, and nothing was kept of the recording to learn from.
+            InputError: a part is learned, and the recording has no known part (``learn`` is 0).
         """
         return _prepared(self, recording)
 
 
 @functools.lru_cache(maxsize=16)
-def _prepared(recipe: Recipe, recording: Recording) -> Predictor:
-    crowd = recipe.predictor
+def _prepared(spec: PredictorSpec, recording: Recording) -> Predictor:
+    crowd = spec.predictor
     if not isinstance(crowd, Simulated):
         return crowd
-    if recipe.goal is not None:
-        crowd = dataclasses.replace(crowd, goal=goal_for(recipe.goal, recording))
-    if not (recipe.prior or recipe.shared):
+    if spec.goal is not None:
+        crowd = dataclasses.replace(crowd, goal=goal_for(spec.goal, recording))
+    if not (spec.prior or spec.shared):
         return crowd
     calibrator = cast(Calibrator, crowd.calibrator)
-    if kind_of_goal(recipe.goal or "current-direction").knows_future:
-        raise InputError(f"{recipe.goal} knows the future of what is predicted only: nothing can be learned with it")
+    if goal_class(spec.goal or "current-direction").knows_future:
+        raise InputError(f"{spec.goal} knows the future of what is predicted only: nothing can be learned with it")
     past = _known(recording)
-    if recipe.shared:
+    if spec.shared:
         fit = dataclasses.replace(calibrator, shared=True, free=_shareable(calibrator)).fit(past)
         return Simulated.of(fit)
     fit = calibrator.fit_each(past, [stream(0, "prior", window) for window in range(len(past))])
-    return dataclasses.replace(crowd, prior=PopulationPrior.learned(fit))
+    return dataclasses.replace(crowd, prior=PopulationPrior.from_fits(fit))
 
 
 def _known(recording: Recording) -> Windows:
@@ -138,5 +138,5 @@ def _known(recording: Recording) -> Windows:
 
 
 def _shareable(calibrator: Calibrator) -> tuple[str, ...]:
-    """Return the free parameters but the preferred speed, which is never shared."""
+    """Return the free parameters except the preferred speed, which is always individual."""
     return tuple(name for name in calibrator.free if name.replace("-", "_") != "preferred_speed")

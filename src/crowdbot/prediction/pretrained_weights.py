@@ -1,6 +1,6 @@
-"""Places that learned predictors know, and the files of what they learned without each of them.
+"""Shipped weights of learned predictors, one file per fold.
 
-A fold is a place that was left out of the training, so that the recordings of it can be predicted honestly.
+A fold is a place that was excluded from the training data, for an unbiased evaluation on its recordings.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ __all__ = [
     "Numbers",
     "check_fold",
     "fold_of",
-    "kept_out",
-    "learned",
-    "misfit",
-    "read_numbers",
-    "shipped",
+    "incompatibility",
+    "is_held_out",
+    "load_pretrained",
+    "pretrained_file",
+    "read_weights",
 ]
 
 Numbers = dict[str, NDArray[np.float64]]
@@ -47,7 +47,7 @@ FOLDS = {
     "zara1": ("crowds_zara01", "zara01"),
     "zara2": ("crowds_zara02", "zara02"),
 }
-"""Place left out, and how the names of its recordings begin."""
+"""Excluded place -> prefixes of the names of its recordings."""
 
 
 def check_fold(fold: str) -> None:
@@ -58,7 +58,7 @@ def check_fold(fold: str) -> None:
 
 
 def fold_of(source: str) -> str:
-    """Return the place that a recording of this name was made at; ``all`` when it is none of the five.
+    """Return the place of a recording by its name; ``all`` if it is none of the five places.
 
     >>> fold_of("biwi_hotel.txt"), fold_of("crowds_zara03.txt")
     ('hotel', 'all')
@@ -67,53 +67,53 @@ def fold_of(source: str) -> str:
     return next((fold for fold, begins in FOLDS.items() if name.startswith(begins)), ALL)
 
 
-def kept_out(fold: str, name: str) -> bool:
-    """Return whether a recording of this name has no part in the training of a fold."""
+def is_held_out(fold: str, name: str) -> bool:
+    """Return whether a recording of this name is excluded from the training of a fold."""
     return fold != ALL and Path(name).name.startswith(FOLDS[fold])
 
 
 @functools.cache
-def learned(kind: str, fold: str) -> Numbers:
-    """Return the arrays of a shipped file, in float64.
+def load_pretrained(kind: str, fold: str) -> Numbers:
+    """Return the shipped weights of a predictor as float64 arrays.
 
     Raises:
         DataError: the file is missing from the installation.
     """
-    return read_numbers(shipped(kind, fold))
+    return read_weights(pretrained_file(kind, fold))
 
 
-def shipped(kind: str, fold: str) -> Path:
-    """Return the file of what a predictor learned without a place."""
+def pretrained_file(kind: str, fold: str) -> Path:
+    """Return the file of the shipped weights of a predictor."""
     return find_weights(kind, fold)
 
 
-def read_numbers(path: Path) -> Numbers:
-    """Return the arrays of a file, in float64; nothing in it is executed.
+def read_weights(path: Path) -> Numbers:
+    """Return the arrays of a file as float64, without executing any code in it.
 
     Raises:
-        DataError: it is missing, damaged, or holds something else than finite numbers.
+        DataError: the file is missing or damaged, or has values that are not finite.
     """
     try:
         with path.open("rb") as handle, np.load(handle, allow_pickle=False) as file:
             found = {name: file[name].astype(np.float64) for name in file.files}
     except FileNotFoundError:
-        raise DataError(f"there is no file {path}; train it first") from None
+        raise DataError(f"{path} does not exist") from None
     except Exception as error:  # numpy raises anything at damaged files: zipfile, zlib, ValueError, KeyError, EOFError
-        raise DataError(f"{path} cannot be read as learned numbers, it is damaged or something else: {error}") from None
+        raise DataError(f"{path} is not a file of weights, or is damaged: {error}") from None
     bad = [name for name, values in found.items() if not np.all(np.isfinite(values))]
     if bad:
-        raise DataError(f"{path}: {bad[0]} holds numbers that are not finite; the file is damaged")
+        raise DataError(f"{path}: {bad[0]} has values that are not finite; the file is damaged")
     for values in found.values():
         values.setflags(write=False)
     return found
 
 
-def misfit(past: Windows) -> str:
-    """Return why what was learned at 0.4 s in metres does not fit these windows, or nothing."""
+def incompatibility(past: Windows) -> str:
+    """Return why weights for 0.4 s and metres cannot be used with these windows, or an empty string."""
     if past.units != "m":
         return f"{past.source} is in {past.units}, not in metres"
     if past.dt > LONGEST_STEP:
         return (
-            f"{past.source} has steps of {past.dt:.4g} s, it was learned at {STEP} s and takes up to {LONGEST_STEP} s"
+            f"{past.source} has time steps of {past.dt:.4g} s; the weights require {STEP} s, at most {LONGEST_STEP} s"
         )
     return ""

@@ -1,4 +1,4 @@
-"""A simulated crowd as a predictor: any crowd model, as given or calibrated on what was observed."""
+"""Simulated: a crowd model as a predictor, with given or calibrated parameters."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from crowdbot.calibration import (
     Rollout,
     Search,
     futures,
-    named_cost,
-    named_goal,
-    named_model,
-    named_search,
+    resolve_cost,
+    resolve_goal,
+    resolve_model,
+    resolve_search,
 )
 from crowdbot.data import Forecast, Windows
 from crowdbot.models import ORCA, CrowdModel
@@ -33,29 +33,29 @@ __all__ = ["Simulated"]
 
 @dataclass(frozen=True)
 class Simulated(Predictor):
-    """Everyone walks on as a crowd model says, all windows as one batch.
+    """Simulates the observed people with a crowd model; all windows form one batch.
 
-    People start with the velocity on which their goal is based (that of the last displacement, for the current
-    direction) and prefer to keep its length; robots follow their plan when it is known, else they keep their velocity,
-    and the others avoid them. Walls are those of the recording. K is
-    1, unless the goal knows several destinations of a person.
+    The initial velocity is the one that the goal is based on (the last displacement, for the current direction); its
+    magnitude is the preferred speed. Robots follow their plan if it is known, else they keep their velocity; people
+    avoid them. Walls come from the recording. K = 1, unless the goal has several destinations per person.
 
-    With a cost or a search it is a scheme: before it predicts, everyone's parameters are calibrated on the observed
-    rows of each window. Windows in which nobody can be compared (one person alone and the distances between people as
-    cost) keep the given parameters.
+    With a cost or a search, the parameters of each person are calibrated on the observed rows of each window before
+    the prediction. Windows without comparable people (one person, and a cost on distances between people) keep the
+    given parameters.
 
     Fields:
-        model: a crowd model or its name; its own paper describes it.
-        goal: where people want to go, or its name.
-        cost, search: of the calibration, or their names; with one of them, the other is ``progressive``, ``genetic``.
-        budget: how many whole crowds each window is calibrated with.
+        model: crowd model, or its name.
+        goal: goals of people, or its name.
+        cost: calibration cost, or its name; with a search only, the default is ``progressive``.
+        search: calibration search, or its name; with a cost only, the default is ``genetic``.
+        budget: number of simulated candidate crowds per window.
         free: names of the calibrated parameters; empty means all.
-        prior: what is known of the parameters of a population.
-        radius: of people [m].
-        substep: longest time step of the simulation [s]; force models need 0.05 or less.
+        prior: population prior of the parameters.
+        radius: radius of people [m].
+        substep: maximum time step of the simulation [s]; force models require 0.05 or less.
 
     Raises:
-        InputError: a name is unknown or a number is not above 0; on predicting, the windows are in pixels.
+        InputError: unknown name, or a value that is not above 0; in :meth:`predict`, windows in pixels.
     """
 
     model: CrowdModel | str = field(default_factory=ORCA)
@@ -69,20 +69,20 @@ class Simulated(Predictor):
     substep: float = 0.1
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "model", named_model(self.model))
-        object.__setattr__(self, "goal", named_goal(self.goal))
+        object.__setattr__(self, "model", resolve_model(self.model))
+        object.__setattr__(self, "goal", resolve_goal(self.goal))
         if self.cost is not None or self.search is not None:
-            object.__setattr__(self, "cost", named_cost(self.cost or "progressive"))
-            object.__setattr__(self, "search", named_search(self.search or "genetic"))
-            _ = self.calibrator  # says what is wrong
+            object.__setattr__(self, "cost", resolve_cost(self.cost or "progressive"))
+            object.__setattr__(self, "search", resolve_search(self.search or "genetic"))
+            _ = self.calibrator  # validates the fields
         _ = self.rollout
 
     @classmethod
     def of(cls, fit: Fit) -> Simulated:
-        """Return the predictor of a crowd that was calibrated with shared parameters.
+        """Return the predictor with the shared parameters of a fit.
 
         Raises:
-            InputError: everyone in the fit has parameters of their own.
+            InputError: the fit has individual parameters.
         """
         rollout = fit.shared_rollout
         return cls(
@@ -94,13 +94,13 @@ class Simulated(Predictor):
 
     @property
     def rollout(self) -> Rollout:
-        """The simulation behind it, before a calibration."""
+        """Simulation before any calibration."""
         model, goal = cast(CrowdModel, self.model), cast(Goal, self.goal)
         return Rollout(model, goal, self.radius, None, self.substep)
 
     @property
     def calibrator(self) -> Calibrator | None:
-        """What fits everyone's parameters before a prediction, or None."""
+        """Calibrator that runs before each prediction, or None."""
         if self.cost is None or self.search is None:
             return None
         return Calibrator(
@@ -109,7 +109,7 @@ class Simulated(Predictor):
         )  # fmt: skip
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return where people will be, see :meth:`Predictor.predict`."""
+        """Return the forecast, see :meth:`Predictor.predict`."""
         return self.follow(past, steps, samples, rng)[0]
 
     def follow(
@@ -120,7 +120,7 @@ class Simulated(Predictor):
         rng: np.random.Generator | None = None,
         memory: Any = None,
     ) -> tuple[Forecast, Any]:
-        """Return the forecast and the fit behind it; given the fit of the frame before, its values are tried early."""
+        """Return the forecast and its fit; the search starts from the previous fit, if given."""
         self.check(past, steps, samples)
         rngs = window_streams(rng, len(past))
         calibrator = self.calibrator

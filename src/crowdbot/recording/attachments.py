@@ -21,7 +21,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
 from crowdbot.core import EpisodeError
-from crowdbot.data import Kind, Tape, TapeError, attachment
+from crowdbot.data import McapError, McapOpcode, McapReader, read_attachment
 from crowdbot.trials import Drawn, Trial, beside, is_code, is_file_of_area, map_files, named_code, outline
 
 __all__ = ["Carried", "LeftOut", "Place", "carried", "left_out", "named_files", "unpacked"]
@@ -283,13 +283,13 @@ def _attached(path: Path) -> dict[str, bytes]:
     found = {}
     try:
         with path.open("rb") as stream:
-            for kind, _, body in Tape(stream).records():
-                if kind == Kind.ATTACHMENT:
-                    name, data = attachment(body)
+            for kind, _, body in McapReader(stream).records():
+                if kind == McapOpcode.ATTACHMENT:
+                    name, data = read_attachment(body)
                     found[name] = data
-                elif kind == Kind.CHUNK:
+                elif kind == McapOpcode.CHUNK:
                     break
-    except TapeError as error:
+    except McapError as error:
         raise EpisodeError(f"{path} is damaged: {error}") from None
     return found
 

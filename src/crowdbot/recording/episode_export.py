@@ -146,10 +146,12 @@ def _people(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
 
 
 def _nobody(moment: Moment) -> Moment:
-    from crowdbot.simulation import Instant
+    from crowdbot.metrics import AgentStates
 
     none = np.zeros((0, 2))
-    return Moment(moment.nanoseconds, Instant(moment.time, np.zeros(0, np.int64), none, none, none[:, 0], none[:, 0]))
+    return Moment(
+        moment.nanoseconds, AgentStates(moment.time, np.zeros(0, np.int64), none, none, none[:, 0], none[:, 0])
+    )
 
 
 def _robots(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:

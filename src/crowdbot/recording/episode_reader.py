@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import EpisodeError
-from crowdbot.data import MAGIC, Tape, Trajectories
+from crowdbot.data import MCAP_MAGIC, McapReader, Trajectories
 from crowdbot.messages import Collided, Pushed
+from crowdbot.metrics import AgentStates
 from crowdbot.sensors import Reading
-from crowdbot.simulation import Instant, ScanRow, tracks_of
+from crowdbot.simulation import ScanRow, tracks_of
 
 from .episode_repair import Ending
 from .metadata import END_KEYS, ENDING, KEYS, METADATA, from_json
@@ -128,7 +129,7 @@ def read_episode(path: Path | str) -> Recorded:
     """
     path = Path(path)
     with _opened(path) as stream:
-        tape = Tape(stream)
+        tape = McapReader(stream)
         with _sentences(path):
             found = list(read_moments(tape))
         known = _known(path, tape.metadata)
@@ -146,7 +147,7 @@ def read_metadata(path: Path | str) -> dict[str, str]:
     """
     path = Path(path)
     with _opened(path) as stream, _sentences(path):
-        tape = Tape(stream)
+        tape = McapReader(stream)
         for _ in tape.records():
             pass
     return _known(path, tape.metadata)
@@ -160,7 +161,7 @@ def moments(path: Path | str) -> Iterator[Moment]:
     """
     path = Path(path)
     with _opened(path) as stream, _sentences(path):
-        tape = Tape(stream)
+        tape = McapReader(stream)
         yield from read_moments(tape)
     _known(path, tape.metadata)
 
@@ -176,10 +177,10 @@ def _opened(path: Path) -> Iterator[BinaryIO]:
     except OSError as error:
         raise EpisodeError(f"{path} cannot be read: {error.strerror}") from None
     with stream:
-        head = stream.read(len(MAGIC))
+        head = stream.read(len(MCAP_MAGIC))
         if not head:
             raise EpisodeError(f"{path} is empty")
-        if head != MAGIC:
+        if head != MCAP_MAGIC:
             raise EpisodeError(f"{path} is not an MCAP file: it begins with {head!r}")
         stream.seek(0)
         yield stream
@@ -277,7 +278,7 @@ class _Arrays:
             np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(shape), np.zeros(agents), np.zeros(shape, dtype=bool)
         )
 
-    def put(self, k: int, people: Instant) -> None:
+    def put(self, k: int, people: AgentStates) -> None:
         """Put people in at an instant."""
         if np.any(people.ids < 0):
             raise ValueError(f"a person has the id {people.ids.min()}")

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from crowdbot.core import EpisodeError, Walls
-from crowdbot.data import MAGIC, Tape, TapeError, is_whole
-from crowdbot.simulation import Travel, robot_metrics
+from crowdbot.data import MCAP_MAGIC, McapError, McapReader, has_summary
+from crowdbot.metrics import NavigationMetrics
+from crowdbot.simulation import robot_metrics
 
 from .mcap_writer import finish
 from .metadata import END_KEYS, ENDING, METADATA, as_json
@@ -32,24 +33,32 @@ class Ending:
         rings = [np.array(ring, dtype=np.float64) for ring in json.loads(known["walls"])]
         walls = Walls.of(rings).segments()
         self.travels = [
-            Travel(
-                int(one["id"]), float(one["radius"]), (one["goal"][0], one["goal"][1]), float(one["tolerance"]), walls
+            NavigationMetrics(
+                int(one["id"]),
+                float(one["radius"]),
+                (one["goal"][0], one["goal"][1]),
+                float(one["tolerance"]),
+                walls=walls,
             )
             for one in self.robots
         ]
         self.bodies = {one["name"]: (int(one["id"]), float(one["radius"])) for one in self.robots}
         self.count = 1 + max([-1, *(travel.robot for travel in self.travels)])
         self.last: Moment | None = None
+        self.touching: set[int] = set()
 
     def take(self, moment: Moment) -> None:
         """Take an instant."""
         self.count = max(self.count, *(1 + who for who in moment.named()), 0)
+        names = {name for one in moment.contacts for name in (one.robot, one.other)}
+        self.touching |= {body[0] for name, body in self.bodies.items() if name in names}
         if moment.people is not None:
             self.last = moment
             if self.travels:
                 now = moment.everyone(self.bodies)
                 for travel in self.travels:
-                    travel.take(now)
+                    travel.update(now, travel.robot in self.touching)
+            self.touching = set()
 
     def metadata(self) -> dict[str, str]:
         """Return the record."""
@@ -78,13 +87,13 @@ def repair(path: Path | str) -> float | None:
     path = Path(path)
     try:
         with path.open("r+b") as stream:
-            if is_whole(stream):
+            if has_summary(stream):
                 return None
             stream.seek(0)
-            if stream.read(len(MAGIC)) != MAGIC:
+            if stream.read(len(MCAP_MAGIC)) != MCAP_MAGIC:
                 raise EpisodeError(f"{path} is not an MCAP file")
             stream.seek(0)
-            tape, ending = Tape(stream), None
+            tape, ending = McapReader(stream), None
             for moment in read_moments(tape):
                 ending = ending or Ending(tape.metadata.get(METADATA, {}))
                 ending.take(moment)
@@ -95,7 +104,7 @@ def repair(path: Path | str) -> float | None:
             return ending.last.time
     except OSError as error:
         raise EpisodeError(f"{path} cannot be repaired: {error.strerror}") from None
-    except (TapeError, KeyError, ValueError, IndexError, AttributeError) as error:
+    except (McapError, KeyError, ValueError, IndexError, AttributeError) as error:
         if isinstance(error, EpisodeError):
             raise
         raise EpisodeError(f"{path} is damaged: {type(error).__name__}: {str(error)[:80]}") from error

@@ -33,7 +33,7 @@ from mcap.records import (
     SummaryOffset,
 )
 
-from crowdbot.data import MAGIC, Kind, Tape, attachment
+from crowdbot.data import MCAP_MAGIC, McapOpcode, McapReader, read_attachment
 
 __all__ = ["TapeWriter", "finish"]
 
@@ -48,7 +48,7 @@ def _bytes(*records: McapRecord) -> bytes:
     return bytes(builder.end())  # type: ignore[no-untyped-call]
 
 
-SHORT_END = _bytes(DataEnd(0), Footer(0, 0, 0)) + MAGIC
+SHORT_END = _bytes(DataEnd(0), Footer(0, 0, 0)) + MCAP_MAGIC
 
 
 class TapeWriter:
@@ -64,7 +64,7 @@ class TapeWriter:
         self.draft = path.with_name(f".{path.name}.{os.getpid()}.part")
         self.stream: BinaryIO | None = None
         self.end = 0
-        self._before = MAGIC + _bytes(Header(profile, library))
+        self._before = MCAP_MAGIC + _bytes(Header(profile, library))
         self._chunk = bytearray()
         self._index: dict[int, list[tuple[int, int]]] = {}
         self._schemas: dict[str, int] = {}
@@ -94,7 +94,7 @@ class TapeWriter:
     def message(self, channel: int, nanoseconds: int, data: bytes) -> None:
         """Add a message."""
         self._index.setdefault(channel, []).append((nanoseconds, len(self._chunk)))
-        self._chunk += struct.pack("<BQHIQQ", Kind.MESSAGE, 22 + len(data), channel, 0, nanoseconds, nanoseconds)
+        self._chunk += struct.pack("<BQHIQQ", McapOpcode.MESSAGE, 22 + len(data), channel, 0, nanoseconds, nanoseconds)
         self._chunk += data
 
     @property
@@ -130,10 +130,10 @@ class TapeWriter:
         stamps = [stamp for rows in self._index.values() for stamp, _ in rows]
         head = struct.pack("<QQQII", min(stamps), max(stamps), len(raw), zlib.crc32(raw), 4)
         body = head + b"zstd" + struct.pack("<Q", len(data)) + data
-        parts = [struct.pack("<BQ", Kind.CHUNK, len(body)), body]
+        parts = [struct.pack("<BQ", McapOpcode.CHUNK, len(body)), body]
         for channel, rows in self._index.items():
             index = struct.pack("<HI", channel, 16 * len(rows)) + b"".join(struct.pack("<QQ", *row) for row in rows)
-            parts += [struct.pack("<BQ", Kind.MESSAGE_INDEX, len(index)), index]
+            parts += [struct.pack("<BQ", McapOpcode.MESSAGE_INDEX, len(index)), index]
         return b"".join(parts)
 
     def _put(self, data: bytes) -> None:
@@ -156,7 +156,9 @@ class TapeWriter:
 class _Layout:
     """What lies where in the data of a file."""
 
-    records: dict[int, dict[int, bytes]] = field(default_factory=lambda: {Kind.SCHEMA: {}, Kind.CHANNEL: {}})
+    records: dict[int, dict[int, bytes]] = field(
+        default_factory=lambda: {McapOpcode.SCHEMA: {}, McapOpcode.CHANNEL: {}}
+    )
     chunks: list[ChunkIndex] = field(default_factory=list)
     metadata: list[MetadataIndex] = field(default_factory=list)
     attachments: list[AttachmentIndex] = field(default_factory=list)
@@ -167,19 +169,19 @@ class _Layout:
         if kind in self.records:
             (number,) = struct.unpack_from("<H", body)
             self.records[kind][number] = struct.pack("<BQ", kind, len(body)) + body
-        elif kind == Kind.METADATA:
+        elif kind == McapOpcode.METADATA:
             length = int.from_bytes(body[:4], "little")
             self.metadata.append(MetadataIndex(place, 9 + len(body), body[4 : 4 + length].decode()))
-        elif kind == Kind.ATTACHMENT:
-            name, data = attachment(body)
+        elif kind == McapOpcode.ATTACHMENT:
+            name, data = read_attachment(body)
             media = len(body) - len(data) - len(name.encode()) - 36
             how = body[24 + len(name.encode()) :][:media].decode()
             self.attachments.append(AttachmentIndex(place, 9 + len(body), 0, 0, len(data), name, how))
-        elif kind == Kind.CHUNK:
+        elif kind == McapOpcode.CHUNK:
             start, end, size, _, word = struct.unpack_from("<QQQII", body)
             how = body[32 : 32 + word].decode()
             self.chunks.append(ChunkIndex(9 + len(body), place, how, len(body) - 40 - word, end, 0, {}, start, size))
-        elif kind == Kind.MESSAGE_INDEX and self.chunks:
+        elif kind == McapOpcode.MESSAGE_INDEX and self.chunks:
             channel, length = struct.unpack_from("<HI", body)
             self.counts[channel] = self.counts.get(channel, 0) + length // 16
             self.chunks[-1].message_index_offsets[channel] = place
@@ -190,14 +192,14 @@ class _Layout:
         """How much there is."""
         return Statistics(
             attachment_count=len(self.attachments),
-            channel_count=len(self.records[Kind.CHANNEL]),
+            channel_count=len(self.records[McapOpcode.CHANNEL]),
             channel_message_counts=dict(sorted(self.counts.items())),
             chunk_count=len(self.chunks),
             message_count=sum(self.counts.values()),
             message_end_time=max((chunk.message_end_time for chunk in self.chunks), default=0),
             message_start_time=min((chunk.message_start_time for chunk in self.chunks), default=0),
             metadata_count=len(self.metadata),
-            schema_count=len(self.records[Kind.SCHEMA]),
+            schema_count=len(self.records[McapOpcode.SCHEMA]),
         )
 
 
@@ -209,9 +211,9 @@ def finish(stream: BinaryIO, more: Mapping[str, Mapping[str, str]] | None = None
         more: metadata records to add, by name.
 
     Raises:
-        TapeError: the file is damaged.
+        McapError: the file is damaged.
     """
-    tape, layout = Tape(stream), _Layout()
+    tape, layout = McapReader(stream), _Layout()
     stream.seek(0)
     for kind, place, body in tape.records():
         layout.take(kind, place, body)
@@ -219,7 +221,7 @@ def finish(stream: BinaryIO, more: Mapping[str, Mapping[str, str]] | None = None
     added = b""
     for name, values in (more or {}).items():
         record = _bytes(Metadata(name, dict(values)))
-        layout.take(Kind.METADATA, end + len(added), record[9:])
+        layout.take(McapOpcode.METADATA, end + len(added), record[9:])
         added += record
     added += _bytes(DataEnd(zlib.crc32(added, crc)))
     stream.seek(end)
@@ -232,8 +234,8 @@ def finish(stream: BinaryIO, more: Mapping[str, Mapping[str, str]] | None = None
 def _summary(layout: _Layout, start: int) -> bytes:
     """Return everything that follows the data, which ends at ``start``."""
     groups = {
-        Opcode.SCHEMA: b"".join(layout.records[Kind.SCHEMA].values()),
-        Opcode.CHANNEL: b"".join(layout.records[Kind.CHANNEL].values()),
+        Opcode.SCHEMA: b"".join(layout.records[McapOpcode.SCHEMA].values()),
+        Opcode.CHANNEL: b"".join(layout.records[McapOpcode.CHANNEL].values()),
         Opcode.STATISTICS: _bytes(layout.statistics),
         Opcode.CHUNK_INDEX: _bytes(*layout.chunks),
         Opcode.ATTACHMENT_INDEX: _bytes(*layout.attachments),
@@ -244,9 +246,9 @@ def _summary(layout: _Layout, start: int) -> bytes:
         if records:
             offsets += _bytes(SummaryOffset(kind, start + len(summary), len(records)))
             summary += records
-    footer = struct.pack("<BQQQ", Kind.FOOTER, 20, start, start + len(summary))
+    footer = struct.pack("<BQQQ", McapOpcode.FOOTER, 20, start, start + len(summary))
     crc = zlib.crc32(summary + offsets + footer)
-    return summary + offsets + footer + struct.pack("<I", crc) + MAGIC
+    return summary + offsets + footer + struct.pack("<I", crc) + MCAP_MAGIC
 
 
 def _write(stream: BinaryIO, data: bytes) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core import EpisodeError
-from crowdbot.data import Tape
+from crowdbot.data import McapReader
 from crowdbot.simulation import Digest, Frame, Running, Simulation, Stop, apply_overrides
 from crowdbot.trials import Trial, parse_trial, trial_xml
 
@@ -68,7 +68,7 @@ class Course:
         place = f"{path} (trial, written by crowdbot {known['version']})"
 
         def parsed(xml: str) -> Trial:
-            return parse_trial(xml, place=place, folder=folder or path.parent, trust=trust)
+            return parse_trial(xml, place=place, folder=folder or path.parent, trust=trust, quiet=True)
 
         try:
             origin = json.loads(known.get("origin", "[]"))
@@ -143,7 +143,7 @@ def digests(path: Path) -> dict[int, str]:
     messages, found = Messages(), {}
     try:
         with path.open("rb") as stream:
-            for heard in Tape(stream).messages():
+            for heard in McapReader(stream).messages():
                 if heard.topic.topic == DIGEST:
                     found[heard.stamp] = str(messages.decoded(heard.data, heard.topic.kind).data)
     except Exception as error:  # damaged bytes make their readers fail in many ways; all mean the same to the user

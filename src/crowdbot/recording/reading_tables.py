@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from crowdbot.sensors import Cloud, DepthImage, Echo, Inertial, Odometry, Picture, Reading, Touch, Tracked
-from crowdbot.sensors.sensor import in_space
+from crowdbot.sensors import Cloud, DepthImage, Echo, Inertial, Odometry, Picture, Reading, Touch, Tracked, spatial_pose
 
 from .step_records import Moment
 
@@ -125,7 +124,7 @@ def _table(kind: type[Reading], rows: Callable[[Any], Columns], names: tuple[str
                 continue
             values = rows(reading)
             count = len(values[names[0]])
-            pose = in_space(reading.pose)
+            pose = spatial_pose(reading.pose)
             where = (*pose.position[0].tolist(), float(pose.heading[0]))
             found["time"].append(np.full(count, reading.time))
             found["sensor"].append(np.array([topic] * count, dtype=object))

@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Pose
-from crowdbot.data import Tape
+from crowdbot.data import McapReader
 from crowdbot.messages import COLLISIONS, FORCES, KIND, MAP, REST, Collided, Pushed, collided, pushed, reading_of
+from crowdbot.metrics import AgentStates
 from crowdbot.sensors import Reading, Scan
-from crowdbot.simulation import Instant, ScanRow, scan_row
+from crowdbot.simulation import ScanRow, scan_row
 
 from .metadata import CONTACTS, DIGEST, heading_of
 
@@ -61,7 +62,7 @@ class Moment:
     """
 
     nanoseconds: int
-    people: Instant | None = None
+    people: AgentStates | None = None
     robots: dict[str, RobotState] = field(default_factory=dict)
     commands: dict[str, tuple[float, float, float]] = field(default_factory=dict)
     readings: dict[str, Reading] = field(default_factory=dict)
@@ -83,7 +84,7 @@ class Moment:
         hits += [scan.hit for scan in self.scans.values()]
         return {*seen, *(int(hit.max(initial=-1)) for hit in hits if hit is not None)}
 
-    def everyone(self, robots: Mapping[str, tuple[int, float]]) -> Instant:
+    def everyone(self, robots: Mapping[str, tuple[int, float]]) -> AgentStates:
         """Return people and robots together.
 
         Args:
@@ -95,7 +96,7 @@ class Moment:
         rows = np.array([(s.x, s.y, s.vx, s.vy, s.heading, own[1]) for own, s in states]).reshape(-1, 6)
         ids = np.concatenate([people.ids, np.array([own[0] for own, _ in states], dtype=np.int64)])
         order = np.argsort(ids)
-        return Instant(
+        return AgentStates(
             self.time,
             ids[order],
             np.concatenate([people.position, rows[:, 0:2]])[order],
@@ -105,11 +106,11 @@ class Moment:
         )
 
 
-def read_moments(tape: Tape) -> Iterator[Moment]:
+def read_moments(tape: McapReader) -> Iterator[Moment]:
     """Yield the instants of a file.
 
     Raises:
-        TapeError: the bytes are not those that were written; other errors when they mean nothing.
+        McapError: the bytes are not those that were written; other errors when they mean nothing.
     """
     from crowdbot.messages import Messages
 
@@ -169,7 +170,7 @@ def _take(
         moment.commands[robot] = message.linear.x, message.angular.z, message.linear.y
 
 
-def _people(time: float, people: Any) -> Instant:
+def _people(time: float, people: Any) -> AgentStates:
     numbers = np.empty((len(people), 6))
     ids = np.empty(len(people), dtype=np.int64)
     for k, person in enumerate(people):
@@ -177,7 +178,7 @@ def _people(time: float, people: Any) -> Instant:
         place, moving = person.position, person.velocity
         ids[k] = int(person.name)
         numbers[k] = place.x, place.y, moving.x, moving.y, float(tags["heading"]), float(tags["radius"])
-    return Instant(time, ids, numbers[:, 0:2], numbers[:, 2:4], numbers[:, 4], numbers[:, 5])
+    return AgentStates(time, ids, numbers[:, 0:2], numbers[:, 2:4], numbers[:, 4], numbers[:, 5])
 
 
 def _robot(message: Any) -> RobotState:

@@ -11,10 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, optional, stream
-from crowdbot.sensors import DepthCamera, RGBCamera
-from crowdbot.sensors.camera import distorted
-from crowdbot.sensors.sensor import in_space
-from crowdbot.sensors.shapes import NOTHING
+from crowdbot.sensors import NOTHING, DepthCamera, RGBCamera, distorted, spatial_pose
 from crowdbot.simulation import Carrier, Running, Simulation
 from crowdbot.trials import OVERVIEW, Camera, Mount, Trial, check_trial, overview
 
@@ -199,10 +196,10 @@ class _Lens:
             near=max(0.05, 0.25 * sensor.range_min),  # without the shell of the head around the lens
         )  # fmt: skip
         pose, studio = probe.pose(self.carrier.agent, around), around.studio
-        picture = camera.measure(around.flat, pose, self.rng, source=studio)
+        picture = camera.read(around.flat, pose, self.rng, studio)
         if not (self.depth or self.segmentation):
             return picture.rgb[0], None, None
-        images = studio.render(camera, in_space(pose))
+        images = studio.render(camera, spatial_pose(pose))
         depth = distorted(images["depth"], camera.lens, np.inf)[0] if self.depth else None
         who = distorted(images["hit"], camera.lens, NOTHING)[0] if self.segmentation else None
         return picture.rgb[0], depth, who

@@ -1,25 +1,31 @@
 """Sensors: what a robot can measure of a scene. Contract :class:`Sensor`; noise is a value attached to it."""
 
 from .bumper import Bumper, Touch
-from .camera import ImageSource, Lens
+from .camera import ImageSource, Lens, distorted
 from .depth import DepthCamera, DepthImage
 from .echo import Echo
-from .imu import IMU, Inertial
+from .imu import IMU, ImuState, Inertial
 from .infrared import Infrared
 from .lidar import Lidar2D, Scan
 from .lidar3d import Cloud, Lidar3D
 from .noise import Dropout, Gaussian, Noise, Offset, Peak, Quantised, disturbed
-from .odometry import Odometry, WheelOdometry
+from .odometry import Odometry, OdometryState, WheelOdometry
 from .people import GroundTruthPeople, Tracked
 from .picture import Picture, RGBCamera
 from .presets import PRESETS, Preset, preset
-from .sensor import Reading, Sensor
-from .timing import Schedule, Waiting
+from .sensor import Reading, Sensor, planar_pose, spatial_pose
+from .shapes import FLOOR, NOTHING, PROP, WALLS
+from .timing import Schedule
 from .ultrasound import Ultrasound
+from .view import SensorView
 
 __all__ = [
+    "FLOOR",
     "IMU",
+    "NOTHING",
     "PRESETS",
+    "PROP",
+    "WALLS",
     "Bumper",
     "Cloud",
     "DepthCamera",
@@ -29,6 +35,7 @@ __all__ = [
     "Gaussian",
     "GroundTruthPeople",
     "ImageSource",
+    "ImuState",
     "Inertial",
     "Infrared",
     "Lens",
@@ -36,6 +43,7 @@ __all__ = [
     "Lidar3D",
     "Noise",
     "Odometry",
+    "OdometryState",
     "Offset",
     "Peak",
     "Picture",
@@ -46,11 +54,14 @@ __all__ = [
     "Scan",
     "Schedule",
     "Sensor",
+    "SensorView",
     "Touch",
     "Tracked",
     "Ultrasound",
-    "Waiting",
     "WheelOdometry",
+    "distorted",
     "disturbed",
+    "planar_pose",
     "preset",
+    "spatial_pose",
 ]

@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number
 
 from .noise import Randomness, disturbed
-from .sensor import Reading, Sensor, finite_or_nan, in_plane, in_space
+from .sensor import Reading, Sensor, finite_or_nan, planar_pose, spatial_pose
 from .shapes import NOTHING, PROP, WALLS
+from .view import SensorView
 
 __all__ = ["Bumper", "Touch"]
 
@@ -54,7 +55,7 @@ class Bumper(Sensor):
         InputError: a value is not allowed.
 
     >>> scene = Scene.of([[0.55, 0.0]], radius=0.3)
-    >>> Bumper(radius=0.3, sectors=4, first=-math.pi / 4).measure(scene, Pose.of((0.0, 0.0), 0.0)).pressed.tolist()
+    >>> Bumper(radius=0.3, sectors=4, first=-math.pi / 4).read(scene, Pose.of((0.0, 0.0), 0.0)).pressed.tolist()
     [[True, False, False, False]]
     """
 
@@ -66,8 +67,8 @@ class Bumper(Sensor):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_number("Bumper", "radius", self.radius, "m", above=0.0)
-        check_number("Bumper", "sectors", self.sectors, at_least=1, at_most=MOST_SECTORS, whole=True)
+        check_number("Bumper", "radius", self.radius, "m", exclusive_min=0.0)
+        check_number("Bumper", "sectors", self.sectors, min=1, max=MOST_SECTORS, whole=True)
         if not -TURN <= self.first <= TURN:
             raise InputError(f"Bumper: first = {self.first} rad must be within -2 pi to 2 pi")
         if not -math.inf < self.low <= self.high < math.inf:
@@ -75,20 +76,21 @@ class Bumper(Sensor):
 
     def sector(self, points: ArrayLike, pose: Pose | SpatialPose) -> Ints:
         """Return the sector ``[E, N]`` in whose direction points of the world ``[E, N, 2]`` or ``[E, N, 3]`` lie."""
-        place = in_plane(pose)
+        place = planar_pose(pose)
         away = np.asarray(points, dtype=np.float64)[..., :2] - place.position[:, None]
         angle = np.arctan2(away[..., 1], away[..., 0]) - place.heading[:, None] - self.first
         return np.asarray(np.minimum((angle % TURN) / TURN * self.sectors, self.sectors - 1).astype(np.int64))
 
-    def measure(self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None) -> Touch:
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Touch, None]:
         """Return what presses the ring; noise acts on the depths that are shown and decides no contact.
 
         Raises:
-            InputError: scene and pose have different numbers of environments, or noise lacks a generator.
+            InputError: the pose does not fit the scene, or noise lacks a generator.
         """
-        self.check(scene, pose)
-        spatial = in_space(pose)
-        plane = in_plane(pose)
+        self.check(view)
+        scene, pose = view.scene, view.pose
+        spatial = spatial_pose(pose)
+        plane = planar_pose(pose)
         depth = np.full((scene.shape[0], self.sectors), -np.inf)
         hit = np.full(depth.shape, NOTHING)
         for e in range(scene.shape[0]):
@@ -98,7 +100,7 @@ class Bumper(Sensor):
                 self._press(centre, size, owner, plane.heading[e], depth[e], hit[e])
         pressed = depth >= 0.0
         shown = self._shown(np.where(pressed, depth, 0.0), rng)
-        return Touch(scene.time, pose, pressed, shown, np.where(pressed, hit, NOTHING))
+        return Touch(scene.time, pose, pressed, shown, np.where(pressed, hit, NOTHING)), None
 
     def _shown(self, depth: Floats, rng: Randomness | None) -> Floats:
         return finite_or_nan(disturbed(depth, self.noises, rng))

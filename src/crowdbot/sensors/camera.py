@@ -58,11 +58,11 @@ class Lens:
 
     def __post_init__(self) -> None:
         for name in ("width", "height"):
-            check_number("camera", name, getattr(self, name), at_least=1, at_most=MOST_PIXELS, whole=True)
+            check_number("camera", name, getattr(self, name), min=1, max=MOST_PIXELS, whole=True)
         if self.width * self.height > MOST_PIXELS:
             raise InputError(f"camera: {self.width} x {self.height} pixels must be at most {MOST_PIXELS} together")
         for name in ("fx", "fy"):
-            check_number("camera", name, getattr(self, name), above=0.0)
+            check_number("camera", name, getattr(self, name), exclusive_min=0.0)
         if len(self.distortion) != 5 or not all(math.isfinite(k) for k in (*self.distortion, self.cx, self.cy)):
             raise InputError(f"camera: distortion = {self.distortion} must be five finite numbers k1, k2, p1, p2, k3")
 

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import math
 from dataclasses import dataclass
+from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number
+from crowdbot.core import InputError, Pose, SpatialPose, check_number
 
 from .beams import Beams, beams
 from .camera import ImageSource, Lens, pixel_directions, stereo_depth
 from .cast import cast
 from .lidar import seen_agents
 from .noise import Randomness, disturbed
-from .sensor import Reading, Sensor, in_space
+from .sensor import Reading, Sensor, spatial_pose
 from .shapes import NOTHING
+from .view import SensorView
 
 __all__ = ["DepthCamera", "DepthImage"]
 
@@ -47,7 +50,7 @@ class DepthImage(Reading):
         away = np.where(np.isfinite(self.depth), self.depth, np.nan)[..., None] * (ahead / ahead[..., :1])
         if not in_world:
             return np.asarray(away)
-        pose = in_space(self.pose)
+        pose = spatial_pose(self.pose)
         return np.asarray(pose.position[:, None, None] + np.einsum("eij,ehwj->ehwi", pose.matrix, away))
 
     def seen(self, count: int) -> NDArray[np.bool_]:
@@ -76,11 +79,12 @@ class DepthCamera(Sensor):
         InputError: a value is not allowed.
 
     >>> scene = Scene.of([[50.0, 0.0]], walls=[[(3.0, -9.0), (3.0, 9.0)]])
-    >>> image = DepthCamera(width=5, height=3).measure(scene, Pose.of((0.0, 0.0), 0.0).lifted(1.5))
+    >>> image = DepthCamera(width=5, height=3).read(scene, Pose.of((0.0, 0.0), 0.0).lifted(1.5))
     >>> image.depth[0, 0].round(9).tolist()
     [3.0, 3.0, 3.0, 3.0, 3.0]
     """
 
+    spatial: ClassVar[bool] = True
     width: int = 160
     height: int = 120
     field_of_view: float = math.radians(87.0)
@@ -108,30 +112,42 @@ class DepthCamera(Sensor):
             )
         for name in ("baseline", "disparity_noise", "disparity_step", "resolution"):
             unit = "m" if name in ("baseline", "resolution") else "pixels"
-            check_number("DepthCamera", name, getattr(self, name), unit, at_least=0.0)
+            check_number("DepthCamera", name, getattr(self, name), unit, min=0.0)
         if self.baseline == 0.0 and (self.disparity_noise or self.disparity_step):
             raise InputError("DepthCamera: disparity noise and steps need a baseline above 0")
         _ = self.lens
+
+    @property
+    def sees_skins(self) -> bool:
+        """Whether the camera sees people by their triangle skins."""
+        return self.skins
+
+    def with_skins(self) -> Self:
+        """Return a copy that sees people by their triangle skins."""
+        return dataclasses.replace(self, skins=True)
 
     @property
     def lens(self) -> Lens:
         """Intrinsics."""
         return Lens.of(self.width, self.height, self.field_of_view, self.distortion or (0.0,) * 5)
 
-    def measure(self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None) -> DepthImage:
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[DepthImage, None]:
         """Return depth and labels by rays; ``rng`` is needed only when there is noise.
 
         Raises:
-            InputError: scene and pose have different numbers of environments, or noise lacks a generator.
+            InputError: the pose does not fit the scene, or noise lacks a generator.
         """
-        self.check(scene, pose)
+        self.check(view)
+        scene, pose = view.scene, view.pose
         bundle, ahead = pixel_beams(self.lens)
-        hits = cast(scene, in_space(pose), bundle, self.range_max / float(ahead.min()), skins=self.skins, normals=False)
+        hits = cast(
+            scene, spatial_pose(pose), bundle, self.range_max / float(ahead.min()), skins=self.skins, normals=False
+        )
         back = hits.facing >= math.cos(self.max_incidence) - 1e-12
         shape = (scene.shape[0], self.height, self.width)
         depth = np.where(back, hits.distance * ahead, np.inf).reshape(shape)
         hit, part = hits.hit.reshape(shape), hits.part.reshape(shape)
-        return self._finished(scene.time, pose, depth, hit, part, rng)
+        return self._finished(scene.time, pose, depth, hit, part, rng), None
 
     def from_image(
         self, source: ImageSource, time: float, pose: SpatialPose, rng: Randomness | None = None

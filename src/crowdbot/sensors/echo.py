@@ -13,7 +13,7 @@ from .beams import Beams
 from .cast import cast
 from .noise import Randomness
 from .ranging import Ranging, settled
-from .sensor import Reading, in_space
+from .sensor import Reading, spatial_pose
 from .shapes import NOTHING
 
 __all__ = ["Echo", "nearest"]
@@ -48,7 +48,7 @@ def nearest(
 ) -> Echo:
     """Return the smallest return of a bundle: sorted beams, their directions ``[R, 3]`` and lengths ``[R]`` [m]."""
     bundle, directions, length = fan
-    hits = cast(scene, in_space(pose), bundle, float(length.max()), skins=sensor.skins, normals=False)
+    hits = cast(scene, spatial_pose(pose), bundle, float(length.max()), skins=sensor.skins, normals=False)
     back = (hits.distance <= length) & (hits.facing >= sensor.least_facing)
     best = np.argmin(np.where(back, hits.distance, np.inf), axis=1)
     rows = np.arange(len(best))

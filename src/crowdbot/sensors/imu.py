@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number, product
+from crowdbot.core import InputError, Pose, SpatialPose, check_number, product
 
 from .noise import Randomness, disturbed, normals
-from .sensor import Reading, Sensor, finite_or_nan, in_space
+from .sensor import Reading, Sensor, finite_or_nan, spatial_pose
+from .view import SensorView
 
-__all__ = ["GRAVITY", "IMU", "Inertial"]
+__all__ = ["GRAVITY", "IMU", "ImuState", "Inertial"]
 
 Floats = NDArray[np.float64]
 
@@ -41,6 +42,25 @@ class Inertial(Reading):
 
 
 @dataclass(frozen=True)
+class ImuState:
+    """State of an IMU after a measurement, in E environments.
+
+    Fields:
+        time: time of the measurement [s].
+        pose: pose of the unit.
+        velocity: ``[E, 3]`` mean velocity since the measurement before [m/s], NaN after the first.
+        acceleration_bias: ``[E, 3]`` [m/s^2].
+        turn_bias: ``[E, 3]`` [rad/s].
+    """
+
+    time: float
+    pose: Pose | SpatialPose
+    velocity: Floats
+    acceleration_bias: Floats
+    turn_bias: Floats
+
+
+@dataclass(frozen=True)
 class IMU(Sensor):
     """An inertial unit with white noise and biases that walk (IEEE Std 952-1997; all of it off by default).
 
@@ -58,11 +78,10 @@ class IMU(Sensor):
         InputError: a value is not allowed.
 
     >>> still, unit = Scene.of([[9.0, 9.0]]), IMU(rate=100.0)
-    >>> unit.measure(still, Pose.of((0.0, 0.0), 0.0)).acceleration.tolist()
+    >>> unit.read(still, Pose.of((0.0, 0.0), 0.0)).acceleration.tolist()
     [[0.0, 0.0, 9.80665]]
     """
 
-    remembers: ClassVar[bool] = True
     acceleration_noise: float = 0.0
     turn_noise: float = 0.0
     acceleration_walk: float = 0.0
@@ -75,46 +94,47 @@ class IMU(Sensor):
     def __post_init__(self) -> None:
         super().__post_init__()
         for name in FIELDS:
-            check_number("IMU", name, getattr(self, name), at_least=0.0)
+            check_number("IMU", name, getattr(self, name), min=0.0)
 
     def measure(
-        self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None, last: Inertial | None = None
-    ) -> Inertial:
-        """Return specific force and turn rate; ``last`` is the reading of this unit before, None at the first.
+        self, view: SensorView, state: ImuState | None, rng: Randomness | None = None
+    ) -> tuple[Inertial, ImuState]:
+        """Return specific force and turn rate, and the state for the next measurement.
 
         Raises:
-            InputError: numbers of environments differ, time has not gone on, or noise lacks a generator.
+            InputError: numbers of environments differ, time did not increase, or noise lacks a generator.
         """
-        self.check(scene, pose)
-        here = in_space(pose)
+        self.check(view)
+        here = spatial_pose(view.pose)
         shape = here.position.shape
-        if last is None:
+        if state is None:
             dt, velocity = 1.0 / self.rate, np.full(shape, np.nan)
             change, turn = np.zeros(shape), np.zeros(shape)
         else:
-            dt, before = elapsed(self, scene, last), in_space(last.pose)
+            dt, before = elapsed(self, view, state), spatial_pose(state.pose)
             velocity = (here.position - before.position) / dt
-            change = np.where(np.isfinite(last.velocity), (velocity - last.velocity) / dt, 0.0)
+            change = np.where(np.isfinite(state.velocity), (velocity - state.velocity) / dt, 0.0)
             turn = rotation_vector(before.rotation, here.rotation) / dt
         change = change + np.array([0.0, 0.0, GRAVITY])
         force = np.einsum("eji,ej->ei", here.matrix, change)
-        biases = self._biases(shape, dt, rng, last)
+        biases = self._biases(shape, dt, rng, state)
         force = force + biases[0] + self._white(self.acceleration_noise, shape, dt, rng)
         turn = turn + biases[1] + self._white(self.turn_noise, shape, dt, rng)
         six = finite_or_nan(disturbed(np.concatenate([force, turn], axis=1), self.noises, rng))
         force, turn = _limited(six[:, :3], self.max_acceleration), _limited(six[:, 3:], self.max_turn_rate)
-        return Inertial(scene.time, pose, force, turn, velocity, *biases)
+        reading = Inertial(view.time, view.pose, force, turn, velocity, *biases)
+        return reading, ImuState(view.time, view.pose, velocity, *biases)
 
     def _biases(
-        self, shape: tuple[int, ...], dt: float, rng: Randomness | None, last: Inertial | None
+        self, shape: tuple[int, ...], dt: float, rng: Randomness | None, state: ImuState | None
     ) -> tuple[Floats, Floats]:
-        if last is None:
+        if state is None:
             start = (self.acceleration_offset, self.turn_offset)
             return _scaled(start[0], shape, rng), _scaled(start[1], shape, rng)
         root = math.sqrt(dt)
         return (
-            last.acceleration_bias + _scaled(self.acceleration_walk * root, shape, rng),
-            last.turn_bias + _scaled(self.turn_walk * root, shape, rng),
+            state.acceleration_bias + _scaled(self.acceleration_walk * root, shape, rng),
+            state.turn_bias + _scaled(self.turn_walk * root, shape, rng),
         )
 
     def _white(self, density: float, shape: tuple[int, ...], dt: float, rng: Randomness | None) -> Floats:
@@ -141,22 +161,32 @@ def _limited(values: Floats, limit: float) -> Floats:
     return values if limit == 0.0 else np.clip(values, -limit, limit)
 
 
-def elapsed(sensor: Sensor, scene: Scene, last: Reading) -> float:
-    """Return the time since the reading before [s], which must be of as many environments.
+class TimedState(Protocol):
+    """A state with the time [s] and the pose of the previous measurement."""
+
+    @property
+    def time(self) -> float: ...
+
+    @property
+    def pose(self) -> Pose | SpatialPose: ...
+
+
+def elapsed(sensor: Sensor, view: SensorView, state: TimedState) -> float:
+    """Return the time since the previous measurement [s].
 
     Raises:
-        InputError: time has not gone on, or the numbers of environments differ.
+        InputError: time did not increase, or the numbers of environments differ.
     """
-    dt = scene.time - last.time
+    dt = view.time - state.time
     if not dt > 0.0:
         raise InputError(
-            f"{type(sensor).__name__}: the last reading is of {last.time} s and this one of {scene.time} s; give the"
-            " reading before this one, or None to begin anew"
+            f"{type(sensor).__name__}: the previous measurement is at {state.time} s and this one at {view.time} s;"
+            " time must increase"
         )
-    if len(last.pose.position) != scene.shape[0]:
+    if len(state.pose.position) != view.environments:
         raise InputError(
-            f"{type(sensor).__name__}: the last reading has {len(last.pose.position)} environments,"
-            f" not {scene.shape[0]}"
+            f"{type(sensor).__name__}: the state has {len(state.pose.position)} environments,"
+            f" but the view has {view.environments}"
         )
     return dt
 

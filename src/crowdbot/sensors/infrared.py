@@ -5,16 +5,18 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose
+from crowdbot.core import InputError
 
 from .beams import Beams, beams, cone
 from .echo import Echo, nearest
 from .noise import Randomness
 from .ranging import Ranging
+from .view import SensorView
 
 __all__ = ["Infrared"]
 
@@ -39,10 +41,11 @@ class Infrared(Ranging):
         InputError: a value is not allowed.
 
     >>> scene = Scene.of([[1.0, 0.0]], radius=0.3)
-    >>> Infrared().measure(scene, Pose.of((0.0, 0.0), 0.0)).ranges.tolist()
+    >>> Infrared().read(scene, Pose.of((0.0, 0.0), 0.0)).ranges.tolist()
     [0.7]
     """
 
+    spatial: ClassVar[bool] = True
     dispersion: float = math.radians(0.5)
     rays: int = 100
     range_min: float = 0.05
@@ -58,16 +61,17 @@ class Infrared(Ranging):
             raise InputError(f"Infrared: dispersion = {self.dispersion} rad must be above 0 and at most pi / 2")
         self.check_ranges()
 
-    def measure(self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None) -> Echo:
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Echo, None]:
         """Return the smallest distance; ``rng`` is needed only when there is noise.
 
         Raises:
-            InputError: scene and pose have different numbers of environments, or noise lacks a generator.
+            InputError: the pose does not fit the scene, or noise lacks a generator.
         """
-        self.check(scene, pose)
+        self.check(view)
+        scene, pose = view.scene, view.pose
         bundle, directions = _bundle(self.dispersion, self.rays)
         length = np.full(self.rays, self.range_max)
-        return nearest(self, scene, pose, (bundle, directions, length), rng)
+        return nearest(self, scene, pose, (bundle, directions, length), rng), None
 
 
 @functools.lru_cache(maxsize=64)

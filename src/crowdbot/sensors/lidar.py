@@ -16,9 +16,10 @@ from .beams import Beams, beams, fan
 from .cast import cast
 from .noise import Randomness
 from .ranging import Ranging, ended, incidence_of, settled
-from .sensor import Reading, in_space
+from .sensor import Reading, spatial_pose
 from .shapes import FLOOR, NOTHING, OVERLAP, PROP, lengthened
 from .shapes import WALLS as WALL
+from .view import SensorView
 
 __all__ = ["FLOOR", "NOTHING", "PROP", "WALL", "Lidar2D", "Scan"]
 
@@ -189,7 +190,7 @@ class Lidar2D(Ranging):
         InputError: a value is not allowed.
 
     >>> scene = Scene.of([[0.0, 0.0], [3.0, 0.0]], radius=0.5)
-    >>> scan = Lidar2D(rays=4).measure(scene.without(0), Pose.of((0.0, 0.0), 0.0))
+    >>> scan = Lidar2D(rays=4).read(scene.without(0), Pose.of((0.0, 0.0), 0.0))
     >>> scan.ranges.tolist(), scan.hit.tolist()
     ([[inf, inf, 2.5, inf]], [[-1, -1, 1, -1]])
     """
@@ -223,21 +224,22 @@ class Lidar2D(Ranging):
             return np.zeros(1)
         return np.asarray(-0.5 * min(self.field_of_view, TURN) + self.step * np.arange(self.rays))
 
-    def measure(self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None) -> Scan:
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Scan, None]:
         """Return the scan from ``pose``; ``rng`` is needed only when there is noise.
 
         Raises:
-            InputError: scene and pose have different numbers of environments, or noise lacks a generator.
+            InputError: the pose does not fit the scene, or noise lacks a generator.
         """
-        self.check(scene, pose)
+        self.check(view)
+        scene, pose = view.scene, view.pose
         if isinstance(pose, Pose) and scene.bodies is None and not self.skins:
             distance, facing, hit = self._from_above(scene, pose)
             part = np.full(hit.shape, -1)
         else:
-            hits = cast(scene, in_space(pose), _beams(self), self.range_max, skins=self.skins, normals=False)
+            hits = cast(scene, spatial_pose(pose), _beams(self), self.range_max, skins=self.skins, normals=False)
             distance, facing, hit, part = hits.distance, hits.facing, hits.hit, hits.part
         ranges = settled(self, distance, facing, hit, part, rng)
-        return Scan(scene.time, pose, ranges, self.angles, hit, facing, part)
+        return Scan(scene.time, pose, ranges, self.angles, hit, facing, part), None
 
     def _from_above(self, scene: Scene, pose: Pose) -> tuple[Floats, Floats, Indices]:
         return _scan(

@@ -5,18 +5,20 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose
+from crowdbot.core import InputError
 
 from .beams import Beams, beams, fan
 from .cast import cast
 from .lidar import seen_agents
 from .noise import Randomness
 from .ranging import MOST_BEAMS, Ranging, ended, incidence_of, settled
-from .sensor import Reading, in_space
+from .sensor import Reading, spatial_pose
+from .view import SensorView
 
 __all__ = ["Cloud", "Lidar3D"]
 
@@ -52,7 +54,9 @@ class Cloud(Reading):
 
     def points(self, *, in_world: bool = False) -> Floats:
         """Return where the beams ended, ``[E, K, R, 3]`` [m] in the sensor's frame, NaN without a finite range."""
-        return ended(in_space(self.pose), fan(self.azimuth, self.elevation[:, None]), self.ranges, in_world=in_world)
+        return ended(
+            spatial_pose(self.pose), fan(self.azimuth, self.elevation[:, None]), self.ranges, in_world=in_world
+        )
 
     def seen(self, count: int) -> NDArray[np.bool_]:
         """Return which of ``count`` agents returned at least one beam, ``[E, A]``."""
@@ -78,11 +82,12 @@ class Lidar3D(Ranging):
     Raises:
         InputError: a value is not allowed.
 
-    >>> cloud = Lidar3D(columns=4).measure(Scene.of([[3.0, 0.0]], radius=0.5), Pose.of((0.0, 0.0), 0.0).lifted(1.0))
+    >>> cloud = Lidar3D(columns=4).read(Scene.of([[3.0, 0.0]], radius=0.5), Pose.of((0.0, 0.0), 0.0).lifted(1.0))
     >>> cloud.ranges.shape, cloud.hit[0, 7].tolist()
     ((1, 16, 4), [-1, -1, 0, -1])
     """
 
+    spatial: ClassVar[bool] = True
     elevations: tuple[float, ...] = SIXTEEN_RINGS
     columns: int = 900
     azimuth_from: float = -math.pi
@@ -133,20 +138,21 @@ class Lidar3D(Ranging):
         full = width >= TURN - 1e-9
         return np.linspace(self.azimuth_from, self.azimuth_to, self.columns, endpoint=not full)
 
-    def measure(self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None) -> Cloud:
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Cloud, None]:
         """Return the cloud from ``pose``; ``rng`` is needed only when there is noise.
 
         Raises:
             InputError: scene and pose have different numbers of environments, noise lacks a generator, or there are
                 no skins where they are asked for.
         """
-        self.check(scene, pose)
-        hits = cast(scene, in_space(pose), _made(self), self.range_max, skins=self.skins, normals=False)
+        self.check(view)
+        scene, pose = view.scene, view.pose
+        hits = cast(scene, spatial_pose(pose), _made(self), self.range_max, skins=self.skins, normals=False)
         ranges = settled(self, hits.distance, hits.facing, hits.hit, hits.part, rng)
         shape = (len(ranges), len(self.elevations), self.columns)
         ranges, facing = ranges.reshape(shape), hits.facing.reshape(shape)
         hit, part = hits.hit.reshape(shape), hits.part.reshape(shape)
-        return Cloud(scene.time, pose, ranges, np.array(self.elevations), self.azimuth, hit, part, facing)
+        return Cloud(scene.time, pose, ranges, np.array(self.elevations), self.azimuth, hit, part, facing), None
 
 
 @functools.lru_cache(maxsize=64)

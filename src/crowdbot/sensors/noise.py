@@ -76,7 +76,7 @@ class Gaussian(Noise):
     sd: float
 
     def __post_init__(self) -> None:
-        check_number("gaussian noise", "sd", self.sd, at_least=0.0)
+        check_number("gaussian noise", "sd", self.sd, min=0.0)
 
     def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
         """Return independent normal draws."""
@@ -116,7 +116,7 @@ class Peak(Noise):
     def __post_init__(self) -> None:
         _check_probability("peak", self.probability)
         check_number("peak noise", "height", self.height)
-        check_number("peak noise", "sd", self.sd, at_least=0.0)
+        check_number("peak noise", "sd", self.sd, min=0.0)
 
     def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
         """Return ``height`` where a uniform draw falls below the probability; with ``sd`` normal around it."""
@@ -155,7 +155,7 @@ class Quantised(Noise):
     step: float
 
     def __post_init__(self) -> None:
-        check_number("quantised", "step", self.step, above=0.0)
+        check_number("quantised", "step", self.step, exclusive_min=0.0)
 
     @classmethod
     def bits(cls, bits: int, low: float, high: float) -> Quantised:
@@ -203,7 +203,7 @@ def disturbed(values: Floats, noise: tuple[Noise, ...], rng: Randomness | None) 
 
 
 def _check_probability(name: str, probability: float) -> None:
-    check_number(f"{name} noise", "probability", probability, at_least=0.0, at_most=1.0)
+    check_number(f"{name} noise", "probability", probability, min=0.0, max=1.0)
 
 
 def normals(shape: tuple[int, ...], rng: Randomness | None) -> Floats:

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Pose, Scene, SpatialPose, check_number
+from crowdbot.core import Pose, SpatialPose, check_number
 
 from .imu import elapsed
 from .noise import Randomness, disturbed, normals
-from .sensor import Reading, Sensor, finite_or_nan, in_plane
+from .sensor import Reading, Sensor, finite_or_nan, planar_pose
+from .view import SensorView
 
-__all__ = ["Odometry", "WheelOdometry"]
+__all__ = ["Odometry", "OdometryState", "WheelOdometry"]
 
 Floats = NDArray[np.float64]
 
@@ -33,6 +33,25 @@ class Odometry(Reading):
 
     estimate: Pose
     twist: Floats
+    travelled: Floats
+    ticks: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class OdometryState:
+    """State of wheel odometry after a measurement, in E environments.
+
+    Fields:
+        time: time of the measurement [s].
+        pose: true pose of the robot.
+        estimate: pose by the wheels.
+        travelled: ``[E, 3]`` distance of the left wheel, the right wheel and sideways, errors included [m].
+        ticks: ``[E, 3]`` counts of the encoders.
+    """
+
+    time: float
+    pose: Pose | SpatialPose
+    estimate: Pose
     travelled: Floats
     ticks: NDArray[np.int64]
 
@@ -57,13 +76,13 @@ class WheelOdometry(Sensor):
         InputError: a value is not allowed.
 
     >>> scene, wheels = Scene.of([[9.0, 9.0]]), WheelOdometry()
-    >>> first = wheels.measure(scene, Pose.of((0.0, 0.0), 0.0))
-    >>> later = wheels.measure(scene.replace(time=1.0), Pose.of((0.5, 0.0), 0.0), last=first)
+    >>> first, state = wheels.measure(SensorView(scene, Pose.of((0.0, 0.0), 0.0)), wheels.begin())
+    >>> view = SensorView(scene.replace(time=1.0), Pose.of((0.5, 0.0), 0.0))
+    >>> later, state = wheels.measure(view, state)
     >>> later.estimate.position.round(12).tolist(), later.twist.round(12).tolist()
     ([[0.5, 0.0]], [[0.5, 0.0, 0.0]])
     """
 
-    remembers: ClassVar[bool] = True
     track: float = 0.4
     wheel_radius: float = 0.1
     left_scale: float = 1.0
@@ -77,9 +96,9 @@ class WheelOdometry(Sensor):
         super().__post_init__()
         for name in ("track", "wheel_radius", "left_scale", "right_scale", "track_scale"):
             unit = "m" if name in ("track", "wheel_radius") else ""
-            check_number("WheelOdometry", name, getattr(self, name), unit, above=0.0)
-        check_number("WheelOdometry", "slip", self.slip, "m", at_least=0.0)
-        check_number("WheelOdometry", "ticks_per_turn", self.ticks_per_turn, at_least=0, whole=True)
+            check_number("WheelOdometry", name, getattr(self, name), unit, exclusive_min=0.0)
+        check_number("WheelOdometry", "slip", self.slip, "m", min=0.0)
+        check_number("WheelOdometry", "ticks_per_turn", self.ticks_per_turn, min=0, whole=True)
 
     @property
     def tick(self) -> float:
@@ -87,36 +106,42 @@ class WheelOdometry(Sensor):
         return 2.0 * math.pi * self.wheel_radius / self.ticks_per_turn if self.ticks_per_turn else 0.0
 
     def measure(
-        self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None, last: Odometry | None = None
-    ) -> Odometry:
-        """Return the pose by the wheels; ``last`` is the reading before, None to begin at the true pose.
+        self, view: SensorView, state: OdometryState | None, rng: Randomness | None = None
+    ) -> tuple[Odometry, OdometryState]:
+        """Return the pose by the wheels, which starts at the true pose, and the state for the next measurement.
 
         Raises:
-            InputError: numbers of environments differ, time has not gone on, or noise lacks a generator.
+            InputError: numbers of environments differ, time did not increase, or noise lacks a generator.
         """
-        self.check(scene, pose)
-        here = in_plane(pose)
+        self.check(view)
+        here = planar_pose(view.pose)
         count = len(here.heading)
-        if last is None:
+        if state is None:
             still = np.zeros((count, 3))
             shown = finite_or_nan(disturbed(still, self.noises, rng))
-            return Odometry(scene.time, pose, here, shown, still, still.astype(np.int64))
-        dt = elapsed(self, scene, last)
-        forward, left, turn = arc_between(in_plane(last.pose), here)
+            return _with_state(Odometry(view.time, view.pose, here, shown, still, still.astype(np.int64)))
+        dt = elapsed(self, view, state)
+        forward, left, turn = arc_between(planar_pose(state.pose), here)
         half = 0.5 * self.track * self.track_scale * turn
         way = np.stack([(forward - half) / self.left_scale, (forward + half) / self.right_scale, left], axis=1)
         if self.slip > 0.0:
             way = way + self.slip * np.sqrt(np.abs(way)) * normals(way.shape, rng)
         way[:, 2] *= self.holonomic
-        travelled = last.travelled + way
+        travelled = state.travelled + way
         ticks = np.zeros((count, 3), dtype=np.int64)
         if self.tick:
             ticks = np.floor(travelled / self.tick + 0.5).astype(np.int64)
-            way = (ticks - last.ticks) * self.tick
+            way = (ticks - state.ticks) * self.tick
         moved, turned, aside = 0.5 * (way[:, 0] + way[:, 1]), (way[:, 1] - way[:, 0]) / self.track, way[:, 2]
         twist = np.stack([moved, turned, aside], axis=1) / dt
         shown = finite_or_nan(disturbed(twist, self.noises, rng))
-        return Odometry(scene.time, pose, along_arc(last.estimate, moved, aside, turned), shown, travelled, ticks)
+        estimate = along_arc(state.estimate, moved, aside, turned)
+        return _with_state(Odometry(view.time, view.pose, estimate, shown, travelled, ticks))
+
+
+def _with_state(reading: Odometry) -> tuple[Odometry, OdometryState]:
+    state = OdometryState(reading.time, reading.pose, reading.estimate, reading.travelled, reading.ticks)
+    return reading, state
 
 
 def arc_between(before: Pose, after: Pose) -> tuple[Floats, Floats, Floats]:

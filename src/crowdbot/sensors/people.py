@@ -9,12 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number
+from crowdbot.core import InputError, check_number
 
 from .lidar import Lidar2D
 from .noise import Randomness, disturbed
 from .ranging import MOST_BEAMS
-from .sensor import Reading, Sensor, in_plane
+from .sensor import Reading, Sensor, planar_pose
+from .view import SensorView
 
 __all__ = ["GroundTruthPeople", "Tracked"]
 
@@ -61,7 +62,7 @@ class GroundTruthPeople(Sensor):
         InputError: a value is not allowed.
 
     >>> scene = Scene.of([[1.0, 2.0], [1.0, 4.0]], [[0.0, 1.0], [0.0, 0.0]])
-    >>> told = GroundTruthPeople().measure(scene, Pose.of((1.0, 0.0), math.pi / 2))
+    >>> told = GroundTruthPeople().read(scene, Pose.of((1.0, 0.0), math.pi / 2))
     >>> told.ids(), told.position[0, 0].round(6).tolist(), told.velocity[0, 0].round(6).tolist()
     ([0], [2.0, 0.0], [1.0, 0.0])
     """
@@ -73,21 +74,22 @@ class GroundTruthPeople(Sensor):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_number("GroundTruthPeople", "range_max", self.range_max, "m", above=0.0)
+        check_number("GroundTruthPeople", "range_max", self.range_max, "m", exclusive_min=0.0)
         if not 0.0 < self.field_of_view <= 2.0 * math.pi + 1e-9:
             raise InputError(
                 f"GroundTruthPeople: field_of_view = {self.field_of_view} rad must be above 0 and at most 2 pi"
             )
-        check_number("GroundTruthPeople", "rays", self.rays, at_least=1, at_most=MOST_BEAMS, whole=True)
+        check_number("GroundTruthPeople", "rays", self.rays, min=1, max=MOST_BEAMS, whole=True)
 
-    def measure(self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None) -> Tracked:
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Tracked, None]:
         """Return who is around; ``rng`` is needed only when there is noise.
 
         Raises:
-            InputError: scene and pose have different numbers of environments, or noise lacks a generator.
+            InputError: the pose does not fit the scene, or noise lacks a generator.
         """
-        self.check(scene, pose)
-        place = in_plane(pose)
+        self.check(view)
+        scene, pose = view.scene, view.pose
+        place = planar_pose(pose)
         absent = ~scene.active[..., None]
         away = np.where(absent, np.nan, scene.position) - place.position[:, None]
         position = _turned(away, place.heading)
@@ -95,12 +97,12 @@ class GroundTruthPeople(Sensor):
         bearing = np.abs(np.arctan2(position[..., 1], position[..., 0]))
         present = scene.active & (distance <= self.range_max) & (bearing <= 0.5 * self.field_of_view + 1e-12)
         if self.visible_only:
-            present &= _circle(self.rays, self.range_max).measure(scene, pose).seen(scene.shape[1])
+            present &= _circle(self.rays, self.range_max).read(scene, pose).seen(scene.shape[1])
         told = disturbed(np.where(present[..., None], position, np.nan), self.noises, rng)
         present &= np.isfinite(told).all(axis=-1)
         heading = scene.heading - place.heading[:, None]
         heading = math.pi - (math.pi - np.where(present, heading, 0.0)) % (2.0 * math.pi)
-        return Tracked(
+        reading = Tracked(
             scene.time,
             pose,
             present,
@@ -109,6 +111,7 @@ class GroundTruthPeople(Sensor):
             np.where(present, scene.radius, np.nan),
             np.where(present, heading, np.nan),
         )
+        return reading, None
 
 
 @functools.lru_cache(maxsize=16)

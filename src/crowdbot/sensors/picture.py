@@ -9,14 +9,15 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, Pose, Scene, SpatialPose
+from crowdbot.core import InputError, Scene, SpatialPose
 
-from .camera import ImageSource, Lens, distorted
+from .camera import Lens, distorted
 from .cast import cast
 from .depth import pixel_beams
 from .noise import Randomness, disturbed
-from .sensor import Reading, Sensor, in_space
+from .sensor import Reading, Sensor, spatial_pose
 from .shapes import FLOOR, NOTHING, PROP, WALLS
+from .view import SensorView
 
 __all__ = ["Picture", "RGBCamera"]
 
@@ -63,14 +64,13 @@ class RGBCamera(Sensor):
 
     >>> scene = Scene.of([[2.0, 0.0]], radius=0.5)
     >>> camera = RGBCamera(width=5, height=1, field_of_view=math.radians(60.0), segmentation=True)
-    >>> picture = camera.measure(scene, SpatialPose.of((0.0, 0.0, 1.0)))
+    >>> picture = camera.read(scene, SpatialPose.of((0.0, 0.0, 1.0)))
     >>> picture.rgb.shape, picture.hit[0, 0].tolist()
     ((1, 1, 5, 3), [-1, 0, 0, 0, -1])
     """
 
-    draws: ClassVar[bool] = True
-    """Who owns the world hands in a source of images: ``measure(..., source=...)``."""
-
+    spatial: ClassVar[bool] = True
+    renders: ClassVar[bool] = True
     width: int = 320
     height: int = 240
     field_of_view: float = math.radians(60.0)
@@ -93,30 +93,18 @@ class RGBCamera(Sensor):
         """Intrinsics."""
         return Lens.of(self.width, self.height, self.field_of_view, self.distortion or (0.0,) * 5)
 
-    def measure(
-        self,
-        scene: Scene,
-        pose: Pose | SpatialPose,
-        rng: Randomness | None = None,
-        source: ImageSource | None = None,
-    ) -> Picture:
-        """Return the picture; ``rng`` is needed only when there is noise.
-
-        Args:
-            scene: what is there, for rays.
-            pose: of the camera; a planar one is level, at the height of a usual mount.
-            rng: of the noise.
-            source: who draws; None: rays.
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Picture, None]:
+        """Return the image of the renderer of ``view``, or one by rays if there is no renderer.
 
         Raises:
-            InputError: scene and pose have different numbers of environments, or noise lacks a generator.
+            InputError: the pose does not fit the scene, or noise lacks a generator.
         """
-        self.check(scene, pose)
-        lens = self.lens
-        if source is None:
-            rgb, hit = self._by_rays(scene, in_space(pose))
+        self.check(view)
+        pose, lens = view.pose, self.lens
+        if view.renderer is None:
+            rgb, hit = self._by_rays(view.scene, spatial_pose(pose))
         else:
-            images = source.render(self, in_space(pose))
+            images = view.renderer.render(self, spatial_pose(pose))
             rgb = np.asarray(images["rgb"])
             hit = np.asarray(images.get("hit", np.full(rgb.shape[:3], NOTHING)))
             if any(self.distortion):
@@ -124,7 +112,7 @@ class RGBCamera(Sensor):
         if self.noises:
             values = disturbed(rgb.astype(np.float64), self.noises, rng)
             rgb = np.round(np.clip(np.where(np.isfinite(values), values, 0.0), 0.0, 255.0))
-        return Picture(scene.time, pose, rgb.astype(np.uint8), hit if self.segmentation else None, lens)
+        return Picture(view.time, pose, rgb.astype(np.uint8), hit if self.segmentation else None, lens), None
 
     def _by_rays(self, scene: Scene, pose: SpatialPose) -> tuple[NDArray[np.uint8], Ints]:
         bundle, ahead = pixel_beams(self.lens)

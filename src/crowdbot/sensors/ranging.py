@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +38,17 @@ class Ranging(Sensor):
     resolution: float
     skins: bool
 
+    @property
+    def sees_skins(self) -> bool:
+        """Whether the sensor sees people by their triangle skins."""
+        return self.skins
+
+    def with_skins(self) -> Self:
+        """Return a copy that sees people by their triangle skins."""
+        anything: Any = self
+        copy: Self = dataclasses.replace(anything, skins=True)
+        return copy
+
     def check_ranges(self) -> None:
         """Raise :class:`InputError` when limits are not finite, not in order, or too narrow for the resolution."""
         name = type(self).__name__
@@ -52,7 +65,7 @@ class Ranging(Sensor):
     def check_count(self, name: str) -> None:
         """Raise :class:`InputError` unless the field ``name`` is a whole number from 1 to ``MOST_BEAMS``."""
         owner = type(self).__name__
-        check_number(owner, name, getattr(self, name), at_least=1, at_most=MOST_BEAMS, whole=True)
+        check_number(owner, name, getattr(self, name), min=1, max=MOST_BEAMS, whole=True)
 
     @property
     def least_facing(self) -> float:

@@ -1,96 +1,161 @@
-"""The contract of sensors: what a part of a robot at a pose measures in a scene."""
+"""The contract of sensors: ``begin() -> state`` and ``measure(view, state, rng) -> (reading, state)``."""
 
 from __future__ import annotations
 
+import inspect
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar, Protocol, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, Scene, SpatialPose, check_number
 
+from .camera import ImageSource
 from .noise import Noise, Randomness
+from .view import SensorView
 
 __all__ = ["Reading", "Sensor"]
+
+Reading_co = TypeVar("Reading_co", bound="Reading", covariant=True)
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What a sensor measured at one instant in E environments; each sensor adds its own arrays.
+    """The result of one measurement in E environments. Each sensor adds its own arrays.
 
     Fields:
-        time: simulated time [s].
-        pose: where the sensor was, in the plane or in space, as it was given.
+        time: simulated time of the measurement [s].
+        pose: pose of the sensor, planar or in space, as given.
     """
 
     time: float
     pose: Pose | SpatialPose
 
 
+class _Measures(Protocol[Reading_co]):
+    """The contract of a sensor whose reading has a known type."""
+
+    def begin(self) -> Any: ...
+
+    def measure(self, view: SensorView, state: Any, rng: Randomness | None = None) -> tuple[Reading_co, Any]: ...
+
+
 @dataclass(frozen=True, kw_only=True)
 class Sensor(ABC):
-    """Something that looks at a scene from a pose.
+    """A sensor: a frozen specification and two pure functions.
+
+    :meth:`begin` returns the state before the first measurement. :meth:`measure` takes a view of the scene and the
+    state, and returns a reading and the next state. The state carries the E environments of the view. Most sensors
+    have no state: it is None.
 
     Fields:
-        rate: readings per second [Hz]; who owns the time asks for a reading that often.
-        noise: what happens to every value, one :class:`Noise` or a tuple of them.
-        delay: time from the instant of a measurement until its reading is handed over [s]; who owns the time waits
-            that long (:class:`Schedule`). The reading keeps the time of the instant.
+        rate: measurements per second [Hz].
+        noise: noise added to every value, one :class:`Noise` or a tuple of them.
+        delay: time from a measurement until its reading is available [s] (:class:`Schedule`). The reading keeps the
+            time of the measurement.
 
-    A sensor with ``remembers`` takes its own reading before as ``measure(..., last=...)``.
+    Class attributes:
+        spatial: whether the sensor always measures in space, also where people are discs in the plane.
+        renders: whether the sensor needs a renderer for its usual images. Rendering is slow and needs graphics.
+
+    >>> @dataclass(frozen=True, kw_only=True)
+    ... class Counter(Sensor):
+    ...     def begin(self):
+    ...         return 0
+    ...     def measure(self, view, state, rng=None):
+    ...         return Reading(view.time, view.pose), state + 1
+    >>> view = SensorView(Scene.of([[1.0, 0.0]]), Pose.of((0.0, 0.0), 0.0))
+    >>> reading, state = Counter().measure(view, Counter().begin())
+    >>> state
+    1
     """
 
     rate: float = 10.0
     noise: Noise | tuple[Noise, ...] = ()
     delay: float = 0.0
-    remembers: ClassVar[bool] = False
+    spatial: ClassVar[bool] = False
+    renders: ClassVar[bool] = False
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        names = list(inspect.signature(cls.measure).parameters)
+        if names[1:3] == ["scene", "pose"]:
+            raise InputError(
+                f"sensor {cls.__name__}: measure(scene, pose, rng) is an older contract; write measure(self, view,"
+                " state, rng=None) with view.scene and view.pose, and return (reading, state)"
+            )
 
     def __post_init__(self) -> None:
-        check_number(type(self).__name__, "rate", self.rate, "Hz", at_least=1e-6)
-        check_number(type(self).__name__, "delay", self.delay, "s", at_least=0.0, at_most=3600.0)
+        check_number(type(self).__name__, "rate", self.rate, "Hz", min=1e-6)
+        check_number(type(self).__name__, "delay", self.delay, "s", min=0.0, max=3600.0)
         parts = (self.noise,) if isinstance(self.noise, Noise) else tuple(self.noise)
         for part in parts:
             if not isinstance(part, Noise):
-                raise InputError(f"{type(self).__name__}: noise holds {part!r}, which is not a Noise")
+                raise InputError(f"{type(self).__name__}: noise = {part!r} is not a Noise")
         object.__setattr__(self, "noise", parts)
 
     @property
     def noises(self) -> tuple[Noise, ...]:
-        """The noise as a tuple, however it was given."""
+        """The noise as a tuple."""
         return (self.noise,) if isinstance(self.noise, Noise) else self.noise
 
+    @property
+    def sees_skins(self) -> bool:
+        """Whether the sensor sees people by their triangle skins."""
+        return False
+
+    def with_skins(self) -> Self:
+        """Return a copy that sees people by their triangle skins, or the sensor itself if it cannot."""
+        return self
+
+    def begin(self) -> Any:
+        """Return the state before the first measurement; None for sensors without state."""
+        return None
+
     @abstractmethod
-    def measure(self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None) -> Reading:
-        """Return what is measured from ``pose``; the caller has left the carrier out: ``scene.without(robot)``.
+    def measure(self, view: SensorView, state: Any, rng: Randomness | None = None) -> tuple[Reading, Any]:
+        """Return a reading and the next state.
+
+        Args:
+            view: scene without the robot that carries the sensor (``scene.without(robot)``), and pose of the sensor.
+            state: from :meth:`begin` or from the previous call.
+            rng: random generator, or one for each environment; needed only if there is noise.
 
         Raises:
-            InputError: scene and pose have different numbers of environments, or noise lacks a generator.
+            InputError: the pose does not fit the scene, or noise lacks a generator.
         """
 
-    def check(self, scene: Scene, pose: Pose | SpatialPose) -> None:
-        """Raise :class:`InputError` unless ``pose`` is finite and has one place for each environment of ``scene``."""
-        count = scene.shape[0]
-        turn = pose.rotation if isinstance(pose, SpatialPose) else pose.heading[:, None]
-        if len(pose.position) != count or len(turn) != count:
-            raise InputError(
-                f"{type(self).__name__}: the pose has {len(pose.position)} places for {count} environments"
-            )
-        if not (np.isfinite(pose.position).all() and np.isfinite(turn).all()):
-            raise InputError(f"{type(self).__name__}: the pose of the sensor is not finite")
+    def read(
+        self: _Measures[Reading_co],
+        scene: Scene,
+        pose: Pose | SpatialPose,
+        rng: Randomness | None = None,
+        renderer: ImageSource | None = None,
+    ) -> Reading_co:
+        """Return a single reading: :meth:`measure` from the state of :meth:`begin`.
+
+        Raises:
+            InputError: the pose does not fit the scene, or noise lacks a generator.
+        """
+        return self.measure(SensorView(scene, pose, renderer), self.begin(), rng)[0]
+
+    def check(self, view: SensorView) -> None:
+        """Raise :class:`InputError` unless the pose of ``view`` is finite and fits its scene."""
+        view.check(type(self).__name__)
 
 
-def in_space(pose: Pose | SpatialPose) -> SpatialPose:
-    """Return the pose in space; a planar one is at the height of a usual mount, level."""
+def spatial_pose(pose: Pose | SpatialPose) -> SpatialPose:
+    """Return the pose in space; a planar pose becomes level, at the height of a usual mount."""
     return pose if isinstance(pose, SpatialPose) else pose.lifted()
 
 
-def in_plane(pose: Pose | SpatialPose) -> Pose:
-    """Return the pose as it is seen from above."""
+def planar_pose(pose: Pose | SpatialPose) -> Pose:
+    """Return the pose projected to the plane."""
     return pose.planar if isinstance(pose, SpatialPose) else pose
 
 
 def finite_or_nan(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return ``values`` with NaN for what noise has made infinite."""
+    """Return ``values`` with NaN in place of infinite values."""
     return np.asarray(np.where(np.isfinite(values), values, np.nan))

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from crowdbot.core import Clock, InputError
 
-from .sensor import Reading, Sensor
+from .sensor import Sensor
 
-__all__ = ["Schedule", "Waiting"]
+__all__ = ["Schedule"]
 
 
 @dataclass(frozen=True)
@@ -47,21 +47,3 @@ class Schedule:
     def arrives(self, tick: int) -> int:
         """Return when what was measured at ``tick`` is handed over."""
         return tick + self.late
-
-
-@dataclass
-class Waiting:
-    """Readings on their way: put in when measured, taken out when their delay has passed."""
-
-    schedule: Schedule
-    held: list[tuple[int, Reading]] = field(default_factory=list)
-
-    def put(self, tick: int, reading: Reading) -> None:
-        """Put in what was measured at ``tick``."""
-        self.held.append((self.schedule.arrives(tick), reading))
-
-    def take(self, tick: int) -> list[Reading]:
-        """Take out what has arrived by ``tick``, oldest first."""
-        ready = [reading for due, reading in self.held if due <= tick]
-        self.held = [(due, reading) for due, reading in self.held if due > tick]
-        return ready

@@ -5,16 +5,18 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Pose, Scene, SpatialPose, check_number
+from crowdbot.core import check_number
 
 from .beams import Beams, beams, cone
 from .echo import Echo, nearest
 from .noise import Randomness
 from .ranging import Ranging
+from .view import SensorView
 
 __all__ = ["Ultrasound", "teardrop"]
 
@@ -55,10 +57,11 @@ class Ultrasound(Ranging):
         InputError: a value is not allowed.
 
     >>> scene = Scene.of([[2.0, 0.0]], radius=0.3)
-    >>> Ultrasound().measure(scene, Pose.of((0.0, 0.0), 0.0).lifted(0.5)).ranges.tolist()
+    >>> Ultrasound().read(scene, Pose.of((0.0, 0.0), 0.0).lifted(0.5)).ranges.tolist()
     [1.7]
     """
 
+    spatial: ClassVar[bool] = True
     radius: float = 0.5
     rays: int = 400
     range_min: float = 0.15
@@ -70,7 +73,7 @@ class Ultrasound(Ranging):
     def __post_init__(self) -> None:
         super().__post_init__()
         self.check_count("rays")
-        check_number("Ultrasound", "radius", self.radius, "m", above=0.0)
+        check_number("Ultrasound", "radius", self.radius, "m", exclusive_min=0.0)
         self.check_ranges()
 
     @property
@@ -78,14 +81,15 @@ class Ultrasound(Ranging):
         """Largest angle between the axis and a direction in which the zone lies [rad]."""
         return math.atan(0.5 * SLIM * self.radius / self.range_max)
 
-    def measure(self, scene: Scene, pose: Pose | SpatialPose, rng: Randomness | None = None) -> Echo:
+    def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[Echo, None]:
         """Return the smallest distance; ``rng`` is needed only when there is noise.
 
         Raises:
-            InputError: scene and pose have different numbers of environments, or noise lacks a generator.
+            InputError: the pose does not fit the scene, or noise lacks a generator.
         """
-        self.check(scene, pose)
-        return nearest(self, scene, pose, _bundle(self.radius, self.range_max, self.rays), rng)
+        self.check(view)
+        scene, pose = view.scene, view.pose
+        return nearest(self, scene, pose, _bundle(self.radius, self.range_max, self.rays), rng), None
 
 
 @functools.lru_cache(maxsize=64)

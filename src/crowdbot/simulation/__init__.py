@@ -6,7 +6,6 @@ from .overrides import apply_overrides
 from .runner import Bridge, Running, Sink, Stop, drive, simulate, stopping
 from .simulation import WALL, Carrier, Frame, Simulation, Touch
 from .statistics import Digest, Summary, Tally, robot_metrics
-from .travel import Instant, Travel
 from .world_builder import start_scene
 
 __all__ = [
@@ -16,7 +15,6 @@ __all__ = [
     "Digest",
     "Episode",
     "Frame",
-    "Instant",
     "Log",
     "Running",
     "ScanRow",
@@ -26,7 +24,6 @@ __all__ = [
     "Summary",
     "Tally",
     "Touch",
-    "Travel",
     "apply_overrides",
     "drive",
     "robot_metrics",

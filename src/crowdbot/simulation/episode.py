@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 from crowdbot.data import Trajectories
-from crowdbot.sensors import Reading, Scan
-from crowdbot.sensors.sensor import in_plane
+from crowdbot.sensors import Reading, Scan, planar_pose
 from crowdbot.trials import Trial
 
 from .simulation import Frame
@@ -194,6 +193,6 @@ def _by_person(rows: Sequence[NDArray[Any]], ids: Sequence[NDArray[np.int64]], a
 
 def scan_row(scan: Scan) -> ScanRow:
     """Return a scan of one environment as a row."""
-    pose = in_plane(scan.pose)
+    pose = planar_pose(scan.pose)
     (x, y), heading = pose.position[0], pose.heading[0]
     return ScanRow(scan.time, (float(x), float(y), float(heading)), scan.angles, scan.ranges[0], scan.hit[0])

@@ -10,8 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Pose, SpatialPose, stream
-from crowdbot.sensors import DepthCamera, Infrared, Lidar3D, Reading, RGBCamera, Schedule, Sensor, Tracked, Ultrasound
+from crowdbot.core import InputError, Pose, SpatialPose, stream
+from crowdbot.sensors import (
+    Reading,
+    Schedule,
+    SensorView,
+    Tracked,
+)
 from crowdbot.trials import Mount, Robot
 from crowdbot.world import MountPlacement, World
 
@@ -20,8 +25,6 @@ from .sensor_view import Surroundings
 __all__ = ["Probe", "Told", "named", "probes_of", "spatial"]
 
 Ints = NDArray[np.int64]
-SPATIAL = (DepthCamera, Infrared, Lidar3D, RGBCamera, Ultrasound)
-"""Sensors that look through space, whatever people are otherwise."""
 LEVEL = 1e-9
 
 
@@ -42,7 +45,7 @@ class Probe:
         schedule: when it measures, and how late its readings arrive.
         rng: its randomness.
         space: whether it looks through space, at bodies; otherwise from above, at discs.
-        last: what it measured last, for sensors that remember.
+        state: state of the sensor, from its ``begin`` or its last measurement.
         waiting: tick of arrival of what is on its way.
     """
 
@@ -51,28 +54,31 @@ class Probe:
     schedule: Schedule
     rng: np.random.Generator
     space: bool
-    last: Reading | None = None
+    state: Any
     waiting: list[tuple[int, Told]] = field(default_factory=list)
 
     def work(self, tick: int, agent: int, around: Surroundings, ids: Ints) -> list[Told]:
         """Measure when it is due, and return what arrives now, oldest first."""
         if self.schedule.measures(tick):
-            reading = self._measured(agent, around)
-            if self.mount.sensor.remembers:
-                self.last = reading
+            reading = self._measure(agent, around)
             told = named(reading, ids)
             self.waiting.append((self.schedule.arrives(tick), Told(told, shown(told))))
         ready = [told for due, told in self.waiting if due <= tick]
         self.waiting = [row for row in self.waiting if row[0] > tick]
         return ready
 
-    def _measured(self, agent: int, around: Surroundings) -> Reading:
-        sensor: Any = self.mount.sensor
-        more: dict[str, Any] = {"last": self.last} if sensor.remembers else {}
-        if getattr(sensor, "draws", False):
-            more["source"] = around.studio
+    def _measure(self, agent: int, around: Surroundings) -> Reading:
         scene = (around.space if self.space else around.flat).without(agent)
-        reading: Reading = sensor.measure(scene, self.pose(agent, around), self.rng, **more)
+        answer: Any = self.mount.sensor.measure(
+            SensorView(scene, self.pose(agent, around), around), self.state, self.rng
+        )
+        if not (isinstance(answer, tuple) and len(answer) == 2 and isinstance(answer[0], Reading)):
+            raise InputError(
+                f"sensor {type(self.mount.sensor).__name__} {self.mount.name!r}: measure returned a"
+                f" {type(answer).__name__}; it must return (reading, state)"
+            )
+        reading: Reading = answer[0]
+        self.state = answer[1]
         return reading
 
     def pose(self, agent: int, around: Surroundings) -> Pose | SpatialPose:
@@ -85,11 +91,7 @@ def spatial(robot: Robot, mount: Mount, bodies: str) -> bool:
     """Return whether a sensor looks through space."""
     _, _, _, roll, pitch, _ = robot.placed(mount)
     tilted = max(abs(roll), abs(pitch)) > LEVEL
-    return bodies != "discs" or tilted or isinstance(mount.sensor, SPATIAL) or _skinned(mount.sensor)
-
-
-def _skinned(sensor: Sensor) -> bool:
-    return bool(getattr(sensor, "skins", False))
+    return bodies != "discs" or tilted or mount.sensor.spatial or mount.sensor.sees_skins
 
 
 def probes_of(
@@ -100,19 +102,19 @@ def probes_of(
     found = []
     for mount in robot.sensors:
         sensor = mount.sensor
-        more: Any = {"skins": True} if bodies == "skins" and hasattr(sensor, "skins") else {}
         probe = Probe(
-            dataclasses.replace(mount, sensor=dataclasses.replace(sensor, **more)) if more else mount,
+            dataclasses.replace(mount, sensor=sensor.with_skins()) if bodies == "skins" else mount,
             robot.placed(mount),
             robot.schedule(mount, world.clock),
             stream(seed, "sensor", robot.name, mount.name),
             spatial(robot, mount, bodies),
+            sensor.begin(),
         )
         old = (known or {}).get(mount.name)
         if old is not None:
             same = type(old.mount.sensor) is type(sensor)
             probe = dataclasses.replace(
-                probe, rng=old.rng, last=old.last if same else None, waiting=old.waiting if same else []
+                probe, rng=old.rng, state=old.state if same else probe.state, waiting=old.waiting if same else []
             )
         found.append(probe)
     return tuple(found)

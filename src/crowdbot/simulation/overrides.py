@@ -43,11 +43,11 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
         latency={
             carrier.agent: robot.latency for carrier, robot in zip(simulation.carriers, trial.robots, strict=True)
         },
-        robot_margin=trial.berth,
+        robot_margin=trial.robot_margin,
         contact=None if trial.contact is None else trial.contact.bodies(),
         limits=None if trial.limits is None else trial.limits.kept(),
         exits=[way.out() for way in trial.exits],
-        heading_jitter=trial.symmetry,
+        heading_jitter=trial.heading_jitter,
         substeps=trial.substeps,
         **_router(old, trial),
     )
@@ -124,9 +124,12 @@ def _carrier(simulation: Simulation, old: Carrier, robot: Robot, seed: int | Non
     if seed is not None:
         fresh = probes_of(simulation.trial, robot, simulation.world, seed)
         probes = tuple(dataclasses.replace(one, rng=new.rng) for one, new in zip(probes, fresh, strict=True))
+    same = type(old.robot.navigator) is type(robot.navigator)
     return dataclasses.replace(
         old,
         robot=robot,
+        memory=old.memory if same else None,
+        begun=old.begun and same,
         limits=limits_of(robot.drive),
         control_every=clock.every(robot.control_period),
         probes=probes,

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from crowdbot.core import Scene, Walls
+from numpy.typing import NDArray
+
+from crowdbot.core import Scene, SpatialPose, Walls
 from crowdbot.world import World
 
 if TYPE_CHECKING:
@@ -66,6 +69,14 @@ class Surroundings:
         if self._space is None or self._space[0] is not now:
             self._space = (now, self.world.body_scene(self._skins))
         return self._space[1]
+
+    def render(self, camera: Any, pose: SpatialPose) -> Mapping[str, NDArray[Any]]:
+        """Return images of a camera now, as the renderer of a :class:`crowdbot.sensors.SensorView`.
+
+        Raises:
+            MissingExtra: mujoco is not installed.
+        """
+        return self.studio.render(camera, pose)
 
     @property
     def studio(self) -> Renderer:

@@ -101,6 +101,9 @@ class Carrier:
     seen: dict[str, NDArray[np.int64]] = field(default_factory=dict)
     """Ids of those whom each sensor showed last."""
     command: Twist = field(default_factory=Twist)
+    memory: Any = None
+    """Memory of the navigator, once it has begun."""
+    begun: bool = False
     arrived: bool = False
 
 
@@ -144,9 +147,7 @@ class Simulation:
         self.world, figures = world_of(trial, people, seed)
         if posed and figures is None:
             figures = cast_of(trial, people, self.world.scene.shape[1], seed)
-        skins = trial.bodies == "skins" or any(
-            getattr(m.sensor, "skins", False) for r in trial.robots for m in r.sensors
-        )
+        skins = trial.bodies == "skins" or any(m.sensor.sees_skins for r in trial.robots for m in r.sensors)
         self.around = Surroundings(trial, self.world, figures, seed, skins)
         self.carriers = [self._carrier(robot, len(people) + k) for k, robot in enumerate(trial.robots)]
         self.event: str | None = None
@@ -187,7 +188,14 @@ class Simulation:
         """Ask the navigators that are due: the second half of part 6."""
         for carrier in self.carriers:
             if self.tick % carrier.control_every == 0:
-                carrier.command = _asked(carrier.robot, self.observation(carrier))
+                self._decide(carrier)
+
+    def _decide(self, carrier: Carrier) -> None:
+        navigator, observation = carrier.robot.navigator, self.observation(carrier)
+        if not carrier.begun:
+            carrier.memory, carrier.begun = navigator.begin(observation), True
+        action, carrier.memory = navigator.decide(observation, carrier.memory, robot=carrier.robot.name)
+        carrier.command = action.twist
 
     def observation(self, carrier: Carrier) -> Observation:
         """Return what a robot knows: of the people, those whom its sensors showed last, as by one beam of a scan.
@@ -325,16 +333,6 @@ class Simulation:
             self.event = "success"
         if self.ended is None:
             self.ended = ended(self)
-
-
-def _asked(robot: Robot, observation: Observation) -> Twist:
-    answer: Any = robot.navigator.act(observation)
-    if not isinstance(answer, Twist):
-        raise InputError(
-            f"navigator {type(robot.navigator).__name__} of robot {robot.name!r} gave a {type(answer).__name__},"
-            " it must give a Twist"
-        )
-    return Twist(*map(float, answer))
 
 
 def _rows(twists: Sequence[Twist]) -> NDArray[np.float64]:

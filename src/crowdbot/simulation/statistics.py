@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import Pose, SpatialPose
+from crowdbot.metrics import AgentStates, NavigationMetrics
 from crowdbot.trials import Trial
 
 from .simulation import Frame
-from .travel import Instant, Travel
 
 __all__ = ["Digest", "Summary", "Tally", "present", "robot_metrics"]
 
@@ -88,9 +88,10 @@ class Tally:
         self.digest = digest or Digest()
         self.agents = trial.people + len(trial.robots)
         self.begin = self.end = math.nan
+        self._touching: set[int] = set()
         walls = trial.stage.as_walls().segments()
         self.travels = [
-            Travel(trial.people + k, robot.radius, robot.goal.position, robot.goal.tolerance, walls)
+            NavigationMetrics(trial.people + k, robot.radius, robot.goal.position, robot.goal.tolerance, walls=walls)
             for k, robot in enumerate(trial.robots)
         ]
 
@@ -102,13 +103,15 @@ class Tally:
     def keep(self, frame: Frame) -> None:
         """Take an instant that the digest has already."""
         self.agents = max(self.agents, 1 + int(frame.ids.max(initial=-1)))
+        self._touching |= {who for one in frame.touches for who in (one.robot, one.other)}
         if frame.due:
             self.end = frame.nanoseconds / 1e9
             self.begin = self.end if math.isnan(self.begin) else self.begin
             if self.travels:
                 now = _instant(frame)
                 for travel in self.travels:
-                    travel.take(now)
+                    travel.update(now, travel.robot in self._touching)
+            self._touching = set()
 
     def metrics(self, outcome: str) -> dict[str, float]:
         """Return the metrics of every robot."""
@@ -130,14 +133,11 @@ class Tally:
         )
 
 
-def robot_metrics(travels: Sequence[Travel], names: Iterable[str], outcome: str) -> dict[str, float]:
+def robot_metrics(travels: Sequence[NavigationMetrics], names: Iterable[str], outcome: str) -> dict[str, float]:
     """Return the metrics of every robot; the outcome of a single one is that of the run, judged in every time step."""
     found: dict[str, float] = {}
     for number, (travel, name) in enumerate(zip(travels, names, strict=True)):
-        values = travel.metrics()
-        if len(travels) == 1:
-            values |= {word: float(outcome == word) for word in ("success", "collision", "timeout")}
-            values["time_to_goal"] = values["duration"] if outcome == "success" else math.nan
+        values = travel.result(outcome if len(travels) == 1 else None)
         found |= {(key if number == 0 else f"{name}.{key}"): value for key, value in values.items()}
     return found
 
@@ -154,11 +154,11 @@ def present(frame: Frame) -> tuple[NDArray[Any], ...]:
     )
 
 
-def _instant(frame: Frame) -> Instant:
+def _instant(frame: Frame) -> AgentStates:
     scene = frame.scene
     there = np.flatnonzero(scene.active[0])
     there = there[np.argsort(frame.ids[there])]
-    return Instant(
+    return AgentStates(
         frame.nanoseconds / 1e9,
         frame.ids[there],
         scene.position[0, there],

@@ -52,7 +52,7 @@ def world_of(trial: Trial, people: People, seed: int) -> tuple[PlanarWorld, Figu
     whole: dict[str, Any] = {
         "dt": trial.step,
         "seed": seed,
-        "robot_margin": trial.berth,
+        "robot_margin": trial.robot_margin,
         "router": router,
         "contact": None if trial.contact is None else trial.contact.bodies(),
         "limits": None if trial.limits is None else trial.limits.kept(),
@@ -61,7 +61,7 @@ def world_of(trial: Trial, people: People, seed: int) -> tuple[PlanarWorld, Figu
         "exits": [way.out() for way in trial.exits],
         "portals": [portal.gate() for portal in trial.portals],
         "script": _script(people),
-        "heading_jitter": trial.symmetry,
+        "heading_jitter": trial.heading_jitter,
         "substeps": trial.substeps,
         "ids": np.concatenate([np.arange(there), -1 - np.arange(spare)]),
     }
@@ -180,7 +180,9 @@ def _script(people: People) -> ReplayedPeople | None:
         return None
     first = len(people) - len(people.walks)
     owners = [people.owners[k] for k in people.owner[first:].tolist()]
-    release = [one.near if isinstance(one, RecordedPeople) and one.mode == "reactive" else 0.0 for one in owners]
+    release = [
+        one.reaction_distance if isinstance(one, RecordedPeople) and one.mode == "reactive" else 0.0 for one in owners
+    ]
     tracks = [ReplayedTrack(first + k, walk.time, walk.position) for k, walk in enumerate(people.walks)]
     return ReplayedPeople(tracks, release)
 

@@ -34,6 +34,7 @@ from .trial_files import beside
 from .validation.rates import trial_remarks
 from .variants import apply_values, expand_sweeps
 from .xml.document import parse_trial_xml, read_trial_bytes
+from .xml.old_names import OldNameWarning, update_names
 from .xml.reader import Reader
 from .xml.writer import element_from, trial_xml
 from .xml.xsd import schema
@@ -66,6 +67,7 @@ __all__ = [
     "Limits",
     "Mount",
     "Obstacle",
+    "OldNameWarning",
     "Parameter",
     "People",
     "Plan",
@@ -123,4 +125,5 @@ __all__ = [
     "trial_remarks",
     "trial_xml",
     "trials_of",
+    "update_names",
 ]

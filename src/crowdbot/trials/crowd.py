@@ -94,7 +94,7 @@ def crowd_names(model: Any) -> tuple[str, ...]:
 class Routing:
     """People find the shortest way around walls to their goals; without it they walk straight towards them."""
 
-    radius: float = attribute(0.3, about="ways keep this far from walls", unit="m", above=0.0, at_most=10.0)
+    radius: float = attribute(0.3, about="ways keep this far from walls", unit="m", exclusive_min=0.0, max=10.0)
     unreachable: str = attribute(
         "error", about="a goal that cannot be reached is an error, or the nearest place", choices=("error", "nearest")
     )
@@ -114,8 +114,8 @@ class Contact:
     variant: str = attribute(
         "position", about="overlaps end at once, or push with a force", choices=("position", "force")
     )
-    stiffness: float = attribute(62.5, about="of a force, for each metre", unit="1/s2", above=0.0, at_most=1e9)
-    iterations: int = attribute(8, about="rounds of pushing by position in a step", at_least=1, at_most=1000)
+    stiffness: float = attribute(62.5, about="of a force, for each metre", unit="1/s2", exclusive_min=0.0, max=1e9)
+    iterations: int = attribute(8, about="rounds of pushing by position in a step", min=1, max=1000)
 
     def __post_init__(self) -> None:
         check(self)
@@ -129,9 +129,9 @@ class Contact:
 class Limits:
     """What people cannot go beyond, whatever their model asks for."""
 
-    max_speed: float | None = attribute(None, about="largest speed", unit="m/s", above=0.0)
+    max_speed: float | None = attribute(None, about="largest speed", unit="m/s", exclusive_min=0.0)
     max_acceleration: float | None = attribute(
-        None, about="largest change of velocity: speeding up, braking, turning", unit="m/s2", above=0.0
+        None, about="largest change of velocity: speeding up, braking, turning", unit="m/s2", exclusive_min=0.0
     )
 
     def __post_init__(self) -> None:

@@ -50,9 +50,9 @@ class Rule:
 
     about: str
     unit: str = ""
-    at_least: float | None = None
-    above: float | None = None
-    at_most: float | None = None
+    min: float | None = None
+    exclusive_min: float | None = None
+    max: float | None = None
     choices: tuple[str, ...] = ()
     pattern: str = ""
     points: int = 0
@@ -60,9 +60,9 @@ class Rule:
     def problem(self, value: Any) -> str:
         """Return what is wrong with a value as the end of a sentence, empty when it is right.
 
-        >>> Rule("number of people", at_least=0).problem(-3)
+        >>> Rule("number of people", min=0).problem(-3)
         'must be at least 0 and at most 1000000'
-        >>> Rule("time step", unit="s", above=0.0, at_most=1.0).problem(2.5)
+        >>> Rule("time step", unit="s", exclusive_min=0.0, max=1.0).problem(2.5)
         'must be at most 1 s and above 0 s'
         """
         if isinstance(value, str):
@@ -76,14 +76,14 @@ class Rule:
             return "is not finite"
         if self.bounds.holds(low) and self.bounds.holds(high):
             return ""
-        too_high = dataclasses.replace(self.bounds, at_most=None).holds(low)
+        too_high = dataclasses.replace(self.bounds, max=None).holds(low)
         return f"must be {self.bounds.allowed(too_high)}{self._reach(low, high)}"
 
     @functools.cached_property
     def bounds(self) -> Bounds:
         """What a number may be."""
-        lowest = -LARGEST if self.at_least is None and self.above is None else self.at_least
-        return Bounds(self.unit, lowest, self.above, LARGEST if self.at_most is None else self.at_most)
+        lowest = -LARGEST if self.min is None and self.exclusive_min is None else self.min
+        return Bounds(self.unit, lowest, self.exclusive_min, LARGEST if self.max is None else self.max)
 
     def _wrong_word(self, value: str) -> str:
         if UNWRITABLE.search(value):
@@ -137,7 +137,7 @@ class Part:
         rule: of an attribute.
         plug: of a plug.
         about: one line for people.
-        at_most: largest number of child elements.
+        max: largest number of child elements.
         elements: the child elements that it takes, by word.
         into: what makes one value of all children and the reverse, see :func:`children`.
         optional: whether the value may be None.
@@ -152,7 +152,7 @@ class Part:
     rule: Rule | None
     plug: Plug | None
     about: str
-    at_most: int = 1
+    max: int = 1
     elements: Mapping[str, Any] = field(default_factory=dict)
     into: Any = None
     optional: bool = False
@@ -173,15 +173,15 @@ def attribute(
     *,
     about: str,
     unit: str = "",
-    at_least: float | None = None,
-    above: float | None = None,
-    at_most: float | None = None,
+    min: float | None = None,
+    exclusive_min: float | None = None,
+    max: float | None = None,
     choices: tuple[str, ...] = (),
     pattern: str = "",
     points: int = 0,
 ) -> Any:
     """Make a field that is an XML attribute: a number, a word, true or false, points, a distribution."""
-    rule = Rule(about, unit, at_least, above, at_most, choices, pattern, points)
+    rule = Rule(about, unit, min, exclusive_min, max, choices, pattern, points)
     return dataclasses.field(default=default, metadata={"role": "attribute", "rule": rule, "about": about})
 
 
@@ -193,21 +193,19 @@ def child(factory: Any = dataclasses.MISSING, *, about: str) -> Any:
     return dataclasses.field(default_factory=factory, metadata=row)
 
 
-def children(
-    words: str | Mapping[str, type], *, about: str, at_least: int = 0, at_most: int = 10_000, into: Any = None
-) -> Any:
-    """Make a field that is any number of child elements, from ``at_least`` (0 or 1) to ``at_most``, in their order.
+def children(words: str | Mapping[str, type], *, about: str, min: int = 0, max: int = 10_000, into: Any = None) -> Any:
+    """Make a field that is any number of child elements, from ``min`` (0 or 1) to ``max``, in their order.
 
     Args:
         words: what each is called; several kinds are given with their classes.
         about: one line for people.
-        at_least: whether there must be one.
-        at_most: how many there may be.
+        min: whether there must be one.
+        max: how many there may be.
         into: makes one value of them: ``into.gathered(children)`` is the value, ``into.spread(value)`` the children,
             ``into.problems(children)`` yields the index of every child that does not fit to the others, and why.
     """
-    row = {"role": "children", "words": words, "about": about, "at_most": at_most, "into": into}
-    return dataclasses.field(metadata=row) if at_least else dataclasses.field(default=(), metadata=row)
+    row = {"role": "children", "words": words, "about": about, "max": max, "into": into}
+    return dataclasses.field(metadata=row) if min else dataclasses.field(default=(), metadata=row)
 
 
 def plugged(room: str, contract: str, *, about: str, default: Any = dataclasses.MISSING) -> Any:
@@ -245,7 +243,7 @@ def _part(field: dataclasses.Field[Any], hint: Any) -> Part:
         row.get("rule"),
         row.get("plug"),
         row["about"],
-        row.get("at_most", 1),
+        row.get("max", 1),
         elements if row["role"] in ("child", "children") else {},
         row.get("into"),
         type(None) in typing.get_args(hint),
@@ -291,8 +289,8 @@ def _listed(element: Any, part: Part, value: Any) -> tuple[Any, ...]:
     name = type(element).__name__
     if not isinstance(value, list | tuple):
         raise InputError(f"{name}: {part.name} is a {type(value).__name__}, it must be a list")
-    if len(value) > part.at_most:
-        raise InputError(f"{name}: {len(value)} {part.name} are too many, at most {part.at_most}")
+    if len(value) > part.max:
+        raise InputError(f"{name}: {len(value)} {part.name} are too many, at most {part.max}")
     if part.required and not value:
         raise InputError(f"{name}: {part.name} is empty; it must hold at least one: {part.about}")
     kinds = tuple(part.elements.values())

@@ -22,7 +22,7 @@ class Point:
 
     x: float = attribute(about="place", unit="m")
     y: float = attribute(about="place", unit="m")
-    tolerance: float = attribute(TOLERANCE, about="how near one must come", unit="m", above=0.0)
+    tolerance: float = attribute(TOLERANCE, about="how near one must come", unit="m", exclusive_min=0.0)
 
     def __post_init__(self) -> None:
         check(self)
@@ -36,9 +36,7 @@ class Point:
 class Direction:
     """A direction to walk in for ever, so the last stop of a journey; no routing leads there."""
 
-    heading: float = attribute(
-        about="counter-clockwise from +x", unit="rad", at_least=-2.0 * math.pi, at_most=2.0 * math.pi
-    )
+    heading: float = attribute(about="counter-clockwise from +x", unit="rad", min=-2.0 * math.pi, max=2.0 * math.pi)
 
     def __post_init__(self) -> None:
         check(self)
@@ -56,7 +54,9 @@ class Zone:
     aim: str = attribute(
         "nearest", about="one goes to its nearest point, or to a random one of one's own", choices=("nearest", "random")
     )
-    tolerance: float = attribute(TOLERANCE, about="how near to the own point is near enough", unit="m", above=0.0)
+    tolerance: float = attribute(
+        TOLERANCE, about="how near to the own point is near enough", unit="m", exclusive_min=0.0
+    )
 
     def __post_init__(self) -> None:
         check(self)
@@ -79,7 +79,7 @@ class Journey:
         "leave", about="at the last stop people leave, stay, or begin again", choices=("leave", "stay", "again")
     )
     stops: tuple[Point | Direction | Zone, ...] = children(
-        {"point": Point, "direction": Direction, "zone": Zone}, about="where they go", at_least=1, at_most=1000
+        {"point": Point, "direction": Direction, "zone": Zone}, about="where they go", min=1, max=1000
     )
 
     def __post_init__(self) -> None:

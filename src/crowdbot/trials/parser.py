@@ -15,13 +15,21 @@ from .sweep import sweep_problems
 from .trial import Trial
 from .validation.trial_checks import problems_of
 from .xml.document import parse_trial_xml
+from .xml.old_names import update_names
 from .xml.reader import ROOT, Reader
 from .xml.writer import element_of
 
 __all__ = ["check_trial", "parse_trial"]
 
 
-def parse_trial(text: str | bytes, *, place: str = "trial", folder: Path | None = None, trust: bool = False) -> Trial:
+def parse_trial(
+    text: str | bytes,
+    *,
+    place: str = "trial",
+    folder: Path | None = None,
+    trust: bool = False,
+    quiet: bool = False,
+) -> Trial:
     """Read a trial from XML and check it.
 
     Args:
@@ -29,6 +37,7 @@ def parse_trial(text: str | bytes, *, place: str = "trial", folder: Path | None 
         place: name of the file for messages.
         folder: of the trial; code that the trial names is looked up here (default: the working folder).
         trust: whether code from outside the folder may be loaded.
+        quiet: do not warn about names of earlier versions.
 
     Raises:
         TrialError: with every problem found, one sentence each, in the order of the lines.
@@ -46,6 +55,7 @@ max-neighbors, time-horizon, time-horizon-walls, max-speed, name
     root = parse_trial_xml(data, place, "utf-8" if isinstance(text, str) else None)
     if root.tag != ROOT:
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
+    update_names(root, place, quiet=quiet)
     reader = Reader(place, folder or Path.cwd(), trust)
     trial = _read_checked(reader, root)
     for sweep, sentence in sweep_problems(root, Trial, trial.sweeps, _variant_problems(reader)):

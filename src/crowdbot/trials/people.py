@@ -30,8 +30,8 @@ class Group:
     0.5
     """
 
-    size: int = attribute(about="people in the group, 1 for who is alone", at_least=1, at_most=50)
-    share: float = attribute(1.0, about="how often it comes compared to other sizes", above=0.0)
+    size: int = attribute(about="people in the group, 1 for who is alone", min=1, max=50)
+    share: float = attribute(1.0, about="how often it comes compared to other sizes", exclusive_min=0.0)
 
     def __post_init__(self) -> None:
         check(self)
@@ -51,12 +51,12 @@ class Spawner:
     """
 
     name: str = attribute("", about="name for messages")
-    count: int = attribute(about="number of people", at_least=0, at_most=100_000)
+    count: int = attribute(about="number of people", min=0, max=100_000)
     zone: Points = attribute(about="corners of the spawn zone x,y; centres of people lie inside", unit="m", points=3)
     goal: Points = attribute(Points(), about="corners of the goal zone x,y, without a journey", unit="m", points=3)
     journey: str = attribute("", about="name of their journey, without a goal zone")
-    speed: Distribution = attribute(WALKING_SPEED, about="preferred speed", unit="m/s", above=0.0, at_most=10.0)
-    radius: Distribution = attribute(BODY_RADIUS, about="radius of the body", unit="m", above=0.0, at_most=5.0)
+    speed: Distribution = attribute(WALKING_SPEED, about="preferred speed", unit="m/s", exclusive_min=0.0, max=10.0)
+    radius: Distribution = attribute(BODY_RADIUS, about="radius of the body", unit="m", exclusive_min=0.0, max=5.0)
     arrival: str = attribute("leave", about="what people do in the goal zone", choices=("leave", "stay"))
     crowd: str = attribute("", about="name of their crowd, by default the first")
     body: str = attribute("", about=ABOUT_BODY)
@@ -65,7 +65,7 @@ class Spawner:
     heading: float | None = attribute(
         None, about="where they look at first, by default towards the goal, of who stands at random", unit="rad"
     )
-    groups: tuple[Group, ...] = children("group", about="sizes of groups; without them everybody is alone", at_most=50)
+    groups: tuple[Group, ...] = children("group", about="sizes of groups; without them everybody is alone", max=50)
 
     def __post_init__(self) -> None:
         check(self)
@@ -93,13 +93,13 @@ class Source:
     zone: Points = attribute(about="corners of the zone x,y where they come in", unit="m", points=3)
     goal: Points = attribute(Points(), about="corners of the goal zone x,y, without a journey", unit="m", points=3)
     journey: str = attribute("", about="name of their journey, without a goal zone")
-    rate: float = attribute(about="people for each second", unit="1/s", above=0.0, at_most=1e4)
+    rate: float = attribute(about="people for each second", unit="1/s", exclusive_min=0.0, max=1e4)
     timing: str = attribute("poisson", about="they come at random, or evenly", choices=("poisson", "regular"))
-    begin: float = attribute(0.0, about="when the first may come", unit="s", at_least=0.0, at_most=86_400.0)
-    end: float = attribute(math.inf, about="when nobody comes any more", unit="s", above=0.0, at_most=86_400.0)
-    most: int | None = attribute(None, about="no more people than this", at_least=0, at_most=100_000)
-    speed: Distribution = attribute(WALKING_SPEED, about="preferred speed", unit="m/s", above=0.0, at_most=10.0)
-    radius: Distribution = attribute(BODY_RADIUS, about="radius of the body", unit="m", above=0.0, at_most=5.0)
+    begin: float = attribute(0.0, about="when the first may come", unit="s", min=0.0, max=86_400.0)
+    end: float = attribute(math.inf, about="when nobody comes any more", unit="s", exclusive_min=0.0, max=86_400.0)
+    max_count: int | None = attribute(None, about="no more people than this", min=0, max=100_000)
+    speed: Distribution = attribute(WALKING_SPEED, about="preferred speed", unit="m/s", exclusive_min=0.0, max=10.0)
+    radius: Distribution = attribute(BODY_RADIUS, about="radius of the body", unit="m", exclusive_min=0.0, max=5.0)
     arrival: str = attribute("leave", about="what people do in the goal zone", choices=("leave", "stay"))
     crowd: str = attribute("", about="name of their crowd, by default the first")
     body: str = attribute("", about=ABOUT_BODY)
@@ -118,7 +118,7 @@ class Source:
     def expected(self, duration: float) -> float:
         """Return how many people come within a duration [s]: evenly the most, at random the mean."""
         come = self.rate * max(0.0, min(self.end, duration) - self.begin) + 1.0
-        return come if self.most is None else min(come, float(self.most))
+        return come if self.max_count is None else min(come, float(self.max_count))
 
     def source(self, journeys: Sequence[Journey], crowds: Sequence[str]) -> world.PeopleSource:
         """Return the source of a world, given the journeys and the names of the crowds of the trial."""
@@ -131,7 +131,7 @@ class Source:
             self.timing,
             self.begin,
             self.end,
-            self.most,
+            self.max_count,
             self.speed,
             self.radius,
             crowds.index(self.crowd) if self.crowd else 0,

@@ -39,9 +39,9 @@ class Cube:
     x: float = attribute(about="middle", unit="m")
     y: float = attribute(about="middle", unit="m")
     heading: float = attribute(0.0, about="counter-clockwise from +x", unit="rad")
-    size: float = attribute(0.5, about="of its sides", unit="m", at_least=0.001, at_most=100.0)
-    mass: float = attribute(10.0, about="of the whole", unit="kg", at_least=0.001, at_most=1e5)
-    friction: float = attribute(0.5, about="coefficient on the floor", above=0.0, at_most=10.0)
+    size: float = attribute(0.5, about="of its sides", unit="m", min=0.001, max=100.0)
+    mass: float = attribute(10.0, about="of the whole", unit="kg", min=0.001, max=1e5)
+    friction: float = attribute(0.5, about="coefficient on the floor", exclusive_min=0.0, max=10.0)
     fixed: bool = attribute(False, about="whether nothing moves it")
 
     def __post_init__(self) -> None:
@@ -64,9 +64,9 @@ class Table(_Standing):
     x: float = attribute(about="middle", unit="m")
     y: float = attribute(about="middle", unit="m")
     heading: float = attribute(0.0, about="of its long side, counter-clockwise from +x", unit="rad")
-    length: float = attribute(1.6, about="of its top", unit="m", above=0.05, at_most=100.0)
-    width: float = attribute(0.8, about="of its top", unit="m", above=0.05, at_most=100.0)
-    height: float = attribute(0.74, about="above the floor", unit="m", above=0.05, at_most=100.0)
+    length: float = attribute(1.6, about="of its top", unit="m", exclusive_min=0.05, max=100.0)
+    width: float = attribute(0.8, about="of its top", unit="m", exclusive_min=0.05, max=100.0)
+    height: float = attribute(0.74, about="above the floor", unit="m", exclusive_min=0.05, max=100.0)
 
     def prop(self) -> world.PropBody:
         """Return it for a world with bodies."""
@@ -80,9 +80,9 @@ class Tree(_Standing):
     x: float = attribute(about="middle", unit="m")
     y: float = attribute(about="middle", unit="m")
     heading: float = attribute(0.0, about="counter-clockwise from +x", unit="rad")
-    height: float = attribute(5.0, about="to the top", unit="m", at_least=0.001, at_most=100.0)
-    trunk: float = attribute(0.15, about="radius of the trunk", unit="m", at_least=0.001, at_most=10.0)
-    crown: float = attribute(1.4, about="radius of the crown", unit="m", at_least=0.001, at_most=50.0)
+    height: float = attribute(5.0, about="to the top", unit="m", min=0.001, max=100.0)
+    trunk: float = attribute(0.15, about="radius of the trunk", unit="m", min=0.001, max=10.0)
+    crown: float = attribute(1.4, about="radius of the crown", unit="m", min=0.001, max=50.0)
 
     def prop(self) -> world.PropBody:
         """Return it for a world with bodies."""
@@ -95,8 +95,8 @@ class Light:
 
     x: float = attribute(about="place", unit="m")
     y: float = attribute(about="place", unit="m")
-    z: float = attribute(4.0, about="above the floor", unit="m", above=0.0, at_most=1000.0)
-    brightness: float = attribute(0.5, about="from 0 to 1", at_least=0.0, at_most=1.0)
+    z: float = attribute(4.0, about="above the floor", unit="m", exclusive_min=0.0, max=1000.0)
+    brightness: float = attribute(0.5, about="from 0 to 1", min=0.0, max=1.0)
     shadows: bool = attribute(False, about="whether it throws shadows")
 
     def __post_init__(self) -> None:

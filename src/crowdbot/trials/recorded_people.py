@@ -50,23 +50,27 @@ class RecordedPeople:
     Raises:
         InputError: a value is not allowed.
 
-    >>> RecordedPeople(data="zara01.txt", fps=25.0, mode="reactive").near
+    >>> RecordedPeople(data="zara01.txt", fps=25.0, mode="reactive").reaction_distance
     5.0
     """
 
     name: str = attribute("", about="name for messages")
     data: str = attribute(about="file of the recording, in the folder of the trial", pattern=r"[^\x00]{1,500}")
-    fps: float | None = attribute(None, about="frames per second, when the file does not say", unit="1/s", above=0.0)
+    fps: float | None = attribute(
+        None, about="frames per second, when the file does not say", unit="1/s", exclusive_min=0.0
+    )
     format: str = attribute("", about="format of the file, by default found by its content")
     units: str = attribute("", about="of its numbers, when it does not say", choices=("", "m", "cm", "mm", "px"))
     time_base: str = attribute(
         "true", about="of the one ETH text that is published with a wrong one", choices=("true", "published")
     )
     mode: str = attribute("scripted", about="whether people react to robots", choices=("scripted", "reactive"))
-    near: float = attribute(5.0, about="who reacts does so from here on", unit="m", above=0.0, at_most=1000.0)
-    begin: float = attribute(0.0, about="time of the recording at which the trial begins", unit="s", at_least=0.0)
-    without: str = attribute("", about="ids of people who are left out, such as those whom a robot replaces")
-    radius: Distribution = attribute(BODY_RADIUS, about="radius of the body", unit="m", above=0.0, at_most=5.0)
+    reaction_distance: float = attribute(
+        5.0, about="who reacts does so from here on", unit="m", exclusive_min=0.0, max=1000.0
+    )
+    begin: float = attribute(0.0, about="time of the recording at which the trial begins", unit="s", min=0.0)
+    exclude: str = attribute("", about="ids of people who are left out, such as those whom a robot replaces")
+    radius: Distribution = attribute(BODY_RADIUS, about="radius of the body", unit="m", exclusive_min=0.0, max=5.0)
     crowd: str = attribute("", about="name of the crowd by which they react, by default the first")
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     trust: bool = dataclasses.field(default=True, compare=False, repr=False)
@@ -93,7 +97,7 @@ class RecordedPeople:
 
     def left_out(self) -> frozenset[int]:
         """Return the ids that are left out."""
-        return _ids(self.without)
+        return _ids(self.exclude)
 
     def tracks(self) -> Trajectories:
         """Return the recording in metres, read once.
@@ -134,7 +138,7 @@ class RecordedPeople:
 def _ids(without: str) -> frozenset[int]:
     words = without.replace(",", " ").split()
     if any(not word.lstrip("-").isdecimal() or len(word) > 18 for word in words):
-        raise InputError(f'without="{without[:60]}" must be whole numbers, such as 3 17')
+        raise InputError(f'exclude="{without[:60]}" must be whole numbers, such as 3 17')
     return frozenset(int(word) for word in words)
 
 

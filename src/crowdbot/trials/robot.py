@@ -38,7 +38,7 @@ class Goal:
 
     x: float = attribute(about="place", unit="m")
     y: float = attribute(about="place", unit="m")
-    tolerance: float = attribute(0.3, about="how near its centre must come", unit="m", above=0.0)
+    tolerance: float = attribute(0.3, about="how near its centre must come", unit="m", exclusive_min=0.0)
 
     def __post_init__(self) -> None:
         check(self)
@@ -107,33 +107,31 @@ class Robot:
     y: float = attribute(about="start", unit="m")
     heading: float = attribute(0.0, about="start, counter-clockwise from +x", unit="rad")
     radius: float = attribute(
-        None, about="radius of the disc that holds it, by default that of its type, or 0.3", unit="m", at_least=0.001,
-        at_most=10.0,
+        None, about="radius of the disc that holds it, by default that of its type, or 0.3", unit="m", min=0.001,
+        max=10.0,
     )  # fmt: skip
-    height: float = attribute(
-        None, about="without a type: how tall it is, by default 1", unit="m", at_least=0.001, at_most=10.0
-    )
-    mass: float = attribute(None, about="without a type: by default 40", unit="kg", at_least=0.001, at_most=1e5)
+    height: float = attribute(None, about="without a type: how tall it is, by default 1", unit="m", min=0.001, max=10.0)
+    mass: float = attribute(None, about="without a type: by default 40", unit="kg", min=0.001, max=1e5)
     latency: float = attribute(
-        None, about="between a command and the wheels, by default that of its type, or 0", unit="s", at_least=0.0,
-        at_most=10.0,
+        None, about="between a command and the wheels, by default that of its type, or 0", unit="s", min=0.0,
+        max=10.0,
     )  # fmt: skip
-    equipped: bool = attribute(True, about="whether it carries the sensors of its type")
+    default_sensors: bool = attribute(True, about="whether it carries the sensors of its type")
     cameras: bool = attribute(
         False, about="whether it also carries the colour cameras of its type, which are drawn and slow"
     )
-    rates: str = attribute(
+    sensor_rates: str = attribute(
         "nearest",
         about="whether sensors of its type measure as often as the time step allows, or must fit it",
         choices=("nearest", "exact"),
     )
     rider: str = attribute("", about=ABOUT_RIDER)
     visible: bool = attribute(True, about="whether the crowd reacts to it")
-    control_period: float = attribute(0.1, about="time between two commands", unit="s", above=0.0)
+    control_period: float = attribute(0.1, about="time between two commands", unit="s", exclusive_min=0.0)
     goal: Goal = child(about="where it has to go")
     drive: Drive = plugged("world", "Drive", about="how it moves, by default as its type", default=None)
     navigator: Navigator = plugged("navigation", "Navigator", about="who steers it")
-    sensors: tuple[Mount, ...] = children("sensor", about="what it sees with", at_most=50)
+    sensors: tuple[Mount, ...] = children("sensor", about="what it sees with", max=50)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     trust: bool = dataclasses.field(default=True, compare=False, repr=False)
     """Where its folder lies, and whether it may lie outside; not part of the tree."""
@@ -192,7 +190,7 @@ class Robot:
     @property
     def carried(self) -> tuple[Mount, ...]:
         """The sensors of its type that it carries."""
-        if not (self.type and self.equipped):
+        if not (self.type and self.default_sensors):
             return ()
         return tuple(
             Mount(name=m.name, sensor=m.sensor, link=m.link, x=m.x, y=m.y, z=m.z, roll=m.roll, pitch=m.pitch,
@@ -236,7 +234,7 @@ class Robot:
         Raises:
             InputError: its period or its delay is not a whole number of time steps.
         """
-        if self.rates == "exact" or mount not in self.carried:
+        if self.sensor_rates == "exact" or mount not in self.carried:
             return Schedule.of(mount.sensor, clock)
         period, delay = 1.0 / mount.sensor.rate, mount.sensor.delay
         return Schedule(max(1, round(period / clock.dt)), round(delay / clock.dt))
@@ -261,8 +259,8 @@ class Robot:
 
 
 def _drawn(mount: Mount | world.SensorMount) -> bool:
-    """Whether a sensor shows what somebody draws: slow, and not to be had on every machine."""
-    return bool(getattr(mount.sensor, "draws", False))
+    """Return whether a sensor needs a renderer, which is slow and needs graphics."""
+    return mount.sensor.renders
 
 
 def _merged(carried: tuple[Mount, ...], own: Any) -> tuple[Mount, ...]:

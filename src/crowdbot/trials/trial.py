@@ -57,7 +57,7 @@ class End:
     goal: bool = attribute(True, about="every robot has reached its goal")
     collision: bool = attribute(True, about="a robot touches a person, a wall or another robot")
     empty: bool = attribute(False, about="nobody is left and nobody will come")
-    conditions: tuple[When, ...] = children("when", about="other conditions, of which one suffices", at_most=100)
+    conditions: tuple[When, ...] = children("when", about="other conditions, of which one suffices", max=100)
 
     def __post_init__(self) -> None:
         check(self)
@@ -67,8 +67,8 @@ class End:
 class Recording:
     """How often what is recorded. A trial ends at a recorded instant."""
 
-    period: float = attribute(0.1, about="time between two recorded scenes", unit="s", above=0.0)
-    markers: float = attribute(0.5, about="time between two sets of shapes for viewers", unit="s", above=0.0)
+    period: float = attribute(0.1, about="time between two recorded scenes", unit="s", exclusive_min=0.0)
+    markers: float = attribute(0.5, about="time between two sets of shapes for viewers", unit="s", exclusive_min=0.0)
 
     def __post_init__(self) -> None:
         check(self)
@@ -90,12 +90,12 @@ class Trial:
 
     name: str = attribute(about="name of the trial", pattern=r"\S.{0,79}")
     about: str = attribute("", about="one line for people")
-    duration: float = attribute(about="longest simulated time", unit="s", above=0.0, at_most=86_400.0)
+    duration: float = attribute(about="longest simulated time", unit="s", exclusive_min=0.0, max=86_400.0)
     world: str = attribute(
         "planar", about="discs in the plane, or bodies with forces between them", choices=("planar", "physics")
     )
     physics_step: float = attribute(
-        0.005, about="time step of bodies in the physics world", unit="s", at_least=0.0001, at_most=0.02
+        0.005, about="time step of bodies in the physics world", unit="s", min=0.0001, max=0.02
     )
     bodies: str | None = attribute(
         None,
@@ -103,39 +103,35 @@ class Trial:
         " other sensors see limbs at least",
         choices=("discs", "limbs", "skins"),
     )
-    step: float = attribute(0.05, about="time step of the world", unit="s", at_least=0.001, at_most=1.0)
-    substeps: int = attribute(1, about="steps of the crowd in a step of the world", at_least=1, at_most=10_000)
-    seed: int = attribute(0, about="seed of everything random", at_least=-(2**53), at_most=2**53)
-    capacity: int | None = attribute(
-        None, about="most people there at a time, others wait outside", at_least=0, at_most=100_000
-    )
-    berth: float = attribute(
-        0.1, about="how much wider people take a robot to be", unit="m", at_least=0.0, at_most=10.0
-    )
-    symmetry: float = attribute(
+    step: float = attribute(0.05, about="time step of the world", unit="s", min=0.001, max=1.0)
+    substeps: int = attribute(1, about="steps of the crowd in a step of the world", min=1, max=10_000)
+    seed: int = attribute(0, about="seed of everything random", min=-(2**53), max=2**53)
+    capacity: int | None = attribute(None, about="most people there at a time, others wait outside", min=0, max=100_000)
+    robot_margin: float = attribute(0.1, about="how much wider people take a robot to be", unit="m", min=0.0, max=10.0)
+    heading_jitter: float = attribute(
         0.0,
         about="how far everyone's direction may be off, so that nobody stops face to face",
         unit="rad",
-        at_least=0.0,
-        at_most=math.pi,
+        min=0.0,
+        max=math.pi,
     )
     stage: Stage = child(Stage, about="where people and robots can be")
     routing: Routing | None = child(None, about="people find their way around walls")
-    crowd: CrowdModel = children({"crowd": Crowd}, into=Crowds, about="how people walk", at_least=1, at_most=20)
+    crowd: CrowdModel = children({"crowd": Crowd}, into=Crowds, about="how people walk", min=1, max=20)
     contact: Contact | None = child(None, about="bodies that overlap are pushed apart")
     limits: Limits | None = child(None, about="what people cannot go beyond")
-    journeys: tuple[Journey, ...] = children("journey", about="stops to go to one after the other", at_most=1000)
-    agents: tuple[Agent, ...] = children("agent", about="people, one by one", at_most=20_000)
-    spawners: tuple[Spawner, ...] = children("spawner", about="people", at_most=1000)
-    sources: tuple[Source, ...] = children("source", about="people who come in", at_most=1000)
-    recorded: tuple[RecordedPeople, ...] = children("recorded", about="people of a recording", at_most=100)
-    exits: tuple[Exit, ...] = children("exit", about="where people leave", at_most=1000)
-    portals: tuple[Portal, ...] = children("portal", about="where people come out elsewhere", at_most=1000)
-    robots: tuple[Robot, ...] = children("robot", about="robots", at_most=100)
-    cameras: tuple[Camera, ...] = children("camera", about="what looks on", at_most=100)
+    journeys: tuple[Journey, ...] = children("journey", about="stops to go to one after the other", max=1000)
+    agents: tuple[Agent, ...] = children("agent", about="people, one by one", max=20_000)
+    spawners: tuple[Spawner, ...] = children("spawner", about="people", max=1000)
+    sources: tuple[Source, ...] = children("source", about="people who come in", max=1000)
+    recorded: tuple[RecordedPeople, ...] = children("recorded", about="people of a recording", max=100)
+    exits: tuple[Exit, ...] = children("exit", about="where people leave", max=1000)
+    portals: tuple[Portal, ...] = children("portal", about="where people come out elsewhere", max=1000)
+    robots: tuple[Robot, ...] = children("robot", about="robots", max=100)
+    cameras: tuple[Camera, ...] = children("camera", about="what looks on", max=100)
     end: End = child(End, about="what ends the trial")
     recording: Recording = child(Recording, about="how often what is recorded")
-    sweeps: tuple[Sweep, ...] = children("sweep", about="values that differ from variant to variant", at_most=20)
+    sweeps: tuple[Sweep, ...] = children("sweep", about="values that differ from variant to variant", max=20)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     """Where code that the trial names lies; not part of the tree."""
 

@@ -11,6 +11,7 @@ import numpy as np
 from crowdbot.core import Element, InputError, did_you_mean
 
 from .fields import Part, outline, shown
+from .xml.old_names import current_name
 
 __all__ = ["set_value", "set_values", "text_of"]
 
@@ -58,6 +59,7 @@ def set_value(root: Element, kind: type, path: str, text: str) -> None:
     inside: Any = kind
     for step in steps:
         here, inside = _inner(here, inside, step)
+    last = current_name(here.tag, last)
     _check_attribute(here, inside, last)
     if last == "type" and here.attributes.get("type") != text and _is_mounted(inside):
         own = () if inside is None else tuple(part.word for part in outline(inside) if part.role == "attribute")

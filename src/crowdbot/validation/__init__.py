@@ -1,7 +1,7 @@
 """Validation: how the crowd models walk, against experiments with people and the RiMEA tests, as one page."""
 
 from .page import write_page
-from .run import CHECKS, Outcome, Validation, chosen, validate
+from .run import CHECKS, CheckOutcome, Validation, select_models, validate
 from .scenario import Check, Verdict
 
-__all__ = ["CHECKS", "Check", "Outcome", "Validation", "Verdict", "chosen", "validate", "write_page"]
+__all__ = ["CHECKS", "Check", "CheckOutcome", "Validation", "Verdict", "select_models", "validate", "write_page"]

@@ -14,20 +14,20 @@ from .literature import SPECIFIC_FLOW
 from .scenario import (
     RADIUS,
     Check,
+    CrowdTracks,
     Floats,
     Report,
     Solid,
     Verdict,
-    Walk,
     deepest_overlap,
     free_speeds,
     inside_solids,
     opening,
     rings,
     share,
+    simulate_open,
     starts,
     stream_of,
-    walk_open,
 )
 
 __all__ = ["BOTTLENECK", "crossings"]
@@ -101,7 +101,7 @@ BOTTLENECK = Check(
 )
 
 
-def crossings(walk: Walk, x: float, e: int = 0) -> Floats:
+def crossings(walk: CrowdTracks, x: float, e: int = 0) -> Floats:
     """Return the sorted times [s] at which people of environment ``e`` first get beyond ``x`` [m]."""
     beyond = (walk.position[:, e, :, 0] > x) & walk.present[:, e]
     some = np.any(beyond, axis=0)
@@ -116,7 +116,7 @@ def _flow(times: Floats, people: int, seconds: float) -> tuple[float, int]:
     return (len(times) - 1) / (last - float(times[0])), len(times)
 
 
-def _leave(model: CrowdModel, width: float, people: int, seeds: int, seconds: float, report: Report) -> Walk:
+def _leave(model: CrowdModel, width: float, people: int, seeds: int, seconds: float, report: Report) -> CrowdTracks:
     place, speed = np.zeros((seeds, people, 2)), np.zeros((seeds, people))
     for e in range(seeds):
         rng = stream_of("bottleneck", people, e)
@@ -132,7 +132,7 @@ def _leave(model: CrowdModel, width: float, people: int, seeds: int, seconds: fl
     def left(now: Floats) -> NDArray[np.bool_]:
         return np.asarray(now[..., 0] > LENGTH + 2.0)
 
-    return walk_open(model, crowd, goals, left, seconds, stream_of("bottleneck", "model", width), report)
+    return simulate_open(model, crowd, goals, left, seconds, stream_of("bottleneck", "model", width), report)
 
 
 def _solids(width: float) -> list[Solid]:

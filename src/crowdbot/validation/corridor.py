@@ -21,9 +21,9 @@ from .scenario import (
     deepest_overlap,
     free_speeds,
     share,
+    simulate_periodic,
     starts,
     stream_of,
-    walk_round,
 )
 
 __all__ = ["CORRIDOR", "corridor_crowd"]
@@ -42,9 +42,9 @@ SPREAD = 0.05
 def run(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
     """Measure the mean forward speed at every density, all at once along the axis E."""
     densities = QUICK if quick else DENSITIES
-    warm, measured = (4.0, 2.0) if quick else (WARM, MEASURED)
+    warm, measure_recordings = (4.0, 2.0) if quick else (WARM, MEASURED)
     crowd = corridor_crowd([("one-way", d, 0) for d in densities], LENGTH, WIDTH, two_way=False, spread=SPREAD)
-    walk = walk_round(model, crowd, LENGTH, warm + measured, stream_of("corridor", "model"), report)
+    walk = simulate_periodic(model, crowd, LENGTH, warm + measure_recordings, stream_of("corridor", "model"), report)
     first = round(warm / (4.0 * STEP))
     moved = (walk.position[-1, ..., 0] - walk.position[first, ..., 0]) / (walk.times[-1] - walk.times[first])
     y, here = walk.position[..., 1], crowd.active

@@ -15,11 +15,11 @@ from .scenario import (
     RADIUS,
     STEP,
     Check,
+    CrowdTracks,
     Floats,
     Report,
     Solid,
     Verdict,
-    Walk,
     deepest_overlap,
     free_speeds,
     gate,
@@ -27,9 +27,9 @@ from .scenario import (
     opening,
     rings,
     share,
+    simulate_open,
     starts,
     stream_of,
-    walk_open,
 )
 
 __all__ = ["DOORS", "LONG_CORNER", "TWO_ROOMS"]
@@ -123,7 +123,7 @@ def run_rooms(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
     def left(now: Floats) -> NDArray[np.bool_]:
         return np.asarray(now[..., 0] > 27.0)
 
-    walk = walk_open(model, crowd, goals, left, limit, stream_of("rimea-12", "model"), report)
+    walk = simulate_open(model, crowd, goals, left, limit, stream_of("rimea-12", "model"), report)
     return {
         "out": int(np.any((walk.position[..., 0] > 25.3) & walk.present, axis=0).sum()),
         "people": people,
@@ -214,7 +214,7 @@ def _hall_solids() -> list[Solid]:
     return solids
 
 
-def _hall(model: CrowdModel, people: int, sides: tuple[float, ...], limit: float, report: Report) -> Walk:
+def _hall(model: CrowdModel, people: int, sides: tuple[float, ...], limit: float, report: Report) -> CrowdTracks:
     rng = stream_of("rimea-9", people)
     place = starts(people, (0.3, 0.3), (HALL - 0.3, DEPTH - 0.3), rng)
     crowd = Scene.of(place, radius=RADIUS, preferred_speed=free_speeds((people,), rng), walls=rings(_hall_solids()))
@@ -233,7 +233,7 @@ def _hall(model: CrowdModel, people: int, sides: tuple[float, ...], limit: float
     def left(now: Floats) -> NDArray[np.bool_]:
         return np.asarray((now[..., 1] < -1.5) | (now[..., 1] > DEPTH + 1.5))
 
-    return walk_open(model, crowd, goals, left, limit, stream_of("rimea-9", "model", len(sides)), report)
+    return simulate_open(model, crowd, goals, left, limit, stream_of("rimea-9", "model", len(sides)), report)
 
 
 def _room_solids() -> list[Solid]:
@@ -245,7 +245,7 @@ def _room_solids() -> list[Solid]:
     return walls
 
 
-def _queue(walk: Walk, x: float) -> float:
+def _queue(walk: CrowdTracks, x: float) -> float:
     """Return the 95th percentile over time of who is slow within 2 m before the opening at ``x``, middle y = 5 m."""
     second = round(1.0 / STEP)
     place, present = walk.position[::second, 0], walk.present[::second, 0]
@@ -270,7 +270,7 @@ def _corner_solids(name: str) -> list[Solid]:
     return [(-0.5, -4.0, 0.0, top + 0.5), (10.0, -4.0, 10.5, top + 0.5), (0.0, top, 10.0, top + 0.5)]
 
 
-def _corner(model: CrowdModel, name: str, people: int, limit: float, report: Report) -> tuple[Walk, int]:
+def _corner(model: CrowdModel, name: str, people: int, limit: float, report: Report) -> tuple[CrowdTracks, int]:
     top = {"corner": 30.0, "long": LONG, "short": SHORT}[name]
     rng = stream_of("rimea-15", people)  # the same people at the same places of all three
     place = starts(people, (0.3, -3.0), (9.7, -0.3), rng) + np.array([0.0, top])
@@ -297,5 +297,5 @@ def _corner(model: CrowdModel, name: str, people: int, limit: float, report: Rep
         def arrived(now: Floats) -> NDArray[np.bool_]:
             return np.asarray(now[..., 1] < 0.0)
 
-    walk = walk_open(model, crowd, goals, arrived, limit, stream_of("rimea-15", "model", name), report)
+    walk = simulate_open(model, crowd, goals, arrived, limit, stream_of("rimea-15", "model", name), report)
     return walk, int(np.any(arrived(walk.position) & walk.present, axis=(0, 1)).sum())

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from crowdbot.models import CrowdModel
 
 from .corridor import corridor_crowd
-from .scenario import FREE_SPEED, Check, Floats, Report, Verdict, deepest_overlap, share, stream_of, walk_round
+from .scenario import FREE_SPEED, Check, Floats, Report, Verdict, deepest_overlap, share, simulate_periodic, stream_of
 
 __all__ = ["LANES", "NARROW", "lane_order"]
 
@@ -64,7 +64,7 @@ def run_lanes(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
     """Measure the order over time, the mean of some runs."""
     seconds, last, seeds = (8.0, 4.0, 1) if quick else (SECONDS, LAST, SEEDS)
     crowd = corridor_crowd([("two-way", DENSITY, k) for k in range(seeds)], LENGTH, WIDE, two_way=True, spread=0.26)
-    walk = walk_round(model, crowd, LENGTH, seconds, stream_of("lanes", "model"), report)
+    walk = simulate_periodic(model, crowd, LENGTH, seconds, stream_of("lanes", "model"), report)
     wish = crowd.preferred_velocity
     assert wish is not None
     side = np.sign(wish[..., 0])
@@ -110,7 +110,7 @@ def run_narrow(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]
     densities, seeds = ((1.0, 2.0), 1) if quick else (NARROW_DENSITIES, NARROW_SEEDS)
     runs = [("narrow", density, k) for density in densities for k in range(seeds)]
     crowd = corridor_crowd(runs, LENGTH, NARROW_WIDTH, two_way=True, spread=0.26)
-    walk = walk_round(model, crowd, LENGTH, seconds, stream_of("narrow", "model"), report)
+    walk = simulate_periodic(model, crowd, LENGTH, seconds, stream_of("narrow", "model"), report)
     wish = crowd.preferred_velocity
     assert wish is not None
     forward = _forward(walk.times, walk.position[..., 0], np.sign(wish[..., 0]), last)

@@ -19,7 +19,7 @@ from .lanes import lane_order
 from .literature import line_speed, weidmann_speed
 from .scenario import Floats, Report
 
-__all__ = ["METHODS", "measured"]
+__all__ = ["METHODS", "measure_recordings"]
 
 LEAST = 20
 """A mean over fewer values is not shown."""
@@ -82,7 +82,7 @@ SECTIONS = (
 )
 
 
-def measured(folder: Path, report: Report) -> dict[str, Any]:
+def measure_recordings(folder: Path, report: Report) -> dict[str, Any]:
     """Return what the recordings in a folder say, and the names of those that are missing.
 
     Raises:

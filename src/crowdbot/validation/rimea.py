@@ -24,9 +24,9 @@ from .scenario import (
     inside_solids,
     rings,
     share,
+    simulate_open,
     starts,
     stream_of,
-    walk_open,
 )
 
 __all__ = ["CORNER", "CORRIDOR_TIME", "FREE_SPEEDS", "NOT_APPLICABLE"]
@@ -59,7 +59,7 @@ def run_corridor(model: CrowdModel, quick: bool, report: Report) -> dict[str, An
         return np.asarray(now[..., 0] >= distance)
 
     rng = stream_of("rimea-1", "model")
-    walk = walk_open(model, crowd, lambda now: np.array([[[60.0, 1.0]]]), left, 60.0, rng, report)
+    walk = simulate_open(model, crowd, lambda now: np.array([[[60.0, 1.0]]]), left, 60.0, rng, report)
     arrived = bool(walk.position[-1, 0, 0, 0] >= distance)
     return {"seconds": float(walk.times[-1]) if arrived else None, "way": float(walk.position[-1, 0, 0, 0])}
 
@@ -108,7 +108,7 @@ def run_corner(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]
     def left(now: Floats) -> NDArray[np.bool_]:
         return np.asarray(now[..., 1] > 12.0)
 
-    walk = walk_open(model, crowd, goals, left, CORNER_SECONDS, stream_of("rimea-6", "model"), report)
+    walk = simulate_open(model, crowd, goals, left, CORNER_SECONDS, stream_of("rimea-6", "model"), report)
     out = np.any((walk.position[..., 1] > 12.0) & walk.present, axis=0)
     return {
         "out": int(out.sum()),
@@ -151,7 +151,7 @@ def run_speeds(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]
     speed = free_speeds((WALKERS, 1), stream_of("rimea-7"))
     crowd = Scene.of(np.zeros((WALKERS, 1, 2)), radius=RADIUS, preferred_speed=speed)
     rng = stream_of("rimea-7", "model")
-    walk = walk_open(
+    walk = simulate_open(
         model,
         crowd,
         lambda now: now + np.array([100.0, 0.0]),

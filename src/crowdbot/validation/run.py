@@ -21,12 +21,12 @@ from .bottleneck import BOTTLENECK
 from .corridor import CORRIDOR
 from .evacuation import DOORS, LONG_CORNER, TWO_ROOMS
 from .lanes import LANES, NARROW
-from .recording import measured
+from .recording import measure_recordings
 from .rimea import CORNER, CORRIDOR_TIME, FREE_SPEEDS
 from .scenario import Check, Verdict
 from .single_file import SINGLE_FILE
 
-__all__ = ["CHECKS", "Outcome", "Validation", "chosen", "validate"]
+__all__ = ["CHECKS", "CheckOutcome", "Validation", "select_models", "validate"]
 
 CHECKS: tuple[Check, ...] = (
     SINGLE_FILE,
@@ -53,7 +53,7 @@ Progress = Callable[[str, float], None]
 
 
 @dataclass(frozen=True)
-class Outcome:
+class CheckOutcome:
     """What one check found about one model: numbers, verdict and the seconds that it took."""
 
     result: dict[str, Any]
@@ -72,7 +72,7 @@ class Validation:
         quick: whether runs were shortened: then verdicts mean little.
     """
 
-    outcomes: dict[str, dict[str, Outcome]]
+    outcomes: dict[str, dict[str, CheckOutcome]]
     skipped: dict[str, str]
     people: dict[str, Any] | None
     quick: bool
@@ -93,7 +93,7 @@ class Validation:
         }
 
 
-def chosen(names: Sequence[str] = ()) -> tuple[dict[str, CrowdModel], dict[str, str]]:
+def select_models(names: Sequence[str] = ()) -> tuple[dict[str, CrowdModel], dict[str, str]]:
     """Return the named models, or all that are built in, with their default parameters; and who is left out, and why.
 
     Raises:
@@ -150,7 +150,7 @@ def validate(
     people = None
     if data is not None:
         report("recordings", 0.0)
-        people = measured(data, lambda share: report("recordings", share))
+        people = measure_recordings(data, lambda share: report("recordings", share))
         _write(out / "people.json", people)
     key = _key(quick)
     outcomes = {}
@@ -159,7 +159,9 @@ def validate(
     return Validation(outcomes, dict(skipped or {}), people, quick)
 
 
-def _checked(name: str, model: CrowdModel, file: Path, key: str, quick: bool, report: Progress) -> dict[str, Outcome]:
+def _checked(
+    name: str, model: CrowdModel, file: Path, key: str, quick: bool, report: Progress
+) -> dict[str, CheckOutcome]:
     settings = f"{key} {model!r}"
     kept = _read(file)
     done: dict[str, Any] = kept["checks"] if kept.get("settings") == settings else {}
@@ -173,7 +175,7 @@ def _checked(name: str, model: CrowdModel, file: Path, key: str, quick: bool, re
     outcomes = {}
     for check in CHECKS:
         result = done[check.name]["result"]
-        outcomes[check.name] = Outcome(result, _judged(check, result), done[check.name]["seconds"])
+        outcomes[check.name] = CheckOutcome(result, _judged(check, result), done[check.name]["seconds"])
     return outcomes
 
 

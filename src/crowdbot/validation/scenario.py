@@ -17,10 +17,10 @@ __all__ = [
     "RADIUS",
     "STEP",
     "Check",
+    "CrowdTracks",
     "Floats",
     "Report",
     "Verdict",
-    "Walk",
     "corridor_walls",
     "deepest_overlap",
     "free_speeds",
@@ -29,10 +29,10 @@ __all__ = [
     "opening",
     "rings",
     "share",
+    "simulate_open",
+    "simulate_periodic",
     "starts",
     "stream_of",
-    "walk_open",
-    "walk_round",
 ]
 
 RADIUS = 0.2
@@ -81,7 +81,7 @@ class Check(NamedTuple):
     judge: Callable[[dict[str, Any]], Verdict]
 
 
-class Walk(NamedTuple):
+class CrowdTracks(NamedTuple):
     """The ways of people.
 
     Fields:
@@ -125,7 +125,7 @@ def corridor_walls(length: float, width: float) -> list[list[tuple[float, float]
     return rings([(x0, -0.5, x1, 0.0), (x0, width, x1, width + 0.5)])
 
 
-def inside_solids(walk: Walk, solids: Sequence[Solid]) -> float:
+def inside_solids(walk: CrowdTracks, solids: Sequence[Solid]) -> float:
     """Return the share of people whose centre is ever inside of a solid: they walked through a wall."""
     x, y = walk.position[..., 0], walk.position[..., 1]
     wrong = np.zeros(walk.present.shape, dtype=np.bool_)
@@ -172,17 +172,17 @@ def starts(count: int, low: Sequence[float], high: Sequence[float], rng: np.rand
         columns += 1
     if min(cell) < 2.0 * RADIUS:
         raise InputError(f"{count} bodies of radius {RADIUS} m do not fit into {width:.2f} x {height:.2f} m")
-    chosen = rng.permutation(columns * rows)[:count]
-    across = low[1] + (chosen % rows) * cell[1] if rows > 1 else np.full(count, 0.5 * (low[1] + high[1]))
-    along = low[0] + (chosen // rows + 0.5) * cell[0]
+    select_models = rng.permutation(columns * rows)[:count]
+    across = low[1] + (select_models % rows) * cell[1] if rows > 1 else np.full(count, 0.5 * (low[1] + high[1]))
+    along = low[0] + (select_models // rows + 0.5) * cell[0]
     slack = 0.45 * np.maximum(np.asarray(cell) - 2.0 * RADIUS, 0.0)
     shaken = np.stack([along, across], axis=1) + rng.uniform(-1.0, 1.0, (count, 2)) * np.minimum(slack, 0.2)
     return np.clip(shaken, low, high)
 
 
-def walk_round(
+def simulate_periodic(
     model: CrowdModel, crowd: Scene, length: float, seconds: float, rng: np.random.Generator, report: Report
-) -> Walk:
+) -> CrowdTracks:
     """Let a crowd walk along x on a track whose end at ``length`` [m] is its beginning.
 
     Everyone has a copy one length ahead or behind, whichever is nearer to the track, with the same velocity, heading
@@ -209,10 +209,10 @@ def walk_round(
             places.append(unrolled)
             report((k + 1) / steps)
     times = 4.0 * STEP * np.arange(len(places), dtype=np.float64)
-    return Walk(times, np.stack(places), np.broadcast_to(crowd.active, (len(places), *crowd.shape)))
+    return CrowdTracks(times, np.stack(places), np.broadcast_to(crowd.active, (len(places), *crowd.shape)))
 
 
-def walk_open(
+def simulate_open(
     model: CrowdModel,
     crowd: Scene,
     goals: Callable[[Floats], Floats],
@@ -220,7 +220,7 @@ def walk_open(
     seconds: float,
     rng: np.random.Generator,
     report: Report,
-) -> Walk:
+) -> CrowdTracks:
     """Let a crowd walk until all have left or time is over; positions are kept at every step.
 
     Everyone wishes to walk straight to the present goal at the preferred speed.
@@ -253,10 +253,10 @@ def walk_open(
         if not scene.active.any():
             break
     report(1.0)
-    return Walk(STEP * np.arange(len(places), dtype=np.float64), np.stack(places), np.stack(present))
+    return CrowdTracks(STEP * np.arange(len(places), dtype=np.float64), np.stack(places), np.stack(present))
 
 
-def deepest_overlap(walk: Walk, length: float | None = None) -> float:
+def deepest_overlap(walk: CrowdTracks, length: float | None = None) -> float:
     """Return how deep two bodies ever overlap [m], 0 when none do.
 
     Args:

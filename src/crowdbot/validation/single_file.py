@@ -21,8 +21,8 @@ from .scenario import (
     corridor_walls,
     deepest_overlap,
     share,
+    simulate_periodic,
     stream_of,
-    walk_round,
 )
 
 __all__ = ["SINGLE_FILE"]
@@ -42,9 +42,9 @@ LIMIT = 0.20
 def run(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
     """Measure the mean forward speed at every density, all at once along the axis E."""
     densities = QUICK if quick else DENSITIES
-    warm, measured = (6.0, 4.0) if quick else (WARM, MEASURED)
+    warm, measure_recordings = (6.0, 4.0) if quick else (WARM, MEASURED)
     crowd = _file([round(density * LENGTH) for density in densities])
-    walk = walk_round(model, crowd, LENGTH, warm + measured, stream_of("single-file", "model"), report)
+    walk = simulate_periodic(model, crowd, LENGTH, warm + measure_recordings, stream_of("single-file", "model"), report)
     x, here = walk.position[..., 0], crowd.active
     first = round(warm / (4.0 * STEP))
     moved = (x[-1] - x[first]) / (walk.times[-1] - walk.times[first])

@@ -10,23 +10,23 @@ from typing import Any
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Trajectories, Windows
-from crowdbot.data.degrade import Chain, Degradation, NobodySeen
+from crowdbot.data.degrade import Chain, Degradation, EmptyRecordingError
 from crowdbot.metrics import Score
-from crowdbot.prediction import Predictor, seen_windows
+from crowdbot.prediction import Predictor, degraded_windows
 
 from .predictor_score import evaluate
 
-__all__ = ["DegradedScore", "Task", "sweep"]
+__all__ = ["DegradedScore", "DegradedTask", "sweep_degradations"]
 
 
 @dataclass(frozen=True)
-class Task:
-    """What is asked of every predictor at every level.
+class DegradedTask:
+    """Evaluation settings of a degradation sweep.
 
     Fields:
         observe, predict, protocol, near: as :meth:`Trajectories.windows` takes them, on the clean recording.
         samples, best_of, seed: as :func:`evaluate` takes them; the seed is also that of the degradation.
-        carry: rows for which somebody who is not seen any more is walked on, see :func:`seen_windows`.
+        carry: rows for which somebody who is not seen any more is walked on, see :func:`degraded_windows`.
         draws: how often the degradation is drawn anew; scores are means over all draws.
         every: only every such window is predicted.
     """
@@ -44,11 +44,11 @@ class Task:
 
     def __post_init__(self) -> None:
         if self.carry < 0:
-            raise InputError(f"carry = {self.carry} must be a number of rows, at least 0")
+            raise InputError(f"carry = {self.carry} must be at least 0 rows")
         if self.draws < 1:
             raise InputError(f"draws = {self.draws} must be at least 1")
         if self.every < 1:
-            raise InputError(f"every = {self.every} must be at least 1: each, every 2nd, every 3rd window")
+            raise InputError(f"every = {self.every} must be at least 1")
 
 
 @dataclass(frozen=True)
@@ -87,12 +87,12 @@ class DegradedScore:
         return {**own, "score": self.score.as_dict() if self.score else None}
 
 
-def sweep(
+def sweep_degradations(
     recordings: Sequence[Trajectories],
     degradations: Sequence[Degradation | Chain],
     predictors: Sequence[Predictor],
     levels: Sequence[float] | None = None,
-    task: Task | None = None,
+    task: DegradedTask | None = None,
     progress: Callable[[str, float], None] | None = None,
 ) -> Iterator[list[DegradedScore]]:
     """Yield, level by level, the score of every predictor, so that what is done stays when the rest is interrupted.
@@ -105,13 +105,13 @@ def sweep(
         degradations: what is done to them, each alone.
         predictors: what is scored.
         levels: of the degradations; None means those of each.
-        task: what is asked; None means ``Task()``.
+        task: what is asked; None means ``DegradedTask()``.
         progress: told the degradation and the share of it that is done, 0 to 1.
 
     Raises:
         InputError: a level is not allowed, or a recording cannot be cut or degraded so.
     """
-    task = task or Task()
+    task = task or DegradedTask()
     steps = [(one, [(v, one.at(v)) for v in (one.levels if levels is None else levels)]) for one in degradations]
     for tracks in recordings:
         for _, ladder in steps:
@@ -140,7 +140,7 @@ def _level(
     recordings: Sequence[Trajectories],
     cuts: Sequence[tuple[Windows, Windows]],
     predictors: Sequence[Predictor],
-    task: Task,
+    task: DegradedTask,
 ) -> list[DegradedScore]:
     """Return the scores of all predictors at one level."""
     draws = 1 if degradation.neutral else task.draws
@@ -149,9 +149,9 @@ def _level(
         for tracks, (past, future) in zip(recordings, cuts, strict=True):
             try:
                 degraded = degradation.apply(tracks, stream(task.seed, "degrade", draw))
-            except NobodySeen:  # a score of nobody, not a mistake: the coverage says it
+            except EmptyRecordingError:  # a score of nobody, not a mistake: the coverage says it
                 continue
-            seen = seen_windows(past, future, degraded, task.carry)
+            seen = degraded_windows(past, future, degraded, task.carry)
             if seen.predictable == 0:
                 continue
             for predictor, own in zip(predictors, scores, strict=True):

@@ -11,7 +11,7 @@ from typing import Any
 
 from .degraded import DegradedScore
 
-__all__ = ["draw_degraded"]
+__all__ = ["plot_degraded"]
 
 COLUMNS = 4
 STYLES = (
@@ -26,7 +26,7 @@ SMALLEST = 1e-6
 """Errors below this are none, nothing is measured against them."""
 
 
-def draw_degraded(sweeps: Sequence[Sequence[DegradedScore]], folder: Path, title: str = "") -> list[Path]:
+def plot_degraded(sweeps: Sequence[Sequence[DegradedScore]], folder: Path, title: str = "") -> list[Path]:
     """Write ``degraded.png`` and ``degraded.svg`` and return them; nothing is left half-written.
 
     Each picture has the error (ADE) of every predictor over the level, the band from the lowest to the highest draw,
@@ -110,7 +110,7 @@ def _panel(panel: Any, scores: Sequence[DegradedScore], styles: dict[str, tuple[
     if first:
         above.set_ylabel(f"mean error (ADE) [{units}]", fontsize=9)
         below.set_ylabel("predicted\n[%]", fontsize=8)
-    rest = ", ".join(f"{name} {value}" for name, value in degradation.told(level=False).items())
+    rest = ", ".join(f"{name} {value}" for name, value in degradation.describe(level=False).items())
     above.set_title("\n".join([degradation.name, *textwrap.wrap(rest, 42)]), fontsize=9)
 
 

@@ -1,4 +1,4 @@
-"""Study: predictors on recordings, piece by piece on several workers; what is done is kept and never done again."""
+"""Evaluation of predictors on recordings, in jobs that can run in parallel and resume after an interruption."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ from crowdbot.calibration import Fit
 from crowdbot.core import InputError, code_digest, each_kept, stream
 from crowdbot.data import Recording
 from crowdbot.metrics import PersonErrors, Score, person_errors
-from crowdbot.prediction import Recipe
+from crowdbot.prediction import PredictorSpec
 
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Frames", "Part", "Piece", "Result", "Study"]
+__all__ = ["Evaluation", "EvaluationJob", "FrameResults", "JobResult", "PredictorResult"]
 
-PIECES = 8
-"""A recording is cut into at least so many pieces when they are kept or shared among workers ..."""
-AGENTS = 4_000
-"""... and into pieces of about so many people of all windows together, so that an interrupted run loses little."""
+MIN_JOBS = 8
+"""Minimum number of jobs per recording."""
+JOB_AGENTS = 4_000
+"""Approximate number of agents per job, summed over its windows; small jobs lose little when a run is interrupted."""
 
 
 @dataclass(frozen=True)
-class Piece:
-    """One job: some windows of a recording, by one predictor."""
+class EvaluationJob:
+    """One predictor on a range of windows of one recording."""
 
     recording: Recording
-    recipe: Recipe
+    spec: PredictorSpec
     first: int
     last: int
     samples: int
@@ -47,26 +47,26 @@ class Piece:
 
     @property
     def label(self) -> tuple[str, str]:
-        """Names of recording and predictor."""
-        return self.recording.name, self.recipe.name
+        """Names of the recording and the predictor."""
+        return self.recording.name, self.spec.name
 
     @property
     def key(self) -> str:
-        """Hash of everything that decides about the result but the content of the recording."""
+        """Hash of everything that determines the result, except the content of the recording."""
         return hashlib.blake2b(pickle.dumps((code_digest(), self)), digest_size=12).hexdigest()
 
 
 @dataclass(frozen=True)
-class Frames:
-    """What happened at each predicted frame (the last observed row of a window), one row each.
+class FrameResults:
+    """Results by frame, ``[W]`` each; a frame is the last observed row of a window.
 
     Fields:
-        frame: counter of the recording.
-        people: how many were present.
-        cost: of the calibrated crowd [m]; NaN without calibration.
-        evaluations: how many crowds were tried.
-        seconds: time to predict the frame; an even share when windows were predicted together.
-        ade, fde: mean over the scored people of the window [m].
+        frame: frame number in the recording.
+        people: number of people present.
+        cost: cost of the calibrated crowd [m]; NaN without calibration.
+        evaluations: number of simulated candidate crowds.
+        seconds: prediction time [s]; an equal share if windows were predicted together.
+        ade, fde: mean error over the scored people of the window [m].
     """
 
     frame: NDArray[np.int64]
@@ -79,92 +79,95 @@ class Frames:
 
     @property
     def calibrated(self) -> bool:
-        """Whether crowds were calibrated for these frames."""
+        """Whether a crowd was calibrated for these frames."""
         return bool(np.any(self.evaluations > 0))
 
     @classmethod
-    def joined(cls, parts: Sequence[Frames]) -> Frames:
-        """Return the frames of several parts, in order."""
+    def concatenate(cls, parts: Sequence[FrameResults]) -> FrameResults:
+        """Return the frames of several results, in order."""
         names = [field.name for field in dataclasses.fields(cls)]
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
 @dataclass(frozen=True)
-class Part:
-    """The result of a piece: errors of people, frames, and how many samples the forecast had."""
+class JobResult:
+    """Result of a job: errors of each person, results by frame, number of samples in the forecasts."""
 
     errors: PersonErrors
-    frames: Frames
+    frames: FrameResults
     samples: int
 
     def save(self, file: Path) -> None:
-        """Write it to a file."""
+        """Write the result to a file."""
         arrays = {f"errors.{name}": value for name, value in vars(self.errors).items()}
         arrays |= {f"frames.{name}": value for name, value in vars(self.frames).items()}
         with file.open("wb") as stream_:
             np.savez_compressed(stream_, samples=np.array(self.samples), **arrays)
 
     @classmethod
-    def load(cls, file: Path) -> Part:
-        """Read a part that was kept."""
+    def load(cls, file: Path) -> JobResult:
+        """Read a result from a file."""
         with np.load(file, allow_pickle=False) as kept:
             errors = PersonErrors(**{f.name: kept[f"errors.{f.name}"] for f in dataclasses.fields(PersonErrors)})
-            frames = Frames(**{f.name: kept[f"frames.{f.name}"] for f in dataclasses.fields(Frames)})
+            frames = FrameResults(**{f.name: kept[f"frames.{f.name}"] for f in dataclasses.fields(FrameResults)})
             return cls(errors, frames, int(kept["samples"]))
 
 
 @dataclass(frozen=True)
-class Result:
-    """One predictor on one recording: its short label, its score, and what happened at each frame."""
+class PredictorResult:
+    """Score and results by frame of one predictor on one recording."""
 
     recording: Recording
-    recipe: Recipe
+    spec: PredictorSpec
     label: str
     score: Score
-    frames: Frames
+    frames: FrameResults
 
 
 @dataclass(frozen=True)
-class Study:
-    """Which predictors are scored on which recordings, and how.
+class Evaluation:
+    """Evaluation of every predictor on every recording.
 
     Fields:
-        recordings, recipes: every predictor predicts every recording.
-        samples: futures per person; ``best_of`` is the rule that chooses among them.
-        seed: of the randomness.
-        live: frames come one after the other, and calibrations begin with the fit of the frame before.
+        recordings: recordings, cut into windows.
+        specs: predictors.
+        samples: number of futures per person.
+        best_of: rule that selects the best future, see :func:`~crowdbot.metrics.best_of`.
+        seed: seed of all random draws.
+        live: predict frame by frame; each calibration starts from the fit of the previous frame.
 
     Raises:
-        InputError: there is no recording or no predictor, one is named twice, or one cannot work on a recording.
+        InputError: no recording or no predictor, a duplicate predictor, or a predictor that cannot be used with a
+            recording.
     """
 
     recordings: tuple[Recording, ...]
-    recipes: tuple[Recipe, ...]
+    specs: tuple[PredictorSpec, ...]
     samples: int = 1
     best_of: str = "person"
     seed: int = 0
     live: bool = False
 
     def __post_init__(self) -> None:
-        if not self.recordings or not self.recipes:
-            raise InputError("a study needs at least one recording and one predictor")
-        names = [recipe.name for recipe in self.recipes]
-        for recording, recipe in itertools.product(self.recordings, self.recipes):
-            recipe.check(recording, self.live)
+        if not self.recordings or not self.specs:
+            raise InputError("an evaluation needs at least one recording and one predictor")
+        names = [spec.name for spec in self.specs]
+        for recording, spec in itertools.product(self.recordings, self.specs):
+            spec.check(recording, self.live)
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
-            raise InputError(f"the predictor {twice} is named twice")
+            raise InputError(f"duplicate predictor {twice}")
 
     def labels(self) -> dict[str, str]:
-        """Return name -> short label of every predictor; the name itself where two would be called the same."""
-        short = [recipe.label for recipe in self.recipes]
-        return {one.name: one.label if short.count(one.label) == 1 else one.name for one in self.recipes}
+        """Return predictor name -> short label; the full name where labels would be ambiguous."""
+        short = [spec.label for spec in self.specs]
+        return {one.name: one.label if short.count(one.label) == 1 else one.name for one in self.specs}
 
     def window_at(self, frame: int) -> tuple[Recording, int]:
-        """Return the first recording with a window whose last observed frame is this one, and which window it is.
+        """Return the first recording with a window that ends at this frame, and the index of the window.
 
         Raises:
-            InputError: there is none.
+            InputError: no window ends at this frame.
         """
         for recording in self.recordings:
             found = np.flatnonzero(recording.windows[0].frame[:, -1] == frame)
@@ -175,83 +178,92 @@ class Study:
         near = ends[np.argmin(np.abs(ends - frame))]
         raise InputError(f"no window of {first.path} ends at frame {frame}; the nearest one ends at {near}")
 
-    def pieces(self) -> list[Piece]:
-        """Return the jobs, recording by recording and predictor by predictor."""
+    def jobs(self) -> list[EvaluationJob]:
+        """Return the jobs, ordered by recording, then predictor."""
         found = []
         for recording in self.recordings:
             past, _ = recording.windows
             people = int(past.present[:, -1].sum())
-            size = len(past) if self.live else max(1, min(len(past) // PIECES, AGENTS * len(past) // max(1, people)))
-            for recipe in self.recipes:
+            size = (
+                len(past) if self.live else max(1, min(len(past) // MIN_JOBS, JOB_AGENTS * len(past) // max(1, people)))
+            )
+            for spec in self.specs:
                 for first in range(0, len(past), size):
                     last = min(first + size, len(past))
                     found.append(
-                        Piece(recording, recipe, first, last, self.samples, self.best_of, self.seed, self.live)
+                        EvaluationJob(recording, spec, first, last, self.samples, self.best_of, self.seed, self.live)
                     )
         return found
 
     def run(
         self, workers: int = 1, cluster: str | None = None, keep: Path | None = None
-    ) -> Iterator[tuple[Piece, Part]]:
-        """Yield the pieces and their results as they are done; those kept in the folder ``keep`` come first."""
-        pieces = self.pieces()
-        content = {recording: recording.digest for recording in self.recordings} if keep is not None else {}
-        files = [] if keep is None else [keep / f"{piece.key}-{content[piece.recording]}.npz" for piece in pieces]
-        for number, part in each_kept(predicted, pieces, files, Part.save, Part.load, workers, cluster):
-            yield pieces[number], part
+    ) -> Iterator[tuple[EvaluationJob, JobResult]]:
+        """Yield each job with its result when it is done; results stored in the folder ``keep`` come first."""
+        jobs = self.jobs()
+        files = [] if keep is None else self._files(keep)
+        for number, part in each_kept(run_job, jobs, files, JobResult.save, JobResult.load, workers, cluster):
+            yield jobs[number], part
 
-    def results(self, done: Sequence[tuple[Piece, Part]]) -> list[Result]:
-        """Return score and frames of every recording and predictor, from the results of all pieces."""
+    def count_stored(self, keep: Path) -> int:
+        """Return the number of jobs whose results are stored in a folder."""
+        return sum(file.exists() for file in self._files(keep))
+
+    def _files(self, keep: Path) -> list[Path]:
+        content = {recording: recording.digest for recording in self.recordings}
+        return [keep / f"{job.key}-{content[job.recording]}.npz" for job in self.jobs()]
+
+    def results(self, done: Sequence[tuple[EvaluationJob, JobResult]]) -> list[PredictorResult]:
+        """Return one result per recording and predictor from the results of all jobs."""
         found, labels = [], self.labels()
         for recording in self.recordings:
             _, future = recording.windows
-            for recipe in self.recipes:
-                own = [(piece, part) for piece, part in done if piece.recording == recording]
-                mine = [(piece.first, part) for piece, part in own if piece.recipe.name == recipe.name]
+            for spec in self.specs:
+                own = [(job, part) for job, part in done if job.recording == recording]
+                mine = [(job.first, part) for job, part in own if job.spec.name == spec.name]
                 parts = [part for _, part in sorted(mine, key=lambda pair: pair[0])]
-                frames = Frames.joined([part.frames for part in parts])
+                frames = FrameResults.concatenate([part.frames for part in parts])
                 errors = PersonErrors.joined([part.errors for part in parts])
-                score = Score.of(errors, recipe.name, max(part.samples for part in parts), future, self.best_of)
+                score = Score.of(errors, spec.name, max(part.samples for part in parts), future, self.best_of)
                 score = dataclasses.replace(score, seconds_per_window=float(frames.seconds.mean()))
-                found.append(Result(recording, recipe, labels[recipe.name], score, frames))
+                found.append(PredictorResult(recording, spec, labels[spec.name], score, frames))
         return found
 
     @staticmethod
-    def table(results: Sequence[Result]) -> pd.DataFrame:
-        """Return every frame of every result as one table with the columns recording, predictor and those of Frames."""
+    def table(results: Sequence[PredictorResult]) -> pd.DataFrame:
+        """Return one row per frame, with the columns recording, predictor and the fields of :class:`FrameResults`."""
         import pandas as pd
 
         tables = [
-            pd.DataFrame({"recording": one.recording.path, "predictor": one.recipe.name, **vars(one.frames)})
+            pd.DataFrame({"recording": one.recording.path, "predictor": one.spec.name, **vars(one.frames)})
             for one in results
         ]
         return pd.concat(tables, ignore_index=True)
 
 
-def predicted(piece: Piece) -> Part:
-    """Do one piece of work."""
-    past, future = piece.recording.windows
-    predictor = piece.recipe.prepared(piece.recording)
-    rng = stream(piece.seed, "predict")
-    rng.integers(0, 2**63, size=piece.first)  # each window takes one number, so that pieces draw what the whole draws
-    predictor.follow(past[:1], future.position.shape[1], piece.samples, stream(piece.seed, "warm"))
-    step = 1 if piece.live else piece.last - piece.first
+def run_job(job: EvaluationJob) -> JobResult:
+    """Run one job."""
+    past, future = job.recording.windows
+    predictor = job.spec.build(job.recording)
+    rng = stream(job.seed, "predict")
+    rng.integers(0, 2**63, size=job.first)  # one number per window: results do not depend on the jobs
+    predictor.follow(past[:1], future.position.shape[1], job.samples, stream(job.seed, "warm"))
+    step = 1 if job.live else job.last - job.first
     errors, frames, samples, memory = [], [], 1, None
-    for first in range(piece.first, piece.last, step):
-        part = slice(first, min(first + step, piece.last))
+    for first in range(job.first, job.last, step):
+        part = slice(first, min(first + step, job.last))
         begin = time.perf_counter()
         forecast, memory = predictor.follow(
-            past[part], future.position.shape[1], piece.samples, rng, memory if piece.live else None
+            past[part], future.position.shape[1], job.samples, rng, memory if job.live else None
         )
         seconds = (time.perf_counter() - begin) / len(past[part])
-        errors.append(person_errors(forecast, future[part], piece.best_of))
-        frames.append(_frames(piece, part, errors[-1], memory, seconds))
+        errors.append(person_errors(forecast, future[part], job.best_of))
+        frames.append(_frames(job, part, errors[-1], memory, seconds))
         samples = max(samples, forecast.samples)
-    return Part(PersonErrors.joined(errors), Frames.joined(frames), samples)
+    return JobResult(PersonErrors.joined(errors), FrameResults.concatenate(frames), samples)
 
 
-def _frames(piece: Piece, part: slice, errors: PersonErrors, fit: object, seconds: float) -> Frames:
-    past, future = (windows[part] for windows in piece.recording.windows)
+def _frames(job: EvaluationJob, part: slice, errors: PersonErrors, fit: object, seconds: float) -> FrameResults:
+    past, future = (windows[part] for windows in job.recording.windows)
     W = len(past)
     window = np.repeat(np.arange(W), future.scored.sum(axis=1))
     count = np.bincount(window, minlength=W)
@@ -259,7 +271,7 @@ def _frames(piece: Piece, part: slice, errors: PersonErrors, fit: object, second
     def mean(values: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.where(count > 0, np.bincount(window, values, W) / np.maximum(count, 1), np.nan)
 
-    return Frames(
+    return FrameResults(
         frame=past.frame[:, -1],
         people=past.present[:, -1].sum(axis=1),
         cost=fit.cost if isinstance(fit, Fit) else np.full(W, np.nan),

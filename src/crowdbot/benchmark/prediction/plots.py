@@ -1,4 +1,4 @@
-"""Plots of a study: errors of predictors, error and time frame by frame, one window in motion."""
+"""Plots of a evaluation: errors of predictors, error and time frame by frame, one window in motion."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Recording, Windows
-from crowdbot.prediction import Recipe
+from crowdbot.prediction import PredictorSpec
 
-from .evaluation import Result, Study
+from .evaluation import Evaluation, PredictorResult
 
-__all__ = ["animate", "plot_errors", "plot_frames"]
+__all__ = ["animate_window", "plot_errors", "plot_frames"]
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c510a", "#525252")
 """Colours that people with colour blindness can tell apart (Okabe & Ito), then brown and grey."""
@@ -27,7 +27,7 @@ FRAMES_A_ROW = 3
 """An animation shows so many pictures a row of the recording."""
 
 
-def plot_errors(results: Sequence[Result], file: Path) -> None:
+def plot_errors(results: Sequence[PredictorResult], file: Path) -> None:
     """Draw the ADE of every predictor with its 95 % interval, one panel a recording, the smallest on top."""
     from matplotlib.patches import Patch
 
@@ -54,13 +54,13 @@ def plot_errors(results: Sequence[Result], file: Path) -> None:
     _written(figure, file)
 
 
-def _color(result: Result) -> str:
-    if result.recipe.knows_future:
+def _color(result: PredictorResult) -> str:
+    if result.spec.knows_future:
         return ORACLE
     return COLORS[0] if result.frames.calibrated else PEOPLE
 
 
-def plot_frames(results: Sequence[Result], file: Path) -> None:
+def plot_frames(results: Sequence[PredictorResult], file: Path) -> None:
     """Draw error, minimum cost and time over the frames, a row of panels a recording; the first eight predictors."""
     panels = _by_recording(results)
     figure, axes = _figure(len(panels), 3, (13, 0.8 + 2.5 * len(panels)))
@@ -84,7 +84,7 @@ def plot_frames(results: Sequence[Result], file: Path) -> None:
     _written(figure, file)
 
 
-def animate(study: Study, frame: int, file: Path) -> Path:
+def animate_window(evaluation: Evaluation, frame: int, file: Path) -> Path:
     """Write an animation of one window: people, what they truly did, and each predictor in its own colour.
 
     Raises:
@@ -92,12 +92,12 @@ def animate(study: Study, frame: int, file: Path) -> Path:
     """
     from matplotlib.animation import FuncAnimation, PillowWriter
 
-    if len(study.recipes) > MOST_LINES:
-        raise InputError(f"an animation shows at most {MOST_LINES} predictors, not {len(study.recipes)}")
-    recording, window = study.window_at(frame)
+    if len(evaluation.specs) > MOST_LINES:
+        raise InputError(f"an animation shows at most {MOST_LINES} predictors, not {len(evaluation.specs)}")
+    recording, window = evaluation.window_at(frame)
     past, future = (one[window : window + 1] for one in recording.windows)
-    labels = study.labels()
-    paths = {labels[recipe.name]: _paths(recipe, recording, past, study) for recipe in study.recipes}
+    labels = evaluation.labels()
+    paths = {labels[spec.name]: _paths(spec, recording, past, evaluation) for spec in evaluation.specs}
     figure, axes = _figure(1, 1, (7.5, 7.0))
     axis = axes[0, 0]
     _background(axis, past, future, paths)
@@ -120,10 +120,12 @@ def animate(study: Study, frame: int, file: Path) -> Path:
     return file
 
 
-def _paths(recipe: Recipe, recording: Recording, past: Windows, study: Study) -> list[NDArray[np.float64]]:
+def _paths(
+    spec: PredictorSpec, recording: Recording, past: Windows, evaluation: Evaluation
+) -> list[NDArray[np.float64]]:
     """Return one line ``[T + 1, 2]`` for each person and future that has a weight, from the last observed row on."""
-    predictor = recipe.prepared(recording)
-    forecast = predictor.predict(past, recording.predict, study.samples, stream(study.seed, "animate"))
+    predictor = spec.build(recording)
+    forecast = predictor.predict(past, recording.predict, evaluation.samples, stream(evaluation.seed, "animate"))
     who = np.flatnonzero(past.present[0, -1])
     futures = np.flatnonzero(forecast.weight[0] > 0.0)
     return [
@@ -167,12 +169,12 @@ def _until(tracks: list[NDArray[np.float64]], reach: float) -> tuple[NDArray[np.
     if not tracks:
         return np.zeros(0), np.zeros(0)
     row = int(reach)
-    pieces = []
+    jobs = []
     for track in tracks:
         after = min(row + 1, len(track) - 1)
         tip = track[min(row, len(track) - 1)] + (reach - row) * (track[after] - track[min(row, len(track) - 1)])
-        pieces.append(np.vstack([track[: row + 1], tip, [np.nan, np.nan]]))
-    joined = np.concatenate(pieces)
+        jobs.append(np.vstack([track[: row + 1], tip, [np.nan, np.nan]]))
+    joined = np.concatenate(jobs)
     return joined[:, 0], joined[:, 1]
 
 
@@ -182,8 +184,8 @@ def _broken(frame: NDArray[np.int64], values: NDArray[np.float64]) -> tuple[NDAr
     return np.insert(frame.astype(float), jumps, np.nan), np.insert(values, jumps, np.nan)
 
 
-def _by_recording(results: Sequence[Result]) -> dict[Recording, list[Result]]:
-    found: dict[Recording, list[Result]] = {}
+def _by_recording(results: Sequence[PredictorResult]) -> dict[Recording, list[PredictorResult]]:
+    found: dict[Recording, list[PredictorResult]] = {}
     for result in results:
         found.setdefault(result.recording, []).append(result)
     return found

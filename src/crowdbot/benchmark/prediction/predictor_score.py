@@ -1,4 +1,4 @@
-"""One predictor over all windows of a recording: timed, in chunks that fit the memory, scored."""
+"""Score of one predictor over all windows of a recording, with timing."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from crowdbot.prediction import Predictor
 __all__ = ["evaluate"]
 
 CHUNK_NUMBERS = 4_000_000
-"""About so many predicted numbers are held at once (32 MB for each array of that size)."""
+"""Approximate number of predicted values in memory at once (32 MB per array)."""
 
 
 def evaluate(
@@ -29,24 +29,24 @@ def evaluate(
 ) -> Score:
     """Predict all windows and score the forecasts.
 
-    Only ``past`` is handed to the predictor. The result does not depend on the chunks: every window has its own stream
-    of randomness, ``seed`` and its place among the windows decide it. Before the clock starts, the first window is
-    predicted once, so that compiling kernels is not counted.
+    The predictor receives ``past`` only. The result does not depend on the chunk size: each window has its own random
+    stream, given by ``seed`` and the index of the window. One prediction is made before the timing starts, which
+    excludes the compilation of kernels.
 
     Args:
-        predictor: what predicts.
+        predictor: the predictor.
         past, future: windows of the same people.
-        samples: futures per person.
+        samples: number of futures per person.
         best_of: ``person``, ``scene`` or ``same``, see :func:`~crowdbot.metrics.best_of`.
-        seed: of the randomness.
-        progress: told the share that is done, 0 to 1.
-        chunk: windows at a time; None means as many as fit into about 32 MB an array.
+        seed: seed of all random draws.
+        progress: called with the completed share, 0 to 1.
+        chunk: windows per call; None selects about 32 MB per array.
 
     Raises:
-        InputError: past and future do not belong together, or nobody is scored.
+        InputError: past and future have different people, or there are no windows.
     """
     if past.id.shape != future.id.shape or (past.id != future.id).any():
-        raise InputError("past and future are not windows of the same people: cut both with one call")
+        raise InputError("past and future have different people; create both with one call of Trajectories.windows")
     steps, people = future.present.shape[1:]
     size = chunk or max(1, CHUNK_NUMBERS // max(1, 2 * samples * steps * people))
     rng = stream(seed, "predict")
@@ -60,11 +60,11 @@ def evaluate(
         begin = time.perf_counter()
         last = predictor.predict(past[part], steps, samples, rng)
         seconds += time.perf_counter() - begin
-        drawn = max(drawn, last.samples)  # futures may be fewer where there are fewer goals
+        drawn = max(drawn, last.samples)
         errors.append(person_errors(last, future[part], best_of))
         if progress is not None:
             progress(min(1.0, (first + size) / len(past)))
     if last is None:
-        raise InputError(f"there is no window to predict in {past.source}")
+        raise InputError(f"{past.source} has no windows")
     total = Score.of(PersonErrors.joined(errors), last.predictor, drawn, future, best_of)
     return dataclasses.replace(total, seconds_per_window=seconds / len(past))

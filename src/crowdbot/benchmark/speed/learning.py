@@ -18,8 +18,8 @@ from crowdbot.prediction import (
     SocialWays,
     Trainable,
     make_learner,
-    threads,
     torch_module,
+    torch_threads,
 )
 
 from .measurement import Gauge, Measurement
@@ -50,7 +50,7 @@ def learning() -> dict[str, Callable[[], Measurement | Gauge]]:
     return found
 
 
-def made_samples(scenes: int = 440) -> Samples:
+def synthetic_samples(scenes: int = 440) -> Samples:
     """Return windows of 8 + 12 rows with people who turn a little, as many as in usual recordings."""
     torch_module()  # says how to install it, when it is missing
     rng = stream(0, "learning")
@@ -68,11 +68,11 @@ def untrained(name: str, samples: Samples) -> Trainable:
     settings: tuple[str | None, dict[str, str]] = (None, {})
     if name == "social-ways":
         settings = "variety", {"variety-draws": "6"}
-    return make_learner(name, *settings, samples, samples.thinned(20))
+    return make_learner(name, *settings, samples, samples.subsample(20))
 
 
 def _learning(name: str) -> Measurement:
-    samples = made_samples()
+    samples = synthetic_samples()
     model = untrained(name, samples)
     share = UPDATES / len(model.batches(stream(0, "order")))
     words = f"an epoch of 3000 windows a minute; one torch thread, {len(samples)} windows of 1 to {max(SIZES)} people"
@@ -83,7 +83,7 @@ def _epoch(name: str) -> Gauge:
     """Time one epoch of the made windows; real ones have other numbers of people."""
     import time
 
-    samples = made_samples()
+    samples = synthetic_samples()
     model = untrained(name, samples)
     _updates(model, 1)
     begin = time.perf_counter()
@@ -93,7 +93,7 @@ def _epoch(name: str) -> Gauge:
 
 
 def _updates(model: Trainable, count: int) -> None:
-    with threads():
+    with torch_threads():
         batches = model.batches(stream(0, "order"))
         for number in range(count):
             model.update(batches[number % len(batches)], stream(0, "update", number), number, 1000)
@@ -121,7 +121,7 @@ def _square() -> Windows:
 
 def _memory() -> Gauge:
     """Read the peak memory of a process of its own that learns Social Ways."""
-    made_samples(1)
+    synthetic_samples(1)
     program = (
         "import re, resource, sys; from pathlib import Path;"
         "from crowdbot.benchmark.speed.learning import made_samples, untrained, _updates\n"

@@ -176,7 +176,7 @@ def _lidar() -> Measurement:
 
     sensor, scene = Lidar2D(rays=720), crowd(50)
     pose = Pose.of((5.0, 5.0), 0.0)
-    return Measurement("scans/s", 20, lambda: [sensor.measure(scene, pose) for _ in range(20)], "a 10 Hz sensor", 10.0)
+    return Measurement("scans/s", 20, lambda: [sensor.read(scene, pose) for _ in range(20)], "a 10 Hz sensor", 10.0)
 
 
 def _rays_of_limbs(rings: int = 0) -> Measurement:
@@ -190,7 +190,7 @@ def _rays_of_limbs(rings: int = 0) -> Measurement:
     words = "mj_multiRay of MuJoCo, the same 750 capsules as moving bodies, 4 walls and the floor"
     ours, others = (40, 1) if rings else (300, 10)  # about as long, so that the load of the machine meets both alike
     return Measurement(
-        "scans/s", ours, lambda: [sensor.measure(scene, pose) for _ in range(ours)], words,
+        "scans/s", ours, lambda: [sensor.read(scene, pose) for _ in range(ours)], words,
         other=lambda: [theirs() for _ in range(others)], other_amount=others,
     )  # fmt: skip
 
@@ -208,18 +208,19 @@ def _predictor(name: str) -> Measurement:
 def _physics(people: int) -> Measurement:
     """Time one robot among people in steps of 5 ms, with its odometry and a laser that sees limbs, both at 10 Hz."""
     from crowdbot.core import Twist
-    from crowdbot.sensors import Lidar2D
+    from crowdbot.sensors import Lidar2D, SensorView
 
     world, robot = _bodies(people)
     laser, chassis = Lidar2D(rays=1080), world.robot_body(robot)
     wheels = chassis.robot.mount("odometry").sensor
-    told = [wheels.measure(world.scene, world.pose(robot))]
+    _, state = wheels.measure(SensorView(world.scene, world.pose(robot)), wheels.begin())
 
     def work() -> None:
+        nonlocal state
         for _ in range(20):
             world.step({robot: Twist(0.5, 0.3)})
-            told[0] = wheels.measure(world.scene, world.pose(robot), last=told[0])
-            laser.measure(world.body_scene().without(robot), chassis.mounted("laser"))
+            _, state = wheels.measure(SensorView(world.scene, world.pose(robot)), state)
+            laser.read(world.body_scene().without(robot), chassis.mounted("laser"))
 
     return Measurement("simulated s/s", 20 * DT, work, "real time", 1.0)
 

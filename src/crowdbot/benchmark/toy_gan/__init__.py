@@ -5,6 +5,6 @@ The module ``training`` imports PyTorch; nothing else here does.
 
 from .methods import METHODS
 from .plots import plot_measures, plot_samples
-from .study import Run, ToyStudy, with_values
+from .study import GanComparison, GanRun, with_settings
 
-__all__ = ["METHODS", "Run", "ToyStudy", "plot_measures", "plot_samples", "with_values"]
+__all__ = ["METHODS", "GanComparison", "GanRun", "plot_measures", "plot_samples", "with_settings"]

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .study import Run, ToyStudy
+from .study import GanComparison, GanRun
 
 __all__ = ["plot_measures", "plot_samples"]
 
@@ -23,7 +23,7 @@ PANELS = {
 }
 
 
-def plot_samples(study: ToyStudy, runs: Sequence[Run], file: Path) -> Path:
+def plot_samples(study: GanComparison, runs: Sequence[GanRun], file: Path) -> Path:
     """Write a picture of what every method draws with its first seed, beside the real set (figure 17)."""
     from matplotlib.figure import Figure
 
@@ -46,7 +46,7 @@ def plot_samples(study: ToyStudy, runs: Sequence[Run], file: Path) -> Path:
     return _saved(figure, file)
 
 
-def plot_measures(study: ToyStudy, runs: Sequence[Run], ideal: Mapping[str, float], file: Path) -> Path:
+def plot_measures(study: GanComparison, runs: Sequence[GanRun], ideal: Mapping[str, float], file: Path) -> Path:
     """Write the measures over the updates, the mean over the seeds and their range (figure 18)."""
     from matplotlib.figure import Figure
 

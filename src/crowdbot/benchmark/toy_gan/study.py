@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, each, stream
-from crowdbot.prediction import Schedule, SocialWaysConfig, threads, train
+from crowdbot.prediction import SocialWaysConfig, TrainingSchedule, torch_threads, train
 
 from .methods import METHODS
-from .toy_data import Toy
+from .toy_data import ToyData
 
-__all__ = ["MEASURES", "Run", "ToyStudy", "with_values"]
+__all__ = ["MEASURES", "GanComparison", "GanRun", "with_settings"]
 
 MEASURES = ("nearest_neighbor", "emd", "modes", "coverage", "whole", "nearest_neighbor_20", "emd_20")
 """What is measured, see :func:`~crowdbot.benchmark.toy_gan.training.compared`."""
@@ -26,7 +26,7 @@ SHOWN = 128
 
 
 @dataclass(frozen=True)
-class Run:
+class GanRun:
     """One method with one seed.
 
     Fields:
@@ -44,7 +44,7 @@ class Run:
 
 
 @dataclass(frozen=True)
-class ToyStudy:
+class GanComparison:
     """Which methods are trained on the toy set, how long, and how often they are measured.
 
     Fields:
@@ -64,7 +64,7 @@ class ToyStudy:
     seeds: tuple[int, ...] = (0, 1, 2)
     updates: int = 20_000
     check_every: int = 500
-    toy: Toy = field(default_factory=Toy)
+    toy: ToyData = field(default_factory=ToyData)
     values: Mapping[str, Any] = field(default_factory=dict)
     device: str = "cpu"
 
@@ -72,7 +72,7 @@ class ToyStudy:
         if not self.methods or not self.seeds:
             raise InputError("a GAN study needs at least one method and one seed")
 
-    def run(self, folder: Path | None = None, workers: int = 1) -> Iterator[Run]:
+    def run(self, folder: Path | None = None, workers: int = 1) -> Iterator[GanRun]:
         """Yield the runs as they are done, seed by seed; what the folder holds of them is not done again."""
         jobs = [
             (self, method, seed, None if folder is None else folder / f"{method}-{seed}")
@@ -88,9 +88,9 @@ class ToyStudy:
 
     def ideal(self, repeats: int = 20) -> dict[str, float]:
         """Return the measures of fresh real paths against real paths: what nothing can beat but by chance."""
-        from .training import compared
+        from .training import compare_distributions
 
-        found = [compared(self.toy, self._real(2 * n), self._real(2 * n + 1)) for n in range(repeats)]
+        found = [compare_distributions(self.toy, self._real(2 * n), self._real(2 * n + 1)) for n in range(repeats)]
         return {name: float(np.mean([one[name] for one in found])) for name in MEASURES}
 
     def _real(self, number: int) -> NDArray[np.float64]:
@@ -99,7 +99,7 @@ class ToyStudy:
         return real_paths(self.toy, stream(number, "ideal"))
 
     @staticmethod
-    def rows(runs: Sequence[Run]) -> list[dict[str, Any]]:
+    def rows(runs: Sequence[GanRun]) -> list[dict[str, Any]]:
         """Return a line for each method: means over the last quarter of the measurements of each seed, and their sd."""
         found = []
         for method in dict.fromkeys(run.method for run in runs):
@@ -113,22 +113,22 @@ class ToyStudy:
         return found
 
 
-def _trained(job: tuple[ToyStudy, str, int, Path | None]) -> Run:
+def _trained(job: tuple[GanComparison, str, int, Path | None]) -> GanRun:
     """Train one method with one seed, or go on where it stopped."""
 
-    from .training import ToyTraining, sample_futures, toy_config
+    from .training import ToyTraining, gan_config, sample_futures
 
     study, method, seed, folder = job
-    with threads(1):
-        model = ToyTraining(study.toy, toy_config(method, study.toy, study.values), seed, study.device)
-        schedule = Schedule(study.updates, None, study.check_every, study.check_every, ("emd",), None, seed)
+    with torch_threads(1):
+        model = ToyTraining(study.toy, gan_config(method, study.toy, study.values), seed, study.device)
+        schedule = TrainingSchedule(study.updates, None, study.check_every, study.check_every, ("emd",), None, seed)
         done = train(model, schedule, folder, resume=True)
         drawn = sample_futures(model, SHOWN, stream(seed, "shown"))
     update = np.array([row["update"] for row in done.rows], dtype=np.int64)
-    return Run(method, seed, update, {n: np.array([row[n] for row in done.rows]) for n in MEASURES}, drawn)
+    return GanRun(method, seed, update, {n: np.array([row[n] for row in done.rows]) for n in MEASURES}, drawn)
 
 
-def with_values(study: ToyStudy, values: Mapping[str, str]) -> ToyStudy:
+def with_settings(study: GanComparison, values: Mapping[str, str]) -> GanComparison:
     """Return the study with settings for all methods, given as text."""
     from crowdbot.core import from_attributes
 

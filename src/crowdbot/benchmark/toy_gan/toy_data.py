@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 from crowdbot.prediction import Samples
 
-__all__ = ["Toy"]
+__all__ = ["ToyData"]
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Toy:
+class ToyData:
     """The toy set: who is seen walking towards the middle goes on straight or turns off to one side.
 
     The rows of a track lie on circles of falling radius. Those that are seen are the same for all of a group; a later
@@ -36,7 +36,7 @@ class Toy:
     Raises:
         InputError: the numbers do not fit together.
 
-    >>> Toy().paths(np.random.default_rng(0), 5).shape
+    >>> ToyData().paths(np.random.default_rng(0), 5).shape
     (6, 3, 5, 4, 2)
     """
 

@@ -14,9 +14,9 @@ from crowdbot.metrics import earth_mover_distance, mode_count, mode_coverage, ne
 from crowdbot.prediction import SocialWaysConfig, SocialWaysTraining
 
 from .methods import METHODS
-from .toy_data import Toy
+from .toy_data import ToyData
 
-__all__ = ["ToyTraining", "compared", "real_paths", "sample_futures", "toy_config"]
+__all__ = ["ToyTraining", "compare_distributions", "gan_config", "real_paths", "sample_futures"]
 
 COMPARED, REPEATS = 20, 10
 """So many real and drawn paths of each group are compared, so many times."""
@@ -24,7 +24,7 @@ WITHIN = 0.05
 """A path belongs to a mode within this distance [m] of its middle; neighbouring modes are 0.1 m apart."""
 
 
-def toy_config(method: str, toy: Toy, values: Mapping[str, Any] | None = None) -> SocialWaysConfig:
+def gan_config(method: str, toy: ToyData, values: Mapping[str, Any] | None = None) -> SocialWaysConfig:
     """Return the settings of a method: nobody has neighbours, and tracks are seen as they are.
 
     Raises:
@@ -43,7 +43,7 @@ class ToyTraining(SocialWaysTraining):
 
     kind: ClassVar[str] = "social-ways"
 
-    def __init__(self, toy: Toy, config: SocialWaysConfig, seed: int = 0, device: str = "cpu") -> None:
+    def __init__(self, toy: ToyData, config: SocialWaysConfig, seed: int = 0, device: str = "cpu") -> None:
         samples = toy.samples(stream(seed, "toy"))
         super().__init__(config, samples, samples, seed, device)
         self.toy, self.seed = toy, seed
@@ -51,17 +51,19 @@ class ToyTraining(SocialWaysTraining):
     def check(self) -> Mapping[str, float]:
         """Return 1-NN accuracy, EMD [m], modes found and their coverage, means over groups and repeats."""
         real = real_paths(self.toy, stream(self.seed, "real"))
-        return compared(self.toy, real, sample_futures(self, COMPARED * REPEATS, stream(self.seed, "drawn")))
+        return compare_distributions(
+            self.toy, real, sample_futures(self, COMPARED * REPEATS, stream(self.seed, "drawn"))
+        )
 
 
-def real_paths(toy: Toy, rng: np.random.Generator) -> NDArray[np.float64]:
+def real_paths(toy: ToyData, rng: np.random.Generator) -> NDArray[np.float64]:
     """Draw real future paths of every group, of random modes, ``[groups, draws, T, 2]`` [m]."""
     count = COMPARED * REPEATS
     mode = rng.integers(len(toy.modes), size=(toy.groups, count))
     return toy.paths(rng, count)[np.arange(toy.groups)[:, None], mode, np.arange(count), toy.observe :]
 
 
-def compared(toy: Toy, real: NDArray[np.float64], drawn: NDArray[np.float64]) -> dict[str, float]:
+def compare_distributions(toy: ToyData, real: NDArray[np.float64], drawn: NDArray[np.float64]) -> dict[str, float]:
     """Return the measures of drawn paths against as many real ones, means over the groups.
 
     ``nearest_neighbor`` and ``emd`` compare all 200 paths of a group; those with ``_20`` compare 20 at a time as the

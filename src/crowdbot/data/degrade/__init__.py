@@ -1,8 +1,8 @@
-"""What trackers do to recordings: noise, gaps, occlusion, swapped, late and false tracks, each in one file."""
+"""Degradations: tracking errors added to recordings, as noise, gaps, occlusion, switched, late and false tracks."""
 
 from .chain import Chain
 from .correlated_noise import CorrelatedNoise
-from .degradation import GHOST, Degradation, Degraded, NobodySeen
+from .degradation import GHOST, Degradation, DegradedTracks, EmptyRecordingError
 from .false_tracks import FalseTracks
 from .gaussian_noise import GaussianNoise
 from .heavy_tails import HeavyTails
@@ -16,13 +16,13 @@ __all__ = [
     "Chain",
     "CorrelatedNoise",
     "Degradation",
-    "Degraded",
+    "DegradedTracks",
+    "EmptyRecordingError",
     "FalseTracks",
     "GaussianNoise",
     "HeavyTails",
     "IdentitySwitches",
     "LateStart",
     "MissingFrames",
-    "NobodySeen",
     "Occlusion",
 ]

@@ -1,4 +1,4 @@
-"""Chain: several degradations, one after the other."""
+"""Chain: several degradations in sequence."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ import numpy as np
 from crowdbot.core import InputError, stream
 from crowdbot.data.trajectories import Trajectories
 
-from .degradation import Degradation, Degraded
+from .degradation import Degradation, DegradedTracks
 
 __all__ = ["Chain"]
 
 
 @dataclass(frozen=True)
 class Chain:
-    """Degradations applied in order, each with randomness of its own; the level of the first one is the level.
+    """Degradations applied in order, each with its own random stream; the level is that of the first.
 
     Fields:
         links: at least one degradation.
@@ -57,31 +57,31 @@ class Chain:
 
     @property
     def neutral(self) -> bool:
-        """Whether the recording comes back unchanged."""
+        """Whether the recording is unchanged."""
         return all(link.neutral for link in self.links)
 
     def __str__(self) -> str:
         """Return the links with every parameter."""
         return " + ".join(map(str, self.links))
 
-    def told(self, level: bool = True) -> dict[str, str]:
-        """Return every parameter with its unit, in words, see :meth:`Degradation.told`."""
-        words = [(link, link.told(level or number > 0)) for number, link in enumerate(self.links)]
-        return {f"{link.name}.{name}": word for link, told in words for name, word in told.items()}
+    def describe(self, level: bool = True) -> dict[str, str]:
+        """Return every parameter with its unit as text, see :meth:`Degradation.describe`."""
+        words = [(link, link.describe(level or number > 0)) for number, link in enumerate(self.links)]
+        return {f"{link.name}.{name}": word for link, values in words for name, word in values.items()}
 
     def at(self, level: float) -> Self:
         """Return the same chain with the first link at another level."""
         return dataclasses.replace(self, links=(self.links[0].at(level), *self.links[1:]))
 
     def check(self, tracks: Trajectories) -> None:
-        """Raise :class:`DataError` unless such a recording can be degraded."""
+        """Raise :class:`DataError` unless the recording can be degraded."""
         for link in self.links:
             link.check(tracks)
 
-    def apply(self, tracks: Trajectories | Degraded, rng: np.random.Generator | None = None) -> Degraded:
-        """Return the recording as it is seen, see :meth:`Degradation.apply`."""
+    def apply(self, tracks: Trajectories | DegradedTracks, rng: np.random.Generator | None = None) -> DegradedTracks:
+        """Return the degraded recording, see :meth:`Degradation.apply`."""
         source = stream(0, "degrade") if rng is None else rng
-        seen = Degraded.of(tracks)
+        seen = DegradedTracks.of(tracks)
         for link, seed in zip(self.links, source.integers(0, 2**63, size=len(self.links)), strict=True):
             seen = link.apply(seen, np.random.Generator(np.random.PCG64(int(seed))))
         return seen

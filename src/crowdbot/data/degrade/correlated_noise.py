@@ -1,4 +1,4 @@
-"""Correlated noise: an error that drifts, as that of a tracker which smooths or follows one edge of a body."""
+"""Correlated noise: errors that drift, as in trackers that smooth or follow one edge of a body."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import numpy as np
 
 from crowdbot.core import Paper, parameter
 
-from .degradation import Degradation, Degraded
-from .turns import turns
+from .degradation import Degradation, DegradedTracks
+from .row_ranks import iterate_ranks
 
 __all__ = ["CorrelatedNoise"]
 
 
 @dataclass(frozen=True)
 class CorrelatedNoise(Degradation):
-    """Every coordinate of a track is off by a first-order Gauss-Markov process of its own.
+    """Every coordinate of a track has an independent first-order Gauss-Markov error.
 
-    Errors at times t and s of one track have the correlation exp(-|t - s| / time); over holes, too. ``time=0`` is
+    Errors at times t and s of one track have the correlation exp(-|t - s| / time), also across gaps. ``time=0`` is
     white noise.
 
     Fields:
@@ -39,14 +39,14 @@ class CorrelatedNoise(Degradation):
         "10.1103/PhysRev.36.823",
     )  # fmt: skip
 
-    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
+    def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
         """Return the noisy recording, see :meth:`Degradation.apply`."""
         tracks = seen.tracks
         error, time = rng.standard_normal((len(tracks), 2)), tracks.time
-        for rows, before in turns(tracks.id, tracks.frame):
+        for rows, before in iterate_ranks(tracks.id, tracks.frame):
             if len(before) == 0:
                 continue
             passed = time[rows] - time[before]
             keep = np.exp(-passed / self.time)[:, None] if self.time > 0.0 else np.zeros((len(rows), 1))
             error[rows] = keep * error[before] + np.sqrt(1.0 - keep * keep) * error[rows]
-        return seen.moved(self.sd * error)
+        return seen.displace(self.sd * error)

@@ -1,4 +1,4 @@
-"""The contract of the folder: a degradation makes of a recording what a tracker could have made of it."""
+"""Degradation: contract of tracking errors that are added to a recording."""
 
 from __future__ import annotations
 
@@ -13,33 +13,33 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import DataError, InputError, check_parameters, kebab, parameters, stream
 from crowdbot.data.trajectories import Trajectories
 
-__all__ = ["GHOST", "Degradation", "Degraded", "NobodySeen"]
+__all__ = ["GHOST", "Degradation", "DegradedTracks", "EmptyRecordingError"]
 
 GHOST = -1
-"""Truth of a row that is nobody."""
+"""True id of rows of false tracks."""
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 
-class NobodySeen(DataError):
-    """Nothing is left of a recording."""
+class EmptyRecordingError(DataError):
+    """A degraded recording has no rows."""
 
 
 @dataclass(frozen=True, eq=False)
-class Degraded:
-    """A recording as it is seen, and who each of its rows truly is.
+class DegradedTracks:
+    """A degraded recording and the true id of each row.
 
     Fields:
-        tracks: what is seen.
-        truth: ``[N]`` int64, the true id behind each row of ``tracks``; ``GHOST`` where there is nobody.
+        tracks: the degraded recording.
+        truth: ``[N]`` int64, true id of each row of ``tracks``; ``GHOST`` for false tracks.
 
     Raises:
-        DataError: there is not one truth a row.
+        DataError: ``truth`` is not ``[N]``.
 
     >>> tracks = Trajectories([7, 7], [0, 10], [0.0, 0.5], [2.0, 2.0], row_rate=2.5)
-    >>> seen = Degraded.of(tracks).renamed([7, 9])
+    >>> seen = DegradedTracks.of(tracks).relabel([7, 9])
     >>> seen.tracks.id.tolist(), seen.truth.tolist()
     ([7, 9], [7, 7])
     """
@@ -52,46 +52,46 @@ class Degraded:
             raise DataError(f"{self.tracks.name} has {len(self.tracks)} rows, truth has shape {np.shape(self.truth)}")
 
     @classmethod
-    def of(cls, tracks: Trajectories | Degraded) -> Degraded:
-        """Return a recording in which everyone is who the ids say; one that is degraded already comes back as it is.
+    def of(cls, tracks: Trajectories | DegradedTracks) -> DegradedTracks:
+        """Return a recording with its ids as truth; a degraded recording is returned unchanged.
 
         Raises:
-            DataError: somebody has the id -1, which here means nobody.
+            DataError: a track has the id -1, which is reserved for false tracks.
         """
-        if isinstance(tracks, Degraded):
+        if isinstance(tracks, DegradedTracks):
             return tracks
         if np.any(tracks.id == GHOST):
-            raise DataError(f"{tracks.name} has a track of id {GHOST}, which stands for false tracks; give it another")
+            raise DataError(f"{tracks.name} has a track of id {GHOST}, which is reserved for false tracks; change it")
         return cls(tracks, tracks.id)
 
     @property
     def robot(self) -> Bools:
-        """``[N]``, rows of robots: they know where they are, so nothing here touches them."""
+        """``[N]`` bool, rows of robots; degradations do not change them."""
         return np.isin(self.tracks.id, np.asarray(sorted(self.tracks.robots), dtype=np.int64))
 
-    def moved(self, away: Floats) -> Degraded:
-        """Return every row displaced by ``away`` ``[N, 2]`` [units]; robots stay."""
+    def displace(self, away: Floats) -> DegradedTracks:
+        """Return the recording with rows displaced by ``away`` ``[N, 2]`` [units], except robots."""
         away = np.where(self.robot[:, None], 0.0, away)
         return self._with(x=self.tracks.x + away[:, 0], y=self.tracks.y + away[:, 1])
 
-    def kept(self, rows: Bools) -> Degraded:
-        """Return the rows ``[N]`` that are still seen; those of robots always are.
+    def keep_rows(self, rows: Bools) -> DegradedTracks:
+        """Return the recording with the rows of the mask ``[N]`` and all rows of robots.
 
         Raises:
-            NobodySeen: no row is left.
+            EmptyRecordingError: no rows are left.
         """
         rows = rows | self.robot
         if not np.any(rows):
-            raise NobodySeen(f"{self.tracks.name}: nobody is seen any more, not one row is left; degrade it less")
+            raise EmptyRecordingError(f"{self.tracks.name}: no rows are left after degradation; lower its level")
         columns = {name: getattr(self.tracks, name)[rows] for name in ("id", "frame", "x", "y")}
         return self._with(**columns, truth=self.truth[rows])
 
-    def renamed(self, id: ArrayLike) -> Degraded:
-        """Return the rows under other ids ``[N]``."""
+    def relabel(self, id: ArrayLike) -> DegradedTracks:
+        """Return the recording with other ids ``[N]``."""
         return self._with(id=np.asarray(id, dtype=np.int64))
 
-    def added(self, id: Integers, frame: Integers, position: Floats) -> Degraded:
-        """Return the recording with more rows: ids ``[M]``, frames ``[M]`` and positions ``[M, 2]`` of ghosts."""
+    def add_false_rows(self, id: Integers, frame: Integers, position: Floats) -> DegradedTracks:
+        """Return the recording with rows of false tracks: ids ``[M]``, frames ``[M]`` and positions ``[M, 2]``."""
         own = self.tracks
         return self._with(
             id=np.concatenate([own.id, id]),
@@ -101,7 +101,7 @@ class Degraded:
             truth=np.concatenate([self.truth, np.full(len(id), GHOST, dtype=np.int64)]),
         )
 
-    def _with(self, truth: Integers | None = None, **columns: Any) -> Degraded:
+    def _with(self, truth: Integers | None = None, **columns: Any) -> DegradedTracks:
         own = self.tracks
         id, frame = columns.get("id", own.id), columns.get("frame", own.frame)
         order = np.lexsort((id, frame))  # the order in which Trajectories will put the rows
@@ -113,22 +113,22 @@ class Degraded:
             labels={one: label for one, label in own.labels.items() if one in here},
             scenes=tuple(scene for scene in own.scenes if scene.person in here),
         )
-        return Degraded(tracks, (self.truth if truth is None else truth)[order])
+        return DegradedTracks(tracks, (self.truth if truth is None else truth)[order])
 
 
 @dataclass(frozen=True)
 class Degradation(ABC):
-    """What a tracker does to a recording; one of its parameters is the level that a sweep varies.
+    """A kind of tracking error; one of its parameters is the level that a sweep varies.
 
-    What a degradation must hold to:
-        It is a function of the recording, its parameters and the generator. At level 0 the recording comes back
-        unchanged to the last bit (the contract sees to it). The same draws serve every level, so that a higher level
-        is more of the same. Robots are not touched. Rows keep the frames of the recording.
+    Requirements:
+        It is a function of the recording, its parameters and the generator. At level 0 the recording is unchanged
+        (ensured by :meth:`apply`). All levels use the same draws, so a higher level adds errors of the same kind.
+        Robots are unchanged. Rows keep the frames of the recording.
 
     Class attributes:
         level: name of the parameter that is the level.
         levels: levels of a sweep when none are given.
-        metric: whether its lengths need a recording in metres.
+        metric: whether it requires a recording in metres.
     """
 
     level: ClassVar[str]
@@ -145,7 +145,7 @@ class Degradation(ABC):
 
     @property
     def name(self) -> str:
-        """Name as on the command line."""
+        """Name on the command line."""
         return kebab(type(self).__name__)
 
     @property
@@ -155,15 +155,15 @@ class Degradation(ABC):
 
     @property
     def neutral(self) -> bool:
-        """Whether the recording comes back unchanged."""
+        """Whether the recording is unchanged."""
         return bool(getattr(self, self.level) == 0)
 
     def __str__(self) -> str:
         """Return the name with every parameter."""
-        return f"{self.name}({', '.join(f'{name}={value}' for name, value in self.told().items())})"
+        return f"{self.name}({', '.join(f'{name}={value}' for name, value in self.describe().items())})"
 
-    def told(self, level: bool = True) -> dict[str, str]:
-        """Return every parameter with its unit, in words; ``level=False`` leaves out the level."""
+    def describe(self, level: bool = True) -> dict[str, str]:
+        """Return every parameter with its unit as text; ``level=False`` omits the level."""
         units = {row.name: row.unit for row in parameters(self)}
         found = {}
         for field in dataclasses.fields(self):
@@ -182,26 +182,26 @@ class Degradation(ABC):
         return dataclasses.replace(self, **{self.level: level})
 
     def check(self, tracks: Trajectories) -> None:
-        """Raise :class:`DataError` unless such a recording can be degraded."""
+        """Raise :class:`DataError` unless the recording can be degraded."""
         if self.metric and tracks.units != "m":
-            raise DataError(f"{tracks.name} is in pixels, {self.name} is in metres; turn it into metres first")
+            raise DataError(f"{tracks.name} is in pixels, {self.name} is in metres; convert it to metres first")
 
-    def apply(self, tracks: Trajectories | Degraded, rng: np.random.Generator | None = None) -> Degraded:
-        """Return the recording as it is seen.
+    def apply(self, tracks: Trajectories | DegradedTracks, rng: np.random.Generator | None = None) -> DegradedTracks:
+        """Return the degraded recording.
 
         Args:
-            tracks: a recording, or one that is degraded already.
+            tracks: a recording, or a degraded recording.
             rng: source of randomness; None means ``stream(0, "degrade")``.
 
         Raises:
-            DataError: this recording cannot be degraded so, or nothing is left of it.
+            DataError: the recording cannot be degraded, or no rows are left.
         """
-        seen = Degraded.of(tracks)
+        seen = DegradedTracks.of(tracks)
         if self.neutral:
             return seen
         self.check(seen.tracks)
         return self.degrade(seen, stream(0, "degrade") if rng is None else rng)
 
     @abstractmethod
-    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
-        """Return the recording as it is seen at a level above 0; see :meth:`apply`."""
+    def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
+        """Return the degraded recording at a level above 0; see :meth:`apply`."""

@@ -1,4 +1,4 @@
-"""False tracks: a tracker believes in people who are not there."""
+"""False tracks: tracks of people who do not exist."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import parameter
 
-from .degradation import Degradation, Degraded
+from .degradation import Degradation, DegradedTracks
 
 __all__ = ["FalseTracks"]
 
@@ -20,14 +20,14 @@ Ghost = tuple[float, float, NDArray[np.float64], NDArray[np.float64]]
 
 @dataclass(frozen=True)
 class FalseTracks(Degradation):
-    """Ghosts are born at a rate, walk straight on, and are gone after a while.
+    """Ghosts appear at a rate, walk straight, and disappear.
 
-    They are born anywhere in the rectangle that holds all people of the recording, as a Poisson process in time; their
-    lives are exponential, the components of their velocity normal. Their ids are above all others.
+    They appear uniformly in the bounding box of the people, as a Poisson process in time, with exponential lifetimes
+    and normal velocity components. Their ids are above all others.
 
     Fields:
-        rate: ghosts born a second in the whole area [1/s]; the level.
-        life: mean life [s].
+        rate: ghosts per second in the whole area [1/s]; the level.
+        life: mean lifetime [s].
         speed: root mean square speed [m/s].
     """
 
@@ -38,7 +38,7 @@ class FalseTracks(Degradation):
     level: ClassVar[str] = "rate"
     levels: ClassVar[tuple[float, ...]] = (0.0, 0.2, 0.5, 1.0, 2.0)
 
-    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
+    def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
         """Return the recording with ghosts, see :meth:`Degradation.apply`."""
         tracks = seen.tracks
         frames, first = np.unique(tracks.frame, return_index=True)
@@ -57,7 +57,7 @@ class FalseTracks(Degradation):
                 position.append(low + begin * (high - low) + velocity * (times[rows] - birth)[:, None])
         if not id:
             return seen
-        return seen.added(np.concatenate(id), np.concatenate(frame), np.concatenate(position))
+        return seen.add_false_rows(np.concatenate(id), np.concatenate(frame), np.concatenate(position))
 
     def _ghosts(self, seconds: float, rng: np.random.Generator) -> list[Ghost]:
         """Return birth [s], life [s], place in the area (0 to 1) and velocity [m/s] of every ghost."""

@@ -1,4 +1,4 @@
-"""White noise: every measured position is a little wrong, each on its own."""
+"""Gaussian noise: independent errors of every measured position."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import numpy as np
 
 from crowdbot.core import parameter
 
-from .degradation import Degradation, Degraded
+from .degradation import Degradation, DegradedTracks
 
 __all__ = ["GaussianNoise"]
 
 
 @dataclass(frozen=True)
 class GaussianNoise(Degradation):
-    """Every coordinate of every row is off by a normal error of its own.
+    """Every coordinate of every row has an independent normal error.
 
     Fields:
         sd: standard deviation of a coordinate [m]; the level.
@@ -35,6 +35,6 @@ class GaussianNoise(Degradation):
     level: ClassVar[str] = "sd"
     levels: ClassVar[tuple[float, ...]] = (0.0, 0.02, 0.05, 0.1, 0.2)
 
-    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
+    def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
         """Return the noisy recording, see :meth:`Degradation.apply`."""
-        return seen.moved(self.sd * rng.standard_normal((len(seen.tracks), 2)))
+        return seen.displace(self.sd * rng.standard_normal((len(seen.tracks), 2)))

@@ -1,4 +1,4 @@
-"""Heavy tails: most positions are right, a few are far off."""
+"""Heavy tails: outliers among correct positions."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from crowdbot.core import Paper, parameter
 
-from .degradation import Degradation, Degraded
+from .degradation import Degradation, DegradedTracks
 
 __all__ = ["HeavyTails"]
 
@@ -32,7 +32,7 @@ class HeavyTails(Degradation):
     probability: float = parameter(0.05, unit="1", low=0.0, high=0.3, source="ours")
     scale: float = parameter(0.3, unit="m", low=0.05, high=1.0, source="ours: a body away, somebody else was measured")
     freedom: float = parameter(
-        3.0, unit="1", low=1.0, high=10.0, minimum=0.5, source="ours: the fewest with a finite variance"
+        3.0, unit="1", low=1.0, high=10.0, min=0.5, source="ours: the fewest with a finite variance"
     )
 
     level: ClassVar[str] = "probability"
@@ -42,10 +42,10 @@ class HeavyTails(Degradation):
         "Journal of the American Statistical Association", "10.1080/01621459.1989.10478852",
     )  # fmt: skip
 
-    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
+    def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
         """Return the recording with outliers, see :meth:`Degradation.apply`."""
         rows = len(seen.tracks)
         outlier = rng.random(rows) < self.probability
         normal = rng.standard_normal((rows, 2))
         spread = self.scale / np.sqrt(rng.chisquare(self.freedom, rows) / self.freedom)
-        return seen.moved(np.where(outlier, spread, 0.0)[:, None] * normal)
+        return seen.displace(np.where(outlier, spread, 0.0)[:, None] * normal)

@@ -1,4 +1,4 @@
-"""Identity switches: two people pass each other, and the tracker mistakes one for the other."""
+"""Identity switches: two tracks near each other exchange their ids."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from crowdbot.core import parameter
 from crowdbot.data.trajectories import Trajectories
 
-from .degradation import Degradation, Degraded
+from .degradation import Degradation, DegradedTracks
 
 __all__ = ["Encounter", "IdentitySwitches", "encounters"]
 
@@ -19,7 +19,7 @@ Integers = NDArray[np.int64]
 
 
 class Encounter(NamedTuple):
-    """Two tracks near each other: the frame at which they are nearest, and their ids, the lower one first."""
+    """An encounter of two tracks: the frame of their smallest distance, and their ids, the lower one first."""
 
     frame: int
     one: int
@@ -27,9 +27,9 @@ class Encounter(NamedTuple):
 
 
 def encounters(tracks: Trajectories, distance: float) -> list[Encounter]:
-    """Return every stretch of frames in which two tracks, robots aside, are nearer than ``distance`` [m], by frame.
+    """Return every encounter: consecutive frames in which two people are nearer than ``distance`` [m], by frame.
 
-    A stretch ends where they are apart, or one of them missing, at a frame of the recording.
+    An encounter ends at a frame where they are farther apart or one is absent.
 
     >>> tracks = Trajectories([1, 2, 1, 2, 1, 2], [0, 0, 1, 1, 2, 2], [0, 5, 2, 3, 5, 0], [0.0] * 6, row_rate=2.5)
     >>> encounters(tracks, 1.5)
@@ -67,13 +67,13 @@ def _close(
 
 @dataclass(frozen=True)
 class IdentitySwitches(Degradation):
-    """Two tracks that come near each other may swap their ids, at the frame at which they are nearest, for good.
+    """Two tracks near each other may swap their ids for good, at the frame of their smallest distance.
 
     Each encounter is decided once. A track can be swapped many times.
 
     Fields:
-        probability: that an encounter ends with a swap [1]; the level.
-        distance: an encounter is a stretch of frames in which two people are nearer than this [m].
+        probability: probability of a swap per encounter [1]; the level.
+        distance: distance [m] below which two people encounter each other.
     """
 
     probability: float = parameter(0.1, unit="1", low=0.0, high=1.0, source="ours")
@@ -82,7 +82,7 @@ class IdentitySwitches(Degradation):
     level: ClassVar[str] = "probability"
     levels: ClassVar[tuple[float, ...]] = (0.0, 0.1, 0.25, 0.5, 1.0)
 
-    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
+    def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
         """Return the recording with swapped ids, see :meth:`Degradation.apply`."""
         tracks = seen.tracks
         met = encounters(tracks, self.distance)
@@ -97,4 +97,4 @@ class IdentitySwitches(Degradation):
                     rows[np.searchsorted(tracks.frame[rows], frame) :] for rows in map(rows_of.__getitem__, pair)
                 )
                 id[one], id[other] = id[other[0]], id[one[0]]
-        return seen.renamed(id)
+        return seen.relabel(id)

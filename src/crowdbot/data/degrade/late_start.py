@@ -1,4 +1,4 @@
-"""Late start: a tracker waits before it believes in a new track."""
+"""Late start: new tracks are confirmed after some rows."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ import numpy as np
 
 from crowdbot.core import InputError, parameter
 
-from .degradation import Degradation, Degraded
-from .turns import rank
+from .degradation import Degradation, DegradedTracks
+from .row_ranks import row_rank
 
 __all__ = ["LateStart"]
 
 
 @dataclass(frozen=True)
 class LateStart(Degradation):
-    """A track is confirmed, and seen, only after its first rows.
+    """A track is confirmed, and visible, only after its first rows.
 
-    A track that is never longer is never seen. Holes later in a track do not start it again. Nothing here is random.
+    Shorter tracks are never visible. Gaps later in a track do not restart it. Deterministic.
 
     Fields:
-        rows: rows of a track before it is confirmed; the level.
+        rows: rows of a track before confirmation; the level.
     """
 
     rows: int = parameter(3, unit="rows", low=0, high=10, source="ours: the usual three hits of multi-object trackers")
@@ -37,6 +37,6 @@ class LateStart(Degradation):
             raise InputError(f"{self.name}: rows = {self.rows} must be a whole number")
         object.__setattr__(self, "rows", int(self.rows))
 
-    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
+    def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
         """Return the recording without the first rows of its tracks, see :meth:`Degradation.apply`."""
-        return seen.kept(rank(seen.tracks.id, seen.tracks.frame) >= self.rows)
+        return seen.keep_rows(row_rank(seen.tracks.id, seen.tracks.frame) >= self.rows)

@@ -1,4 +1,4 @@
-"""Missing frames: rows that nobody measured, one at a time or several in a row."""
+"""Missing frames: rows without a measurement, single or in bursts."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, did_you_mean, parameter
 
-from .degradation import Degradation, Degraded
-from .turns import turns
+from .degradation import Degradation, DegradedTracks
+from .row_ranks import iterate_ranks
 
 __all__ = ["MissingFrames"]
 
@@ -20,21 +20,21 @@ OF = ("person", "frame")
 
 @dataclass(frozen=True)
 class MissingFrames(Degradation):
-    """A share of the rows is missing, single ones or bursts: a chain of two states, seen and missing (Gilbert).
+    """A share of the rows is missing, single or in bursts: a Markov chain with the states seen and missing (Gilbert).
 
-    After a missing row the next one is missing with probability 1 - (1 - probability) / burst, so that a gap has
-    burst / (1 - probability) rows in the mean; ``burst=1`` drops every row on its own.
+    After a missing row the next one is missing with probability 1 - (1 - probability) / burst, so that the mean
+    gap has burst / (1 - probability) rows; ``burst=1`` drops every row on its own.
 
     Fields:
         probability: that a row is missing [1]; the level.
-        burst: how many times longer gaps are than those of independent drops [1], at least 1.
-        of: ``person``: each track has gaps of its own; ``frame``: everyone is missing at the same frames.
+        burst: length of gaps relative to independent drops [1], at least 1.
+        of: ``person``: each track has its own gaps; ``frame``: everyone is missing at the same frames.
 
     Paper: Gilbert (1960), doi 10.1002/j.1538-7305.1960.tb03959.x.
     """
 
     probability: float = parameter(0.1, unit="1", low=0.0, high=0.8, source="ours")
-    burst: float = parameter(1.0, unit="1", low=1.0, high=10.0, minimum=1.0, source="ours: independent drops")
+    burst: float = parameter(1.0, unit="1", low=1.0, high=10.0, min=1.0, source="ours: independent drops")
     of: str = "person"
 
     level: ClassVar[str] = "probability"
@@ -52,7 +52,7 @@ class MissingFrames(Degradation):
                 f"{self.name}: of {self.of!r} is unknown{did_you_mean(self.of, OF)}; known are {', '.join(OF)}"
             )
 
-    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
+    def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
         """Return the recording with gaps, see :meth:`Degradation.apply`."""
         tracks = seen.tracks
         if self.of == "frame":
@@ -60,14 +60,14 @@ class MissingFrames(Degradation):
             missing = self._missing(np.zeros_like(frames), frames, rng)[place]
         else:
             missing = self._missing(tracks.id, tracks.frame, rng)
-        return seen.kept(~missing)
+        return seen.keep_rows(~missing)
 
     def _missing(self, id: NDArray[np.int64], frame: NDArray[np.int64], rng: np.random.Generator) -> NDArray[np.bool_]:
         """Return which rows are missing; those of a low level are missing at every higher one, too."""
         drawn = rng.random(len(id))
         missing = np.zeros(len(id), dtype=np.bool_)
         seen_again = (1.0 - self.probability) / self.burst
-        for rows, before in turns(id, frame):
+        for rows, before in iterate_ranks(id, frame):
             chance = np.full(len(rows), self.probability)
             if len(before):
                 chance = np.where(missing[before], 1.0 - seen_again, self.probability / self.burst)

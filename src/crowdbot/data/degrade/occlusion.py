@@ -1,4 +1,4 @@
-"""Occlusion: an eye among people sees only those whom nobody and no wall hides."""
+"""Occlusion: people hidden from a viewpoint by bodies or walls are lost."""
 
 from __future__ import annotations
 
@@ -12,31 +12,31 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError, InputError, Walls, parameter
 from crowdbot.data.trajectories import Trajectories
 
-from .degradation import GHOST, Degradation, Degraded
+from .degradation import GHOST, Degradation, DegradedTracks
 
-__all__ = ["Occlusion", "hidden"]
+__all__ = ["Occlusion", "occlusion_mask"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 
-def hidden(eye: Floats, place: Floats, bodies: Floats, radius: float, reach: float, walls: Floats) -> Bools:
-    """Return who cannot be seen from a point.
+def occlusion_mask(eye: Floats, place: Floats, bodies: Floats, radius: float, reach: float, walls: Floats) -> Bools:
+    """Return who is not visible from a point, ``[N]`` bool.
 
-    The line of sight to a person's centre counts, so that about half a body must be free. A body hides who is farther
-    away than itself; one that the eye stands in hides all on its side.
+    The line of sight to a person's centre decides, so about half a body must be visible. A body hides people who are
+    farther away; a body around the viewpoint hides everyone on its side.
 
     Args:
         eye: ``[2]`` [m].
-        place: ``[N, 2]`` [m], who is looked for.
-        bodies: ``[B, 2]`` [m], centres of the discs that hide; people may be among them, they do not hide themselves.
+        place: ``[N, 2]`` [m], positions of people.
+        bodies: ``[B, 2]`` [m], centres of the occluding discs; people do not hide themselves.
         radius: of the discs [m].
-        reach: farthest distance [m] that is seen.
+        reach: range of vision [m].
         walls: ``[M, 4]`` segments x, y, x, y [m].
 
     >>> none = np.zeros((0, 4))
     >>> row = np.array([[1.0, 0.0], [2.0, 0.0], [2.0, 0.6], [9.0, 9.0]])
-    >>> hidden(np.zeros(2), row, row, 0.25, 8.0, none).tolist()
+    >>> occlusion_mask(np.zeros(2), row, row, 0.25, 8.0, none).tolist()
     [False, True, False, True]
     """
     sight, body = place - eye, bodies - eye
@@ -50,7 +50,7 @@ def hidden(eye: Floats, place: Floats, bodies: Floats, radius: float, reach: flo
 
 
 def _behind_walls(eye: Floats, sight: Floats, walls: Floats) -> Bools:
-    """Return which lines ``sight`` ``[N, 2]`` from the eye cross a wall before their ends."""
+    """Return which lines of sight ``[N, 2]`` from the eye cross a wall."""
     start, edge = walls[:, :2] - eye, walls[:, 2:] - walls[:, :2]
     turn = sight[:, 0, None] * edge[:, 1] - sight[:, 1, None] * edge[:, 0]
     on_sight = start[:, 0] * edge[:, 1] - start[:, 1] * edge[:, 0]
@@ -62,16 +62,16 @@ def _behind_walls(eye: Floats, sight: Floats, walls: Floats) -> Bools:
 
 @dataclass(frozen=True)
 class Occlusion(Degradation):
-    """People are lost while an eye does not see them: hidden by bodies and walls, or too far away.
+    """People are lost while hidden from a viewpoint by bodies or walls, or out of range.
 
-    Where the eye is not there itself, nobody is seen. The eye's own track stays, and hides nobody; false tracks hide
-    nobody and are not hidden. Put it first where several degradations are chained: bodies hide where they truly are.
+    At frames without the observer everyone is lost. The observer's own track stays and hides no one; false tracks
+    neither hide nor are hidden. In a chain it belongs first, so true positions occlude.
 
     Fields:
-        probability: that a row which is hidden is lost [1]; the level. Below 1 the tracker keeps some of them.
-        radius: of the bodies [m].
-        reach: how far the eye sees [m].
-        eye: a point ``x, y`` [m], or the id of a robot or person who looks; None is the robot of the recording.
+        probability: probability that a hidden row is lost [1]; the level.
+        radius: radius of the bodies [m].
+        reach: range of vision [m].
+        eye: viewpoint: ``x, y`` [m], or the id of a robot or person; None is the robot of the recording.
 
     >>> tracks = Trajectories([1, 2], [0, 0], [1.0, 2.0], [0.0, 0.0], row_rate=2.5)
     >>> Occlusion(eye=(0.0, 0.0)).apply(tracks).tracks.id.tolist()
@@ -89,10 +89,10 @@ class Occlusion(Degradation):
     def __post_init__(self) -> None:
         super().__post_init__()
         if isinstance(self.eye, tuple) and not (len(self.eye) == 2 and all(map(math.isfinite, self.eye))):
-            raise InputError(f"{self.name}: eye = {self.eye} must be a point x, y [m], or the id of who looks")
+            raise InputError(f"{self.name}: eye = {self.eye} must be a point x, y [m], or the id of a robot or person")
 
     def check(self, tracks: Trajectories) -> None:
-        """Raise :class:`DataError` when the recording is in pixels or nobody knows who looks."""
+        """Raise :class:`DataError` if the recording is in pixels or the viewpoint is unknown."""
         super().check(tracks)
         if isinstance(self.eye, tuple):
             return
@@ -113,8 +113,8 @@ class Occlusion(Degradation):
                 f" ids go from {tracks.ids[0]} to {tracks.ids[-1]}"
             )
 
-    def degrade(self, seen: Degraded, rng: np.random.Generator) -> Degraded:
-        """Return the rows that the eye sees, see :meth:`Degradation.apply`."""
+    def degrade(self, seen: DegradedTracks, rng: np.random.Generator) -> DegradedTracks:
+        """Return the visible rows, see :meth:`Degradation.apply`."""
         tracks = seen.tracks
         keeps = rng.random(len(tracks)) >= self.probability
         looks = np.zeros(len(tracks), dtype=np.bool_)
@@ -132,5 +132,5 @@ class Occlusion(Degradation):
                 lost[rows] = True
                 continue
             eye = np.asarray(self.eye) if isinstance(self.eye, tuple) else place[own][0]
-            lost[rows] = hidden(eye, place, place[body[rows]], self.radius, self.reach, walls)
-        return seen.kept(keeps | ~lost | looks | (seen.truth == GHOST))
+            lost[rows] = occlusion_mask(eye, place, place[body[rows]], self.radius, self.reach, walls)
+        return seen.keep_rows(keeps | ~lost | looks | (seen.truth == GHOST))

@@ -11,7 +11,7 @@ from crowdbot.core import InputError, check_parameters, parameter
 from crowdbot.data import Windows, steady_velocity
 
 from .goal import Goal
-from .headings import ahead
+from .headings import extrapolate
 
 __all__ = ["CurrentDirection"]
 
@@ -35,7 +35,7 @@ class CurrentDirection(Goal):
     """
 
     steps: int = 1
-    horizon: float = parameter(20.0, unit="s", low=5.0, high=60.0, source="crowdbot", minimum=0.1)
+    horizon: float = parameter(20.0, unit="s", low=5.0, high=60.0, source="crowdbot", min=0.1)
     adaptive: bool = False
 
     def __post_init__(self) -> None:
@@ -47,7 +47,7 @@ class CurrentDirection(Goal):
 
     def resolve(self, past: Windows) -> Floats:
         """Return the goals ``[W, A, 2]`` [m]; 0 for people who are not present at the last observed step."""
-        return ahead(past.position[:, -1], past.present[:, -1], self.velocity(past), self.horizon)
+        return extrapolate(past.position[:, -1], past.present[:, -1], self.velocity(past), self.horizon)
 
     def velocity(self, past: Windows) -> Floats:
         """Return the averaged velocity ``[W, A, 2]`` [m/s], see :meth:`Goal.velocity`."""

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Paper, Walls, check_parameters, parameter
-from crowdbot.data import Trajectories, Windows, bridged, steady_velocity
+from crowdbot.data import Trajectories, Windows, fill_gaps, steady_velocity
 
 from .exits import hull, openings, track_ends
 from .goal import Choices, Goal
-from .headings import MOVING, ahead, angle_between, length, median, turned, unit
+from .headings import MOVING, angle_between, extrapolate, length, median, rotate, unit
 from .learned_velocity import LearnedVelocity
 from .routes import Routes
 
@@ -73,7 +73,7 @@ class EnvironmentLayout(Goal):
     certainty: float = parameter(1.5, unit="1/m", low=0.5, high=20.0, source="crowdbot")
     pull: float = parameter(0.4, unit="1", low=0.0, high=1.0, source="crowdbot")
     lookahead: float = parameter(0.5, unit="s", low=0.0, high=5.0, source="crowdbot")
-    horizon: float = parameter(20.0, unit="s", low=5.0, high=60.0, source="crowdbot", minimum=0.1)
+    horizon: float = parameter(20.0, unit="s", low=5.0, high=60.0, source="crowdbot", min=0.1)
     pace: LearnedVelocity | None = None
     routes: Routes = field(init=False, repr=False)
 
@@ -119,7 +119,7 @@ class EnvironmentLayout(Goal):
         return cls(openings(border, solid, width), solid, **values)
 
     @classmethod
-    def learned(cls, *recordings: Trajectories, walls: Any = None, width: float = 2.0, **values: Any) -> Self:
+    def learn(cls, *recordings: Trajectories, walls: Any = None, width: float = 2.0, **values: Any) -> Self:
         """Return the layout of a place that was recorded.
 
         The walkable area is the convex hull of where people were, its openings are the exits, and how many people
@@ -135,7 +135,7 @@ class EnvironmentLayout(Goal):
             InputError: no recording is given, they are in pixels or differ in time step, or there is no opening.
             DataError: a recording is too short to learn from.
         """
-        pace = LearnedVelocity.learned(recordings)
+        pace = LearnedVelocity.learn(recordings)
         solid = Walls.of(recordings[0].walls if walls is None else walls)
         place = np.concatenate([tracks.position for tracks in recordings])
         layout = cls.of(solid, hull(place), width, **values)
@@ -153,13 +153,13 @@ class EnvironmentLayout(Goal):
     def resolve(self, past: Windows) -> Floats:
         """Return one goal each ``[W, A, 2]`` [m], in the median direction; 0 for who is absent at the last row."""
         velocity, turn, weight, here = self._candidates(past)
-        return ahead(past.position[:, -1], here, turned(velocity, median(turn, weight)), self.horizon)
+        return extrapolate(past.position[:, -1], here, rotate(velocity, median(turn, weight)), self.horizon)
 
     def choices(self, past: Windows) -> Choices:
         """Return straight on (slot 0) and the way to each exit (slots 1 to G) with their posterior."""
         velocity, turn, weight, here = self._candidates(past)
         place = np.where(here[..., None], past.position[:, -1], 0.0)
-        way = np.where(here[..., None, None], turned(velocity[:, :, None], turn), 0.0)
+        way = np.where(here[..., None, None], rotate(velocity[:, :, None], turn), 0.0)
         return Choices(place[:, :, None] + self.horizon * way, weight)
 
     def posterior(self, past: Windows) -> Floats:
@@ -176,10 +176,10 @@ class EnvironmentLayout(Goal):
         weight[here, 0] = 1.0
         moving = here & (length(velocity) > MOVING)
         if np.any(moving):
-            turn[moving], weight[moving] = self._weighed(bridged(past), velocity[moving], moving)
+            turn[moving], weight[moving] = self._weigh(fill_gaps(past), velocity[moving], moving)
         return velocity, turn, weight, here
 
-    def _weighed(self, known: Windows, velocity: Floats, moving: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+    def _weigh(self, known: Windows, velocity: Floats, moving: NDArray[np.bool_]) -> tuple[Floats, Floats]:
         """Return turn [rad] and posterior ``[P, G + 1]`` of those who move."""
         place = known.position[:, -1][moving]
         aim, way = self.routes.next(place)

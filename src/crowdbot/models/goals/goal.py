@@ -89,7 +89,7 @@ class Goal(abc.ABC):
         return steady_velocity(past)
 
     @classmethod
-    def learned(cls, *recordings: Trajectories, **values: Any) -> Self:
+    def learn(cls, *recordings: Trajectories, **values: Any) -> Self:
         """Return the goal as it is learned from recordings of one place; ``values`` are fields.
 
         Raises:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["MOVING", "ahead", "angle_between", "length", "median", "turned", "unit"]
+__all__ = ["MOVING", "angle_between", "extrapolate", "length", "median", "rotate", "unit"]
 
 Floats = NDArray[np.float64]
 
@@ -36,14 +36,14 @@ def angle_between(start: Floats, end: Floats) -> Floats:
     return np.asarray(np.arctan2(cross, dot))
 
 
-def turned(vector: Floats, angle: Floats) -> Floats:
+def rotate(vector: Floats, angle: Floats) -> Floats:
     """Return vectors ``[..., 2]`` turned to the left by ``angle`` ``[...]`` [rad]."""
     cos, sin = np.cos(angle), np.sin(angle)
     x, y = vector[..., 0], vector[..., 1]
     return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
 
 
-def ahead(place: Floats, here: NDArray[np.bool_], velocity: Floats, seconds: float) -> Floats:
+def extrapolate(place: Floats, here: NDArray[np.bool_], velocity: Floats, seconds: float) -> Floats:
     """Return where people would be after ``seconds``, ``[W, A, 2]`` [m]; 0 for who is not here."""
     return np.where(here[..., None], place + seconds * velocity, 0.0)
 

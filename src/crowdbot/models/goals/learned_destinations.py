@@ -13,9 +13,9 @@ from crowdbot.data import Trajectories, Windows
 
 from .exits import clusters, track_ends
 from .goal import Choices, Goal
-from .headings import MOVING, ahead, angle_between, length, turned, unit
+from .headings import MOVING, angle_between, extrapolate, length, rotate, unit
 from .learned_velocity import LearnedVelocity, mean_velocity, pairs_of
-from .votes import NODES, Ballot, poll, typical_turn
+from .turn_histogram import BINS, TurnSamples, accumulate, median_turn
 
 __all__ = ["LearnedDestinations"]
 
@@ -68,12 +68,12 @@ class LearnedDestinations(Goal):
     """
 
     exits: Floats
-    voters: Ballot
+    samples: TurnSamples
     pace: LearnedVelocity
-    reach: float = parameter(1.5, unit="m", low=0.5, high=3.0, source="crowdbot", minimum=0.05)
-    spread: float = parameter(0.15, unit="rad", low=0.05, high=0.6, source="crowdbot", minimum=0.01)
-    doubt: float = parameter(5.0, unit="m/s", low=0.0, high=50.0, source="crowdbot", minimum=0.0)
-    horizon: float = parameter(20.0, unit="s", low=5.0, high=60.0, source="crowdbot", minimum=0.1)
+    reach: float = parameter(1.5, unit="m", low=0.5, high=3.0, source="crowdbot", min=0.05)
+    spread: float = parameter(0.15, unit="rad", low=0.05, high=0.6, source="crowdbot", min=0.01)
+    doubt: float = parameter(5.0, unit="m/s", low=0.0, high=50.0, source="crowdbot", min=0.0)
+    horizon: float = parameter(20.0, unit="s", low=5.0, high=60.0, source="crowdbot", min=0.1)
 
     learns: ClassVar[bool] = True
     paper: ClassVar[Paper] = BENNEWITZ
@@ -82,7 +82,7 @@ class LearnedDestinations(Goal):
         check_parameters(self)
 
     @classmethod
-    def learned(
+    def learn(
         cls,
         *recordings: Trajectories,
         observe: int = 8,
@@ -107,17 +107,19 @@ class LearnedDestinations(Goal):
         if not 0.0 < width < np.inf:
             raise InputError(f"learned-destinations: width = {width} m must be finite and above 0")
         pairs = pairs_of(recordings, observe, lookahead)
-        pace = LearnedVelocity.fitted(pairs)
+        pace = LearnedVelocity.fit(pairs)
         ends = [track_ends(tracks) for tracks in recordings]
         left = np.concatenate([place[gone] for _, place, gone in ends])
         exits = clusters(left, width, max(2, round(RAREST * len(left)))) if len(left) else np.zeros((0, 2))
         parts = [
-            _voters(past, future, pace, _exit_of(past.id, *end, exits, width))
+            _turn_samples(past, future, pace, _exit_of(past.id, *end, exits, width))
             for (past, future), end in zip(pairs, ends, strict=True)
         ]
         every = max(1, -(-sum(len(part.turn) for part in parts) // MOST_VOTERS))
-        voters = Ballot(*(np.ascontiguousarray(np.concatenate(column)[::every]) for column in zip(*parts, strict=True)))
-        return cls(exits, voters, pace, **values)
+        samples = TurnSamples(
+            *(np.ascontiguousarray(np.concatenate(column)[::every]) for column in zip(*parts, strict=True))
+        )
+        return cls(exits, samples, pace, **values)
 
     def velocity(self, past: Windows) -> Floats:
         """Return the learned velocity ``[W, A, 2]`` [m/s], see :meth:`Goal.velocity`."""
@@ -129,9 +131,9 @@ class LearnedDestinations(Goal):
         asked = here & (length(velocity) > MOVING)
         turn = np.zeros(here.shape)
         if np.any(asked):
-            polled = self._polled(past.position[:, -1][asked], velocity[asked], False)
+            polled = self._turn_histograms(past.position[:, -1][asked], velocity[asked], False)
             turn[asked] = polled[0]
-        return ahead(past.position[:, -1], here, turned(velocity, turn), self.horizon)
+        return extrapolate(past.position[:, -1], here, rotate(velocity, turn), self.horizon)
 
     def choices(self, past: Windows) -> Choices:
         """Return straight on (slot 0) and one way for each exit (slots 1 to G) with the share of votes for it."""
@@ -141,28 +143,28 @@ class LearnedDestinations(Goal):
         weight[here, 0] = 1.0
         asked = here & (length(velocity) > MOVING)
         if np.any(asked):
-            _, weight[asked], turn[asked] = self._polled(past.position[:, -1][asked], velocity[asked], True)
+            _, weight[asked], turn[asked] = self._turn_histograms(past.position[:, -1][asked], velocity[asked], True)
         place = np.where(here[..., None], past.position[:, -1], 0.0)
-        way = np.where(here[..., None, None], turned(velocity[:, :, None], turn), 0.0)
+        way = np.where(here[..., None, None], rotate(velocity[:, :, None], turn), 0.0)
         return Choices(place[:, :, None] + self.horizon * way, weight)
 
-    def _polled(self, place: Floats, velocity: Floats, by_exit: bool) -> tuple[Floats, Floats, Floats]:
+    def _turn_histograms(self, place: Floats, velocity: Floats, by_exit: bool) -> tuple[Floats, Floats, Floats]:
         """Return the median turn ``[P]``, and by way ``[P, G + 1]`` its weight and turn, of people ``[P, 2]``."""
         count, ways = len(place), len(self.exits) + 1
         heading = unit(velocity)
         middle, weight, turn = np.zeros(count), np.zeros((count, ways)), np.zeros((count, ways))
         for first in range(0, count, CHUNK_PEOPLE):
             part = slice(first, min(first + CHUNK_PEOPLE, count))
-            votes = np.zeros((part.stop - first, ways + 1, NODES))
+            histogram = np.zeros((part.stop - first, ways + 1, BINS))
             asked = np.ascontiguousarray(place[part]), heading[part]
-            poll(*asked, self.voters, len(self.exits), self.reach, self.spread, votes)
-            middle[part] = typical_turn(np.sum(votes, axis=1), self.doubt)
+            accumulate(*asked, self.samples, len(self.exits), self.reach, self.spread, histogram)
+            middle[part] = median_turn(np.sum(histogram, axis=1), self.doubt)
             if by_exit:
-                known = np.sum(votes[:, :ways], axis=2)
+                known = np.sum(histogram[:, :ways], axis=2)
                 known[:, 0] += max(self.doubt, 1e-9)
                 weight[part] = known / np.sum(known, axis=1, keepdims=True)
-                turn[part] = typical_turn(votes[:, :ways])
-                turn[part, 0] = typical_turn(votes[:, 0], self.doubt)
+                turn[part] = median_turn(histogram[:, :ways])
+                turn[part, 0] = median_turn(histogram[:, 0], self.doubt)
         return middle, weight, turn
 
 
@@ -183,11 +185,11 @@ def _exit_of(
     return np.asarray(known[np.clip(np.searchsorted(people, id), 0, len(people) - 1)], dtype=np.int64)
 
 
-def _voters(past: Windows, future: Windows, pace: LearnedVelocity, exit: NDArray[np.int64]) -> Ballot:
+def _turn_samples(past: Windows, future: Windows, pace: LearnedVelocity, exit: NDArray[np.int64]) -> TurnSamples:
     velocity, after = pace.velocity(past), mean_velocity(past, future)
     voting = future.scored & (length(velocity) > MOVING)
     turn = np.where(length(after) > MOVING, angle_between(velocity, after), 0.0)[voting]
-    return Ballot(
+    return TurnSamples(
         past.position[:, -1][voting],
         unit(velocity[voting]),
         turn,

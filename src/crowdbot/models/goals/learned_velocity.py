@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
-from crowdbot.data import Trajectories, Windows, bridged, slice_rows, steady_velocity
+from crowdbot.data import Trajectories, Windows, fill_gaps, slice_rows, steady_velocity
 
 __all__ = ["LearnedVelocity", "mean_velocity", "pairs_of"]
 
@@ -40,7 +40,7 @@ class LearnedVelocity:
     dt: float
 
     @classmethod
-    def learned(cls, recordings: tuple[Trajectories, ...], observe: int = 8, lookahead: float = 1.6) -> Self:
+    def learn(cls, recordings: tuple[Trajectories, ...], observe: int = 8, lookahead: float = 1.6) -> Self:
         """Return what recordings of one place teach.
 
         Args:
@@ -52,10 +52,10 @@ class LearnedVelocity:
             InputError: no recording is given, they are in pixels or differ in time step, or a value is not allowed.
             DataError: a recording has no window that is long enough.
         """
-        return cls.fitted(pairs_of(recordings, observe, lookahead))
+        return cls.fit(pairs_of(recordings, observe, lookahead))
 
     @classmethod
-    def fitted(cls, pairs: list[tuple[Windows, Windows]]) -> Self:
+    def fit(cls, pairs: list[tuple[Windows, Windows]]) -> Self:
         """Return the weights that suit the people who are scored in pairs of past and future."""
         most = pairs[0][0].position.shape[1] - 1
         weight = np.zeros((most, most))
@@ -80,7 +80,7 @@ class LearnedVelocity:
                 f" {self.dt:.4g} s; resample one of them"
             )
         most = len(self.weight)
-        known = slice_rows(bridged(past), max(0, past.position.shape[1] - 1 - most), past.position.shape[1])
+        known = slice_rows(fill_gaps(past), max(0, past.position.shape[1] - 1 - most), past.position.shape[1])
         steady = steady_velocity(known)
         offs, both = _offs(known, steady)
         count = np.minimum(np.sum(both, axis=1), most)
@@ -124,7 +124,7 @@ def _sample(past: Windows, future: Windows, count: int) -> tuple[Floats, Floats]
     known = slice_rows(past, rows - 1 - count, rows)
     steady = steady_velocity(known)
     counted = future.scored
-    off = np.moveaxis(_offs(bridged(known), steady)[0], 1, 2)[counted]
+    off = np.moveaxis(_offs(fill_gaps(known), steady)[0], 1, 2)[counted]
     return off, (mean_velocity(past, future) - steady)[counted]
 
 

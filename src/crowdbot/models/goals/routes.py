@@ -12,7 +12,7 @@ from crowdbot.core import Walls, kernel
 
 from .headings import length, unit
 
-__all__ = ["Routes", "sees"]
+__all__ = ["Routes", "mark_visible"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -22,7 +22,7 @@ CLEARANCE = 0.4
 
 
 @kernel
-def sees(place: Floats, target: Floats, segments: Floats, seen: Bools) -> None:
+def mark_visible(place: Floats, target: Floats, segments: Floats, seen: Bools) -> None:
     """Fill ``seen [P, N]``: whether no wall ``[S, 4]`` crosses the line from ``[P, 2]`` to ``[P, N, 2]``."""
     for i in range(place.shape[0]):
         px, py = place[i, 0], place[i, 1]
@@ -71,9 +71,9 @@ class Routes:
         if count == 0:
             return cls(exits, segments, corners, np.zeros((0, len(exits))))
         to_exit = _on_exits(corners, exits)
-        rest = np.where(_seen(corners, to_exit, segments), length(to_exit - corners[:, None]), np.inf)
+        rest = np.where(_visible(corners, to_exit, segments), length(to_exit - corners[:, None]), np.inf)
         every = np.broadcast_to(corners, (count, count, 2))
-        between = np.where(_seen(corners, every, segments), length(every - corners[:, None]), np.inf)
+        between = np.where(_visible(corners, every, segments), length(every - corners[:, None]), np.inf)
         for middle in range(count):  # Floyd and Warshall
             between = np.minimum(between, between[:, middle, None] + between[None, middle])
         return cls(exits, segments, corners, np.min(between[:, :, None] + rest[None], axis=1))
@@ -84,11 +84,11 @@ class Routes:
         That is the exit itself where it is seen, else the corner on the shortest way; inf when there is none.
         """
         aim = _on_exits(place, self.exits)
-        way = np.where(_seen(place, aim, self.segments), length(aim - place[:, None]), np.inf)
+        way = np.where(_visible(place, aim, self.segments), length(aim - place[:, None]), np.inf)
         if len(self.corners) == 0 or np.all(np.isfinite(way)):
             return aim, way
         corner = np.broadcast_to(self.corners, (len(place), *self.corners.shape))
-        near = np.where(_seen(place, corner, self.segments), length(corner - place[:, None]), np.inf)
+        near = np.where(_visible(place, corner, self.segments), length(corner - place[:, None]), np.inf)
         around = near[:, :, None] + self.rest
         best = np.argmin(around, axis=1)
         hidden = ~np.isfinite(way)
@@ -96,10 +96,10 @@ class Routes:
         return aim, np.where(hidden, np.min(around, axis=1), way)
 
 
-def _seen(place: Floats, target: Floats, segments: Floats) -> Bools:
+def _visible(place: Floats, target: Floats, segments: Floats) -> Bools:
     seen = np.ones(target.shape[:2], np.bool_)
     if len(segments):
-        sees(np.ascontiguousarray(place), np.ascontiguousarray(target), segments, seen)
+        mark_visible(np.ascontiguousarray(place), np.ascontiguousarray(target), segments, seen)
     return seen
 
 

@@ -1,8 +1,8 @@
-"""People in their own frames: where they come from and who is near, seen from where they stand and look.
+"""Agent frames: tracks and neighbors of each person relative to the person's position and heading.
 
-What learned predictors read and what they were trained on is made here, so that both are the same. The frame of a
-person has its origin at the last observed place and its x axis along the last motion. All operations are rounded
-exactly and go row by row: a person alone is seen as in any batch, bit for bit.
+Training and prediction share these features. The origin of the frame is the last observed position, its x axis the
+direction of the last motion. All operations are exactly rounded and independent for each row: features do not depend
+on the batch, bit for bit.
 """
 
 from __future__ import annotations
@@ -12,70 +12,84 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.data import Windows, bridged
+from crowdbot.data import Windows, fill_gaps
 from crowdbot.prediction.pretrained_weights import STEP
 
-__all__ = ["AHEAD", "COMPANY", "GAITS", "INPUTS", "MOMENTS", "NEAR", "ROWS", "People", "completed", "features",
-           "forward", "gait", "people_of", "turned"]  # fmt: skip
+__all__ = [
+    "AGENT_FEATURES",
+    "LOOKAHEAD_ROWS",
+    "NEAR",
+    "NEIGHBOR_FEATURES",
+    "PREDICTED_ROWS",
+    "ROWS",
+    "SPEED_CLASSES",
+    "AgentHistories",
+    "agent_features",
+    "agent_histories",
+    "heading_vectors",
+    "interpolate_gaps",
+    "rotate",
+    "speed_class",
+]  # fmt: skip
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 ROWS = 8
-"""Observed rows."""
-AHEAD = 12
-"""Predicted rows."""
+"""Number of observed rows."""
+PREDICTED_ROWS = 12
+"""Number of predicted rows."""
 NEAR = 12
-"""So many nearest others are seen."""
-MOMENTS = (4, 8, 12)
-"""Steps ahead at which it is looked where others will be: as planned, or with their last velocity."""
-INPUTS = 7 * 2 + 7 * 2 + 1 + 2 + 7
-"""Numbers about a person alone: places, displacements, speed, mean velocity, which rows were seen."""
-COMPANY = 2 + 2 + 2 + 1 + 1 + 1 + 1 + 2 * len(MOMENTS)
-"""Numbers about each neighbour."""
-GAITS = (0.03, 0.2, 0.8, 2.0, 3.5)
-"""Distances [m] walked in 2.8 s that part still, standing, shuffling, slow, usual and fast people."""
+"""Number of nearest neighbors."""
+LOOKAHEAD_ROWS = (4, 8, 12)
+"""Steps ahead at which neighbor positions are extrapolated, from their plan or last velocity."""
+AGENT_FEATURES = 7 * 2 + 7 * 2 + 1 + 2 + 7
+"""Number of features of a person: positions, displacements, speed, mean velocity, mask of observed rows."""
+NEIGHBOR_FEATURES = 2 + 2 + 2 + 1 + 1 + 1 + 1 + 2 * len(LOOKAHEAD_ROWS)
+"""Number of features of each neighbor."""
+SPEED_CLASSES = (0.03, 0.2, 0.8, 2.0, 3.5)
+"""Boundaries of the speed classes: distance walked in 2.8 s [m]."""
 MOVED = 0.1
-"""Less motion than this [m] gives no heading; it is then looked for further back."""
+"""Minimum displacement for a heading [m]; below it, earlier rows are used."""
 FEW = 64
-"""Windows whose pairs are compared at once."""
+"""Number of windows per pairwise comparison."""
 
 
-class People(NamedTuple):
-    """N people, in the axes of the world, seen from their last place."""
+class AgentHistories(NamedTuple):
+    """Histories of N people, in world axes, relative to their last position."""
 
     past: Floats
-    """``[N, 8, 2]`` [m] places; rows that were not seen are bridged, or walked backwards."""
+    """``[N, 8, 2]`` [m] positions; missing rows are interpolated or extrapolated."""
     seen: Bools
     """``[N, 8]``."""
     near: Floats
-    """``[N, 12, 2]`` [m] places of the nearest others, nearest first; 0 where there is nobody."""
+    """``[N, 12, 2]`` [m] positions of neighbors, nearest first; 0 if there is none."""
     pace: Floats
-    """``[N, 12, 2]`` [m] last displacements of these others."""
+    """``[N, 12, 2]`` [m] last displacements of the neighbors."""
     later: Floats
-    """``[N, 12, 3, 2]`` [m] where they will be at :data:`MOMENTS`."""
+    """``[N, 12, 3, 2]`` [m] positions of the neighbors at :data:`LOOKAHEAD_ROWS`."""
     known: Bools
-    """``[N, 12]``, whether that is known, as of a robot with a plan."""
+    """``[N, 12]``, whether the future is known, as for a robot with a plan."""
     there: Bools
-    """``[N, 12]``, whether there is such a neighbour."""
+    """``[N, 12]``, whether the neighbor exists."""
 
-    def at(self, rows: NDArray[np.int64] | slice) -> People:
+    def at(self, rows: NDArray[np.int64] | slice) -> AgentHistories:
         """Return some of the people."""
-        return People(
+        return AgentHistories(
             self.past[rows], self.seen[rows], self.near[rows], self.pace[rows], self.later[rows], self.known[rows],
             self.there[rows],
         )  # fmt: skip
 
 
-def completed(position: Floats, seen: Bools) -> Floats:
-    """Return places ``[N, T, 2]`` at every row from those at the ``seen`` rows ``[N, T]``, the last of them included.
+def interpolate_gaps(position: Floats, seen: Bools) -> Floats:
+    """Return positions ``[N, T, 2]`` at all rows from those at the ``seen`` rows ``[N, T]``; the last row must be seen.
 
-    Holes are bridged by an even walk; before the first row people walk with their first velocity; who was seen at the
-    last row only stood there.
+    Gaps are interpolated linearly; rows before the first seen row are extrapolated with the first velocity. People seen
+    at the last row only have a constant position.
 
     >>> x = np.array([[0.0, 0.0, 2.0, 0.0, 4.0]])
     >>> rows = np.array([[False, False, True, False, True]])
-    >>> completed(np.stack([x, 0.0 * x], axis=2), rows)[0, :, 0].tolist()
+    >>> interpolate_gaps(np.stack([x, 0.0 * x], axis=2), rows)[0, :, 0].tolist()
     [0.0, 1.0, 2.0, 3.0, 4.0]
     """
     T = seen.shape[1]
@@ -93,11 +107,11 @@ def completed(position: Floats, seen: Bools) -> Floats:
     return np.where(seen[..., None], position, start + share * (end - start))
 
 
-def forward(past: Floats) -> Floats:
-    """Return the unit vector ``[N, 2]`` along which people with the places ``[N, 8, 2]`` [m] move.
+def heading_vectors(past: Floats) -> Floats:
+    """Return heading vectors ``[N, 2]`` of tracks ``[N, 8, 2]`` [m].
 
-    It is taken from the last two displacements, or where they are shorter than 0.1 m from the last four or all seven.
-    Who never moved looks along x.
+    The heading is the direction of the last two displacements; if they are shorter than 0.1 m, of the last four or all
+    seven. The heading of people who never moved is the x axis.
     """
     heading = past[:, -1] - past[:, 0]
     for back in (4, 2):
@@ -108,17 +122,17 @@ def forward(past: Floats) -> Floats:
     return np.where(length > 1e-9, heading / np.where(length > 1e-9, length, 1.0), np.array([1.0, 0.0]))
 
 
-def gait(past: Floats) -> NDArray[np.int64]:
-    """Return how fast people with the places ``[N, 8, 2]`` [m] walk ``[N]``: 0 is still, ``len(GAITS)`` is fast.
+def speed_class(past: Floats) -> NDArray[np.int64]:
+    """Return the speed class ``[N]`` of tracks ``[N, 8, 2]`` [m], from 0 (standing) to ``len(SPEED_CLASSES)`` (fast).
 
-    >>> gait(np.linspace(0.0, [[0.0, 0.0], [3.0, 0.0]], 8, axis=1)).tolist()
+    >>> speed_class(np.linspace(0.0, [[0.0, 0.0], [3.0, 0.0]], 8, axis=1)).tolist()
     [0, 4]
     """
-    return np.asarray(np.searchsorted(np.asarray(GAITS), _length(past[:, -1] - past[:, 0])))
+    return np.asarray(np.searchsorted(np.asarray(SPEED_CLASSES), _length(past[:, -1] - past[:, 0])))
 
 
-def turned(vector: Floats, heading: Floats, back: bool = False) -> Floats:
-    """Return vectors ``[N, ..., 2]`` in frames with the x axis along ``heading`` [N, 2], or from there to the world."""
+def rotate(vector: Floats, heading: Floats, back: bool = False) -> Floats:
+    """Rotate vectors ``[N, ..., 2]`` into frames with the x axis along ``heading [N, 2]``, or ``back`` to the world."""
     shape = (len(heading), *(1,) * (vector.ndim - 2))
     c, s = heading[:, 0].reshape(shape), heading[:, 1].reshape(shape)
     s = -s if back else s
@@ -126,9 +140,9 @@ def turned(vector: Floats, heading: Floats, back: bool = False) -> Floats:
     return np.stack([c * x + s * y, c * y - s * x], axis=-1)
 
 
-def features(people: People, heading: Floats) -> tuple[Floats, Floats]:
-    """Return the numbers of each person ``[N, INPUTS]`` and neighbour ``[N, 12, COMPANY]``, looking along headings."""
-    past, near, pace, later = (turned(values, heading) for values in (people.past, people.near, people.pace,
+def agent_features(people: AgentHistories, heading: Floats) -> tuple[Floats, Floats]:
+    """Return the features of people ``[N, AGENT_FEATURES]`` and neighbors ``[N, 12, NEIGHBOR_FEATURES]``."""
+    past, near, pace, later = (rotate(values, heading) for values in (people.past, people.near, people.pace,
                                                                      people.later))  # fmt: skip
     step = past[:, 1:] - past[:, :-1]
     last = step[:, -1]
@@ -142,29 +156,28 @@ def features(people: People, heading: Floats) -> tuple[Floats, Floats]:
     closing = pace - last[:, None]
     speed2 = closing[..., 0] * closing[..., 0] + closing[..., 1] * closing[..., 1]
     inward = near[..., 0] * closing[..., 0] + near[..., 1] * closing[..., 1]
-    soon = np.clip(-inward / np.maximum(speed2, 1e-9), 0.0, float(AHEAD))
+    soon = np.clip(-inward / np.maximum(speed2, 1e-9), 0.0, float(PREDICTED_ROWS))
     closest = _length(near + closing * soon[..., None])
-    moment = np.asarray(MOMENTS, dtype=np.float64)[:, None]
+    moment = np.asarray(LOOKAHEAD_ROWS, dtype=np.float64)[:, None]
     meant = (later - last[:, None, None] * moment) / 5.0
     company = np.concatenate(
         [near / 5.0, pace, near / np.maximum(distance, 1e-9)[..., None],
-         np.stack([1.0 / (1.0 + distance), 1.0 / (1.0 + closest), soon / AHEAD, people.known], axis=-1),
+         np.stack([1.0 / (1.0 + distance), 1.0 / (1.0 + closest), soon / PREDICTED_ROWS, people.known], axis=-1),
          meant.reshape(N, near.shape[1], -1)], axis=2,
     )  # fmt: skip
     return own, np.where(people.there[..., None], company, 0.0)
 
 
-def people_of(past: Windows) -> tuple[People, NDArray[np.int64], NDArray[np.int64]]:
-    """Return everyone who is there at the last row, and the window and slot of each; rows are at steps of 0.4 s.
+def agent_histories(past: Windows) -> tuple[AgentHistories, NDArray[np.int64], NDArray[np.int64]]:
+    """Return the histories of all agents present at the last row at steps of 0.4 s, with their windows and slots.
 
-    Other time steps are interpolated between rows up to the last one. Neighbours are the nearest others who were seen
-    at two rows at least, whether or not their future is known.
+    Other time steps are interpolated. Neighbors are the nearest agents that were observed at two rows or more.
     """
     position, seen = _at_steps(past)
     window, slot = np.nonzero(past.present[:, -1])
     now = position[window, -1, slot]
     own = seen[window, :, slot]
-    track = completed(position[window, :, slot] - now[:, None], own)
+    track = interpolate_gaps(position[window, :, slot] - now[:, None], own)
     step = np.zeros((len(past), past.present.shape[2], 2))
     step[window, slot] = track[:, -1] - track[:, -2]
     who, there = _nearest(position[:, -1], past.present[:, -1], seen.sum(axis=1) > 1, past.id)
@@ -172,15 +185,15 @@ def people_of(past: Windows) -> tuple[People, NDArray[np.int64], NDArray[np.int6
     where = window[:, None]
     place = position[where, -1, who] - now[:, None]
     pace = step[where, who]
-    moment = np.asarray(MOMENTS, dtype=np.float64)[:, None]
+    moment = np.asarray(LOOKAHEAD_ROWS, dtype=np.float64)[:, None]
     later = place[:, :, None] + pace[:, :, None] * moment
     known: Bools = np.zeros(who.shape, dtype=np.bool_)
     if past.plan is not None:
-        planned = np.stack([_plan_at(past, k)[where, who] for k in MOMENTS], axis=2)
+        planned = np.stack([_plan_at(past, k)[where, who] for k in LOOKAHEAD_ROWS], axis=2)
         known = np.asarray(~np.isnan(planned).any(axis=(2, 3)))
         later = np.where(known[..., None, None], planned - now[:, None, None], later)
     zero = there[..., None]
-    people = People(
+    people = AgentHistories(
         track, own, np.where(zero, place, 0.0), np.where(zero, pace, 0.0), np.where(zero[..., None], later, 0.0),
         known & there, there,
     )  # fmt: skip
@@ -188,7 +201,7 @@ def people_of(past: Windows) -> tuple[People, NDArray[np.int64], NDArray[np.int6
 
 
 def _plan_at(past: Windows, step: int) -> Floats:
-    """Return where planned robots are ``step`` steps of 0.4 s ahead ``[W, A, 2]`` [m]."""
+    """Return planned positions ``[W, A, 2]`` [m] after ``step`` steps of 0.4 s."""
     rows = step * STEP / past.dt
     low = int(np.floor(rows + 1e-9))
     share = max(0.0, rows - low)
@@ -197,14 +210,14 @@ def _plan_at(past: Windows, step: int) -> Floats:
 
 
 def _at_steps(past: Windows) -> tuple[Floats, Bools]:
-    """Return places ``[W, 8, A, 2]`` [m] and whether they were seen ``[W, 8, A]``, at steps of 0.4 s up to now."""
+    """Return positions ``[W, 8, A, 2]`` [m] at steps of 0.4 s, and the mask ``[W, 8, A]`` of observed ones."""
     W, T, A, _ = past.position.shape
     position, seen = np.zeros((W, ROWS, A, 2)), np.zeros((W, ROWS, A), dtype=np.bool_)
     if abs(past.dt - STEP) < 1e-6:
         kept = min(T, ROWS)
         position[:, ROWS - kept :], seen[:, ROWS - kept :] = past.position[:, T - kept :], past.present[:, T - kept :]
         return position, seen
-    known = bridged(past)
+    known = fill_gaps(past)
     for back in range(ROWS):
         row = T - 1 - back * STEP / past.dt
         low = int(np.floor(row + 1e-6))
@@ -220,7 +233,7 @@ def _at_steps(past: Windows) -> tuple[Floats, Bools]:
 
 
 def _nearest(place: Floats, here: Bools, walked: Bools, id: NDArray[np.int64]) -> tuple[NDArray[np.int64], Bools]:
-    """Return slots ``[W, A, 12]`` of the nearest others, equally near ones by id, and whether they are there."""
+    """Return slots ``[W, A, 12]`` of the nearest neighbors (ties by id), and whether they exist."""
     W, A, _ = place.shape
     who, there = np.zeros((W, A, NEAR), dtype=np.int64), np.zeros((W, A, NEAR), dtype=np.bool_)
     order = np.argsort(id, axis=1, kind="stable")

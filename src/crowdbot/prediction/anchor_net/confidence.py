@@ -1,4 +1,4 @@
-"""Probabilities and spreads of the anchor network say how often things happen, on people not learned from."""
+"""Calibration of the probabilities and spreads of AnchorNet on validation data."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from crowdbot.core import stream
 
-from .agent_frame import AHEAD, GAITS, gait
+from .agent_frame import PREDICTED_ROWS, SPEED_CLASSES, speed_class
 from .predictor import network_output
-from .training_data import NONE, Material, batch
+from .training_data import NO_AUGMENTATION, TrainingSet, make_batch
 
-__all__ = ["calibrated"]
+__all__ = ["calibrate_confidence"]
 
 Floats = NDArray[np.float64]
 Numbers = dict[str, NDArray[Any]]
@@ -21,19 +21,21 @@ Numbers = dict[str, NDArray[Any]]
 TEMPERATURES = np.exp(np.linspace(-3.0, 1.5, 91))
 WIDENINGS = np.exp(np.linspace(-2.5, 1.5, 81))
 FEW = 200
-"""With fewer people than this of one gait, those of all gaits are asked."""
+"""Minimum number of people per speed class; below it, all people are used."""
 WORST = -50.0
-"""Logarithms of densities are not let below this, so that one strange person does not decide."""
+"""Lower bound of log-densities, to limit the influence of outliers."""
 
 
-def calibrated(numbers: Numbers, material: Material) -> Numbers:
-    """Return the numbers with ``temperature`` and ``widening``, one for each gait from still to fast.
+def calibrate_confidence(numbers: Numbers, material: TrainingSet) -> Numbers:
+    """Return the weights with ``temperature`` and ``widening`` for each speed class.
 
-    Probabilities are sharpened or softened by the temperature, spreads are multiplied by the widening, so that people
-    who were not learned from are most likely: the nearest future among all, and the truth around its futures.
+    The temperature divides the logits of the probabilities, the widening multiplies the spreads. Both maximize the
+    likelihood of validation data: of the nearest future, and of the truth under the mixture.
     """
     held = {name: np.asarray(values, dtype=np.float64) for name, values in numbers.items()}
-    own, company, there, missed = batch(material, np.arange(len(material)), NONE, stream(0, "calibrated"))
+    own, company, there, missed = make_batch(
+        material, np.arange(len(material)), NO_AUGMENTATION, stream(0, "calibrated")
+    )
     out = network_output(held, own, company, there)
     K, D = held["centres"].shape
     bend = held["centres"] + out[:, : D * K].reshape(-1, K, D) * held["spread"]
@@ -41,9 +43,9 @@ def calibrated(numbers: Numbers, material: Material) -> Numbers:
     nearest = np.array([_nearest(one @ held["basis"], truth) for one, truth in zip(bend, missed, strict=True)])
     truth = missed.reshape(len(missed), -1) @ held["basis"].T
     z2 = ((truth[:, None] - bend) / held["spread"] * np.exp(-spread)) ** 2
-    kind = gait(material.people.past)
+    kind = speed_class(material.people.past)
     temperature, widening = [], []
-    for bin_ in range(len(GAITS) + 1):
+    for bin_ in range(len(SPEED_CLASSES) + 1):
         who = np.flatnonzero(kind == bin_)
         who = who if len(who) >= FEW else np.arange(len(kind))
         warmth = _temperature(score[who], nearest[who])
@@ -53,7 +55,7 @@ def calibrated(numbers: Numbers, material: Material) -> Numbers:
 
 
 def _nearest(path: Floats, truth: Floats) -> int:
-    away = path.reshape(-1, AHEAD, 2) - truth
+    away = path.reshape(-1, PREDICTED_ROWS, 2) - truth
     return int(np.argmin(np.sqrt((away**2).sum(axis=2)).mean(axis=1)))
 
 
@@ -63,12 +65,12 @@ def _temperature(score: Floats, nearest: NDArray[np.int64]) -> float:
 
 
 def _widening(log_share: Floats, z2: Floats, spread: Floats) -> float:
-    def surprise(width: float) -> float:
+    def negative_log_likelihood(width: float) -> float:
         each = log_share - (0.5 * z2 / width**2 + spread + np.log(width)).sum(axis=2)
         top = each.max(axis=1)
         return float(-np.maximum(top + np.log(np.exp(each - top[:, None]).sum(axis=1)), WORST).mean())
 
-    return float(min(WIDENINGS, key=surprise))
+    return float(min(WIDENINGS, key=negative_log_likelihood))
 
 
 def _log_share(score: Floats) -> Floats:

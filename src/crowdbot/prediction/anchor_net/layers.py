@@ -24,7 +24,7 @@ BLOCK = 8
 
 @kernel
 def dense(x: Floats, weight: Floats, bias: Floats, rectify: bool) -> Floats:  # pragma: no cover - compiled
-    """Return ``x [N, I] @ weight [I, O] + bias [O]``, cut off below 0 when ``rectify``."""
+    """Return ``x [N, I] @ weight [I, O] + bias [O]``, clipped at 0 if ``rectify``."""
     N, outputs = len(x), len(bias)
     out = np.empty((N, outputs))
     whole = x.shape[1] // 4 * 4
@@ -55,12 +55,13 @@ def dense(x: Floats, weight: Floats, bias: Floats, rectify: bool) -> Floats:  # 
 def attend(
     query: Floats, company: Floats, there: Bools, nobody: Floats, alone: Floats
 ) -> Floats:  # pragma: no cover - compiled
-    """Return what each person sees of the others ``[N, D]``: a mean by the softmax of ``query . company / sqrt(D)``.
+    """Return attention ``[N, D]`` over neighbors, with the softmax of ``query . company / sqrt(D)`` as weights.
 
     Args:
         query: ``[N, D]``.
-        company: ``[N, M, D]``, keys and values at once; ``there [N, M]`` says which of them are.
-        nobody, alone: ``[D]``, key and value of one more neighbour who is always there.
+        company: ``[N, M, D]``, keys and values.
+        there: ``[N, M]``, mask of the neighbors that exist.
+        nobody, alone: ``[D]``, key and value of an additional neighbor that always exists.
     """
     N, M, D = company.shape
     out = np.empty((N, D))

@@ -1,4 +1,4 @@
-"""AnchorNet: a small network that bends 20 anchors for each person, weighs them, and keeps joint futures apart."""
+"""AnchorNet: a small network that predicts residuals around 20 anchors, and joint futures without collisions."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from crowdbot.core import DataError, InputError, Paper, did_you_mean
 from crowdbot.data import Forecast, Windows
 from crowdbot.prediction.constant import ConstantVelocity, SampledConstantVelocity
-from crowdbot.prediction.joint_futures import before_walls, drawn_together, kept_apart, set_together
+from crowdbot.prediction.joint_futures import coordinate_draws, coordinate_modes, separate_people, stop_at_walls
 from crowdbot.prediction.predictor import Predictor, window_streams
 from crowdbot.prediction.pretrained_weights import (
     ALL,
@@ -24,14 +24,24 @@ from crowdbot.prediction.pretrained_weights import (
     Numbers,
     check_fold,
     fold_of,
-    learned,
-    misfit,
-    read_numbers,
+    incompatibility,
+    load_pretrained,
+    read_weights,
 )
 from crowdbot.prediction.training.checkpoint import load_checkpoint
 
-from .agent_frame import AHEAD, COMPANY, GAITS, INPUTS, features, forward, gait, people_of, turned
-from .anchors import CHAI, scattered, spread_over_time
+from .agent_frame import (
+    AGENT_FEATURES,
+    NEIGHBOR_FEATURES,
+    PREDICTED_ROWS,
+    SPEED_CLASSES,
+    agent_features,
+    agent_histories,
+    heading_vectors,
+    rotate,
+    speed_class,
+)
+from .anchors import CHAI, resample_paths, scatter_to_slots
 from .layers import attend, dense
 
 __all__ = ["AnchorNet", "Modes", "network_output"]
@@ -46,28 +56,28 @@ NEEDED = ("basis", "centres", "spread", "width", "temperature", "widening", "nob
     for part in ("weight", "bias")
 ))  # fmt: skip
 MOST_AT_ONCE = 2048
-"""People whose numbers are held at once."""
+"""Number of people per network evaluation."""
 WALL = 0.02
-"""What is left of the probability of a future that leads through a wall."""
+"""Factor on the probability of a future that crosses a wall."""
 DRAWS = 20
-"""Draws are shared out among joint futures in blocks of so many, so that more draws do not change the first."""
+"""Draws are combined into joint futures in blocks of this size; the first draws do not depend on K."""
 
 
 class Modes(NamedTuple):
-    """What is believed of N people, each for itself."""
+    """Individual futures of N people and their probabilities."""
 
     path: Floats
-    """``[N, K, T, 2]`` [m] futures, from the last place."""
+    """``[N, K, T, 2]`` [m] futures, relative to the last position."""
     probability: Floats
-    """``[N, K]`` that each is the nearest to what will be, calibrated; the futures stand in this order."""
+    """``[N, K]`` calibrated probabilities that a future is the nearest to the truth, in decreasing order."""
     single: Floats
-    """``[N, T, 2]`` [m] the one answer."""
+    """``[N, T, 2]`` [m] single trajectory."""
     window: Integers
     slot: Integers
 
 
 class _Bends(NamedTuple):
-    """What the network says of N people, in their own frames."""
+    """Output of the network for N people, in their frames."""
 
     mode: Floats
     """``[N, K, 6]``."""
@@ -84,30 +94,29 @@ class _Bends(NamedTuple):
 
 @dataclass(frozen=True)
 class AnchorNet(Predictor):
-    """Learned: 20 futures of every person, their probabilities, one answer for who wants one, and real draws.
+    """Learned predictor with 20 weighted futures per person, a single trajectory for K = 1, or random draws.
 
-    A multilayer perceptron reads the last 8 places of a person in the own frame and, through attention, the 12 nearest
-    others; of a robot with a plan it is told where it will be. It bends 20 anchors (see
-    :class:`~crowdbot.prediction.Anchors`) in a space of 6 numbers, says how probable each is to be the nearest, and has
-    an answer of its own for K = 1. Missing rows, noise, late tracks and switched identities were part of the training.
-    Futures that lead through a wall of the map are made improbable afterwards, and end before it.
+    A multilayer perceptron reads the last 8 positions of a person in the person's frame and, through attention, the 12
+    nearest neighbors, including the plans of robots. For each of 20 anchors (see
+    :class:`~crowdbot.prediction.Anchors`) it predicts a correction with 6 coefficients and the probability to be the
+    nearest future. A separate output serves K = 1. The training includes missing rows, noise, late tracks and identity
+    switches. Futures that cross a wall get a low probability and stop at the wall.
 
-    People of a window belong together: who takes which of the own futures in which joint future is chosen so that
-    they do not walk through each other, and what remains is moved aside by some centimetres. Every person still has
-    all 20, the likeliest in the first joint futures.
+    The futures of the people in a window are combined into joint futures with few collisions; remaining ones are
+    removed by offsets of some centimetres. Each person keeps all 20 futures; the most probable ones are in the first
+    joint futures.
 
     Fields:
-        fold: which shipped weights are used: those learned without this place (``eth``, ``hotel``, ``univ``,
-            ``zara1``, ``zara2``), with ``all`` of them, or ``auto``: without the place that the recording is named
-            after, else ``all``.
-        sample: what more than one sample is. ``set``: the fixed futures, weighed by how probable they are, at most
-            20, and K = 1 is the single answer. ``draws``: as many independent draws of one future as are asked for.
-        file: own weights, as ``crowdbot train anchor-net`` makes them, in place of the shipped ones.
-        contact: people of one joint future stay so far apart [m]; 0 leaves everyone alone.
+        fold: shipped weights: trained without a place (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``), with
+            ``all`` places, or ``auto``: without the place of the recording, by its name, else ``all``.
+        sample: ``set``: the weighted futures, at most 20, and the single trajectory for K = 1; ``draws``: any number
+            of independent random draws.
+        file: own weights from ``crowdbot train anchor-net``, instead of the shipped ones.
+        contact: minimum distance between people of a joint future [m]; 0 disables joint futures.
 
-    Predictions commute with shifts and rotations of the world, except for who has never moved. Rows at other time
-    steps up to 0.7 s are interpolated; with longer ones, or in pixels, a baseline answers and a warning says so.
-    After 4.8 s the bend stays as it is. Somebody seen once stands.
+    Forecasts are equivariant to translations and rotations, except for people who never moved. Other time steps up to
+    0.7 s are interpolated; with longer ones, or in pixels, a baseline is used, with a warning. Beyond 4.8 s the
+    residual is constant. People observed once have a constant position.
 
     Paper: anchors, Chai et al. (2019), arXiv 1910.05449.
     """
@@ -129,12 +138,12 @@ class AnchorNet(Predictor):
             raise InputError(f"anchor-net: contact = {self.contact} m must be finite and at least 0")
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return where people will be, see :meth:`Predictor.predict`."""
+        """Return the forecast, see :meth:`Predictor.predict`."""
         self.check(past, steps, samples)
-        why = misfit(past)
+        why = incompatibility(past)
         if why:
             one: Predictor = ConstantVelocity() if samples == 1 else SampledConstantVelocity()
-            warnings.warn(f"anchor-net: {why}; {one.name} answers instead", stacklevel=2)
+            warnings.warn(f"anchor-net: {why}; {one.name} is used instead", stacklevel=2)
             return one.predict(past, steps, samples, rng)
         numbers = self._numbers(past)
         bends = _around_walls(_bends(numbers, past), numbers, past)
@@ -142,27 +151,27 @@ class AnchorNet(Predictor):
             return self._draws(past, steps, samples, rng, numbers, bends)
         if samples == 1:
             path = _path(numbers, bends, bends.single[:, None], past, steps)[0]
-            place = scattered(past, path, bends.window, bends.slot)
-            return self.forecast(past, kept_apart(past, place, self.contact))
+            place = scatter_to_slots(past, path, bends.window, bends.slot)
+            return self.forecast(past, separate_people(past, place, self.contact))
         path = _path(numbers, bends, bends.mode, past, steps)[0]
-        place = scattered(past, path, bends.window, bends.slot)
+        place = scatter_to_slots(past, path, bends.window, bends.slot)
         share = np.full((len(past), past.present.shape[2], path.shape[1]), 0.0)
         share[bends.window, bends.slot] = bends.probability
-        place, weight = set_together(past, place, share, self.contact)
+        place, weight = coordinate_modes(past, place, share, self.contact)
         weight = weight[:, :samples] / weight[:, :samples].sum(axis=1, keepdims=True)
-        forecast = self.forecast(past, kept_apart(past, place[:, :samples], self.contact))
+        forecast = self.forecast(past, separate_people(past, place[:, :samples], self.contact))
         return dataclasses.replace(forecast, weight=weight)
 
-    def modes(self, past: Windows, steps: int = AHEAD) -> Modes:
-        """Return the futures and probabilities of everyone there at the last row, each for itself.
+    def modes(self, past: Windows, steps: int = PREDICTED_ROWS) -> Modes:
+        """Return the individual futures and probabilities of all agents present at the last row.
 
         Raises:
-            InputError: the windows do not fit what was learned.
+            InputError: the windows have pixels or too long time steps.
         """
         self.check(past, steps)
-        why = misfit(past)
+        why = incompatibility(past)
         if why:
-            raise InputError(f"anchor-net: {why}; there are no modes of it")
+            raise InputError(f"anchor-net: {why}")
         numbers = self._numbers(past)
         bends = _around_walls(_bends(numbers, past), numbers, past)
         path = _path(numbers, bends, bends.mode, past, steps)[0]
@@ -170,26 +179,26 @@ class AnchorNet(Predictor):
         return Modes(path, bends.probability, single, bends.window, bends.slot)
 
     def note(self, past: Windows) -> str:
-        """Return what a user should know of forecasts of such windows in one sentence, or nothing."""
-        why = misfit(past)
+        """Return a one-sentence remark on forecasts of such windows, or an empty string."""
+        why = incompatibility(past)
         if why:
-            return f"anchor-net: {why}; a baseline answers instead"
+            return f"anchor-net: {why}; a baseline is used instead"
         if not self.file and self.fold == AUTO and fold_of(past.source) == ALL:
             return (
-                f"anchor-net: {past.source} is not named after one of the five places it knows, so the weights learned"
-                " at all of them, perhaps from this recording too, are used; name the place with fold when it is one"
+                f"anchor-net: {past.source} is not named after a training place; using the weights trained on all"
+                " places; set fold if the recording is from one of them"
             )
         return ""
 
     def _numbers(self, past: Windows) -> Numbers:
         if not self.file:
-            return learned("anchor-net", fold_of(past.source) if self.fold == AUTO else self.fold)
+            return load_pretrained("anchor-net", fold_of(past.source) if self.fold == AUTO else self.fold)
         return _own(self.file, Path(self.file).stat().st_mtime_ns if Path(self.file).is_file() else 0)
 
     def _draws(
         self, past: Windows, steps: int, samples: int, rng: np.random.Generator | None, numbers: Numbers, bends: _Bends
     ) -> Forecast:
-        """Return independent draws of everyone's own mixture, shared out so that people of one draw keep apart."""
+        """Return independent draws of the individual mixtures, combined into joint futures."""
         blocks = -(-samples // DRAWS)
         N, K, D = bends.mode.shape
         which = np.zeros((N, blocks * DRAWS), dtype=np.int64)
@@ -207,16 +216,16 @@ class AnchorNet(Predictor):
         rows = np.arange(N)[:, None]
         middle = bends.mode[rows, which]
         bend = middle + bends.spread[rows, which] * noise
-        if past.walls:  # what scatters through a wall stays in the middle
+        if past.walls:  # draws that cross a wall are replaced by their mean
             _, through = _path(numbers, bends, bend, past)
             bend = np.where(through[..., None], middle, bend)
         path, _ = _path(numbers, bends, bend, past, steps)
-        place = drawn_together(past, scattered(past, path, bends.window, bends.slot), self.contact, DRAWS)
-        return self.forecast(past, kept_apart(past, place[:, :samples], self.contact))
+        place = coordinate_draws(past, scatter_to_slots(past, path, bends.window, bends.slot), self.contact, DRAWS)
+        return self.forecast(past, separate_people(past, place[:, :samples], self.contact))
 
 
 def network_output(numbers: Numbers, own: Floats, company: Floats, there: NDArray[np.bool_]) -> Floats:
-    """Return what the last layer gives ``[N, O]``: bends of all futures, their scores, the single bend, spreads."""
+    """Return the network output ``[N, O]``: residuals of all futures, scores, single residual, spreads."""
 
     def layer(x: Floats, name: str, rectify: bool = True) -> Floats:
         return np.asarray(dense(np.ascontiguousarray(x), numbers[f"{name}_weight"], numbers[f"{name}_bias"], rectify))
@@ -233,16 +242,20 @@ def network_output(numbers: Numbers, own: Floats, company: Floats, there: NDArra
 def _own(file: str, changed: int) -> Numbers:
     known = _OWN.get(file)
     if known is None or known[0] != changed:
-        numbers = read_numbers(Path(file))
-        if "content" in numbers:  # what crowdbot train keeps
+        numbers = read_weights(Path(file))
+        if "content" in numbers:  # a checkpoint of crowdbot train
             weights = load_checkpoint(file, "anchor-net")["weights"]
             numbers = {name: np.asarray(values, dtype=np.float64) for name, values in weights.items()}
         missing = [name for name in NEEDED if name not in numbers]
-        shapes = {"own_1_weight": INPUTS, "near_1_weight": COMPANY, "temperature": len(GAITS) + 1}
+        shapes = {
+            "own_1_weight": AGENT_FEATURES,
+            "near_1_weight": NEIGHBOR_FEATURES,
+            "temperature": len(SPEED_CLASSES) + 1,
+        }
         wrong = [name for name, rows in shapes.items() if not missing and numbers[name].shape[:1] != (rows,)]
         if missing or wrong:
-            what = f"it has no {missing[0]}" if missing else f"its {wrong[0]} is of another shape"
-            raise DataError(f"{file} holds no weights of this network: {what}; train it with this version")
+            what = f"{missing[0]} is missing" if missing else f"{wrong[0]} has another shape"
+            raise DataError(f"{file} is not a file of AnchorNet weights: {what}")
         _OWN[file] = known = changed, numbers
     return known[1]
 
@@ -251,19 +264,19 @@ _OWN: dict[str, tuple[int, Numbers]] = {}
 
 
 def _bends(numbers: Numbers, past: Windows) -> _Bends:
-    people, window, slot = people_of(past)
-    heading = forward(people.past)
+    people, window, slot = agent_histories(past)
+    heading = heading_vectors(people.past)
     K, D = numbers["centres"].shape
     out = np.zeros((len(window), K * D + K + 2 * D))
     for first in range(0, len(window), MOST_AT_ONCE):
         part = slice(first, first + MOST_AT_ONCE)
         some = people.at(part)
-        out[part] = network_output(numbers, *features(some, heading[part]), some.there)
+        out[part] = network_output(numbers, *agent_features(some, heading[part]), some.there)
     mode = numbers["centres"] + out[:, : K * D].reshape(-1, K, D) * numbers["spread"]
-    kind = gait(people.past)
+    kind = speed_class(people.past)
     score = out[:, K * D : K * D + K] / numbers["temperature"][kind, None]
     probability = np.exp(score - score.max(axis=1, keepdims=True, initial=-np.inf))
-    total = np.cumsum(probability, axis=1)[:, -1:]  # summed in one order, whatever the number of people
+    total = np.cumsum(probability, axis=1)[:, -1:]  # summation order independent of the batch
     probability = probability / total
     spread = np.exp(np.clip(numbers["width"] + out[:, None, K * D + K + D :], -6.0, 2.0))
     spread = spread * numbers["spread"] * numbers["widening"][kind, None, None]
@@ -283,7 +296,7 @@ def _bends(numbers: Numbers, past: Windows) -> _Bends:
 
 
 def _around_walls(bends: _Bends, numbers: Numbers, past: Windows) -> _Bends:
-    """Return what is believed where there are walls: futures through them are hardly probable, no answer is one."""
+    """Return the output with a low probability of futures that cross a wall, and a single trajectory that does not."""
     if not past.walls:
         return bends
     _, hit = _path(numbers, bends, bends.mode, past)
@@ -302,16 +315,16 @@ def _around_walls(bends: _Bends, numbers: Numbers, past: Windows) -> _Bends:
 def _path(
     numbers: Numbers, bends: _Bends, bend: Floats, past: Windows, steps: int = 0
 ) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return displacements ``[N, K, T, 2]`` [m] of bends ``[N, K, 6]`` that end before walls, and which did not.
+    """Return displacements ``[N, K, T, 2]`` [m] that stop at walls, and a mask ``[N, K]`` of the stopped ones.
 
-    Without ``steps`` they are the 12 of 0.4 s that were learned, so that what is believed does not depend on how far
-    is asked.
+    Without ``steps``, the horizon is that of the training (12 steps of 0.4 s): probabilities do not depend on the
+    requested horizon.
     """
     basis = numbers["basis"]
     away = np.zeros((*bend.shape[:2], basis.shape[1]))
-    for d in range(len(basis)):  # in one order, whatever the number of people
+    for d in range(len(basis)):  # summation order independent of the batch
         away += bend[..., d, None] * basis[d]
-    local = away.reshape(*bend.shape[:2], AHEAD, 2)
-    time = (steps, past.dt) if steps else (AHEAD, STEP)
-    path = spread_over_time(turned(local, bends.heading, back=True), bends.step, *time)
-    return before_walls(past, path, bends.window, bends.slot)
+    local = away.reshape(*bend.shape[:2], PREDICTED_ROWS, 2)
+    time = (steps, past.dt) if steps else (PREDICTED_ROWS, STEP)
+    path = resample_paths(rotate(local, bends.heading, back=True), bends.step, *time)
+    return stop_at_walls(past, path, bends.window, bends.slot)

@@ -1,7 +1,4 @@
-"""Training of the anchor network: a minute on one core, the same bits for the same seed, stopped and gone on with.
-
-The numbers that come out are those that :class:`~crowdbot.prediction.AnchorNet` reads.
-"""
+"""Training of AnchorNet; reproducible bit for bit, and resumable."""
 
 from __future__ import annotations
 
@@ -17,14 +14,13 @@ from crowdbot.core import InputError, did_you_mean, from_attributes, stream
 from crowdbot.prediction.pretrained_weights import STEP
 from crowdbot.prediction.training.loop import Trainable
 from crowdbot.prediction.training.samples import Samples
-from crowdbot.prediction.training.torch_backend import device_of, tensors
+from crowdbot.prediction.training.torch_backend import to_tensors, torch_device
 
-from .agent_frame import AHEAD, COMPANY, INPUTS, forward, turned
-from .anchors import centres
-from .confidence import calibrated
+from .agent_frame import AGENT_FEATURES, NEIGHBOR_FEATURES, PREDICTED_ROWS, heading_vectors, rotate
+from .anchors import cluster_centers
+from .confidence import calibrate_confidence
 from .predictor import network_output
-from .training_data import NONE, Batch, Material, Variation, material_of
-from .training_data import batch as batch_of
+from .training_data import NO_AUGMENTATION, Augmentation, TrainingBatch, TrainingSet, make_batch, training_set_of
 
 __all__ = ["UPDATES", "AnchorNetTraining", "AnchorTraining", "learner", "network", "outputs", "shapes_of"]
 
@@ -32,18 +28,18 @@ Floats = NDArray[np.float64]
 Numbers = dict[str, NDArray[Any]]
 
 UPDATES = 4000
-"""Steps of the optimiser behind the shipped weights; the last weights are taken, averaged, none is picked."""
+"""Optimizer steps of the shipped weights, which are the averaged weights after the last step."""
 RANK = 6
-"""Numbers that a bend is made of; they reconstruct what constant velocity misses to about 2 cm."""
+"""Number of coefficients of a residual; the reconstruction error is about 2 cm."""
 
 
 @dataclasses.dataclass(frozen=True)
 class AnchorTraining:
-    """How the anchor network is trained.
+    """Training settings of AnchorNet.
 
     Fields:
         people: in one batch.
-        width, social: numbers in a hidden layer, and about a neighbour.
+        width, social: numbers in a hidden layer, and about a neighbor.
         count: futures.
         rate, decay, warm: learning rate, weight decay, updates until the full rate.
         average: of the weights.
@@ -68,13 +64,13 @@ class AnchorTraining:
     single: float = 0.5
     likely: float = 0.02
     seed: int = 0
-    variation: Variation = dataclasses.field(default_factory=Variation)
+    variation: Augmentation = dataclasses.field(default_factory=Augmentation)
 
 
 def learner(
     settings: str | None, values: Mapping[str, str], samples: Samples, watched: Samples, seed: int, device: str
 ) -> AnchorNetTraining:
-    """Return the anchor network ready to train, as the command line asks for it.
+    """Return an AnchorNet ready to train, from the options of the command line.
 
     Args:
         settings: there is one kind, ``shipped``, that of the shipped weights.
@@ -87,27 +83,31 @@ def learner(
     if settings not in (None, "shipped"):
         raise InputError(f"anchor-net: unknown settings {settings!r}{did_you_mean(str(settings), ['shipped'])}; there"
                          " is shipped")  # fmt: skip
-    varied = {field.name for field in dataclasses.fields(Variation)}
+    varied = {field.name for field in dataclasses.fields(Augmentation)}
     plain = {name.replace("-", "_"): value for name, value in values.items()}
-    variation = from_attributes(Variation, {name: value for name, value in plain.items() if name in varied})
+    variation = from_attributes(Augmentation, {name: value for name, value in plain.items() if name in varied})
     how = from_attributes(AnchorTraining, {name: value for name, value in plain.items() if name not in varied})
     how = dataclasses.replace(how, seed=seed, variation=variation)
-    return AnchorNetTraining(how, material_of(samples), material_of(watched, reverse=False), samples.names, device)
+    return AnchorNetTraining(
+        how, training_set_of(samples), training_set_of(watched, reverse=False), samples.names, device
+    )
 
 
-def shapes_of(material: Material, count: int = 20, seed: int = 0) -> Numbers:
+def shapes_of(material: TrainingSet, count: int = 20, seed: int = 0) -> Numbers:
     """Return ``basis [6, 24]``, ``centres [count, 6]`` and ``spread [6]`` of what constant velocity misses."""
     if len(material) < count:
         raise InputError(f"{len(material)} people are too few to learn {count} futures from")
     past = material.people.past
     step = past[:, -1] - past[:, -2]
-    missed = turned(material.ahead - step[:, None] * np.arange(1.0, AHEAD + 1.0)[:, None], forward(past))
-    both = np.concatenate([missed, missed * np.array([1.0, -1.0])]).reshape(-1, 2 * AHEAD)
+    missed = rotate(
+        material.ahead - step[:, None] * np.arange(1.0, PREDICTED_ROWS + 1.0)[:, None], heading_vectors(past)
+    )
+    both = np.concatenate([missed, missed * np.array([1.0, -1.0])]).reshape(-1, 2 * PREDICTED_ROWS)
     _, vectors = np.linalg.eigh(both.T @ both)
     basis = vectors[:, ::-1][:, :RANK].T
     basis = basis * np.where(basis[np.arange(RANK), np.abs(basis).argmax(axis=1)] < 0.0, -1.0, 1.0)[:, None]
     points = both @ basis.T
-    found, _ = centres(points, count, seed)
+    found, _ = cluster_centers(points, count, seed)
     return {"basis": basis, "centres": found, "spread": points.std(axis=0)}
 
 
@@ -126,8 +126,9 @@ def network(how: AnchorTraining) -> Any:
 def _layers(W: int, S: int, K: int) -> Any:
     layers: Any = torch.nn.ModuleDict(
         {
-            "own_1": torch.nn.Linear(INPUTS, W), "own_2": torch.nn.Linear(W, W),
-            "query": torch.nn.Linear(W, S), "near_1": torch.nn.Linear(COMPANY, S), "near_2": torch.nn.Linear(S, S),
+            "own_1": torch.nn.Linear(AGENT_FEATURES, W), "own_2": torch.nn.Linear(W, W),
+            "query": torch.nn.Linear(W, S),
+            "near_1": torch.nn.Linear(NEIGHBOR_FEATURES, S), "near_2": torch.nn.Linear(S, S),
             "both_1": torch.nn.Linear(W + S, W), "both_2": torch.nn.Linear(W, W),
             "out": torch.nn.Linear(W, RANK * K + K + 2 * RANK),
         }
@@ -155,8 +156,8 @@ def outputs(layers: Any, own: Any, company: Any, there: Any) -> Any:
 class AnchorNetTraining(Trainable):
     """The anchor network with its people; see :class:`~crowdbot.prediction.Trainable`.
 
-    The last weights, averaged, are as good as any: with ``check_every`` as large as the number of updates none is
-    picked. Probabilities and spreads are calibrated on who is watched, whenever weights are given out.
+    With ``check_every`` equal to the number of updates, the averaged weights after the last update are used.
+    Probabilities and spreads are calibrated on the validation data.
 
     Args:
         config: how it is trained.
@@ -169,10 +170,10 @@ class AnchorNetTraining(Trainable):
     kind: ClassVar[str] = "anchor-net"
 
     def __init__(
-        self, config: AnchorTraining, material: Material, watched: Material, names: Sequence[str] = (),
+        self, config: AnchorTraining, material: TrainingSet, watched: TrainingSet, names: Sequence[str] = (),
         device: str = "cpu",
     ) -> None:  # fmt: skip
-        self.device = device_of(device)
+        self.device = torch_device(device)
         self.config, self.material, self.watched = config, material, watched
         self.data = f"{material.digest}-{watched.digest}"
         self.facts = {"dt": STEP, "units": "m", "learned": list(names)}
@@ -193,7 +194,7 @@ class AnchorNetTraining(Trainable):
         """Do one update; people and how they are varied come from a stream named by seed and number."""
         del batch, rng
         how, own = self.config, stream(self.config.seed, "batch", number)
-        shown = batch_of(self.material, own.integers(0, len(self.material), how.people), how.variation, own)
+        shown = make_batch(self.material, own.integers(0, len(self.material), how.people), how.variation, own)
         for group in self.optimiser.param_groups:
             group["lr"] = how.rate * _pace(number, total, how)
         loss = _loss(self.layers, self.fixed, shown, how, 1.0 - number / total)
@@ -210,13 +211,15 @@ class AnchorNetTraining(Trainable):
     def check(self) -> Mapping[str, float]:
         """Return ADE and FDE [m] of the nearest of the fixed futures, and ADE of the single answer."""
         numbers = self.numbers()
-        own, company, there, missed = batch_of(self.watched, np.arange(len(self.watched)), NONE, stream(0, "check"))
+        own, company, there, missed = make_batch(
+            self.watched, np.arange(len(self.watched)), NO_AUGMENTATION, stream(0, "check")
+        )
         found = network_output(numbers, own, company, there)
         K = self.config.count
         bend = numbers["centres"] + found[:, : RANK * K].reshape(-1, K, RANK) * numbers["spread"]
         lone = found[:, RANK * K + K : RANK * K + K + RANK] * numbers["spread"]
         paths = np.concatenate([bend, lone[:, None]], axis=1) @ numbers["basis"]
-        away = np.linalg.norm(paths.reshape(len(missed), K + 1, AHEAD, 2) - missed[:, None], axis=3)
+        away = np.linalg.norm(paths.reshape(len(missed), K + 1, PREDICTED_ROWS, 2) - missed[:, None], axis=3)
         ade, fde = away.mean(axis=2), away[:, :, -1]
         nearest = {"ade": ade[:, :K].min(axis=1), "fde": fde[:, :K].min(axis=1), "single": ade[:, K]}
         return {name: float(values.mean()) for name, values in nearest.items()}
@@ -227,7 +230,7 @@ class AnchorNetTraining(Trainable):
 
     def weights(self) -> Mapping[str, Any]:
         """Return the averaged numbers, calibrated on who is watched."""
-        return calibrated(self.numbers(), self.watched)
+        return calibrate_confidence(self.numbers(), self.watched)
 
     def state(self) -> Mapping[str, Any]:
         """Return layers, optimiser and average."""
@@ -236,8 +239,8 @@ class AnchorNetTraining(Trainable):
         }  # fmt: skip
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Go back to a state."""
-        kept = tensors(dict(state), self.device)
+        """Restore a state."""
+        kept = to_tensors(dict(state), self.device)
         self.layers.load_state_dict(kept["layers"])
         self.optimiser.load_state_dict(kept["optimiser"])
         self.mean = kept["mean"]
@@ -250,7 +253,7 @@ def _pace(update: int, total: int, how: AnchorTraining) -> float:
     return float(0.5 + 0.5 * np.cos(np.pi * done))
 
 
-def _loss(layers: Any, fixed: dict[str, Any], shown: Batch, how: AnchorTraining, early: float) -> Any:
+def _loss(layers: Any, fixed: dict[str, Any], shown: TrainingBatch, how: AnchorTraining, early: float) -> Any:
     """Return the loss of one batch; ``early`` falls from 1 to 0 over the training."""
     K = how.count
     device = fixed["basis"].device
@@ -260,7 +263,7 @@ def _loss(layers: Any, fixed: dict[str, Any], shown: Batch, how: AnchorTraining,
     N = len(found)
     bend = fixed["centres"] + found[:, : RANK * K].reshape(N, K, RANK) * fixed["spread"]
     score, single, wide = found[:, RANK * K :].split([K, RANK, RANK], dim=1)
-    away = (bend @ fixed["basis"]).reshape(N, K, AHEAD, 2) - missed[:, None]
+    away = (bend @ fixed["basis"]).reshape(N, K, PREDICTED_ROWS, 2) - missed[:, None]
     distance = (away.square().sum(3) + 1e-8).sqrt()
     mean, end = distance.mean(2), distance[:, :, -1]
     error = mean + 0.5 * end
@@ -268,9 +271,9 @@ def _loss(layers: Any, fixed: dict[str, Any], shown: Batch, how: AnchorTraining,
     with torch.no_grad():
         warmth = 0.1 + 0.2 * error.min(1, keepdim=True).values
         target = torch.softmax(-error / warmth, 1)
-        truth = missed.reshape(N, 2 * AHEAD) @ fixed["basis"].T
+        truth = missed.reshape(N, 2 * PREDICTED_ROWS) @ fixed["basis"].T
     log_share = torch.log_softmax(score, 1)
-    one = ((single * fixed["spread"]) @ fixed["basis"]).reshape(N, AHEAD, 2) - missed
+    one = ((single * fixed["spread"]) @ fixed["basis"]).reshape(N, PREDICTED_ROWS, 2) - missed
     lone = (one.square().sum(2) + 1e-8).sqrt()
     log_spread = (layers.width + wide[:, None]).clamp(-6.0, 2.0)
     z = (truth[:, None] - bend.detach()) / fixed["spread"] * torch.exp(-log_spread)

@@ -1,4 +1,4 @@
-"""What the anchor network learns from: people of training recordings, and how each is varied before it is seen."""
+"""Training data of AnchorNet and their augmentation."""
 
 from __future__ import annotations
 
@@ -15,24 +15,41 @@ from crowdbot.data import Trajectories, Windows
 from crowdbot.prediction.pretrained_weights import STEP
 from crowdbot.prediction.training.samples import Samples
 
-from .agent_frame import AHEAD, ROWS, People, completed, features, forward, people_of, turned
+from .agent_frame import (
+    PREDICTED_ROWS,
+    ROWS,
+    AgentHistories,
+    agent_features,
+    agent_histories,
+    heading_vectors,
+    interpolate_gaps,
+    rotate,
+)
 
-__all__ = ["Batch", "Material", "Variation", "backwards", "batch", "gathered", "material_of"]
+__all__ = [
+    "Augmentation",
+    "TrainingBatch",
+    "TrainingSet",
+    "make_batch",
+    "reverse_time",
+    "training_set",
+    "training_set_of",
+]
 
 Floats = NDArray[np.float64]
 
 AT_ONCE = 64
-"""About so many scenes, of nearly the same size, are laid out together."""
+"""Approximate number of scenes of similar size per batch."""
 
 
-class Material(NamedTuple):
-    """N people to learn from, in the axes of the world, seen from their last place."""
+class TrainingSet(NamedTuple):
+    """N people with their futures, in world axes, relative to their last position."""
 
-    people: People
-    planned: People
-    """The same with the neighbours whose future is known walking there, as a robot with a plan does."""
+    people: AgentHistories
+    planned: AgentHistories
+    """The same, with known futures of neighbors, as for robots with a plan."""
     ahead: Floats
-    """``[N, 12, 2]`` [m] where they went."""
+    """``[N, 12, 2]`` [m] true futures."""
 
     def __len__(self) -> int:
         """Return the number of people."""
@@ -40,15 +57,15 @@ class Material(NamedTuple):
 
     @property
     def digest(self) -> str:
-        """Hash of where everyone was, went, and who was near."""
+        """Hash of all arrays."""
         found = hashlib.blake2b(digest_size=12)
         for array in (self.ahead, *self.people, *self.planned):
             found.update(np.ascontiguousarray(array).tobytes())
         return found.hexdigest()
 
 
-class Batch(NamedTuple):
-    """What the network is shown: own numbers, neighbours, and what constant velocity misses."""
+class TrainingBatch(NamedTuple):
+    """Inputs of the network and residuals to constant velocity."""
 
     own: Floats
     company: Floats
@@ -57,8 +74,8 @@ class Batch(NamedTuple):
 
 
 @dataclasses.dataclass(frozen=True)
-class Variation:
-    """How people are varied; a share is a probability for each person and batch.
+class Augmentation:
+    """Data augmentation; shares are probabilities per person and batch.
 
     Fields:
         mirror: share of mirrored people.
@@ -69,9 +86,9 @@ class Variation:
         noisy, noise: share of tracks with noise at every row, and its largest standard deviation [m].
         holes, hole: share of tracks with rows missing, and the share of their rows.
         late: share of tracks that begin late, with 2 to 7 rows.
-        switched: share of tracks whose older rows belong to the nearest neighbour.
-        planned: share of people who know where some neighbours go.
-        unseen: share of neighbours that are not seen.
+        switched: share of tracks whose older rows belong to the nearest neighbor.
+        planned: share of people who know where some neighbors go.
+        unseen: share of neighbors that are not seen.
     """
 
     mirror: float = 0.5
@@ -89,40 +106,40 @@ class Variation:
     unseen: float = 0.05
 
 
-NONE = Variation(*(0.0,) * 13)
+NO_AUGMENTATION = Augmentation(*(0.0,) * 13)
 
 
-def gathered(recordings: Sequence[Trajectories], reverse: bool = True) -> Material:
-    """Return everyone who is seen over 8 + 12 rows at 0.4 s, and with ``reverse`` also as if time ran backwards.
+def training_set(recordings: Sequence[Trajectories], reverse: bool = True) -> TrainingSet:
+    """Return all people with 8 + 12 rows at 0.4 s, and with ``reverse`` their time-reversed tracks.
 
     Raises:
-        InputError: there is nobody, or a recording is not in metres at 0.4 s.
+        InputError: no recording, or a recording is not in metres at 0.4 s.
     """
     parts = []
     for tracks in recordings:
         if tracks.units != "m" or abs(tracks.dt - STEP) > 1e-6:
             raise InputError(
-                f"{tracks.name} has steps of {tracks.dt:.4g} s in {tracks.units}; learning needs 0.4 s in metres:"
-                " give fps (0.4 s are 10 frames at fps=25), or resample"
+                f"{tracks.name} has steps of {tracks.dt:.4g} s in {tracks.units}; training requires 0.4 s and metres:"
+                " set fps (25 for tracks with 10 frames per row of 0.4 s), or resample"
             )
-        for one in (tracks, backwards(tracks)) if reverse else (tracks,):
+        for one in (tracks, reverse_time(tracks)) if reverse else (tracks,):
             parts.append(_people(*one.windows()))
     if not parts:
         raise InputError("there is no recording to learn from")
     return _material(parts)
 
 
-def material_of(samples: Samples, reverse: bool = True) -> Material:
-    """Return everyone of the samples who is seen over 8 + 12 rows, and with ``reverse`` also as if time ran backwards.
-
-    Backwards, only those are near who were there at both ends of the observed rows.
+def training_set_of(samples: Samples, reverse: bool = True) -> TrainingSet:
+    """Return all people of the samples with 8 + 12 rows, and with ``reverse`` their time-reversed tracks.
 
     Raises:
-        InputError: there is nobody, or rows or units do not fit.
+        InputError: nobody with complete tracks, or other rows or units.
     """
-    if (samples.observe, samples.predict, samples.units) != (ROWS, AHEAD, "m") or abs(samples.dt - STEP) > 0.01 * STEP:
+    if (samples.observe, samples.predict, samples.units) != (ROWS, PREDICTED_ROWS, "m") or abs(
+        samples.dt - STEP
+    ) > 0.01 * STEP:
         raise InputError(
-            f"anchor-net learns {ROWS} + {AHEAD} rows of {STEP} s in metres, {samples.names[0]} is cut into"
+            f"anchor-net learns {ROWS} + {PREDICTED_ROWS} rows of {STEP} s in metres, {samples.names[0]} is cut into"
             f" {samples.observe} + {samples.predict} rows of {samples.dt:.4g} s in {samples.units}; resample with"
             f" --step {STEP}"
         )
@@ -147,8 +164,8 @@ def _windows(place: Floats, there: NDArray[np.bool_], scored: NDArray[np.bool_],
     return past, future
 
 
-def backwards(tracks: Trajectories) -> Trajectories:
-    """Return the tracks as if time ran backwards; people walk alike."""
+def reverse_time(tracks: Trajectories) -> Trajectories:
+    """Return the time-reversed tracks."""
     last = tracks.frame.max() + tracks.frame.min()
     return Trajectories(
         tracks.id, last - tracks.frame, tracks.x, tracks.y, row_rate=1.0 / tracks.dt, frame_step=tracks.frame_step,
@@ -156,23 +173,25 @@ def backwards(tracks: Trajectories) -> Trajectories:
     )  # fmt: skip
 
 
-def batch(material: Material, rows: NDArray[np.int64], how: Variation, rng: np.random.Generator) -> Batch:
-    """Return the people ``rows`` of the material, varied."""
+def make_batch(
+    material: TrainingSet, rows: NDArray[np.int64], how: Augmentation, rng: np.random.Generator
+) -> TrainingBatch:
+    """Return a batch of augmented people."""
     people, ahead, seen_from = _varied(material, rows, how, rng)
-    heading = forward(people.past)
+    heading = heading_vectors(people.past)
     angle = how.turn * rng.standard_normal(len(rows))
     wrong = np.stack([np.cos(angle), -np.sin(angle)], axis=1)
-    heading = turned(heading, wrong)
-    own, company = features(people, heading)
+    heading = rotate(heading, wrong)
+    own, company = agent_features(people, heading)
     step = people.past[:, -1] - people.past[:, -2]
-    missed = ahead - seen_from - step[:, None] * np.arange(1.0, AHEAD + 1.0)[:, None]
-    return Batch(own, company, people.there, turned(missed, heading))
+    missed = ahead - seen_from - step[:, None] * np.arange(1.0, PREDICTED_ROWS + 1.0)[:, None]
+    return TrainingBatch(own, company, people.there, rotate(missed, heading))
 
 
 def _varied(
-    material: Material, rows: NDArray[np.int64], how: Variation, rng: np.random.Generator
-) -> tuple[People, Floats, Floats]:
-    """Return people, where they went, and where they were seen last, all from the true last place."""
+    material: TrainingSet, rows: NDArray[np.int64], how: Augmentation, rng: np.random.Generator
+) -> tuple[AgentHistories, Floats, Floats]:
+    """Return augmented histories, futures and last positions, relative to the true last position."""
     N = len(rows)
     plain, planned = material.people.at(rows), material.planned.at(rows)
     knows = (rng.random(N) < how.planned)[:, None] & (rng.random(planned.known.shape) < 0.3) & planned.known
@@ -185,26 +204,26 @@ def _varied(
     past = past + _noise(N, past.shape[1], how, rng)
     past = _switched(past, near, pace, how, rng)
     seen = _rows_seen(past, plain.seen, how, rng)
-    past = completed(past, seen)
+    past = interpolate_gaps(past, seen)
     now = past[:, -1:]
     zero = there[..., None]
-    people = People(
+    people = AgentHistories(
         past - now, seen, np.where(zero, near - now, 0.0), np.where(zero, pace, 0.0),
         np.where(zero[..., None], later * factor[:, None, None] - now[:, None], 0.0), knows & there, there,
     )  # fmt: skip
     return people, ahead, now
 
 
-def _noise(count: int, rows: int, how: Variation, rng: np.random.Generator) -> Floats:
-    """Return ``[N, 8, 2]`` [m]; most tracks are right at the last row."""
+def _noise(count: int, rows: int, how: Augmentation, rng: np.random.Generator) -> Floats:
+    """Return noise ``[N, 8, 2]`` [m]; for most tracks it is 0 at the last row."""
     small = how.jitter * rng.random(count)[:, None, None] * rng.standard_normal((count, rows, 2))
     small[:, -1] = 0.0
     large = how.noise * rng.random(count)[:, None, None] * rng.standard_normal((count, rows, 2))
     return np.where((rng.random(count) < how.noisy)[:, None, None], large, small)
 
 
-def _switched(past: Floats, near: Floats, pace: Floats, how: Variation, rng: np.random.Generator) -> Floats:
-    """Return tracks, some with the older rows of the nearest neighbour, who walked evenly."""
+def _switched(past: Floats, near: Floats, pace: Floats, how: Augmentation, rng: np.random.Generator) -> Floats:
+    """Return tracks, some with an identity switch: earlier rows come from the nearest neighbor."""
     N, T, _ = past.shape
     row = np.arange(1.0 - T, 1.0)[:, None]
     other = near[:, :1] + pace[:, :1] * row
@@ -214,7 +233,7 @@ def _switched(past: Floats, near: Floats, pace: Floats, how: Variation, rng: np.
     return np.where((chosen & (np.arange(T) < from_row))[..., None], other, past)
 
 
-def _rows_seen(past: Floats, seen: NDArray[np.bool_], how: Variation, rng: np.random.Generator) -> NDArray[np.bool_]:
+def _rows_seen(past: Floats, seen: NDArray[np.bool_], how: Augmentation, rng: np.random.Generator) -> NDArray[np.bool_]:
     N, T = seen.shape
     hole = (rng.random((N, 1)) < how.holes) & (rng.random((N, T)) < how.hole)
     begin = np.where(rng.random((N, 1)) < how.late, T - rng.integers(2, T, size=(N, 1)), 0)
@@ -225,25 +244,25 @@ def _rows_seen(past: Floats, seen: NDArray[np.bool_], how: Variation, rng: np.ra
     return kept
 
 
-def _people(past: Windows, future: Windows) -> Material:
+def _people(past: Windows, future: Windows) -> TrainingSet:
     whole = np.asarray(future.present.all(axis=1))
     known = np.where(whole[:, None, :, None], future.position, np.nan)
-    people, window, slot = people_of(past)
-    planned, _, _ = people_of(dataclasses.replace(past, plan=known))
+    people, window, slot = agent_histories(past)
+    planned, _, _ = agent_histories(dataclasses.replace(past, plan=known))
     kept = np.flatnonzero(future.scored[window, slot])
     window, slot = window[kept], slot[kept]
     ahead = future.position[window, :, slot] - past.position[window, -1, slot][:, None]
-    return Material(people.at(kept), planned.at(kept), ahead)
+    return TrainingSet(people.at(kept), planned.at(kept), ahead)
 
 
-def _material(parts: Sequence[Material]) -> Material:
-    return Material(
+def _material(parts: Sequence[TrainingSet]) -> TrainingSet:
+    return TrainingSet(
         _joined([part.people for part in parts]),
         _joined([part.planned for part in parts]),
         np.concatenate([part.ahead for part in parts]),
     )
 
 
-def _joined(parts: Sequence[People]) -> People:
+def _joined(parts: Sequence[AgentHistories]) -> AgentHistories:
     columns: list[Any] = [np.concatenate(values) for values in zip(*parts, strict=True)]
-    return People(*columns)
+    return AgentHistories(*columns)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Framed", "framed", "headings"]
+__all__ = ["AgentFrames", "agent_frames", "headings"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -19,7 +19,7 @@ SPANS = (2, 4)
 
 
 @dataclass(frozen=True)
-class Framed:
+class AgentFrames:
     """Tracks of S scenes in frames of their own.
 
     Fields:
@@ -49,7 +49,7 @@ class Framed:
         return np.stack([cos * x + sin * y, cos * y - sin * x], axis=-1)
 
 
-def framed(past: Floats, here: Bools, frame: str, offset: Floats) -> Framed:
+def agent_frames(past: Floats, here: Bools, frame: str, offset: Floats) -> AgentFrames:
     """Put tracks ``[S, T, A, 2]`` [m] into frames; who is not ``here`` ``[S, A]`` stays at 0.
 
     Args:
@@ -66,8 +66,8 @@ def framed(past: Floats, here: Bools, frame: str, offset: Floats) -> Framed:
         count = np.maximum(here.sum(axis=1), 1)[:, None, None]
         centre = np.sum(np.where(here[..., None], now, 0.0), axis=1, keepdims=True) / count
         origin, turn = np.where(here[..., None], now - centre, 0.0), headings(past)
-    made = Framed(past, origin, turn, centre)
-    return Framed(np.where(here[:, None, :, None], made.own(past), 0.0), origin, turn, centre)
+    made = AgentFrames(past, origin, turn, centre)
+    return AgentFrames(np.where(here[:, None, :, None], made.own(past), 0.0), origin, turn, centre)
 
 
 def headings(past: Floats) -> Floats:

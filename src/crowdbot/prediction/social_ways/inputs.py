@@ -13,11 +13,11 @@ from torch import Tensor
 
 from crowdbot.prediction.training.samples import Samples
 
-from .agent_frames import Framed, framed
+from .agent_frames import AgentFrames, agent_frames
 from .config import SocialWaysConfig
-from .network import Sight
+from .network import SceneInput
 
-__all__ = ["Scales", "sight_of", "states_of"]
+__all__ = ["Normalization", "scene_input", "states_of"]
 
 Floats = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ LEAST = 1e-3
 
 
 @dataclass(frozen=True)
-class Scales:
+class Normalization:
     """Normalisation, from training data alone.
 
     Fields:
@@ -45,13 +45,13 @@ class Scales:
     dt: float
 
     @classmethod
-    def of(cls, samples: Samples, config: SocialWaysConfig) -> Scales:
+    def of(cls, samples: Samples, config: SocialWaysConfig) -> Normalization:
         """Return the scales of training samples."""
         offset = samples.position[samples.there].mean(axis=0)
-        some = samples.thinned(MOST)
+        some = samples.subsample(MOST)
         scenes = some.batch(np.arange(len(some)))
         past, here = scenes.position[:, : samples.observe], scenes.here
-        local = framed(past, here, config.frame, offset).local.swapaxes(1, 2)[here]  # [P, T, 2]
+        local = agent_frames(past, here, config.frame, offset).local.swapaxes(1, 2)[here]  # [P, T, 2]
         velocity = np.diff(local, axis=1) / samples.dt
         now = past[:, -1]
         apart = np.hypot(*np.moveaxis(now[:, :, None] - now[:, None], -1, 0))
@@ -63,17 +63,17 @@ class Scales:
         return cls(size(local), size(velocity), size(apart[pairs]), (float(offset[0]), float(offset[1])), samples.dt)
 
     @classmethod
-    def read(cls, facts: Mapping[str, Any]) -> Scales:
+    def read(cls, facts: Mapping[str, Any]) -> Normalization:
         """Return the scales of a checkpoint."""
         x, y = facts["offset"]
         return cls(facts["position"], facts["velocity"], facts["distance"], (x, y), facts["dt"])
 
 
-def sight_of(
-    past: Floats, here: NDArray[np.bool_], config: SocialWaysConfig, scales: Scales, device: Any = "cpu"
-) -> tuple[Sight, Framed]:
+def scene_input(
+    past: Floats, here: NDArray[np.bool_], config: SocialWaysConfig, scales: Normalization, device: Any = "cpu"
+) -> tuple[SceneInput, AgentFrames]:
     """Return what the generator sees of complete observed tracks ``[S, T, A, 2]`` [m], and the frames."""
-    seen = framed(past, here, config.frame, np.array(scales.offset))
+    seen = agent_frames(past, here, config.frame, np.array(scales.offset))
     velocity = np.diff(seen.local[:, -2:], axis=1)[:, 0] / scales.dt
 
     def tensor(values: NDArray[Any]) -> Tensor:
@@ -81,10 +81,10 @@ def sight_of(
 
     mask = torch.as_tensor(here, device=device)
     state = tensor(states_of(seen.local, scales))
-    return Sight(state, mask, *map(tensor, (seen.origin, seen.turn, velocity, seen.local[:, -1]))), seen
+    return SceneInput(state, mask, *map(tensor, (seen.origin, seen.turn, velocity, seen.local[:, -1]))), seen
 
 
-def states_of(local: Floats, scales: Scales, before: Floats | None = None) -> Floats:
+def states_of(local: Floats, scales: Normalization, before: Floats | None = None) -> Floats:
     """Return states ``[S, T, A, 4]`` of positions ``[S, T, A, 2]`` [m] in their frames.
 
     Args:

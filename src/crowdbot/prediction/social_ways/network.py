@@ -1,4 +1,4 @@
-"""Social Ways, the network: a generator of futures with attention over neighbours, and its discriminator.
+"""Social Ways, the network: a generator of futures with attention over neighbors, and its discriminator.
 
 Axes: B scenes (draws of one scene are B apart), A people, T rows, H = 128 hidden, P = 64 pooled, M = 64 noise.
 States are (x, y, vx, vy) in the frame of each person, divided by scales of the training data.
@@ -20,12 +20,12 @@ from torch import Tensor, nn
 
 from .config import SocialWaysConfig
 
-__all__ = ["Discriminator", "Generator", "Sight", "social_features"]
+__all__ = ["Discriminator", "Generator", "SceneInput", "social_features"]
 
 SMALL = 1e-6
 
 
-class Sight(NamedTuple):
+class SceneInput(NamedTuple):
     """What the generator sees of B scenes, as tensors.
 
     Fields:
@@ -43,9 +43,9 @@ class Sight(NamedTuple):
     velocity: Tensor
     place: Tensor
 
-    def drawn(self, draws: int) -> Sight:
+    def drawn(self, draws: int) -> SceneInput:
         """Return every scene ``draws`` times: all scenes, then all scenes again."""
-        return Sight(*(one.repeat(draws, *(1,) * (one.dim() - 1)) for one in self))
+        return SceneInput(*(one.repeat(draws, *(1,) * (one.dim() - 1)) for one in self))
 
 
 class Generator(nn.Module):
@@ -66,7 +66,9 @@ class Generator(nn.Module):
             nn.Linear(c.hidden, 64), nn.LeakyReLU(c.slope), nn.Linear(64, 32), nn.LeakyReLU(c.slope), nn.Linear(32, 2)
         )
 
-    def forward(self, sight: Sight, noise: Tensor, steps: int, plan: Tensor | None = None) -> tuple[Tensor, Tensor]:
+    def forward(
+        self, sight: SceneInput, noise: Tensor, steps: int, plan: Tensor | None = None
+    ) -> tuple[Tensor, Tensor]:
         """Return positions [m] and states of the future in the own frames, ``[K, B, T, A, 2]`` and ``[..., 4]``.
 
         Args:
@@ -116,8 +118,8 @@ class Generator(nn.Module):
             hidden = self.encoder(row, hidden)
         return hidden
 
-    def pooled(self, hidden: Tensor, place: Tensor, velocity: Tensor, sight: Sight) -> Tensor:
-        """Return what the neighbours mean to everyone ``[B * A, P]``; 0 for who has none.
+    def pooled(self, hidden: Tensor, place: Tensor, velocity: Tensor, sight: SceneInput) -> Tensor:
+        """Return what the neighbors mean to everyone ``[B * A, P]``; 0 for who has none.
 
         Args:
             hidden: ``[B * A, H]`` encoded tracks up to now.

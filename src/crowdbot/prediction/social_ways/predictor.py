@@ -14,17 +14,17 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import InputError, Paper
 from crowdbot.data import Forecast, Windows
 from crowdbot.prediction.constant import ConstantVelocity, SampledConstantVelocity
-from crowdbot.prediction.joint_futures import before_walls, kept_apart
-from crowdbot.prediction.learned_predictor import LearnedPredictor, whole_tracks
+from crowdbot.prediction.joint_futures import separate_people, stop_at_walls
+from crowdbot.prediction.learned_predictor import LearnedPredictor, complete_tracks
 from crowdbot.prediction.predictor import Predictor, window_streams
 from crowdbot.prediction.training.checkpoint import load_checkpoint
-from crowdbot.prediction.training.torch_backend import device_of, tensors, threads, torch_module
+from crowdbot.prediction.training.torch_backend import to_tensors, torch_device, torch_module, torch_threads
 
 from .config import config_of
 
 if TYPE_CHECKING:
     from .config import SocialWaysConfig
-    from .inputs import Scales
+    from .inputs import Normalization
     from .network import Generator
 
 __all__ = ["SocialWays", "SocialWaysNetwork"]
@@ -54,7 +54,7 @@ class SocialWaysNetwork:
 
     config: SocialWaysConfig
     generator: Generator
-    scales: Scales
+    scales: Normalization
     facts: dict[str, Any]
     device: Any
 
@@ -67,15 +67,15 @@ class SocialWaysNetwork:
                 is not there.
             MissingExtra: torch is not installed.
         """
-        place = device_of(device)
+        place = torch_device(device)
         content = load_checkpoint(checkpoint, KIND)
-        from .inputs import Scales
+        from .inputs import Normalization
         from .network import Generator
 
         try:
-            config, scales = config_of(content["config"]), Scales.read(content["facts"])
+            config, scales = config_of(content["config"]), Normalization.read(content["facts"])
             generator = Generator(config, scales.dt, (scales.position, scales.velocity, scales.distance))
-            generator.load_state_dict(tensors(content["weights"]))
+            generator.load_state_dict(to_tensors(content["weights"]))
         except (KeyError, TypeError, ValueError, RuntimeError) as why:
             text = str(why).splitlines()[0][:120] if str(why) else type(why).__name__
             raise InputError(f"the weights of {checkpoint} do not fit this crowdbot ({text}); train again") from None
@@ -125,17 +125,19 @@ class SocialWaysNetwork:
             steps: rows ahead; robots with a plan walk along it.
         """
         torch = torch_module()
-        from .inputs import sight_of
+        from .inputs import scene_input
 
         here = past.present[:, -1]
-        sight, seen = sight_of(whole_tracks(past, self.config.observe), here, self.config, self.scales, self.device)
+        sight, seen = scene_input(
+            complete_tracks(past, self.config.observe), here, self.config, self.scales, self.device
+        )
         plan = None
         if past.plan is not None:
             ahead = np.stack([past.plan_at(step) for step in range(1, steps + 1)], axis=1)  # [1, T, A, 2]
             plan = torch.as_tensor(seen.own(ahead), dtype=torch.float32, device=self.device)
         found = []
         size = max(1, AT_ONCE // max(1, noise.shape[1]))
-        with torch.no_grad(), threads():
+        with torch.no_grad(), torch_threads():
             for first in range(0, len(noise), size):
                 part = torch.tensor(noise[first : first + size, None], dtype=torch.float32, device=self.device)
                 place, _ = self.generator(sight, part, steps, plan)
@@ -192,16 +194,16 @@ class SocialWays(LearnedPredictor):
         return _network(str(self.file(source)), self.digest, self.device)
 
     def predict(self, past: Windows, steps: int, samples: int = 1, rng: np.random.Generator | None = None) -> Forecast:
-        """Return where people will be, see :meth:`Predictor.predict`.
+        """Return the forecast, see :meth:`Predictor.predict`.
 
         Raises:
             InputError: windows have another time step or other units than what was learned.
         """
         self.check(past, steps, samples)
-        why = self.misfit(past)
+        why = self.incompatibility(past)
         if why:
             one: Predictor = ConstantVelocity() if samples == 1 else SampledConstantVelocity()
-            warnings.warn(f"{self.kind}: {why}; {one.name} answers instead", stacklevel=2)
+            warnings.warn(f"{self.kind}: {why}; {one.name} is used instead", stacklevel=2)
             return one.predict(past, steps, samples, rng)
         network = self.network(past.source)
         self.fits(past, network.facts, self.name)
@@ -212,7 +214,7 @@ class SocialWays(LearnedPredictor):
             if len(people):
                 only = _only(past[window : window + 1], people)
                 place[window][:, :, people] = _drawn(network, only, steps, samples, own)
-        return self.forecast(past, kept_apart(past, place, self.contact))
+        return self.forecast(past, separate_people(past, place, self.contact))
 
 
 def _drawn(network: SocialWaysNetwork, past: Windows, steps: int, samples: int, rng: np.random.Generator) -> Floats:
@@ -224,7 +226,7 @@ def _drawn(network: SocialWaysNetwork, past: Windows, steps: int, samples: int, 
     if not past.walls:
         return place
     now = past.position[0, -1]
-    path, hit = before_walls(past, np.moveaxis(place - now, 2, 0), np.zeros_like(people), people)
+    path, hit = stop_at_walls(past, np.moveaxis(place - now, 2, 0), np.zeros_like(people), people)
     chosen = np.argmin(hit.sum(axis=0).reshape(samples, tries), axis=1) + tries * np.arange(samples)
     return np.asarray(now + np.moveaxis(path[:, chosen], 0, 2))
 

@@ -16,11 +16,11 @@ from torch import Tensor, nn
 from crowdbot.core import InputError, from_attributes, stream
 from crowdbot.prediction.training.loop import Trainable
 from crowdbot.prediction.training.samples import Samples, Scenes
-from crowdbot.prediction.training.torch_backend import device_of, tensors
+from crowdbot.prediction.training.torch_backend import to_tensors, torch_device
 
 from .config import SocialWaysConfig, preset
-from .inputs import Scales, sight_of, states_of
-from .network import Discriminator, Generator, Sight
+from .inputs import Normalization, scene_input, states_of
+from .network import Discriminator, Generator, SceneInput
 
 __all__ = ["SocialWaysTraining", "adversarial_loss", "learner", "variety_loss"]
 
@@ -49,7 +49,7 @@ def learner(
 class _Lesson(NamedTuple):
     """A batch as tensors: sight, the true future states ``[N, T, 4]`` of the N who count, and who they are."""
 
-    sight: Sight
+    sight: SceneInput
     scored: Tensor  # [S, A]
     observed: Tensor  # [N, T, 4]
     future: Tensor  # [N, T, 4]
@@ -81,11 +81,11 @@ class SocialWaysTraining(Trainable):
                     f" {part.observe} + {part.predict}"
                 )
         self.config, self.samples = config, samples
-        self.watched = watched.thinned(CHECKED)
+        self.watched = watched.subsample(CHECKED)
         self.data = f"{samples.digest}-{self.watched.digest}"
-        self.scales = Scales.of(samples, config)
+        self.scales = Normalization.of(samples, config)
         self.facts = {**dataclasses.asdict(self.scales), "units": samples.units, "learned": list(samples.names)}
-        self.device = device_of(device)
+        self.device = torch_device(device)
         with torch.random.fork_rng(devices=[]):
             torch.manual_seed(int(stream(seed, "weights").integers(2**62)))
             sizes = (self.scales.position, self.scales.velocity, self.scales.distance)
@@ -107,7 +107,7 @@ class SocialWaysTraining(Trainable):
     def update(self, batch: Any, rng: np.random.Generator, number: int, total: int) -> Mapping[str, float]:
         """Do a step of the discriminator, those it looks ahead, and a step of the generator."""
         self._rates(number, total)
-        lesson = self._lesson(augmented(self.samples.batch(batch), self.samples.observe, self.config, rng))
+        lesson = self._lesson(augment(self.samples.batch(batch), self.samples.observe, self.config, rng))
         c = self.config
         noise = self._noise(lesson, rng, c.variety_draws if c.use_variety_loss else 1)
         codes = noise[0][lesson.scored][:, : c.latent_codes]
@@ -156,7 +156,7 @@ class SocialWaysTraining(Trainable):
             rng: source of the noise.
         """
         here = np.ones((len(past), past.shape[2]), dtype=bool)
-        sight, seen = sight_of(past, here, self.config, self.scales, self.device)
+        sight, seen = scene_input(past, here, self.config, self.scales, self.device)
         noise = torch.as_tensor(rng.random((draws, *here.shape, self.config.inputs), dtype=np.float32))
         kept = {name: value.detach().clone() for name, value in self.generator.state_dict().items()}
         self.generator.load_state_dict(self.mean)
@@ -181,7 +181,7 @@ class SocialWaysTraining(Trainable):
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Go back to a state."""
-        kept = tensors(dict(state), self.device)
+        kept = to_tensors(dict(state), self.device)
         self.mean = kept.pop("mean")
         for name, value in kept.items():
             getattr(self, name).load_state_dict(value)
@@ -189,21 +189,21 @@ class SocialWaysTraining(Trainable):
     def _lesson(self, scenes: Scenes) -> _Lesson:
         rows = self.samples.observe
         past, future = scenes.position[:, :rows], scenes.position[:, rows:]
-        sight, seen = sight_of(past, scenes.here, self.config, self.scales, self.device)
+        sight, seen = scene_input(past, scenes.here, self.config, self.scales, self.device)
         true = states_of(seen.own(future), self.scales, seen.local[:, -1])  # [S, T, A, 4]
         scored = torch.as_tensor(scenes.scored, device=self.device)
         ahead = torch.as_tensor(true.swapaxes(1, 2)[scenes.scored], dtype=torch.float32, device=self.device)
         return _Lesson(sight, scored, sight.state.transpose(1, 2)[scored], ahead)
 
     def _frames(self, scenes: Scenes) -> Any:
-        return sight_of(scenes.position[:, : self.samples.observe], scenes.here, self.config, self.scales)[1]
+        return scene_input(scenes.position[:, : self.samples.observe], scenes.here, self.config, self.scales)[1]
 
     def _noise(self, lesson: _Lesson, rng: np.random.Generator, draws: int) -> Tensor:
         """Return ``[K, S, A, M]`` in 0..1."""
         drawn = rng.random((draws, *lesson.scored.shape, self.config.inputs), dtype=np.float32)
         return torch.as_tensor(drawn, device=self.device)
 
-    def _rolled(self, sight: Sight, noise: Tensor) -> tuple[Tensor, Tensor]:
+    def _rolled(self, sight: SceneInput, noise: Tensor) -> tuple[Tensor, Tensor]:
         rolled: tuple[Tensor, Tensor] = self.generator(sight, noise, self.config.predict)
         return rolled
 
@@ -300,7 +300,7 @@ def variety_loss(drawn: Tensor, true: Tensor) -> Tensor:
     return away.min(dim=0).values.mean()
 
 
-def augmented(scenes: Scenes, observe: int, config: SocialWaysConfig, rng: np.random.Generator) -> Scenes:
+def augment(scenes: Scenes, observe: int, config: SocialWaysConfig, rng: np.random.Generator) -> Scenes:
     """Return a batch whose scenes are mirrored, run backwards and stretched at random, as the settings say."""
     count = len(scenes.position)
     place, there, scored, here = scenes

@@ -4,28 +4,28 @@ PyTorch is an optional dependency: ``pip install 'crowdbot[learn]'``. Importing 
 """
 
 from .checkpoint import load_checkpoint, save_checkpoint
-from .loop import BEST, LAST, LOG, Row, Schedule, Trainable, Trained, train
+from .loop import BEST, LAST, LOG, LogRow, Trainable, TrainingResult, TrainingSchedule, train
 from .samples import Samples, Scenes, leave_out, short_recordings, split_in_time
-from .torch_backend import device_of, tensors, threads, torch_module
+from .torch_backend import to_tensors, torch_device, torch_module, torch_threads
 
 __all__ = [
     "BEST",
     "LAST",
     "LOG",
-    "Row",
+    "LogRow",
     "Samples",
     "Scenes",
-    "Schedule",
     "Trainable",
-    "Trained",
-    "device_of",
+    "TrainingResult",
+    "TrainingSchedule",
     "leave_out",
     "load_checkpoint",
     "save_checkpoint",
     "short_recordings",
     "split_in_time",
-    "tensors",
-    "threads",
+    "to_tensors",
+    "torch_device",
     "torch_module",
+    "torch_threads",
     "train",
 ]

@@ -34,7 +34,7 @@ def save_checkpoint(file: Path, kind: str, content: Mapping[str, Any]) -> None:
         content: dictionaries, lists, text, numbers, None, arrays and tensors, nested as needed.
     """
     arrays: dict[str, NDArray[Any]] = {}
-    text = json.dumps({"format": FORMAT, "kind": kind, "content": _packed(dict(content), arrays)}, allow_nan=True)
+    text = json.dumps({"format": FORMAT, "kind": kind, "content": _pack(dict(content), arrays)}, allow_nan=True)
     file.parent.mkdir(parents=True, exist_ok=True)
     draft = file.with_name(f"{file.name}.part")
     with draft.open("wb") as stream:
@@ -63,7 +63,7 @@ def load_checkpoint(file: Path | str, kind: str | None = None) -> dict[str, Any]
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as entries:
             arrays = {name: entries[name] for name in entries.files}
         text = json.loads(arrays.pop("content").tobytes().decode())
-        content = _unpacked(text["content"], arrays)
+        content = _unpack(text["content"], arrays)
         found, version = text["kind"], text["format"]
     except (OSError, EOFError, ValueError, KeyError, TypeError, AttributeError, zipfile.BadZipFile, zlib.error) as why:
         raise InputError(
@@ -77,7 +77,7 @@ def load_checkpoint(file: Path | str, kind: str | None = None) -> dict[str, Any]
     return content
 
 
-def _packed(value: Any, arrays: dict[str, NDArray[Any]]) -> Any:
+def _pack(value: Any, arrays: dict[str, NDArray[Any]]) -> Any:
     if hasattr(value, "detach"):
         value = value.detach().cpu().numpy()
     if isinstance(value, np.ndarray):
@@ -90,22 +90,22 @@ def _packed(value: Any, arrays: dict[str, NDArray[Any]]) -> Any:
         return value.item()
     if isinstance(value, dict):
         if all(isinstance(key, str) for key in value):
-            return {key: _packed(item, arrays) for key, item in value.items()}
-        return {PAIRS: [[key, _packed(item, arrays)] for key, item in value.items()]}
+            return {key: _pack(item, arrays) for key, item in value.items()}
+        return {PAIRS: [[key, _pack(item, arrays)] for key, item in value.items()]}
     if isinstance(value, list | tuple):
-        return [_packed(item, arrays) for item in value]
+        return [_pack(item, arrays) for item in value]
     if value is None or isinstance(value, str | int | float):
         return value
     raise InputError(f"a checkpoint cannot hold a {type(value).__name__}")
 
 
-def _unpacked(value: Any, arrays: Mapping[str, NDArray[Any]]) -> Any:
+def _unpack(value: Any, arrays: Mapping[str, NDArray[Any]]) -> Any:
     if isinstance(value, list):
-        return [_unpacked(item, arrays) for item in value]
+        return [_unpack(item, arrays) for item in value]
     if not isinstance(value, dict):
         return value
     if value.keys() == {ARRAY}:
         return arrays[value[ARRAY]]
     if value.keys() == {PAIRS}:
-        return {key: _unpacked(item, arrays) for key, item in value[PAIRS]}
-    return {key: _unpacked(item, arrays) for key, item in value.items()}
+        return {key: _unpack(item, arrays) for key, item in value[PAIRS]}
+    return {key: _unpack(item, arrays) for key, item in value.items()}

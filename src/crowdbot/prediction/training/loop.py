@@ -25,12 +25,12 @@ from crowdbot.core import InputError, stream
 
 from .checkpoint import load_checkpoint, save_checkpoint
 
-__all__ = ["BEST", "LAST", "LOG", "Row", "Schedule", "Trainable", "Trained", "train"]
+__all__ = ["BEST", "LAST", "LOG", "LogRow", "Trainable", "TrainingResult", "TrainingSchedule", "train"]
 
 BEST, LAST, LOG = "best.npz", "last.npz", "log.csv"
 """Files in the folder of a training: the best weights, all that is needed to go on, and the log."""
 
-Row = dict[str, float]
+LogRow = dict[str, float]
 """A line of the log: update, epoch, means of the losses since the line before, what was watched, seconds."""
 
 
@@ -83,7 +83,7 @@ class Trainable(ABC):
 
 
 @dataclass(frozen=True)
-class Schedule:
+class TrainingSchedule:
     """How long is trained, and what is watched.
 
     Fields:
@@ -117,7 +117,7 @@ class Schedule:
 
 
 @dataclass(frozen=True)
-class Trained:
+class TrainingResult:
     """How a training ended.
 
     Fields:
@@ -128,7 +128,7 @@ class Trained:
         seconds: that were spent on updates and checks.
     """
 
-    rows: tuple[Row, ...]
+    rows: tuple[LogRow, ...]
     best: int | None
     updates: int
     stopped: bool
@@ -136,7 +136,7 @@ class Trained:
 
 
 @dataclass
-class _Course:
+class _TrainingState:
     """Where a training stands."""
 
     update: int = 0
@@ -144,19 +144,19 @@ class _Course:
     step: int = 0
     best: int | None = None
     seconds: float = 0.0
-    rows: list[Row] = dataclasses.field(default_factory=list)
+    rows: list[LogRow] = dataclasses.field(default_factory=list)
     sums: dict[str, float] = dataclasses.field(default_factory=dict)
     summed: int = 0
 
 
 def train(
     model: Trainable,
-    schedule: Schedule,
+    schedule: TrainingSchedule,
     folder: Path | None = None,
     resume: bool = False,
-    report: Callable[[Row], None] | None = None,
+    report: Callable[[LogRow], None] | None = None,
     tick: Callable[[int, int], None] | None = None,
-) -> Trained:
+) -> TrainingResult:
     """Train a network; the folder holds what is needed to go on, the best weights and the log.
 
     The same model, schedule and data give the same bytes on one machine, whether or not the training was interrupted
@@ -174,12 +174,12 @@ def train(
         InputError: the folder holds a training and ``resume`` is not set, or one of other settings or data; or a loss
             is no longer a finite number.
     """
-    course = _begun(model, schedule, folder, resume)
+    course = _begin_or_resume(model, schedule, folder, resume)
     batches = model.batches(stream(schedule.seed, "order", course.epoch))
     if not batches:
         raise InputError("nobody is there at all rows of any window: there is nothing to learn from")
     total = schedule.updates or (schedule.epochs or 1) * len(batches)
-    stopped = _no_better(course, schedule)
+    stopped = _out_of_patience(course, schedule)
     while course.update < total and not stopped:
         begin = time.perf_counter()
         if course.step == len(batches):
@@ -188,7 +188,7 @@ def train(
         losses = model.update(
             batches[course.step], stream(schedule.seed, "update", course.update), course.update, total
         )
-        _counted(course, losses)
+        _add_losses(course, losses)
         last = course.update == total
         checked = last or course.update % schedule.check_every == 0
         if checked:
@@ -196,23 +196,23 @@ def train(
         course.seconds += time.perf_counter() - begin
         if checked:
             course.rows[-1]["seconds"] = round(course.seconds, 3)
-            stopped = _no_better(course, schedule)
+            stopped = _out_of_patience(course, schedule)
         if folder is not None and (checked or course.update % schedule.keep_every == 0):
-            _kept(model, schedule, course, folder)
+            _save(model, schedule, course, folder)
         if checked and report is not None:
             report(course.rows[-1])
         if tick is not None:
             tick(course.update, total)
-    return Trained(tuple(course.rows), course.best, course.update, stopped, course.seconds)
+    return TrainingResult(tuple(course.rows), course.best, course.update, stopped, course.seconds)
 
 
 def _about(model: Trainable) -> dict[str, Any]:
     return {"config": _plain(dataclasses.asdict(model.config)), "data": model.data, "facts": dict(model.facts)}
 
 
-def _begun(model: Trainable, schedule: Schedule, folder: Path | None, resume: bool) -> _Course:
+def _begin_or_resume(model: Trainable, schedule: TrainingSchedule, folder: Path | None, resume: bool) -> _TrainingState:
     if folder is None or not (folder / LAST).exists():
-        return _Course()
+        return _TrainingState()
     if not resume:
         raise InputError(f"{folder} holds a training already: go on with --resume, or choose another folder")
     kept = load_checkpoint(folder / LAST, f"{model.kind} training")
@@ -225,8 +225,8 @@ def _begun(model: Trainable, schedule: Schedule, folder: Path | None, resume: bo
     if kept["seed"] != schedule.seed:
         raise InputError(f"{folder} holds a training with seed {kept['seed']}, not {schedule.seed}")
     model.restore(kept["state"])
-    course = _Course(**kept["course"])
-    _logged(course, folder)
+    course = _TrainingState(**kept["course"])
+    _write_log(course, folder)
     return course
 
 
@@ -247,7 +247,7 @@ def _difference(was: Any, now: Any) -> str:
     return f"{name} = {was.get(name)}, now {now.get(name)}"
 
 
-def _counted(course: _Course, losses: Mapping[str, float]) -> None:
+def _add_losses(course: _TrainingState, losses: Mapping[str, float]) -> None:
     for name, value in losses.items():
         if not math.isfinite(value):
             raise InputError(
@@ -260,7 +260,7 @@ def _counted(course: _Course, losses: Mapping[str, float]) -> None:
     course.step += 1
 
 
-def _checked(model: Trainable, schedule: Schedule, course: _Course, folder: Path | None) -> None:
+def _checked(model: Trainable, schedule: TrainingSchedule, course: _TrainingState, folder: Path | None) -> None:
     """Write a line of the log, and keep the weights when they are the best."""
     means = {name: value / course.summed for name, value in course.sums.items()}
     errors = {name: float(value) for name, value in model.check().items()}
@@ -277,29 +277,29 @@ def _checked(model: Trainable, schedule: Schedule, course: _Course, folder: Path
             )
 
 
-def _watched(row: Row, schedule: Schedule) -> float:
+def _watched(row: LogRow, schedule: TrainingSchedule) -> float:
     unknown = next((name for name in schedule.watch if name not in row), None)
     if unknown is not None:
         raise InputError(f"{unknown} is not measured while training; there are {', '.join(row)}")
     return sum(row[name] for name in schedule.watch)
 
 
-def _no_better(course: _Course, schedule: Schedule) -> bool:
+def _out_of_patience(course: _TrainingState, schedule: TrainingSchedule) -> bool:
     if schedule.patience is None or course.best is None:
         return False
     return len(course.rows) - 1 - course.best >= schedule.patience
 
 
-def _kept(model: Trainable, schedule: Schedule, course: _Course, folder: Path) -> None:
+def _save(model: Trainable, schedule: TrainingSchedule, course: _TrainingState, folder: Path) -> None:
     save_checkpoint(
         folder / LAST,
         f"{model.kind} training",
         {**_about(model), "seed": schedule.seed, "state": dict(model.state()), "course": dataclasses.asdict(course)},
     )
-    _logged(course, folder)
+    _write_log(course, folder)
 
 
-def _logged(course: _Course, folder: Path) -> None:
+def _write_log(course: _TrainingState, folder: Path) -> None:
     """Write the log anew, so that it never holds a line that the checkpoint does not know."""
     names = list(dict.fromkeys(name for row in course.rows for name in row))
     draft = folder / f"{LOG}.part"

@@ -88,10 +88,10 @@ class Samples:
         """
         if not recordings:
             raise InputError("there is no recording to learn from")
-        return cls.joined([cls.cut(*one.windows, one.name) for one in recordings])
+        return cls.concatenate([cls.from_windows(*one.windows, one.name) for one in recordings])
 
     @classmethod
-    def cut(cls, past: Windows, future: Windows, name: str = "") -> Samples:
+    def from_windows(cls, past: Windows, future: Windows, name: str = "") -> Samples:
         """Return the scenes of windows, everyone who is present at the last observed row."""
         window, person = np.nonzero(past.present[:, -1])
         place = np.concatenate([past.position, future.position], axis=1)
@@ -109,7 +109,7 @@ class Samples:
         )
 
     @classmethod
-    def joined(cls, parts: Sequence[Samples]) -> Samples:
+    def concatenate(cls, parts: Sequence[Samples]) -> Samples:
         """Return the scenes of several samples, in order.
 
         Raises:
@@ -165,7 +165,7 @@ class Samples:
             found.update(np.ascontiguousarray(array).tobytes())
         return found.hexdigest()
 
-    def chosen(self, scenes: Integers | Bools) -> Samples:
+    def select(self, scenes: Integers | Bools) -> Samples:
         """Return some of the scenes."""
         number = np.arange(len(self))[scenes]
         count = np.diff(self.first)[number]
@@ -174,9 +174,9 @@ class Samples:
         arrays = {name: getattr(self, name)[person] for name in ("position", "there", "scored")}
         return dataclasses.replace(self, **arrays, first=first, source=self.source[number])
 
-    def thinned(self, most: int) -> Samples:
+    def subsample(self, most: int) -> Samples:
         """Return at most so many scenes, evenly over all of them."""
-        return self if len(self) <= most else self.chosen(np.linspace(0, len(self) - 1, most).round().astype(np.int64))
+        return self if len(self) <= most else self.select(np.linspace(0, len(self) - 1, most).round().astype(np.int64))
 
     def batch(self, scenes: Integers) -> Scenes:
         """Return some scenes as padded arrays."""
@@ -200,8 +200,8 @@ class Samples:
         bucket = np.cumsum(counted[order]) // max(1, BUCKET * people)
         for part in np.split(order, np.flatnonzero(np.diff(bucket)) + 1):
             ranked = part[np.argsort(np.diff(self.first)[part], kind="stable")]
-            cut = (np.cumsum(counted[ranked]) - 1) // max(1, people)
-            found += np.split(ranked, np.flatnonzero(np.diff(cut)) + 1)
+            from_windows = (np.cumsum(counted[ranked]) - 1) // max(1, people)
+            found += np.split(ranked, np.flatnonzero(np.diff(from_windows)) + 1)
         return [found[number] for number in rng.permutation(len(found))]
 
 
@@ -253,9 +253,9 @@ def split_in_time(recordings: Sequence[Recording], share: float) -> tuple[Sample
         before, after = future.frame[:, -1] < border, past.frame[:, 0] >= border
         if not before.any() or not after.any():
             raise DataError(f"{one.path}: {len(past)} windows are too few to hold back the last {share:.0%} in time")
-        early.append(Samples.cut(past[before], future[before], one.name))
-        late.append(Samples.cut(past[after], future[after], one.name))
-    return Samples.joined(early), Samples.joined(late)
+        early.append(Samples.from_windows(past[before], future[before], one.name))
+        late.append(Samples.from_windows(past[after], future[after], one.name))
+    return Samples.concatenate(early), Samples.concatenate(late)
 
 
 def short_recordings(recordings: Sequence[Recording]) -> list[str]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from crowdbot.core import InputError, optional
 
-__all__ = ["device_of", "tensors", "threads", "torch_module"]
+__all__ = ["to_tensors", "torch_device", "torch_module", "torch_threads"]
 
 
 def torch_module() -> Any:
@@ -20,7 +20,7 @@ def torch_module() -> Any:
     return optional("torch", "learned prediction", "learn")
 
 
-def device_of(name: str) -> Any:
+def torch_device(name: str) -> Any:
     """Return the torch device ``cpu``, ``cuda`` or ``cuda:N``.
 
     Raises:
@@ -39,7 +39,7 @@ def device_of(name: str) -> Any:
 
 
 @contextlib.contextmanager
-def threads(count: int = 1) -> Iterator[None]:
+def torch_threads(count: int = 1) -> Iterator[None]:
     """Let torch use so many threads inside; with one, sums are made in one order, on every machine.
 
     Small networks are no slower for it, and much faster where other work shares the processor.
@@ -53,16 +53,16 @@ def threads(count: int = 1) -> Iterator[None]:
         torch.set_num_threads(before)
 
 
-def tensors(tree: Any, device: Any = "cpu") -> Any:
+def to_tensors(tree: Any, device: Any = "cpu") -> Any:
     """Return a tree as :func:`load_checkpoint` gives it with tensors in place of arrays.
 
     >>> tensors({"step": 3})
     {'step': 3}
     """
     if isinstance(tree, dict):
-        return {key: tensors(value, device) for key, value in tree.items()}
+        return {key: to_tensors(value, device) for key, value in tree.items()}
     if isinstance(tree, list):
-        return [tensors(value, device) for value in tree]
+        return [to_tensors(value, device) for value in tree]
     if hasattr(tree, "dtype") and hasattr(tree, "shape"):
         return torch_module().as_tensor(tree, device=device)
     return tree

@@ -156,7 +156,7 @@ class _Reader:
             name=(self.name.strip() or "imported")[:80],
             about="Imported from the CrowdBot simulator of 2021.",
             duration=duration,
-            symmetry=0.001,
+            heading_jitter=0.001,
             stage=stage,
             routing=Routing(radius=0.33, unreachable="nearest") if stage.rings and ways else None,
             crowd=crowd,

@@ -58,7 +58,7 @@ def recorded_trial(
     """
     path = Path(path)
     crowd = RecordedPeople(
-        data=path.name, fps=fps, format=format, units=units, mode=mode, near=near, folder=path.parent
+        data=path.name, fps=fps, format=format, units=units, mode=mode, reaction_distance=near, folder=path.parent
     )
     tracks = crowd.tracks()
     step = _step(tracks)
@@ -69,8 +69,8 @@ def recorded_trial(
     if replace is not None:
         walk = _walk_of(crowd, replace, whole)
         crowd = RecordedPeople(
-            data=path.name, fps=fps, format=format, units=units, mode=mode, near=near, folder=path.parent,
-            begin=float(walk.time[0]), without=str(replace),
+            data=path.name, fps=fps, format=format, units=units, mode=mode, reaction_distance=near, folder=path.parent,
+            begin=float(walk.time[0]), exclude=str(replace),
         )  # fmt: skip
         robots = (_robot(walk, step),)
         whole = 2.0 * float(walk.time[-1] - walk.time[0]) + LATER

@@ -47,7 +47,7 @@ def delayed_circle(people: int, radius: float, delay: float) -> Trial:
             rate=1.0,
             timing="regular",
             begin=round(delay * (k * GOLDEN % 1.0), 1),
-            most=1,
+            max_count=1,
             speed=one.speed,
             radius=one.radius,
             arrival="stay",

@@ -55,7 +55,7 @@ def turtlebot() -> Robot:
         y=plain.y,
         radius=plain.radius,
         latency=0.0,
-        equipped=False,
+        default_sensors=False,
         goal=plain.goal,
         drive=plain.drive,
         navigator=plain.navigator,

@@ -64,7 +64,7 @@ def robot(
 
 def scenario(name: str, duration: float, stage: Stage, **parts: Any) -> Trial:
     """Return a trial with the usual crowd, in which nobody stops face to face."""
-    whole: dict[str, Any] = {"crowd": CROWD, "symmetry": 0.001} | parts
+    whole: dict[str, Any] = {"crowd": CROWD, "heading_jitter": 0.001} | parts
     return Trial(name=name, duration=duration, stage=stage, **whole)
 
 

@@ -146,14 +146,14 @@ def _measuring(robot: Robot, mount: Mount) -> Iterator[tuple[Any, str, float]]:
 
 def _exact(trial: Trial, robot: Robot) -> Problems:
     """Yield a robot with sensors of its type that do not fit the time step although they must."""
-    if robot.rates == "exact" and (others := misfits(robot, trial.step)):
+    if robot.sensor_rates == "exact" and (others := misfits(robot, trial.step)):
         rates = ", ".join(f"{mount.name} {mount.sensor.rate:g} Hz" for mount in others)
         step = fitting([trial.recording.period, robot.control_period, *(1.0 / mount.sensor.rate for mount in others)])
         take = f'take step="{step:g}", or leave out' if step else "leave out"
         yield (
             robot,
             f"has sensors of its type that do not measure after whole time steps of {trial.step:g} s: {rates}; {take}"
-            ' rates="exact" to let them measure as often as the step allows',
+            ' sensor-rates="exact" to let them measure as often as the step allows',
         )
 
 

@@ -193,8 +193,8 @@ class Reader:
                     continue
             part = known[inner.tag]
             count[part.name] += 1
-            if count[part.name] > part.at_most:
-                often = "twice; one is allowed" if part.at_most == 1 else f"more than {part.at_most} times"
+            if count[part.name] > part.max:
+                often = "twice; one is allowed" if part.max == 1 else f"more than {part.max} times"
                 self.say(inner.line, inner.tag, f"stands in <{element.tag}> {often}")
                 continue
             found[part.name].append(self._child(part, inner))

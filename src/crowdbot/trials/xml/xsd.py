@@ -117,11 +117,11 @@ def _values(kind: Any, rule: Rule) -> Element:
         rows = [("enumeration", choice) for choice in rule.choices]
         return _simple({}, "xs:string", rows or ([("pattern", _translated(rule.pattern))] if rule.pattern else []))
     rows = [("pattern", NUMBER)]
-    if rule.above is not None:
-        rows.append(("minExclusive", f"{rule.above:g}"))
+    if rule.exclusive_min is not None:
+        rows.append(("minExclusive", f"{rule.exclusive_min:g}"))
     else:
-        rows.append(("minInclusive", repr(-LARGEST if rule.at_least is None else rule.at_least)))
-    rows.append(("maxInclusive", repr(LARGEST if rule.at_most is None else rule.at_most)))
+        rows.append(("minInclusive", repr(-LARGEST if rule.min is None else rule.min)))
+    rows.append(("maxInclusive", repr(LARGEST if rule.max is None else rule.max)))
     return _simple({}, "xs:double", rows)
 
 

@@ -91,6 +91,7 @@ class PhysicsWorld(PlanarWorld):
     ([0.4], ())
     """
 
+    people: PeopleMotion
     people_shape = "limbs"
     walls_fixed = True
 
@@ -128,7 +129,7 @@ class PhysicsWorld(PlanarWorld):
     @property
     def contact_events(self) -> tuple[BodyContactEvent, ...]:
         """Every collision so far, by first touch."""
-        return self._contact_tracker.collisions
+        return self._contact_tracker.contact_events
 
     def command(self, robot: int, joints: Mapping[str, float]) -> None:
         """Send values to the motors of a robot's joints; they hold until the next ones.
@@ -145,7 +146,7 @@ class PhysicsWorld(PlanarWorld):
             InputError: the agent is no robot.
         """
         if robot not in self.robot_bodies:
-            raise InputError(f"agent {robot} is no robot; robots are {sorted(self.chassis) or 'none'}")
+            raise InputError(f"agent {robot} is no robot; robots are {sorted(self.robot_bodies) or 'none'}")
         return self.robot_bodies[robot]
 
     def render(
@@ -229,7 +230,7 @@ class PhysicsWorld(PlanarWorld):
         >>> from crowdbot.models import ORCA
         >>> from crowdbot.sensors import Lidar2D
         >>> world = PhysicsWorld(start, ORCA(), {0: Robot.load("turtlebot2")}, dt=0.1)
-        >>> scan = Lidar2D(rays=1).measure(world.body_scene().without(0), world.pose(0).lifted(1.2))
+        >>> scan = Lidar2D(rays=1).read(world.body_scene().without(0), world.pose(0).lifted(1.2))
         >>> scan.hit.tolist(), bool(1.7 < scan.ranges[0, 0] < 2.0)
         ([[1]], True)
         """

@@ -55,7 +55,7 @@ class AckermannDrive(Drive):
     def __post_init__(self) -> None:
         units = {"max_speed": "m/s", "max_acceleration": "m/s2", "max_steering_rate": "rad/s", "wheelbase": "m"}
         for name, unit in units.items():
-            check_number("AckermannDrive", name, getattr(self, name), unit, above=0.0)
+            check_number("AckermannDrive", name, getattr(self, name), unit, exclusive_min=0.0)
         if not 0.0 < self.max_steering < math.pi / 2:
             raise InputError(f"AckermannDrive: max_steering = {self.max_steering} rad must be above 0 and below pi / 2")
 

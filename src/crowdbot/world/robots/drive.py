@@ -197,7 +197,7 @@ def check_limits(drive: Drive) -> None:
     """Raise :class:`InputError` unless a drive's speeds and accelerations are finite and above 0."""
     for name in ("max_speed", "max_turn_rate", "max_acceleration", "max_turn_acceleration"):
         unit = ("rad" if "turn" in name else "m") + ("/s2" if "acceleration" in name else "/s")
-        check_number(type(drive).__name__, name, getattr(drive, name), unit, above=0.0)
+        check_number(type(drive).__name__, name, getattr(drive, name), unit, exclusive_min=0.0)
 
 
 def check_step(dt: float) -> None:

@@ -48,7 +48,7 @@ class VelocityServo(Drive):
 
     def __post_init__(self) -> None:
         check_limits(self)
-        check_number("VelocityServo", "time_constant", self.time_constant, "s", above=0.0)
+        check_number("VelocityServo", "time_constant", self.time_constant, "s", exclusive_min=0.0)
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
         """Return pose and twist ``dt`` [s] later; see :class:`VelocityServo`."""

@@ -1,0 +1,126 @@
+"""RecordingCalibration: everyone in a recording calibrated, piece by piece on several workers; what is done is kept."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import pickle
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import code_digest, each_kept, stream
+from crowdbot.data import Recording, Windows
+
+from .calibrator import Calibrator
+from .fit import Fit
+from .scheme_parts import goal_for
+
+__all__ = ["CalibrationChunk", "RecordingCalibration"]
+
+PIECES = 8
+"""A recording is cut into at least so many pieces ..."""
+AGENTS = 2_000
+"""... and into pieces of about so many people of all windows together, so that an interrupted run loses little."""
+
+
+@dataclass(frozen=True)
+class CalibrationChunk:
+    """The windows ``first`` to ``last`` (not included) of a recording, calibrated.
+
+    Fields:
+        frame, people: ``[W]``, the last observed frame of each window, and how many were there.
+        arrays: those of :class:`Fit` by name.
+    """
+
+    first: int
+    last: int
+    frame: NDArray[np.int64]
+    people: NDArray[np.int64]
+    arrays: dict[str, NDArray[Any]]
+
+
+@dataclass(frozen=True)
+class RecordingCalibration:
+    """Which recording is calibrated, by which scheme.
+
+    Fields:
+        recording: its windows; only their past is looked at, unless the goal knows the future.
+        calibrator: with parameters of each person; its goal is replaced by ``goal`` when that is given.
+        goal: name of a goal that needs the recording, see :func:`goal_for`.
+        seed: of the search; every window has its own stream.
+    """
+
+    recording: Recording
+    calibrator: Calibrator
+    goal: str | None = None
+    seed: int = 0
+
+    @property
+    def goal_calibrator(self) -> Calibrator:
+        """The calibrator with the goal of this recording."""
+        if self.goal is None:
+            return self.calibrator
+        return dataclasses.replace(self.calibrator, goal=goal_for(self.goal, self.recording))
+
+    @property
+    def key(self) -> str:
+        """Hash of everything that decides about the result."""
+        content = pickle.dumps((code_digest(), self, self.recording.digest))
+        return hashlib.blake2b(content, digest_size=12).hexdigest()
+
+    @property
+    def past(self) -> Windows:
+        """What is calibrated on."""
+        return self.recording.windows[0]
+
+    def run(self, workers: int = 1, cluster: str | None = None, keep: Path | None = None) -> Iterator[CalibrationChunk]:
+        """Yield the pieces as they are done; those kept in the folder ``keep`` come first."""
+        past = self.past
+        people = int(past.present[:, -1].sum())
+        size = max(1, min(len(past) // PIECES, AGENTS * len(past) // max(1, people)))
+        jobs = [(self, first, min(first + size, len(past))) for first in range(0, len(past), size)]
+        files = [] if keep is None else [keep / f"{self.key}-{first}.npz" for _, first, _ in jobs]
+        for _, chunk in each_kept(_calibrate_chunk, jobs, files, _save, _load, workers, cluster):
+            yield chunk
+
+    def merge(self, chunks: Sequence[CalibrationChunk]) -> Fit:
+        """Return the fit of the whole recording from all its pieces."""
+        ordered = sorted(chunks, key=lambda chunk: chunk.first)
+        calibrator = self.goal_calibrator
+        whole = {name: np.concatenate([chunk.arrays[name] for chunk in ordered]) for name in ordered[0].arrays}
+        seconds = float(whole.pop("seconds").sum())
+        return Fit(
+            calibrator.scheme, calibrator.space, calibrator.rollout, **whole, seconds=seconds, windows=len(self.past)
+        )
+
+
+ARRAYS = ("values", "given", "id", "counted", "cost", "given_cost", "evaluations", "history")
+
+
+def _calibrate_chunk(job: tuple[RecordingCalibration, int, int]) -> CalibrationChunk:
+    campaign, first, last = job
+    past = campaign.past[first:last]
+    rngs = [stream(campaign.seed, "calibrate", window) for window in range(first, last)]
+    fit = campaign.goal_calibrator.fit_each(past, rngs)
+    arrays = {name: getattr(fit, name) for name in ARRAYS}
+    arrays["seconds"] = np.array([fit.seconds])
+    return CalibrationChunk(first, last, past.frame[:, -1], past.present[:, -1].sum(axis=1), arrays)
+
+
+def _save(chunk: CalibrationChunk, file: Path) -> None:
+    with file.open("wb") as stream_:
+        bounds = np.array([chunk.first, chunk.last])
+        arrays: dict[str, Any] = {"bounds": bounds, "frame": chunk.frame, "people": chunk.people, **chunk.arrays}
+        np.savez_compressed(stream_, **arrays)
+
+
+def _load(file: Path) -> CalibrationChunk:
+    with np.load(file, allow_pickle=False) as kept:
+        first, last = kept["bounds"].tolist()
+        arrays = {name: kept[name] for name in (*ARRAYS, "seconds")}
+        return CalibrationChunk(first, last, kept["frame"], kept["people"], arrays)

@@ -1,0 +1,146 @@
+"""The observed rows of windows, simulated again by many candidates at once."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import Scene
+from crowdbot.data import Windows, fill_gaps, slice_rows
+
+from .rollout import Rollout
+
+__all__ = ["ResimulatedTracks", "Resimulation"]
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Candidate = Callable[[Rollout, Scene, int], tuple[Rollout, Scene]]
+"""Gives every copy of a scene the parameters of its candidate; the number is how often each window comes in a row."""
+
+
+class ResimulatedTracks:
+    """What P candidates made of the observed rows of W windows; simulated only when a cost asks for it.
+
+    Fields:
+        past: the windows that were simulated again.
+    """
+
+    def __init__(self, past: Windows, once: Callable[[], Floats], stepwise: Callable[[], Floats]) -> None:
+        self.past = past
+        self._once = once
+        self._stepwise = stepwise
+
+    @functools.cached_property
+    def once(self) -> Floats:
+        """Rows 1 to T - 1 when the simulation begins once, at the first row: ``[P, W, T - 1, A, 2]`` [m]."""
+        return self._once()
+
+    @functools.cached_property
+    def stepwise(self) -> Floats:
+        """Rows 2 to T - 1, each simulated from the recorded row before it: ``[P, W, T - 2, A, 2]`` [m]."""
+        return self._stepwise()
+
+
+class Resimulation:
+    """Windows made ready to be simulated again, many times with different parameters.
+
+    Everyone present at the row where a simulation begins but the robots is simulated until their last observed row;
+    robots and people who come later move as they were recorded. Scenes are built once and then copied.
+    """
+
+    def __init__(self, rollout: Rollout, past: Windows) -> None:
+        self.rollout = rollout
+        self.past = past
+        self.whole = fill_gaps(past)
+
+    def resimulate(self, candidate: Candidate, copies: int, which: Integers) -> ResimulatedTracks:
+        """Return what ``copies`` candidates make of the windows ``which``."""
+        return ResimulatedTracks(
+            self.past[which],
+            lambda: self._from_first_row(candidate, copies, which),
+            lambda: self._row_by_row(candidate, copies, which),
+        )
+
+    @functools.cached_property
+    def _first(self) -> Scene:
+        scene = self.rollout.scene(self.past, 0)
+        return scene.replace(external=scene.external | ~scene.active)
+
+    @functools.cached_property
+    def _each(self) -> Scene:
+        """The scenes at rows 1 to T - 2, window by window along E: ``E = W * (T - 2)``."""
+        rows = range(1, self.past.position.shape[1] - 1)
+        scenes = [self.rollout.scene(slice_rows(self.past, 0, row + 1), row) for row in rows]
+        order = np.arange(len(rows) * len(self.past)).reshape(len(rows), -1).T.ravel()
+        return _concatenate(scenes).environments(order)
+
+    @functools.cached_property
+    def _recorded(self) -> _Recorded:
+        return _recorded(self.whole)
+
+    def _from_first_row(self, candidate: Candidate, copies: int, which: Integers) -> Floats:
+        T, A = self.past.position.shape[1:3]
+        index = np.tile(which, copies)
+        place = np.zeros((len(index), T - 1, A, 2))
+        rollout, scene = candidate(self.rollout, self._first.environments(index), 1)
+        for row in range(T - 1):
+            scene = self._recorded.with_recorded(scene, row, index)
+            scene = rollout.advance(scene, self.past.dt)
+            place[:, row] = scene.position
+        return place.reshape(copies, len(which), T - 1, A, 2)
+
+    def _row_by_row(self, candidate: Candidate, copies: int, which: Integers) -> Floats:
+        T, A = self.past.position.shape[1:3]
+        if T < 3:
+            return np.zeros((copies, len(which), 0, A, 2))
+        index = np.tile((which[:, None] * (T - 2) + np.arange(T - 2)).ravel(), copies)
+        rollout, scene = candidate(self.rollout, self._each.environments(index), T - 2)
+        place = rollout.advance(scene, self.past.dt).position
+        return place.reshape(copies, len(which), T - 2, A, 2)
+
+
+@dataclass(frozen=True)
+class _Recorded:
+    """What was recorded: where everyone is, ``[W, T, A]`` who is there, and until which row ``[W, A]``.
+
+    ``changes``: whether anybody comes, is moved or leaves at all.
+    """
+
+    position: Floats
+    velocity: Floats
+    present: NDArray[np.bool_]
+    last: Integers
+    changes: bool
+
+    def with_recorded(self, scene: Scene, row: int, index: Integers) -> Scene:
+        """Return the scene with external agents as recorded at ``row``, and without those who have gone for good."""
+        if not self.changes:
+            return scene
+        here, stays = self.present[index, row], self.last[index] >= row
+        moved = scene.external & here
+        place = np.where(moved[..., None], self.position[index, row], scene.position)
+        velocity = np.where(moved[..., None], self.velocity[index, row], scene.velocity)
+        heading = np.where(moved, np.arctan2(velocity[..., 1], velocity[..., 0]), scene.heading)
+        active = np.where(scene.external, here, scene.active & stays)
+        return scene.replace(position=place, velocity=velocity, heading=heading, active=active)
+
+
+def _recorded(past: Windows) -> _Recorded:
+    T = past.position.shape[1]
+    both = past.present[:, :-1] & past.present[:, 1:]
+    velocity = np.zeros_like(past.position)
+    velocity[:, :-1] = np.where(both[..., None], np.diff(past.position, axis=1) / past.dt, 0.0)
+    last = T - 1 - np.argmax(past.present[:, ::-1], axis=1)
+    changes = bool(np.any(past.robot) or np.any(past.present != past.present[:, :1]))
+    return _Recorded(past.position, velocity, past.present, last, changes)
+
+
+def _concatenate(scenes: list[Scene]) -> Scene:
+    """Return the environments of several scenes with the same people and walls, one scene after the other."""
+    first = scenes[0]
+    names = [name for name, value in vars(first).items() if isinstance(value, np.ndarray)]
+    return first.replace(**{name: np.concatenate([getattr(scene, name) for scene in scenes]) for name in names})

@@ -1,0 +1,156 @@
+"""The books of a search: who is still searched, what was evaluated, what was best."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError
+
+__all__ = ["SearchState", "own_best"]
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+class SearchState:
+    """Evaluates whole-crowd candidates of W problems and keeps the best of each; used by one search, once.
+
+    A search holds its state in arrays whose axis 1 is L, the problems that are not done yet: ``live [L]`` are their
+    numbers. After each :meth:`evaluate`, :meth:`settle` takes out of the arrays those that are done.
+
+    Fields:
+        low, high, span: ``[D]``, the box and its sides.
+        best, cost, evaluations, history: as in :class:`~crowdbot.calibration.SearchResult`.
+    """
+
+    def __init__(
+        self,
+        function: Callable[[Floats, Integers], Floats],
+        low: Floats,
+        high: Floats,
+        rngs: Sequence[np.random.Generator],
+        budget: int,
+        first: Floats,
+        tolerance: float,
+        patience: int,
+    ) -> None:
+        W, N, _ = first.shape
+        self.function, self.rngs, self.budget = function, rngs, budget
+        self.low, self.high, self.span = low, high, high - low
+        self.tolerance, self.patience = tolerance, patience
+        self.live: Integers = np.arange(W)
+        self.best = first.copy()
+        self.cost = np.full(W, np.inf)
+        self.evaluations: Integers = np.zeros(W, dtype=np.int64)
+        self._history = np.full((W, budget), np.inf)
+        self._first, self._spent = first, 0
+        self._gained: Integers = np.zeros(W, dtype=np.int64)
+        self._counts: NDArray[np.bool_] = np.ones((W, N), dtype=bool)
+
+    @property
+    def left(self) -> int:
+        """How many evaluations each problem that is not done still has; 0 when all are done."""
+        return self.budget - self._spent if len(self.live) else 0
+
+    def evaluate(self, candidates: Floats) -> Floats:
+        """Return what everyone costs, ``[P, L, N]``, in candidates ``[P, L, N, D]``; those beyond the budget are cut.
+
+        The cost of people who do not count is 0, and they keep the parameters of the first start; a cost that is not
+        finite is infinite.
+
+        Raises:
+            InputError: the function returns another shape.
+        """
+        candidates = candidates[: self.left]
+        P, L, N, _ = candidates.shape
+        counts = self.counts
+        if not counts.all():
+            candidates = np.where(counts[..., None], candidates, self._first[self.live])
+        cost = np.ascontiguousarray(self.function(candidates, self.live), dtype=float)
+        if cost.shape != (P, L, N):
+            raise InputError(f"search: the costs of {P} candidates have shape {cost.shape}, not {(P, L, N)}")
+        if self._spent == 0:
+            counts = self._counts = ~np.isnan(cost).all(axis=0)
+        cost = np.where(np.isfinite(cost), cost, np.inf)
+        if not counts.all():
+            cost = np.where(counts, cost, 0.0)
+        self._write(candidates, cost.sum(axis=2) / np.maximum(counts.sum(axis=1), 1))
+        return cost
+
+    def _write(self, candidates: Floats, total: Floats) -> None:
+        P, live = len(total), self.live
+        row, column = np.argmin(total, axis=0), np.arange(len(live))
+        gain = total[row, column] < self.cost[live]
+        so_far = np.minimum(np.minimum.accumulate(total, axis=0), self.cost[live])
+        self._history[live, self._spent : self._spent + P] = so_far.T
+        self.best[live[gain]] = candidates[row[gain], column[gain]]
+        self._gained[live[gain]] = self._spent + 1 + row[gain]
+        self.cost[live] = so_far[-1]
+        self._spent += P
+        self.evaluations[live] = self._spent
+
+    def drop_finished(self, *arrays: Floats) -> tuple[Floats, ...]:
+        """Return the arrays ``[_, L, ...]`` with only those problems that are not done, and forget the others."""
+        live = self.live
+        nobody = ~self.counts.any(axis=1)
+        self.cost[live[nobody]] = np.nan
+        self._history[live[nobody]] = np.nan
+        done = nobody | (self.cost[live] <= self.tolerance)
+        if self.patience:
+            done |= self._spent - self._gained[live] >= self.patience
+        if not done.any():
+            return arrays
+        self.live = live[~done]
+        return tuple(array[:, ~done] for array in arrays)
+
+    @property
+    def history(self) -> Floats:
+        """The smallest cost after each evaluation, ``[W, budget]``; the last one goes on."""
+        after = np.arange(self.budget) >= self.evaluations[:, None]
+        return np.where(after, self.cost[:, None], self._history)
+
+    def draw(self, how: Callable[[np.random.Generator], NDArray[Any]]) -> NDArray[Any]:
+        """Return what ``how`` draws for every problem that is not done, ``[P, ...]`` each, along axis 1."""
+        return np.stack([how(self.rngs[number]) for number in self.live], axis=1)
+
+    @property
+    def counts(self) -> NDArray[np.bool_]:
+        """Who counts in the problems that are not done, ``[L, N]``."""
+        return self._counts[self.live]
+
+    @property
+    def progress(self) -> float:
+        """The share of the budget that is spent, 0 to 1."""
+        return self._spent / self.budget
+
+    def incumbent(self) -> Floats:
+        """Return the best whole-crowd candidates so far, ``[1, L, N, D]``, moved into the box."""
+        return np.clip(self.best[self.live], self.low, self.high)[None]
+
+    def scale_to_box(self, place: Floats) -> Floats:
+        """Return values from places ``[..., D]`` in the box, 0 at its lower and 1 at its upper end, never beyond."""
+        return np.clip(self.low + self.span * place, self.low, self.high)
+
+    def fold(self, values: Floats) -> Floats:
+        """Return values mirrored at the sides of the box, and into it."""
+        side = np.clip(values, self.low, self.high)
+        return np.clip(2.0 * side - values, self.low, self.high)
+
+    def sample_uniform(self, count: int) -> Floats:
+        """Return ``count`` candidates ``[count, L, N, D]`` that lie uniformly at random in the box."""
+        shape = (count, *self.best.shape[1:])
+        return self.scale_to_box(self.draw(lambda rng: rng.random(shape)))
+
+
+def own_best(population: Floats, cost: Floats) -> tuple[Floats, Floats]:
+    """Return everyone's own best parameters in a pool, together as one candidate ``[1, L, N, D]``.
+
+    Nobody's cost is his own alone: what the candidate costs is known when it has been evaluated. Also returned are the
+    costs ``[1, L, N]`` that everyone had in his own best candidate.
+    """
+    row = np.argmin(cost, axis=0)[None]
+    return np.take_along_axis(population, row[..., None], axis=0), np.take_along_axis(cost, row, axis=0)

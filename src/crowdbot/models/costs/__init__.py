@@ -1,0 +1,35 @@
+"""Costs over velocities: the terms of a cost model, which add up to new models."""
+
+from .cost_terms import (
+    Effort,
+    FreeWay,
+    GoalForce,
+    HalfPlanes,
+    Inertia,
+    ModelForce,
+    Noise,
+    PowerLawEnergy,
+    PowerLawForce,
+    PreferredVelocity,
+    ReciprocalObstacles,
+)
+from .neighbor_view import NeighborView
+from .velocity_cost import Force, Sum, VelocityCost
+
+__all__ = [
+    "Effort",
+    "Force",
+    "FreeWay",
+    "GoalForce",
+    "HalfPlanes",
+    "Inertia",
+    "ModelForce",
+    "NeighborView",
+    "Noise",
+    "PowerLawEnergy",
+    "PowerLawForce",
+    "PreferredVelocity",
+    "ReciprocalObstacles",
+    "Sum",
+    "VelocityCost",
+]

@@ -1,0 +1,209 @@
+"""CostModel: a new model from costs over velocities, in a few lines (van Toll et al. 2020)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, Paper, PerAgent, Scene, did_you_mean, parameter, per_agent, stream
+from crowdbot.core.neighbors import nearest
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    movable,
+    rows,
+    speed_limit,
+)
+
+from .cost_terms import HalfPlanes
+from .neighbor_view import NeighborView
+from .velocity_cost import VelocityCost, length, suitable_optimiser
+
+__all__ = ["CostModel"]
+
+Floats = NDArray[np.float64]
+
+OPTIMISERS = ("natural", "gradient", "sampling", "closed-form")
+SAMPLES = ("polar", "umans", "random")
+EQUAL = 1e-9
+"""Costs that differ by no more than this share are equal, so that rounding does not choose between velocities."""
+BUDGET = 1_000_000
+"""So many numbers make up the largest array at a time: walkers are weighed in parts."""
+GIVEN = 3
+"""Velocities that are tried besides the samples: none, the desired one and the present one."""
+STEEPEST = 1e9
+"""No slope [m/s^2] counts as more."""
+
+
+@dataclass(frozen=True)
+class CostModel(CrowdModel):
+    """Agents take velocities of low cost; any sum of costs is a model.
+
+    Args:
+        costs: what is disliked, such as ``PreferredVelocity() + 0.3 * Inertia() + PowerLawEnergy()``; see
+            :mod:`crowdbot.models.costs`.
+        optimiser: ``gradient`` (one step down the slope, from the present velocity), ``sampling`` (the best of some
+            velocities), ``closed-form`` (one cost that knows its best velocity), or ``natural`` (what suits the costs).
+        relaxation_time: in which the velocity follows the best one [s], not for ``gradient``; no less than the time
+            step counts.
+        contact_stiffness: acceleration per metre of overlap between bodies, and with walls [1/s^2]; it is not taken
+            higher than what ends the overlap in one time step. 62.5 is 5000 kg/s^2 at 80 kg.
+        neighbor_distance: neighbours are nearer than this [m].
+        max_neighbors: only so many of them count, the nearest; a fraction is rounded to the nearest whole number.
+        max_acceleration: ``[E, A]`` [m/s^2], contacts apart; None has no limit.
+        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+        samples: ``polar`` (desired, present and no velocity, and rings about the desired direction), ``umans`` (rings
+            from -x on, as in the UMANS library), ``random`` (evenly in the disc of possible speeds).
+        speeds, angles: number of rings, and of velocities on each; their product for ``random``.
+        refinements: so often the surroundings of the best sample are searched again, each time half as wide.
+        seed: of ``random`` samples when the step has no stream; then they are the same for all and in every step.
+
+    The walkers are weighed with NumPy, not by a kernel: composing is easy, and slow.
+
+    Source: van Toll, Grzeskowiak, López, Amirian, Berton, Bruneau, Daniel, Jovane, Pettré 2020,
+    doi:10.1145/3384382.3384532.
+
+    Raises:
+        InputError: a parameter is not finite or below its minimum, a word is unknown, or the costs have no closed form.
+
+    >>> from crowdbot.models.costs import PowerLawEnergy, PreferredVelocity
+    >>> careful = CostModel(PreferredVelocity() + 2.0 * PowerLawEnergy(), refinements=6)
+    >>> ahead = Scene.of([[0, 0], [3, 0.1]], [[1, 0], [-1, 0]], preferred_velocity=[[1, 0], [-1, 0]])
+    >>> careful.velocity(ahead, dt=0.1).round(2).tolist()
+    [[[0.94, -0.26], [-0.94, 0.26]]]
+    """
+
+    paper: ClassVar[Paper] = Paper(
+        "Wouter van Toll, Fabien Grzeskowiak, Axel López, Javad Amirian, Florian Berton, Julien Bruneau, Beatriz"
+        " Cabrero Daniel, Alberto Jovane, Julien Pettré",
+        2020,
+        "Generalized microscopic crowd simulation using costs in velocity space",
+        "Symposium on Interactive 3D Graphics and Games",
+        "10.1145/3384382.3384532",
+    )
+
+    costs: VelocityCost = field(default_factory=HalfPlanes)
+    optimiser: str = "natural"
+    relaxation_time: PerAgent = parameter(0.0, unit="s", low=0.0, high=1.5, source="the best velocity at once")
+    contact_stiffness: PerAgent = parameter(0.0, unit="1/s^2", low=0.0, high=200.0, source="no contact")
+    neighbor_distance: PerAgent = parameter(5.0, unit="m", low=1.0, high=15.0, source="UMANS, examples")
+    max_neighbors: PerAgent = parameter(10.0, unit="1", low=1.0, high=60.0, source="RVO2, examples")
+    max_acceleration: PerAgent | None = None
+    max_speed: PerAgent | None = None
+    samples: str = "polar"
+    speeds: int = 10
+    angles: int = 36
+    refinements: int = 0
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_limit(self, self.max_speed)
+        if not isinstance(self.costs, VelocityCost):
+            raise InputError(f"CostModel: costs are {self.costs!r}, they must be a VelocityCost or a sum of some")
+        for name, known in (("optimiser", OPTIMISERS), ("samples", SAMPLES)):
+            word = getattr(self, name)
+            if word not in known:
+                raise InputError(
+                    f"CostModel: {name} {word!r} is unknown{did_you_mean(str(word), known)}; choose {', '.join(known)}"
+                )
+        for name, low, high in (("speeds", 1, 1000), ("angles", 1, 1000), ("refinements", 0, 50)):
+            number = getattr(self, name)
+            if not (isinstance(number, int) and low <= number <= high):
+                raise InputError(
+                    f"CostModel: {name} = {number!r} is not allowed, it must be a whole number from {low} to {high}"
+                )
+        if self.max_acceleration is not None and not np.all(np.asarray(self.max_acceleration) >= 0.0):
+            raise InputError(
+                f"CostModel: max_acceleration = {self.max_acceleration} [m/s^2] is not allowed, it must be at least 0"
+                " m/s^2 without an upper limit, or left out to have no limit"
+            )
+
+    def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
+        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` serves costs and samples."""
+        wish, walking = desired_velocity(scene, dt), movable(scene)
+
+        def value(name: str) -> Floats:
+            return per_agent(getattr(self, name), scene.shape, name)
+
+        seen = scene.active & scene.visible
+        near = nearest(scene.position, value("neighbor_distance"), np.rint(value("max_neighbors")), seen, walking)
+        world = NeighborView.of(scene, wish, speed_limit(self.max_speed, scene), walking, near, float(dt), rng)
+        optimiser = suitable_optimiser(self.costs) if self.optimiser == "natural" else self.optimiser
+        discs = self._discs(rng) if optimiser == "sampling" else np.zeros((0, 2))
+        step = max(1, BUDGET // ((len(discs) + GIVEN) * (world.there.shape[1] + len(world.segments) + 1)))
+        out = initial_velocity(scene)
+        for begin in range(0, len(world), step):
+            part = world.part(begin, begin + step)
+            rows(out)[part.row] = self._next(part, optimiser, discs)
+        return out
+
+    def _next(self, world: NeighborView, optimiser: str, discs: Floats) -> Floats:
+        dt = world.dt
+        if optimiser == "gradient":
+            slope = self.costs.gradient(world, world.velocity)
+            change = -np.clip(np.where(np.isfinite(slope), slope, 0.0), -STEEPEST, STEEPEST)
+        else:
+            best = self.costs.best(world) if optimiser == "closed-form" else self._best_sample(world, discs)
+            relaxation = np.maximum(world.each(self.relaxation_time, "relaxation_time"), dt)
+            change = (best - world.velocity) / relaxation[:, None]
+        if self.max_acceleration is not None:
+            change = _limit_length(change, world.each(self.max_acceleration, "max_acceleration"))
+        velocity = _limit_length(world.velocity + change * dt, world.max_speed)
+        stiffness = np.minimum(world.each(self.contact_stiffness, "contact_stiffness"), 1.0 / dt**2)
+        if not np.any(stiffness):
+            return velocity
+        return _limit_length(velocity + (stiffness * dt)[:, None] * world.sum_overlaps(), world.max_speed)
+
+    def _discs(self, random: np.random.Generator | None) -> Floats:
+        """Return the samples ``[C, 2]`` for a maximum speed of 1 and the desired direction +x."""
+        if self.samples == "random":
+            random = stream(self.seed, "cost-model", "samples") if random is None else random
+            size = np.sqrt(random.random(self.speeds * self.angles))
+            way = 2.0 * math.pi * random.random(self.speeds * self.angles)
+            return np.stack([size * np.cos(way), size * np.sin(way)], axis=-1)
+        turns = np.arange(self.angles)
+        if self.samples == "polar":  # right in front, then more and more to the one and the other side
+            turns = np.where(turns % 2 == 1, -(turns + 1) // 2, turns // 2)
+        angle = turns * (2.0 * math.pi / self.angles) + (math.pi if self.samples == "umans" else 0.0)
+        speed = (1.0 + np.arange(self.speeds))[:, None] / self.speeds
+        return np.stack([speed * np.cos(angle), speed * np.sin(angle)], axis=-1).reshape(-1, 2)
+
+    def _best_sample(self, world: NeighborView, discs: Floats) -> Floats:
+        ahead = world.direction()
+        if self.samples == "umans":
+            ahead = np.broadcast_to([1.0, 0.0], ahead.shape)
+        across = np.stack([-ahead[:, 1], ahead[:, 0]], axis=-1)
+        size = world.max_speed[:, None, None]
+        turned = size * (discs[:, :1] * ahead[:, None] + discs[:, 1:] * across[:, None])
+        given = [np.zeros_like(ahead)]
+        if self.samples != "umans":
+            given += [_limit_length(world.wish, world.max_speed), _limit_length(world.velocity, world.max_speed)]
+        best = _least(self.costs, world, np.concatenate([np.stack(given, axis=1), turned], axis=1))
+        for level in range(self.refinements):
+            span = size[:, 0] * (1.0 / self.speeds) / 2.0 ** (level + 1)
+            tries = [best] + [best + span * (i * ahead + j * across) for i in (1, 0, -1) for j in (0, -1, 1) if i or j]
+            best = _least(self.costs, world, np.stack([_limit_length(t, world.max_speed) for t in tries], axis=1))
+        return best
+
+
+def _least(costs: VelocityCost, world: NeighborView, candidates: Floats) -> Floats:
+    """Return the candidate of least cost ``[N, 2]``, of equal ones the first."""
+    cost = costs.value(world, candidates)
+    cost = np.where(np.isnan(cost), np.inf, cost)
+    least = np.min(cost, axis=1, keepdims=True)
+    with np.errstate(invalid="ignore"):
+        chosen = np.argmax(cost <= least + EQUAL * (np.abs(least) + 1.0), axis=1)
+    return np.asarray(candidates[np.arange(len(candidates)), chosen])
+
+
+def _limit_length(vectors: Floats, longest: Floats) -> Floats:
+    """Return vectors ``[N, 2]``, none longer than ``longest`` [N]."""
+    size = length(vectors)
+    return np.asarray(vectors * np.minimum(1.0, longest / np.maximum(size, 1e-300))[:, None])

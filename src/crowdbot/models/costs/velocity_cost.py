@@ -1,0 +1,172 @@
+"""VelocityCost: the contract of costs over velocities, how they add up, and how forces are costs.
+
+Most microscopic models are a cost over velocities and a way to make it small (van Toll et al. 2020,
+doi:10.1145/3384382.3384532). A force is a cost too: the squared distance to the velocity that it leads to.
+"""
+
+from __future__ import annotations
+
+import abc
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import InputError, check_parameters
+
+from .neighbor_view import NeighborView
+
+__all__ = ["Force", "Sum", "VelocityCost", "length", "suitable_optimiser"]
+
+Floats = NDArray[np.float64]
+
+STEP = 1e-4
+"""Half of the difference of velocities [m/s] from which a slope is taken where a cost does not know its own."""
+
+
+@dataclass(frozen=True)
+class VelocityCost(abc.ABC):
+    """How much agents dislike velocities. Costs add, and numbers weigh them: ``PreferredVelocity() + 0.5 * Inertia()``.
+
+    A cost is a frozen dataclass with one method, :meth:`value`. It may also know its :meth:`gradient`, and where it is
+    least (:meth:`best`); ``natural`` names the optimiser that suits it.
+
+    Raises:
+        InputError: a parameter is not finite or below its minimum.
+
+    >>> from crowdbot.models.costs import PreferredVelocity
+    >>> class KeepRight(VelocityCost):
+    ...     def value(self, world, candidates):
+    ...         ahead = world.direction()[:, None]
+    ...         return candidates[..., 1] * ahead[..., 0] - candidates[..., 0] * ahead[..., 1]
+    >>> str(PreferredVelocity() + 0.2 * KeepRight())
+    'PreferredVelocity(exponent=1.0) + 0.2 * KeepRight()'
+    """
+
+    natural: ClassVar[str] = "sampling"
+
+    def __post_init__(self) -> None:
+        check_parameters(self)
+
+    @abc.abstractmethod
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
+        """Return the cost ``[N, C]`` of each velocity ``[N, C, 2]`` [m/s]; inf is never chosen."""
+
+    def gradient(self, world: NeighborView, velocity: Floats) -> Floats:
+        """Return the slope ``[N, 2]`` of the cost at ``velocity`` [N, 2] [m/s]; here by differences."""
+        steps = STEP * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+        cost = self.value(world, velocity[:, None] + steps)
+        with np.errstate(invalid="ignore"):  # inf - inf: the model takes no step there
+            return np.stack([cost[:, 0] - cost[:, 1], cost[:, 2] - cost[:, 3]], axis=-1) / (2.0 * STEP)
+
+    def best(self, world: NeighborView) -> Floats:
+        """Return the velocities ``[N, 2]`` [m/s] where the cost is least.
+
+        Raises:
+            InputError: this cost has no closed form.
+        """
+        raise InputError(f"{self} has no closed form; choose the optimiser sampling or gradient")
+
+    def __str__(self) -> str:
+        return repr(self)
+
+    def __add__(self, other: VelocityCost) -> Sum:
+        return Sum((*_terms(self), *_terms(other)))
+
+    def __rmul__(self, weight: float) -> Sum:
+        return Sum(tuple((weight * own, cost) for own, cost in _terms(self)))
+
+
+@dataclass(frozen=True)
+class Sum(VelocityCost):
+    """A weighted sum of costs; made by ``+`` and ``*``.
+
+    Raises:
+        InputError: a weight is not finite.
+    """
+
+    terms: tuple[tuple[float, VelocityCost], ...]
+
+    def __post_init__(self) -> None:
+        for weight, cost in self.terms:
+            if not math.isfinite(weight):
+                raise InputError(f"weight {weight} of {cost} is not finite")
+
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
+        """Return the weighted sum ``[N, C]``."""
+        total = np.zeros(candidates.shape[:2])
+        for weight, cost in self.terms:
+            if weight != 0.0:
+                total = total + weight * cost.value(world, candidates)
+        return total
+
+    def gradient(self, world: NeighborView, velocity: Floats) -> Floats:
+        """Return the weighted sum of the slopes ``[N, 2]``."""
+        total = np.zeros_like(velocity)
+        for weight, cost in self.terms:
+            if weight != 0.0:
+                total = total + weight * cost.gradient(world, velocity)
+        return total
+
+    def best(self, world: NeighborView) -> Floats:
+        """Return what is best for the only term."""
+        if len(self.terms) != 1 or not self.terms[0][0] > 0.0:
+            return super().best(world)
+        return self.terms[0][1].best(world)
+
+    def __str__(self) -> str:
+        return " + ".join(str(cost) if weight == 1.0 else f"{weight:g} * {cost}" for weight, cost in self.terms)
+
+
+def suitable_optimiser(cost: VelocityCost) -> str:
+    """Return the optimiser that suits a cost: for a sum of several, gradient when all are forces, else sampling.
+
+    >>> from crowdbot.models.costs import GoalForce, PowerLawForce, PreferredVelocity
+    >>> suited(GoalForce() + PowerLawForce()), suited(GoalForce() + PreferredVelocity())
+    ('gradient', 'sampling')
+    >>> suited(2.0 * PreferredVelocity())
+    'closed-form'
+    """
+    terms = _terms(cost)
+    kinds = {term.natural for _, term in terms}
+    if len(terms) == 1 and terms[0][0] > 0.0:
+        return kinds.pop()
+    return "gradient" if kinds == {"gradient"} else "sampling"
+
+
+def _terms(cost: VelocityCost) -> tuple[tuple[float, VelocityCost], ...]:
+    return cost.terms if isinstance(cost, Sum) else ((1.0, cost),)
+
+
+def length(vectors: Floats) -> Floats:
+    """Return the lengths of vectors ``[..., 2]``."""
+    return np.asarray(np.sqrt(vectors[..., 0] ** 2 + vectors[..., 1] ** 2))
+
+
+@dataclass(frozen=True)
+class Force(VelocityCost):
+    """A force F [m/s^2] as a cost, ``|v' - (v + F dt)|^2 / (2 dt)``: one step down the slope is the step by the force.
+
+    Subclasses have one method, :meth:`force`.
+    """
+
+    natural: ClassVar[str] = "gradient"
+
+    @abc.abstractmethod
+    def force(self, world: NeighborView) -> Floats:
+        """Return the accelerations ``[N, 2]`` [m/s^2]."""
+
+    def value(self, world: NeighborView, candidates: Floats) -> Floats:
+        """Return ``|v' - (v + F dt)|^2 / (2 dt)``."""
+        to = self.best(world)
+        return np.asarray(length(candidates - to[:, None]) ** 2 / (2.0 * world.dt))
+
+    def gradient(self, world: NeighborView, velocity: Floats) -> Floats:
+        """Return ``(velocity - v) / dt - F``."""
+        return np.asarray((velocity - world.velocity) / world.dt - self.force(world))
+
+    def best(self, world: NeighborView) -> Floats:
+        """Return ``v + F dt``."""
+        return np.asarray(world.velocity + world.dt * self.force(world))

@@ -1,0 +1,1 @@
+"""Models that sum forces: accelerations by the goal, other people and walls."""

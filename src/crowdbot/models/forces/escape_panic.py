@@ -1,0 +1,314 @@
+"""EscapePanic: people pressed together, with bodies and friction (Helbing, Farkas, Vicsek 2000)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numba import prange
+from numpy.typing import NDArray
+
+from crowdbot.core import (
+    CHUNK,
+    SMALL,
+    InputError,
+    Neighbors,
+    Paper,
+    PerAgent,
+    Scene,
+    check_number,
+    did_you_mean,
+    kernel,
+    parameter,
+    per_agent,
+)
+from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.core.neighbors import nearest
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    movable,
+    rows,
+    speed_limit,
+)
+
+from .parameter_rows import limit_length, parameter_rows
+from .wall_surfaces import surface_distance, wall_surfaces
+
+__all__ = ["EscapePanic"]
+
+Floats = NDArray[np.float64]
+
+VARIANTS = ("textbook", "crowdbot")
+WALL_REACH = math.sqrt(2.0)
+"""The CrowdBot simulator feels walls nearer than this many radii."""
+SIMULATOR_SPEED = 2.5
+"""Its limit of speed [m/s]."""
+STEEPEST = 300.0
+"""Largest exponent of the repulsion, so that it stays a number however deep bodies overlap."""
+MOST_STEPS = 1000
+"""No more sub-steps than this in one step: a huge time step has longer ones."""
+
+MEMORY = "escape-panic"
+"""Under this name a scene remembers how much faster everyone was at the end of the last step than on average."""
+LAW = ("strength", "body", "friction", "mass", "distance", "relaxation_time", "neighbor_distance")
+
+
+class _Crowd(NamedTuple):
+    """What the kernel reads of every agent, by row ``e * A + a``."""
+
+    desired: Floats
+    radius: Floats
+    max_speed: Floats
+    walking: NDArray[np.bool_]
+    law: Floats
+    """``[E * A, 7]`` in the order of :data:`LAW`, or ``[1, 7]`` for all."""
+
+
+class _Walls(NamedTuple):
+    """Walls for both variants: faces and corners (see :mod:`.surfaces`), and every segment ``[N, 4]``."""
+
+    face: Floats
+    corner: Floats
+    arm: Floats
+    first: NDArray[np.int64]
+    segment: Floats
+
+
+@kernel
+def _repulsion(overlap: float, strength: float, distance: float, body: float) -> float:
+    """Return repulsion and body force [m/s^2] of discs that overlap by ``overlap`` [m], below 0 when they do not."""
+    return strength * math.exp(min(overlap / distance, STEEPEST)) + body * max(0.0, overlap)
+
+
+@kernel
+def _next_velocity(
+    row: int, a: int, agent: NDArray[np.int32], number: int, place: Floats, velocity: Floats, desired: Floats,
+    radius: Floats, law: Floats, face: Floats, corner: Floats, arm: Floats, first: NDArray[np.int64], h: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the velocity after a sub-step of ``h`` [s]; friction is taken at its end, so that it cannot overshoot."""
+    x, y, vx, vy, own = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1], radius[row]
+    strength, body, friction, distance, relaxation = law[0] / law[3], law[1] / law[3], law[2] / law[3], law[4], law[5]
+    ax, ay = (desired[row, 0] - vx) / relaxation, (desired[row, 1] - vy) / relaxation
+    xx = xy = yy = 0.0  # sum of rates times t t^T, t the directions along surfaces
+    for n in range(number):
+        other = row - a + agent[n]
+        dx, dy = x - place[other, 0], y - place[other, 1]
+        gap = math.sqrt(dx * dx + dy * dy)
+        nx, ny = (dx / gap, dy / gap) if gap > 0.0 else (1.0 if row < other else -1.0, 0.0)
+        overlap = own + radius[other] - gap
+        size = _repulsion(overlap, strength, distance, body)
+        ax, ay = ax + size * nx, ay + size * ny
+        if overlap > 0.0:
+            rate = friction * overlap
+            slide = rate * (velocity[other, 1] * nx - velocity[other, 0] * ny)
+            ax, ay = ax - slide * ny, ay + slide * nx
+            xx, xy, yy = xx + rate * ny * ny, xy - rate * nx * ny, yy + rate * nx * nx
+    for k in range(len(face) + len(corner)):
+        gap, nx, ny = surface_distance(face, corner, arm, first, k, x, y, own + law[6])
+        if gap < math.inf:
+            size = _repulsion(own - gap, strength, distance, body)
+            rate = friction * max(0.0, own - gap)
+            ax, ay = ax + size * nx, ay + size * ny
+            xx, xy, yy = xx + rate * ny * ny, xy - rate * nx * ny, yy + rate * nx * nx
+    bx, by = vx + h * ax, vy + h * ay
+    xx, xy, yy = 1.0 + h * xx, h * xy, 1.0 + h * yy
+    area = xx * yy - xy * xy
+    return (yy * bx - xy * by) / area, (xx * by - xy * bx) / area
+
+
+@kernel
+def _next_as_simulator(
+    row: int, a: int, agent: NDArray[np.int32], number: int, place: Floats, velocity: Floats, desired: Floats,
+    radius: Floats, law: Floats, segment: Floats, h: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the velocity after a step of the CrowdBot simulator: pushes grow with distance, walls end at 1.4 radii."""
+    x, y, vx, vy, own = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1], radius[row]
+    strength, body, friction, distance, relaxation = law[0] / law[3], law[1] / law[3], law[2] / law[3], law[4], law[5]
+    ax, ay = (desired[row, 0] - vx) / relaxation, (desired[row, 1] - vy) / relaxation
+    pressed = False
+    for n in range(number):
+        other = row - a + agent[n]
+        dx, dy = x - place[other, 0], y - place[other, 1]
+        gap = math.sqrt(dx * dx + dy * dy)
+        overlap = own + radius[other] - gap
+        if pressed and overlap <= 0.0:
+            continue  # neighbours come nearest first, but not bodies
+        if overlap > 0.0 and not pressed:  # forget all who do not touch
+            pressed = True
+            ax, ay = (desired[row, 0] - vx) / relaxation, (desired[row, 1] - vy) / relaxation
+        size = _repulsion(overlap, strength, distance, body)
+        ax, ay = ax + size * dx, ay + size * dy
+        if overlap > 0.0 and gap > 0.0:
+            slide = friction * overlap * ((velocity[other, 1] - vy) * dx - (velocity[other, 0] - vx) * dy) / gap
+            ax, ay = ax - slide * dy, ay + slide * dx
+    for k in range(len(segment)):
+        fx, fy = nearest_on_segment(x, y, segment[k, 0], segment[k, 1], segment[k, 2], segment[k, 3])
+        dx, dy = x - fx, y - fy
+        gap = math.sqrt(dx * dx + dy * dy)
+        if not 0.0 < gap < WALL_REACH * own:
+            continue
+        nx, ny = dx / gap, dy / gap
+        size = _repulsion(own - gap, strength, distance, body)
+        slide = friction * max(0.0, own - gap) * (vx * ny - vy * nx)
+        ax, ay = ax + size * nx - slide * ny, ay + size * ny + slide * nx
+    return vx + h * ax, vy + h * ay
+
+
+@kernel(parallel=True)
+def _walk(
+    place: Floats, velocity: Floats, after: Floats, total: Floats, crowd: _Crowd, near: Neighbors, walls: _Walls,
+    simulator: bool, steps: int, h: float,
+) -> None:  # fmt: skip
+    """Move everyone by sub-steps of ``h`` [s], in place; ``total`` adds up the velocities."""
+    parts = (len(place) + CHUNK - 1) // CHUNK
+    for _ in range(steps):
+        if len(place) <= SMALL:  # starting threads would take longer
+            _walk_part(0, len(place), place, velocity, after, crowd, near, walls, simulator, h)
+        else:
+            for part in prange(parts):
+                end = min((part + 1) * CHUNK, len(place))
+                _walk_part(part * CHUNK, end, place, velocity, after, crowd, near, walls, simulator, h)
+        for row in range(len(place)):
+            for i in range(2):
+                velocity[row, i] = after[row, i]
+                total[row, i] += velocity[row, i]
+                place[row, i] += h * velocity[row, i]
+
+
+@kernel
+def _walk_part(
+    begin: int, end: int, place: Floats, velocity: Floats, after: Floats, crowd: _Crowd, near: Neighbors,
+    walls: _Walls, simulator: bool, h: float,
+) -> None:  # fmt: skip
+    # fields are taken out of the tuples here: inside the loop each access would count references
+    desired, radius, top, walking, laws = crowd
+    agent, number, order = near
+    face, corner, arm, first, segment = walls
+    A = agent.shape[1]
+    for n in range(begin, end):
+        row = order[n]
+        if not walking[row]:
+            continue
+        e, a = row // A, row % A
+        mates, count, law = agent[e, a], number[e, a], laws[row if len(laws) > 1 else 0]
+        if simulator:
+            x, y = _next_as_simulator(row, a, mates, count, place, velocity, desired, radius, law, segment, h)
+        else:
+            x, y = _next_velocity(
+                row, a, mates, count, place, velocity, desired, radius, law, face, corner, arm, first, h
+            )  # fmt: skip
+        after[row, 0], after[row, 1] = limit_length(x, y, top[row])
+
+
+@dataclass(frozen=True)
+class EscapePanic(CrowdModel):
+    """Agents are bodies that repel each other from afar, and press and rub when they touch, each other and walls.
+
+    Args:
+        strength: of the repulsion at contact [N].
+        distance: over which the repulsion falls off [m].
+        body: force per overlap [kg/s^2].
+        friction: force per overlap and sliding speed [kg/(m s)].
+        mass: [kg].
+        relaxation_time: time [s] in which the desired velocity is taken up again.
+        neighbor_distance: neighbours and walls are nearer than this [m], walls measured from the body.
+        max_neighbors: only so many neighbours count, the nearest; a fraction is rounded to the nearest whole number.
+        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene, in ``crowdbot`` 2.5 m/s.
+        longest_step: bodies are stiff, so that a longer time step is cut into equal parts [s], at most 1000.
+        variant: ``textbook``, or ``crowdbot``, the law of the CrowdBot simulator's library: forces between agents grow
+            with the distance of their centres, agents in contact feel nobody else, every wall segment nearer than 1.4
+            radii pushes, and a time step is never cut.
+
+    All people move in every part of a step, external agents go straight on; neighbours are searched once. The velocity
+    of a step is the mean of its parts, so that places are right; how much faster everyone was at the end is remembered
+    in ``scene.memory["escape-panic"]`` [m/s] for the next step, 0 at first. Friction uses the velocity at the end
+    of each part, which is the same law for short steps and cannot overshoot in long ones. A wall made of many segments
+    pushes like one wall; who stands inside of a solid wall does not feel it.
+
+    Source: Helbing, Farkas, Vicsek 2000, doi:10.1038/35035023.
+
+    Raises:
+        InputError: a parameter is not finite or below its minimum, or the variant is unknown.
+
+    >>> beside = Scene.of([[0, 0], [0.7, 0]], [[1, 0], [1, 0]], preferred_velocity=[[1, 0], [1, 0]])
+    >>> EscapePanic().velocity(beside, dt=0.01).round(3).tolist()
+    [[[0.979, 0.0], [1.021, 0.0]]]
+    """
+
+    paper: ClassVar[Paper] = Paper(
+        "Dirk Helbing, Illes Farkas, Tamas Vicsek",
+        2000,
+        "Simulating dynamical features of escape panic",
+        "Nature 407, 487-490",
+        "10.1038/35035023",
+    )
+
+    strength: PerAgent = parameter(2000.0, unit="N", low=100.0, high=4000.0, source="Helbing et al. 2000")
+    distance: PerAgent = parameter(0.08, unit="m", low=0.03, high=0.4, source="Helbing et al. 2000", min=1e-3)
+    body: PerAgent = parameter(1.2e5, unit="kg/s^2", low=1e4, high=1.2e5, source="Helbing et al. 2000")
+    friction: PerAgent = parameter(2.4e5, unit="kg/(m s)", low=0.0, high=2.4e5, source="Helbing et al. 2000")
+    mass: PerAgent = parameter(80.0, unit="kg", low=40.0, high=120.0, source="Helbing et al. 2000", min=1e-3)
+    relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="Helbing et al. 2000", min=1e-3)
+    neighbor_distance: PerAgent = parameter(3.0, unit="m", low=1.0, high=10.0, source="the repulsion is nothing beyond")
+    max_neighbors: PerAgent = parameter(
+        40.0, unit="1", low=1.0, high=60.0, source="crowdbot: all who matter up to 1 person/m^2"
+    )
+    max_speed: PerAgent | None = None
+    longest_step: float = 0.01
+    variant: str = "textbook"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_limit(self, self.max_speed)
+        check_number("EscapePanic", "longest_step", self.longest_step, "s", min=1e-6)
+        if self.variant not in VARIANTS:
+            near = did_you_mean(self.variant, VARIANTS)
+            raise InputError(f"EscapePanic: variant {self.variant!r} is unknown{near}; choose {' or '.join(VARIANTS)}")
+
+    def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
+        """Return the mean velocities ``[E, A, 2]`` [m/s] over the next ``dt`` [s]; ``rng`` is not used."""
+        return self._move_agents(scene, dt)[0]
+
+    def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
+        """Return the scene ``dt`` [s] later, which remembers the last velocities; ``rng`` is not used."""
+        mean, last = self._move_agents(scene, dt)
+        return scene.advanced(mean, dt).replace(memory={**scene.memory, MEMORY: last - mean})
+
+    def _move_agents(self, scene: Scene, dt: float) -> tuple[Floats, Floats]:
+        """Return the mean and the last velocities ``[E, A, 2]`` [m/s]."""
+        wish, walking = desired_velocity(scene, dt), movable(scene)
+        simulator = self.variant == "crowdbot"
+        steps = 1 if simulator else min(MOST_STEPS, max(1, math.ceil(dt / self.longest_step - 1e-9)))
+        reach = per_agent(self.neighbor_distance, scene.shape, "neighbor_distance")
+        most = np.rint(per_agent(self.max_neighbors, scene.shape, "max_neighbors"))
+        top = speed_limit(SIMULATOR_SPEED if simulator and self.max_speed is None else self.max_speed, scene)
+        crowd = _Crowd(
+            rows(wish),
+            rows(scene.radius),
+            rows(top),
+            rows(walking),
+            parameter_rows(self, LAW, scene.shape),
+        )
+        near = nearest(scene.position, reach, most, scene.active & scene.visible, walking)
+        walls = _Walls(*wall_surfaces(scene.walls), np.ascontiguousarray(scene.walls.segments()))
+        out = initial_velocity(scene)
+        velocity = np.where(walking[..., None], scene.velocity + _memory(scene), out)
+        place, after, total = scene.position.copy(), out.copy(), np.zeros_like(out)
+        _walk(rows(place), rows(velocity), rows(after), rows(total), crowd, near, walls, simulator, steps, dt / steps)
+        return np.where(walking[..., None], total / steps, out), velocity
+
+
+def _memory(scene: Scene) -> Floats:
+    """Return ``[E, A, 2]`` [m/s], what the last step has left in the memory of the scene."""
+    excess = np.asarray(scene.memory.get(MEMORY, np.zeros_like(scene.velocity)), dtype=np.float64)
+    if excess.shape != scene.velocity.shape or not np.all(np.isfinite(excess[scene.active])):
+        raise InputError(
+            f"scene: memory {MEMORY!r} has shape {list(excess.shape)} or is not finite, it must be finite and"
+            f" {list(scene.velocity.shape)}; leave it out to begin anew"
+        )
+    return excess

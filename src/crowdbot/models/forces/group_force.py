@@ -1,0 +1,337 @@
+"""GroupForce: social forces measured in experiments, and people who walk in groups (Moussaïd et al. 2009 and 2010)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numba import prange
+from numpy.typing import NDArray
+
+from crowdbot.core import (
+    CHUNK,
+    InputError,
+    Neighbors,
+    Paper,
+    PerAgent,
+    Scene,
+    did_you_mean,
+    kernel,
+    parameter,
+    per_agent,
+)
+from crowdbot.core.neighbors import nearest
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    launch,
+    movable,
+    rows,
+    speed_limit,
+)
+
+from .group_cohesion import Groups, group_acceleration, groups_of, pysocialforce_group_acceleration
+from .parameter_rows import limit_length, parameter_rows
+from .wall_surfaces import surface_distance, wall_surfaces
+
+__all__ = ["GroupForce"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+VARIANTS = ("moussaid", "pysocialforce")
+ARRIVED = 0.5
+"""PySocialForce stops who is nearer to the goal than this [m]."""
+BODY = 0.35
+"""Its radius of everyone before walls [m]."""
+SIGHT = 3.35
+"""It feels points of walls nearer than this [m] to the body."""
+POINTS = 10.0
+"""It takes so many points of a wall per metre."""
+NOTHING = 20.0
+"""A force that has fallen off by this exponent, to 2e-9, is left out."""
+STEEPEST = 300.0
+"""Largest exponent of the push by walls, so that it stays a number however deep a body is in them."""
+LAW = (
+    "strength",
+    "anticipation",
+    "distance",
+    "turn_width",
+    "brake_width",
+    "wall_strength",
+    "wall_distance",
+    "relaxation_time",
+    "gaze",
+    "view_angle",
+    "cohesion",
+    "repulsion",
+    "group_distance",
+    "neighbor_distance",
+)
+
+
+class _Crowd(NamedTuple):
+    """What the kernel reads of every agent, by row ``e * A + a``."""
+
+    position: Floats
+    velocity: Floats
+    desired: Floats
+    heading: Floats
+    """``[E * A, 3]``: unit direction to the goal, and its distance [m]."""
+    radius: Floats
+    max_speed: Floats
+    walking: NDArray[np.bool_]
+    seen: NDArray[np.bool_]
+    law: Floats
+    """``[E * A, 14]`` in the order of :data:`LAW`, or ``[1, 14]`` for all."""
+
+
+class _Walls(NamedTuple):
+    """Walls for both variants: faces and corners (see :mod:`.surfaces`), and every segment ``[N, 4]``."""
+
+    face: Floats
+    corner: Floats
+    arm: Floats
+    first: Ints
+    segment: Floats
+
+
+@kernel
+def _pair(
+    x: float, y: float, wx: float, wy: float, anticipation: float, distance: float, turn: float, brake: float,
+    wrapped: bool,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the force in units of the strength by someone at -x, -y who moves by w relative to the own velocity.
+
+    Brakes along the interaction direction t, and turns across it, away from the side on which the other is.
+    """
+    gap = math.sqrt(x * x + y * y)
+    if gap == 0.0:
+        return 0.0, 0.0
+    nx, ny = x / gap, y / gap
+    tx, ty = anticipation * wx + nx, anticipation * wy + ny
+    length = math.sqrt(tx * tx + ty * ty)
+    reach = distance * length
+    if reach <= 0.0 or gap > NOTHING * reach:
+        return 0.0, 0.0
+    tx, ty, far = tx / length, ty / length, gap / reach
+    ahead, aside = nx * tx + ny * ty, nx * ty - ny * tx
+    least = reach * min(turn, brake) * (abs(aside) if ahead > 0.0 else 1.0)  # an angle is larger than its sine
+    if far + least * least > NOTHING:
+        return 0.0, 0.0
+    angle = math.atan2(aside, ahead)
+    if not wrapped:
+        angle = math.atan2(ty, tx) - math.atan2(ny, nx)
+    along, across = far + (brake * reach * angle) ** 2, far + (turn * reach * angle) ** 2
+    along = math.exp(-along) if along < NOTHING else 0.0
+    across = math.exp(-across) if across < NOTHING and angle != 0.0 else 0.0
+    across = -across if angle > 0.0 else across
+    return along * tx - across * ty, along * ty + across * tx
+
+
+@kernel
+def _from_points(x: float, y: float, strength: float, distance: float, segment: Floats) -> tuple[float, float]:
+    """Return the acceleration by walls as PySocialForce takes them: as points, ten per metre."""
+    ax = ay = 0.0
+    for k in range(len(segment)):
+        sx, sy = segment[k, 0], segment[k, 1]
+        ex, ey = segment[k, 2] - sx, segment[k, 3] - sy
+        length = math.sqrt(ex * ex + ey * ey)
+        count = math.floor(length * POINTS)
+        if count < 1.0:
+            continue
+        step = 1.0 / max(1.0, count - 1.0)
+        foot = ((x - sx) * ex + (y - sy) * ey) / (length * length)
+        span = (SIGHT + BODY) / length
+        low = math.floor(min(max((foot - span) / step, 0.0), count))
+        high = math.ceil(min(max((foot + span) / step + 1.0, 0.0), count))
+        for n in range(int(low), int(high)):
+            dx, dy = x - sx - ex * (n * step), y - sy - ey * (n * step)
+            gap = math.sqrt(dx * dx + dy * dy)
+            if 0.0 < gap < BODY + SIGHT:
+                size = strength * math.exp((BODY - gap) / distance) / gap
+                ax, ay = ax + size * dx, ay + size * dy
+    return ax, ay
+
+
+@kernel(parallel=True)
+def _choose(
+    crowd: _Crowd, near: Neighbors, groups: Groups, walls: _Walls, package: bool, dt: float, out: Floats
+) -> None:
+    """Choose the next velocity of every agent, row by row."""
+    for part in prange((len(out) + CHUNK - 1) // CHUNK):
+        _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, groups, walls, package, dt, out)
+
+
+@kernel
+def _choose_part(
+    start: int, stop: int, crowd: _Crowd, near: Neighbors, groups: Groups, walls: _Walls, package: bool, dt: float,
+    out: Floats,
+) -> None:  # fmt: skip
+    # fields are taken out of the tuples here: inside the loop each access would count references
+    place, velocity, desired, heading, radius, top, walking, seen, laws = crowd
+    agent, number, order = near
+    member, begin, end = groups
+    face, corner, arm, first, segment = walls
+    A = number.shape[1]
+    for m in range(start, stop):
+        row = order[m]
+        if not walking[row] or (package and heading[row, 2] < ARRIVED):
+            continue
+        e, a, law = row // A, row % A, laws[row if len(laws) > 1 else 0]
+        x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
+        fx = fy = 0.0
+        for n in range(A if package else number[e, a]):
+            other = row - a + (n if package else agent[e, a, n])
+            if other != row and seen[other]:
+                px, py = _pair(
+                    x - place[other, 0], y - place[other, 1], velocity[other, 0] - vx, velocity[other, 1] - vy,
+                    law[1], law[2], law[3], law[4], not package,
+                )  # fmt: skip
+                fx, fy = fx + px, fy + py
+        ax = (desired[row, 0] - vx) / law[7] + law[0] * fx
+        ay = (desired[row, 1] - vy) / law[7] + law[0] * fy
+        if package:
+            px, py = _from_points(x, y, law[5], law[6], segment)
+            qx, qy = pysocialforce_group_acceleration(
+                row, begin[row], end[row], member, seen, place, heading, law[11], law[12]
+            )  # fmt: skip
+        else:
+            px, py = _from_surfaces(x, y, radius[row], law[5], law[6], law[13], face, corner, arm, first)
+            qx, qy = group_acceleration(
+                row, begin[row], end[row], member, seen, place, velocity, law[8], law[9], law[10], law[11], law[12]
+            )
+        ax, ay = ax + px + qx, ay + py + qy
+        out[row, 0], out[row, 1] = limit_length(vx + dt * ax, vy + dt * ay, top[row])
+
+
+@kernel
+def _from_surfaces(
+    x: float, y: float, radius: float, strength: float, distance: float, sight: float,
+    face: Floats, corner: Floats, arm: Floats, first: Ints,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the acceleration by walls, which falls off with the clearance of the body."""
+    ax = ay = 0.0
+    for k in range(len(face) + len(corner)):
+        gap, nx, ny = surface_distance(face, corner, arm, first, k, x, y, radius + sight)
+        if gap < math.inf:
+            size = strength * math.exp(min((radius - gap) / distance, STEEPEST))
+            ax, ay = ax + size * nx, ay + size * ny
+    return ax, ay
+
+
+@dataclass(frozen=True)
+class GroupForce(CrowdModel):
+    """Agents brake and turn aside for each other as measured in experiments, and groups keep together and in sight.
+
+    Args:
+        strength: of the force between two agents [m/s^2].
+        anticipation: weight of the relative velocity in the direction of interaction [s/m].
+        distance: range of the force per length of that direction [m].
+        turn_width: how fast turning ends beside that direction [1/(m rad)].
+        brake_width: how fast braking does [1/(m rad)].
+        wall_strength: acceleration by a wall at contact [m/s^2].
+        wall_distance: over which it falls off [m].
+        relaxation_time: time [s] in which the desired velocity is taken up again.
+        gaze: braking of who has the group behind, per angle out of view and speed [1/(s rad)].
+        view_angle: half the field of view [rad].
+        cohesion: pull of who is farther than ``(N - 1) / 2`` m from the centre of a group of N [m/s^2].
+        repulsion: push between members nearer than ``group_distance`` [m/s^2].
+        group_distance: [m].
+        neighbor_distance: neighbours and walls are nearer than this [m], walls measured from the body.
+        max_neighbors: only so many neighbours count, the nearest; a fraction is rounded to the nearest whole number.
+        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+        variant: ``moussaid``, or ``pysocialforce``, what version 1.1.2 of that package does. Then the angle between
+            direction of interaction and neighbour is not brought to -pi..pi, everyone counts however far, the speed
+            aimed at is the maximum speed, who is nearer than 0.5 m to the goal stops at once, walls are rows of points
+            before bodies of 0.35 m, gaze pulls along the way to the goal, repulsion grows with the distance, and
+            ``gaze``, ``view_angle``, ``cohesion`` and both limits of neighbours are not read.
+
+    Groups are the agents of one environment with the same number in ``scene.group``. There is no contact force: in
+    crowds too dense to walk bodies overlap.
+
+    Source: Moussaïd et al. 2010 (groups), Moussaïd et al. 2009, doi:10.1098/rspb.2009.0405 (pairs); strength, walls and
+    group distance as in PySocialForce 1.1.2.
+
+    Raises:
+        InputError: a parameter is not finite or below its minimum, or the variant is unknown.
+
+    >>> ahead = Scene.of([[0, 0], [3, 0.1]], [[1, 0], [-1, 0]], preferred_velocity=[[1, 0], [-1, 0]])
+    >>> GroupForce().velocity(ahead, dt=0.1).round(3).tolist()
+    [[[0.911, -0.092], [-0.911, 0.092]]]
+    """
+
+    paper: ClassVar[Paper] = Paper(
+        "Mehdi Moussaïd, Niriaska Perozo, Simon Garnier, Dirk Helbing, Guy Theraulaz",
+        2010,
+        "The walking behaviour of pedestrian social groups and its impact on crowd dynamics",
+        "PLoS ONE 5(4), e10047",
+        "10.1371/journal.pone.0010047",
+    )
+
+    strength: PerAgent = parameter(5.1, unit="m/s^2", low=1.0, high=10.0, source="PySocialForce 1.1.2")
+    anticipation: PerAgent = parameter(2.0, unit="s/m", low=0.5, high=4.0, source="Moussaïd et al. 2009")
+    distance: PerAgent = parameter(0.35, unit="m", low=0.1, high=1.0, source="Moussaïd et al. 2009")
+    turn_width: PerAgent = parameter(2.0, unit="1/(m rad)", low=0.5, high=5.0, source="Moussaïd et al. 2009")
+    brake_width: PerAgent = parameter(3.0, unit="1/(m rad)", low=0.5, high=6.0, source="Moussaïd et al. 2009")
+    wall_strength: PerAgent = parameter(10.0, unit="m/s^2", low=1.0, high=20.0, source="PySocialForce 1.1.2")
+    wall_distance: PerAgent = parameter(0.2, unit="m", low=0.05, high=0.5, source="PySocialForce 1.1.2", min=1e-3)
+    relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.2, high=1.5, source="PySocialForce 1.1.2", min=1e-3)
+    gaze: PerAgent = parameter(4.0, unit="1/(s rad)", low=0.0, high=8.0, source="Moussaïd et al. 2010")
+    view_angle: PerAgent = parameter(0.5 * math.pi, unit="rad", low=0.5, high=math.pi, source="Moussaïd et al. 2010")
+    cohesion: PerAgent = parameter(3.0, unit="m/s^2", low=0.0, high=6.0, source="Moussaïd et al. 2010")
+    repulsion: PerAgent = parameter(1.0, unit="m/s^2", low=0.0, high=4.0, source="Moussaïd et al. 2010")
+    group_distance: PerAgent = parameter(0.55, unit="m", low=0.3, high=1.2, source="PySocialForce 1.1.2")
+    neighbor_distance: PerAgent = parameter(10.0, unit="m", low=1.0, high=15.0, source="own choice")
+    max_neighbors: PerAgent = parameter(50.0, unit="1", low=1.0, high=100.0, source="own choice")
+    max_speed: PerAgent | None = None
+    variant: str = "moussaid"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_limit(self, self.max_speed)
+        if self.variant not in VARIANTS:
+            near = did_you_mean(self.variant, VARIANTS)
+            raise InputError(f"GroupForce: variant {self.variant!r} is unknown{near}; choose {' or '.join(VARIANTS)}")
+
+    def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
+        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
+        wish, walking = desired_velocity(scene, dt), movable(scene)
+        package = self.variant == "pysocialforce"
+        top = speed_limit(self.max_speed, scene)
+        heading = _heading(scene, wish)
+        seen = scene.active & scene.visible
+        crowd = _Crowd(
+            rows(scene.position),
+            rows(scene.velocity),
+            rows(heading[..., :2] * top[..., None] if package else wish),
+            rows(heading),
+            rows(scene.radius),
+            rows(top),
+            rows(walking),
+            rows(seen),
+            parameter_rows(self, LAW, scene.shape),
+        )
+        most = np.rint(per_agent(0.0 if package else self.max_neighbors, scene.shape, "max_neighbors"))
+        near = nearest(
+            scene.position, per_agent(self.neighbor_distance, scene.shape, "neighbor_distance"), most, seen, walking
+        )
+        walls = _Walls(*wall_surfaces(scene.walls), np.ascontiguousarray(scene.walls.segments()))
+        out = initial_velocity(scene)
+        launch(_choose, _choose_part, rows(out), crowd, near, groups_of(scene), walls, package, float(dt))
+        return out
+
+
+def _heading(scene: Scene, wish: Floats) -> Floats:
+    """Return ``[E, A, 3]``: unit direction to the goal and its distance, inf when only a velocity is wished."""
+    away = wish if scene.preferred_velocity is not None else scene.goal - scene.position
+    away = np.where(scene.active[..., None], away, 0.0)
+    distance = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2)
+    direction = away / np.where(distance > 0.0, distance, 1.0)[..., None]
+    if scene.preferred_velocity is not None:
+        distance = np.full(scene.shape, np.inf)
+    return np.concatenate([direction, distance[..., None]], axis=-1)

@@ -1,0 +1,233 @@
+"""PowerLaw: people avoid each other by the time that is left to a collision (Karamouzas, Skinner, Guy 2014)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numba import prange
+from numpy.typing import NDArray
+
+from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    launch,
+    movable,
+    neighbors_of,
+    rows,
+    speed_limit,
+)
+
+from .parameter_rows import limit_length, parameter_rows
+from .wall_surfaces import WallSurfaces, is_nearest_corner, wall_surfaces
+
+__all__ = ["PowerLaw"]
+
+Floats = NDArray[np.float64]
+
+SHRUNK = 0.99
+"""Bodies that overlap count as this share of the distance between them, so that they still have a time to collision."""
+STRONGEST = 1e12
+"""No single force [m/s^2] counts as more: the law has no bound where two discs just graze."""
+
+LAW = ("strength", "exponent", "time_horizon", "relaxation_time", "max_acceleration")
+
+
+class _Crowd(NamedTuple):
+    """What the kernel reads of every agent, by row ``e * A + a``."""
+
+    position: Floats
+    velocity: Floats
+    desired: Floats
+    radius: Floats
+    max_speed: Floats
+    walking: NDArray[np.bool_]
+    law: Floats
+    """``[E * A, 5]`` in the order of :data:`LAW`, or ``[1, 5]`` for all."""
+
+
+@kernel
+def _steepness(time: float, strength: float, exponent: float, horizon: float) -> float:
+    """Return ``-dE/dt`` of the energy ``E(t) = strength t^-exponent exp(-t / horizon)`` at ``time``."""
+    power = 1.0 / (time * time) if exponent == 2.0 else time**-exponent
+    return strength * math.exp(-time / horizon) * power * (exponent / time + 1.0 / horizon)
+
+
+@kernel
+def _from_disc(
+    x: float, y: float, vx: float, vy: float, reach: float, strength: float, exponent: float, horizon: float
+) -> tuple[float, float, float]:
+    """Return the force of a disc on x, y relative to it, and when they touch; nothing and inf when they do not."""
+    distance2 = x * x + y * y
+    gap = distance2 - reach * reach
+    if gap <= 0.0:
+        gap = (1.0 - SHRUNK * SHRUNK) * distance2
+    closing = -(x * vx + y * vy)
+    if closing <= 0.0:
+        return 0.0, 0.0, math.inf
+    speed2 = vx * vx + vy * vy
+    root2 = closing * closing - speed2 * gap
+    if root2 <= 0.0:
+        return 0.0, 0.0, math.inf
+    root = math.sqrt(root2)
+    time = gap / (closing + root)
+    if not 0.0 < time <= horizon:
+        return 0.0, 0.0, math.inf
+    size = _steepness(time, strength, exponent, horizon) / speed2
+    fx = size * ((speed2 * x + closing * vx) / root - vx)
+    fy = size * ((speed2 * y + closing * vy) / root - vy)
+    if not fx * fx + fy * fy < STRONGEST * STRONGEST:
+        distance = math.sqrt(distance2)
+        return STRONGEST * x / distance, STRONGEST * y / distance, time
+    return fx, fy, time
+
+
+@kernel
+def _from_face(
+    face: Floats, k: int, x: float, y: float, vx: float, vy: float,
+    radius: float, strength: float, exponent: float, horizon: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the force of face k on an agent that will touch it inside."""
+    ux, uy = face[k, 4], face[k, 5]
+    height = (x - face[k, 0]) * uy - (y - face[k, 1]) * ux
+    closing = vy * ux - vx * uy
+    if height <= 0.0 or closing <= 0.0:
+        return 0.0, 0.0
+    gap = height - radius if height > radius else (1.0 - SHRUNK) * height
+    time = gap / closing
+    if not 0.0 < time <= horizon:
+        return 0.0, 0.0
+    tx, ty = x + vx * time, y + vy * time
+    if (tx - face[k, 0]) * ux + (ty - face[k, 1]) * uy <= 0.0 or (tx - face[k, 2]) * ux + (ty - face[k, 3]) * uy >= 0.0:
+        return 0.0, 0.0
+    size = _steepness(time, strength, exponent, horizon) / closing
+    if not size < STRONGEST:  # inf and NaN too
+        size = STRONGEST
+    return size * uy, -size * ux
+
+
+@kernel(parallel=True)
+def _choose(crowd: _Crowd, near: Neighbors, walls: WallSurfaces, dt: float, out: Floats) -> None:
+    """Choose the next velocity of every agent, row by row."""
+    for part in prange((len(out) + CHUNK - 1) // CHUNK):
+        _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, walls, dt, out)
+
+
+@kernel
+def _choose_part(
+    begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: WallSurfaces, dt: float, out: Floats
+) -> None:
+    # fields are taken out of the tuples here: inside the loop each access would count references
+    place, velocity, desired, radius, top, walking, law = crowd
+    agent, number, order = near
+    face, corner, arm, first = walls
+    A = agent.shape[1]
+    for n in range(begin, end):
+        row = order[n]
+        if not walking[row]:
+            continue
+        e, a = row // A, row % A
+        x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
+        own = row if len(law) > 1 else 0
+        k, m, t, relaxation, most = law[own, 0], law[own, 1], law[own, 2], law[own, 3], law[own, 4]
+        ax, ay = (desired[row, 0] - vx) / relaxation, (desired[row, 1] - vy) / relaxation
+        for i in range(number[e, a]):
+            other = row - a + agent[e, a, i]
+            fx, fy, _ = _from_disc(
+                x - place[other, 0], y - place[other, 1], vx - velocity[other, 0], vy - velocity[other, 1],
+                radius[row] + radius[other], k, m, t,
+            )  # fmt: skip
+            ax, ay = ax + fx, ay + fy
+        for i in range(len(face)):
+            fx, fy = _from_face(face, i, x, y, vx, vy, radius[row], k, m, t)
+            ax, ay = ax + fx, ay + fy
+        for c in range(len(corner)):
+            fx, fy, time = _from_disc(x - corner[c, 0], y - corner[c, 1], vx, vy, radius[row], k, m, t)
+            if time < math.inf and is_nearest_corner(corner, arm, first, c, x + vx * time, y + vy * time):
+                ax, ay = ax + fx, ay + fy
+        ax, ay = limit_length(ax, ay, most)
+        out[row, 0], out[row, 1] = limit_length(vx + ax * dt, vy + ay * dt, top[row])
+
+
+@dataclass(frozen=True)
+class PowerLaw(CrowdModel):
+    """Agents are pushed down the slope of an energy that depends only on the time to the next collision.
+
+    Each pair has the energy ``strength t^-exponent exp(-t / time_horizon)``, t its time to collision if both keep
+    their velocities; later collisions than ``time_horizon`` do not count. Walls are capsules as wide as the agent with
+    the same energy. Bodies that overlap already are taken as just touching (1 % smaller than their distance).
+
+    Args:
+        strength: of the energy, per mass [m^2 s^(exponent - 2)].
+        exponent: of the time to collision [1].
+        time_horizon: time [s] over which the energy falls off.
+        relaxation_time: time [s] in which the desired velocity is taken up again.
+        neighbor_distance: neighbours are nearer than this [m].
+        max_neighbors: only so many of them count, the nearest; a fraction is rounded to the nearest whole number.
+        max_acceleration: limit of the sum of all forces [m/s^2]; just before a grazing collision the law has none.
+        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+
+    Use steps of at most 0.05 s where exact paths matter; larger ones stay finite and bounded. Exactly head-on pairs
+    slow each other down and do not pass: give goals or starts a small offset.
+
+    Source: Karamouzas, Skinner, Guy 2014, doi:10.1103/PhysRevLett.113.238701; the force of walls is derived from the
+    same energy. The UMANS library uses ``relaxation_time=0.5, neighbor_distance=5, max_acceleration=5``.
+
+    Raises:
+        InputError: a parameter is not finite or below its minimum.
+
+    >>> ahead = Scene.of([[0, 0], [3, 0.1]], [[1, 0], [-1, 0]], preferred_velocity=[[1, 0], [-1, 0]])
+    >>> PowerLaw().velocity(ahead, dt=0.1).round(3).tolist()
+    [[[0.94, -0.012], [-0.94, 0.012]]]
+    """
+
+    paper: ClassVar[Paper] = Paper(
+        "Ioannis Karamouzas, Brian Skinner, Stephen J. Guy",
+        2014,
+        "Universal power law governing pedestrian interactions",
+        "Physical Review Letters 113, 238701",
+        "10.1103/PhysRevLett.113.238701",
+    )
+
+    strength: PerAgent = parameter(1.5, unit="m^2 s^(m-2)", low=0.3, high=5.0, source="Karamouzas et al. 2014")
+    exponent: PerAgent = parameter(2.0, unit="1", low=1.0, high=4.0, source="Karamouzas et al. 2014")
+    time_horizon: PerAgent = parameter(3.0, unit="s", low=0.5, high=8.0, source="Karamouzas et al. 2014", min=1e-3)
+    relaxation_time: PerAgent = parameter(
+        0.54, unit="s", low=0.2, high=1.5, source="Karamouzas et al. 2014, as remembered", min=1e-3
+    )
+    neighbor_distance: PerAgent = parameter(
+        10.0, unit="m", low=1.0, high=15.0, source="Karamouzas et al. 2014, as remembered"
+    )
+    max_neighbors: PerAgent = parameter(
+        64.0, unit="1", low=1.0, high=64.0, source="crowdbot: all within 5 m up to 0.8 people/m^2"
+    )
+    max_acceleration: PerAgent = parameter(
+        20.0, unit="m/s^2", low=1.0, high=20.0, source="Karamouzas et al. 2014, as remembered"
+    )
+    max_speed: PerAgent | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_limit(self, self.max_speed)
+
+    def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
+        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
+        wish, walking = desired_velocity(scene, dt), movable(scene)
+        near = neighbors_of(self, scene, walking)
+        crowd = _Crowd(
+            rows(scene.position),
+            rows(scene.velocity),
+            rows(wish),
+            rows(scene.radius),
+            rows(speed_limit(self.max_speed, scene)),
+            rows(walking),
+            parameter_rows(self, LAW, scene.shape),
+        )
+        out = initial_velocity(scene)
+        launch(_choose, _choose_part, rows(out), crowd, near, wall_surfaces(scene.walls), float(dt))
+        return out

@@ -1,0 +1,311 @@
+"""SocialForce: people as particles pushed by their goal, by each other and by walls (Helbing and Molnár 1995)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from numba import prange
+from numpy.typing import NDArray
+
+from crowdbot.core import (
+    CHUNK,
+    InputError,
+    Neighbors,
+    Paper,
+    PerAgent,
+    Scene,
+    did_you_mean,
+    kernel,
+    parameter,
+    per_agent,
+)
+from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    launch,
+    movable,
+    neighbors_of,
+    rows,
+    speed_limit,
+)
+
+__all__ = ["SocialForce"]
+
+Floats = NDArray[np.float64]
+
+VARIANTS = ("gradient", "umans2018")
+UMANS_LOOK_AHEAD = 0.5
+"""The 2018 library looks half as far ahead as its parameter says (1 s at 2 s), found by fitting its answers."""
+UMANS_CONTACT = 62.5
+"""Push of the 2018 library per overlap [1/s^2], 5000 N/m for 80 kg, found by fitting its answers."""
+
+
+class _Law(NamedTuple):
+    """Parameters of the law, each one number for all or one per row ``e * A + a``."""
+
+    strength: Floats
+    distance: Floats
+    look_ahead: Floats
+    wall_strength: Floats
+    wall_distance: Floats
+    relaxation_time: Floats
+    view_angle: Floats
+    behind: Floats
+    neighbor_distance: Floats
+    max_acceleration: Floats
+
+
+class _Crowd(NamedTuple):
+    """What the kernel reads of every agent, by row ``e * A + a``."""
+
+    position: Floats
+    velocity: Floats
+    desired: Floats
+    radius: Floats
+    max_speed: Floats
+    walking: NDArray[np.bool_]
+    law: Floats
+    """``[E * A, 10]`` in the order of :class:`_Law`, or ``[1, 10]`` for all."""
+
+
+@kernel
+def _push(x: float, y: float, yx: float, yy: float, strength: float, distance: float) -> tuple[float, float]:
+    """Return minus the gradient of ``strength exp(-b / distance)`` [m/s^2] at x, y from an agent that walks by yx, yy.
+
+    b is the half minor axis of the ellipse through x, y with foci in the other's place now and after its next stride.
+    """
+    near, far = math.sqrt(x * x + y * y), math.sqrt((x - yx) ** 2 + (y - yy) ** 2)
+    b2 = 0.25 * ((near + far) ** 2 - (yx * yx + yy * yy))
+    if b2 <= 0.0 or near == 0.0 or far == 0.0:
+        return 0.0, 0.0  # in the way of its stride: no side is better
+    b = math.sqrt(b2)
+    size = strength / distance * math.exp(-b / distance) * (near + far) / (4.0 * b)
+    return size * (x / near + (x - yx) / far), size * (y / near + (y - yy) / far)
+
+
+@kernel
+def _push_umans(
+    x: float, y: float, yx: float, yy: float, stride: float, strength: float, distance: float
+) -> tuple[float, float]:
+    """Return the push of the 2018 library: a derivative along the line between the two, longer with their distance.
+
+    Whoever has arrived but still moves has a ``stride`` there, which makes the ellipse thinner, but no direction.
+    """
+    near, far = math.sqrt(x * x + y * y), math.sqrt((x - yx) ** 2 + (y - yy) ** 2)
+    b2 = 0.25 * ((near + far) ** 2 - stride * stride)
+    if b2 <= 0.0 or near == 0.0 or far == 0.0:
+        return 0.0, 0.0
+    b = math.sqrt(b2)
+    size = strength / distance * math.exp(-b / distance) * (near + far) / (4.0 * b)
+    size *= 1.0 + (near - (x * yx + y * yy) / near) / far
+    return size * x, size * y
+
+
+@kernel
+def _sight(x: float, y: float, ex: float, ey: float, least: float, behind: float) -> float:
+    """Return the weight of what pushes along x, y on someone who looks along e: 1 in view, ``behind`` out of it."""
+    length = math.sqrt((x * x + y * y) * (ex * ex + ey * ey))
+    return behind if length > 0.0 and -(x * ex + y * ey) < least * length else 1.0
+
+
+@kernel
+def _by_people(
+    row: int,
+    ex: float,
+    ey: float,
+    position: Floats,
+    velocity: Floats,
+    desired: Floats,
+    radius: Floats,
+    law: Floats,
+    others: NDArray[np.int32],
+    first: int,
+    umans: bool,
+) -> tuple[float, float, float, float]:
+    """Return the acceleration by neighbours, and the push by those in contact; rows of others are from ``first`` on."""
+    ax = ay = push_x = push_y = 0.0
+    for n in range(len(others)):
+        j = first + others[n]
+        x, y = position[row, 0] - position[j, 0], position[row, 1] - position[j, 1]
+        if umans:
+            gap = math.sqrt(x * x + y * y)
+            overlap = radius[row] + radius[j] - gap
+            if overlap > 0.0:
+                if gap > 0.0:
+                    push_x, push_y = push_x + overlap * x / gap, push_y + overlap * y / gap
+                continue
+            speed = math.sqrt(velocity[j, 0] ** 2 + velocity[j, 1] ** 2)
+            wish = math.sqrt(desired[j, 0] ** 2 + desired[j, 1] ** 2)
+            stride = UMANS_LOOK_AHEAD * law[2] * speed
+            yx, yy = (stride * desired[j, 0] / wish, stride * desired[j, 1] / wish) if wish > 0.0 else (0.0, 0.0)
+            fx, fy = _push_umans(x, y, yx, yy, stride, law[0], law[1])
+        else:
+            fx, fy = _push(x, y, law[2] * velocity[j, 0], law[2] * velocity[j, 1], law[0], law[1])
+        weight = _sight(x, y, ex, ey, law[6], law[7])
+        ax, ay = ax + weight * fx, ay + weight * fy
+    return ax, ay, push_x, push_y
+
+
+@kernel
+def _by_walls(x: float, y: float, ex: float, ey: float, law: Floats, segments: Floats) -> tuple[float, float]:
+    """Return the acceleration by the nearest point of each segment."""
+    ax = ay = 0.0
+    for k in range(len(segments)):
+        nx, ny = nearest_on_segment(x, y, segments[k, 0], segments[k, 1], segments[k, 2], segments[k, 3])
+        dx, dy = x - nx, y - ny
+        gap = math.sqrt(dx * dx + dy * dy)
+        if 0.0 < gap < law[8]:
+            weight = _sight(dx, dy, ex, ey, law[6], law[7])
+            size = weight * law[3] / law[4] * math.exp(-gap / law[4]) / gap
+            ax, ay = ax + size * dx, ay + size * dy
+    return ax, ay
+
+
+@kernel
+def _limit_length(x: float, y: float, most: float) -> tuple[float, float]:
+    """Return a vector no longer than ``most``."""
+    length = math.sqrt(x * x + y * y)
+    if length <= most:
+        return x, y
+    return x * (most / length), y * (most / length)
+
+
+@kernel(parallel=True)
+def _choose(crowd: _Crowd, near: Neighbors, segments: Floats, umans: bool, dt: float, out: Floats) -> None:
+    """Choose the next velocity of every agent, row by row."""
+    for part in prange((len(out) + CHUNK - 1) // CHUNK):
+        _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, segments, umans, dt, out)
+
+
+@kernel
+def _choose_part(
+    begin: int, end: int, crowd: _Crowd, near: Neighbors, segments: Floats, umans: bool, dt: float, out: Floats
+) -> None:
+    # fields are taken out of the tuples here: inside the loop each access would count references
+    position, velocity, desired, radius, top, walking, laws = crowd
+    agent, number, order = near
+    A = agent.shape[1]
+    for k in range(begin, end):
+        row = order[k]
+        if not walking[row]:
+            continue
+        e, a = row // A, row % A
+        law = laws[row if len(laws) > 1 else 0]
+        vx, vy, px, py = velocity[row, 0], velocity[row, 1], desired[row, 0], desired[row, 1]
+        still = px == 0.0 and py == 0.0
+        ex, ey = (vx, vy) if umans or still else (px, py)
+        others = agent[e, a, : number[e, a]]
+        ax, ay, push_x, push_y = _by_people(
+            row, ex, ey, position, velocity, desired, radius, law, others, row - a, umans
+        )
+        wx, wy = _by_walls(position[row, 0], position[row, 1], ex, ey, law, segments)
+        ax, ay = ax + wx + (px - vx) / law[5], ay + wy + (py - vy) / law[5]
+        if umans and still:  # the library stops whoever has arrived
+            ax, ay = -vx / dt, -vy / dt
+        ax, ay = _limit_length(ax, ay, law[9])
+        vx, vy = _limit_length(vx + ax * dt, vy + ay * dt, top[row])
+        out[row, 0] = vx + UMANS_CONTACT * push_x * dt
+        out[row, 1] = vy + UMANS_CONTACT * push_y * dt
+
+
+@dataclass(frozen=True)
+class SocialForce(CrowdModel):
+    """Everyone is pulled towards the desired velocity and pushed away by the next stride of others, and by walls.
+
+    Args:
+        strength: potential at the centre of another's ellipse [m^2/s^2].
+        distance: over which the push of another falls by e [m].
+        look_ahead: length of another's stride [s]; its step is velocity times this.
+        wall_strength: potential at a wall [m^2/s^2].
+        wall_distance: over which the push of a wall falls by e [m].
+        relaxation_time: of the velocity towards the desired one [s].
+        view_angle: half angle of the field of view about the desired direction [rad].
+        behind: weight of what is out of view.
+        neighbor_distance: people and walls beyond do not count [m].
+        max_neighbors: only so many people count, the nearest; a fraction is rounded to the nearest whole number.
+        max_acceleration: of the sum of all [m/s^2].
+        variant: ``gradient``, the published force, or ``umans2018``, the answers of the UMANS library of that year
+            (a derivative along the line between two; contact instead of force while two discs overlap).
+        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+
+    The law has no radii: ``distance`` holds them. Segments that meet push both. A desired velocity of 0 looks along
+    the velocity.
+
+    Source: Helbing, Molnár 1995, doi:10.1103/PhysRevE.51.4282; van Toll et al. 2020, doi:10.1145/3384382.3384532.
+
+    Raises:
+        InputError: a parameter is not finite or below its minimum, or the variant is unknown.
+
+    >>> scene = Scene.of([[0.0, 0.0]], preferred_velocity=[[1.0, 0.0]])
+    >>> SocialForce().velocity(scene, dt=0.1).round(6).tolist()
+    [[[0.2, 0.0]]]
+    """
+
+    paper: ClassVar[Paper] = Paper(
+        "Dirk Helbing, Péter Molnár",
+        1995,
+        "Social force model for pedestrian dynamics",
+        "Physical Review E",
+        "10.1103/PhysRevE.51.4282",
+    )
+
+    strength: PerAgent = parameter(2.1, unit="m^2/s^2", low=0.5, high=8.0, source="paper, V0")
+    distance: PerAgent = parameter(0.3, unit="m", low=0.1, high=1.0, source="paper, sigma", min=0.01)
+    look_ahead: PerAgent = parameter(2.0, unit="s", low=0.0, high=4.0, source="paper, delta t")
+    wall_strength: PerAgent = parameter(10.0, unit="m^2/s^2", low=1.0, high=20.0, source="paper, U0")
+    wall_distance: PerAgent = parameter(0.2, unit="m", low=0.05, high=1.0, source="paper, R", min=0.01)
+    relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="paper, tau", min=0.01)
+    view_angle: PerAgent = parameter(
+        math.radians(100), unit="rad", low=1.0, high=math.pi, source="paper, 2 phi = 200 deg"
+    )
+    behind: PerAgent = parameter(0.5, unit="1", low=0.0, high=1.0, source="paper, c")
+    neighbor_distance: PerAgent = parameter(5.0, unit="m", low=1.0, high=15.0, source="UMANS, example")
+    max_neighbors: PerAgent = parameter(
+        64.0, unit="1", low=1.0, high=64.0, source="crowdbot: all within 5 m up to 0.8 people/m^2"
+    )
+    max_acceleration: PerAgent = parameter(5.0, unit="m/s^2", low=1.0, high=20.0, source="UMANS, example")
+    variant: str = "gradient"
+    max_speed: PerAgent | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_limit(self, self.max_speed)
+        if self.variant not in VARIANTS:
+            raise InputError(
+                f"SocialForce: variant {self.variant!r} is unknown{did_you_mean(self.variant, VARIANTS)};"
+                f" choose {' or '.join(VARIANTS)}"
+            )
+
+    def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
+        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
+        wish, walking = desired_velocity(scene, dt), movable(scene)
+        umans = self.variant == "umans2018"
+        if umans and scene.preferred_velocity is None:  # there one has arrived when the goal is under the own disc
+            away = scene.goal - scene.position
+            wish[away[..., 0] ** 2 + away[..., 1] ** 2 <= scene.radius**2] = 0.0
+        near = neighbors_of(self, scene, walking)
+        crowd = _Crowd(
+            rows(scene.position),
+            rows(scene.velocity),
+            rows(wish),
+            rows(scene.radius),
+            rows(speed_limit(self.max_speed, scene)),
+            rows(walking),
+            self._law(scene.shape),
+        )
+        out = initial_velocity(scene)
+        launch(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments(), umans, float(dt))
+        return out
+
+    def _law(self, shape: tuple[int, int]) -> Floats:
+        values: list[Any] = [getattr(self, name) for name in _Law._fields]
+        values[_Law._fields.index("view_angle")] = np.cos(np.minimum(self.view_angle, math.pi))
+        if all(np.ndim(value) == 0 for value in values):
+            return np.array([values], dtype=np.float64)
+        return np.stack([per_agent(v, shape, n).reshape(-1) for v, n in zip(values, _Law._fields, strict=True)], axis=1)

@@ -1,0 +1,99 @@
+"""Votes: how people who were here before, walking the same way, went on."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crowdbot.core import kernel
+
+__all__ = ["BINS", "TurnSamples", "accumulate", "median_turn"]
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+WIDEST = math.pi / 2
+"""Turns are counted up to here [rad]."""
+BINS = 61
+"""Turns at which votes are counted, 3 degrees apart; a vote is shared between the two nearest."""
+
+
+class TurnSamples(NamedTuple):
+    """What voters bring: M rows of recordings.
+
+    Fields:
+        place: ``[M, 2]`` [m] where somebody was.
+        heading: ``[M, 2]`` unit vector of the velocity there.
+        turn: ``[M]`` [rad] by which they had turned some seconds later.
+        worth: ``[M]`` weight of the vote.
+        straight: ``[M]`` share of the vote that counts as straight on.
+        exit: ``[M]`` index of the exit where the track ended, or the number of exits when it is not known.
+    """
+
+    place: Floats
+    heading: Floats
+    turn: Floats
+    worth: Floats
+    straight: Floats
+    exit: Integers
+
+
+@kernel
+def accumulate(
+    place: Floats, heading: Floats, samples: TurnSamples, exits: int, reach: float, spread: float, histogram: Floats
+) -> None:
+    """Fill ``votes [P, exits + 2, NODES]``: straight on, each exit, exit unknown; for people ``[P, 2]``.
+
+    A vote counts by (1 - d/8)^4, d the squared distance in units of ``reach`` [m] plus the squared difference of
+    headings in units of ``spread``: nearly a Gaussian, and nothing beyond d = 8.
+    """
+    step = 2.0 * WIDEST / (BINS - 1)
+    farthest = 8.0 * reach * reach
+    for person in range(place.shape[0]):
+        for sample in range(samples.place.shape[0]):
+            dx = samples.place[sample, 0] - place[person, 0]
+            dy = samples.place[sample, 1] - place[person, 1]
+            apart = dx * dx + dy * dy
+            if apart >= farthest:
+                continue
+            hx = samples.heading[sample, 0] - heading[person, 0]
+            hy = samples.heading[sample, 1] - heading[person, 1]
+            near = 1.0 - (apart / (reach * reach) + (hx * hx + hy * hy) / (spread * spread)) / 8.0
+            if near <= 0.0:
+                continue
+            weight = near * near * near * near * samples.worth[sample]
+            at = (min(WIDEST, max(-WIDEST, samples.turn[sample])) + WIDEST) / step
+            low = min(int(at), BINS - 2)
+            share = at - low
+            for layer, part in (
+                (0, samples.straight[sample]),
+                (1 + samples.exit[sample], 1.0 - samples.straight[sample]),
+            ):
+                histogram[person, layer, low] += weight * part * (1.0 - share)
+                histogram[person, layer, low + 1] += weight * part * share
+
+
+def median_turn(histogram: Floats, doubt: float = 0.0) -> Floats:
+    """Return the median turn [rad] of votes ``[..., NODES]``, with ``doubt`` votes more for no turn; 0 without votes.
+
+    >>> import numpy as np
+    >>> histogram = np.zeros(BINS)
+    >>> histogram[40] = 3.0
+    >>> [round(float(np.degrees(median_turn(histogram, doubt))), 1) for doubt in (0.0, 1.0, 3.0, 30.0)]
+    [30.0, 29.0, 3.0, 0.3]
+    """
+    counted = histogram.copy()
+    counted[..., BINS // 2] += doubt
+    total = np.cumsum(counted, axis=-1)
+    # votes at a node are spread evenly around it, so that the median moves evenly with the votes
+    middle = total - 0.5 * counted
+    half = 0.5 * total[..., -1:]
+    above = np.clip(np.sum(middle < half, axis=-1, keepdims=True), 1, BINS - 1)
+    start = np.take_along_axis(middle, above - 1, axis=-1)
+    end = np.take_along_axis(middle, above, axis=-1)
+    share = np.clip((half - start) / np.where(end > start, end - start, 1.0), 0.0, 1.0)
+    turn = (above - 1 + share)[..., 0] * (2.0 * WIDEST / (BINS - 1)) - WIDEST
+    return np.where(total[..., -1] > 0.0, turn, 0.0)

@@ -1,0 +1,280 @@
+"""Anticipation velocity: people turn to the side that will be free and walk as fast as the way ahead allows."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numba import prange
+from numpy.typing import NDArray
+
+from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
+from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.core.neighbors import nearest
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    launch,
+    movable,
+    rows,
+    speed_limit,
+)
+
+from .collision_free_speed import is_hidden, way_to, within
+
+__all__ = ["AnticipationVelocity"]
+
+Floats = NDArray[np.float64]
+
+CREEP = 0.01
+"""Below this speed [m/s] people shuffle: forward, backward or not at all."""
+ALIGNED = 1e-3
+"""Who will be so near the line of the own walk [m] may be passed on either side."""
+
+
+class _Crowd(NamedTuple):
+    """What the kernel reads of every agent, by row ``e * A + a``."""
+
+    position: Floats
+    velocity: Floats
+    heading: Floats
+    desired: Floats
+    radius: Floats
+    max_speed: Floats
+    strength: Floats
+    range: Floats
+    time_gap: Floats
+    anticipation: Floats
+    reaction: Floats
+    wall_buffer: Floats
+    pushout: Floats
+    reach: Floats
+    side: Floats
+    """1 or -1: goes to the left or right of who stands exactly ahead."""
+    shuffle: Floats
+    """1, 0 or -1: goes forward, not at all or backward when there is hardly room; NaN does not."""
+    walking: NDArray[np.bool_]
+
+
+@kernel
+def _away_from_walls(
+    walls: Floats, found: NDArray[np.int64], count: int, x: float, y: float, near: float, push: float,
+    ux: float, uy: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Take out of u what leads into walls, all of it nearer than ``near``, less and less up to twice that distance.
+
+    Nearer than ``near``, ``push`` away from the wall is added. Return a unit vector, or zeros when nothing is left.
+    """
+    for n in range(count):
+        m = found[n]
+        nx, ny = nearest_on_segment(x, y, walls[m, 0], walls[m, 1], walls[m, 2], walls[m, 3])
+        nx, ny = x - nx, y - ny
+        distance = math.sqrt(nx * nx + ny * ny)
+        if distance >= 2.0 * near or distance == 0.0:
+            continue
+        nx, ny = nx / distance, ny / distance
+        inward = ux * nx + uy * ny
+        if inward < 0.0:
+            change = push - inward if distance <= near else -inward * (2.0 - distance / near)
+            ux, uy = ux + change * nx, uy + change * ny
+    length = math.sqrt(ux * ux + uy * uy)
+    return (ux / length, uy / length) if length > 0.0 else (0.0, 0.0)
+
+
+@kernel
+def _influence(
+    dx: float, dy: float, gx: float, gy: float, wx: float, wy: float, ox: float, oy: float, facing: float,
+    contact: float, strength: float, scale: float, ahead: float, other_ahead: float, side: float,
+) -> float:  # fmt: skip
+    """Return how strongly a neighbour turns the direction to the left of the desired one, g.
+
+    Args:
+        dx, dy: from here to it [m].
+        gx, gy: desired direction.
+        wx, wy: own velocity [m/s].
+        ox, oy: its velocity [m/s].
+        facing: its heading [rad].
+        contact: sum of the radii [m].
+        strength, scale: of the influence, [1] and [m].
+        ahead, other_ahead: how far I foresee, and it [s].
+        side: where to go when it will be exactly ahead, 1 left or -1 right.
+    """
+    distance = math.sqrt(dx * dx + dy * dy)
+    closing = ((wx - ox) * dx + (wy - oy) * dy) / distance if distance > 0.0 else 0.0
+    left = max(0.0, distance - contact - closing * ahead)
+    against = 1.5 - 0.5 * (gx * math.cos(facing) + gy * math.sin(facing))
+    aside = gx * (dy + oy * other_ahead) - gy * (dx + ox * other_ahead)
+    way = side if abs(aside) < ALIGNED else -math.copysign(1.0, aside)
+    return way * strength * against * math.exp(-left / scale)
+
+
+@kernel
+def _turn(ux: float, uy: float, hx: float, hy: float, gx: float, gy: float, share: float) -> tuple[float, float]:
+    """Return the heading h turned by a share of the way to u; at once when only one of them leads to the goal at g."""
+    if (gx * ux + gy * uy) * (gx * hx + gy * hy) < 0.0:
+        return ux, uy
+    ux, uy = hx + (ux - hx) * share, hy + (uy - hy) * share
+    length = math.sqrt(ux * ux + uy * uy)
+    return (ux / length, uy / length) if length > 0.0 else (hx, hy)
+
+
+@kernel(parallel=True)
+def _choose(crowd: _Crowd, near: Neighbors, walls: Floats, dt: float, turned: Floats, out: Floats) -> None:
+    """Choose the next velocity and heading of every agent, row by row."""
+    for part in prange((len(out) + CHUNK - 1) // CHUNK):
+        _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, walls, dt, turned, out)
+
+
+@kernel
+def _choose_part(
+    begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Floats, dt: float, turned: Floats, out: Floats
+) -> None:
+    # fields are taken out of the tuples here: inside the loop each access would count references
+    place, velocity, heading, desired, radius, top, strength, scale = crowd[:8]
+    gap, anticipation, reaction, buffer, pushout, reach, side, shuffle, walking = crowd[8:]
+    agent, number, order = near
+    A = agent.shape[1]
+    found = np.empty(len(walls), dtype=np.int64)
+    seen = np.empty((agent.shape[2], 3))  # where a neighbour is from here, and the sum of the radii
+    for k in range(begin, end):
+        row = order[k]
+        wish = math.sqrt(desired[row, 0] ** 2 + desired[row, 1] ** 2)
+        if not walking[row] or wish == 0.0:
+            continue
+        e, a = row // A, row % A
+        x, y = place[row, 0], place[row, 1]
+        gx, gy = desired[row, 0] / wish, desired[row, 1] / wish
+        hx, hy = math.cos(heading[row]), math.sin(heading[row])
+        count = within(walls, x, y, reach[row], found)
+        aside, held = 0.0, 0
+        for n in range(number[e, a]):
+            o = row - a + agent[e, a, n]
+            dx, dy, contact = place[o, 0] - x, place[o, 1] - y, radius[row] + radius[o]
+            if is_hidden(walls, found, count, x, y, dx, dy):
+                continue
+            seen[held, 0], seen[held, 1], seen[held, 2] = dx, dy, contact
+            held += 1
+            if gx * dx + gy * dy >= 0.0 or hx * dx + hy * dy >= 0.0:
+                aside += _influence(
+                    dx, dy, gx, gy, velocity[row, 0], velocity[row, 1], velocity[o, 0], velocity[o, 1], heading[o],
+                    contact, strength[row], scale[row], anticipation[row], anticipation[o], side[row],
+                )  # fmt: skip
+        length = math.sqrt(1.0 + aside * aside)
+        ux, uy = _turn((gx - aside * gy) / length, (gy + aside * gx) / length, hx, hy, gx, gy, dt / reaction[row])
+        ux, uy = _away_from_walls(walls, found, count, x, y, radius[row] + buffer[row], pushout[row], ux, uy)
+        speed = min(wish, top[row])
+        for n in range(held):
+            speed = min(speed, max(0.0, way_to(seen[n, 0], seen[n, 1], ux, uy, seen[n, 2])) / gap[row])
+        if speed < min(CREEP, wish) and not math.isnan(shuffle[row]):
+            speed = shuffle[row] * min(CREEP, top[row])
+        out[row, 0], out[row, 1] = speed * ux, speed * uy
+        if ux != 0.0 or uy != 0.0:
+            turned[row] = math.atan2(uy, ux)
+
+
+@dataclass(frozen=True)
+class AnticipationVelocity(CrowdModel):
+    """People foresee where others will be, turn gradually to the side that will be free, and keep a time gap ahead.
+
+    Args:
+        strength: of the influence of a neighbour, against 1 for the desired direction.
+        range: over which it falls to 1/e [m].
+        time_gap: time to the next one ahead at the chosen speed [s].
+        anticipation_time: how far people foresee the way of the others [s].
+        reaction_time: in which the heading follows the chosen direction [s]; no less than the time step counts.
+        wall_buffer: nearer to a wall than the radius and this [m] nobody walks towards it; up to twice that distance
+            the way bends off the wall.
+        pushout: there, how much of the direction leads away from the wall.
+        neighbor_distance: neighbours and walls are no farther than this [m], and not hidden by a wall.
+        max_neighbors: only so many of them count, the nearest; a fraction is rounded to the nearest whole number.
+        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+
+    The heading is a state of its own (``Scene.heading``) and turns even in those who stand; :meth:`step` writes it.
+    With ``rng``, who is slowed down below 0.01 m/s shuffles forward, backward or not at all, and who meets somebody
+    exactly head on takes a random side; without, nobody shuffles, and all pass on the right.
+
+    Source: Xu, Chraibi, Seyfried 2021, doi:10.1016/j.trc.2021.103464, as in JuPedSim 1.4.2.
+
+    Raises:
+        InputError: a parameter is not finite or below its minimum.
+
+    >>> meeting = Scene.of([[0, 0], [4, 0.1]], [[1, 0], [-1, 0]], radius=0.2, goal=[[9, 0], [-9, 0.1]])
+    >>> AnticipationVelocity().velocity(meeting, dt=0.1).round(3).tolist()
+    [[[1.3, 0.0], [-1.3, 0.0]]]
+    >>> nearer = meeting.replace(position=meeting.position * [0.5, 1.0])
+    >>> AnticipationVelocity().velocity(nearer, dt=0.1).round(3).tolist()
+    [[[1.17, -0.566], [-1.17, 0.566]]]
+    """
+
+    paper: ClassVar[Paper] = Paper(
+        "Qiancheng Xu, Mohcine Chraibi, Armin Seyfried",
+        2021,
+        "Anticipation in a velocity-based model for pedestrian dynamics",
+        "Transportation Research Part C",
+        "10.1016/j.trc.2021.103464",
+    )
+
+    strength: PerAgent = parameter(8.0, unit="1", low=1.0, high=15.0, source="JuPedSim 1.4.2")
+    range: PerAgent = parameter(0.1, unit="m", low=0.02, high=0.5, source="JuPedSim 1.4.2", min=1e-3)
+    time_gap: PerAgent = parameter(1.06, unit="s", low=0.3, high=2.0, source="JuPedSim 1.4.2", min=1e-2)
+    anticipation_time: PerAgent = parameter(1.0, unit="s", low=0.0, high=3.0, source="JuPedSim 1.4.2")
+    reaction_time: PerAgent = parameter(0.3, unit="s", low=0.1, high=1.0, source="JuPedSim 1.4.2")
+    wall_buffer: PerAgent = parameter(0.1, unit="m", low=0.0, high=0.5, source="JuPedSim 1.4.2")
+    pushout: PerAgent = parameter(0.3, unit="1", low=0.0, high=1.0, source="JuPedSim 1.4.2")
+    neighbor_distance: PerAgent = parameter(3.0, unit="m", low=1.0, high=5.0, source="JuPedSim 1.4.2")
+    max_neighbors: PerAgent = parameter(
+        50.0, unit="1", low=5.0, high=100.0, source="chosen here: more are never needed"
+    )
+    max_speed: PerAgent | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_limit(self, self.max_speed)
+
+    def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
+        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]."""
+        return self._move(scene, dt, rng)[0]
+
+    def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
+        """Return the scene ``dt`` [s] later, with the headings of the model."""
+        velocity, heading = self._move(scene, dt, rng)
+        return scene.advanced(velocity, dt).replace(heading=heading)
+
+    def _move(self, scene: Scene, dt: float, rng: np.random.Generator | None) -> tuple[Floats, Floats]:
+        wish, walking = desired_velocity(scene, dt), movable(scene)
+
+        def value(name: str) -> Floats:
+            return per_agent(getattr(self, name), scene.shape, name)
+
+        seen = scene.active & scene.visible
+        near = nearest(scene.position, value("neighbor_distance"), np.rint(value("max_neighbors")), seen, walking)
+        side, shuffle = np.full(scene.shape, -1.0), np.full(scene.shape, np.nan)
+        if rng is not None:
+            side = 2.0 * rng.integers(0, 2, scene.shape) - 1.0
+            shuffle = rng.integers(-1, 2, scene.shape).astype(np.float64)
+        crowd = _Crowd(
+            rows(scene.position),
+            rows(np.where(scene.active[..., None], scene.velocity, 0.0)),
+            rows(scene.heading),
+            rows(wish),
+            rows(scene.radius),
+            rows(speed_limit(self.max_speed, scene)),
+            rows(value("strength")),
+            rows(value("range")),
+            rows(value("time_gap")),
+            rows(value("anticipation_time")),
+            rows(np.maximum(value("reaction_time"), dt)),
+            rows(value("wall_buffer")),
+            rows(value("pushout")),
+            rows(value("neighbor_distance")),
+            rows(side),
+            rows(shuffle),
+            rows(walking),
+        )
+        out, heading = initial_velocity(scene), scene.heading.copy()
+        launch(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments(), float(dt), rows(heading))
+        return out, heading

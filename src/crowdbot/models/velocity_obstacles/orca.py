@@ -1,0 +1,156 @@
+"""ORCA: optimal reciprocal collision avoidance between discs, and between discs and walls."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numba import prange
+from numpy.typing import NDArray
+
+from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    launch,
+    movable,
+    neighbors_of,
+    rows,
+    speed_limit,
+)
+
+from .linear_program import best_velocity
+from .orca_lines import Edges, avoid_agent, avoid_edge, edges_in_reach, edges_of
+
+__all__ = ["ORCA"]
+
+Floats = NDArray[np.float64]
+SHORTEST = 1e-3
+"""Shortest horizon [s]: a horizon of 0 has no line."""
+
+
+class _Crowd(NamedTuple):
+    """What the kernel reads of every agent, by row ``e * A + a``."""
+
+    position: Floats
+    velocity: Floats
+    desired: Floats
+    radius: Floats
+    max_speed: Floats
+    horizon: Floats
+    wall_horizon: Floats
+    external: NDArray[np.bool_]
+    walking: NDArray[np.bool_]
+
+
+@kernel(parallel=True)
+def _choose(crowd: _Crowd, near: Neighbors, edges: Edges, dt: float, out: Floats) -> None:
+    """Choose the next velocity of every agent, row by row."""
+    for part in prange((len(out) + CHUNK - 1) // CHUNK):
+        _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, edges, dt, out)
+
+
+@kernel
+def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, edges: Edges, dt: float, out: Floats) -> None:
+    # fields are taken out of the tuples here: inside the loop each access would count references
+    place, velocity, desired, radius, top, horizon, wall_horizon, external, walking = crowd
+    agent, number, order = near
+    corner, direction, previous, following, convex = edges
+    A = agent.shape[1]
+    found = np.empty(len(corner), dtype=np.int64)
+    gap2 = np.empty(len(corner))
+    lines = np.empty((len(corner) + agent.shape[2], 4))
+    spare = np.empty_like(lines)
+    for k in range(begin, end):
+        row = order[k]
+        if not walking[row]:
+            continue
+        e, a = row // A, row % A
+        x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
+        reach = wall_horizon[row] * top[row] + radius[row]
+        fixed = int(np.int64(0))  # a plain 0 would be a type of its own and compile all that follows twice
+        for n in range(edges_in_reach(corner, following, x, y, reach, found, gap2)):
+            fixed += avoid_edge(
+                lines, fixed, found[n], corner, direction, previous, following, convex,
+                x, y, vx, vy, radius[row], wall_horizon[row],
+            )  # fmt: skip
+        count = fixed
+        for n in range(number[e, a]):
+            other = row - a + agent[e, a, n]
+            share = 1.0 if external[other] else 0.5
+            avoid_agent(
+                lines, count, place[other, 0] - x, place[other, 1] - y, vx, vy, velocity[other, 0], velocity[other, 1],
+                radius[row] + radius[other], horizon[row], dt, share, 1.0 if row < other else -1.0,
+            )  # fmt: skip
+            count += 1
+        out[row, 0], out[row, 1] = best_velocity(lines, fixed, count, top[row], desired[row, 0], desired[row, 1], spare)
+
+
+@dataclass(frozen=True)
+class ORCA(CrowdModel):
+    """Agents share the least change of velocity that keeps them clear of each other for a while, and give way to walls.
+
+    Args:
+        neighbor_distance: neighbours are nearer than this [m].
+        max_neighbors: only so many of them count, the nearest; a fraction is rounded to the nearest whole number.
+        time_horizon: agents keep clear of each other for this long [s].
+        time_horizon_walls: and of walls for this long [s].
+        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+
+    External agents do not give way, so that the others take the whole change. A velocity on the right side of all lines
+    that is nearest to the desired one is chosen; when there is none, the deepest violation becomes as small as possible
+    (walls never give way). Velocities may jump: real robots need a limit of acceleration after it.
+
+    Source: van den Berg, Guy, Lin, Manocha 2011, doi:10.1007/978-3-642-19457-3_1, as in the RVO2 library.
+
+    Raises:
+        InputError: a parameter is not finite or below its minimum.
+
+    >>> ahead = Scene.of([[0, 0], [3, 0.1]], [[1, 0], [-1, 0]], preferred_velocity=[[1, 0], [-1, 0]])
+    >>> ORCA().velocity(ahead, dt=0.1).round(3).tolist()
+    [[[0.982, -0.132], [-0.982, 0.132]]]
+    """
+
+    paper: ClassVar[Paper] = Paper(
+        "Jur van den Berg, Stephen J. Guy, Ming Lin, Dinesh Manocha",
+        2011,
+        "Reciprocal n-body collision avoidance",
+        "Robotics Research (ISRR)",
+        "10.1007/978-3-642-19457-3_1",
+    )
+
+    neighbor_distance: PerAgent = parameter(5.0, unit="m", low=1.0, high=15.0, source="RVO2, pedestrian settings")
+    max_neighbors: PerAgent = parameter(10.0, unit="1", low=1.0, high=20.0, source="RVO2, examples")
+    time_horizon: PerAgent = parameter(
+        2.0, unit="s", low=0.2, high=8.0, source="RVO2, pedestrian settings", min=SHORTEST
+    )
+    time_horizon_walls: PerAgent = parameter(
+        2.0, unit="s", low=0.2, high=4.0, source="CrowdBot simulator, horizon of agents", min=SHORTEST
+    )
+    max_speed: PerAgent | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_limit(self, self.max_speed)
+
+    def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
+        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
+        wish, walking = desired_velocity(scene, dt), movable(scene)
+        near = neighbors_of(self, scene, walking)
+        crowd = _Crowd(
+            rows(scene.position),
+            rows(scene.velocity),
+            rows(wish),
+            rows(scene.radius),
+            rows(speed_limit(self.max_speed, scene)),
+            rows(per_agent(self.time_horizon, scene.shape, "time_horizon")),
+            rows(per_agent(self.time_horizon_walls, scene.shape, "time_horizon_walls")),
+            rows(scene.external),
+            rows(walking),
+        )
+        out = initial_velocity(scene)
+        launch(_choose, _choose_part, rows(out), crowd, near, edges_of(scene.walls), float(dt))
+        return out

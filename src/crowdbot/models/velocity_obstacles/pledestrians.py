@@ -1,0 +1,206 @@
+"""PLEdestrians: of all velocities that keep clear of the others, the one that costs the least effort to the goal."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numba import prange
+from numpy.typing import NDArray
+
+from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    launch,
+    movable,
+    neighbors_of,
+    rows,
+    speed_limit,
+)
+
+from .linear_program import best_velocity
+from .orca_lines import Edges, avoid_agent, avoid_edge, edges_in_reach, edges_of
+
+__all__ = ["PLEdestrians"]
+
+Floats = NDArray[np.float64]
+SHORTEST = 1e-3
+"""Shortest horizon [s]: a horizon of 0 has no line."""
+ROUNDS = 30
+"""The search for the least effort ends after so many rounds; it hardly ever needs them."""
+SETTLED = 1e-9
+"""It has ended when the way left to the goal changes by less than this share."""
+
+
+class _Crowd(NamedTuple):
+    """What the kernel reads of every agent, by row ``e * A + a``."""
+
+    position: Floats
+    velocity: Floats
+    desired: Floats
+    distance: Floats
+    """To the goal [m]; inf when there is only a desired velocity."""
+    radius: Floats
+    max_speed: Floats
+    planning: Floats
+    horizon: Floats
+    wall_horizon: Floats
+    external: NDArray[np.bool_]
+    walking: NDArray[np.bool_]
+
+
+@kernel
+def _least_effort(
+    lines: Floats, fixed: int, count: int, top: float, wish_x: float, wish_y: float, distance: float, planning: float,
+    dt: float, spare: Floats,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the velocity on the left of all lines with the least t |v|^2 + 2 s |g - t v|.
+
+    ``s`` is the length of the wish, ``g`` the way to the goal, ``t`` the planning time. For a given length L of the way
+    left, |g - t v|^2 / L stands for |g - t v|: then the best velocity is the one nearest to s g / (L + s t). Doing
+    that again with the length that comes out makes the effort less every time.
+    """
+    x, y = best_velocity(lines, fixed, count, top, wish_x, wish_y, spare)
+    speed = math.sqrt(wish_x * wish_x + wish_y * wish_y)
+    if speed == 0.0 or distance == math.inf or (x == wish_x and y == wish_y):
+        return x, y
+    t = max(dt, min(planning, distance / speed))
+    gx, gy = distance * wish_x / speed, distance * wish_y / speed
+    length = math.inf
+    for _ in range(ROUNDS):
+        before, length = length, math.sqrt((gx - t * x) ** 2 + (gy - t * y) ** 2)
+        if abs(length - before) <= SETTLED * length:
+            break
+        share = distance / (length + speed * t)
+        x, y = best_velocity(lines, fixed, count, top, share * wish_x, share * wish_y, spare)
+    return x, y
+
+
+@kernel(parallel=True)
+def _choose(crowd: _Crowd, near: Neighbors, edges: Edges, dt: float, out: Floats) -> None:
+    """Choose the next velocity of every agent, row by row."""
+    for part in prange((len(out) + CHUNK - 1) // CHUNK):
+        _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, edges, dt, out)
+
+
+@kernel
+def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, edges: Edges, dt: float, out: Floats) -> None:
+    # fields are taken out of the tuples here: inside the loop each access would count references
+    place, velocity, desired, distance, radius, top, planning, horizon, wall_horizon, external, walking = crowd
+    agent, number, order = near
+    corner, direction, previous, following, convex = edges
+    A = agent.shape[1]
+    found = np.empty(len(corner), dtype=np.int64)
+    gap2 = np.empty(len(corner))
+    lines = np.empty((len(corner) + agent.shape[2], 4))
+    spare = np.empty_like(lines)
+    for k in range(begin, end):
+        row = order[k]
+        if not walking[row]:
+            continue
+        e, a = row // A, row % A
+        x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
+        reach = wall_horizon[row] * top[row] + radius[row]
+        fixed = int(np.int64(0))  # a plain 0 would be a type of its own and compile all that follows twice
+        for n in range(edges_in_reach(corner, following, x, y, reach, found, gap2)):
+            fixed += avoid_edge(
+                lines, fixed, found[n], corner, direction, previous, following, convex,
+                x, y, vx, vy, radius[row], wall_horizon[row],
+            )  # fmt: skip
+        count = fixed
+        for n in range(number[e, a]):
+            other = row - a + agent[e, a, n]
+            share = 1.0 if external[other] else 0.5
+            avoid_agent(
+                lines, count, place[other, 0] - x, place[other, 1] - y, vx, vy, velocity[other, 0], velocity[other, 1],
+                radius[row] + radius[other], horizon[row], dt, share, 1.0 if row < other else -1.0,
+            )  # fmt: skip
+            count += 1
+        out[row, 0], out[row, 1] = _least_effort(
+            lines, fixed, count, top[row], desired[row, 0], desired[row, 1], distance[row], planning[row], dt, spare
+        )
+
+
+@dataclass(frozen=True)
+class PLEdestrians(CrowdModel):
+    """People spend the least energy on the way to the goal among the velocities that ORCA permits.
+
+    Args:
+        planning_time: effort is counted at the new velocity for this long [s], and at the preferred speed on the
+            straight way that is left then; the plan ends at the goal at the latest.
+        neighbor_distance: neighbours are nearer than this [m].
+        max_neighbors: only so many of them count, the nearest; a fraction is rounded to the nearest whole number.
+        time_horizon: agents keep clear of each other for this long [s].
+        time_horizon_walls: and of walls for this long [s].
+        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+
+    Walking at speed v costs e_s + e_w v^2 per second and kilogram; over a planning time t that is
+    E(v) = t (e_s + e_w |v|^2) + 2 |g - t v| sqrt(e_s e_w) to a goal at g. Only sqrt(e_s / e_w) decides which velocity
+    is best: it is the speed of a free walk, so the preferred speed of the scene takes its place (the paper's 2.23
+    J/(kg s) and 1.26 J s/(kg m^2) give 1.33 m/s). E is convex, and so are the permitted velocities: what is chosen is
+    the true minimum. Against ORCA, who is hindered near the goal rather slows down than turns. Scenes with preferred
+    velocities in place of goals have goals infinitely far away, and there both models agree.
+
+    Source: Guy, Chhugani, Curtis, Dubey, Lin, Manocha 2010, doi:10.2312/SCA/SCA10/119-128.
+
+    Raises:
+        InputError: a parameter is not finite or below its minimum.
+
+    >>> ahead = Scene.of([[0, 0], [3, 0.1]], [[1.3, 0], [-1.3, 0]], goal=[[6, 0], [-6, 0.1]])
+    >>> PLEdestrians().velocity(ahead, dt=0.1).round(3).tolist()
+    [[[1.215, -0.164], [-1.254, 0.169]]]
+    """
+
+    paper: ClassVar[Paper] = Paper(
+        "Stephen J. Guy, Jatin Chhugani, Sean Curtis, Pradeep Dubey, Ming Lin, Dinesh Manocha",
+        2010,
+        "PLEdestrians: a least-effort approach to crowd simulation",
+        "Eurographics/ACM SIGGRAPH Symposium on Computer Animation",
+        "10.2312/SCA/SCA10/119-128",
+    )
+
+    planning_time: PerAgent = parameter(3.0, unit="s", low=0.2, high=8.0, source="UMANS", min=SHORTEST)
+    neighbor_distance: PerAgent = parameter(5.0, unit="m", low=1.0, high=15.0, source="RVO2, pedestrian settings")
+    max_neighbors: PerAgent = parameter(10.0, unit="1", low=1.0, high=20.0, source="RVO2, examples")
+    time_horizon: PerAgent = parameter(
+        2.0, unit="s", low=0.2, high=8.0, source="RVO2, pedestrian settings", min=SHORTEST
+    )
+    time_horizon_walls: PerAgent = parameter(
+        2.0, unit="s", low=0.2, high=4.0, source="CrowdBot simulator, horizon of agents", min=SHORTEST
+    )
+    max_speed: PerAgent | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_limit(self, self.max_speed)
+
+    def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
+        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
+        wish, walking = desired_velocity(scene, dt), movable(scene)
+        near = neighbors_of(self, scene, walking)
+        if scene.preferred_velocity is None:
+            away = np.where(scene.active[..., None], scene.goal - scene.position, 0.0)
+            distance = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2)
+        else:
+            distance = np.full(scene.shape, np.inf)
+        crowd = _Crowd(
+            rows(scene.position),
+            rows(scene.velocity),
+            rows(wish),
+            rows(distance),
+            rows(scene.radius),
+            rows(speed_limit(self.max_speed, scene)),
+            rows(per_agent(self.planning_time, scene.shape, "planning_time")),
+            rows(per_agent(self.time_horizon, scene.shape, "time_horizon")),
+            rows(per_agent(self.time_horizon_walls, scene.shape, "time_horizon_walls")),
+            rows(scene.external),
+            rows(walking),
+        )
+        out = initial_velocity(scene)
+        launch(_choose, _choose_part, rows(out), crowd, near, edges_of(scene.walls), float(dt))
+        return out

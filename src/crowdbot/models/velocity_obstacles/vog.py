@@ -1,0 +1,403 @@
+"""VOG: velocity obstacles and groups, people who avoid others and keep together, all in velocity space."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numba import prange
+from numpy.typing import NDArray
+
+from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
+from crowdbot.core.neighbors import nearest
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    movable,
+    rows,
+    speed_limit,
+)
+
+from .vog_cost import CONE, FELLOW, collision, companion, cone, fellowship, own_way, walls_near
+
+__all__ = ["VOG"]
+
+Floats = NDArray[np.float64]
+Rows = NDArray[np.int64]
+
+MEMORY = "vog_calm"
+"""What the scene remembers of every agent: how long it has not changed its mind."""
+CALM = 1.0
+"""What it is at first."""
+CHANGED2 = 0.01
+"""From this squared change of velocity [m2/s2] on an agent has changed its mind."""
+SLOW = 0.1
+"""Below this speed [m/s] a choice is to stand, and an agent looks around for samples."""
+BRIEF = 0.02
+"""Weight of the desired velocity in the choice of where to sample more closely."""
+ALIKE = 0.7
+"""Fellows whose desired directions have a lower cosine than this walk elsewhere; both speeds above:"""
+PURPOSE = 0.5
+"""[m/s]"""
+POINTED = 0.1
+"""A desired speed [m/s] above this tells the direction of walking."""
+DIRECTED = 1e-5
+"""Below this length [m/s] a velocity has no direction."""
+SHORTEST = 1e-3
+"""Shortest horizon [s]."""
+MOST_FELLOWS = 16
+SAMPLES = 48
+"""Room for the samples of one level."""
+
+
+def _turns(count: int, shift: float, round_: float) -> Floats:
+    """Return sines and cosines in single precision, whose rounding tells which samples at right angles go backwards."""
+    angle = (np.arange(count, dtype=np.float32) + np.float32(shift)) * np.float32(np.pi) * np.float32(2.0)
+    angle = angle / np.float32(round_)
+    return np.stack([np.sin(angle), np.cos(angle)]).astype(np.float64)
+
+
+EIGHT, SIX, SIXTEEN = _turns(8, 0.0, 8.0), _turns(6, 0.5, 6.0), _turns(16, 0.0, 16.0)
+
+
+class _Crowd(NamedTuple):
+    """What the kernel reads of every agent, by row ``e * A + a``."""
+
+    position: Floats
+    velocity: Floats
+    desired: Floats
+    radius: Floats
+    max_speed: Floats
+    calm: Floats
+    external: NDArray[np.bool_]
+    walking: NDArray[np.bool_]
+    horizon: Floats
+    wall_horizon: Floats
+    preference: Floats
+    group_weight: Floats
+    group_neighbors: Rows
+    group_radius: Floats
+    group_distance: Floats
+    group_horizon: Floats
+    formation: Floats
+    closeness: Floats
+
+
+class _Groups(NamedTuple):
+    """The rows of every group together: fellows of row k are ``member[first[k]:last[k]]``, itself among them."""
+
+    member: Rows
+    first: Rows
+    last: Rows
+
+
+@kernel
+def _sample_first(samples: Floats, vx: float, vy: float, px: float, py: float, radius: float) -> int:
+    """Write the first samples x, y, size; return how many."""
+    speed = math.sqrt(vx * vx + vy * vy)
+    scale = max(math.sqrt(px * px + py * py), speed)
+    scale = 4.0 * radius if scale <= radius else scale
+    _put(samples, 0, px, py, 0.3 * scale)
+    _put(samples, 1, vx, vy, 0.3 * scale)
+    for k in range(8):  # on the circle from 0 to v
+        along, across = 0.5 * (1.0 + EIGHT[1, k]), 0.5 * EIGHT[0, k]
+        size = (1.0 - abs(k - 4.0) / 8.0) * 0.5 * scale
+        _put(samples, 2 + k, vx * along + vy * across, vy * along - vx * across, size)
+    for k in range(6):
+        along, across = 0.5 + 0.3 * SIX[0, k], 0.3 * SIX[1, k]
+        _put(samples, 10 + k, vx * along + vy * across, vy * along - vx * across, 0.3 * scale)
+        _put(samples, 16 + k, vx + 0.2 * scale * SIX[1, k], vy + 0.2 * scale * SIX[0, k], 0.4 * scale)
+    _put(samples, 22, 0.5 * vx, 0.5 * vy, 0.4 * scale)
+    if speed >= SLOW:
+        return 23
+    for k in range(16):
+        _put(samples, 23 + k, scale * SIXTEEN[0, k], scale * SIXTEEN[1, k], 0.5 * scale)
+    for k in range(8):
+        _put(samples, 39 + k, 0.5 * scale * SIXTEEN[0, k], 0.5 * scale * SIXTEEN[1, k], 0.25 * scale)
+    return 47
+
+
+@kernel
+def _put(samples: Floats, at: int, x: float, y: float, size: float) -> None:
+    samples[at, 0], samples[at, 1], samples[at, 2] = x, y, size
+
+
+@kernel
+def _sample_around(samples: Floats, best: Floats) -> int:
+    """Write four samples around each of the two best; return how many."""
+    for k in range(2):
+        x, y, size = best[k, 0], best[k, 1], best[k, 2]
+        step, finer = 0.3 * size, 0.6 * size * size
+        _put(samples, 4 * k, x + step, y + step, finer)
+        _put(samples, 4 * k + 1, x - step, y + step, finer)
+        _put(samples, 4 * k + 2, x - step, y - step, finer)
+        _put(samples, 4 * k + 3, x + step, y - step, finer)
+    return 8
+
+
+@kernel
+def _keep(best: Floats, samples: Floats, k: int, score: float) -> None:
+    """Keep sample k among the two best, as the original does: a new first does not make the old first second."""
+    if score > best[0, 3]:
+        return
+    at = 0 if score > best[1, 3] else 1
+    best[at, 0], best[at, 1], best[at, 2], best[at, 3] = samples[k, 0], samples[k, 1], samples[k, 2], score
+
+
+@kernel
+def _pick_fellows(
+    row: int, mates: Rows, place: Floats, velocity: Floats, desired: Floats, reach: float, most: int,
+    found: Rows, key: Floats,
+) -> int:  # fmt: skip
+    """Find the fellows to keep with: near, ahead and going the same way; return how many."""
+    held = 0
+    px, py = desired[row, 0], desired[row, 1]
+    own = math.sqrt(px * px + py * py)
+    lx, ly = (px, py) if own > PURPOSE else (velocity[row, 0], velocity[row, 1])
+    look = math.sqrt(lx * lx + ly * ly)
+    for other in mates:
+        x, y = place[other, 0] - place[row, 0], place[other, 1] - place[row, 1]
+        d2 = x * x + y * y
+        if other == row or not d2 < reach * reach:
+            continue
+        qx, qy = desired[other, 0], desired[other, 1]
+        its = math.sqrt(qx * qx + qy * qy)
+        value = 1.5 * d2
+        if look > DIRECTED and d2 > 0.0:
+            value -= 0.5 * math.sqrt(d2) * (x * lx + y * ly) / look
+        if own > PURPOSE and its > PURPOSE:
+            cosine = (px * qx + py * qy) / (own * its)
+            if cosine <= ALIKE:
+                continue
+            value *= 2.0 - cosine
+        if held == most and not (most > 0 and value < key[held - 1]):
+            continue
+        n = min(held, most - 1)
+        held = n + 1
+        while n > 0 and value < key[n - 1]:
+            key[n], found[n] = key[n - 1], found[n - 1]
+            n -= 1
+        key[n], found[n] = value, other
+    return held
+
+
+@kernel(parallel=True)
+def _choose(crowd: _Crowd, near: Neighbors, groups: _Groups, walls: Floats, out: Floats) -> None:
+    """Choose the next velocity of every agent, row by row."""
+    for part in prange((len(out) + CHUNK - 1) // CHUNK):
+        _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, groups, walls, out)
+
+
+@kernel
+def _choose_part(
+    begin: int, end: int, crowd: _Crowd, near: Neighbors, groups: _Groups, walls: Floats, out: Floats
+) -> None:
+    # fields are taken out of the tuples here: inside the loop each access would count references
+    (place, velocity, desired, radius, top, calm, external, walking, horizon, wall_horizon, preference, weight,
+     most, keep, reach, group_horizon, formation, closeness) = crowd  # fmt: skip
+    agent, number, order = near
+    member, first, last = groups
+    A = agent.shape[1]
+    cones, fellows = np.empty((agent.shape[2], CONE)), np.empty((MOST_FELLOWS, FELLOW))
+    close, found, key = np.empty((len(walls), 6)), np.empty(MOST_FELLOWS, dtype=np.int64), np.empty(MOST_FELLOWS)
+    samples, best = np.empty((SAMPLES, 3)), np.empty((2, 4))
+    for k in range(begin, end):
+        row = order[k]
+        if not walking[row]:
+            continue
+        e, a = row // A, row % A
+        x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
+        px, py, r = desired[row, 0], desired[row, 1], radius[row]
+        for n in range(number[e, a]):
+            other = row - a + agent[e, a, n]
+            cone(cones, n, place[other, 0] - x, place[other, 1] - y, vx, vy, velocity[other, 0], velocity[other, 1],
+                 r + radius[other], horizon[row], not external[other], 1.0 if row < other else -1.0)  # fmt: skip
+        wall_count = walls_near(walls, x, y, top[row] * wall_horizon[row] + r, close)
+        mates = member[first[row] : last[row]]
+        fellow_count = _pick_fellows(row, mates, place, velocity, desired, reach[row], most[row], found, key)
+        for n in range(fellow_count):
+            other = found[n]
+            wx, wy = _walking_direction(px, py, desired[other, 0], desired[other, 1], vx, vy)
+            companion(fellows, n, place[other, 0] - x, place[other, 1] - y, velocity[other, 0], velocity[other, 1],
+                      wx, wy, keep[row], group_horizon[row])  # fmt: skip
+        wish, now = (px, py, *_unit(px, py)), _unit(vx, vy)
+        count = _sample_first(samples, vx, vy, px, py, r)
+        best[:, :3] = 0.0
+        lowest, bx, by = math.inf, vx, vy
+        for _ in range(3):
+            best[:, 3] = math.inf
+            for n in range(count):
+                sx, sy = samples[n, 0], samples[n, 1]
+                score = collision(sx, sy, cones, number[e, a], close, wall_count, r, wall_horizon[row])
+                score += weight[row] * fellowship(
+                    sx, sy, fellows, fellow_count, keep[row], formation[row], closeness[row]
+                )
+                off, penalty = own_way(sx, sy, wish, now, calm[row])
+                _keep(best, samples, n, score + BRIEF * off)
+                score += preference[row] * off + penalty
+                if score < lowest:
+                    lowest, bx, by = score, sx, sy
+            if lowest == 0.0:
+                break
+            count = _sample_around(samples, best)
+        out[row, 0], out[row, 1], out[row, 2] = _slow_down(bx, by, vx, vy, top[row], calm[row])
+
+
+@kernel
+def _unit(x: float, y: float) -> tuple[float, float]:
+    """Return the direction of a velocity, 0 when it has none."""
+    length = math.sqrt(x * x + y * y)
+    return (x / length, y / length) if length > DIRECTED else (0.0, 0.0)
+
+
+@kernel
+def _walking_direction(px: float, py: float, qx: float, qy: float, vx: float, vy: float) -> tuple[float, float]:
+    """Return the direction in which two fellows walk: as one wants to, or the other, or as one walks."""
+    if px * px + py * py > POINTED * POINTED:
+        return _unit(px, py)
+    if qx * qx + qy * qy > POINTED * POINTED:
+        return _unit(qx, qy)
+    return _unit(vx, vy)
+
+
+@kernel
+def _slow_down(x: float, y: float, vx: float, vy: float, top: float, calm: float) -> tuple[float, float, float]:
+    """Return the chosen velocity, slow ones as 0 and fast ones as ``top``, and how calm the agent is after it."""
+    speed = math.sqrt(x * x + y * y)
+    if speed < SLOW:
+        x = y = speed = 0.0
+    change2 = (x - vx) ** 2 + (y - vy) ** 2
+    if change2 > CHANGED2:
+        calm = 1.0 / (25.0 * change2)
+    if speed > top:
+        x, y = x * top / speed, y * top / speed
+    return x, y, calm
+
+
+@dataclass(frozen=True)
+class VOG(CrowdModel):
+    """People choose the best of some sampled velocities: out of the way of others, near their group, along their way.
+
+    The cost of a velocity is its depth in the worst velocity obstacle of neighbours and walls, plus the mean violation
+    of the constraints to stay with the fellows of the own group (and abreast of them), plus what it lacks to the
+    desired velocity, plus a dislike of turning that fades while an agent is calm: the scene remembers as ``vog_calm``
+    how long ago and how little it last changed its mind. Groups are those of the scene; -1 walks alone.
+
+    Args:
+        neighbor_distance: neighbours are nearer than this [m].
+        max_neighbors: only so many of them count, the nearest.
+        time_horizon: no contact with them before this [s].
+        wall_horizon: walls are not touched before this [s].
+        preference_weight: of the desired velocity.
+        group_weight: of the group.
+        group_neighbors: only so many fellows count, near ones ahead who walk the same way; at most 16.
+        group_radius: fellows are to be within this [m] a second from now.
+        group_distance: fellows farther than this [m] are lost.
+        group_horizon: fellows out of range are to be within it after this [s].
+        formation: fellows walk abreast, no more than this [m] ahead or behind; 0 for no formation.
+        closeness: how much the group means to an agent, 0 to 1.
+        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+
+    External agents do not give way. Walls are our own law: a velocity that would touch one within the horizon costs the
+    speed that is too much. Use :meth:`step`; velocities alone do not remember.
+
+    Source: Ren, Charalambous, Bruneau, Peng, Pettré 2017, doi:10.1111/cgf.12993, as in the CrowdBot simulator.
+
+    Raises:
+        InputError: a parameter is not finite or below its minimum, or ``group_neighbors`` is above 16.
+
+    >>> pair = Scene.of([[0, 0], [0, 3]], [[1, 0], [1, 0]], preferred_velocity=[[1, 0], [1, 0]], group=[5, 5])
+    >>> for _ in range(60):
+    ...     pair = VOG().step(pair, dt=0.1)
+    >>> float(pair.position[0, 1, 1] - pair.position[0, 0, 1]) < 1.2
+    True
+    """
+
+    paper: ClassVar[Paper] = Paper(
+        "Zhiguo Ren, Panayiotis Charalambous, Julien Bruneau, Qunsheng Peng, Julien Pettré",
+        2017,
+        "Group modeling: a unified velocity-based approach",
+        "Computer Graphics Forum 36(8)",
+        "10.1111/cgf.12993",
+    )
+
+    neighbor_distance: PerAgent = parameter(5.0, unit="m", low=1.0, high=15.0, source="CrowdBot simulator")
+    max_neighbors: PerAgent = parameter(10.0, unit="1", low=1.0, high=20.0, source="RVO2, examples")
+    time_horizon: PerAgent = parameter(2.0, unit="s", low=0.2, high=8.0, source="CrowdBot simulator", min=SHORTEST)
+    wall_horizon: PerAgent = parameter(1.0, unit="s", low=0.2, high=4.0, source="CrowdBot simulator", min=SHORTEST)
+    preference_weight: PerAgent = parameter(0.15, unit="1", low=0.02, high=0.6, source="CrowdBot simulator")
+    group_weight: PerAgent = parameter(0.2, unit="1", low=0.0, high=0.8, source="CrowdBot simulator")
+    group_neighbors: PerAgent = parameter(
+        2.0, unit="1", low=1.0, high=4.0, source="CrowdBot simulator", max=MOST_FELLOWS
+    )
+    group_radius: PerAgent = parameter(1.0, unit="m", low=0.5, high=3.0, source="CrowdBot simulator")
+    group_distance: PerAgent = parameter(80.0, unit="m", low=5.0, high=80.0, source="CrowdBot simulator")
+    group_horizon: PerAgent = parameter(2.0, unit="s", low=0.5, high=4.0, source="CrowdBot simulator", min=SHORTEST)
+    formation: PerAgent = parameter(0.2, unit="m", low=0.0, high=0.5, source="CrowdBot simulator")
+    closeness: PerAgent = parameter(1.0, unit="1", low=0.1, high=1.0, source="CrowdBot simulator")
+    max_speed: PerAgent | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_limit(self, self.max_speed)
+
+    def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
+        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
+        return self._choose_velocity(scene, dt)[..., :2]
+
+    @property
+    def memory_at_start(self) -> Mapping[str, float]:
+        """A person who has just come in is calm."""
+        return {MEMORY: CALM}
+
+    def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
+        """Return the scene ``dt`` [s] later, which remembers how calm everyone is as ``vog_calm``."""
+        out = self._choose_velocity(scene, dt)
+        calm = np.where(movable(scene), out[..., 2] + 10.0 * dt, CALM)
+        return scene.advanced(out[..., :2], dt).replace(memory={**scene.memory, MEMORY: calm})
+
+    def _choose_velocity(self, scene: Scene, dt: float) -> Floats:
+        wish, walking = desired_velocity(scene, dt), movable(scene)
+
+        def each(name: str) -> Floats:
+            return per_agent(getattr(self, name), scene.shape, name)
+
+        seen = scene.active & scene.visible
+        near = nearest(scene.position, each("neighbor_distance"), np.rint(each("max_neighbors")), seen, walking)
+        crowd = _Crowd(
+            rows(scene.position), rows(scene.velocity), rows(wish), rows(scene.radius),
+            rows(speed_limit(self.max_speed, scene)),
+            rows(per_agent(scene.memory.get(MEMORY, CALM), scene.shape, MEMORY)),
+            rows(scene.external), rows(walking), rows(each("time_horizon")), rows(each("wall_horizon")),
+            rows(each("preference_weight")), rows(each("group_weight")),
+            rows(np.rint(each("group_neighbors")).astype(np.int64)), rows(each("group_radius")),
+            rows(each("group_distance")), rows(each("group_horizon")), rows(each("formation")),
+            rows(each("closeness")),
+        )  # fmt: skip
+        out = np.zeros((*scene.shape, 3))
+        out[..., :2] = initial_velocity(scene)
+        _choose(crowd, near, _groups(scene.group, seen), scene.walls.segments(), rows(out))
+        return out
+
+
+def _groups(group: Rows, seen: NDArray[np.bool_]) -> _Groups:
+    """Return who is in whose group, environment by environment; nobody is in a group below 0."""
+    E, A = group.shape
+    first, last = np.zeros(E * A, dtype=np.int64), np.zeros(E * A, dtype=np.int64)
+    flat = rows(group)
+    grouped = np.flatnonzero(flat >= 0)
+    if grouped.size == 0:
+        return _Groups(np.zeros(0, dtype=np.int64), first, last)
+    _, name = np.unique(flat[grouped], return_inverse=True)
+    key = (grouped // A) * (name.max() + 1) + name
+    there = rows(seen)[grouped]
+    order = np.argsort(key[there], kind="stable")
+    held = key[there][order]
+    first[grouped] = np.searchsorted(held, key, side="left")
+    last[grouped] = np.searchsorted(held, key, side="right")
+    return _Groups(grouped[there][order], first, last)

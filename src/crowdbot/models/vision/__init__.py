@@ -1,0 +1,1 @@
+"""Models that react to what people see: directions, times and distances of closest approach."""

@@ -1,0 +1,285 @@
+"""Heuristics: look for the most direct free way, keep a time to what is ahead, and be pushed only by contact."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numba import prange
+from numpy.typing import NDArray
+
+from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
+from crowdbot.core.geometry import nearest_on_segment, ray_to_disc, time_to_segment
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    launch,
+    movable,
+    neighbors_of,
+    rows,
+    speed_limit,
+)
+
+__all__ = ["Heuristics"]
+
+Floats = NDArray[np.float64]
+Rows = NDArray[np.int64]
+
+ANGLES = 61
+"""Directions that are looked at, the desired one and as many on each side."""
+EQUAL = 1e-9
+"""A direction must be better by this share of the largest cost, so that rounding does not choose between equal ones."""
+
+
+class _Crowd(NamedTuple):
+    """What the kernel reads of every agent, by row ``e * A + a``."""
+
+    position: Floats
+    velocity: Floats
+    desired: Floats
+    radius: Floats
+    max_speed: Floats
+    field: Floats
+    sight: Floats
+    relaxation: Floats
+    stiffness: Floats
+    walking: NDArray[np.bool_]
+
+
+@kernel
+def _fan(ux: float, uy: float, widest: float, left_first: bool, fan: Floats) -> None:
+    """Write unit directions to ``fan``: u first, then one step more to the one and the other side, up to ``widest``.
+
+    The third column is the cosine of the angle to u.
+    """
+    step = 2.0 * widest / (len(fan) - 1)
+    turn = step if left_first else -step
+    cos, sin = math.cos(turn), math.sin(turn)
+    c, s = 1.0, 0.0
+    fan[0, 0], fan[0, 1], fan[0, 2] = ux, uy, 1.0
+    for k in range(1, len(fan), 2):
+        c, s = c * cos - s * sin, s * cos + c * sin
+        fan[k, 0], fan[k, 1], fan[k, 2] = c * ux - s * uy, s * ux + c * uy, c
+        fan[k + 1, 0], fan[k + 1, 1], fan[k + 1, 2] = c * ux + s * uy, -s * ux + c * uy, c
+
+
+@kernel
+def _free_of_agent(
+    x: float, y: float, vx: float, vy: float, reach: float, speed: float, fan: Floats, free: Floats
+) -> None:
+    """Shorten the free ways to the contact with a neighbour: x, y from it to here, v its velocity."""
+    c = x * x + y * y - reach * reach
+    for k in range(len(fan)):
+        wx, wy = speed * fan[k, 0] - vx, speed * fan[k, 1] - vy
+        a, b = wx * wx + wy * wy, x * wx + y * wy
+        root = b * b - a * c
+        if b < 0.0 and root > 0.0:  # who is in contact is in the way only of those who come nearer
+            free[k] = min(free[k], speed * max(0.0, c) / (math.sqrt(root) - b))
+
+
+@kernel
+def _time_to_wall(
+    x: float, y: float, vx: float, vy: float, radius: float, ax: float, ay: float, bx: float, by: float
+) -> float:
+    """Return when a disc touches segment a-b; when it touches it already, 0 if it goes on and inf if it leaves."""
+    nx, ny = nearest_on_segment(x, y, ax, ay, bx, by)
+    nx, ny = x - nx, y - ny
+    if nx * nx + ny * ny > radius * radius:
+        return time_to_segment(x, y, vx, vy, radius, ax, ay, bx, by)
+    return 0.0 if nx * vx + ny * vy < 0.0 else math.inf
+
+
+@kernel
+def _contact(dx: float, dy: float, reach: float, stiffness: float, side: float) -> tuple[float, float]:
+    """Return the acceleration by a body at -dx, -dy that is nearer than ``reach``."""
+    distance = math.sqrt(dx * dx + dy * dy)
+    if distance >= reach:
+        return 0.0, 0.0
+    if distance == 0.0:
+        return side * stiffness * reach, 0.0
+    push = stiffness * (reach - distance) / distance
+    return push * dx, push * dy
+
+
+@kernel
+def _free_ways(
+    row: int, others: Rows, place: Floats, velocity: Floats, radius: Floats, walls: Floats, sight: float, speed: float,
+    fan: Floats, free: Floats,
+) -> None:  # fmt: skip
+    """Write how far one could walk in every direction at ``speed`` before a contact to ``free``, ``sight`` at most."""
+    x, y, r = place[row, 0], place[row, 1], radius[row]
+    free[:] = sight
+    for o in others:
+        reach = r + radius[o]
+        _free_of_agent(x - place[o, 0], y - place[o, 1], velocity[o, 0], velocity[o, 1], reach, speed, fan, free)
+    for m in range(len(walls)):
+        ax, ay, bx, by = walls[m, 0], walls[m, 1], walls[m, 2], walls[m, 3]
+        nx, ny = nearest_on_segment(x, y, ax, ay, bx, by)
+        if (nx - x) ** 2 + (ny - y) ** 2 < (sight + r) ** 2:
+            for k in range(len(fan)):
+                free[k] = min(free[k], _time_to_wall(x, y, fan[k, 0], fan[k, 1], r, ax, ay, bx, by))
+
+
+@kernel
+def _most_direct(sight: float, fan: Floats, free: Floats) -> int:
+    """Return the direction whose free way ends nearest to the point at ``sight`` in the desired direction."""
+    best, least = 0, math.inf
+    for k in range(len(fan)):
+        cost = sight * sight + free[k] * free[k] - 2.0 * sight * free[k] * fan[k, 2]
+        if cost < least - EQUAL * sight * sight:
+            best, least = k, cost
+    return best
+
+
+@kernel
+def _ahead(row: int, others: Rows, place: Floats, radius: Floats, walls: Floats, ux: float, uy: float) -> float:
+    """Return how far one could walk along u if everybody stood still."""
+    x, y, r = place[row, 0], place[row, 1], radius[row]
+    way = math.inf
+    for o in others:
+        if ux * (place[o, 0] - x) + uy * (place[o, 1] - y) > 0.0:
+            way = min(way, ray_to_disc(x, y, ux, uy, place[o, 0], place[o, 1], r + radius[o]))
+    for m in range(len(walls)):
+        way = min(way, _time_to_wall(x, y, ux, uy, r, walls[m, 0], walls[m, 1], walls[m, 2], walls[m, 3]))
+    return way
+
+
+@kernel
+def _contacts(
+    row: int, others: Rows, place: Floats, radius: Floats, walls: Floats, stiffness: float
+) -> tuple[float, float]:
+    """Return the acceleration by all bodies and walls that touch the body."""
+    x, y, r = place[row, 0], place[row, 1], radius[row]
+    fx, fy = 0.0, 0.0
+    for o in others:
+        side = -1.0 if row < o else 1.0
+        px, py = _contact(x - place[o, 0], y - place[o, 1], r + radius[o], stiffness, side)
+        fx, fy = fx + px, fy + py
+    for m in range(len(walls)):
+        nx, ny = nearest_on_segment(x, y, walls[m, 0], walls[m, 1], walls[m, 2], walls[m, 3])
+        px, py = _contact(x - nx, y - ny, r, stiffness, 0.0)
+        fx, fy = fx + px, fy + py
+    return fx, fy
+
+
+@kernel(parallel=True)
+def _choose(crowd: _Crowd, near: Neighbors, walls: Floats, dt: float, out: Floats) -> None:
+    """Choose the next velocity of every agent, row by row."""
+    for part in prange((len(out) + CHUNK - 1) // CHUNK):
+        _choose_part(part * CHUNK, min((part + 1) * CHUNK, len(out)), crowd, near, walls, dt, out)
+
+
+@kernel
+def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Floats, dt: float, out: Floats) -> None:
+    # fields are taken out of the tuples here: inside the loop each access would count references
+    place, velocity, desired, radius, top, field, sight, relaxation, stiffness, walking = crowd
+    agent, number, order = near
+    A = agent.shape[1]
+    fan, free = np.empty((ANGLES, 3)), np.empty(ANGLES)
+    near_rows = np.empty(agent.shape[2], dtype=np.int64)
+    for k in range(begin, end):
+        row = order[k]
+        if not walking[row]:
+            continue
+        e, a = row // A, row % A
+        for n in range(number[e, a]):
+            near_rows[n] = row - a + agent[e, a, n]
+        others = near_rows[: number[e, a]]
+        vx, vy = velocity[row, 0], velocity[row, 1]
+        speed = math.sqrt(desired[row, 0] ** 2 + desired[row, 1] ** 2)
+        ux, uy = 0.0, 0.0
+        if speed > 0.0:
+            ux, uy = desired[row, 0] / speed, desired[row, 1] / speed
+            _fan(ux, uy, field[row], ux * vy - uy * vx > EQUAL * speed, fan)
+            _free_ways(row, others, place, velocity, radius, walls, sight[row], speed, fan, free)
+            best = _most_direct(sight[row], fan, free)
+            ux, uy = fan[best, 0], fan[best, 1]
+            speed = min(speed, _ahead(row, others, place, radius, walls, ux, uy) / relaxation[row])
+        fx, fy = _contacts(row, others, place, radius, walls, stiffness[row])
+        vx += ((speed * ux - vx) / relaxation[row] + fx) * dt
+        vy += ((speed * uy - vy) / relaxation[row] + fy) * dt
+        shorter = min(1.0, top[row] / max(math.sqrt(vx * vx + vy * vy), 1e-300))
+        out[row, 0], out[row, 1] = shorter * vx, shorter * vy
+
+
+@dataclass(frozen=True)
+class Heuristics(CrowdModel):
+    """Two rules: walk in the direction that leads most directly to the goal in view of what is in the way, and so fast
+    that there is always the same time left to stop.
+
+    Args:
+        field_of_view: directions up to this angle [rad] to each side of the desired one are looked at.
+        sight_distance: farther than this nothing matters [m].
+        relaxation_time: the time kept to what is ahead, and in which the velocity follows the choice [s]; no less than
+            the time step counts.
+        contact_stiffness: acceleration per metre of overlap between bodies, and with walls [1/s^2]; it is not taken
+            higher than what ends the overlap in one time step.
+        neighbor_distance: neighbours are nearer than this [m].
+        max_neighbors: only so many of them count, the nearest; a fraction is rounded to the nearest whole number.
+        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+
+    In direction a, the free way f(a) is what one can walk at the desired speed before touching a wall, or somebody who
+    keeps walking. Among 61 directions the one is chosen whose free way ends nearest to the point at sight distance in
+    the desired direction (equal ones: on the side of the present velocity, else on the right), then the speed
+    min(desired, free way as all stand now / relaxation time). Chosen here: the field of view is about the desired
+    direction, and who touches somebody is hindered only from going nearer.
+
+    Source: Moussaid, Helbing, Theraulaz 2011, doi:10.1073/pnas.1016507108.
+
+    Raises:
+        InputError: a parameter is not finite or below its minimum.
+
+    >>> meeting = Scene.of([[0, 0], [5, 0.1]], [[1.3, 0], [-1.3, 0]], goal=[[9, 0], [-9, 0.1]])
+    >>> Heuristics().velocity(meeting, dt=0.1).round(3).tolist()
+    [[[1.296, -0.045], [-1.296, 0.045]]]
+    """
+
+    paper: ClassVar[Paper] = Paper(
+        "Mehdi Moussaïd, Dirk Helbing, Guy Theraulaz",
+        2011,
+        "How simple rules determine pedestrian behavior and crowd disasters",
+        "PNAS",
+        "10.1073/pnas.1016507108",
+    )
+
+    field_of_view: PerAgent = parameter(
+        math.radians(75.0), unit="rad", low=0.5, high=math.pi / 2, source="Moussaid et al. 2011, 75 degrees"
+    )
+    sight_distance: PerAgent = parameter(10.0, unit="m", low=2.0, high=15.0, source="Moussaid et al. 2011", min=1e-2)
+    relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="Moussaid et al. 2011")
+    contact_stiffness: PerAgent = parameter(
+        62.5, unit="1/s^2", low=10.0, high=200.0, source="Moussaid et al. 2011, 5000 kg/s^2 at 80 kg"
+    )
+    neighbor_distance: PerAgent = parameter(10.0, unit="m", low=2.0, high=15.0, source="the sight distance")
+    max_neighbors: PerAgent = parameter(20.0, unit="1", low=1.0, high=40.0, source="chosen here")
+    max_speed: PerAgent | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_limit(self, self.max_speed)
+
+    def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
+        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
+        wish, walking = desired_velocity(scene, dt), movable(scene)
+        near = neighbors_of(self, scene, walking)
+        relaxation = np.maximum(per_agent(self.relaxation_time, scene.shape, "relaxation_time"), dt)
+        stiffness = np.minimum(per_agent(self.contact_stiffness, scene.shape, "contact_stiffness"), 1.0 / dt**2)
+        crowd = _Crowd(
+            rows(scene.position),
+            rows(scene.velocity),
+            rows(wish),
+            rows(scene.radius),
+            rows(speed_limit(self.max_speed, scene)),
+            rows(per_agent(self.field_of_view, scene.shape, "field_of_view")),
+            rows(per_agent(self.sight_distance, scene.shape, "sight_distance")),
+            rows(relaxation),
+            rows(stiffness),
+            rows(walking),
+        )
+        out = initial_velocity(scene)
+        launch(_choose, _choose_part, rows(out), crowd, near, scene.walls.segments(), float(dt))
+        return out

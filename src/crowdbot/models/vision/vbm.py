@@ -1,0 +1,406 @@
+"""VBM: vision-based steering down the slope of a cost of what an agent sees coming."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numba import prange
+from numpy.typing import NDArray
+
+from crowdbot.core import (
+    CHUNK,
+    InputError,
+    Neighbors,
+    Paper,
+    PerAgent,
+    Scene,
+    did_you_mean,
+    kernel,
+    parameter,
+    per_agent,
+)
+from crowdbot.core.geometry import nearest_on_segment
+from crowdbot.core.neighbors import nearest
+from crowdbot.models.model import (
+    CrowdModel,
+    check_limit,
+    desired_velocity,
+    initial_velocity,
+    movable,
+    rows,
+    speed_limit,
+)
+
+__all__ = ["VBM"]
+
+Floats = NDArray[np.float64]
+
+VARIANTS = ("agents", "crowdbot")
+FIELD = math.radians(150.0)
+"""Width of the field of view [rad]."""
+FAN = 15
+"""Rays along which the variant ``agents`` sees walls."""
+MOST_RAYS = 4096
+STILL = 1e-3
+"""Below this speed [m/s] an agent looks along its heading; a relative velocity is nothing below its square root."""
+FORESIGHT = 10.0
+"""What comes closest later than this [s] does not count."""
+FAINT = 1e-3
+"""A ray counts only when both slopes are steeper; a term of the variant ``agents``, when its cost is higher."""
+SQUEEZED = 0.05
+"""Bodies that touch are this share of the distance of their centres apart, so that the direction stays known."""
+EXACT = 1e-9
+"""A closest approach nearer than this [m] has no side."""
+FAST = 1e6
+"""No step turns by more [rad]."""
+STEEP = 0.1
+"""The field of view adds a slope of about this where left and right are equally bad."""
+
+
+class _Crowd(NamedTuple):
+    """What the kernel reads of every agent, by row ``e * A + a``."""
+
+    position: Floats
+    velocity: Floats
+    heading: Floats
+    desired: Floats
+    radius: Floats
+    max_speed: Floats
+    walking: NDArray[np.bool_]
+    time_scale: Floats
+    distance_scale: Floats
+    speed_scale: Floats
+    angle_scale: Floats
+    wall_distance: Floats
+    max_acceleration: Floats
+    max_turn: Floats
+    ridge: Floats
+    gain: Floats
+
+
+@kernel
+def _slopes(
+    x: float, y: float, wx: float, wy: float, hx: float, hy: float, speed: float,
+    late: float, near: float, ridge: float,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Return the cost of something at x, y with relative velocity w, and its slopes over own angle and own speed.
+
+    ``h`` is the own direction, ``late`` and ``near`` the scales of time and distance. 0 when it goes away or comes
+    closest too late. Nearer to a hit than ``ridge`` the slope is as steep as there.
+    """
+    w2 = wx * wx + wy * wy
+    if w2 < STILL:
+        return 0.0, 0.0, 0.0
+    t = -(x * wx + y * wy) / w2
+    if t < 0.0 or t > FORESIGHT:
+        return 0.0, 0.0, 0.0
+    cx, cy = x + t * wx, y + t * wy
+    cost = math.exp(-0.5 * ((t / late) ** 2 + (cx * cx + cy * cy) / (near * near)))
+    miss = math.sqrt(cx * cx + cy * cy)
+    if miss < ridge:
+        if miss > EXACT:
+            cx, cy = cx * ridge / miss, cy * ridge / miss
+        else:  # no side is better: keep right
+            right = math.copysign(ridge / math.sqrt(w2), -(wx * hx + wy * hy))
+            cx, cy = right * wy, -right * wx
+    px, py = speed * hy, -speed * hx  # how w changes when the agent turns
+    qx, qy = (x + 2.0 * t * wx) / w2, (y + 2.0 * t * wy) / w2
+    # c is at right angles to w, so that a change of t leaves its length alone
+    of_angle = -(qx * px + qy * py) * t / (late * late) + t * (cx * px + cy * py) / (near * near)
+    of_speed = (qx * hx + qy * hy) * t / (late * late) - t * (cx * hx + cy * hy) / (near * near)
+    return cost, -cost * of_angle, -cost * of_speed
+
+
+@kernel
+def _first_ray(sines: Floats, value: float) -> int:
+    """Return the first ray whose sine is not below ``value``."""
+    low, high = 0, len(sines)
+    while low < high:
+        middle = (low + high) // 2
+        if sines[middle] < value:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+@kernel
+def _look_at_walls(
+    walls: Floats, x: float, y: float, hx: float, hy: float, reach: float, rays: Floats, depth: Floats
+) -> None:
+    """Write the distance to the nearest wall along every ray to ``depth``, inf when there is none in reach."""
+    for k in range(len(depth)):
+        depth[k] = math.inf
+    sines = rays[0]
+    for m in range(len(walls)):
+        ax, ay, bx, by = walls[m, 0] - x, walls[m, 1] - y, walls[m, 2] - x, walls[m, 3] - y
+        nx, ny = nearest_on_segment(0.0, 0.0, ax, ay, bx, by)
+        before, after = hx * ax + hy * ay, hx * bx + hy * by
+        if nx * nx + ny * ny >= reach * reach or (before <= 0.0 and after <= 0.0):
+            continue
+        turn = ax * by - ay * bx  # above 0: seen from here, b is on the left of a
+        if turn == 0.0:
+            continue
+        left = math.copysign(1.0, turn)  # an end behind the back lies beyond the border of the field
+        sine_a = -left if before < 0.0 else (hx * ay - hy * ax) / math.sqrt(ax * ax + ay * ay)
+        sine_b = left if after < 0.0 else (hx * by - hy * bx) / math.sqrt(bx * bx + by * by)
+        for k in range(_first_ray(sines, min(sine_a, sine_b)), _first_ray(sines, max(sine_a, sine_b))):
+            ux, uy = hx * rays[1, k] - hy * sines[k], hy * rays[1, k] + hx * sines[k]
+            along = ux * (by - ay) - uy * (bx - ax)
+            if along != 0.0 and turn / along > 0.0:
+                depth[k] = min(depth[k], turn / along)
+
+
+@kernel
+def _see(
+    row: int, others: NDArray[np.int32], place: Floats, velocity: Floats, radius: Floats, hx: float, hy: float,
+    speed: float, late: float, near: float, rays: Floats, depth: Floats, taken: NDArray[np.bool_],
+    field: bool, ridge: float, sums: Floats,
+) -> None:  # fmt: skip
+    """Add up the slopes of all that is seen: over angle, over speed, rising ones over angle or costs, weights.
+
+    In the ``field`` of view every ray counts, and the nearest thing hides the others; else every agent counts as much
+    as the angle it fills, and distances run from body to body.
+    """
+    sums[:] = 0.0
+    taken[:] = False
+    x0, y0, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
+    widest = rays[0, len(depth) - 1]
+    for n in range(len(others)):  # sorted by distance
+        other = others[n]
+        x, y = place[other, 0] - x0, place[other, 1] - y0
+        distance = math.sqrt(x * x + y * y)
+        ahead, across = hx * x + hy * y, hx * y - hy * x
+        if distance == 0.0 or ahead < 0.0 or not distance < math.inf:
+            continue
+        side = radius[other] / distance
+        if field:
+            edge = math.sqrt(1.0 + side * side) * distance
+            weight = 0.0
+            last = _first_ray(rays[0], (across + side * ahead) / edge)
+            for k in range(_first_ray(rays[0], (across - side * ahead) / edge), last):
+                if not taken[k] and distance < depth[k]:
+                    taken[k] = True
+                    weight += 1.0
+        else:
+            weight = 2.0 * math.atan(side) if abs(across) <= widest * distance else 0.0
+            shorter = max(1.0 - (radius[row] + radius[other]) / distance, SQUEEZED)
+            x, y = shorter * x, shorter * y
+        if weight > 0.0:
+            wx, wy = velocity[other, 0] - vx, velocity[other, 1] - vy
+            cost, turn, change = _slopes(x, y, wx, wy, hx, hy, speed, late, near, 0.0 if field else ridge)
+            _add(sums, cost, turn, change, weight, field)
+    for k in range(len(depth)):
+        if not taken[k] and depth[k] < math.inf:
+            gap = depth[k] if field else depth[k] * max(1.0 - radius[row] / depth[k], SQUEEZED)
+            x, y = gap * (hx * rays[1, k] - hy * rays[0, k]), gap * (hy * rays[1, k] + hx * rays[0, k])
+            cost, turn, change = _slopes(x, y, -vx, -vy, hx, hy, speed, late, near, 0.0)
+            _add(sums, cost, turn, change, 1.0 if field else FIELD / FAN, field)
+
+
+@kernel
+def _add(sums: Floats, cost: float, turn: float, change: float, weight: float, field: bool) -> None:
+    if (field and abs(turn) > FAINT and abs(change) > FAINT) or (not field and cost > FAINT):
+        sums[0] += weight * turn
+        sums[1] += weight * change
+        sums[2] += weight * max(0.0, turn)
+        sums[3] += weight
+
+
+@kernel
+def _mean(sums: Floats, push: float) -> tuple[float, float]:
+    """Return the mean slopes over angle and speed, with a ``push`` to one side where no side is better."""
+    turn, change, rising, weight = sums[0], sums[1], sums[2], sums[3]
+    if weight == 0.0:
+        return 0.0, 0.0
+    if abs(turn) < STEEP and rising > 0.1 * STEEP:
+        turn += math.copysign(push, turn)
+    return turn / weight, change / weight
+
+
+@kernel
+def _wanted(
+    hx: float, hy: float, speed: float, px: float, py: float, slow: float, wide: float, most: float
+) -> tuple[float, float]:
+    """Return the slopes over angle and speed of the cost of not walking as desired.
+
+    They are steeper for slow walkers, but not so steep that a step with gain ``1 / most`` overshoots.
+    """
+    desired = math.sqrt(px * px + py * py)
+    steeper = max(1.0, 1.0 / max(STILL, speed))
+    off = speed - desired
+    change = off * min(steeper / (2.0 * slow * slow), most) * math.exp(-off * off / (2.0 * slow * slow))
+    angle = math.atan2(hx * py - hy * px, hx * px + hy * py) if desired > 0.0 else 0.0
+    return -angle * min(steeper / (2.0 * wide * wide), most) * math.exp(-angle * angle / (2.0 * wide * wide)), change
+
+
+@kernel(parallel=True)
+def _choose(
+    crowd: _Crowd, seen: Neighbors, walls: Floats, rays: Floats, field: bool, luck: Floats, dt: float, out: Floats
+) -> None:
+    """Choose velocity and direction of every agent, row by row."""
+    for part in prange((len(out) + CHUNK - 1) // CHUNK):
+        begin, end = part * CHUNK, min((part + 1) * CHUNK, len(out))
+        _choose_part(begin, end, crowd, seen, walls, rays, field, luck, dt, out)
+
+
+@kernel
+def _choose_part(
+    begin: int, end: int, crowd: _Crowd, seen: Neighbors, walls: Floats, rays: Floats, field: bool, luck: Floats,
+    dt: float, out: Floats,
+) -> None:  # fmt: skip
+    # fields are taken out of the tuples here: inside the loop each access would count references
+    place, velocity, heading, desired, radius, top, walking, late, near, slow, wide, far, most, sharp, ridge, gain = (
+        crowd
+    )
+    agent, number, order = seen
+    A = agent.shape[1]
+    others = np.empty(agent.shape[2], dtype=np.int32)
+    depth = np.empty(rays.shape[1])
+    taken = np.empty(rays.shape[1], dtype=np.bool_)
+    sums = np.empty(4)
+    for k in range(begin, end):
+        row = order[k]
+        if not walking[row]:
+            continue
+        e, a = row // A, row % A
+        for n in range(number[e, a]):
+            others[n] = row - a + agent[e, a, n]
+        vx, vy = velocity[row, 0], velocity[row, 1]
+        speed = math.sqrt(vx * vx + vy * vy)
+        hx, hy = math.cos(heading[row]), math.sin(heading[row])
+        if speed > STILL:
+            hx, hy = vx / speed, vy / speed
+        chance = 0.75 + 0.5 * luck[row]
+        _look_at_walls(walls, place[row, 0], place[row, 1], hx, hy, far[row], rays, depth)
+        _see(row, others[: number[e, a]], place, velocity, radius, hx, hy, speed, late[row], near[row], rays, depth,
+             taken, field, chance * ridge[row], sums)  # fmt: skip
+        turn, change = _mean(sums, STEEP * chance if field else 0.0)
+        pull = gain[row] * dt
+        turn0, change0 = _wanted(
+            hx, hy, speed, desired[row, 0], desired[row, 1], slow[row], wide[row],
+            math.inf if field or pull == 0.0 else 1.0 / pull,
+        )  # fmt: skip
+        sharpest = min(sharp[row] * dt / max(STILL, speed), FAST)
+        angle = -min(sharpest, max(-sharpest, pull * (turn + turn0)))
+        speed = min(top[row], max(0.0, speed - max(pull * (change + change0), -most[row] * dt)))
+        cos, sin = math.cos(angle), math.sin(angle)
+        out[row, 2], out[row, 3] = hx * cos - hy * sin, hy * cos + hx * sin
+        out[row, 0], out[row, 1] = speed * out[row, 2], speed * out[row, 3]
+
+
+@dataclass(frozen=True)
+class VBM(CrowdModel):
+    """Agents look at how soon and how near everything in view will pass, and turn and change speed down that slope.
+
+    The cost of a thing in view that comes closest in t [s] at distance c [m] is exp(-((t / time_scale)^2 +
+    (c / distance_scale)^2) / 2). Direction and speed go down the mean of it over what is in view (150 degrees), plus a
+    weak cost of not walking as desired: it takes several seconds to regain speed, as published. Acceleration is
+    limited, braking is not. A standing agent looks along its heading. The model has no contacts: bodies may overlap in
+    a dense crowd.
+
+    Args:
+        neighbor_distance: agents are seen nearer than this [m].
+        max_neighbors: only so many of them are seen, the nearest.
+        wall_distance: walls are seen nearer than this [m].
+        time_scale: spread of the cost over the time of closest approach [s].
+        distance_scale: spread of the cost over the distance of closest approach [m].
+        speed_scale: spread of the desire for the desired speed [m/s].
+        angle_scale: spread of the desire for the desired direction [rad].
+        max_acceleration: of speeding up [m/s^2].
+        max_turn: sideways acceleration of turning [m/s^2]; standing agents turn at once.
+        gain: of the step down the slope; higher walks back to the desired way sooner.
+        ridge: closest approaches nearer than this [m] push aside as if they were as far; exact hits push to the right.
+        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+        variant: ``agents``: every agent counts by the angle that it fills, distances run from body to body, walls are
+            seen along 15 rays. ``crowdbot``: the field of view is an array of rays in which the nearest thing hides the
+            others; distances run from the own centre to the other's; ``ridge`` has no effect (agents who walk exactly
+            into each other do not turn).
+        rays: of the field of view of ``crowdbot``.
+
+    With ``rng`` the push aside varies by a quarter; without, it has its mean.
+
+    Source: Dutra, Marques, Cavalcante-Neto, Vidal, Pettré 2017, doi:10.1111/cgf.13130; ``crowdbot`` is the version of
+    the CrowdBot simulator.
+
+    Raises:
+        InputError: a parameter is not finite or below its minimum, the variant is unknown or ``rays`` not in 2..4096.
+
+    >>> ahead = Scene.of([[0, 0], [4, 0.2]], [[1, 0], [-1, 0]], preferred_velocity=[[1, 0], [-1, 0]])
+    >>> VBM().velocity(ahead, dt=0.1).round(3).tolist()
+    [[[0.972, -0.077], [-0.972, 0.077]]]
+    """
+
+    paper: ClassVar[Paper] = Paper(
+        "Teofilo B. Dutra, Ricardo Marques, Joaquim B. Cavalcante-Neto, Creto A. Vidal, Julien Pettré",
+        2017,
+        "Gradient-based steering for vision-based crowd simulation algorithms",
+        "Computer Graphics Forum 36(2)",
+        "10.1111/cgf.13130",
+    )
+
+    neighbor_distance: PerAgent = parameter(5.0, unit="m", low=1.0, high=15.0, source="CrowdBot simulator")
+    max_neighbors: PerAgent = parameter(32.0, unit="1", low=4.0, high=64.0, source="half of 5 m at 0.8 people/m2")
+    wall_distance: PerAgent = parameter(10.0, unit="m", low=1.0, high=15.0, source="CrowdBot simulator")
+    time_scale: PerAgent = parameter(1.8, unit="s", low=0.5, high=4.0, source="CrowdBot simulator", min=0.01)
+    distance_scale: PerAgent = parameter(0.3, unit="m", low=0.1, high=1.0, source="CrowdBot simulator", min=0.01)
+    speed_scale: PerAgent = parameter(3.3, unit="m/s", low=0.5, high=4.0, source="CrowdBot simulator", min=0.01)
+    angle_scale: PerAgent = parameter(2.0, unit="rad", low=0.5, high=3.0, source="CrowdBot simulator", min=0.01)
+    max_acceleration: PerAgent = parameter(0.8, unit="m/s^2", low=0.3, high=5.0, source="CrowdBot simulator")
+    max_turn: PerAgent = parameter(math.pi / 4.0, unit="m/s^2", low=0.3, high=5.0, source="CrowdBot simulator")
+    gain: PerAgent = parameter(1.0, unit="1", low=0.5, high=20.0, source="Dutra et al. 2017; examples of UMANS use 20")
+    ridge: PerAgent = parameter(0.1, unit="m", low=0.0, high=0.3, source="chosen so that exact hits are avoided")
+    max_speed: PerAgent | None = None
+    variant: str = "agents"
+    rays: int = 256
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_limit(self, self.max_speed)
+        if self.variant not in VARIANTS:
+            near = did_you_mean(self.variant, VARIANTS)
+            raise InputError(f"VBM: there is no variant {self.variant!r}{near}; choose {' or '.join(VARIANTS)}")
+        if isinstance(self.rays, bool) or not isinstance(self.rays, int) or not 2 <= self.rays <= MOST_RAYS:
+            raise InputError(f"VBM: rays = {self.rays!r} is not allowed, it must be a whole number, 2 to {MOST_RAYS}")
+
+    def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
+        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` varies the push aside."""
+        return self._choose_velocity(scene, dt, rng)[..., :2]
+
+    def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
+        """Return the scene ``dt`` [s] later; standing agents turn, too."""
+        out = self._choose_velocity(scene, dt, rng)
+        after = scene.advanced(out[..., :2], dt)
+        turned = np.where(movable(scene), np.arctan2(out[..., 3], out[..., 2]), after.heading)
+        return after.replace(heading=turned)
+
+    def _choose_velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None) -> Floats:
+        wish, walking = desired_velocity(scene, dt), movable(scene)
+
+        def each(name: str) -> Floats:
+            return rows(per_agent(getattr(self, name), scene.shape, name))
+
+        seen = nearest(
+            scene.position,
+            per_agent(self.neighbor_distance, scene.shape, "neighbor_distance"),
+            np.rint(per_agent(self.max_neighbors, scene.shape, "max_neighbors")),
+            scene.active & scene.visible,
+            walking,
+        )
+        crowd = _Crowd(
+            rows(scene.position), rows(scene.velocity), rows(scene.heading), rows(wish), rows(scene.radius),
+            rows(speed_limit(self.max_speed, scene)), rows(walking), each("time_scale"), each("distance_scale"),
+            each("speed_scale"), each("angle_scale"), each("wall_distance"), each("max_acceleration"),
+            each("max_turn"), each("ridge"), each("gain"),
+        )  # fmt: skip
+        field = self.variant == "crowdbot"
+        angle = np.linspace(-0.5 * FIELD, 0.5 * FIELD, self.rays if field else FAN)
+        luck = np.full(scene.shape, 0.5) if rng is None else rng.random(scene.shape)
+        out = np.zeros((*scene.shape, 4))
+        out[..., :2] = initial_velocity(scene)
+        walls = scene.walls.segments()
+        _choose(crowd, seen, walls, np.stack([np.sin(angle), np.cos(angle)]), field, rows(luck), float(dt), rows(out))
+        return out

@@ -1,0 +1,135 @@
+"""What the program says and does about errors that nobody expected, and about closed or narrow standard streams."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+BUG = """
+import crowdbot.cli.list as command
+
+def main(options):
+    print("half the output")
+    raise {error}
+
+command.main = main
+from crowdbot.cli import main
+raise SystemExit(main({words}))
+"""
+
+
+def crowdbot(*words, **options):
+    return run([sys.executable, "-m", "crowdbot", *words], **options)
+
+
+def run(command, environment=None, **options):
+    settings = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "timeout": 120, **options}
+    return subprocess.run(command, env={**os.environ, **(environment or {})}, **settings)
+
+
+def fail(error, words=("list",), **options):
+    return run([sys.executable, "-c", BUG.format(error=error, words=list(words))], **options)
+
+
+def test_an_unexpected_error_is_one_sentence_with_a_trace_in_a_file(tmp_path):
+    done = fail("ZeroDivisionError('nothing\\nto divide')", environment={"TMPDIR": str(tmp_path), "CROWDBOT_DEBUG": ""})
+    assert done.returncode == 1
+    assert done.stdout == "half the output\n"
+    found = re.fullmatch(
+        r"crowdbot: ZeroDivisionError: nothing to divide \(<string>, line \d+\); this is a bug in crowdbot or in your"
+        r" code; the trace is in (.+)\n",
+        done.stderr,
+    )
+    assert found, done.stderr
+    trace = Path(found.group(1))
+    assert trace.parent == tmp_path
+    assert "Traceback (most recent call last)" in trace.read_text()
+    assert "ZeroDivisionError: nothing\nto divide" in trace.read_text()
+
+
+@pytest.mark.parametrize(
+    ("words", "environment"),
+    [(["--debug", "list"], {}), (["list", "--debug"], {}), (["list"], {"CROWDBOT_DEBUG": "1"})],
+)
+def test_debug_prints_the_trace(words, environment, tmp_path):
+    done = fail("KeyError('x')", words, environment={"TMPDIR": str(tmp_path), "CROWDBOT_DEBUG": "", **environment})
+    assert done.returncode == 1
+    assert done.stderr.startswith("Traceback (most recent call last)")
+    assert done.stderr.splitlines()[-1].startswith("crowdbot: KeyError: 'x' (<string>, line ")
+    assert "the trace is in" not in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_without_a_temporary_folder_the_trace_is_printed():
+    change = "__import__('tempfile').tempdir = '/nowhere/at/all'\n"
+    program = change + BUG.format(error="KeyError('x')", words=["list"])
+    done = run([sys.executable, "-c", program], environment={"CROWDBOT_DEBUG": ""})
+    assert done.returncode == 1
+    assert done.stderr.startswith("Traceback (most recent call last)")
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "message"),
+    [
+        ("__import__('crowdbot').CrowdbotError('no such thing')", 2, "crowdbot: no such thing\n"),
+        ("OSError(28, 'No space left on device', 'a.xml')", 2, "crowdbot: a.xml: No space left on device\n"),
+        ("EOFError()", 2, "crowdbot: standard input ended before all questions were answered\n"),
+        ("KeyboardInterrupt()", 130, "crowdbot: interrupted\n"),
+        ("BrokenPipeError()", 0, ""),
+    ],
+)
+def test_errors_of_the_user_and_the_system_have_a_sentence_and_a_status(error, status, message):
+    done = fail(error, environment={"CROWDBOT_DEBUG": "0"})
+    assert (done.returncode, done.stderr) == (status, message)
+
+
+@pytest.mark.parametrize("words", [["list"], ["--help"], ["list", "--help"], ["--version"]])
+def test_a_reader_that_ends_early_is_no_error(words):
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = crowdbot(*words, stdout=writer)
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a POSIX shell")
+@pytest.mark.parametrize("closed", ["<&-", ">&-", "2>&-", "<&- >&- 2>&-"])
+def test_closed_streams_are_no_error(closed):
+    done = run(f"{sys.executable} -m crowdbot list {closed}", shell=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert ("orca" in done.stdout) == (">&-" not in closed.replace("2>&-", ""))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a POSIX shell")
+def test_files_are_not_written_into_closed_streams(tmp_path):
+    trial = tmp_path / "t.xml"
+    done = run(f"{sys.executable} -m crowdbot new trial {trial} <&- >&- 2>&-", shell=True)
+    assert done.returncode == 0
+    assert trial.read_text().startswith("<?xml")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no /dev/full")
+@pytest.mark.parametrize("words", [["list"], ["cite", "orca"]])
+def test_a_full_disk_behind_the_output_is_one_sentence(words):
+    with Path("/dev/full").open("w") as full:
+        done = crowdbot(*words, stdout=full)
+    assert (done.returncode, done.stderr) == (2, "crowdbot: standard output: No space left on device\n")
+
+
+def test_an_output_of_ascii_prints_question_marks():
+    done = run(
+        [sys.executable, "-c", BUG.format(error="SystemExit(print('Molnár'))", words=["list"])],
+        environment={"PYTHONIOENCODING": "ascii"},
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "half the output\nMoln?r\n", "")
+
+
+@pytest.mark.parametrize("words", [["list"], ["cite", "social-force"], ["--help"], ["validate", "--help"]])
+def test_commands_print_to_an_output_of_ascii(words):
+    done = crowdbot(*words, environment={"PYTHONIOENCODING": "ascii"})
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.isascii()
+    assert done.stdout
