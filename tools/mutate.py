@@ -162,7 +162,7 @@ class Tree:
         self.left_out: dict[bool, list[str]] = {}
         self.process: subprocess.Popen[str] | None = None
         listed = subprocess.run(
-            ["git", "ls-files", "-co", "--exclude-standard", "-z"],  # noqa: S607
+            ["git", "ls-files", "-co", "--exclude-standard", "-z"],
             cwd=ROOT, capture_output=True, text=True, check=True,
         )  # fmt: skip
         for name in filter(None, listed.stdout.split("\0")):

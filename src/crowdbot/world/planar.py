@@ -326,11 +326,11 @@ class PlanarWorld(World):
             if not np.all(self.scene.external[:, robot]):
                 raise InputError(f"agent {robot} has a drive but is not external: set external=True for robots")
         if not 0.0 <= self.robot_margin < math.inf:
-            raise InputError(f"robot_margin {self.berth} m must be finite and at least 0")
+            raise InputError(f"robot_margin {self.robot_margin} m must be finite and at least 0")
         if self.leave_radius is not None and not 0.0 < self.leave_radius < math.inf:
             raise InputError(f"leave_radius {self.leave_radius} m must be finite and above 0, or None")
         if not 0.0 <= self.heading_jitter <= math.pi:
-            raise InputError(f"heading_jitter {self.symmetry} rad must be from 0 to pi")
+            raise InputError(f"heading_jitter {self.heading_jitter} rad must be from 0 to pi")
         if isinstance(self.substeps, bool) or not isinstance(self.substeps, int) or not 1 <= self.substeps <= 10_000:
             raise InputError(f"substeps = {self.substeps!r} must be a whole number from 1 to 10000")
 

@@ -139,7 +139,7 @@ class _Found:
             foot = np.column_stack([np.full(SLICES, x), np.full(SLICES, y), z + tall * low])
             self.posts.append((foot, wide * across, tall * (high - low), np.full(SLICES, owner)))
 
-    def scene_bodies(self, parts: tuple[str, ...], skins: Skins | None) -> Bodies:
+    def bodies(self, parts: tuple[str, ...], skins: Skins | None) -> Bodies:
         """Return all of them."""
         named = (
             (self.capsules, ("start", "end", "radius", "owner", "part")),

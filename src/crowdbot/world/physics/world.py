@@ -91,6 +91,7 @@ class PhysicsWorld(PlanarWorld):
     ([0.4], ())
     """
 
+    people: PeopleMotion
     people_shape = "limbs"
     walls_fixed = True
 
@@ -128,7 +129,7 @@ class PhysicsWorld(PlanarWorld):
     @property
     def contact_events(self) -> tuple[BodyContactEvent, ...]:
         """Every collision so far, by first touch."""
-        return self._contact_tracker.collisions
+        return self._contact_tracker.contact_events
 
     def command(self, robot: int, joints: Mapping[str, float]) -> None:
         """Send values to the motors of a robot's joints; they hold until the next ones.
@@ -145,7 +146,7 @@ class PhysicsWorld(PlanarWorld):
             InputError: the agent is no robot.
         """
         if robot not in self.robot_bodies:
-            raise InputError(f"agent {robot} is no robot; robots are {sorted(self.chassis) or 'none'}")
+            raise InputError(f"agent {robot} is no robot; robots are {sorted(self.robot_bodies) or 'none'}")
         return self.robot_bodies[robot]
 
     def render(

@@ -119,7 +119,7 @@ class Renderer:
         """
         _checked(scene)
         if scene.shape[1] != len(self.people.row):
-            raise InputError(f"studio: the scene has {scene.shape[1]} agents, it was made for {len(self.walkers.row)}")
+            raise InputError(f"studio: the scene has {scene.shape[1]} agents, it was made for {len(self.people.row)}")
         self._scene, self._joints, self._coordinates = scene, joints or {}, None
 
     def show_engine(self, scene: Scene, coordinates: Floats) -> None:
