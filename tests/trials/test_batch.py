@@ -55,7 +55,7 @@ def test_who_ends_early_leaves_the_others_alone() -> None:
 class Asked(ORCA):
     """A model that counts environments."""
 
-    seen = []
+    seen = []  # noqa: RUF012
 
     def step(self, scene, dt, rng=None):  # type: ignore[no-untyped-def]
         self.seen.append(scene.shape[0])
