@@ -24,7 +24,7 @@ from pathlib import Path
 from types import FrameType
 
 from crowdbot.core import CrowdbotError
-from crowdbot.recording import opened
+from crowdbot.recording import open_run
 from crowdbot.trials import builtin_trials, expand_spawners, expand_sweeps, load_trial, parse_trial, trial_xml
 
 LIMIT = 60
@@ -181,7 +181,7 @@ def judged(text: str, folder: Path) -> str:
     if one.people > MOST_PEOPLE or (one.capacity or 0) > MOST_PEOPLE:
         return "read"
     try:
-        with opened(one, out=folder / OUT) as running:
+        with open_run(one, out=folder / OUT) as running:
             for _ in range(STEPS):
                 if running.outcome is None:
                     running.step()

@@ -260,7 +260,7 @@ def _navigation() -> None:
     )
     rows = []
     for visible in (True, False):
-        for navigator in (navigation.Straight(), navigation.ORCA()):
+        for navigator in (navigation.Straight(), navigation.ORCANavigator()):
             robot = dataclasses.replace(trial.robots[0], navigator=navigator, visible=visible)
             rows.append([type(navigator).__name__.lower(), str(visible).lower(), *_rates(trial, robot)])
     head = ["success", "collision", "timeout", "median least clearance [m]", "median time to goal [s]"]

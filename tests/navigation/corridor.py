@@ -10,7 +10,7 @@ import numpy as np
 from crowdbot import models
 from crowdbot.core import Scene, stream
 from crowdbot.metrics import navigation_metrics
-from crowdbot.navigation import ORCA, DriveLimits, Observation, Straight
+from crowdbot.navigation import DriveLimits, Observation, ORCANavigator, Straight
 from crowdbot.world import DifferentialDrive, PlanarWorld, Twists
 
 WAYS = {"across": ((0.0, 0.6), (0.0, 0.6)), "diagonal": ((-4.0, 0.6), (4.0, 0.6)), "along": ((-8.0, 3.5), (8.0, 3.5))}
@@ -126,7 +126,7 @@ def table(seeds=range(50)):
     print("crowd, robot is, way, corridor, navigator: success collision timeout | time [s] efficiency compliance")
     for crowd, visible in ((models.ORCA(), True), (models.ORCA(), False), (models.SocialForce(), True)):
         for way, width, length in settings:
-            for navigator in (Straight(), ORCA()):
+            for navigator in (Straight(), ORCANavigator()):
                 rows = run(navigator, seeds, way, crowd=crowd, width=width, length=length, visible=visible)
                 rates = " ".join(f"{share(rows, name):.2f}" for name in ("success", "collision", "timeout"))
                 times = [row["time_to_goal"] for row in rows if row["success"]]

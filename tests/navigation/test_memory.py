@@ -7,7 +7,7 @@ from crowdbot.models import ORCA
 from crowdbot.navigation import Action, Navigator
 from crowdbot.recording import branch, run
 from crowdbot.simulation import run_batch
-from crowdbot.trials import Goal, Robot, Trial
+from crowdbot.trials import RobotGoal, RobotSpec, Trial
 from crowdbot.world import DifferentialDrive
 
 
@@ -23,8 +23,8 @@ class Slowing(Navigator):
 
 
 def trial(duration=2.0):
-    robot = Robot(
-        name="robot", x=0.0, y=0.0, radius=0.3, goal=Goal(x=9.0, y=0.0), drive=DifferentialDrive(),
+    robot = RobotSpec(
+        name="robot", x=0.0, y=0.0, radius=0.3, goal=RobotGoal(x=9.0, y=0.0), drive=DifferentialDrive(),
         navigator=Slowing(), control_period=0.5,
     )  # fmt: skip
     return Trial(name="slow", duration=duration, step=0.1, crowd=ORCA(), robots=[robot])

@@ -9,7 +9,7 @@ import pytest
 
 from crowdbot import models, navigation
 from crowdbot.core import InputError, Twist, Walls, builtin_classes, from_attributes
-from crowdbot.navigation import ORCA, Action, DriveLimits, Navigator, Observation, Straight, VisiblePeople
+from crowdbot.navigation import Action, DriveLimits, Navigator, Observation, ORCANavigator, Straight, VisiblePeople
 
 NAVIGATORS = builtin_classes(navigation, navigation.Navigator)
 LIMITS = DriveLimits(1.0, 1.5, 1.0, 3.0)
@@ -73,20 +73,20 @@ def test_straight_is_blind():
 
 @pytest.mark.parametrize(("side", "sign"), [(0.15, -1.0), (-0.15, 1.0)])
 def test_orca_passes_on_the_free_side(side, sign):
-    twist = ORCA().act(meeting([(2.5, side, -1.0, 0.0)], twist=Twist(0.8)))
+    twist = ORCANavigator().act(meeting([(2.5, side, -1.0, 0.0)], twist=Twist(0.8)))
     assert math.copysign(1.0, twist.turn) == sign
     assert abs(twist.turn) > 0.05
 
 
 def test_orca_brakes_for_someone_who_blocks_the_way():
     wall = [(1.0, y, 0.0, 0.0) for y in np.arange(-3.0, 3.1, 0.5)]
-    assert ORCA().act(meeting(wall, twist=Twist(0.6))).forward < 0.3
+    assert ORCANavigator().act(meeting(wall, twist=Twist(0.6))).forward < 0.3
 
 
 def test_orca_takes_all_or_half_of_the_avoidance():
     seen = meeting([(2.0, 0.1, -1.0, 0.0)], twist=Twist(0.9))
-    alone = abs(ORCA(share=1.0).velocity(seen)[1])
-    half = abs(ORCA(share=0.5).velocity(seen)[1])
+    alone = abs(ORCANavigator(share=1.0).velocity(seen)[1])
+    half = abs(ORCANavigator(share=0.5).velocity(seen)[1])
     assert 0.0 < half < alone
 
 
@@ -105,11 +105,11 @@ def test_the_velocity_is_that_of_the_model():
         walls=seen.walls,
     )
     expected = models.ORCA(6.0, 15, 1.5, 1.0).velocity(scene, 0.3)[0, 0]
-    np.testing.assert_array_equal(ORCA().velocity(seen), expected)
+    np.testing.assert_array_equal(ORCANavigator().velocity(seen), expected)
 
 
 def test_far_people_change_nothing():
-    assert ORCA().act(meeting([(8.0, 0.0, -1.0, 0.0)])) == ORCA().act(meeting())
+    assert ORCANavigator().act(meeting([(8.0, 0.0, -1.0, 0.0)])) == ORCANavigator().act(meeting())
 
 
 @pytest.mark.parametrize(
@@ -126,7 +126,7 @@ def test_far_people_change_nothing():
 )
 def test_orca_explains_wrong_values(values, message):
     with pytest.raises(InputError, match=message):
-        ORCA(**values)
+        ORCANavigator(**values)
 
 
 @dataclass(frozen=True)

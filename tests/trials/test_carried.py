@@ -17,13 +17,13 @@ from trial_texts import GOOD, SHY
 from crowdbot.cli import main
 from crowdbot.core import EpisodeError
 from crowdbot.recording import (
-    Carried,
-    LeftOut,
+    AttachedFile,
     Recorder,
+    SkippedAttachmentWarning,
     attachments,
     branch,
     named_files,
-    opened,
+    open_run,
     read_episode,
     record,
     repair,
@@ -161,7 +161,7 @@ def test_branches_take_their_files_along(moved: Path, tmp_path: Path) -> None:
 
 
 def test_a_killed_run_has_its_files_too(made: Path, tmp_path: Path) -> None:
-    with opened(load_trial(made / "hall.xml"), out=tmp_path) as running:
+    with open_run(load_trial(made / "hall.xml"), out=tmp_path) as running:
         for _ in range(30):
             running.step()
         content = (tmp_path / "episode.mcap").read_bytes()
@@ -178,7 +178,8 @@ def test_a_killed_run_has_its_files_too(made: Path, tmp_path: Path) -> None:
 def test_large_files_are_named_and_not_kept(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(attachments, "MOST", 200)
     with pytest.warns(
-        LeftOut, match=r"leaves out 'maps/pictures/hall.pgm', .* \(too large, at most 200 bytes are kept"
+        SkippedAttachmentWarning,
+        match=r"leaves out 'maps/pictures/hall.pgm', .* \(too large, at most 200 bytes are kept",
     ):
         record(load_trial(made / "hall.xml"), out=tmp_path)
     path = tmp_path / "episode.mcap"
@@ -238,12 +239,12 @@ def test_a_trial_without_files_keeps_none(tmp_path: Path) -> None:
 
 
 def test_elements_may_tell_of_their_files(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from crowdbot.trials import Robot
+    from crowdbot.trials import RobotSpec
 
-    monkeypatch.setattr(Robot, "files", lambda robot: (made / "people.txt",), raising=False)
+    monkeypatch.setattr(RobotSpec, "files", lambda robot: (made / "people.txt",), raising=False)
     trial = dataclasses.replace(parse_trial(GOOD), folder=made)
     assert set(named_files(trial)) == {"people.txt"}
-    assert Carried("people.txt", "data", 0, "", True).lies_in(made) is False
+    assert AttachedFile("people.txt", "data", 0, "", True).lies_in(made) is False
     assert Recorder(tmp_path / "x.mcap", _tally(trial)).files[0][0].name == "people.txt"
 
 
@@ -341,7 +342,7 @@ def test_files_outside_are_named_in_a_warning(tmp_path: Path, capsys: pytest.Cap
         " and 1 more (outside the folder of the trial): it replays only where files with the same bytes lie"
     )
     assert told[0].endswith("move what lies outside into the folder of the trial, or take the files along")
-    with pytest.warns(LeftOut, match="leaves out"):
+    with pytest.warns(SkippedAttachmentWarning, match="leaves out"):
         record(load_trial(trial, trust=True), out=tmp_path / "again")
     assert main(["run", str(trial), "--trust"]) == 0
     assert "warning" not in capsys.readouterr().err
@@ -355,7 +356,7 @@ def test_files_outside_must_be_there_with_the_recorded_bytes(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     trial = outside(tmp_path)
-    with pytest.warns(LeftOut):
+    with pytest.warns(SkippedAttachmentWarning):
         record(load_trial(trial, trust=True), out=tmp_path / "deep" / "out")
     path = str(tmp_path / "deep" / "out" / "episode.mcap")
 
@@ -380,7 +381,7 @@ def test_files_outside_and_inside_meet_in_a_folder_for_the_time(tmp_path: Path) 
     trial = outside(tmp_path)
     (tmp_path / "people.txt").rename(tmp_path / "deep" / "people.txt")
     trial.write_text(trial.read_text().replace("../people.txt", "people.txt"))
-    with pytest.warns(LeftOut):
+    with pytest.warns(SkippedAttachmentWarning):
         first = record(load_trial(trial, trust=True), out=tmp_path / "deep")
     (tmp_path / "deep" / "people.txt").unlink()
     done = replay(tmp_path / "deep" / "episode.mcap", trust=True)
@@ -406,6 +407,6 @@ def test_a_robot_folder_keeps_its_code_as_code_and_no_caches(tmp_path: Path) -> 
 
 
 def _tally(trial: Trial):  # type: ignore[no-untyped-def]
-    from crowdbot.simulation import Tally
+    from crowdbot.simulation import EpisodeStatistics
 
-    return Tally(trial, 0)
+    return EpisodeStatistics(trial, 0)

@@ -13,7 +13,7 @@ from rosbags.highlevel import AnyReader
 from trial_texts import GOOD
 
 from crowdbot.recording import Recorder, export, read_episode
-from crowdbot.simulation import Digest, Frame, Simulation, Tally
+from crowdbot.simulation import EpisodeDigest, EpisodeStatistics, Simulation, StepRecord
 from crowdbot.trials import parse_trial
 
 
@@ -62,7 +62,7 @@ class Collision:
 
 
 @dataclasses.dataclass(frozen=True)
-class Physical(Frame):
+class Physical(StepRecord):
     """A frame of a world that knows forces."""
 
     forces: tuple[BodyForce, ...] = ()
@@ -78,7 +78,7 @@ HIT = Collision(
 GRAZED = dataclasses.replace(HIT, first=PROP, second=WALL, limb="", part="", region="", peak_force=math.nan)
 
 
-def physical(frame: Frame, **more: Any) -> Physical:
+def physical(frame: StepRecord, **more: Any) -> Physical:
     return Physical(**({field.name: getattr(frame, field.name) for field in dataclasses.fields(frame)} | more))
 
 
@@ -86,7 +86,7 @@ def physical(frame: Frame, **more: Any) -> Physical:
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     path = tmp_path_factory.mktemp("forces") / "episode.mcap"
     trial = parse_trial(GOOD)
-    simulation, tally = Simulation(trial, 3), Tally(trial, 3)
+    simulation, tally = Simulation(trial, 3), EpisodeStatistics(trial, 3)
     with Recorder(path, tally) as recorder:
         for k in range(8):
             frame = physical(
@@ -132,10 +132,10 @@ def test_they_count_for_the_digest_and_a_world_without_them_is_as_before() -> No
     simulation = Simulation(parse_trial(GOOD), 3)
     sums = []
     for more in ({}, {"forces": (FORCE,)}, {"forces": (FORCE._replace(force=85.6),)}, {"collisions": (HIT,)}):
-        digest = Digest()
+        digest = EpisodeDigest()
         digest.take(physical(simulation.frame(), **more))
         sums.append(digest.ended("x"))
-    plain = Digest()
+    plain = EpisodeDigest()
     plain.take(simulation.frame())
     assert len(set(sums)) == 4
     assert plain.ended("x") == sums[0]

@@ -16,10 +16,10 @@ from crowdbot.core import InputError, TrialError
 from crowdbot.experiments import (
     Block,
     Choice,
+    ChoiceOption,
     Experiment,
     FreeText,
     Number,
-    Option,
     Scale,
     Screen,
     TrialEntry,
@@ -33,7 +33,7 @@ from crowdbot.experiments import (
     parse_experiment,
     plan,
     rows_of,
-    sanitised,
+    sanitise_html,
     seed_of,
     williams,
 )
@@ -45,7 +45,7 @@ TEXTS = st.text(st.characters(codec="utf-8", exclude_categories=["Cs", "Cc"], ex
 TEXTS = TEXTS | st.just("two\nlines\tand <&> \"quotes'")
 NUMBERS = st.none() | st.floats(-1e5, 1e5)
 SAID = {"name": NAMES, "text": TEXTS, "required": st.booleans()}
-OPTIONS = st.lists(st.builds(Option, value=NAMES, text=TEXTS), min_size=1, max_size=3)
+OPTIONS = st.lists(st.builds(ChoiceOption, value=NAMES, text=TEXTS), min_size=1, max_size=3)
 QUESTIONS = st.one_of(
     st.builds(Choice, **SAID, multiple=st.booleans(), options=OPTIONS),
     st.builds(Scale, **SAID, low=st.integers(-9, 0), high=st.integers(1, 9), low_text=TEXTS, high_text=TEXTS),
@@ -230,7 +230,7 @@ def test_mutated_files_never_break_the_reader(tmp_path: Path) -> None:
 
 
 def test_a_mean_page_does_nothing() -> None:
-    text, html = sanitised(
+    text, html = sanitise_html(
         """<html><head><title>t</title><style>p{}</style></head><body onload="x()">
         <h1 style="x">A&lt;b&gt;</h1><script>alert(1)</script><p>one <a href="javascript:x()">link</a><br>two
         <iframe src="http://x/">in</iframe><svg><script>y()</script></svg><img src="a.png" onerror="z()" alt="pic">
@@ -288,8 +288,8 @@ def test_a_mean_page_does_nothing() -> None:
     )
 )
 def test_pages_are_closed_and_stay_so(parts: list[str]) -> None:
-    text, html = sanitised("".join(parts))
-    assert sanitised(html)[1] == html
+    text, html = sanitise_html("".join(parts))
+    assert sanitise_html(html)[1] == html
     assert html.count("<p>") == html.count("</p>")
     assert "\x1b" not in html + text
     assert "<script" not in html
@@ -298,7 +298,7 @@ def test_pages_are_closed_and_stay_so(parts: list[str]) -> None:
 def test_great_pages_are_read() -> None:
     """Work that grew with the square of the length would take hours here."""
     for text in ("<p>" * 60_000, "<pre>" + " " * 199_000 + "x", "</b>" * 40_000, "<script>" * 20_000, "\n \n" * 60_000):
-        assert len(sanitised(text)[0]) <= len(text)
+        assert len(sanitise_html(text)[0]) <= len(text)
 
 
 def test_screens_come_from_the_folder_only(tmp_path: Path) -> None:
@@ -398,7 +398,7 @@ def test_the_plan_puts_screens_around_trials() -> None:
     ]
 
 
-HAND = Choice(name="hand", text="?", options=[Option(value="left"), Option(value="right", text="Right")])
+HAND = Choice(name="hand", text="?", options=[ChoiceOption(value="left"), ChoiceOption(value="right", text="Right")])
 SOME = Choice(name="some", text="?", multiple=True, required=False, options=HAND.options)
 EASE = Scale(name="ease", text="?", low=-2, high=2)
 AGE = Number(name="age", text="?", min=18, max=99, integer=True)

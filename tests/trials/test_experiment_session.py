@@ -18,27 +18,27 @@ from crowdbot.experiments import (
     Begin,
     Block,
     Choice,
+    ChoiceOption,
     Console,
+    ConsoleClosed,
+    ConsoleRespondent,
     Event,
     Experiment,
     Fail,
     Finish,
     FreeText,
-    Given,
-    Left,
-    Log,
     Next,
     Number,
-    Option,
     Pause,
     Repeat,
     Resume,
     Screen,
+    ScriptedRespondent,
     Session,
-    Sitting,
+    SessionLog,
+    SessionRunner,
     Start,
     TrialEntry,
-    Typed,
     event_of,
     load_experiment,
     parse_experiment,
@@ -51,7 +51,9 @@ from crowdbot.recording import read_episode
 from samples import sample
 
 AGE = Number(name="age", text="How old are you?", min=18, integer=True)
-LIKED = Choice(name="liked", text="What?", multiple=True, options=[Option(value="speed"), Option(value="distance")])
+LIKED = Choice(
+    name="liked", text="What?", multiple=True, options=[ChoiceOption(value="speed"), ChoiceOption(value="distance")]
+)
 REMARK = FreeText(name="remark", text="Anything?", required=False)
 EXPERIMENT = Experiment(
     name="two",
@@ -231,10 +233,12 @@ class Ticking:
 ANSWERS = {"age": 30, "liked": ["distance"]}
 
 
-def _through(out: Path, participant: int = 1, resume: bool = False, experiment: Experiment = EXPERIMENT) -> Sitting:
-    sitting = Sitting(experiment, participant, out, Ticking(), resume=resume)
+def _through(
+    out: Path, participant: int = 1, resume: bool = False, experiment: Experiment = EXPERIMENT
+) -> SessionRunner:
+    sitting = SessionRunner(experiment, participant, out, Ticking(), resume=resume)
     try:
-        Console(sitting, Given(ANSWERS, experiment), lambda text: None, lambda what, share: None).run()
+        Console(sitting, ScriptedRespondent(ANSWERS, experiment), lambda text: None, lambda what, share: None).run()
     finally:
         sitting.close()
     return sitting
@@ -281,7 +285,7 @@ def test_a_log_cut_anywhere_is_gone_on_with(whole: Path, tmp_path: Path) -> None
         kept = data[:cut].count(b"\n")
         events = [event_of(record) for record in records[:kept] if "event" in record]
         expected = Session.of(EXPERIMENT, 1).through(events)
-        sitting = Sitting(EXPERIMENT, 1, tmp_path / str(number), Ticking(), resume=True)
+        sitting = SessionRunner(EXPERIMENT, 1, tmp_path / str(number), Ticking(), resume=True)
         sitting.close()
         if expected.phase == "running":
             expected = expected.after(Repeat())
@@ -340,11 +344,11 @@ def test_a_damaged_or_foreign_log_is_refused(whole: Path, tmp_path: Path) -> Non
 
 
 def test_two_programs_do_not_write_one_log(tmp_path: Path) -> None:
-    first = Sitting(EXPERIMENT, 1, tmp_path, Ticking())
+    first = SessionRunner(EXPERIMENT, 1, tmp_path, Ticking())
     with pytest.raises(EpisodeError, match="is being written by another program"):
-        Sitting(EXPERIMENT, 1, tmp_path, Ticking(), resume=True)
+        SessionRunner(EXPERIMENT, 1, tmp_path, Ticking(), resume=True)
     first.close()
-    log, records = Log.open(tmp_path / "participant-001" / "session.jsonl")
+    log, records = SessionLog.open(tmp_path / "participant-001" / "session.jsonl")
     log.close()
     assert len(records) == 1
 
@@ -352,17 +356,17 @@ def test_two_programs_do_not_write_one_log(tmp_path: Path) -> None:
 def test_nothing_is_written_for_a_wrong_experiment_or_participant(tmp_path: Path) -> None:
     wrong = Experiment(name="e", blocks=[Block(name="b", trials=[TrialEntry(name="t", source="nowhere")])])
     with pytest.raises(TrialError, match="experiment 'e': TrialEntry 't' source='nowhere': there is no trial"):
-        Sitting(wrong, 1, tmp_path, Ticking())
+        SessionRunner(wrong, 1, tmp_path, Ticking())
     with pytest.raises(InputError, match="participant 0"):
-        Sitting(EXPERIMENT, 0, tmp_path, Ticking())
+        SessionRunner(EXPERIMENT, 0, tmp_path, Ticking())
     file = tmp_path / "file"
     file.write_text("x")
     with pytest.raises(EpisodeError, match="cannot be written"):
-        Sitting(EXPERIMENT, 1, file, Ticking())
+        SessionRunner(EXPERIMENT, 1, file, Ticking())
     assert sorted(tmp_path.iterdir()) == [file]
 
 
-class Script(Typed):
+class Script(ConsoleRespondent):
     """Somebody who types what stands in a list; ``^C`` presses Ctrl-C."""
 
     def __init__(self, lines: list[str]) -> None:
@@ -383,12 +387,12 @@ class Script(Typed):
 
 def _typed(
     out: Path, lines: list[str], experiment: Experiment = EXPERIMENT, resume: bool = False
-) -> tuple[Sitting, str]:
+) -> tuple[SessionRunner, str]:
     person = Script(lines)
-    sitting = Sitting(experiment, 1, out, Ticking(), resume=resume)
+    sitting = SessionRunner(experiment, 1, out, Ticking(), resume=resume)
     try:
         Console(sitting, person, person._said, lambda what, share: None).run()
-    except Left:
+    except ConsoleClosed:
         person.text += "LEFT"
     finally:
         sitting.close()

@@ -14,13 +14,13 @@ from trial_texts import FLOW
 
 from crowdbot.cli import main
 from crowdbot.core import EpisodeError, InputError
-from crowdbot.recording import Recorded, export, read_episode, record
+from crowdbot.recording import RecordedEpisode, export, read_episode, record
 from crowdbot.sensors import RgbImage
 from crowdbot.trials import parse_trial
 
 
 @pytest.fixture(scope="module")
-def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Recorded]:
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, RecordedEpisode]:
     folder = tmp_path_factory.mktemp("flow")
     record(parse_trial(FLOW), out=folder)
     return folder / "episode.mcap", read_episode(folder / "episode.mcap")
@@ -34,7 +34,7 @@ def table(path: Path, to: Path, name: str) -> pd.DataFrame:
 
 
 @pytest.mark.parametrize("ending", ["parquet", "csv"])
-def test_people(recorded: tuple[Path, Recorded], tmp_path: Path, ending: str) -> None:
+def test_people(recorded: tuple[Path, RecordedEpisode], tmp_path: Path, ending: str) -> None:
     path, read = recorded
     found = table(path, tmp_path / "deep" / f"people.{ending}", "people")
     k, agent = np.nonzero(read.active)
@@ -49,7 +49,7 @@ def test_people(recorded: tuple[Path, Recorded], tmp_path: Path, ending: str) ->
     assert os.listdir(tmp_path / "deep") == [f"people.{ending}"]
 
 
-def test_robots_scans_and_contacts(recorded: tuple[Path, Recorded], tmp_path: Path) -> None:
+def test_robots_scans_and_contacts(recorded: tuple[Path, RecordedEpisode], tmp_path: Path) -> None:
     path, read = recorded
     robots = table(path, tmp_path / "robots.parquet", "robots")
     assert np.array_equal(robots["time"], read.times)
@@ -89,7 +89,7 @@ def test_pictures_are_rows_and_files(seen: Path, tmp_path: Path, ending: str) ->
 
 
 def test_the_program_says_where_the_images_are(
-    seen: Path, recorded: tuple[Path, Recorded], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    seen: Path, recorded: tuple[Path, RecordedEpisode], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["export", str(seen), "--to", str(tmp_path / "p.csv"), "--table", "pictures"]) == 0
     assert capsys.readouterr().out == f"{tmp_path}/p.csv: 6 rows, their images in {tmp_path}/p-images\n"
@@ -103,7 +103,7 @@ def test_the_program_says_where_the_images_are(
     assert not list(tmp_path.glob("hole/*"))
 
 
-def test_what_cannot_be_exported_is_said(recorded: tuple[Path, Recorded], tmp_path: Path) -> None:
+def test_what_cannot_be_exported_is_said(recorded: tuple[Path, RecordedEpisode], tmp_path: Path) -> None:
     path = recorded[0]
     with pytest.raises(InputError, match=r"there is no table 'peple', did you mean 'people'"):
         export(path, tmp_path / "a.csv", "peple")

@@ -14,7 +14,7 @@ from crowdbot.core import InputError, TrialError
 from crowdbot.models import ORCA, SocialForce
 from crowdbot.models.mixture import Mixture
 from crowdbot.trials import (
-    Contact,
+    ContactModel,
     Crowds,
     Direction,
     Exit,
@@ -22,7 +22,7 @@ from crowdbot.trials import (
     Limits,
     Point,
     Routing,
-    Source,
+    SourceSpec,
     Spawner,
     Stage,
     Trial,
@@ -41,7 +41,7 @@ def test_a_file_with_flows_is_the_tree() -> None:
     trial = parse_trial(FLOW)
     assert (trial.substeps, trial.capacity, trial.robot_margin, trial.heading_jitter) == (2, 10, 0.2, 0.001)
     assert trial.routing == Routing(radius=0.25, unreachable="nearest")
-    assert trial.contact == Contact(variant="force", stiffness=50.0, iterations=4)
+    assert trial.contact == ContactModel(variant="force", stiffness=50.0, iterations=4)
     assert trial.limits == Limits(max_speed=2.5, max_acceleration=5.0)
     assert trial.crowd == Crowds((ORCA(time_horizon=2.0), SocialForce()), names=("calm", "hurried"))
     zone, point, direction = trial.journeys[0].stops
@@ -95,14 +95,14 @@ def flows(draw: st.DrawFn) -> Trial:
         heading_jitter=draw(st.floats(0.0, 3.0)),
         crowd=draw(st.sampled_from([ORCA(), crowds, Crowds((ORCA(),), names=(name,))])),
         routing=draw(st.one_of(st.none(), st.builds(Routing, radius=st.floats(0.1, 0.4)))),
-        contact=draw(st.one_of(st.none(), st.builds(Contact, stiffness=amounts, iterations=st.integers(1, 9)))),
+        contact=draw(st.one_of(st.none(), st.builds(ContactModel, stiffness=amounts, iterations=st.integers(1, 9)))),
         limits=draw(st.one_of(st.none(), st.builds(Limits, max_speed=st.one_of(st.none(), amounts)))),
         stage=Stage(walls=[Wall([(20, 0), (20, 5)])]),
         journeys=[journey, other],
         spawners=[Spawner(count=draw(st.integers(0, 3)), zone=ZONE, journey=name, crowd=name)],
         sources=[
-            Source(zone=ZONE, goal=FAR, rate=draw(amounts), begin=begin, end=begin + draw(amounts)),
-            Source(
+            SourceSpec(zone=ZONE, goal=FAR, rate=draw(amounts), begin=begin, end=begin + draw(amounts)),
+            SourceSpec(
                 zone=ZONE, journey=other.name, rate=draw(amounts), timing="regular", max_count=draw(st.integers(0, 9))
             ),
         ],
@@ -329,12 +329,12 @@ def test_flows_made_in_python_are_checked_too() -> None:
     with pytest.raises(InputError, match="Trial: contact is a Limits, it must be a Contact"):
         Trial(name="t", duration=1, crowd=ORCA(), contact=Limits())  # type: ignore[arg-type]
     with pytest.raises(InputError, match="Trial: sources is a Source, it must be a list"):
-        Trial(name="t", duration=1, crowd=ORCA(), sources=Source(zone=ZONE, goal=FAR, rate=1))  # type: ignore[arg-type]
+        Trial(name="t", duration=1, crowd=ORCA(), sources=SourceSpec(zone=ZONE, goal=FAR, rate=1))  # type: ignore[arg-type]
     with pytest.raises(InputError, match="Trial: crowd is a tuple, it must be a CrowdModel"):
         Trial(name="t", duration=1, crowd=(ORCA(),))  # type: ignore[arg-type]
     with pytest.raises(InputError, match=r'Source: max_count="1.5" is not a int'):
-        Source(zone=ZONE, goal=FAR, rate=1, max_count=1.5)  # type: ignore[arg-type]
-    unnamed = Trial(name="t", duration=1, crowd=ORCA(), sources=[Source(zone=ZONE, goal=FAR, rate=1, crowd="calm")])
+        SourceSpec(zone=ZONE, goal=FAR, rate=1, max_count=1.5)  # type: ignore[arg-type]
+    unnamed = Trial(name="t", duration=1, crowd=ORCA(), sources=[SourceSpec(zone=ZONE, goal=FAR, rate=1, crowd="calm")])
     with pytest.raises(TrialError, match=r"trial 't': source crowd=\"calm\" is not the name of a crowd; no crowd has"):
         check_trial(unnamed)
 

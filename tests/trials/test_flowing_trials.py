@@ -26,13 +26,13 @@ from crowdbot.trials import (
     Direction,
     End,
     Exit,
-    Goal,
     Journey,
     Mount,
     Point,
-    Robot,
+    RobotGoal,
+    RobotSpec,
     Routing,
-    Source,
+    SourceSpec,
     Spawner,
     Stage,
     Trial,
@@ -180,7 +180,7 @@ def test_journeys_lead_from_stop_to_stop() -> None:
 
 def test_people_leave_by_exits_and_robots_stay() -> None:
     walker = Spawner(count=2, zone=box(0, 0), goal=box(9, 0), speed=1.0)
-    bot = Robot(x=3, y=-3, goal=Goal(4, 3), drive=DifferentialDrive(), navigator=Straight(), visible=False)
+    bot = RobotSpec(x=3, y=-3, goal=RobotGoal(4, 3), drive=DifferentialDrive(), navigator=Straight(), visible=False)
     way = Exit(zone=box(3, -4, 2, 9))
     episode = run(trial(spawners=[walker], robots=[bot], exits=[way], end=End(False, False)))
     last = [int(np.flatnonzero(episode.active[:, who])[-1]) for who in (0, 1)]
@@ -189,7 +189,7 @@ def test_people_leave_by_exits_and_robots_stay() -> None:
 
 
 def test_people_come_in_by_sources() -> None:
-    evenly = Source(
+    evenly = SourceSpec(
         zone=box(0, 0, 1, 4), goal=box(9, 0, 1, 4), rate=0.5, timing="regular", begin=1.0, end=9.5, speed=1.0
     )
     episode = run(trial(sources=[evenly]))
@@ -207,7 +207,9 @@ def test_people_of_a_spawner_and_a_source_do_not_leave_for_one_another() -> None
     """Who takes the place of somebody with a goal zone is not sent out in that zone."""
     first = Spawner(count=1, zone=box(0, 0, 0.1, 0.1), goal=box(2, 0), speed=1.5)
     through = Journey(name="through", then="stay", stops=[Point(6, 0.5)])
-    second = Source(zone=box(-1, 0), journey="through", rate=1.0, timing="regular", begin=4.0, max_count=1, speed=1.5)
+    second = SourceSpec(
+        zone=box(-1, 0), journey="through", rate=1.0, timing="regular", begin=4.0, max_count=1, speed=1.5
+    )
     episode = run(trial(spawners=[first], sources=[second], journeys=[through], capacity=1, duration=12.0))
     assert episode.active[-1].tolist() == [False, True]
     assert episode.position[-1, 1] == pytest.approx([6.0, 0.5], abs=0.1)
@@ -215,7 +217,7 @@ def test_people_of_a_spawner_and_a_source_do_not_leave_for_one_another() -> None
 
 
 def test_the_capacity_keeps_people_outside() -> None:
-    fast = Source(zone=box(0, 0, 3, 4), goal=box(9, 0, 1, 4), rate=3.0)
+    fast = SourceSpec(zone=box(0, 0, 3, 4), goal=box(9, 0, 1, 4), rate=3.0)
     full = run(trial(sources=[fast], capacity=4))
     free = run(trial(sources=[fast]))
     assert full.active.sum(axis=1).max() == 4
@@ -244,7 +246,7 @@ def test_people_walk_by_the_model_of_their_crowd() -> None:
 
 def test_people_of_a_source_walk_by_the_model_of_their_crowd() -> None:
     crowds = Crowds((ORCA(), SocialForce()), names=("calm", "hurried"))
-    one = Source(zone=box(0, 0), goal=box(9, 0), rate=1.0, timing="regular", crowd="hurried", max_count=3)
+    one = SourceSpec(zone=box(0, 0), goal=box(9, 0), rate=1.0, timing="regular", crowd="hurried", max_count=3)
     simulation = Simulation(trial(crowd=crowds, sources=[one]), 0)
     for _ in range(60):
         simulation.step()
@@ -279,9 +281,9 @@ class Spy(Navigator):
 def test_an_old_scan_does_not_show_who_took_the_place_of_somebody() -> None:
     told: list[Observation] = []
     lidar = Mount(sensor=Lidar2D(rays=180, range_max=5.0, rate=0.25))
-    bot = Robot(x=0, y=0, goal=Goal(0, 50), drive=DifferentialDrive(), navigator=Spy(told), sensors=[lidar])
+    bot = RobotSpec(x=0, y=0, goal=RobotGoal(0, 50), drive=DifferentialDrive(), navigator=Spy(told), sensors=[lidar])
     near = Spawner(count=1, zone=box(2, 0, 0.1, 0.1), goal=box(2, 3), speed=1.5)
-    far = Source(zone=box(40, 0), goal=box(60, 0), rate=1.0, timing="regular", max_count=1, speed=1.0)
+    far = SourceSpec(zone=box(40, 0), goal=box(60, 0), rate=1.0, timing="regular", max_count=1, speed=1.0)
     episode = run(trial(spawners=[near], sources=[far], robots=[bot], capacity=1, duration=3.9))
     seen = {len(one.people) for one in told}
     assert seen == {0, 1}

@@ -19,7 +19,7 @@ from trial_texts import FLOW, GOOD, changed, written
 
 from crowdbot import data
 from crowdbot.core import EpisodeError
-from crowdbot.recording import moments, read_episode, repair, replay, run
+from crowdbot.recording import iterate_steps, read_episode, repair, replay, run
 from crowdbot.trials import parse_trial
 
 LONG = changed('duration="4"', 'duration="4000"').replace("<end ", '<end goal="false" ')
@@ -88,7 +88,7 @@ def test_every_file_opens_and_at_most_the_last_second_is_missing(killed: list[tu
         tracks = data.load(path)
         assert len(tracks) == int(read.active.sum())
         assert tracks.note == "the run was killed before its end"
-        assert len(list(moments(path))) == len(read.times)
+        assert len(list(iterate_steps(path))) == len(read.times)
 
 
 def test_other_tools_open_the_file_as_it_is(killed: list[tuple[Path, float]]) -> None:

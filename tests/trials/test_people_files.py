@@ -14,16 +14,16 @@ from crowdbot.models import ORCA, SocialForce
 from crowdbot.recording import run
 from crowdbot.trials import (
     Agent,
+    AgentParameter,
     Crowds,
-    Drawn,
     End,
+    EndCondition,
     Group,
-    Parameter,
+    RandomizedModel,
     Spawner,
     Stage,
     Sweep,
     Trial,
-    When,
     apply_values,
     expand_spawners,
     expand_sweeps,
@@ -116,10 +116,10 @@ def test_people_who_stand_stay() -> None:
 
 def test_parameters_differ_from_person_to_person() -> None:
     spawner = Spawner(count=30, zone=HALL, goal=FAR)
-    crowd = Drawn(ORCA(), {"time_horizon": "normal(2, 0.5)"})
+    crowd = RandomizedModel(ORCA(), {"time_horizon": "normal(2, 0.5)"})
     one = trial(crowd=crowd, spawners=[spawner])
     model = one.crowd
-    assert isinstance(model, Drawn)
+    assert isinstance(model, RandomizedModel)
     drawn = np.asarray(model.resolved(3, 0, 1000).time_horizon)
     assert drawn.mean() == pytest.approx(2.0, abs=0.05)
     assert drawn.std() == pytest.approx(0.5, abs=0.05)
@@ -155,14 +155,14 @@ def test_an_explicit_trial_runs_as_its_original(text: str, seed: int) -> None:
 
 
 def test_an_explicit_trial_tells_everybodys_own_parameters() -> None:
-    crowd = Crowds((Drawn(ORCA(), {"time_horizon": "uniform(1, 3)"}), SocialForce()), names=("a", "b"))
+    crowd = Crowds((RandomizedModel(ORCA(), {"time_horizon": "uniform(1, 3)"}), SocialForce()), names=("a", "b"))
     spawners = [Spawner(name=name, count=3, zone=HALL, goal=FAR, crowd=name, groups=[Group(3)]) for name in ("b", "a")]
     given = trial(crowd=crowd, spawners=spawners)
     explicit = expand_spawners(given)
     assert [len(agent.parameters) for agent in explicit.agents] == [0, 0, 0, 1, 1, 1]
     assert [agent.group for agent in explicit.agents] == [0, 0, 0, 1, 1, 1]
     assert run(explicit).digest == run(given).digest
-    agents = [*explicit.agents[:3], *(dataclasses.replace(a, parameters=[Parameter("time-horizon", 2.5)]) for a in
+    agents = [*explicit.agents[:3], *(dataclasses.replace(a, parameters=[AgentParameter("time-horizon", 2.5)]) for a in
                                       explicit.agents[3:])]  # fmt: skip
     edited = dataclasses.replace(explicit, agents=agents)
     assert run(edited).digest != run(given).digest
@@ -181,7 +181,7 @@ def test_sweeps_make_variants() -> None:
     assert len(ones) == 12
     assert len({one.name for one in ones}) == 12
     assert [one.spawners[1].count for one in ones] == [1] * 4 + [2] * 4 + [3] * 4
-    assert isinstance(ones[2].crowd, Drawn)
+    assert isinstance(ones[2].crowd, RandomizedModel)
     assert [one.end.goal for one in ones[:2]] == [True, False]
     assert not any(one.sweeps for one in ones)
     with pytest.raises(TrialError, match="has 12 variants by its sweeps; run one of them"):
@@ -229,9 +229,11 @@ def test_conditions_end_a_trial() -> None:
     assert episode.outcome == "finished"
     assert episode.position[-1, episode.robots[0], 0] == pytest.approx(-1.0, abs=0.15)
     assert parse_trial(trial_xml(given)) == given
-    late = dataclasses.replace(given, end=End(collision=False, conditions=[When("time", above=1.0, outcome="timeout")]))
+    late = dataclasses.replace(
+        given, end=End(collision=False, conditions=[EndCondition("time", above=1.0, outcome="timeout")])
+    )
     assert (run(late).outcome, run(late).times[-1]) == ("timeout", pytest.approx(1.1))
-    few = dataclasses.replace(given, duration=30.0, robots=(), end=End(conditions=[When("people", below=3.0)]))
+    few = dataclasses.replace(given, duration=30.0, robots=(), end=End(conditions=[EndCondition("people", below=3.0)]))
     assert np.count_nonzero(run(few).active[-1]) < 3
     empty = run(dataclasses.replace(few, end=End(empty=True)))
     assert empty.outcome == "finished"

@@ -21,12 +21,12 @@ from crowdbot.trials import (
     Cube,
     Distribution,
     End,
-    Goal,
     Light,
     Mount,
     Obstacle,
-    Recording,
-    Robot,
+    RecordingSpec,
+    RobotGoal,
+    RobotSpec,
     Spawner,
     Stage,
     Table,
@@ -54,7 +54,7 @@ def test_a_good_file_is_the_tree() -> None:
     assert robot.sensors[0].sensor == Lidar2D(rays=90, noise=Gaussian(0.01))
     assert (robot.sensors[0].name, robot.sensors[0].x) == ("scan", 0.1)
     assert trial.end == End(goal=True, collision=False)
-    assert trial.recording == Recording(period=0.1)
+    assert trial.recording == RecordingSpec(period=0.1)
 
 
 def test_reading_what_was_written_gives_the_same_trial() -> None:
@@ -77,17 +77,17 @@ def trials(draw: st.DrawFn) -> Trial:
     distribution = draw(
         st.sampled_from([f"uniform({low!r}, 2.5)", f"normal(1.5, {low / 4!r})", repr(low), "normal(1, 0.5, 0.3, 2)"])
     )
-    robot = Robot(
+    robot = RobotSpec(
         name=draw(st.from_regex(r"\A[A-Za-z][A-Za-z0-9_]{0,6}\Z")),
         x=draw(numbers),
         y=draw(numbers),
         visible=draw(st.booleans()),
-        goal=Goal(draw(numbers), draw(numbers), draw(st.floats(0.1, 2.0))),
+        goal=RobotGoal(draw(numbers), draw(numbers), draw(st.floats(0.1, 2.0))),
         drive=DifferentialDrive(max_speed=draw(st.floats(0.1, 3.0))),
         navigator=Straight(),
         sensors=[Mount(sensor=Lidar2D(rays=draw(st.integers(1, 99)), noise=(Gaussian(low),)), heading=draw(numbers))],
     )
-    typed = Robot(
+    typed = RobotSpec(
         name=draw(st.from_regex(r"\A[A-Za-z][A-Za-z0-9_]{0,6}\Z")),
         type=draw(st.sampled_from(["pepper", "turtlebot2", "qolo"])),
         sensor_rates="nearest",
@@ -95,7 +95,7 @@ def trials(draw: st.DrawFn) -> Trial:
         cameras=equipped and draw(st.booleans()),
         x=draw(numbers),
         y=draw(numbers),
-        goal=Goal(draw(numbers), draw(numbers)),
+        goal=RobotGoal(draw(numbers), draw(numbers)),
         latency=draw(st.none() | st.floats(0.0, 1.0)),
         radius=draw(st.none() | st.floats(0.1, 1.0)),
         drive=draw(st.none() | st.just(DifferentialDrive(max_speed=low))),
@@ -383,7 +383,7 @@ def test_a_trial_made_in_python_is_checked_too() -> None:
     with pytest.raises(InputError, match="Spawner: zone=.* must be at least 3 different points"):
         Spawner(count=1, zone=[(0, 0), (1, 1)], goal=zone)
     with pytest.raises(InputError, match="drive is a Straight, it must be a Drive"):
-        Robot(x=0, y=0, goal=Goal(1, 1), drive=Straight(), navigator=Straight())  # type: ignore[arg-type]
+        RobotSpec(x=0, y=0, goal=RobotGoal(1, 1), drive=Straight(), navigator=Straight())  # type: ignore[arg-type]
     trial = Trial(name="full", duration=1, crowd=ORCA(), spawners=[Spawner(name="s", count=99, zone=zone, goal=zone)])
     with pytest.raises(TrialError, match=r"trial 'full': spawner 's' only \d+ of 99 people fit"):
         check_trial(trial)

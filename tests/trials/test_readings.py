@@ -21,15 +21,15 @@ from crowdbot.messages import (
     KIND,
     REST,
     Codec,
+    MeasuredReading,
     Messages,
-    Told,
     codec_of,
+    decode_reading,
+    encode_reading,
     image_in,
     picture_codec,
     points_in,
-    reading_of,
-    said,
-    unsaid,
+    unencoded_fields,
 )
 from crowdbot.recording import READING_TABLES, read_episode, replay, run
 from crowdbot.sensors import Gaussian, Lens, Reading, Sensor
@@ -111,11 +111,11 @@ def back(reading: Reading, sensor: Any) -> Reading:
     """Return a reading after it was messages, as bytes."""
     make = Messages()
     found = {}
-    for ending, message in said(make, Told(reading, sensor, "robot", "robot/eye")):
+    for ending, message in encode_reading(make, MeasuredReading(reading, sensor, "robot", "robot/eye")):
         found[ending] = make.decoded(make.encoded(message), message.__msgtype__)
     whole = found.pop(REST)
     assert whole.__msgtype__ == KIND
-    return reading_of(whole, found)
+    return decode_reading(whole, found)
 
 
 def test_recordings_keep_the_names_of_kinds_and_fields() -> None:
@@ -123,7 +123,7 @@ def test_recordings_keep_the_names_of_kinds_and_fields() -> None:
     kinds, names = {}, set()
     for name, sensor in SENSORS.items():
         reading = sensor.read(SCENE, Pose.of((0.1, 0.0), 0.3), np.random.default_rng(0))
-        whole = dict(said(Messages(), Told(reading, sensor, "robot", "robot/eye")))[REST]
+        whole = dict(encode_reading(Messages(), MeasuredReading(reading, sensor, "robot", "robot/eye")))[REST]
         kinds[name] = whole.kind
         names |= {field.name for field in whole.fields}
     assert kinds == {
@@ -136,7 +136,7 @@ def test_recordings_keep_the_names_of_kinds_and_fields() -> None:
 
 
 def test_no_class_of_readings_is_forgotten() -> None:
-    assert unsaid() == []
+    assert unencoded_fields() == []
     assert {cls.__name__ for cls in READINGS} <= set(SENSORS)
     assert {cls.__name__ for cls in CODECS} >= set(SENSORS)
 
@@ -195,7 +195,7 @@ def test_pictures_are_images_with_their_lens(monkeypatch: pytest.MonkeyPatch) ->
     lens = Lens.of(8, 6, 1.0, (0.1, 0.0, 0.0, 0.0, 0.01))
     picture = Colours(0.5, Pose.of((0.0, 0.0), 0.0).to_spatial(1.0), rgb, lens, np.full((1, 6, 8), -1))
     make = Messages()
-    messages = dict(said(make, Told(picture, None, "robot", "robot/eye")))
+    messages = dict(encode_reading(make, MeasuredReading(picture, None, "robot", "robot/eye")))
     assert (messages["/image"].encoding, messages["/image"].step) == ("rgb8", 24)
     assert messages["/image"].header.frame_id == "robot/eye_optical"
     assert bytes(messages["/image"].data) == rgb.tobytes()
@@ -203,7 +203,7 @@ def test_pictures_are_images_with_their_lens(monkeypatch: pytest.MonkeyPatch) ->
     same(read, picture, "picture")
     assert read.lens == lens  # type: ignore[attr-defined]
     bare = dataclasses.replace(picture, hit=None)
-    assert "/labels" not in dict(said(make, Told(bare, None, "robot", "robot/eye")))
+    assert "/labels" not in dict(encode_reading(make, MeasuredReading(bare, None, "robot", "robot/eye")))
     assert back(bare, None).hit is None  # type: ignore[attr-defined]
     ((parent, child, turn),) = picture_codec.frames("robot", "robot/eye")
     assert (parent, child) == ("robot/eye", "robot/eye_optical")
@@ -280,28 +280,28 @@ def test_a_viewer_finds_points_pixels_and_frames(recorded: tuple[Path, Episode])
 
 
 def test_mounts_in_space_are_fixed_frames() -> None:
-    from crowdbot.messages import mounted
+    from crowdbot.messages import mount_pose
 
     mount = types.SimpleNamespace(x=0.1, y=0.0, z=1.2, roll=0.0, pitch=0.4, heading=0.5)
     robot = types.SimpleNamespace(placed=lambda one: (one.x, one.y, one.z, one.roll, one.pitch, one.heading))
-    (row,) = Messages().fixed(0, [("robot/base_link", "robot/eye", mounted(robot, mount))]).transforms
+    (row,) = Messages().fixed(0, [("robot/base_link", "robot/eye", mount_pose(robot, mount))]).transforms
     turn = row.transform.rotation
     assert row.transform.translation.z == 1.2
     again = SpatialPose(np.zeros((1, 3)), np.array([[turn.w, turn.x, turn.y, turn.z]]))
     assert np.allclose(again.matrix, SpatialPose.of((0.0, 0.0, 0.0), 0.0, 0.4, 0.5).matrix)
-    plain = mounted(types.SimpleNamespace(), mount)
+    plain = mount_pose(types.SimpleNamespace(), mount)
     assert plain.position.tolist() == [[0.1, 0.0, 0.0]]
 
 
 def test_arrays_that_pretend_to_be_huge_are_refused() -> None:
-    from crowdbot.messages import arrays_of
+    from crowdbot.messages import unpack_arrays
 
     huge = types.SimpleNamespace(name="x", dtype="<f8", shape=[1 << 20, 1 << 20], data=bytes(8))
     with pytest.raises(ValueError, match="x is an array of <f8 of shape"):
-        arrays_of([huge])
+        unpack_arrays([huge])
     code = types.SimpleNamespace(name="x", dtype="|O", shape=[1], data=bytes(8))
     with pytest.raises(ValueError, match="is an array of"):
-        arrays_of([code])
+        unpack_arrays([code])
     assert isinstance(CODECS[sensors.Scan], Codec)
 
 

@@ -13,9 +13,9 @@ from crowdbot.core import InputError, TrialError
 from crowdbot.recording import run
 from crowdbot.simulation import Simulation
 from crowdbot.trials import (
-    Goal,
     RecordedPeople,
-    Robot,
+    RobotGoal,
+    RobotSpec,
     Trial,
     expand_spawners,
     load_trial,
@@ -88,12 +88,12 @@ def test_velocity_and_heading_are_those_of_the_recording(track: Path) -> None:
     assert not scene.external.any()
 
 
-def robot(x: float, y: float, **more: object) -> Robot:
+def robot(x: float, y: float, **more: object) -> RobotSpec:
     from crowdbot.navigation import Straight
     from crowdbot.world import DifferentialDrive
 
-    whole = {"goal": Goal(x + 9.0, y), "drive": DifferentialDrive(max_speed=0.02), "navigator": Straight()} | more
-    return Robot(x=x, y=y, **whole)
+    whole = {"goal": RobotGoal(x + 9.0, y), "drive": DifferentialDrive(max_speed=0.02), "navigator": Straight()} | more
+    return RobotSpec(x=x, y=y, **whole)
 
 
 def with_robot(track: Path, mode: str, **more: object) -> Trial:

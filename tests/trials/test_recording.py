@@ -21,7 +21,7 @@ from trial_texts import GOOD, changed
 import crowdbot
 from crowdbot import data
 from crowdbot.core import EpisodeError, InputError
-from crowdbot.recording import Recorded, read_episode, run
+from crowdbot.recording import RecordedEpisode, read_episode, run
 from crowdbot.sensors import Reading, Sensor, SensorView
 from crowdbot.simulation import Episode
 from crowdbot.trials import Mount, parse_trial
@@ -274,7 +274,7 @@ def test_other_mcap_files_are_refused(tmp_path: Path) -> None:
             writer.finish()
         with pytest.raises(EpisodeError, match=sentence):
             read_episode(path)
-    keys = dict.fromkeys(Recorded.__dataclass_fields__, "") | dict.fromkeys(
+    keys = dict.fromkeys(RecordedEpisode.__dataclass_fields__, "") | dict.fromkeys(
         (
             "trial",
             "trial_name",

@@ -15,7 +15,14 @@ from space_trials import LEAN, ROOM, room
 from crowdbot.cli import main
 from crowdbot.core import InputError, MissingExtra
 from crowdbot.recording import run
-from crowdbot.rendering import Album, Shot, Take, camera_names, painted_segmentation, shots
+from crowdbot.rendering import (
+    ImageWriter,
+    RenderedImage,
+    RenderRequest,
+    camera_names,
+    color_segmentation,
+    render_images,
+)
 from crowdbot.trials import load_trial, parse_trial
 from crowdbot.trials.camera import overview
 from crowdbot.world.rendering import gl_context
@@ -32,7 +39,7 @@ def test_cameras_have_names() -> None:
 def test_every_camera_sees_the_room(world: str) -> None:
     trial = parse_trial(room(world))
     for name in ("door", "head", "pepper/eyes"):
-        (shot,) = shots(trial, name, Take(0.2), depth=True, segmentation=True)
+        (shot,) = render_images(trial, name, RenderRequest(0.2), depth=True, segmentation=True)
         assert shot.time == pytest.approx(0.2)
         assert shot.rgb.shape[:2] == ((24, 32) if "/" in name else (48, 64))
         assert shot.depth is not None
@@ -74,7 +81,7 @@ def test_the_depth_camera_of_pepper_does_not_see_its_own_eye() -> None:
     robot = f'<robot name="pepper" type="pepper" x="0" y="0" sensor-rates="nearest">{inside}</robot>'
     stage = '<stage walkable="-2,-4 10,-4 10,4 -2,4"/><crowd type="orca"/>'
     trial = parse_trial(f'<trial name="t" duration="1">{stage}{robot}</trial>')
-    (shot,) = shots(trial, "pepper/depth", Take(0.0), segmentation=True)
+    (shot,) = render_images(trial, "pepper/depth", RenderRequest(0.0), segmentation=True)
     assert shot.segmentation is not None
     assert set(np.unique(shot.segmentation)) <= {-3, -2, -1}
 
@@ -97,18 +104,18 @@ def test_an_open_place_is_seen_from_near_by() -> None:
 @pytest.mark.usefixtures("drawing")
 def test_a_film_is_even_and_the_same_each_time() -> None:
     trial = parse_trial(room(text=LEAN))
-    films = [list(shots(trial, "door", Take(0.2, 0.6, 12.5))) for _ in range(2)]
+    films = [list(render_images(trial, "door", RenderRequest(0.2, 0.6, 12.5))) for _ in range(2)]
     assert [round(shot.time, 2) for shot in films[0]] == [0.2, 0.28, 0.36, 0.44, 0.52, 0.6]
     assert all(np.array_equal(a.rgb, b.rgb) for a, b in zip(*films, strict=True))
     assert not np.array_equal(films[0][0].rgb, films[0][-1].rgb)
-    assert len(list(shots(trial, "door", Take(0.0, 0.4)))) == 11
+    assert len(list(render_images(trial, "door", RenderRequest(0.0, 0.4)))) == 11
 
 
 @pytest.mark.usefixtures("drawing")
 def test_a_camera_does_not_change_the_run() -> None:
     trial = parse_trial(room(text=LEAN))
     before = run(trial).digest
-    list(shots(trial, "door", Take(0.5)))
+    list(render_images(trial, "door", RenderRequest(0.5)))
     assert run(trial).digest == before
 
 
@@ -123,7 +130,7 @@ def test_an_image_is_written(ending: str, tmp_path: Path, capsys: pytest.Capture
     assert (told["camera"], told["images"], told["rate"], told["world"]) == ("door", 1, None, "planar")
     names = [path, path.with_name("door-depth.png"), path.with_name("door-segmentation.png")]
     assert told["files"] == [str(name) for name in names]
-    (shot,) = shots(parse_trial(LEAN), "door", Take(0.2), depth=True, segmentation=True)
+    (shot,) = render_images(parse_trial(LEAN), "door", RenderRequest(0.2), depth=True, segmentation=True)
     assert np.asarray(Image.open(path)).shape == (48, 64, 3)
     metres = np.asarray(Image.open(names[1])) / 1000.0
     seen = np.isfinite(shot.depth)
@@ -132,7 +139,7 @@ def test_an_image_is_written(ending: str, tmp_path: Path, capsys: pytest.Capture
     assert labels.mode == "P"
     who = np.asarray(labels)
     assert np.array_equal(who == 2, shot.segmentation == -3)
-    assert np.array_equal(np.asarray(labels.convert("RGB")), painted_segmentation(shot.segmentation))
+    assert np.array_equal(np.asarray(labels.convert("RGB")), color_segmentation(shot.segmentation))
     assert sorted(path.parent.iterdir()) == sorted(names)
 
 
@@ -151,7 +158,7 @@ def test_a_film_is_written(ending: str, tmp_path: Path) -> None:
         with av.open(str(path)) as film:
             images = [frame.to_ndarray(format="rgb24") for frame in film.decode(video=0)]
             assert film.streams.video[0].average_rate == 12.5
-        first = next(shots(parse_trial(LEAN), "door"))
+        first = next(render_images(parse_trial(LEAN), "door"))
         assert len(images) == 6
         assert np.abs(images[0].astype(int) - first.rgb).mean() < 6.0
     else:
@@ -161,19 +168,19 @@ def test_a_film_is_written(ending: str, tmp_path: Path) -> None:
     assert not list(tmp_path.rglob("*.part"))
 
 
-def moving(count: int) -> Iterator[Shot]:
+def moving(count: int) -> Iterator[RenderedImage]:
     """A bright square that wanders over a dark ground, and rests from image 3 to 5."""
     for k in range(count):
         image = np.full((40, 61, 3), (20, 40, 60), dtype=np.uint8)
         at = 3 * min(k, 3) if k < 6 else 3 * (k - 2) % 40
         image[5 + at // 2 : 15 + at // 2, at : at + 11] = (220, 180, 90)
-        yield Shot(k / 30.0, image)
+        yield RenderedImage(k / 30.0, image)
 
 
 @pytest.mark.parametrize("ending", [".gif", ".webp"])
 def test_films_show_what_was_seen_as_long_as_it_was_seen(ending: str, tmp_path: Path) -> None:
     path = tmp_path / f"film{ending}"
-    _, count = Album(path, film=True, rate=30.0).write(moving(31))
+    _, count = ImageWriter(path, film=True, rate=30.0).write(moving(31))
     assert count == 31
     wanted = [shot.rgb for shot in moving(31)]
     time, times = 0.0, []
@@ -193,17 +200,17 @@ def test_films_show_what_was_seen_as_long_as_it_was_seen(ending: str, tmp_path: 
 
 @pytest.mark.parametrize("ending", [".gif", ".webp", ".mp4"])
 def test_a_film_is_written_image_by_image(ending: str, tmp_path: Path) -> None:
-    alive: weakref.WeakSet[Shot] = weakref.WeakSet()
+    alive: weakref.WeakSet[RenderedImage] = weakref.WeakSet()
     sizes = []
 
-    def watched() -> Iterator[Shot]:
+    def watched() -> Iterator[RenderedImage]:
         for shot in moving(200):
             alive.add(shot)
             assert len(alive) <= 3
             sizes.append(sum(part.stat().st_size for part in tmp_path.glob(".*.part")))
-            yield Shot(shot.time, shot.rgb)
+            yield RenderedImage(shot.time, shot.rgb)
 
-    Album(tmp_path / f"film{ending}", film=True).write(watched())
+    ImageWriter(tmp_path / f"film{ending}", film=True).write(watched())
     if ending != ".mp4":
         assert sizes[-1] > sizes[0] == 0
     assert [path.name for path in tmp_path.iterdir()] == [f"film{ending}"]
@@ -211,12 +218,12 @@ def test_a_film_is_written_image_by_image(ending: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("ending", [".gif", ".webp", ".mp4"])
 def test_a_film_that_fails_leaves_nothing(ending: str, tmp_path: Path) -> None:
-    def broken() -> Iterator[Shot]:
+    def broken() -> Iterator[RenderedImage]:
         yield from moving(3)
         raise InputError("the run is over")
 
     with pytest.raises(InputError, match="the run is over"):
-        Album(tmp_path / f"film{ending}", film=True).write(broken())
+        ImageWriter(tmp_path / f"film{ending}", film=True).write(broken())
     assert not list(tmp_path.iterdir())
 
 
@@ -261,7 +268,7 @@ def test_without_a_way_to_draw_nothing_is_written(monkeypatch: pytest.MonkeyPatc
     gl_context.backend.cache_clear()
     try:
         with pytest.raises(InputError, match="MUJOCO_GL = 'disabled' must be one of egl, osmesa"):
-            list(shots(load_trial("frontal")))
+            list(render_images(load_trial("frontal")))
     finally:
         gl_context.backend.cache_clear()
 
@@ -271,10 +278,10 @@ def test_without_extras(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
 
     monkeypatch.setitem(sys.modules, "av", None)
     with pytest.raises(MissingExtra, match=r"a film as .mp4 needs the extra \[sim\]"):
-        Album(tmp_path / "a.mp4", film=True)
+        ImageWriter(tmp_path / "a.mp4", film=True)
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(MissingExtra, match=r"an image of a trial needs the extra \[sim\]: pip install"):
-        list(shots(load_trial("frontal")))
+        list(render_images(load_trial("frontal")))
 
 
 def test_cameras_are_listed(capsys: pytest.CaptureFixture[str]) -> None:

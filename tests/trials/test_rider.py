@@ -8,8 +8,8 @@ from test_schema import valid
 
 from crowdbot.core import Scene, TrialError
 from crowdbot.humans import LIMBS
-from crowdbot.rendering import Take, shots
-from crowdbot.simulation import Running, Simulation
+from crowdbot.rendering import RenderRequest, render_images
+from crowdbot.simulation import Simulation, SimulationRun
 from crowdbot.trials import parse_trial, trial_xml
 from crowdbot.world import PeopleMotion
 
@@ -32,7 +32,7 @@ NAMES = [limb.name for limb in LIMBS]
 def simulated(world: str, text: str = ROOM) -> Simulation:
     trial = parse_trial(text.replace('seed="3"', f'seed="3" world="{world}"'))
     simulation = Simulation(trial, 3, posed=True)
-    running = Running(simulation)
+    running = SimulationRun(simulation)
     for _ in range(40):
         running.step()
     return simulation
@@ -70,7 +70,7 @@ def test_a_picture_shows_the_rider_as_a_part_of_the_robot(world: str) -> None:
     counts = []
     for text in (ROOM, ROOM.replace(' rider="woman-36"', "")):
         trial = parse_trial(text.replace('seed="3"', f'seed="3" world="{world}"'))
-        (shot,) = shots(trial, "side", Take(0.1), segmentation=True)
+        (shot,) = render_images(trial, "side", RenderRequest(0.1), segmentation=True)
         assert shot.segmentation is not None
         counts.append(int((shot.segmentation == 2).sum()))
         assert set(np.unique(shot.segmentation)) <= {-3, -2, -1, 0, 1, 2}

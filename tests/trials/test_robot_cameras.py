@@ -10,7 +10,7 @@ from crowdbot.core import InputError
 from crowdbot.navigation import Straight
 from crowdbot.recording import run
 from crowdbot.sensors import RGBCamera
-from crowdbot.trials import Goal, Robot, parse_trial
+from crowdbot.trials import RobotGoal, RobotSpec, parse_trial
 
 CAMERAS = {
     "cuybot": ["camera"],
@@ -20,12 +20,12 @@ CAMERAS = {
 }
 
 
-def made(name: str, **more: object) -> Robot:
+def made(name: str, **more: object) -> RobotSpec:
     """Return a robot of a type."""
-    return Robot(type=name, x=0, y=0, goal=Goal(5, 0), navigator=Straight(), sensor_rates="nearest", **more)
+    return RobotSpec(type=name, x=0, y=0, goal=RobotGoal(5, 0), navigator=Straight(), sensor_rates="nearest", **more)
 
 
-def cameras(robot: Robot) -> list[str]:
+def cameras(robot: RobotSpec) -> list[str]:
     """Return the names of its colour cameras."""
     return [mount.name for mount in robot.sensors if isinstance(mount.sensor, RGBCamera)]
 

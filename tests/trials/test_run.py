@@ -20,8 +20,8 @@ from crowdbot.models import ORCA
 from crowdbot.navigation import Navigator, Observation, Straight
 from crowdbot.recording import read_episode, run
 from crowdbot.sensors import Gaussian, Lidar2D
-from crowdbot.simulation import Episode, Log, Simulation, Stop, drive, start_scene
-from crowdbot.trials import Goal, Mount, Robot, Spawner, Stage, Trial, Wall, load_trial, parse_trial, place
+from crowdbot.simulation import Episode, EpisodeLog, Simulation, StopRequest, run_to_end, start_scene
+from crowdbot.trials import Mount, RobotGoal, RobotSpec, Spawner, Stage, Trial, Wall, load_trial, parse_trial, place
 from crowdbot.world import DifferentialDrive
 
 TINY = parse_trial(GOOD)
@@ -38,9 +38,15 @@ class Spy(Navigator):
         return observation.towards_goal(1.0)
 
 
-def robot(**changes: object) -> Robot:
-    given = {"x": -2.0, "y": 0.0, "goal": Goal(2.0, 0.0), "drive": DifferentialDrive(), "navigator": Straight()}
-    return Robot(**(given | changes))  # type: ignore[arg-type]
+def robot(**changes: object) -> RobotSpec:
+    given = {
+        "x": -2.0,
+        "y": 0.0,
+        "goal": RobotGoal(2.0, 0.0),
+        "run_to_end": DifferentialDrive(),
+        "navigator": Straight(),
+    }
+    return RobotSpec(**(given | changes))  # type: ignore[arg-type]
 
 
 def person(x: float, y: float, goal: tuple[float, float], **changes: object) -> Spawner:
@@ -81,9 +87,9 @@ def test_time_runs_out() -> None:
 
 
 def test_a_wall_is_touched_even_by_a_fast_robot() -> None:
-    drive = DifferentialDrive(max_speed=60.0, max_acceleration=1e4)
+    run_to_end = DifferentialDrive(max_speed=60.0, max_acceleration=1e4)
     thin = Stage(walls=[Wall([(0.0, -1.0), (0.0, 1.0)])])
-    fast = robot(drive=drive, navigator=Fast(), goal=Goal(40.0, 0.0), radius=0.05)
+    fast = robot(run_to_end=run_to_end, navigator=Fast(), goal=RobotGoal(40.0, 0.0), radius=0.05)
     episode = run(trial(stage=thin, robots=[fast]))
     assert episode.outcome == "collision"
     assert episode.metrics["min_wall_clearance"] < 0.0
@@ -168,7 +174,7 @@ def test_sensors_navigators_and_recorders_keep_their_rates() -> None:
     bot = robot(
         navigator=Spy(told),
         control_period=0.2,
-        goal=Goal(9.0, 0.0),
+        goal=RobotGoal(9.0, 0.0),
         sensors=[Mount(sensor=Lidar2D(rate=4.0)), Mount(name="slow", sensor=Lidar2D(rate=1.0))],
     )
     episode = run(trial(robots=[bot], duration=3.0, recording=dataclasses.replace(TINY.recording, period=0.15)))
@@ -201,7 +207,7 @@ def test_two_robots_see_each_other_and_share_the_outcome() -> None:
     lidar = [Mount(sensor=Lidar2D(rays=180))]
     bots = [
         robot(name="a", sensors=lidar),
-        robot(name="b", x=2.0, y=1.5, heading=np.pi, goal=Goal(-2.0, 1.5), sensors=lidar),
+        robot(name="b", x=2.0, y=1.5, heading=np.pi, goal=RobotGoal(-2.0, 1.5), sensors=lidar),
     ]
     episode = run(trial(robots=bots))
     assert (episode.outcome, episode.robots) == ("success", (0, 1))
@@ -240,9 +246,9 @@ def test_another_process_gives_the_same_digest(threads: str) -> None:
 
 
 def test_a_trial_stepped_from_outside_gives_the_same_digest() -> None:
-    log = Log(TINY, 3)
+    log = EpisodeLog(TINY, 3)
     simulation = Simulation(TINY, 3)
-    assert drive(simulation, [log], Stop()) == log.episode("timeout", 80).outcome
+    assert run_to_end(simulation, [log], StopRequest()) == log.episode("timeout", 80).outcome
     assert log.episode("timeout", simulation.tick).digest == run(TINY).digest
 
 

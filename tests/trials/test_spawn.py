@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core import InputError, stream
 from crowdbot.navigation import Straight
-from crowdbot.trials import GAP, Distribution, Goal, Obstacle, Robot, Spawner, Stage, Wall, place
+from crowdbot.trials import GAP, Distribution, Obstacle, RobotGoal, RobotSpec, Spawner, Stage, Wall, place
 from crowdbot.world import DifferentialDrive
 
 SQUARE = [(0, 0), (6, 0), (6, 6), (0, 6)]
@@ -22,8 +22,8 @@ def spawner(count: int, zone: object = SQUARE, **changes: object) -> Spawner:
     return Spawner(count=count, zone=zone, goal=[(7, 0), (8, 0), (8, 6), (7, 6)], **changes)  # type: ignore[arg-type]
 
 
-def robot(x: float, y: float, radius: float) -> Robot:
-    return Robot(x=x, y=y, radius=radius, goal=Goal(x, y), drive=DifferentialDrive(), navigator=Straight())
+def robot(x: float, y: float, radius: float) -> RobotSpec:
+    return RobotSpec(x=x, y=y, radius=radius, goal=RobotGoal(x, y), drive=DifferentialDrive(), navigator=Straight())
 
 
 STAGE = Stage(

@@ -17,9 +17,9 @@ from trial_texts import FLOW, GOOD
 from crowdbot.core import Clock, ExternalClock, FreeClock, InputError, PacedClock, Pose, Scene, Twist
 from crowdbot.models import ORCA
 from crowdbot.navigation import Navigator, Observation
-from crowdbot.recording import opened, read_episode, record
+from crowdbot.recording import open_run, read_episode, record
 from crowdbot.sensors import Lidar2D, SensorView
-from crowdbot.simulation import Frame, Running, Simulation, Tally
+from crowdbot.simulation import EpisodeStatistics, Simulation, SimulationRun, StepRecord
 from crowdbot.trials import Trial, parse_trial
 from crowdbot.world import DifferentialDrive
 
@@ -72,7 +72,7 @@ class Wire:
 class Book:
     """A recorder."""
 
-    def take(self, frame: Frame) -> None:
+    def take(self, frame: StepRecord) -> None:
         EVENTS.append(("recorder", frame.scene.time))
         assert frame.commands.tolist() == [[0.25, 0.0, 0.0]]
 
@@ -114,7 +114,7 @@ def test_the_order_of_a_step(monkeypatch: pytest.MonkeyPatch) -> None:
         return physics(earlier, after)
 
     monkeypatch.setattr(simulation.world, "_settled", settled)
-    running = Running(simulation, [Book()], [Wire()])
+    running = SimulationRun(simulation, [Book()], [Wire()])
     assert BEGIN == EVENTS
     EVENTS.clear()
     running.step()
@@ -154,7 +154,7 @@ def test_the_order_of_a_step_in_the_physics_world(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(world.robot_bodies[agent], "ask", robots)
     monkeypatch.setattr(world, "_substep", engine)
     monkeypatch.setattr(world.people, "take", taken)
-    running = Running(simulation, [Book()], [Wire()])
+    running = SimulationRun(simulation, [Book()], [Wire()])
     assert BEGIN == EVENTS
     for old in (0.0, 0.05, 0.1):
         EVENTS.clear()
@@ -176,8 +176,8 @@ def test_the_order_of_a_step_in_the_physics_world(monkeypatch: pytest.MonkeyPatc
 
 
 def driven(trial: Trial, clock: Clock | None, times: list[int] | None, out: Path | None = None) -> str:
-    tally = Tally(trial, trial.seed)
-    running = Running(Simulation(trial, trial.seed, clock), [tally])
+    tally = EpisodeStatistics(trial, trial.seed)
+    running = SimulationRun(Simulation(trial, trial.seed, clock), [tally])
     for nanoseconds in times or []:
         running.until(nanoseconds)
     while running.outcome is None:
@@ -190,7 +190,7 @@ def test_an_external_clock_in_odd_ticks_gives_the_same_bytes(text: str, tmp_path
     trial = parse_trial(text)
     free = record(trial, out=tmp_path / "free")
     chance, now = random.Random(0), 0
-    with opened(trial, out=tmp_path / "outside", clock=ExternalClock(trial.step)) as running:
+    with open_run(trial, out=tmp_path / "outside", clock=ExternalClock(trial.step)) as running:
         while running.outcome is None:
             now += chance.choice([0, 1, 7_000_001, 49_999_999, 50_000_000, 333_333_333])
             running.until(now)
@@ -219,7 +219,7 @@ def test_clocks_that_do_not_fit_are_refused() -> None:
     for clock in (late, FreeClock(0.1)):
         with pytest.raises(InputError, match="but the trial begins at tick 0 with steps of 0.05 s"):
             Simulation(TRIAL, 0, clock)
-    running = Running(Simulation(TRIAL, 3, ExternalClock(0.05)))
+    running = SimulationRun(Simulation(TRIAL, 3, ExternalClock(0.05)))
     running.until(200_000_000)
     with pytest.raises(InputError, match="external time went back"):
         running.until(100_000_000)
@@ -228,7 +228,7 @@ def test_clocks_that_do_not_fit_are_refused() -> None:
 
 
 def test_a_run_that_has_ended_is_not_stepped_on() -> None:
-    running = Running(Simulation(TRIAL, 3, ExternalClock(0.05)))
+    running = SimulationRun(Simulation(TRIAL, 3, ExternalClock(0.05)))
     assert running.until(10**12) == 80
     assert running.outcome == "timeout"
     assert running.until(10**13) == 0
@@ -237,7 +237,7 @@ def test_a_run_that_has_ended_is_not_stepped_on() -> None:
 
 
 def test_who_closes_a_run_early_interrupts_it(tmp_path: Path) -> None:
-    with opened(TRIAL, out=tmp_path) as running:
+    with open_run(TRIAL, out=tmp_path) as running:
         for _ in range(43):
             running.step()
     read = read_episode(tmp_path / "episode.mcap")
@@ -249,7 +249,7 @@ def test_a_bridge_steers_and_contacts_are_recorded(tmp_path: Path) -> None:
         def exchange(self, simulation: Simulation, readings: Any) -> None:
             simulation.ask("robot", Twist(1.0, 0.0))
 
-    with opened(TRIAL, out=tmp_path, bridges=[Ram()]) as running:
+    with open_run(TRIAL, out=tmp_path, bridges=[Ram()]) as running:
         while running.outcome is None:
             running.step()
     read = read_episode(tmp_path / "episode.mcap")

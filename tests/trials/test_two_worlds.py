@@ -12,17 +12,17 @@ from space_trials import LEAN, ROOM, WORLDS, room
 from test_schema import valid
 
 from crowdbot.core import ExternalClock, InputError, MissingExtra, TrialError
-from crowdbot.recording import branch, opened, read_episode, record, replay, run
+from crowdbot.recording import branch, open_run, read_episode, record, replay, run
 from crowdbot.sensors import RgbImage, TrackedPeople
-from crowdbot.simulation import Running, Simulation, drive
+from crowdbot.simulation import Simulation, SimulationRun, run_to_end
 from crowdbot.trials import (
     Trial,
     builtin_trials,
-    cast_of,
     expand_spawners,
     expand_sweeps,
     load_trial,
     parse_trial,
+    people_appearance,
     trial_xml,
 )
 from samples import sample
@@ -57,7 +57,7 @@ def test_every_builtin_trial_runs_in_both_worlds_and_is_recorded(name: str, tmp_
 def test_the_same_seed_gives_the_same_bytes_however_time_passes(world: str, tmp_path: Path) -> None:
     trial = parse_trial(room(world))
     once = run(trial, out=f"{tmp_path}/free")
-    with opened(trial, out=f"{tmp_path}/outside", clock=ExternalClock(trial.step)) as running:
+    with open_run(trial, out=f"{tmp_path}/outside", clock=ExternalClock(trial.step)) as running:
         now = 0
         while running.outcome is None:
             now += 37_000_001
@@ -83,7 +83,7 @@ def test_a_room_with_everything_is_the_identity_and_valid() -> None:
 def test_explicit_people_have_the_same_bodies(world: str) -> None:
     trial = parse_trial(room(world, LEAN))
     simulations = [Simulation(one, 4, posed=True) for one in (trial, expand_spawners(trial, 4))]
-    casts = [cast_of(one.trial, one.people, one.world.scene.shape[1], 4) for one in simulations]
+    casts = [people_appearance(one.trial, one.people, one.world.scene.shape[1], 4) for one in simulations]
     assert [one.name for one in casts[0].people.persons] == [one.name for one in casts[1].people.persons]
     assert casts[0].people.variation.tolist() == casts[1].people.variation.tolist()
     assert casts[0].activity == casts[1].activity
@@ -129,7 +129,7 @@ def test_readings_arrive_late_and_keep_their_instant(world: str) -> None:
                 if mount.name == "wheels":
                     arrived.append((simulation.tick, round(reading.time / 0.04)))
 
-    running = Running(simulation, bridges=[Listener()])
+    running = SimulationRun(simulation, bridges=[Listener()])
     while simulation.tick < 6:
         running.step()
     assert arrived == [(k + 2, k) for k in range(5)]
@@ -138,7 +138,7 @@ def test_readings_arrive_late_and_keep_their_instant(world: str) -> None:
 def test_a_late_drive_follows_late_in_the_plane() -> None:
     trial = parse_trial(LEAN)
     simulation = Simulation(trial, 4)
-    running = Running(simulation)
+    running = SimulationRun(simulation)
     moving = []
     for _ in range(5):
         running.step()
@@ -180,7 +180,7 @@ def test_a_cube_is_pushed_in_physics() -> None:
     text = "\n".join(lines).replace('x="4" y="2" size="0.6" fixed="true"', 'x="4" y="2.2" size="0.6"')
     trial = parse_trial(text.replace('seed="4"', 'seed="4" world="physics"').replace('duration="1"', 'duration="4"'))
     simulation = Simulation(trial, 4)
-    running = Running(simulation)
+    running = SimulationRun(simulation)
     while running.outcome is None:
         running.step()
     world: object = simulation.world
@@ -203,9 +203,9 @@ def test_collisions_and_forces_are_told_once() -> None:
         def take(self, frame: object) -> None:
             frames.append(frame)
 
-    from crowdbot.simulation import Stop
+    from crowdbot.simulation import StopRequest
 
-    drive(simulation, [Keeper()], Stop())
+    run_to_end(simulation, [Keeper()], StopRequest())
     told = [one for frame in frames for one in frame.collisions]
     world: object = simulation.world
     assert sorted(map(repr, told)) == sorted(map(repr, world.contact_events))  # type: ignore[attr-defined]

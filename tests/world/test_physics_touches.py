@@ -6,7 +6,7 @@ from physics_worlds import alone, facing, ram
 
 from crowdbot.core import Twist
 from crowdbot.world import ContactBody, CubeBody, PhysicsStage, Robot, two_body_force
-from crowdbot.world.physics.contact_events import ContactTracker
+from crowdbot.world.physics.contact_events import BodyContactTracker
 from crowdbot.world.physics.contacts import EngineContact
 from crowdbot.world.physics.mjcf_model import LIMB_NAMES
 from crowdbot.world.physics.people_bodies import LIFTED, QUICK
@@ -15,9 +15,9 @@ ROBOT, PERSON = ContactBody("robot", 0), ContactBody("person", 1)
 STEP = 0.005
 
 
-def book() -> ContactTracker:
+def book() -> BodyContactTracker:
     """Return a book of a robot of 50 kg and a person of 70 kg with limbs of 4 kg who looks at it, along -x."""
-    return ContactTracker(STEP, {ROBOT: 50.0, PERSON: 70.0}.get, lambda agent, limb: 4.0, lambda agent: np.pi)
+    return BodyContactTracker(STEP, {ROBOT: 50.0, PERSON: 70.0}.get, lambda agent, limb: 4.0, lambda agent: np.pi)
 
 
 def touch(force, normal=(1.0, 0.0, 0.0), limb="shank_l", robot=(0.0, 0.0, 0.0), person=(0.0, 0.0, 0.0), swing=None):

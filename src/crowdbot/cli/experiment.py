@@ -16,7 +16,7 @@ from crowdbot.trials import check_trial, trial_xml
 from .output import add_json, note, number, print_json, print_table, spoken_warnings
 
 if TYPE_CHECKING:
-    from crowdbot.experiments import Experiment, Person, Sitting
+    from crowdbot.experiments import Experiment, Respondent, SessionRunner
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -77,7 +77,14 @@ def _run_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _run(options: argparse.Namespace) -> int:
     """Run a session; status 0 when it is done, 1 when it was aborted, 130 when it was left."""
-    from crowdbot.experiments import Console, Given, Left, Sitting, Typed, load_experiment
+    from crowdbot.experiments import (
+        Console,
+        ConsoleClosed,
+        ConsoleRespondent,
+        ScriptedRespondent,
+        SessionRunner,
+        load_experiment,
+    )
 
     experiment = load_experiment(options.experiment, trust=options.trust)
     stream = sys.stderr if options.json else sys.stdout
@@ -86,16 +93,16 @@ def _run(options: argparse.Namespace) -> int:
         stream.write(text)
         stream.flush()
 
-    person: Person = Typed(sys.stdin, write, patient=sys.stdin.isatty())
+    person: Respondent = ConsoleRespondent(sys.stdin, write, patient=sys.stdin.isatty())
     if options.answers is not None:
-        person = Given.load(options.answers, experiment)
-    sitting = Sitting(
+        person = ScriptedRespondent.load(options.answers, experiment)
+    sitting = SessionRunner(
         experiment, options.participant, options.out, time.time, resume=options.resume, trust=options.trust
     )
     try:
         with spoken_warnings():
             Console(sitting, person, write, _tell).run()
-    except Left as left:
+    except ConsoleClosed as left:
         note(f"crowdbot: the session waits in {sitting.folder}{f' ({left})' if str(left) else ''}; go on with --resume")
         return 130
     finally:
@@ -112,7 +119,7 @@ def _tell(what: str, share: float) -> None:
         note(f"{what} {'...' if share == 0.0 else 'over'}")
 
 
-def _ended(sitting: Sitting, as_json: bool) -> int:
+def _ended(sitting: SessionRunner, as_json: bool) -> int:
     session = sitting.session
     outcomes = Counter(result.outcome for result in session.results.values())
     if as_json:

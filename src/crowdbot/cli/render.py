@@ -11,7 +11,7 @@ from .output import add_json, number, print_json, print_table, progress
 from .settings import add_settings, add_world, chosen, settings
 
 if TYPE_CHECKING:
-    from crowdbot.rendering import Take
+    from crowdbot.rendering import RenderRequest
     from crowdbot.trials import Trial
 
 
@@ -46,7 +46,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Make the image or the film."""
-    from crowdbot.rendering import Album, camera_names, shots
+    from crowdbot.rendering import ImageWriter, camera_names, render_images
     from crowdbot.trials import load_trial
 
     trial = chosen(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
@@ -55,9 +55,9 @@ def main(options: argparse.Namespace) -> int:
     take = _take(options, trial.duration)
     camera = options.camera or camera_names(trial)[0]
     film = take.end is not None
-    album = Album(options.out or _default(trial.name, camera, film), film, _rate(take, trial.step))
+    album = ImageWriter(options.out or _default(trial.name, camera, film), film, _rate(take, trial.step))
     with progress(options.json) as report:
-        found = shots(
+        found = render_images(
             trial,
             camera,
             take,
@@ -84,9 +84,9 @@ def main(options: argparse.Namespace) -> int:
     return 0
 
 
-def _take(options: argparse.Namespace, duration: float) -> Take:
+def _take(options: argparse.Namespace, duration: float) -> RenderRequest:
     from crowdbot.core import InputError
-    from crowdbot.rendering import Take
+    from crowdbot.rendering import RenderRequest
 
     span = [word for word, value in (("--from", options.begin), ("--to", options.end)) if value is not None]
     if options.at is not None and span:
@@ -95,11 +95,11 @@ def _take(options: argparse.Namespace, duration: float) -> Take:
     if options.at is not None or (not span and (out is None or out.suffix.lower() not in (".mp4", ".gif"))):
         if options.fps is not None:
             raise InputError("--fps is for a film; give --to T as well")
-        return Take(options.at or 0.0)
-    return Take(options.begin or 0.0, duration if options.end is None else options.end, options.fps)
+        return RenderRequest(options.at or 0.0)
+    return RenderRequest(options.begin or 0.0, duration if options.end is None else options.end, options.fps)
 
 
-def _rate(take: Take, step: float) -> float:
+def _rate(take: RenderRequest, step: float) -> float:
     """Return how many images a second of a film are shown."""
     import math
 

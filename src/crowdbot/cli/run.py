@@ -13,7 +13,7 @@ from .output import add_json, number, print_json, print_metrics, print_table, pr
 from .settings import add_settings, add_world, chosen, settings
 
 if TYPE_CHECKING:
-    from crowdbot.simulation import Summary
+    from crowdbot.simulation import RunSummary
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -45,7 +45,7 @@ def main(options: argparse.Namespace) -> int:
     return 0
 
 
-def tell(done: Summary, as_json: bool, wall: float) -> None:
+def tell(done: RunSummary, as_json: bool, wall: float) -> None:
     """Print how a run went."""
     summary = {
         "trial": done.trial.name,

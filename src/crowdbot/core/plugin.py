@@ -27,6 +27,7 @@ __all__ = [
     "attribute_names",
     "attribute_problems",
     "builtin_classes",
+    "builtin_name",
     "find_class",
     "from_attributes",
     "kebab_case",
@@ -43,11 +44,22 @@ def kebab_case(name: str) -> str:
     return re.sub(r"(?<=[a-z])(?=[A-Z])", "-", name).lower()
 
 
+def builtin_name(cls: type, contract: type) -> str:
+    """Return the name of a built-in class: kebab-case, without the name of its contract at the end.
+
+    >>> class Navigator: pass
+    >>> class ORCANavigator(Navigator): pass
+    >>> builtin_name(ORCANavigator, Navigator)
+    'orca'
+    """
+    return kebab_case(cls.__name__.removesuffix(contract.__name__) or cls.__name__)
+
+
 def builtin_classes(room: types.ModuleType, contract: type) -> dict[str, type]:
     """Return the concrete classes of ``contract`` in ``room.__all__`` by their kebab-case names, sorted."""
     classes = (getattr(room, name) for name in room.__all__)
     found = {
-        kebab_case(value.__name__): value
+        builtin_name(value, contract): value
         for value in classes
         if inspect.isclass(value)
         and issubclass(value, contract)

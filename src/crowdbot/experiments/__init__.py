@@ -1,19 +1,19 @@
 """Experiments: sequences of trials for participants, with screens, questions and answers."""
 
-from .console import Console, Left
+from .console import Console, ConsoleClosed
 from .event import Abort, Answered, Begin, Event, Fail, Finish, Next, Pause, Repeat, Resume, Start, event_of, record_of
 from .experiment import Block, Experiment, Screen, TrialEntry
 from .loading import FILE, builtin_experiments, is_experiment, load_experiment
-from .log import Log, read_log
+from .log import SessionLog, read_log
 from .order import orders, rows_of, seed_of, williams
 from .original import import_experiment
-from .page import page_of, sanitised
+from .page import page_of, sanitise_html
 from .parser import check_experiment, experiment_xml, parse_experiment
-from .person import Given, Person, Typed
+from .person import ConsoleRespondent, Respondent, ScriptedRespondent
 from .plan import plan
-from .question import Choice, FreeText, Number, Option, Scale
+from .question import Choice, ChoiceOption, FreeText, Number, Scale
 from .session import Session
-from .sitting import Sitting
+from .sitting import SessionRunner
 from .summary import save_summary, summary
 
 __all__ = [
@@ -23,29 +23,29 @@ __all__ = [
     "Begin",
     "Block",
     "Choice",
+    "ChoiceOption",
     "Console",
+    "ConsoleClosed",
+    "ConsoleRespondent",
     "Event",
     "Experiment",
     "Fail",
     "Finish",
     "FreeText",
-    "Given",
-    "Left",
-    "Log",
     "Next",
     "Number",
-    "Option",
     "Pause",
-    "Person",
     "Repeat",
+    "Respondent",
     "Resume",
     "Scale",
     "Screen",
+    "ScriptedRespondent",
     "Session",
-    "Sitting",
+    "SessionLog",
+    "SessionRunner",
     "Start",
     "TrialEntry",
-    "Typed",
     "builtin_experiments",
     "check_experiment",
     "event_of",
@@ -60,7 +60,7 @@ __all__ = [
     "read_log",
     "record_of",
     "rows_of",
-    "sanitised",
+    "sanitise_html",
     "save_summary",
     "seed_of",
     "summary",

@@ -15,12 +15,12 @@ from crowdbot.core import CrowdbotError, InputError
 
 from .event import Abort, Answered, Event, Fail, Next, Pause, Repeat, Resume, Start
 from .page import CONTROL
-from .person import Person
+from .person import Respondent
 from .question import Choice, Question
-from .running import Running
-from .sitting import Sitting
+from .running import BackgroundRun
+from .sitting import SessionRunner
 
-__all__ = ["Console", "Left"]
+__all__ = ["Console", "ConsoleClosed"]
 
 WIDTH = 78
 MENU = {
@@ -32,7 +32,7 @@ MENU = {
 }
 
 
-class Left(Exception):
+class ConsoleClosed(Exception):
     """The experimenter has closed the program; the session waits."""
 
 
@@ -50,8 +50,8 @@ class Console:
 
     def __init__(
         self,
-        sitting: Sitting,
-        person: Person,
+        sitting: SessionRunner,
+        person: Respondent,
         write: Callable[[str], None],
         tell: Callable[[str, float], None],
     ) -> None:
@@ -117,7 +117,7 @@ class Console:
         trial, seed, folder = self.sitting.begin()
         steps = self.sitting.session.steps
         what = f"trial {self.sitting.session.step.number} of {max(step.number for step in steps)}"
-        running = Running(trial, seed, folder / "episode.mcap")
+        running = BackgroundRun(trial, seed, folder / "episode.mcap")
         self.tell(what, 0.0)
         while self.sitting.session.phase == "running":
             try:
@@ -133,7 +133,7 @@ class Console:
             self._end(running, folder)
         self.tell(what, 1.0)
 
-    def _held(self, running: Running) -> None:
+    def _held(self, running: BackgroundRun) -> None:
         """Hold a trial, and let it go on unless the experimenter wants something else."""
         running.hold()
         try:
@@ -146,7 +146,7 @@ class Console:
             else:
                 self._given_up(running)
 
-    def _given_up(self, running: Running) -> None:
+    def _given_up(self, running: BackgroundRun) -> None:
         """Wait until a trial has given up, so that no other one begins beside it."""
         running.give_up()
         try:
@@ -154,9 +154,9 @@ class Console:
                 while not running.wait(0.2):
                     pass
         except KeyboardInterrupt:
-            raise Left("the trial does not end") from None
+            raise ConsoleClosed("the trial does not end") from None
 
-    def _end(self, running: Running, folder: Path) -> None:
+    def _end(self, running: BackgroundRun, folder: Path) -> None:
         try:
             episode = running.result()
         except CrowdbotError as error:
@@ -180,7 +180,7 @@ class Console:
         except KeyboardInterrupt:
             word = "leave"
         if word == "leave":
-            raise Left(session.reason)
+            raise ConsoleClosed(session.reason)
         chosen: dict[str, Event] = {"resume": Resume(), "next": Next(), "repeat": Repeat(), "abort": Abort("menu")}
         self.sitting.do(chosen[word])
 

@@ -10,12 +10,12 @@ from typing import Any, BinaryIO, Literal
 
 from crowdbot.core import EpisodeError
 
-__all__ = ["Log", "read_log"]
+__all__ = ["SessionLog", "read_log"]
 
 FORMAT = 1
 
 
-class Log:
+class SessionLog:
     """A log that is being written.
 
     Every record is on the disk before :meth:`append` returns. A record that was cut by a crash is dropped.
@@ -26,7 +26,7 @@ class Log:
         self._stream = stream
 
     @classmethod
-    def create(cls, path: Path, head: dict[str, Any]) -> Log:
+    def create(cls, path: Path, head: dict[str, Any]) -> SessionLog:
         """Begin a log; its first record says what it is about.
 
         Raises:
@@ -43,7 +43,7 @@ class Log:
         return log
 
     @classmethod
-    def open(cls, path: Path) -> tuple[Log, list[dict[str, Any]]]:
+    def open(cls, path: Path) -> tuple[SessionLog, list[dict[str, Any]]]:
         """Go on with a log; return also its records.
 
         Raises:

@@ -13,7 +13,7 @@ from crowdbot.core import InputError
 
 from .experiment import Screen
 
-__all__ = ["Page", "page_of", "sanitised"]
+__all__ = ["Page", "page_of", "sanitise_html"]
 
 MOST_BYTES = 200_000
 MOST_DEPTH = 100
@@ -75,7 +75,7 @@ def page_of(screen: Screen, folder: Path | None) -> Page:
         raise InputError(f"file={screen.file!r} is not UTF-8 at byte {error.start}; save it in UTF-8") from None
     digest = hashlib.blake2b(data, digest_size=16).hexdigest()
     if not plain:
-        return Page(*sanitised(source), digest)
+        return Page(*sanitise_html(source), digest)
     text = CONTROL.sub("", source.replace("\r\n", "\n")).strip()
     paragraphs = [html.escape(part).replace("\n", "<br>") for part in re.split(r"\n\s*\n", text) if part]
     return Page(text, "".join(f"<p>{part}</p>" for part in paragraphs), digest)
@@ -102,13 +102,13 @@ def _bytes(name: str, folder: Path | None) -> bytes:
     return data
 
 
-def sanitised(source: str) -> tuple[str, str]:
+def sanitise_html(source: str) -> tuple[str, str]:
     """Return the plain text of an HTML source, and the HTML that is left when only the shape of the text is kept.
 
     Scripts, styles, links, forms, event handlers and every attribute go. Of pictures, those remain whose source is the
     plain name of a picture file.
 
-    >>> sanitised("<h1 onclick='x()'>Hi</h1><script>x()</script><p>a &amp; <b>b</p>")
+    >>> sanitise_html("<h1 onclick='x()'>Hi</h1><script>x()</script><p>a &amp; <b>b</p>")
     ('Hi\\n\\na & b', '<h1>Hi</h1><p>a &amp; <b>b</b></p>')
     """
     sieve = _Sieve()

@@ -6,7 +6,7 @@ import dataclasses
 from pathlib import Path
 
 from crowdbot.core import TrialError, format_xml
-from crowdbot.trials import Reader, element_from, parse_trial_xml, update_names
+from crowdbot.trials import XmlReader, element_from, parse_trial_xml, update_names
 
 from .checks import everything, problems_of
 from .experiment import Experiment
@@ -42,7 +42,7 @@ name, order, repetitions, seeds
     except UnicodeEncodeError:
         raise TrialError(f"{place}: this is not well-formed XML: it holds half a character") from None
     root = parse_trial_xml(data, place, "utf-8" if isinstance(text, str) else None)
-    reader = Reader(place, folder or Path.cwd(), trust)
+    reader = XmlReader(place, folder or Path.cwd(), trust)
     if root.tag != ROOT:
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
     update_names(root, place)

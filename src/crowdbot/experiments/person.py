@@ -14,10 +14,10 @@ from .experiment import Experiment
 from .plan import plan
 from .question import Question
 
-__all__ = ["Given", "Person", "Typed"]
+__all__ = ["ConsoleRespondent", "Respondent", "ScriptedRespondent"]
 
 
-class Person(ABC):
+class Respondent(ABC):
     """The contract of who answers."""
 
     patient: bool = False
@@ -36,7 +36,7 @@ class Person(ABC):
         """Return what the experimenter chooses in a pause."""
 
 
-class Typed(Person):
+class ConsoleRespondent(Respondent):
     """Somebody who types lines; a pipe or a file of lines, where each is right at once, does as well.
 
     Args:
@@ -75,15 +75,15 @@ class Typed(Person):
         return line.rstrip("\r\n")
 
 
-class Given(Person):
+class ScriptedRespondent(Respondent):
     """Answers by name, ``screen.question`` or ``question``; screens go on by themselves, and pauses abort.
 
     Raises:
         InputError: a name that nothing asks.
 
     >>> from crowdbot.experiments import load_experiment
-    >>> person = Given({"age": 30, "opinion.comfort": 5}, load_experiment("robot-speed"))
-    >>> Given({"aged": 30}, load_experiment("robot-speed"))
+    >>> person = ScriptedRespondent({"age": 30, "opinion.comfort": 5}, load_experiment("robot-speed"))
+    >>> ScriptedRespondent({"aged": 30}, load_experiment("robot-speed"))
     Traceback (most recent call last):
     crowdbot.core.errors.InputError: nothing asks 'aged', did you mean 'age'?; answers are given to welcome.age, \
 welcome.robots, opinion.comfort, opinion.remarks
@@ -100,7 +100,7 @@ welcome.robots, opinion.comfort, opinion.remarks
         self._answers = answers
 
     @classmethod
-    def load(cls, path: Path, experiment: Experiment) -> Given:
+    def load(cls, path: Path, experiment: Experiment) -> ScriptedRespondent:
         """Read the answers from a file with one JSON object.
 
         Raises:

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from .experiment import Block, Experiment, Screen, TrialEntry
 from .order import check_participant, orders
 
-__all__ = ["Step", "plan"]
+__all__ = ["SessionStep", "plan"]
 
 
 @dataclass(frozen=True)
-class Step:
+class SessionStep:
     """A screen or a trial.
 
     Fields:
@@ -40,7 +40,7 @@ class Step:
         return thing.name if thing else ""
 
 
-def plan(experiment: Experiment, participant: int) -> tuple[Step, ...]:
+def plan(experiment: Experiment, participant: int) -> tuple[SessionStep, ...]:
     """Return what a participant goes through; the same for the same participant every time.
 
     Raises:
@@ -64,11 +64,11 @@ def plan(experiment: Experiment, participant: int) -> tuple[Step, ...]:
     return (*steps, *_screens("ending", experiment.endings))
 
 
-def _screens(role: str, screens: Iterable[Screen], block: str = "") -> Iterator[Step]:
-    return (Step(role, screen, block) for screen in screens)
+def _screens(role: str, screens: Iterable[Screen], block: str = "") -> Iterator[SessionStep]:
+    return (SessionStep(role, screen, block) for screen in screens)
 
 
-def _around(block: Block, entry: TrialEntry, number: int, repetition: int) -> Iterator[Step]:
+def _around(block: Block, entry: TrialEntry, number: int, repetition: int) -> Iterator[SessionStep]:
     rows: list[tuple[str, Screen | None]] = [("before", screen) for screen in (*block.before, *entry.before)]
     rows += [("trial", None), *(("after", screen) for screen in (*entry.after, *block.after))]
-    return (Step(role, screen, block.name, entry, number, repetition, block.seeds) for role, screen in rows)
+    return (SessionStep(role, screen, block.name, entry, number, repetition, block.seeds) for role, screen in rows)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from crowdbot.core import InputError, did_you_mean, parse_number
-from crowdbot.trials import UNWRITABLE, attribute, check, children, plain, shown
+from crowdbot.trials import UNWRITABLE, attribute, check, children, plain, quote_value
 
-__all__ = ["QUESTIONS", "SHORT", "Answer", "Choice", "FreeText", "Number", "Option", "Question", "Scale"]
+__all__ = ["QUESTIONS", "SHORT", "Answer", "Choice", "ChoiceOption", "FreeText", "Number", "Question", "Scale"]
 
 SHORT = "[A-Za-z][A-Za-z0-9_]{0,39}"
 """Names of screens, questions, blocks and trials: they become columns and folders."""
@@ -66,11 +66,11 @@ class Question(ABC):
     def _taken(self, value: Any) -> Answer: ...
 
     def _refuse(self, value: Any) -> InputError:
-        return InputError(f"{shown(value)} is no answer to {self.name!r}, it must be {self.hint}")
+        return InputError(f"{quote_value(value)} is no answer to {self.name!r}, it must be {self.hint}")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Option:
+class ChoiceOption:
     """One of the answers of a choice."""
 
     value: str = attribute(about="what is recorded", pattern=SHORT)
@@ -89,7 +89,8 @@ class Option:
 class Choice(Question):
     """A choice of one option, or of several.
 
-    >>> hand = Choice(name="hand", text="Which hand?", options=[Option(value="left"), Option(value="right")])
+    >>> options = [ChoiceOption(value="left"), ChoiceOption(value="right")]
+    >>> hand = Choice(name="hand", text="Which hand?", options=options)
     >>> hand.read("2"), hand.read("left")
     ('right', 'left')
     >>> hand.read("lefd")
@@ -98,7 +99,7 @@ class Choice(Question):
     """
 
     multiple: bool = attribute(False, about="whether more than one may be chosen")
-    options: tuple[Option, ...] = children("option", about="the answers", min=1, max=100)
+    options: tuple[ChoiceOption, ...] = children("option", about="the answers", min=1, max=100)
 
     @property
     def hint(self) -> str:
@@ -128,7 +129,8 @@ class Choice(Question):
             if not isinstance(one, str) or one not in known:
                 meant = did_you_mean(str(one), known)
                 raise InputError(
-                    f"{shown(one)} is no answer to {self.name!r}{f'{meant};' if meant else ','} it must be {self.hint}"
+                    f"{quote_value(one)} is no answer to {self.name!r}{f'{meant};' if meant else ','} it must be"
+                    f" {self.hint}"
                 )
         if not self.multiple:
             return known[known.index(given[0])]

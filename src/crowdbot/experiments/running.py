@@ -9,20 +9,20 @@ from crowdbot.recording import run
 from crowdbot.simulation import Episode
 from crowdbot.trials import Trial
 
-__all__ = ["GivenUp", "Running"]
+__all__ = ["Aborted", "BackgroundRun"]
 
 
-class GivenUp(Exception):
+class Aborted(Exception):
     """The trial was given up on purpose."""
 
 
-class Running:
+class BackgroundRun:
     """Runs a trial in a thread of its own; the file of its episode appears when it is complete.
 
     It can be held whenever it tells its progress, 100 times in its duration; what comes out is the same.
 
     >>> from crowdbot.models import ORCA
-    >>> running = Running(Trial(name="empty", duration=1.0, crowd=ORCA()), seed=0)
+    >>> running = BackgroundRun(Trial(name="empty", duration=1.0, crowd=ORCA()), seed=0)
     >>> while not running.wait(0.1):
     ...     pass
     >>> running.result().outcome
@@ -82,4 +82,4 @@ class Running:
         self.share = share
         self._go.wait()
         if self._given_up:
-            raise GivenUp
+            raise Aborted

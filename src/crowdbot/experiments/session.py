@@ -24,7 +24,7 @@ from crowdbot.core import InputError, kebab_case
 
 from .event import Abort, Answered, Begin, Event, Fail, Finish, Next, Pause, Repeat, Resume, Start
 from .experiment import Experiment
-from .plan import Step, plan
+from .plan import SessionStep, plan
 from .question import Answer, Question
 
 __all__ = ["Result", "Session"]
@@ -69,7 +69,7 @@ class Session:
     crowdbot.core.errors.InputError: the screen 'welcome' still asks 'age', 'robots'; answer before you go on
     """
 
-    steps: tuple[Step, ...]
+    steps: tuple[SessionStep, ...]
     phase: str = "ready"
     index: int = 0
     waiting: str = ""
@@ -84,7 +84,7 @@ class Session:
         return cls(plan(experiment, participant))
 
     @property
-    def step(self) -> Step:
+    def step(self) -> SessionStep:
         """The screen or trial that it is at; the last one at the end."""
         return self.steps[min(self.index, len(self.steps) - 1)]
 

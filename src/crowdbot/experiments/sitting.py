@@ -16,14 +16,14 @@ from crowdbot.trials import Trial, trial_xml
 
 from .event import Answered, Begin, Event, Finish, Repeat, Resume, event_of, record_of
 from .experiment import Experiment, Screen
-from .log import Log
+from .log import SessionLog
 from .order import seed_of
 from .page import Page, page_of
 from .parser import check_experiment, experiment_xml
 from .session import Session
 from .trial_source import trial_of
 
-__all__ = ["ANSWERS", "COPY", "LOG", "Sitting", "folder_of"]
+__all__ = ["ANSWERS", "COPY", "LOG", "SessionRunner", "folder_of"]
 
 LOG, COPY, ANSWERS = "session.jsonl", "experiment.xml", "answers.jsonl"
 
@@ -35,7 +35,7 @@ def folder_of(out: Path, participant: int) -> Path:
     return out / f"participant-{participant:03d}"
 
 
-class Sitting:
+class SessionRunner:
     """One participant's session as it happens.
 
     Everything is on the disk before it counts, so that a crash loses nothing but a trial that was running. The folder
@@ -82,7 +82,7 @@ class Sitting:
             "at": clock(),
             **versions(),
         }
-        self.log: Log
+        self.log: SessionLog
         if resume:
             self._resumed(head)
         else:
@@ -150,7 +150,7 @@ class Sitting:
                 f"participant {self.participant} has a session in {self.folder} already; go on with it (--resume), or"
                 " choose another participant or folder"
             )
-        self.log = Log.create(path, head)
+        self.log = SessionLog.create(path, head)
         try:
             self._copy()
         except BaseException:
@@ -161,7 +161,7 @@ class Sitting:
         path = self.folder / LOG
         if not path.exists():
             raise EpisodeError(f"participant {self.participant} has no session in {self.folder.parent} to resume")
-        self.log, records = Log.open(path)
+        self.log, records = SessionLog.open(path)
         try:
             if (records[0].get("experiment"), records[0].get("digest")) != (head["experiment"], head["digest"]):
                 raise EpisodeError(

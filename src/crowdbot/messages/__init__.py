@@ -1,13 +1,21 @@
 """Messages: ROS 2 message types, CDR encoding, and the codecs of sensor readings."""
 
 from .cdr import MAP, Shape, marker_bytes, people_bytes
-from .codec import Codec, Told, arrays_of, mounted
-from .contacts import COLLISIONS, FORCES, Collided, Pushed, collided, pushed, pushes
+from .codec import Codec, MeasuredReading, mount_pose, unpack_arrays
+from .contacts import (
+    COLLISIONS,
+    FORCES,
+    ContactEventRecord,
+    ContactForceRecord,
+    contact_messages,
+    read_contact_events,
+    read_forces,
+)
 from .images import image_in, picture_codec
 from .marker_array import markers
 from .message_store import Messages
 from .point_clouds import points_in
-from .reading_codecs import CODECS, KIND, REST, codec_of, reading_of, said, unsaid
+from .reading_codecs import CODECS, KIND, REST, codec_of, decode_reading, encode_reading, unencoded_fields
 
 __all__ = [
     "CODECS",
@@ -17,24 +25,24 @@ __all__ = [
     "MAP",
     "REST",
     "Codec",
-    "Collided",
+    "ContactEventRecord",
+    "ContactForceRecord",
+    "MeasuredReading",
     "Messages",
-    "Pushed",
     "Shape",
-    "Told",
-    "arrays_of",
     "codec_of",
-    "collided",
+    "contact_messages",
+    "decode_reading",
+    "encode_reading",
     "image_in",
     "marker_bytes",
     "markers",
-    "mounted",
+    "mount_pose",
     "people_bytes",
     "picture_codec",
     "points_in",
-    "pushed",
-    "pushes",
-    "reading_of",
-    "said",
-    "unsaid",
+    "read_contact_events",
+    "read_forces",
+    "unencoded_fields",
+    "unpack_arrays",
 ]

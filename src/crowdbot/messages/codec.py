@@ -15,13 +15,13 @@ from crowdbot.core import Pose, SpatialPose
 if TYPE_CHECKING:
     from .message_store import Messages
 
-__all__ = ["Codec", "Told", "arrays_of", "mounted", "packed"]
+__all__ = ["Codec", "MeasuredReading", "mount_pose", "pack_arrays", "unpack_arrays"]
 
 MOST = 1 << 27
 """No array may have more numbers: a few bytes can pretend to hold any amount."""
 
 
-class Told(NamedTuple):
+class MeasuredReading(NamedTuple):
     """A reading that is to be recorded.
 
     Fields:
@@ -65,26 +65,26 @@ class Codec:
         frames: fixed frames that the messages need: parent, child, and where the child is in it, by robot and topic.
     """
 
-    write: Callable[[Messages, Told], Rows]
+    write: Callable[[Messages, MeasuredReading], Rows]
     read: Callable[[Mapping[str, Any], Mapping[str, Any]], dict[str, Any]]
     rest: tuple[str, ...] = ()
     short: tuple[str, ...] = ()
     frames: Callable[[str, str], list[tuple[str, str, SpatialPose]]] = _no_frames
 
 
-def packed(
+def pack_arrays(
     fields: Mapping[str, Any], short: Sequence[str] = ()
 ) -> Iterator[tuple[str, str, NDArray[np.uint32], NDArray[np.uint8]]]:
     """Yield name, type, shape and bytes of arrays and poses; an array of one number over and over keeps it once.
 
-    >>> [(name, kind, len(data)) for name, kind, _, data in packed({"part": np.full((1, 360), -1)})]
+    >>> [(name, kind, len(data)) for name, kind, _, data in pack_arrays({"part": np.full((1, 360), -1)})]
     [('part', '<i8', 8)]
     """
     for name, value in fields.items():
         if isinstance(value, SpatialPose):
-            yield from packed({f"{name}.position": value.position, f"{name}.rotation": value.rotation})
+            yield from pack_arrays({f"{name}.position": value.position, f"{name}.rotation": value.rotation})
         elif isinstance(value, Pose):
-            yield from packed({f"{name}.position": value.position, f"{name}.heading": value.heading})
+            yield from pack_arrays({f"{name}.position": value.position, f"{name}.heading": value.heading})
         else:
             array = np.ascontiguousarray(value, dtype=np.float32 if name in short else None)
             flat = array.reshape(-1)
@@ -93,7 +93,7 @@ def packed(
             yield name, array.dtype.str, np.array(array.shape, dtype=np.uint32), data
 
 
-def arrays_of(fields: Iterable[Any]) -> dict[str, Any]:
+def unpack_arrays(fields: Iterable[Any]) -> dict[str, Any]:
     """Return the arrays and poses of ``crowdbot_msgs/Array`` messages by name.
 
     Raises:
@@ -117,7 +117,7 @@ def arrays_of(fields: Iterable[Any]) -> dict[str, Any]:
     return found
 
 
-def mounted(robot: Any, mount: Any) -> SpatialPose:
+def mount_pose(robot: Any, mount: Any) -> SpatialPose:
     """Return where a sensor sits on its robot, which may know that from its own links."""
     if hasattr(robot, "placed"):
         x, y, z, roll, pitch, yaw = robot.placed(mount)

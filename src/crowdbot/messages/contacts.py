@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 if TYPE_CHECKING:
     from .message_store import Messages
 
-__all__ = ["COLLISIONS", "FORCES", "Collided", "Pushed", "collided", "pushed", "pushes"]
+__all__ = [
+    "COLLISIONS",
+    "FORCES",
+    "ContactEventRecord",
+    "ContactForceRecord",
+    "contact_messages",
+    "read_contact_events",
+    "read_forces",
+]
 
 FORCES = "/crowdbot/forces"
 """Topic of the forces of each step."""
@@ -16,7 +24,7 @@ COLLISIONS = "/crowdbot/collisions"
 """Topic of the collisions that are over."""
 
 
-class Pushed(NamedTuple):
+class ContactForceRecord(NamedTuple):
     """What two did to each other in one step: see ``crowdbot.world.ContactForce``.
 
     Fields:
@@ -38,7 +46,7 @@ class Pushed(NamedTuple):
     point: tuple[float, float, float]
 
 
-class Collided(NamedTuple):
+class ContactEventRecord(NamedTuple):
     """From the first touch of two to their parting: see ``crowdbot.world.BodyContactEvent``; times in [s]."""
 
     first: str
@@ -60,7 +68,7 @@ class Collided(NamedTuple):
     severity: float
 
 
-def pushes(make: Messages, now: int, frame: Any, names: Mapping[int, str]) -> Iterator[tuple[str, Any]]:
+def contact_messages(make: Messages, now: int, frame: Any, names: Mapping[int, str]) -> Iterator[tuple[str, Any]]:
     """Yield topic and message of the forces and collisions of an instant, if there are any.
 
     Args:
@@ -101,7 +109,7 @@ def _force(make: Messages, one: Any, called: Callable[[Any], str]) -> Any:
 
 def _collision(make: Messages, one: Any, called: Callable[[Any], str]) -> Any:
     words = ("cause", "limb", "part", "region", "steady_region")
-    numbers = [name for name in Collided._fields if name not in ("first", "second", *words)]
+    numbers = [name for name in ContactEventRecord._fields if name not in ("first", "second", *words)]
     return make.make(
         "crowdbot_msgs/msg/Collision",
         first=called(one.first),
@@ -111,10 +119,10 @@ def _collision(make: Messages, one: Any, called: Callable[[Any], str]) -> Any:
     )
 
 
-def pushed(time: float, message: Any) -> list[Pushed]:
+def read_forces(time: float, message: Any) -> list[ContactForceRecord]:
     """Return the forces of a message."""
     return [
-        Pushed(
+        ContactForceRecord(
             time, one.first, one.second, one.first_part, one.limb, one.part, one.force,
             (one.vector.x, one.vector.y, one.vector.z), one.depth, (one.point.x, one.point.y, one.point.z),
         )
@@ -122,6 +130,8 @@ def pushed(time: float, message: Any) -> list[Pushed]:
     ]  # fmt: skip
 
 
-def collided(message: Any) -> list[Collided]:
+def read_contact_events(message: Any) -> list[ContactEventRecord]:
     """Return the collisions of a message."""
-    return [Collided(*(getattr(one, name) for name in Collided._fields)) for one in message.collisions]
+    return [
+        ContactEventRecord(*(getattr(one, name) for name in ContactEventRecord._fields)) for one in message.collisions
+    ]

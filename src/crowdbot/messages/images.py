@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from crowdbot.core import SpatialPose
 from crowdbot.sensors import Lens
 
-from .codec import Codec, Told
+from .codec import Codec, MeasuredReading
 
 if TYPE_CHECKING:
     from .message_store import Messages
@@ -29,7 +29,7 @@ KINDS = {"32FC1": ("<f4", 1), "32SC1": ("<i4", 1), "rgb8": ("|u1", 3)}
 """Type and number of channels of each encoding that is written here."""
 
 
-def _image(make: Messages, told: Told, encoding: str, pixels: NDArray[Any]) -> Any:
+def _image(make: Messages, told: MeasuredReading, encoding: str, pixels: NDArray[Any]) -> Any:
     kind, channels = KINDS[encoding]
     rows = np.ascontiguousarray(pixels, dtype=kind)
     return make.make(
@@ -55,7 +55,7 @@ def image_in(message: Any) -> NDArray[Any]:
     return np.frombuffer(bytes(message.data), dtype=kind).reshape(shape)
 
 
-def _camera_info(make: Messages, told: Told, lens: Lens) -> Any:
+def _camera_info(make: Messages, told: MeasuredReading, lens: Lens) -> Any:
     k = np.array([lens.fx, 0.0, lens.cx, 0.0, lens.fy, lens.cy, 0.0, 0.0, 1.0])
     region = make.make("sensor_msgs/msg/RegionOfInterest", x_offset=0, y_offset=0, height=0, width=0, do_rectify=False)
     return make.make(
@@ -80,12 +80,12 @@ def lens_in(message: Any) -> Lens:
     return Lens(message.width, message.height, fx, fy, cx, cy, tuple(float(value) for value in message.d))  # type: ignore[arg-type]
 
 
-def _labels(make: Messages, told: Told) -> list[tuple[str, Any]]:
+def _labels(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
     hit = getattr(told.reading, "hit", None)
     return [] if hit is None else [("/labels", _image(make, told, "32SC1", hit[0]))]
 
 
-def _write_depth(make: Messages, told: Told) -> list[tuple[str, Any]]:
+def _write_depth(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
     return [
         ("/image", _image(make, told, "32FC1", told.reading.depth[0])),
         *_labels(make, told),
@@ -101,7 +101,7 @@ def _read_depth(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str,
     }
 
 
-def _write_picture(make: Messages, told: Told) -> list[tuple[str, Any]]:
+def _write_picture(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
     return [
         ("/image", _image(make, told, "rgb8", told.reading.rgb[0])),
         *_labels(make, told),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .codec import Codec, Told
+from .codec import Codec, MeasuredReading
 
 if TYPE_CHECKING:
     from .message_store import Messages
@@ -29,7 +29,7 @@ CLOUD = np.dtype(
 SECTORS = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("depth", "<f4"), ("label", "<i4"), ("sector", "<u4")])
 
 
-def _message(make: Messages, told: Told, rows: NDArray[Any]) -> Any:
+def _message(make: Messages, told: MeasuredReading, rows: NDArray[Any]) -> Any:
     """Return a cloud of ``[H, W]`` structured rows."""
     height, width = rows.shape
     places = rows.dtype.fields
@@ -71,7 +71,7 @@ def points_in(message: Any) -> NDArray[Any]:
     return np.frombuffer(bytes(message.data), dtype=kind).reshape(message.height, message.width)
 
 
-def _write_cloud(make: Messages, told: Told) -> list[tuple[str, Any]]:
+def _write_cloud(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
     reading = told.reading
     rows = np.zeros(reading.ranges.shape[1:], dtype=CLOUD)
     ends = reading.points()[0]
@@ -91,7 +91,7 @@ def _read_cloud(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str,
     }
 
 
-def _write_touch(make: Messages, told: Told) -> list[tuple[str, Any]]:
+def _write_touch(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
     reading, sensor = told.reading, told.sensor
     count = reading.pressed.shape[1]
     rows = np.zeros((1, count), dtype=SECTORS)

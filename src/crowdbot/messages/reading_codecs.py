@@ -41,14 +41,14 @@ from crowdbot.sensors import (
     TrackedPeople,
 )
 
-from .codec import Codec, Told, arrays_of, packed
+from .codec import Codec, MeasuredReading, pack_arrays, unpack_arrays
 from .images import depth_codec, picture_codec
 from .point_clouds import cloud_codec, touch_codec
 
 if TYPE_CHECKING:
     from .message_store import Messages
 
-__all__ = ["CODECS", "KIND", "REST", "codec_of", "reading_of", "said"]
+__all__ = ["CODECS", "KIND", "REST", "codec_of", "decode_reading", "encode_reading"]
 
 KIND = "crowdbot_msgs/msg/Reading"
 REST = "/reading"
@@ -73,7 +73,7 @@ def recorded_name(kind: type[Reading]) -> str:
     return KIND_NAMES.get(kind.__name__, kind.__name__)
 
 
-def said(make: Messages, told: Told) -> list[tuple[str, Any]]:
+def encode_reading(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
     """Return the messages of a reading, with what their topics have after that of the sensor.
 
     Raises:
@@ -84,7 +84,7 @@ def said(make: Messages, told: Told) -> list[tuple[str, Any]]:
     rest = {"pose": reading.pose} | {FIELD_NAMES.get(name, name): getattr(reading, name) for name in codec.rest}
     fields = [
         make.make("crowdbot_msgs/msg/Array", name=name, dtype=kind, shape=shape, data=data)
-        for name, kind, shape, data in packed(rest, codec.short)
+        for name, kind, shape, data in pack_arrays(rest, codec.short)
     ]
     kind = next(cls for cls in type(reading).__mro__ if cls in CODECS)
     whole = make.make(KIND, header=told.header(make), kind=recorded_name(kind), fields=fields)
@@ -107,7 +107,7 @@ def codec_of(kind: type[Reading], topic: str = "") -> Codec:
     )
 
 
-def reading_of(whole: Any, others: Mapping[str, Any]) -> Reading:
+def decode_reading(whole: Any, others: Mapping[str, Any]) -> Reading:
     """Return the reading that messages hold.
 
     Args:
@@ -119,7 +119,7 @@ def reading_of(whole: Any, others: Mapping[str, Any]) -> Reading:
     """
     kind = next(cls for cls in CODECS if recorded_name(cls) == whole.kind)
     names = {recorded: name for name, recorded in FIELD_NAMES.items()}
-    rest = {names.get(name, name): value for name, value in arrays_of(whole.fields).items()}
+    rest = {names.get(name, name): value for name, value in unpack_arrays(whole.fields).items()}
     pose = rest.pop("pose")
     stamp = whole.header.stamp
     fields = CODECS[kind].read(others, rest) | rest
@@ -127,7 +127,7 @@ def reading_of(whole: Any, others: Mapping[str, Any]) -> Reading:
     return made
 
 
-def _write_scan(make: Messages, told: Told) -> list[tuple[str, Any]]:
+def _write_scan(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
     reading, sensor = told.reading, told.sensor
     angles = reading.angles
     step = getattr(sensor, "step", float(angles[1] - angles[0]) if len(angles) > 1 else 0.0)
@@ -156,7 +156,7 @@ def _read_scan(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str, 
     }
 
 
-def _write_echo(make: Messages, told: Told) -> list[tuple[str, Any]]:
+def _write_echo(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
     sensor = told.sensor
     infrared = isinstance(sensor, Infrared)
     half = getattr(sensor, "dispersion" if infrared else "half_angle", 0.0)
@@ -176,7 +176,7 @@ def _read_echo(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str, 
     return {"ranges": np.array([others[""].range], dtype=np.float64)}
 
 
-def _write_inertial(make: Messages, told: Told) -> list[tuple[str, Any]]:
+def _write_inertial(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
     reading, sensor = told.reading, told.sensor
     unknown = np.zeros(9)
     unknown[0] = -1.0  # as the type says: there is no estimate of the orientation
@@ -206,7 +206,7 @@ def _read_inertial(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[s
     }
 
 
-def _write_odometry(make: Messages, told: Told) -> list[tuple[str, Any]]:
+def _write_odometry(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
     reading = told.reading
     (x, y), heading = reading.estimate.position[0].tolist(), float(reading.estimate.heading[0])
     odometry = make.odometry(told.nanoseconds, told.robot, x, y, heading, reading.twist[0], frame=f"{told.robot}/odom")
@@ -218,7 +218,7 @@ def _read_odometry(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[s
     return {"twist": np.array([[twist.linear.x, twist.angular.z, twist.linear.y]])}
 
 
-def _write_tracked(make: Messages, told: Told) -> list[tuple[str, Any]]:
+def _write_tracked(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
     reading = told.reading
     people = []
     for who in np.flatnonzero(reading.present[0]).tolist():
@@ -270,7 +270,7 @@ CODECS: dict[type[Reading], Codec] = {
 """What each class of readings becomes; a subclass is recorded as its parent."""
 
 
-def unsaid() -> list[type[Reading]]:
+def unencoded_fields() -> list[type[Reading]]:
     """Return the classes of readings of ``crowdbot.sensors`` that the table lacks."""
     from crowdbot import sensors
 

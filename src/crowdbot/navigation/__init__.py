@@ -4,14 +4,14 @@ from .action import Action
 from .dynamic_window import WindowCosts, dynamic_window_twist
 from .navigator import Navigator
 from .observation import DriveLimits, Observation, VisiblePeople
-from .orca import ORCA
+from .orca import ORCANavigator
 from .straight import Straight
 
 __all__ = [
-    "ORCA",
     "Action",
     "DriveLimits",
     "Navigator",
+    "ORCANavigator",
     "Observation",
     "Straight",
     "VisiblePeople",

@@ -15,7 +15,7 @@ from .dynamic_window import dynamic_window_twist
 from .navigator import Navigator
 from .observation import SLOWING_TIME, Observation
 
-__all__ = ["ORCA"]
+__all__ = ["ORCANavigator"]
 
 UNITS = {
     "speed": "m/s",
@@ -29,7 +29,7 @@ UNITS = {
 
 
 @dataclass(frozen=True)
-class ORCA(Navigator):
+class ORCANavigator(Navigator):
     """Chooses a velocity with reciprocal collision avoidance, then the best reachable twist.
 
     The visible people are agents with constant velocity that take their part of the avoidance (``share``). The drive
@@ -56,7 +56,7 @@ class ORCA(Navigator):
     >>> meeting = Observation(
     ...     pose=(0.0, 0.0, 0.0), goal=(9.0, 0.0), radius=0.3, limits=DriveLimits(1.0, 2.0), dt=0.1, people=person
     ... )
-    >>> ORCA().act(meeting).turn < 0.0
+    >>> ORCANavigator().act(meeting).turn < 0.0
     True
     """
 

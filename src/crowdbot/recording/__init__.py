@@ -1,38 +1,38 @@
 """Recording: episodes as MCAP files. Write, read, repair, replay, branch, export."""
 
-from .attachments import Carried, LeftOut, named_files
+from .attachments import AttachedFile, SkippedAttachmentWarning, named_files
 from .episode_branch import branch
 from .episode_export import export
-from .episode_reader import Recorded, moments, read_episode
+from .episode_reader import RecordedEpisode, iterate_steps, read_episode
 from .episode_repair import repair
 from .episode_replay import Replay, replay
 from .episode_writer import Recorder
 from .image_export import folder_of
 from .metadata import as_json, versions
 from .reading_tables import READING_TABLES
-from .recorded_run import opened, record, run, target
-from .step_records import Moment
+from .recorded_run import episode_path, open_run, record, run
+from .step_records import RecordedStep
 
 __all__ = [
     "READING_TABLES",
-    "Carried",
-    "LeftOut",
-    "Moment",
-    "Recorded",
+    "AttachedFile",
+    "RecordedEpisode",
+    "RecordedStep",
     "Recorder",
     "Replay",
+    "SkippedAttachmentWarning",
     "as_json",
     "branch",
+    "episode_path",
     "export",
     "folder_of",
-    "moments",
+    "iterate_steps",
     "named_files",
-    "opened",
+    "open_run",
     "read_episode",
     "record",
     "repair",
     "replay",
     "run",
-    "target",
     "versions",
 ]

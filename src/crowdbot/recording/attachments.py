@@ -22,21 +22,38 @@ from typing import Any, NamedTuple
 
 from crowdbot.core import EpisodeError
 from crowdbot.data import McapError, McapOpcode, McapReader, read_attachment
-from crowdbot.trials import Drawn, Trial, beside, is_code, is_file_of_area, map_files, named_code, outline
+from crowdbot.trials import (
+    RandomizedModel,
+    Trial,
+    code_references,
+    is_area_file,
+    is_code,
+    map_files,
+    outline,
+    resolve_file,
+)
 
-__all__ = ["Carried", "LeftOut", "Place", "carried", "left_out", "named_files", "unpacked"]
+__all__ = [
+    "AttachedFile",
+    "SkippedAttachmentWarning",
+    "UnpackedFiles",
+    "collect_attachments",
+    "describe_skipped",
+    "named_files",
+    "unpack_attachments",
+]
 
 MOST = 64 << 20
 """An episode keeps files of at most so many bytes together."""
 DATA, CODE = "data", "code"
 
 
-class LeftOut(UserWarning):
+class SkippedAttachmentWarning(UserWarning):
     """Files that a trial names are not kept in its recording."""
 
 
 @dataclass(frozen=True)
-class Carried:
+class AttachedFile:
     """A file that belongs to an episode.
 
     Fields:
@@ -76,7 +93,7 @@ class Carried:
         return self.is_in(folder) and path.stat().st_size == self.size and _digest(path) == self.digest
 
 
-class Place(NamedTuple):
+class UnpackedFiles(NamedTuple):
     """The folder to read the trial of an episode from, and the code there that is not the recorded one."""
 
     folder: Path
@@ -93,13 +110,13 @@ def named_files(trial: Trial) -> dict[str, tuple[str, Path]]:
     """
     found: dict[str, tuple[str, Path]] = {}
     stage = trial.stage
-    if stage.area and is_file_of_area(stage.area):
-        found[stage.area] = DATA, beside(stage.area, stage.folder, stage.trust)
+    if stage.area and is_area_file(stage.area):
+        found[stage.area] = DATA, resolve_file(stage.area, stage.folder, stage.trust)
     if stage.map:
         for name, path in map_files(stage.map, stage.folder, stage.trust).items():
             found[name] = DATA, path
     for one in trial.recorded:
-        found[one.data] = DATA, beside(one.data, one.folder, one.trust)
+        found[one.data] = DATA, resolve_file(one.data, one.folder, one.trust)
     for thing in _parts(trial):
         if hasattr(thing, "files"):
             for path in thing.files():
@@ -124,7 +141,7 @@ def _parts(thing: Any) -> Iterator[Any]:
     for part in outline(cls):
         value = getattr(thing, part.name)
         if part.role in ("plugged", "mounted"):
-            yield value.model if isinstance(value, Drawn) else value
+            yield value.model if isinstance(value, RandomizedModel) else value
         elif part.role == "child" and value is not None:
             yield from _parts(value)
         elif part.role == "children":
@@ -132,7 +149,7 @@ def _parts(thing: Any) -> Iterator[Any]:
                 yield from _parts(one)
 
 
-def carried(trials: Iterable[Trial]) -> list[tuple[Carried, Path]]:
+def collect_attachments(trials: Iterable[Trial]) -> list[tuple[AttachedFile, Path]]:
     """Return the files of trials with their places, and which of them an episode keeps."""
     named: dict[str, tuple[str, Path]] = {}
     for trial in trials:
@@ -142,11 +159,11 @@ def carried(trials: Iterable[Trial]) -> list[tuple[Carried, Path]]:
         size = path.stat().st_size
         kept = _is_inside(name) and total + size <= MOST
         total += size if kept else 0
-        rows.append((Carried(name, kind, size, _digest(path), kept), path))
+        rows.append((AttachedFile(name, kind, size, _digest(path), kept), path))
     return rows
 
 
-def left_out(rows: Iterable[Carried]) -> str:
+def describe_skipped(rows: Iterable[AttachedFile]) -> str:
     """Return a sentence about the files that an episode does not keep, empty when there are none."""
     gone = [row for row in rows if not row.kept]
     if not gone:
@@ -166,7 +183,9 @@ def left_out(rows: Iterable[Carried]) -> str:
 
 
 @contextlib.contextmanager
-def unpacked(path: Path, known: Mapping[str, str], folder: Path | None, trust: bool) -> Iterator[Place]:
+def unpack_attachments(
+    path: Path, known: Mapping[str, str], folder: Path | None, trust: bool
+) -> Iterator[UnpackedFiles]:
     """Give the folder that the trial of an episode is to be read from, for as long as the context lasts.
 
     It is ``folder`` itself (default: the folder of the episode) when everything lies there as it was recorded, and
@@ -191,7 +210,7 @@ def unpacked(path: Path, known: Mapping[str, str], folder: Path | None, trust: b
     if all(row.lies_in(own) or row.name in changed for row in rows):
         if not trust:
             _check_named(path, own, known, rows)
-        yield Place(own, changed)
+        yield UnpackedFiles(own, changed)
         return
     inside = _attached(path)
     with tempfile.TemporaryDirectory(prefix="crowdbot-") as top:
@@ -205,7 +224,7 @@ def unpacked(path: Path, known: Mapping[str, str], folder: Path | None, trust: b
                 target.write_bytes(_content(path, own, row, inside, trust))
             else:
                 shutil.copyfile(own / row.name, target)
-        yield Place(place, changed)
+        yield UnpackedFiles(place, changed)
 
 
 def _deep(top: Path, names: Iterable[str]) -> Path:
@@ -216,9 +235,9 @@ def _deep(top: Path, names: Iterable[str]) -> Path:
     return place
 
 
-def _rows(path: Path, known: Mapping[str, str]) -> list[Carried]:
+def _rows(path: Path, known: Mapping[str, str]) -> list[AttachedFile]:
     try:
-        rows = [Carried(**row) for row in json.loads(known.get("files", "[]"))]
+        rows = [AttachedFile(**row) for row in json.loads(known.get("files", "[]"))]
     except (ValueError, TypeError) as error:
         raise EpisodeError(f"{path} does not say which files belong to it: {error}") from None
     for row in rows:
@@ -227,7 +246,7 @@ def _rows(path: Path, known: Mapping[str, str]) -> list[Carried]:
     return rows
 
 
-def _check_outside(path: Path, own: Path, row: Carried, trust: bool) -> None:
+def _check_outside(path: Path, own: Path, row: AttachedFile, trust: bool) -> None:
     what = f"the file {row.name[:80]!r}, which lies outside the folder of its trial"
     if not trust:
         raise EpisodeError(f"{path} needs {what}; pass --trust to allow it")
@@ -243,10 +262,10 @@ def _check_outside(path: Path, own: Path, row: Carried, trust: bool) -> None:
         )
 
 
-def _check_named(path: Path, own: Path, known: Mapping[str, str], rows: Iterable[Carried]) -> None:
+def _check_named(path: Path, own: Path, known: Mapping[str, str], rows: Iterable[AttachedFile]) -> None:
     """Refuse code that the trial names but of which the episode does not say what was recorded."""
     sure = {(own / row.name).resolve() for row in rows if row.code}
-    for name in named_code(known, own):
+    for name in code_references(known, own):
         if (own / name).resolve() not in sure:
             raise EpisodeError(
                 f"{path} needs the code {name[:80]!r} and does not say with which bytes it was recorded; the one in"
@@ -254,7 +273,7 @@ def _check_named(path: Path, own: Path, known: Mapping[str, str], rows: Iterable
             )
 
 
-def _content(path: Path, own: Path, row: Carried, inside: Mapping[str, bytes], trust: bool) -> bytes:
+def _content(path: Path, own: Path, row: AttachedFile, inside: Mapping[str, bytes], trust: bool) -> bytes:
     if row.lies_in(own) or (row.code and trust and row.is_in(own)):
         return (own / row.name).read_bytes()
     if row.code and row.is_in(own) and not trust:

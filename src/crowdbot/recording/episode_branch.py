@@ -9,25 +9,25 @@ from typing import Any, overload
 
 from crowdbot.core import EpisodeError, InputError
 from crowdbot.simulation import (
-    Digest,
     Episode,
-    Log,
+    EpisodeDigest,
+    EpisodeLog,
+    EpisodeStatistics,
+    RunSummary,
     Simulation,
     Sink,
-    Stop,
-    Summary,
-    Tally,
+    StopRequest,
     apply_overrides,
-    drive,
-    stopping,
+    catch_interrupt,
+    run_to_end,
 )
 from crowdbot.trials import Trial, apply_values, trial_xml
 
-from .attachments import unpacked
-from .episode_reader import Recorded, read_metadata
+from .attachments import unpack_attachments
+from .episode_reader import RecordedEpisode, read_metadata
 from .episode_writer import Recorder
-from .provenance import Comparison, Course, Part, digests
-from .recorded_run import target
+from .provenance import DigestComparison, Provenance, ProvenanceSegment, digests
+from .recorded_run import episode_path
 
 __all__ = ["branch"]
 
@@ -52,12 +52,12 @@ def branch(
 ) -> Episode: ...  # fmt: skip
 @overload
 def branch(
-    source: Path | str | Recorded, at: float, *, seed: int | None = None, changes: Mapping[str, Any] | None = None,
-    trial: Trial | None = None, out: Path | str | None = None, folder: Path | None = None, trust: bool = False,
+    source: Path | str | RecordedEpisode, at: float, *, seed: int | None = None,
+    changes: Mapping[str, Any] | None = None, trial: Trial | None = None, out: Path | str | None = None, folder: Path | None = None, trust: bool = False,
     progress: Progress | None = None,
-) -> Summary: ...  # fmt: skip
+) -> RunSummary: ...  # fmt: skip
 def branch(
-    source: Path | str | Recorded | Episode,
+    source: Path | str | RecordedEpisode | Episode,
     at: float,
     *,
     seed: int | None = None,
@@ -67,7 +67,7 @@ def branch(
     folder: Path | None = None,
     trust: bool = False,
     progress: Progress | None = None,
-) -> Summary | Episode:
+) -> RunSummary | Episode:
     """Continue an episode from a recorded instant, with the same or with other values.
 
     The trial runs again, without recording, up to the instant; its digest is compared with the recorded digest at
@@ -86,7 +86,7 @@ def branch(
         progress: called with the completed share, 0 to 1.
 
     Returns:
-        An :class:`Episode` for an episode in memory, otherwise a :class:`Summary`.
+        An :class:`Episode` for an episode in memory, otherwise a :class:`RunSummary`.
 
     Raises:
         EpisodeError: the file cannot be read, has no such instant, or does not replay to the same bytes.
@@ -102,54 +102,54 @@ def branch(
     options = _Options(seed, changes or {}, trial, out, progress)
     if isinstance(source, Episode):
         return _branch_of_episode(source, at, options)
-    path = source.path if isinstance(source, Recorded) else Path(source)
+    path = source.path if isinstance(source, RecordedEpisode) else Path(source)
     return _branch_of_file(path, at, folder, trust, options)
 
 
-def _branch_of_file(source: Path, at: float, folder: Path | None, trust: bool, options: _Options) -> Summary:
+def _branch_of_file(source: Path, at: float, folder: Path | None, trust: bool, options: _Options) -> RunSummary:
     out = options.out
-    if out is not None and target(out).exists() and target(out).resolve() == source.resolve():
+    if out is not None and episode_path(out).exists() and episode_path(out).resolve() == source.resolve():
         raise InputError(f"{source} is the episode to branch from; record the branch to another place")
-    with unpacked(source, read_metadata(source), folder, trust) as place:
-        course = Course.of(source, place.folder, trust)
-        tally, outcome, steps = _run(course, at, digests(source), options, Tally, str(source))
-    summary: Summary = tally.summary(outcome, steps, None if out is None else target(out))
+    with unpack_attachments(source, read_metadata(source), folder, trust) as place:
+        course = Provenance.of(source, place.folder, trust)
+        tally, outcome, steps = _run(course, at, digests(source), options, EpisodeStatistics, str(source))
+    summary: RunSummary = tally.summary(outcome, steps, None if out is None else episode_path(out))
     return summary
 
 
 def _branch_of_episode(episode: Episode, at: float, options: _Options) -> Episode:
     if episode.times[0] > 0.0:
         raise InputError("this episode is a branch; record the first one and branch from the files")
-    course = Course((Part(0, episode.trial, episode.seed),))
-    log, outcome, steps = _run(course, at, {}, options, Log, f"episode {episode.trial.name!r}")
+    course = Provenance((ProvenanceSegment(0, episode.trial, episode.seed),))
+    log, outcome, steps = _run(course, at, {}, options, EpisodeLog, f"episode {episode.trial.name!r}")
     after: Episode = log.episode(outcome, steps)
     return after
 
 
 def _run(
-    course: Course, at: float, wanted: Mapping[int, str], options: _Options, kind: type[Any], name: str
+    course: Provenance, at: float, wanted: Mapping[int, str], options: _Options, kind: type[Any], name: str
 ) -> tuple[Any, str, int]:
     last = course.parts[-1]
     old = last.trial if options.trial is None else options.trial
     new = apply_values(old, options.changes, place=f"trial {old.name!r} with changes")
     if options.out is not None:
         trial_xml(new)  # raises now if the trial cannot be recorded
-    with stopping() as stop:
-        comparison = Comparison(Digest(), dict(wanted))
+    with catch_interrupt() as stop:
+        comparison = DigestComparison(EpisodeDigest(), dict(wanted))
         simulation = _there(course, at, comparison, stop, options.progress, name, max(wanted, default=None))
         apply_overrides(simulation, new, options.seed)
         _check_period(simulation, new, at)
-        part = Part(simulation.tick, new, last.seed if options.seed is None else int(options.seed))
+        part = ProvenanceSegment(simulation.tick, new, last.seed if options.seed is None else int(options.seed))
         tally = kind(new, part.seed, comparison.digest)
         parts = (*course.parts, part)
         return tally, *_recorded(simulation, tally, comparison, parts, options.out, stop, options.progress)
 
 
 def _there(
-    course: Course,
+    course: Provenance,
     at: float,
-    comparison: Comparison,
-    stop: Stop,
+    comparison: DigestComparison,
+    stop: StopRequest,
     progress: Progress | None,
     name: str,
     latest: int | None,
@@ -167,7 +167,7 @@ def _there(
     return simulation
 
 
-def _tick(last: Part, at: float, name: str, latest: int | None) -> int:
+def _tick(last: ProvenanceSegment, at: float, name: str, latest: int | None) -> int:
     """Return the tick of an instant; ``latest`` is the last one that was recorded [ns]."""
     period, step = round(last.trial.recording.period * 1e9), round(last.trial.step * 1e9)
     nanoseconds = round(at * 1e9)
@@ -191,10 +191,10 @@ def _check_period(simulation: Simulation, new: Trial, at: float) -> None:
 def _recorded(
     simulation: Simulation,
     tally: Any,
-    comparison: Comparison,
-    parts: tuple[Part, ...],
+    comparison: DigestComparison,
+    parts: tuple[ProvenanceSegment, ...],
     out: Path | str | None,
-    stop: Stop,
+    stop: StopRequest,
     progress: Progress | None,
 ) -> tuple[str, int]:
     """Record the instant itself and everything after; return outcome and steps."""
@@ -204,10 +204,10 @@ def _recorded(
     rest = None if progress is None else lambda share: progress(0.5 + 0.5 * share)
     sinks: list[Sink] = [tally]
     if out is None:
-        return drive(simulation, sinks, stop, rest), simulation.tick
-    course, earlier = Course(parts), [part.trial for part in parts[:-1]]
-    with Recorder(target(out), tally, course.origin, begin=parts[-1].tick, earlier=earlier) as recorder:
+        return run_to_end(simulation, sinks, stop, rest), simulation.tick
+    course, earlier = Provenance(parts), [part.trial for part in parts[:-1]]
+    with Recorder(episode_path(out), tally, course.origin, begin=parts[-1].tick, earlier=earlier) as recorder:
         recorder.take(frame)
-        outcome = drive(simulation, [tally, recorder], stop, rest)
+        outcome = run_to_end(simulation, [tally, recorder], stop, rest)
         recorder.complete(outcome, simulation.tick)
     return outcome, simulation.tick

@@ -10,12 +10,12 @@ from typing import Any, get_type_hints
 import numpy as np
 
 from crowdbot.core import EpisodeError, InputError, did_you_mean
-from crowdbot.messages import Collided, Pushed
+from crowdbot.messages import ContactEventRecord, ContactForceRecord
 
-from .episode_reader import moments, read_metadata
-from .image_export import ExportedPictures
+from .episode_reader import iterate_steps, read_metadata
+from .image_export import ImageExport
 from .reading_tables import READING_TABLES
-from .step_records import Moment
+from .step_records import RecordedStep
 
 __all__ = ["TABLES", "export"]
 
@@ -58,9 +58,9 @@ def export(path: Path | str, to: Path | str, table: str = "people") -> int:
     if to.suffix not in (".parquet", ".csv"):
         raise InputError(f"{to} ends in {to.suffix or 'nothing'}; give a name that ends in .parquet or .csv")
     bodies = _bodies(path)
-    pictures = ExportedPictures(to)
+    pictures = ImageExport(to)
     make = pictures.columns if table == "pictures" else TABLES[table]
-    batches = (make(moment, bodies) for moment in moments(path))
+    batches = (make(moment, bodies) for moment in iterate_steps(path))
     draft = to.with_name(f".{to.name}.{os.getpid()}.part")
     try:
         to.parent.mkdir(parents=True, exist_ok=True)
@@ -127,7 +127,7 @@ def _together(batches: list[Columns]) -> Columns:
     return {name: np.concatenate([np.asarray(batch[name]) for batch in batches]) for name in batches[0]}
 
 
-def _people(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
+def _people(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Columns:
     names = {number: name for name, (number, _) in bodies.items()}
     if moment.people is None:
         return _people(_nobody(moment), bodies)
@@ -145,16 +145,16 @@ def _people(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
     }
 
 
-def _nobody(moment: Moment) -> Moment:
+def _nobody(moment: RecordedStep) -> RecordedStep:
     from crowdbot.metrics import AgentStates
 
     none = np.zeros((0, 2))
-    return Moment(
+    return RecordedStep(
         moment.nanoseconds, AgentStates(moment.time, np.zeros(0, np.int64), none, none, none[:, 0], none[:, 0])
     )
 
 
-def _robots(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
+def _robots(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Columns:
     there = [name for name in bodies if name in moment.robots]
     states = [moment.robots[name] for name in there]
     words = ("forward", "turn", "left")
@@ -170,7 +170,7 @@ def _robots(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
     }
 
 
-def _scans(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
+def _scans(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Columns:
     rows = [(name, scan, len(scan.ranges)) for name, scan in moment.scans.items()]
 
     def joined(parts: list[Any], kind: Any) -> Any:
@@ -189,7 +189,7 @@ def _scans(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
     }
 
 
-def _contacts(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
+def _contacts(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Columns:
     rows = moment.contacts
     return {
         "time": np.array([row.time for row in rows], float),
@@ -213,16 +213,16 @@ def _named(kind: type[Any], rows: list[Any], wide: tuple[str, ...] = ()) -> Colu
     return columns
 
 
-def _forces(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
-    return _named(Pushed, moment.forces, ("vector", "point"))
+def _forces(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Columns:
+    return _named(ContactForceRecord, moment.forces, ("vector", "point"))
 
 
-def _collisions(moment: Moment, bodies: dict[str, tuple[int, float]]) -> Columns:
+def _collisions(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Columns:
     times = {"time": np.full(len(moment.collisions), moment.time)}
-    return times | _named(Collided, moment.collisions)
+    return times | _named(ContactEventRecord, moment.collisions)
 
 
-TABLES: dict[str, Callable[[Moment, dict[str, tuple[int, float]]], Columns]] = {
+TABLES: dict[str, Callable[[RecordedStep, dict[str, tuple[int, float]]], Columns]] = {
     "people": _people,
     "robots": _robots,
     "scans": _scans,

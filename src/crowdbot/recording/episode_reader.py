@@ -14,23 +14,23 @@ from numpy.typing import NDArray
 
 from crowdbot.core import EpisodeError
 from crowdbot.data import MCAP_MAGIC, McapReader, Trajectories
-from crowdbot.messages import Collided, Pushed
+from crowdbot.messages import ContactEventRecord, ContactForceRecord
 from crowdbot.metrics import AgentStates
 from crowdbot.sensors import Reading
 from crowdbot.simulation import ScanRow, tracks_of
 
-from .episode_repair import Ending
+from .episode_repair import EpisodeEnd
 from .metadata import END_KEYS, ENDING, KEYS, METADATA, from_json
-from .step_records import Moment, Touched, read_moments
+from .step_records import RecordedContact, RecordedStep, read_steps
 
-__all__ = ["Recorded", "moments", "read_episode", "read_metadata"]
+__all__ = ["RecordedEpisode", "iterate_steps", "read_episode", "read_metadata"]
 
 Floats = NDArray[np.float64]
 T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
-class Recorded:
+class RecordedEpisode:
     """What an episode file holds; the fields of :class:`Episode` that a file keeps, under the same names.
 
     Fields:
@@ -70,11 +70,11 @@ class Recorded:
     scans_by_topic: Mapping[str, tuple[ScanRow, ...]]
     walls: tuple[Floats, ...]
     metrics: Mapping[str, float]
-    contacts: tuple[Touched, ...]
+    contacts: tuple[RecordedContact, ...]
     digests: tuple[str, ...]
     readings: Mapping[str, tuple[Reading, ...]] = field(default_factory=dict)
-    forces: tuple[Pushed, ...] = ()
-    collisions: tuple[Collided, ...] = ()
+    forces: tuple[ContactForceRecord, ...] = ()
+    collisions: tuple[ContactEventRecord, ...] = ()
 
     @property
     def xml(self) -> str:
@@ -121,7 +121,7 @@ class Recorded:
         return tracks_of(self, self.name, dt)
 
 
-def read_episode(path: Path | str) -> Recorded:
+def read_episode(path: Path | str) -> RecordedEpisode:
     """Read an episode file, also of a run that was killed or is still going on.
 
     Raises:
@@ -131,14 +131,14 @@ def read_episode(path: Path | str) -> Recorded:
     with _opened(path) as stream:
         tape = McapReader(stream)
         with _sentences(path):
-            found = list(read_moments(tape))
+            found = list(read_steps(tape))
         known = _known(path, tape.metadata)
     with _sentences(path, f"does not hold what its record {METADATA!r} says"):
         return _assembled(path, known, found)
 
 
 def read_metadata(path: Path | str) -> dict[str, str]:
-    """Return what an episode file says of itself, without its messages; see :attr:`Recorded.metadata`.
+    """Return what an episode file says of itself, without its messages; see :attr:`RecordedEpisode.metadata`.
 
     What only the end of a run can tell (outcome, digest, ...) is missing when the run was killed.
 
@@ -153,7 +153,7 @@ def read_metadata(path: Path | str) -> dict[str, str]:
     return _known(path, tape.metadata)
 
 
-def moments(path: Path | str) -> Iterator[Moment]:
+def iterate_steps(path: Path | str) -> Iterator[RecordedStep]:
     """Yield what is recorded instant by instant, so that a file of any length fits into memory.
 
     Raises:
@@ -162,7 +162,7 @@ def moments(path: Path | str) -> Iterator[Moment]:
     path = Path(path)
     with _opened(path) as stream, _sentences(path):
         tape = McapReader(stream)
-        yield from read_moments(tape)
+        yield from read_steps(tape)
     _known(path, tape.metadata)
 
 
@@ -212,7 +212,7 @@ def _by_topic(found: Iterable[Mapping[str, T]]) -> dict[str, list[T]]:
     return rows
 
 
-def _assembled(path: Path, known: dict[str, str], found: Sequence[Moment]) -> Recorded:
+def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep]) -> RecordedEpisode:
     due = [(moment, moment.people) for moment in found if moment.people is not None]
     complete = all(key in known for key in END_KEYS)
     if not due and not complete:
@@ -234,11 +234,11 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[Moment]) -> Re
     readings: dict[str, list[Reading]] = _by_topic(moment.readings for moment in found)
     times = np.array([moment.time for moment, _ in due])
     if not complete:
-        ending = Ending(known)
+        ending = EpisodeEnd(known)
         for moment in found:
             ending.take(moment)
         known = known | ending.metadata()
-    return Recorded(
+    return RecordedEpisode(
         path,
         known,
         complete,

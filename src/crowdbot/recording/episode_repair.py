@@ -15,12 +15,12 @@ from crowdbot.simulation import robot_metrics
 
 from .mcap_writer import finish
 from .metadata import END_KEYS, ENDING, METADATA, as_json
-from .step_records import Moment, read_moments
+from .step_records import RecordedStep, read_steps
 
-__all__ = ["Ending", "repair"]
+__all__ = ["EpisodeEnd", "repair"]
 
 
-class Ending:
+class EpisodeEnd:
     """Gathers what the record at the end would say of a run that was interrupted at its last recorded instant.
 
     Args:
@@ -44,10 +44,10 @@ class Ending:
         ]
         self.bodies = {one["name"]: (int(one["id"]), float(one["radius"])) for one in self.robots}
         self.count = 1 + max([-1, *(travel.robot for travel in self.travels)])
-        self.last: Moment | None = None
+        self.last: RecordedStep | None = None
         self.touching: set[int] = set()
 
-    def take(self, moment: Moment) -> None:
+    def take(self, moment: RecordedStep) -> None:
         """Take an instant."""
         self.count = max(self.count, *(1 + who for who in moment.named()), 0)
         names = {name for one in moment.contacts for name in (one.robot, one.other)}
@@ -94,8 +94,8 @@ def repair(path: Path | str) -> float | None:
                 raise EpisodeError(f"{path} is not an MCAP file")
             stream.seek(0)
             tape, ending = McapReader(stream), None
-            for moment in read_moments(tape):
-                ending = ending or Ending(tape.metadata.get(METADATA, {}))
+            for moment in read_steps(tape):
+                ending = ending or EpisodeEnd(tape.metadata.get(METADATA, {}))
                 ending.take(moment)
             if ending is None or ending.last is None:
                 raise EpisodeError(f"{path} holds no recorded instant: the run was killed before it began")

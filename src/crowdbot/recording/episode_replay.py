@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core import EpisodeError
-from crowdbot.simulation import Digest, drive, stopping
+from crowdbot.simulation import EpisodeDigest, catch_interrupt, run_to_end
 
-from .attachments import unpacked
+from .attachments import unpack_attachments
 from .episode_reader import read_metadata
 from .metadata import END_KEYS, versions
-from .provenance import Comparison, Course, digests
+from .provenance import DigestComparison, Provenance, digests
 
 __all__ = ["Replay", "replay"]
 
@@ -112,12 +112,12 @@ def replay(
     if not (complete or wanted):
         raise EpisodeError(f"{path} holds no recorded instant: the run was killed before it began")
     recorded = known if complete else known | _ended(known, wanted)
-    comparison = Comparison(Digest(), wanted)
-    with unpacked(path, known, folder, trust) as place, stopping() as stop:
-        course = Course.of(path, place.folder, trust)
+    comparison = DigestComparison(EpisodeDigest(), wanted)
+    with unpack_attachments(path, known, folder, trust) as place, catch_interrupt() as stop:
+        course = Provenance.of(path, place.folder, trust)
         simulation = course.begun(comparison, stop)
         ticks = int(recorded["steps"]) if recorded["outcome"] == "interrupted" else None
-        outcome = drive(simulation, [comparison], stop, progress, ticks)
+        outcome = run_to_end(simulation, [comparison], stop, progress, ticks)
         if stop.asked and simulation.tick != ticks:
             raise KeyboardInterrupt
     now = versions()

@@ -12,13 +12,22 @@ from types import TracebackType
 from typing import Any
 
 from crowdbot.core import EpisodeError
-from crowdbot.messages import MAP, Messages, Told, codec_of, markers, mounted, pushes, said
+from crowdbot.messages import (
+    MAP,
+    MeasuredReading,
+    Messages,
+    codec_of,
+    contact_messages,
+    encode_reading,
+    markers,
+    mount_pose,
+)
 from crowdbot.messages.marker_array import KIND as MARKERS
-from crowdbot.simulation import WALL, Frame, Tally
+from crowdbot.simulation import WALL, EpisodeStatistics, StepRecord
 from crowdbot.trials import Trial, trial_xml
 
-from .attachments import LeftOut, carried, left_out
-from .mcap_writer import TapeWriter
+from .attachments import SkippedAttachmentWarning, collect_attachments, describe_skipped
+from .mcap_writer import McapWriter
 from .metadata import CONTACTS, DIGEST, ENDING, FORMAT, METADATA, as_json, versions
 
 __all__ = ["Recorder"]
@@ -65,7 +74,7 @@ class Recorder:
     def __init__(
         self,
         path: Path,
-        tally: Tally,
+        tally: EpisodeStatistics,
         origin: Sequence[Mapping[str, Any]] = (),
         begin: int = 0,
         earlier: Sequence[Trial] = (),
@@ -73,13 +82,13 @@ class Recorder:
         self.path, self.tally, self.origin, self.begin = path, tally, origin, begin
         self.trial, self.seed = tally.trial, tally.seed
         self.xml = trial_xml(self.trial)
-        self.files = carried([self.trial, *earlier])
-        if sentence := left_out(file for file, _ in self.files):
-            warnings.warn(sentence, LeftOut, stacklevel=2)
+        self.files = collect_attachments([self.trial, *earlier])
+        if sentence := describe_skipped(file for file, _ in self.files):
+            warnings.warn(sentence, SkippedAttachmentWarning, stacklevel=2)
         self.messages = Messages()
         self.channels: dict[str, int] = {}
         self.made: list[Path] = []
-        self.tape: TapeWriter | None = None
+        self.tape: McapWriter | None = None
         self.last = (0, "")
         """Steps until the last recorded instant, and the digest of an episode that ends there."""
         self._markers_every = round(self.trial.recording.markers * 1e9)
@@ -89,7 +98,7 @@ class Recorder:
         self._names = {self.trial.people + k: robot.name for k, robot in enumerate(self.trial.robots)}
         self._goals = [(one.goal.x, one.goal.y, one.goal.tolerance) for one in self.trial.robots]
         self._mounts = [
-            (f"{robot.name}/base_link", f"{robot.name}/{mount.name}", mounted(robot, mount))
+            (f"{robot.name}/base_link", f"{robot.name}/{mount.name}", mount_pose(robot, mount))
             for robot in self.trial.robots
             for mount in robot.sensors
         ]
@@ -103,7 +112,7 @@ class Recorder:
         except OSError as error:
             self._clear()
             raise EpisodeError(f"{self.path} cannot be written: {error.strerror}; give another place") from None
-        self.tape = TapeWriter(self.path, "ros2", f"crowdbot {versions()['version']}")
+        self.tape = McapWriter(self.path, "ros2", f"crowdbot {versions()['version']}")
         self.tape.metadata(METADATA, self._metadata())
         for file, place in self.files:
             if file.kept:
@@ -118,7 +127,7 @@ class Recorder:
             self.tape.close(finished=False)
         self._clear()
 
-    def take(self, frame: Frame) -> None:
+    def take(self, frame: StepRecord) -> None:
         """Write an instant."""
         first = self.trial.people
         now, make = frame.nanoseconds, self.messages
@@ -127,12 +136,12 @@ class Recorder:
             self._write("/tf", make.transforms(now, self._poses(frame, first)), now)
         self._fixed(frame)
         for robot, mount, reading in frame.readings:
-            told = Told(reading, mount.sensor, robot.name, f"{robot.name}/{mount.name}")
-            for ending, message in said(make, told):
+            told = MeasuredReading(reading, mount.sensor, robot.name, f"{robot.name}/{mount.name}")
+            for ending, message in encode_reading(make, told):
                 self._write(f"/{told.topic}{ending}", message, now)
         if frame.touches:
             self._write(CONTACTS, make.contacts(now, self._touches(frame)), now)
-        for topic, message in pushes(make, now, frame, self._names):
+        for topic, message in contact_messages(make, now, frame, self._names):
             self._write(topic, message, now)
         if frame.due:
             self._scene(frame, first)
@@ -162,7 +171,7 @@ class Recorder:
             raise EpisodeError(f"{self.path} cannot be written: {error.strerror}") from None
         self.tape = None
 
-    def _scene(self, frame: Frame, first: int) -> None:
+    def _scene(self, frame: StepRecord, first: int) -> None:
         now, make, scene = frame.nanoseconds, self.messages, frame.scene
         self._put("/people", "people_msgs/msg/People", make.people(now, scene, frame.ids), now)
         for k, (_, _, x, y, heading) in enumerate(self._poses(frame, first)):
@@ -173,7 +182,7 @@ class Recorder:
             self._markers_due = now - now % self._markers_every + self._markers_every
             self._put("/crowd/markers", MARKERS, markers(now, scene, frame.ids, self._goals), now)
 
-    def _fixed(self, frame: Frame) -> None:
+    def _fixed(self, frame: StepRecord) -> None:
         """Write where sensors sit, at every instant, so that each tells by itself where everything was."""
         rows = list(self._mounts)
         for robot, mount, reading in frame.readings:
@@ -182,7 +191,7 @@ class Recorder:
         if rows:
             self._write("/tf_static", self.messages.fixed(frame.nanoseconds, rows), frame.nanoseconds)
 
-    def _poses(self, frame: Frame, first: int) -> list[tuple[str, str, float, float, float]]:
+    def _poses(self, frame: StepRecord, first: int) -> list[tuple[str, str, float, float, float]]:
         scene = frame.scene
         return [
             (
@@ -195,7 +204,7 @@ class Recorder:
             for k, robot in enumerate(self.trial.robots)
         ]
 
-    def _touches(self, frame: Frame) -> list[tuple[str, str, float]]:
+    def _touches(self, frame: StepRecord) -> list[tuple[str, str, float]]:
         names = self._names | {WALL: "wall"}
         return [(names[one.robot], names.get(one.other, str(one.other)), one.clearance) for one in frame.touches]
 

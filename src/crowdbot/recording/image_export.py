@@ -14,9 +14,9 @@ import numpy as np
 from crowdbot.sensors import RgbImage
 
 from .reading_tables import READING_TABLES
-from .step_records import Moment
+from .step_records import RecordedStep
 
-__all__ = ["ExportedPictures", "folder_of"]
+__all__ = ["ImageExport", "folder_of"]
 
 
 def folder_of(table: Path) -> Path:
@@ -28,7 +28,7 @@ def folder_of(table: Path) -> Path:
     return table.with_name(f"{table.stem}-images")
 
 
-class ExportedPictures:
+class ImageExport:
     """Writes images while their table is made, to a folder of another name until all are there.
 
     Args:
@@ -39,7 +39,7 @@ class ExportedPictures:
         self.folder = folder_of(table)
         self.draft = table.with_name(f".{table.name}.{os.getpid()}.images")
 
-    def columns(self, moment: Moment, bodies: Mapping[str, tuple[int, float]]) -> dict[str, Any]:
+    def columns(self, moment: RecordedStep, bodies: Mapping[str, tuple[int, float]]) -> dict[str, Any]:
         """Write the images of an instant, and return the rows of the table with their files."""
         rows = READING_TABLES["pictures"](moment, bodies)
         files = [

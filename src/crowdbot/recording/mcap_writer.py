@@ -35,7 +35,7 @@ from mcap.records import (
 
 from crowdbot.data import MCAP_MAGIC, McapOpcode, McapReader, read_attachment
 
-__all__ = ["TapeWriter", "finish"]
+__all__ = ["McapWriter", "finish"]
 
 LARGE = 4 << 20
 """A chunk should not hold more bytes."""
@@ -51,7 +51,7 @@ def _bytes(*records: McapRecord) -> bytes:
 SHORT_END = _bytes(DataEnd(0), Footer(0, 0, 0)) + MCAP_MAGIC
 
 
-class TapeWriter:
+class McapWriter:
     """Writes an MCAP file, which appears at the first :meth:`flush`, in place of one that was there.
 
     Args:
@@ -204,7 +204,7 @@ class _Layout:
 
 
 def finish(stream: BinaryIO, more: Mapping[str, Mapping[str, str]] | None = None) -> None:
-    """Give a file that :class:`TapeWriter` wrote a summary in place of its short, torn or missing end.
+    """Give a file that :class:`McapWriter` wrote a summary in place of its short, torn or missing end.
 
     Args:
         stream: open for reading and writing.

@@ -10,17 +10,17 @@ from typing import Any
 
 from crowdbot.core import EpisodeError
 from crowdbot.data import McapReader
-from crowdbot.simulation import Digest, Frame, Running, Simulation, Stop, apply_overrides
+from crowdbot.simulation import EpisodeDigest, Simulation, SimulationRun, StepRecord, StopRequest, apply_overrides
 from crowdbot.trials import Trial, parse_trial, trial_xml
 
 from .episode_reader import read_metadata
 from .metadata import DIGEST
 
-__all__ = ["Comparison", "Course", "Part", "digests"]
+__all__ = ["DigestComparison", "Provenance", "ProvenanceSegment", "digests"]
 
 
 @dataclass(frozen=True)
-class Part:
+class ProvenanceSegment:
     """A trial and a seed that count from a tick on."""
 
     tick: int
@@ -28,19 +28,19 @@ class Part:
     seed: int
 
 
-class Comparison:
+class DigestComparison:
     """Compares the digest at every recorded instant with what was recorded.
 
     Attributes:
         differs: the first instant [s] at which they are not the same, None when there is none yet.
     """
 
-    def __init__(self, digest: Digest, wanted: dict[int, str]) -> None:
+    def __init__(self, digest: EpisodeDigest, wanted: dict[int, str]) -> None:
         self.digest, self.wanted = digest, wanted
         self.differs: float | None = None
-        self.latest: Frame | None = None
+        self.latest: StepRecord | None = None
 
-    def take(self, frame: Frame) -> None:
+    def take(self, frame: StepRecord) -> None:
         """Compare an instant."""
         self.digest.take(frame)
         if frame.due:
@@ -51,13 +51,13 @@ class Comparison:
 
 
 @dataclass(frozen=True)
-class Course:
+class Provenance:
     """The parts of an episode, the first from tick 0; it was recorded from the beginning of the last."""
 
-    parts: tuple[Part, ...]
+    parts: tuple[ProvenanceSegment, ...]
 
     @classmethod
-    def of(cls, path: Path, folder: Path | None = None, trust: bool = False) -> Course:
+    def of(cls, path: Path, folder: Path | None = None, trust: bool = False) -> Provenance:
         """Read how a recorded episode came about.
 
         Raises:
@@ -76,7 +76,7 @@ class Course:
             rows.append((int(known.get("begin", "0")), known["trial"], int(known["seed"])))
         except (ValueError, TypeError, KeyError) as error:
             raise EpisodeError(f"{path} does not say what it branched from: {error}") from None
-        return cls(tuple(Part(tick, parsed(xml), seed) for tick, xml, seed in rows))
+        return cls(tuple(ProvenanceSegment(tick, parsed(xml), seed) for tick, xml, seed in rows))
 
     @property
     def origin(self) -> list[dict[str, Any]]:
@@ -84,7 +84,11 @@ class Course:
         return [{"tick": part.tick, "trial": trial_xml(part.trial), "seed": part.seed} for part in self.parts[:-1]]
 
     def begun(
-        self, sink: Comparison, stop: Stop, progress: Callable[[float], None] | None = None, until: int | None = None
+        self,
+        sink: DigestComparison,
+        stop: StopRequest,
+        progress: Callable[[float], None] | None = None,
+        until: int | None = None,
     ) -> Simulation:
         """Run everything before the last part, without recording, and return the simulation as the last part begins.
 
@@ -111,12 +115,12 @@ class Course:
 def _on(
     simulation: Simulation,
     end: int,
-    sink: Comparison,
-    stop: Stop,
+    sink: DigestComparison,
+    stop: StopRequest,
     progress: Callable[[float], None] | None,
 ) -> None:
     """Go on to a tick."""
-    running = Running(simulation, [sink])
+    running = SimulationRun(simulation, [sink])
     told = -1
     while simulation.tick < end:
         if running.outcome is not None:

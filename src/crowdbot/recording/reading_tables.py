@@ -20,7 +20,7 @@ from crowdbot.sensors import (
     spatial_pose,
 )
 
-from .step_records import Moment
+from .step_records import RecordedStep
 
 __all__ = ["READING_TABLES"]
 
@@ -128,7 +128,7 @@ def _kind(name: str) -> Any:
 def _table(kind: type[Reading], rows: Callable[[Any], Columns], names: tuple[str, ...]) -> Callable[..., Columns]:
     """Return what makes the rows of an instant of every sensor that gives this class of readings."""
 
-    def columns(moment: Moment, bodies: Mapping[str, tuple[int, float]]) -> Columns:
+    def columns(moment: RecordedStep, bodies: Mapping[str, tuple[int, float]]) -> Columns:
         found: dict[str, list[Any]] = {name: [] for name in ("time", "sensor", *PLACE, *names)}
         for topic, reading in moment.readings.items():
             if not isinstance(reading, kind):

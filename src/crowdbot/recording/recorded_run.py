@@ -11,24 +11,24 @@ from crowdbot.core import Clock, InputError
 from crowdbot.simulation import (
     Bridge,
     Episode,
-    Log,
-    Running,
+    EpisodeLog,
+    EpisodeStatistics,
+    RunSummary,
     Simulation,
+    SimulationRun,
     Sink,
-    Summary,
-    Tally,
-    drive,
+    catch_interrupt,
+    run_to_end,
     simulate,
-    stopping,
 )
 from crowdbot.trials import Trial, check_trial
 
 from .episode_writer import Recorder
 
-__all__ = ["opened", "record", "run", "target"]
+__all__ = ["episode_path", "open_run", "record", "run"]
 
 Progress = Callable[[float], None]
-T = TypeVar("T", bound=Tally)
+T = TypeVar("T", bound=EpisodeStatistics)
 
 
 def run(
@@ -62,7 +62,7 @@ def run(
     """
     if out is None:
         return simulate(trial, seed, progress, clock)
-    log, outcome, steps = _driven(Log, trial, seed, out, progress, clock)
+    log, outcome, steps = _driven(EpisodeLog, trial, seed, out, progress, clock)
     return log.episode(outcome, steps)
 
 
@@ -72,15 +72,15 @@ def record(
     out: Path | str | None = None,
     progress: Progress | None = None,
     clock: Clock | None = None,
-) -> Summary:
+) -> RunSummary:
     """Run a trial as :func:`run` does, but keep no arrays: memory does not grow with the length of the run.
 
     >>> from crowdbot.models import ORCA
     >>> record(Trial(name="empty", duration=1.0, crowd=ORCA())).outcome
     'finished'
     """
-    tally, outcome, steps = _driven(Tally, trial, seed, out, progress, clock)
-    return tally.summary(outcome, steps, None if out is None else target(out))
+    tally, outcome, steps = _driven(EpisodeStatistics, trial, seed, out, progress, clock)
+    return tally.summary(outcome, steps, None if out is None else episode_path(out))
 
 
 def _driven(
@@ -96,28 +96,28 @@ def _driven(
     tally = kind(trial, chosen)
     simulation = Simulation(trial, chosen, clock)
     with contextlib.ExitStack() as stack:
-        stop = stack.enter_context(stopping())
+        stop = stack.enter_context(catch_interrupt())
         sinks: list[Sink] = [tally]
         if out is None:
-            return tally, drive(simulation, sinks, stop, progress), simulation.tick
-        recorder = stack.enter_context(Recorder(target(out), tally))
-        outcome = drive(simulation, [tally, recorder], stop, progress)
+            return tally, run_to_end(simulation, sinks, stop, progress), simulation.tick
+        recorder = stack.enter_context(Recorder(episode_path(out), tally))
+        outcome = run_to_end(simulation, [tally, recorder], stop, progress)
         recorder.complete(outcome, simulation.tick)
         return tally, outcome, simulation.tick
 
 
 @contextlib.contextmanager
-def opened(
+def open_run(
     trial: Trial,
     seed: int | None = None,
     out: Path | str | None = None,
     clock: Clock | None = None,
     bridges: Sequence[Bridge] = (),
-) -> Iterator[Running]:
+) -> Iterator[SimulationRun]:
     """Open a trial to be stepped from outside; when the context ends before the run does, it was interrupted.
 
     >>> from crowdbot.models import ORCA
-    >>> with opened(Trial(name="empty", duration=1.0, crowd=ORCA())) as running:
+    >>> with open_run(Trial(name="empty", duration=1.0, crowd=ORCA())) as running:
     ...     while running.outcome is None:
     ...         _ = running.step()
     >>> running.outcome
@@ -125,20 +125,20 @@ def opened(
     """
     chosen = trial.seed if seed is None else int(seed)
     check_trial(trial, chosen)
-    tally = Tally(trial, chosen)
+    tally = EpisodeStatistics(trial, chosen)
     with contextlib.ExitStack() as stack:
         sinks: list[Sink] = [tally]
         recorder = None
         if out is not None:
-            recorder = stack.enter_context(Recorder(target(out), tally))
+            recorder = stack.enter_context(Recorder(episode_path(out), tally))
             sinks.append(recorder)
-        running = Running(Simulation(trial, chosen, clock), sinks, bridges)
+        running = SimulationRun(Simulation(trial, chosen, clock), sinks, bridges)
         yield running
         if recorder is not None:
             recorder.complete(running.outcome or "interrupted", running.simulation.tick)
 
 
-def target(out: Path | str) -> Path:
+def episode_path(out: Path | str) -> Path:
     """Return the file to write: ``out`` itself when it is called .mcap, otherwise episode.mcap in it."""
     path = Path(out)
     file = path if path.suffix == ".mcap" else path / "episode.mcap"

@@ -13,19 +13,30 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Pose
 from crowdbot.data import McapReader
-from crowdbot.messages import COLLISIONS, FORCES, KIND, MAP, REST, Collided, Pushed, collided, pushed, reading_of
+from crowdbot.messages import (
+    COLLISIONS,
+    FORCES,
+    KIND,
+    MAP,
+    REST,
+    ContactEventRecord,
+    ContactForceRecord,
+    decode_reading,
+    read_contact_events,
+    read_forces,
+)
 from crowdbot.metrics import AgentStates
 from crowdbot.sensors import Reading, Scan
 from crowdbot.simulation import ScanRow, scan_row
 
 from .metadata import CONTACTS, DIGEST, heading_of
 
-__all__ = ["Moment", "RobotState", "Touched", "read_moments"]
+__all__ = ["RecordedContact", "RecordedStep", "RobotState", "read_steps"]
 
 Floats = NDArray[np.float64]
 
 
-class Touched(NamedTuple):
+class RecordedContact(NamedTuple):
     """A contact: when [s], the robot, whom it touched (an id, a robot or ``wall``), the smallest clearance [m]."""
 
     time: float
@@ -46,7 +57,7 @@ class RobotState(NamedTuple):
 
 
 @dataclass
-class Moment:
+class RecordedStep:
     """One instant of a file.
 
     Fields:
@@ -67,9 +78,9 @@ class Moment:
     commands: dict[str, tuple[float, float, float]] = field(default_factory=dict)
     readings: dict[str, Reading] = field(default_factory=dict)
     scans: dict[str, ScanRow] = field(default_factory=dict)
-    forces: list[Pushed] = field(default_factory=list)
-    collisions: list[Collided] = field(default_factory=list)
-    contacts: list[Touched] = field(default_factory=list)
+    forces: list[ContactForceRecord] = field(default_factory=list)
+    collisions: list[ContactEventRecord] = field(default_factory=list)
+    contacts: list[RecordedContact] = field(default_factory=list)
     digest: str = ""
 
     @property
@@ -106,7 +117,7 @@ class Moment:
         )
 
 
-def read_moments(tape: McapReader) -> Iterator[Moment]:
+def read_steps(tape: McapReader) -> Iterator[RecordedStep]:
     """Yield the instants of a file.
 
     Raises:
@@ -124,13 +135,13 @@ def read_moments(tape: McapReader) -> Iterator[Moment]:
         yield _moment(stamp, decoded)
 
 
-def _moment(stamp: int, messages: list[tuple[str, Any]]) -> Moment:
-    moment = Moment(stamp)
+def _moment(stamp: int, messages: list[tuple[str, Any]]) -> RecordedStep:
+    moment = RecordedStep(stamp)
     topics = dict(messages)
     sensors = {topic.removesuffix(REST) for topic, message in messages if message.__msgtype__ == KIND}
     for topic in sorted(sensors):
         others = {name.removeprefix(topic): one for name, one in topics.items() if name.startswith(topic)}
-        reading = reading_of(topics[topic + REST], others)
+        reading = decode_reading(topics[topic + REST], others)
         moment.readings[topic.strip("/")] = reading
         if isinstance(reading, Scan):
             moment.scans[topic.strip("/")] = scan_row(reading)
@@ -145,7 +156,7 @@ def _moment(stamp: int, messages: list[tuple[str, Any]]) -> Moment:
 
 
 def _take(
-    moment: Moment, poses: dict[str, tuple[str, float, float, float]], topic: str, message: Any, sensors: set[str]
+    moment: RecordedStep, poses: dict[str, tuple[str, float, float, float]], topic: str, message: Any, sensors: set[str]
 ) -> None:
     """Take a message that is no reading."""
     robot = topic.strip("/").rpartition("/")[0]
@@ -155,11 +166,11 @@ def _take(
     elif topic == DIGEST:
         moment.digest = str(message.data)
     elif topic == CONTACTS:
-        moment.contacts = [Touched(moment.time, c.robot, c.other, c.clearance) for c in message.contacts]
+        moment.contacts = [RecordedContact(moment.time, c.robot, c.other, c.clearance) for c in message.contacts]
     elif topic == FORCES:
-        moment.forces = pushed(moment.time, message)
+        moment.forces = read_forces(moment.time, message)
     elif topic == COLLISIONS:
-        moment.collisions = collided(message)
+        moment.collisions = read_contact_events(message)
     elif kind == "tf2_msgs/msg/TFMessage":
         for row in message.transforms:
             shift = row.transform.translation

@@ -1,6 +1,14 @@
 """Rendering: images and films of the cameras of a trial."""
 
-from .camera_images import SMOOTH, Shot, Take, camera_names, shots
-from .image_writer import Album, painted_segmentation
+from .camera_images import SMOOTH, RenderedImage, RenderRequest, camera_names, render_images
+from .image_writer import ImageWriter, color_segmentation
 
-__all__ = ["SMOOTH", "Album", "Shot", "Take", "camera_names", "painted_segmentation", "shots"]
+__all__ = [
+    "SMOOTH",
+    "ImageWriter",
+    "RenderRequest",
+    "RenderedImage",
+    "camera_names",
+    "color_segmentation",
+    "render_images",
+]

@@ -12,17 +12,17 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, import_optional, stream
 from crowdbot.sensors import NOTHING, DepthCamera, RGBCamera, distort_image, spatial_pose
-from crowdbot.simulation import Carrier, Running, Simulation
+from crowdbot.simulation import RobotRuntime, Simulation, SimulationRun
 from crowdbot.trials import OVERVIEW, Camera, Mount, Trial, check_trial, overview
 
-__all__ = ["Shot", "Take", "camera_names", "shots"]
+__all__ = ["RenderRequest", "RenderedImage", "camera_names", "render_images"]
 
 SMOOTH = 0.04
 """Films have an image about as often [s] unless told otherwise."""
 
 
 @dataclass(frozen=True, eq=False)
-class Shot:
+class RenderedImage:
     """One image.
 
     Fields:
@@ -39,7 +39,7 @@ class Shot:
     segmentation: NDArray[np.int64] | None = None
 
 
-class Take(NamedTuple):
+class RenderRequest(NamedTuple):
     """When images are made: from ``begin`` to ``end`` [s], ``rate`` for each second [Hz].
 
     Without an end there is one image; without a rate about 25 a second, as the time step allows.
@@ -62,16 +62,16 @@ def camera_names(trial: Trial) -> tuple[str, ...]:
     return (*own, *([] if OVERVIEW in own else [OVERVIEW]), *carried)
 
 
-def shots(
+def render_images(
     trial: Trial,
     camera: str | None = None,
-    take: Take = Take(),  # noqa: B008
+    take: RenderRequest = RenderRequest(),  # noqa: B008
     *,
     seed: int | None = None,
     depth: bool = False,
     segmentation: bool = False,
     progress: Callable[[float], None] | None = None,
-) -> Iterator[Shot]:
+) -> Iterator[RenderedImage]:
     """Run a trial and yield what a camera sees.
 
     Args:
@@ -87,7 +87,7 @@ def shots(
         MissingExtra: mujoco is not installed.
 
     >>> from crowdbot.trials import load_trial
-    >>> [shot.rgb.shape for shot in shots(load_trial("frontal"), take=Take(1.0))]
+    >>> [shot.rgb.shape for shot in render_images(load_trial("frontal"), take=RenderRequest(1.0))]
     [(600, 960, 3)]
     """
     chosen = trial.seed if seed is None else int(seed)
@@ -99,7 +99,7 @@ def shots(
     _check_drawing()
     simulation = Simulation(trial, chosen, posed=True)
     first, last, every = _ticks(simulation, take)
-    running = Running(simulation)
+    running = SimulationRun(simulation)
     lens = _Lens(simulation, name, chosen, depth, segmentation)
     for tick in range(first, last + 1, every):
         while simulation.tick < tick and running.outcome is None:
@@ -117,7 +117,7 @@ def shots(
         progress(1.0)
 
 
-def _ticks(simulation: Simulation, take: Take) -> tuple[int, int, int]:
+def _ticks(simulation: Simulation, take: RenderRequest) -> tuple[int, int, int]:
     clock, lasts = simulation.world.clock, simulation.trial.duration
     for value in (take.begin, take.begin if take.end is None else take.end):
         if not 0.0 <= value <= lasts:
@@ -159,7 +159,7 @@ class _Lens:
     def __init__(self, simulation: Simulation, name: str, seed: int, depth: bool, segmentation: bool) -> None:
         self.simulation, self.depth, self.segmentation = simulation, depth, segmentation
         self.rng = stream(seed, "render", name)
-        self.carrier: Carrier | None = None
+        self.carrier: RobotRuntime | None = None
         own = {camera.name: camera for camera in simulation.trial.cameras}
         robot, _, self.sensor = name.partition("/")
         if self.sensor:
@@ -170,12 +170,12 @@ class _Lens:
             simulation.trial.stage, scene.position[0, scene.active[0]])  # fmt: skip
         self.agent = next((c.agent for c in simulation.carriers if c.robot.name == self.camera.robot), None)
 
-    def shot(self) -> Shot:
+    def shot(self) -> RenderedImage:
         """Return what it sees now."""
         rgb, depth, who = self._by_sensor() if self.carrier else self._standing()
         ids = self.simulation.ids
         named = None if who is None else np.where(who >= 0, ids[np.maximum(who, 0)], who)
-        return Shot(self.simulation.world.clock.time, rgb, depth, named)
+        return RenderedImage(self.simulation.world.clock.time, rgb, depth, named)
 
     def _standing(self) -> tuple[Any, Any, Any]:
         view = self.camera.view(self.agent)

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError
 
-from .camera_images import Shot
+from .camera_images import RenderedImage
 from .video_writer import av_module, reel
 
-__all__ = ["FILMS", "IMAGES", "Album", "painted_depth", "painted_segmentation"]
+__all__ = ["FILMS", "IMAGES", "ImageWriter", "color_segmentation", "painted_depth"]
 
 IMAGES = (".png", ".jpg", ".webp")
 FILMS = (".mp4", ".gif", ".webp")
@@ -24,7 +24,7 @@ LABELS = {-1: 0, -2: 1, -3: 2, -4: 3}
 """Numbers in the PNG of a segmentation: nothing, wall, floor, prop; then 4 and the id of people and robots."""
 
 
-class Album:
+class ImageWriter:
     """Writes shots to files; what is written appears whole or not at all.
 
     Args:
@@ -52,7 +52,7 @@ class Album:
         if path.suffix.lower() == ".mp4":
             av_module()
 
-    def write(self, shots: Iterable[Shot]) -> tuple[list[Path], int]:
+    def write(self, shots: Iterable[RenderedImage]) -> tuple[list[Path], int]:
         """Write the shots, and return the files and how many shots there were.
 
         Raises:
@@ -77,7 +77,7 @@ class Album:
         other = kind != "rgb" and not self.film
         return self.path.with_name(f"{self.path.stem}{more}{'.png' if other else self.path.suffix}")
 
-    def _numbered(self, shots: Iterator[Shot], kinds: list[str]) -> tuple[list[Path], int]:
+    def _numbered(self, shots: Iterator[RenderedImage], kinds: list[str]) -> tuple[list[Path], int]:
         files: list[Path] = []
         count = 0
         for shot in shots:
@@ -85,7 +85,7 @@ class Album:
             count += 1
         return files, count
 
-    def _films(self, shots: Iterator[Shot], kinds: list[str]) -> tuple[list[Path], int]:
+    def _films(self, shots: Iterator[RenderedImage], kinds: list[str]) -> tuple[list[Path], int]:
         reels = [reel(self._named(kind), self.rate) for kind in kinds]
         count = 0
         try:
@@ -99,7 +99,7 @@ class Album:
                 one.abandoned()
 
 
-def _saved(shot: Shot, kind: str, path: Path) -> Path:
+def _saved(shot: RenderedImage, kind: str, path: Path) -> Path:
     """Write one image: depth in millimetres with 16 bits, a segmentation by numbers with a palette."""
     from PIL import Image
 
@@ -123,14 +123,14 @@ def _saved(shot: Shot, kind: str, path: Path) -> Path:
     return path
 
 
-def _painted(shot: Shot, kind: str) -> NDArray[np.uint8]:
+def _painted(shot: RenderedImage, kind: str) -> NDArray[np.uint8]:
     if kind == "rgb":
         return shot.rgb
     if kind == "depth":
         assert shot.depth is not None
         return painted_depth(shot.depth)
     assert shot.segmentation is not None
-    return painted_segmentation(shot.segmentation)
+    return color_segmentation(shot.segmentation)
 
 
 def painted_depth(depth: NDArray[np.float64]) -> NDArray[np.uint8]:
@@ -143,10 +143,10 @@ def painted_depth(depth: NDArray[np.float64]) -> NDArray[np.uint8]:
     return np.repeat(grey.astype(np.uint8)[..., None], 3, axis=-1)
 
 
-def painted_segmentation(who: NDArray[np.int64]) -> NDArray[np.uint8]:
+def color_segmentation(who: NDArray[np.int64]) -> NDArray[np.uint8]:
     """Return a segmentation ``[H, W]`` as an image ``[H, W, 3]``: everybody in an own colour, nothing black.
 
-    >>> painted_segmentation(np.array([[-1, -3, 5]])).shape
+    >>> color_segmentation(np.array([[-1, -3, 5]])).shape
     (1, 3, 3)
     """
     return _palette()[_numbers(who)]

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import import_optional
 
-__all__ = ["Reel", "av_module", "reel"]
+__all__ = ["VideoWriter", "av_module", "reel"]
 
 Image = NDArray[np.uint8]
 Box = tuple[int, int, int, int]
@@ -26,7 +26,7 @@ CLEAR = 255
 """Number of the colour of a GIF through which the image before is seen: what is the same packs well."""
 
 
-class Reel(ABC):
+class VideoWriter(ABC):
     """A film that is being written, to a file of another name until it is finished."""
 
     def __init__(self, path: Path, rate: float) -> None:
@@ -58,13 +58,13 @@ class Reel(ABC):
         self.part.unlink(missing_ok=True)
 
 
-def reel(path: Path, rate: float) -> Reel:
+def reel(path: Path, rate: float) -> VideoWriter:
     """Return what writes a film with this ending, ``rate`` images a second."""
-    kinds: dict[str, type[Reel]] = {".mp4": _Mp4, ".gif": _Gif, ".webp": _WebP}
+    kinds: dict[str, type[VideoWriter]] = {".mp4": _Mp4, ".gif": _Gif, ".webp": _WebP}
     return kinds[path.suffix.lower()](path, rate)
 
 
-class _Mp4(Reel):
+class _Mp4(VideoWriter):
     def __init__(self, path: Path, rate: float) -> None:
         super().__init__(path, rate)
         self.file: Any = None
@@ -92,7 +92,7 @@ class _Mp4(Reel):
             self.file = None
 
 
-class _Parts(Reel):
+class _Parts(VideoWriter):
     """A film of parts of images, of which the last one waits until it is known how long it lasts."""
 
     unit: float

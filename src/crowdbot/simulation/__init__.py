@@ -1,36 +1,36 @@
 """Simulation: a trial and a seed become an episode. Contract :class:`Simulation`, verb ``run``."""
 
 from .batch import run_batch
-from .episode import Episode, Log, ScanRow, scan_row, tracks_of
+from .episode import Episode, EpisodeLog, ScanRow, scan_row, tracks_of
 from .overrides import apply_overrides
-from .runner import Bridge, Running, Sink, Stop, drive, simulate, stopping
-from .simulation import WALL, Carrier, Frame, Simulation, Touch
-from .statistics import Digest, Summary, Tally, robot_metrics
+from .runner import Bridge, SimulationRun, Sink, StopRequest, catch_interrupt, run_to_end, simulate
+from .simulation import WALL, RobotContact, RobotRuntime, Simulation, StepRecord
+from .statistics import EpisodeDigest, EpisodeStatistics, RunSummary, robot_metrics
 from .world_builder import start_scene
 
 __all__ = [
     "WALL",
     "Bridge",
-    "Carrier",
-    "Digest",
     "Episode",
-    "Frame",
-    "Log",
-    "Running",
+    "EpisodeDigest",
+    "EpisodeLog",
+    "EpisodeStatistics",
+    "RobotContact",
+    "RobotRuntime",
+    "RunSummary",
     "ScanRow",
     "Simulation",
+    "SimulationRun",
     "Sink",
-    "Stop",
-    "Summary",
-    "Tally",
-    "Touch",
+    "StepRecord",
+    "StopRequest",
     "apply_overrides",
-    "drive",
+    "catch_interrupt",
     "robot_metrics",
     "run_batch",
+    "run_to_end",
     "scan_row",
     "simulate",
     "start_scene",
-    "stopping",
     "tracks_of",
 ]

@@ -8,8 +8,8 @@ from crowdbot.core import InputError, Scene
 from crowdbot.trials import Trial, check_trial
 from crowdbot.world import CrowdStepRequest, StepGenerator, compute_together
 
-from .episode import Episode, Log
-from .runner import Running, stopping
+from .episode import Episode, EpisodeLog
+from .runner import SimulationRun, catch_interrupt
 from .simulation import Simulation
 
 __all__ = ["run_batch"]
@@ -42,9 +42,9 @@ def run_batch(
         raise InputError("run_batch: there are no seeds; give at least one, such as range(8)")
     for seed in seeds:
         check_trial(trial, int(seed))
-    logs = [Log(trial, int(seed)) for seed in seeds]
-    with stopping() as stop:
-        runs = [Running(Simulation(trial, log.seed), [log], stop=stop) for log in logs]
+    logs = [EpisodeLog(trial, int(seed)) for seed in seeds]
+    with catch_interrupt() as stop:
+        runs = [SimulationRun(Simulation(trial, log.seed), [log], stop=stop) for log in logs]
         told = -1
         while going := [running for running in runs if running.outcome is None]:
             _step([running.stepping() for running in going])

@@ -15,10 +15,10 @@ from crowdbot.data import Trajectories
 from crowdbot.sensors import Reading, Scan, planar_pose
 from crowdbot.trials import Trial
 
-from .simulation import Frame
-from .statistics import Digest, Tally, present
+from .simulation import StepRecord
+from .statistics import EpisodeDigest, EpisodeStatistics, present
 
-__all__ = ["Digest", "Episode", "Log", "ScanRow", "scan_row", "tracks_of"]
+__all__ = ["Episode", "EpisodeDigest", "EpisodeLog", "ScanRow", "scan_row", "tracks_of"]
 
 Floats = NDArray[np.float64]
 
@@ -136,21 +136,21 @@ def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
     )
 
 
-class Log(Tally):
+class EpisodeLog(EpisodeStatistics):
     """Keeps what an episode is made of while it runs.
 
     Args:
-        trial, seed, digest: as of :class:`Tally`.
+        trial, seed, digest: as of :class:`EpisodeStatistics`.
     """
 
-    def __init__(self, trial: Trial, seed: int, digest: Digest | None = None) -> None:
+    def __init__(self, trial: Trial, seed: int, digest: EpisodeDigest | None = None) -> None:
         super().__init__(trial, seed, digest)
         self.frames: list[tuple[NDArray[Any], ...]] = []
         self.times: list[float] = []
         self.bodies: dict[int, float] = {}
         self.readings: dict[str, list[Reading]] = {}
 
-    def keep(self, frame: Frame) -> None:
+    def keep(self, frame: StepRecord) -> None:
         """Keep an instant that the digest has already."""
         super().keep(frame)
         for robot, mount, reading in frame.readings:

@@ -17,18 +17,18 @@ from crowdbot.sensors import (
     SensorView,
     TrackedPeople,
 )
-from crowdbot.trials import Mount, Robot
+from crowdbot.trials import Mount, RobotSpec
 from crowdbot.world import MountPlacement, World
 
-from .sensor_view import Surroundings
+from .sensor_view import WorldView
 
-__all__ = ["Probe", "Told", "named", "probes_of", "spatial"]
+__all__ = ["DeliveredReading", "MountedSensor", "mounted_sensors", "name_by_id", "spatial"]
 
 Ints = NDArray[np.int64]
 LEVEL = 1e-9
 
 
-class Told(NamedTuple):
+class DeliveredReading(NamedTuple):
     """A reading that names people by their ids, and the ids of those whom it shows; None: it shows nobody."""
 
     reading: Reading
@@ -36,7 +36,7 @@ class Told(NamedTuple):
 
 
 @dataclass
-class Probe:
+class MountedSensor:
     """A sensor at work.
 
     Fields:
@@ -55,19 +55,19 @@ class Probe:
     rng: np.random.Generator
     space: bool
     state: Any
-    waiting: list[tuple[int, Told]] = field(default_factory=list)
+    waiting: list[tuple[int, DeliveredReading]] = field(default_factory=list)
 
-    def work(self, tick: int, agent: int, around: Surroundings, ids: Ints) -> list[Told]:
+    def work(self, tick: int, agent: int, around: WorldView, ids: Ints) -> list[DeliveredReading]:
         """Measure when it is due, and return what arrives now, oldest first."""
         if self.schedule.measures(tick):
             reading = self._measure(agent, around)
-            told = named(reading, ids)
-            self.waiting.append((self.schedule.arrives(tick), Told(told, shown(told))))
+            told = name_by_id(reading, ids)
+            self.waiting.append((self.schedule.arrives(tick), DeliveredReading(told, visible_ids(told))))
         ready = [told for due, told in self.waiting if due <= tick]
         self.waiting = [row for row in self.waiting if row[0] > tick]
         return ready
 
-    def _measure(self, agent: int, around: Surroundings) -> Reading:
+    def _measure(self, agent: int, around: WorldView) -> Reading:
         scene = (around.space if self.space else around.flat).without(agent)
         answer: Any = self.mount.sensor.measure(
             SensorView(scene, self.pose(agent, around), around), self.state, self.rng
@@ -81,28 +81,28 @@ class Probe:
         self.state = answer[1]
         return reading
 
-    def pose(self, agent: int, around: Surroundings) -> Pose | SpatialPose:
+    def pose(self, agent: int, around: WorldView) -> Pose | SpatialPose:
         """Return where the sensor is: in the plane when it looks from above, otherwise in space."""
         mount = MountPlacement(self.mount.link, self.mount.origin, self.placed)
         return around.world.sensor_pose(agent, mount, self.space)
 
 
-def spatial(robot: Robot, mount: Mount, bodies: str) -> bool:
+def spatial(robot: RobotSpec, mount: Mount, bodies: str) -> bool:
     """Return whether a sensor looks through space."""
     _, _, _, roll, pitch, _ = robot.placed(mount)
     tilted = max(abs(roll), abs(pitch)) > LEVEL
     return bodies != "discs" or tilted or mount.sensor.spatial or mount.sensor.sees_skins
 
 
-def probes_of(
-    trial: Any, robot: Robot, world: World, seed: int, known: Mapping[str, Probe] | None = None
-) -> tuple[Probe, ...]:
+def mounted_sensors(
+    trial: Any, robot: RobotSpec, world: World, seed: int, known: Mapping[str, MountedSensor] | None = None
+) -> tuple[MountedSensor, ...]:
     """Return the sensors of a robot at work; those of ``known`` go on with their chance and what is on its way."""
     bodies = trial.bodies or world.people_shape
     found = []
     for mount in robot.sensors:
         sensor = mount.sensor
-        probe = Probe(
+        probe = MountedSensor(
             dataclasses.replace(mount, sensor=sensor.with_skins()) if bodies == "skins" else mount,
             robot.placed(mount),
             robot.schedule(mount, world.clock),
@@ -120,7 +120,7 @@ def probes_of(
     return tuple(found)
 
 
-def named(reading: Reading, ids: Ints) -> Reading:
+def name_by_id(reading: Reading, ids: Ints) -> Reading:
     """Return a reading in which people are named by who they are, not by their places among the agents."""
     if np.array_equal(ids, np.arange(len(ids))):
         return reading
@@ -145,7 +145,7 @@ def _tracked(reading: TrackedPeople, ids: Ints) -> TrackedPeople:
     return dataclasses.replace(reading, **rows)
 
 
-def shown(reading: Reading) -> Ints | None:
+def visible_ids(reading: Reading) -> Ints | None:
     """Return the ids of those whom a reading shows; None for readings that cannot show anybody."""
     if isinstance(reading, TrackedPeople):
         return np.flatnonzero(reading.present[0])

@@ -7,10 +7,10 @@ from typing import Any
 
 from crowdbot.core import InputError
 from crowdbot.models import Mixture
-from crowdbot.trials import Crowds, Robot, Trial, crowd_names
+from crowdbot.trials import Crowds, RobotSpec, Trial, crowd_names
 
-from .mounted_sensor import probes_of
-from .simulation import Carrier, Simulation
+from .mounted_sensor import mounted_sensors
+from .simulation import RobotRuntime, Simulation
 from .world_builder import limits_of
 
 __all__ = ["apply_overrides"]
@@ -115,14 +115,14 @@ def _router(old: Trial, new: Trial) -> dict[str, Any]:
     return {"router": None if new.routing is None else new.routing.router(new.stage.as_walls())}
 
 
-def _carrier(simulation: Simulation, old: Carrier, robot: Robot, seed: int | None) -> Carrier:
+def _carrier(simulation: Simulation, old: RobotRuntime, robot: RobotSpec, seed: int | None) -> RobotRuntime:
     """Return a robot that goes on: what it holds and what its sensors said, as far as it still has them."""
     clock, names = simulation.world.clock, {mount.name for mount in robot.sensors}
-    probes = probes_of(
+    probes = mounted_sensors(
         simulation.trial, robot, simulation.world, simulation.seed, {one.mount.name: one for one in old.probes}
     )
     if seed is not None:
-        fresh = probes_of(simulation.trial, robot, simulation.world, seed)
+        fresh = mounted_sensors(simulation.trial, robot, simulation.world, seed)
         probes = tuple(dataclasses.replace(one, rng=new.rng) for one, new in zip(probes, fresh, strict=True))
     same = type(old.robot.navigator) is type(robot.navigator)
     return dataclasses.replace(

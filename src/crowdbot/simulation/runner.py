@@ -12,24 +12,24 @@ from typing import Protocol, TypeVar
 
 from crowdbot.core import Clock, ExternalClock, InputError
 from crowdbot.sensors import Reading
-from crowdbot.trials import Mount, Robot, Trial, check_trial
+from crowdbot.trials import Mount, RobotSpec, Trial, check_trial
 from crowdbot.world import StepGenerator, run_step
 
-from .episode import Episode, Log
-from .simulation import Frame, Simulation
-from .statistics import Tally
+from .episode import Episode, EpisodeLog
+from .simulation import Simulation, StepRecord
+from .statistics import EpisodeStatistics
 
-__all__ = ["Bridge", "Running", "Sink", "Stop", "drive", "simulate", "stopping"]
+__all__ = ["Bridge", "SimulationRun", "Sink", "StopRequest", "catch_interrupt", "run_to_end", "simulate"]
 
 Progress = Callable[[float], None]
-Measured = tuple[tuple[Robot, Mount, Reading], ...]
-T = TypeVar("T", bound=Tally)
+Measured = tuple[tuple[RobotSpec, Mount, Reading], ...]
+T = TypeVar("T", bound=EpisodeStatistics)
 
 
 class Sink(Protocol):
     """Something that is told what is recorded, as it happens."""
 
-    def take(self, frame: Frame) -> None:
+    def take(self, frame: StepRecord) -> None:
         """Take an instant."""
 
 
@@ -40,14 +40,14 @@ class Bridge(Protocol):
         """Pass on a step, with what was measured now; commands go to :meth:`Simulation.ask`."""
 
 
-class Stop:
+class StopRequest:
     """Whether somebody asked the run to stop."""
 
     asked: bool = False
 
 
 @dataclass
-class Running:
+class SimulationRun:
     """A run that is stepped from outside.
 
     Args:
@@ -61,7 +61,7 @@ class Running:
 
     >>> from crowdbot.models import ORCA
     >>> clock = ExternalClock(0.05)
-    >>> running = Running(Simulation(Trial(name="empty", duration=1.0, crowd=ORCA()), 0, clock))
+    >>> running = SimulationRun(Simulation(Trial(name="empty", duration=1.0, crowd=ORCA()), 0, clock))
     >>> running.until(520_000_000)
     10
     >>> running.until(7_000_000_000), running.outcome
@@ -72,7 +72,7 @@ class Running:
     sinks: Sequence[Sink] = ()
     bridges: Sequence[Bridge] = ()
     ticks: int | None = None
-    stop: Stop = field(default_factory=Stop)
+    stop: StopRequest = field(default_factory=StopRequest)
     outcome: str | None = field(default=None, init=False)
     _every: int = field(init=False)
 
@@ -148,17 +148,17 @@ def simulate(
     """
     chosen = trial.seed if seed is None else int(seed)
     check_trial(trial, chosen)
-    log = Log(trial, chosen)
+    log = EpisodeLog(trial, chosen)
     simulation = Simulation(trial, chosen, clock)
-    with stopping() as stop:
-        outcome = drive(simulation, [log], stop, progress)
+    with catch_interrupt() as stop:
+        outcome = run_to_end(simulation, [log], stop, progress)
     return log.episode(outcome, simulation.tick)
 
 
-def drive(
+def run_to_end(
     simulation: Simulation,
     sinks: Sequence[Sink],
-    stop: Stop,
+    stop: StopRequest,
     progress: Progress | None = None,
     ticks: int | None = None,
 ) -> str:
@@ -172,7 +172,7 @@ def drive(
         ticks: stop after as many steps, as an interrupted run did; None runs on.
     """
     total = simulation.trial.ticks
-    running = Running(simulation, sinks, ticks=ticks, stop=stop)
+    running = SimulationRun(simulation, sinks, ticks=ticks, stop=stop)
     told = -1
     while running.outcome is None:
         running.step()
@@ -198,12 +198,12 @@ def _outcome(simulation: Simulation) -> str | None:
 
 
 @contextlib.contextmanager
-def stopping() -> Iterator[Stop]:
+def catch_interrupt() -> Iterator[StopRequest]:
     """Turn the first Ctrl-C into ``stop.asked``, so that no step and no file is torn; a second one interrupts.
 
     Outside the main thread, where Python delivers no signals, it changes nothing.
     """
-    stop = Stop()
+    stop = StopRequest()
     if threading.current_thread() is not threading.main_thread():
         yield stop
         return

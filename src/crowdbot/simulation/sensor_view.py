@@ -11,16 +11,16 @@ from crowdbot.core import Scene, SpatialPose, Walls
 from crowdbot.world import World
 
 if TYPE_CHECKING:
-    from crowdbot.trials import Figures, Trial
+    from crowdbot.trials import PeopleAppearance, Trial
     from crowdbot.world import Renderer
 
-__all__ = ["Surroundings"]
+__all__ = ["WorldView"]
 
 SKIN = 1
 """Level of detail of the skins that rays meet."""
 
 
-class Surroundings:
+class WorldView:
     """A world as sensors see it: from above as discs, or in space with bodies, or drawn.
 
     Args:
@@ -31,7 +31,7 @@ class Surroundings:
         skins: whether rays meet the skins of people.
     """
 
-    def __init__(self, trial: Trial, world: World, figures: Figures | None, seed: int, skins: bool) -> None:
+    def __init__(self, trial: Trial, world: World, figures: PeopleAppearance | None, seed: int, skins: bool) -> None:
         self.trial, self.world, self._skins = trial, world, SKIN if skins else None
         self._first = trial.people
         self._space: tuple[Scene, Scene] | None = None

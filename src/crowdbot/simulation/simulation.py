@@ -27,18 +27,18 @@ from crowdbot.core import Clock, InputError, Scene, TrialError, Twist
 from crowdbot.metrics.contacts import HOLD
 from crowdbot.navigation import DriveLimits, Observation
 from crowdbot.sensors import Reading, Scan
-from crowdbot.trials import Mount, Robot, Trial, cast_of, place
+from crowdbot.trials import Mount, RobotSpec, Trial, element_word, people_appearance, place
 from crowdbot.world import StepGenerator, run_step
 
-from .mounted_sensor import Probe, probes_of
-from .sensor_view import Surroundings
-from .termination import ended, ways_out
-from .world_builder import limits_of, start_scene, world_of
+from .mounted_sensor import MountedSensor, mounted_sensors
+from .sensor_view import WorldView
+from .termination import end_outcome, goal_zones
+from .world_builder import build_world, limits_of, start_scene
 
 if TYPE_CHECKING:
     from crowdbot.world import BodyContactEvent, ContactForce
 
-__all__ = ["Carrier", "Frame", "Simulation", "Touch", "start_scene"]
+__all__ = ["RobotContact", "RobotRuntime", "Simulation", "StepRecord", "start_scene"]
 
 INSTANT = 1e-9
 """Times [s] that differ by less are the same."""
@@ -50,7 +50,7 @@ WALL = -2
 """A wall, where otherwise the id of somebody who was touched stands; as in scans."""
 
 
-class Touch(NamedTuple):
+class RobotContact(NamedTuple):
     """A robot and what it touched during a step: their ids (-2: a wall) and the smallest clearance [m], negative."""
 
     robot: int
@@ -59,7 +59,7 @@ class Touch(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Frame:
+class StepRecord:
     """What is recorded at one instant.
 
     Fields:
@@ -81,22 +81,22 @@ class Frame:
     ids: NDArray[np.int64]
     twists: NDArray[np.float64]
     commands: NDArray[np.float64]
-    readings: tuple[tuple[Robot, Mount, Reading], ...]
+    readings: tuple[tuple[RobotSpec, Mount, Reading], ...]
     due: bool
-    touches: tuple[Touch, ...] = ()
+    touches: tuple[RobotContact, ...] = ()
     forces: tuple[ContactForce, ...] = ()
     collisions: tuple[BodyContactEvent, ...] = ()
 
 
 @dataclass
-class Carrier:
+class RobotRuntime:
     """A robot that is running: its place among the agents, what its sensors said last and what it is asked to do."""
 
-    robot: Robot
+    robot: RobotSpec
     agent: int
     limits: DriveLimits
     control_every: int
-    probes: tuple[Probe, ...]
+    probes: tuple[MountedSensor, ...]
     readings: dict[str, Reading] = field(default_factory=dict)
     seen: dict[str, NDArray[np.int64]] = field(default_factory=dict)
     """Ids of those whom each sensor showed last."""
@@ -141,22 +141,22 @@ class Simulation:
         recorded = [(one, one.walks(trial.duration)) for one in trial.recorded]
         people, problems = place(trial.stage, trial.spawners, trial.robots, seed, trial.agents, recorded)
         if problems:
-            what = ((type(one).__name__.lower(), one.name, sentence) for one, sentence in problems)
+            what = ((element_word(type(one)), one.name, sentence) for one, sentence in problems)
             raise TrialError(*(f"trial {trial.name!r}: {word} {name!r}: {sentence}" for word, name, sentence in what))
         self.people = people
-        self.world, figures = world_of(trial, people, seed)
+        self.world, figures = build_world(trial, people, seed)
         if posed and figures is None:
-            figures = cast_of(trial, people, self.world.scene.shape[1], seed)
+            figures = people_appearance(trial, people, self.world.scene.shape[1], seed)
         skins = trial.bodies == "skins" or any(m.sensor.sees_skins for r in trial.robots for m in r.sensors)
-        self.around = Surroundings(trial, self.world, figures, seed, skins)
+        self.around = WorldView(trial, self.world, figures, seed, skins)
         self.carriers = [self._carrier(robot, len(people) + k) for k, robot in enumerate(trial.robots)]
         self.event: str | None = None
-        self.touches: tuple[Touch, ...] = ()
+        self.touches: tuple[RobotContact, ...] = ()
         self.begun = False
         if clock is not None:
             self._keep_time(clock)
         self.ended: str | None = None
-        self._ways_out = ways_out(people)
+        self._ways_out = goal_zones(people)
         self._told = 0
 
     def step(self) -> None:
@@ -171,7 +171,7 @@ class Simulation:
         self.world.pose_people()
         self._judge(before, ids)
 
-    def sense(self) -> tuple[tuple[Robot, Mount, Reading], ...]:
+    def sense(self) -> tuple[tuple[RobotSpec, Mount, Reading], ...]:
         """Let the sensors that are due measure, and return what arrives now: the first half of part 6."""
         new = []
         for carrier in self.carriers:
@@ -190,14 +190,14 @@ class Simulation:
             if self.tick % carrier.control_every == 0:
                 self._decide(carrier)
 
-    def _decide(self, carrier: Carrier) -> None:
+    def _decide(self, carrier: RobotRuntime) -> None:
         navigator, observation = carrier.robot.navigator, self.observation(carrier)
         if not carrier.begun:
             carrier.memory, carrier.begun = navigator.begin(observation), True
         action, carrier.memory = navigator.decide(observation, carrier.memory, robot=carrier.robot.name)
         carrier.command = action.twist
 
-    def observation(self, carrier: Carrier) -> Observation:
+    def observation(self, carrier: RobotRuntime) -> Observation:
         """Return what a robot knows: of the people, those whom its sensors showed last, as by one beam of a scan.
 
         These it knows by their true positions and velocities, as from a perfect tracker.
@@ -218,11 +218,11 @@ class Simulation:
         )
 
     def frame(
-        self, readings: tuple[tuple[Robot, Mount, Reading], ...] = (), due: bool = True, last: bool = False
-    ) -> Frame:
+        self, readings: tuple[tuple[RobotSpec, Mount, Reading], ...] = (), due: bool = True, last: bool = False
+    ) -> StepRecord:
         """Return what is to be recorded of this instant: part 8; the ``last`` one has collisions that go on."""
         twists = [self.world.twists[carrier.agent].at(0) for carrier in self.carriers]
-        return Frame(
+        return StepRecord(
             self.tick,
             self.world.clock.nanoseconds,
             self.world.scene,
@@ -282,14 +282,14 @@ class Simulation:
         """Who is who ``[A]``."""
         return np.asarray(self.world.ids[0])
 
-    def _carrier(self, robot: Robot, agent: int) -> Carrier:
+    def _carrier(self, robot: RobotSpec, agent: int) -> RobotRuntime:
         every = self.world.clock.every
-        return Carrier(
+        return RobotRuntime(
             robot,
             agent,
             limits_of(robot.drive),
             every(robot.control_period),
-            probes_of(self.trial, robot, self.world, self.seed),
+            mounted_sensors(self.trial, robot, self.world, self.seed),
         )
 
     def _keep_time(self, clock: Clock) -> None:
@@ -318,11 +318,11 @@ class Simulation:
     def _judge(self, before: Scene, ids: NDArray[np.int64]) -> None:
         """Find contacts and arrivals; ``ids`` are from before the step, since the place of who left may be taken."""
         now = self.world.scene
-        touches = [Touch(int(ids[one.robot]), int(ids[one.other]), one.clearance) for one in self.world.contacts]
+        touches = [RobotContact(int(ids[one.robot]), int(ids[one.other]), one.clearance) for one in self.world.contacts]
         for carrier in self.carriers:
             gap = float(self.world.wall_clearance(carrier.agent)[0])
             if gap < 0.0:
-                touches.append(Touch(int(ids[carrier.agent]), WALL, gap))
+                touches.append(RobotContact(int(ids[carrier.agent]), WALL, gap))
             away = float(np.hypot(*(now.position[0, carrier.agent] - np.array(carrier.robot.goal.position))))
             carrier.arrived |= away < carrier.robot.goal.tolerance
         self.touches = tuple(touches)
@@ -332,7 +332,7 @@ class Simulation:
         elif self.event is None and self.carriers and all(carrier.arrived for carrier in self.carriers):
             self.event = "success"
         if self.ended is None:
-            self.ended = ended(self)
+            self.ended = end_outcome(self)
 
 
 def _rows(twists: Sequence[Twist]) -> NDArray[np.float64]:

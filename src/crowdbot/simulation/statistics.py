@@ -17,13 +17,13 @@ from crowdbot.core import Pose, SpatialPose
 from crowdbot.metrics import AgentStates, NavigationMetrics
 from crowdbot.trials import Trial
 
-from .simulation import Frame
+from .simulation import StepRecord
 
-__all__ = ["Digest", "Summary", "Tally", "present", "robot_metrics"]
+__all__ = ["EpisodeDigest", "EpisodeStatistics", "RunSummary", "present", "robot_metrics"]
 
 
 @dataclass(frozen=True)
-class Summary:
+class RunSummary:
     """How a run went, without its arrays.
 
     Fields:
@@ -46,13 +46,13 @@ class Summary:
     path: Path | None = None
 
 
-class Digest:
+class EpisodeDigest:
     """The hash of an episode, made while it runs."""
 
     def __init__(self) -> None:
         self._sum = hashlib.blake2b(digest_size=16)
 
-    def take(self, frame: Frame) -> None:
+    def take(self, frame: StepRecord) -> None:
         """Add an instant: every array of its readings, then, when it is due, of its scene, then forces."""
         for robot, mount, reading in frame.readings:
             self._sum.update(f"reading {frame.nanoseconds} {robot.name}/{mount.name}\n".encode())
@@ -75,7 +75,7 @@ class Digest:
         return whole.hexdigest()
 
 
-class Tally:
+class EpisodeStatistics:
     """Counts and measures while an episode runs.
 
     Args:
@@ -83,9 +83,9 @@ class Tally:
         digest: that of the time before the first instant, None when there is none.
     """
 
-    def __init__(self, trial: Trial, seed: int, digest: Digest | None = None) -> None:
+    def __init__(self, trial: Trial, seed: int, digest: EpisodeDigest | None = None) -> None:
         self.trial, self.seed = trial, seed
-        self.digest = digest or Digest()
+        self.digest = digest or EpisodeDigest()
         self.agents = trial.people + len(trial.robots)
         self.begin = self.end = math.nan
         self._touching: set[int] = set()
@@ -95,12 +95,12 @@ class Tally:
             for k, robot in enumerate(trial.robots)
         ]
 
-    def take(self, frame: Frame) -> None:
+    def take(self, frame: StepRecord) -> None:
         """Take an instant."""
         self.digest.take(frame)
         self.keep(frame)
 
-    def keep(self, frame: Frame) -> None:
+    def keep(self, frame: StepRecord) -> None:
         """Take an instant that the digest has already."""
         self.agents = max(self.agents, 1 + int(frame.ids.max(initial=-1)))
         self._touching |= {who for one in frame.touches for who in (one.robot, one.other)}
@@ -117,9 +117,9 @@ class Tally:
         """Return the metrics of every robot."""
         return robot_metrics(self.travels, [robot.name for robot in self.trial.robots], outcome)
 
-    def summary(self, outcome: str, steps: int, path: Path | None = None) -> Summary:
+    def summary(self, outcome: str, steps: int, path: Path | None = None) -> RunSummary:
         """Return how the run went."""
-        return Summary(
+        return RunSummary(
             self.trial,
             self.seed,
             outcome,
@@ -142,7 +142,7 @@ def robot_metrics(travels: Sequence[NavigationMetrics], names: Iterable[str], ou
     return found
 
 
-def present(frame: Frame) -> tuple[NDArray[Any], ...]:
+def present(frame: StepRecord) -> tuple[NDArray[Any], ...]:
     """Return position, velocity, heading and active of E = 1, 0 for who is not there."""
     scene = frame.scene
     here = scene.active[0]
@@ -154,7 +154,7 @@ def present(frame: Frame) -> tuple[NDArray[Any], ...]:
     )
 
 
-def _instant(frame: Frame) -> AgentStates:
+def _instant(frame: StepRecord) -> AgentStates:
     scene = frame.scene
     there = np.flatnonzero(scene.active[0])
     there = there[np.argsort(frame.ids[there])]

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.trials import Agent, People, Spawner, area
+from crowdbot.trials import Agent, InitialPeople, Spawner, area
 
 if TYPE_CHECKING:
-    from crowdbot.trials import When
+    from crowdbot.trials import EndCondition
 
     from .simulation import Simulation
 
-__all__ = ["ended", "ways_out"]
+__all__ = ["end_outcome", "goal_zones"]
 
 
-def ways_out(people: People) -> list[tuple[NDArray[np.int64], Any]]:
+def goal_zones(people: InitialPeople) -> list[tuple[NDArray[np.int64], Any]]:
     """Return those who leave in a goal zone of theirs, and that zone, prepared; an empty one for a goal alone."""
     import shapely
 
@@ -32,7 +32,7 @@ def ways_out(people: People) -> list[tuple[NDArray[np.int64], Any]]:
     return [(np.array(who, dtype=np.int64), zone) for who, zone in zip(members.values(), zones, strict=True)]
 
 
-def ended(simulation: Simulation) -> str | None:
+def end_outcome(simulation: Simulation) -> str | None:
     """Return the outcome that the conditions of a trial make now, None while none of them holds."""
     end = simulation.trial.end
     if end.empty and _here(simulation) == 0 and not _coming(simulation):
@@ -57,7 +57,7 @@ def _coming(simulation: Simulation) -> bool:
     return walks or any(come) or bool(simulation.world.waiting[0] > 0)
 
 
-def _value(simulation: Simulation, when: When) -> float | None:
+def _value(simulation: Simulation, when: EndCondition) -> float | None:
     if when.what == "time":
         return simulation.world.clock.time
     if when.what == "people":

@@ -14,24 +14,24 @@ from crowdbot.navigation import DriveLimits
 from crowdbot.trials import (
     Agent,
     Crowds,
-    Figures,
-    People,
+    InitialPeople,
+    PeopleAppearance,
     RecordedPeople,
-    Robot,
+    RobotSpec,
     Trial,
-    cast_of,
     crowd_names,
     expand_sweeps,
     own,
+    people_appearance,
 )
 from crowdbot.world import JourneyAssignment, PeopleSource, PlanarWorld, ReplayedPeople, ReplayedTrack, Router
 
 from .mounted_sensor import spatial
 
-__all__ = ["limits_of", "start_scene", "world_of"]
+__all__ = ["build_world", "limits_of", "start_scene"]
 
 
-def world_of(trial: Trial, people: People, seed: int) -> tuple[PlanarWorld, Figures | None]:
+def build_world(trial: Trial, people: InitialPeople, seed: int) -> tuple[PlanarWorld, PeopleAppearance | None]:
     """Return the world of a trial at the beginning: people, robots, then free places for who comes in.
 
     With it come the bodies of people, when the world has bodies or a sensor looks at them.
@@ -47,7 +47,7 @@ def world_of(trial: Trial, people: People, seed: int) -> tuple[PlanarWorld, Figu
     scene = start_scene(trial, people, spare := _spare(trial, first, sources, seed))
     there = first + len(trial.robots)
     router = None if trial.routing is None else trial.routing.router(scene.walls)
-    figures = cast_of(trial, people, scene.shape[1], seed) if _embodied(trial) else None
+    figures = people_appearance(trial, people, scene.shape[1], seed) if _embodied(trial) else None
     journeys = _journeys(trial, people, scene.shape[1])
     whole: dict[str, Any] = {
         "dt": trial.step,
@@ -88,7 +88,7 @@ def _embodied(trial: Trial) -> bool:
 
 
 def _with_bodies(
-    trial: Trial, scene: Scene, model: CrowdModel, robots: Mapping[int, Robot], figures: Any, whole: dict[str, Any]
+    trial: Trial, scene: Scene, model: CrowdModel, robots: Mapping[int, RobotSpec], figures: Any, whole: dict[str, Any]
 ) -> PlanarWorld:
     from crowdbot.world import PhysicsWorld
 
@@ -105,7 +105,7 @@ def _with_bodies(
     )
 
 
-def start_scene(trial: Trial, people: People, spare: int = 0) -> Scene:
+def start_scene(trial: Trial, people: InitialPeople, spare: int = 0) -> Scene:
     """Return the scene at the beginning, E = 1: people walking towards their goals, standing robots, free places."""
     robots = trial.robots
     away = people.goal - people.position
@@ -152,7 +152,7 @@ def _spare(trial: Trial, first: int, sources: Sequence[PeopleSource], seed: int)
     return come if trial.capacity is None else min(come, max(0, trial.capacity - first))
 
 
-def _model(trial: Trial, people: People, agents: int, seed: int) -> CrowdModel:
+def _model(trial: Trial, people: InitialPeople, agents: int, seed: int) -> CrowdModel:
     """Return by what everybody walks: with several crowds a mixture in which each person has a place."""
     if not isinstance(trial.crowd, Crowds):
         return own(trial.crowd, seed, 0, agents, _values(people, range(len(people))))
@@ -164,7 +164,7 @@ def _model(trial: Trial, people: People, agents: int, seed: int) -> CrowdModel:
     return Mixture(tuple(models), which)
 
 
-def _values(people: People, members: Iterable[int]) -> dict[int, dict[str, float]]:
+def _values(people: InitialPeople, members: Iterable[int]) -> dict[int, dict[str, float]]:
     """Return the own parameters of those of some people who have any."""
     found = {}
     for a in members:
@@ -174,7 +174,7 @@ def _values(people: People, members: Iterable[int]) -> dict[int, dict[str, float
     return found
 
 
-def _script(people: People) -> ReplayedPeople | None:
+def _script(people: InitialPeople) -> ReplayedPeople | None:
     """Return the recordings that people follow."""
     if not people.walks:
         return None
@@ -187,14 +187,14 @@ def _script(people: People) -> ReplayedPeople | None:
     return ReplayedPeople(tracks, release)
 
 
-def _journeys(trial: Trial, people: People, agents: int) -> JourneyAssignment | None:
+def _journeys(trial: Trial, people: InitialPeople, agents: int) -> JourneyAssignment | None:
     which = _chosen(people, agents, "journey", tuple(journey.name for journey in trial.journeys), -1)
     if np.all(which < 0):
         return None
     return JourneyAssignment(tuple(journey.journey() for journey in trial.journeys), which)
 
 
-def _chosen(people: People, agents: int, word: str, names: tuple[str, ...], otherwise: int) -> NDArray[np.int64]:
+def _chosen(people: InitialPeople, agents: int, word: str, names: tuple[str, ...], otherwise: int) -> NDArray[np.int64]:
     """Return ``[A]`` the index of the journey or crowd that everybody's agent, spawner or recording names."""
 
     def index(owner: Any) -> int:

@@ -1,41 +1,41 @@
 """Trials: simulations as data. The dataclasses, their XML, the checks, built-in scenarios, placement and importers."""
 
-from .agent import Agent, Parameter
+from .agent import Agent, AgentParameter
 from .builtin import builtin_trials, load_trial
 from .camera import OVERVIEW, Camera, overview
-from .code_references import is_code, named_code
-from .crowd import Contact, Crowd, Crowds, Limits, Routing, crowd_names
+from .code_references import code_references, is_code
+from .crowd import ContactModel, Crowd, Crowds, Limits, Routing, crowd_names
 from .distribution import Distribution
-from .fields import UNWRITABLE, attribute, check, children, outline, shown
+from .fields import UNWRITABLE, attribute, check, children, element_word, outline, quote_value
 from .importers.original import Imported, import_original, plan_of, trials_of
 from .importers.original_order import Plan
 from .importers.recording import recorded_trial
 from .journey import Direction, Exit, Journey, Point, Portal, Zone
-from .map_files import is_file_of_area, map_files
+from .map_files import is_area_file, map_files
 from .notation import Points, plain
 from .parser import check_trial, parse_trial
 from .partial import readable, told
-from .people import Group, Source, Spawner
-from .placement.appearance import Figures, cast_of
+from .people import Group, SourceSpec, Spawner
+from .placement.appearance import PeopleAppearance, people_appearance
 from .placement.expansion import expand_spawners
 from .placement.population import place
-from .placement.spawn_placement import GAP, People
+from .placement.spawn_placement import GAP, InitialPeople
 from .props import Cube, Light, Table, Tree
-from .randomized_model import Drawn, own
+from .randomized_model import RandomizedModel, own
 from .recorded_people import RecordedPeople
-from .robot import Goal, Mount, Robot
+from .robot import Mount, RobotGoal, RobotSpec
 from .scenarios import PRESETS
 from .scenarios.challenge import FLOWS, SIZES
 from .scenarios.crowds import DENSITIES
 from .stage import Obstacle, Stage, Wall, area
 from .sweep import Sweep
-from .trial import End, Recording, Trial, When
-from .trial_files import beside
+from .trial import End, EndCondition, RecordingSpec, Trial
+from .trial_files import resolve_file
 from .validation.rates import trial_remarks
 from .variants import apply_values, expand_sweeps
 from .xml.document import parse_trial_xml, read_trial_bytes
 from .xml.old_names import OldNameWarning, update_names
-from .xml.reader import Reader
+from .xml.reader import XmlReader
 from .xml.writer import element_from, trial_xml
 from .xml.xsd import schema
 
@@ -48,38 +48,38 @@ __all__ = [
     "SIZES",
     "UNWRITABLE",
     "Agent",
+    "AgentParameter",
     "Camera",
-    "Contact",
+    "ContactModel",
     "Crowd",
     "Crowds",
     "Cube",
     "Direction",
     "Distribution",
-    "Drawn",
     "End",
+    "EndCondition",
     "Exit",
-    "Figures",
-    "Goal",
     "Group",
     "Imported",
+    "InitialPeople",
     "Journey",
     "Light",
     "Limits",
     "Mount",
     "Obstacle",
     "OldNameWarning",
-    "Parameter",
-    "People",
+    "PeopleAppearance",
     "Plan",
     "Point",
     "Points",
     "Portal",
-    "Reader",
+    "RandomizedModel",
     "RecordedPeople",
-    "Recording",
-    "Robot",
+    "RecordingSpec",
+    "RobotGoal",
+    "RobotSpec",
     "Routing",
-    "Source",
+    "SourceSpec",
     "Spawner",
     "Stage",
     "Sweep",
@@ -87,40 +87,41 @@ __all__ = [
     "Tree",
     "Trial",
     "Wall",
-    "When",
+    "XmlReader",
     "Zone",
     "apply_values",
     "area",
     "attribute",
-    "beside",
     "builtin_trials",
-    "cast_of",
     "check",
     "check_trial",
     "children",
+    "code_references",
     "crowd_names",
     "element_from",
+    "element_word",
     "expand_spawners",
     "expand_sweeps",
     "import_original",
+    "is_area_file",
     "is_code",
-    "is_file_of_area",
     "load_trial",
     "map_files",
-    "named_code",
     "outline",
     "overview",
     "own",
     "parse_trial",
     "parse_trial_xml",
+    "people_appearance",
     "place",
     "plain",
     "plan_of",
+    "quote_value",
     "read_trial_bytes",
     "readable",
     "recorded_trial",
+    "resolve_file",
     "schema",
-    "shown",
     "told",
     "trial_remarks",
     "trial_xml",

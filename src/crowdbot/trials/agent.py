@@ -7,18 +7,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .fields import Mistake, attribute, check, children
+from .fields import FieldProblem, attribute, check, children
 from .human_kinds import ABOUT_ACTIVITY, ABOUT_BODY, check_words, word_problems
 from .notation import Points
 
-__all__ = ["Agent", "Parameter"]
+__all__ = ["Agent", "AgentParameter"]
 
 
 @dataclass(frozen=True)
-class Parameter:
+class AgentParameter:
     """A parameter of the crowd model for one person.
 
-    >>> Parameter("time-horizon", 1.5).value
+    >>> AgentParameter("time-horizon", 1.5).value
     1.5
     """
 
@@ -57,14 +57,14 @@ class Agent:
     body: str = attribute("", about=ABOUT_BODY)
     outfit: int | None = attribute(None, about="number of the clothes and colours", min=0, max=1e6)
     activity: str = attribute("", about=ABOUT_ACTIVITY)
-    parameters: tuple[Parameter, ...] = children("parameter", about="own parameters of the model", max=100)
+    parameters: tuple[AgentParameter, ...] = children("parameter", about="own parameters of the model", max=100)
 
     def __post_init__(self) -> None:
         check(self)
         check_words(self.body, self.activity)
 
     @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[Mistake]:
+    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
         """Return what is wrong with the words of a file, whatever else is wrong in its element."""
         found = word_problems(values.get("body", ""), values.get("activity", ""))
         return [((), sentence) for sentence in found]

@@ -11,7 +11,7 @@ from crowdbot.core import Element, InputError, parse_xml, read_bytes
 
 from .xml.document import parse_trial_xml
 
-__all__ = ["is_code", "named_code"]
+__all__ = ["code_references", "is_code"]
 
 ENDINGS = (".py", ".pyc", ".pyo", ".pyw", ".pyd", ".so")
 ADDRESS = re.compile(r"([^\s,;|\"']+\.py):")
@@ -27,7 +27,7 @@ def is_code(name: str) -> bool:
     return plain.endswith(ENDINGS) or "__pycache__" in PurePosixPath(plain).parts
 
 
-def named_code(known: Mapping[str, str], folder: Path) -> list[str]:
+def code_references(known: Mapping[str, str], folder: Path) -> list[str]:
     """Return the Python files that the trials of an episode name, and those that their robot folders name.
 
     Args:

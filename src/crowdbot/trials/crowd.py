@@ -14,10 +14,10 @@ from crowdbot.core import InputError, Walls
 from crowdbot.models import CrowdModel
 from crowdbot.models.mixture import Mixture
 
-from .fields import attribute, check, mounted
+from .fields import attribute, check, mounted_field
 from .notation import NAME
 
-__all__ = ["Contact", "Crowd", "Crowds", "Limits", "Routing", "crowd_names"]
+__all__ = ["ContactModel", "Crowd", "Crowds", "Limits", "Routing", "crowd_names"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +25,7 @@ class Crowd:
     """A model and, when there are several, the name by which spawners and sources choose it."""
 
     name: str = attribute("", about="name that spawners and sources choose it by", pattern=NAME)
-    model: CrowdModel = mounted("models", "CrowdModel", drawn=True, about="how its people walk")
+    model: CrowdModel = mounted_field("models", "CrowdModel", drawn=True, about="how its people walk")
 
     def __post_init__(self) -> None:
         check(self)
@@ -108,7 +108,7 @@ class Routing:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Contact:
+class ContactModel:
     """People whose bodies overlap after a step are pushed apart, and nobody ends up in a wall."""
 
     variant: str = attribute(

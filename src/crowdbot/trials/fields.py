@@ -22,21 +22,22 @@ from crowdbot.core import Bounds, InputError, did_you_mean
 from .partial import is_torn
 
 __all__ = [
-    "Mistake",
-    "Part",
-    "Plug",
-    "Rule",
+    "Constraint",
+    "FieldProblem",
+    "FieldSpec",
+    "PluginSpec",
     "attribute",
     "check",
     "child",
     "children",
-    "mounted",
+    "element_word",
+    "mounted_field",
     "outline",
-    "plugged",
-    "shown",
+    "plugin_field",
+    "quote_value",
 ]
 
-Mistake = tuple[Collection[str], str]
+FieldProblem = tuple[Collection[str], str]
 """What ``mistakes(values)`` of an element finds, whatever else is wrong in it: fields that nobody can use, and why."""
 LARGEST = 1e6
 """No number in a trial may be larger than this, whatever its unit."""
@@ -45,7 +46,7 @@ UNWRITABLE = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
 
 
 @dataclass(frozen=True)
-class Rule:
+class Constraint:
     """What one attribute may be; ``unit`` and ``about`` are for people."""
 
     about: str
@@ -60,9 +61,9 @@ class Rule:
     def problem(self, value: Any) -> str:
         """Return what is wrong with a value as the end of a sentence, empty when it is right.
 
-        >>> Rule("number of people", min=0).problem(-3)
+        >>> Constraint("number of people", min=0).problem(-3)
         'must be at least 0 and at most 1000000'
-        >>> Rule("time step", unit="s", exclusive_min=0.0, max=1.0).problem(2.5)
+        >>> Constraint("time step", unit="s", exclusive_min=0.0, max=1.0).problem(2.5)
         'must be at most 1 s and above 0 s'
         """
         if isinstance(value, str):
@@ -108,7 +109,7 @@ class Rule:
 
 
 @dataclass(frozen=True)
-class Plug:
+class PluginSpec:
     """The room and the contract of a part that users can bring: the XML says ``type="..."``."""
 
     room: str
@@ -123,13 +124,13 @@ class Plug:
 
 
 @dataclass(frozen=True)
-class Part:
+class FieldSpec:
     """One field of an element.
 
     Fields:
         name: in Python.
         word: in XML: of the attribute, or of the child element.
-        role: ``attribute``, ``child``, ``children``, ``plugged`` (a child element that is a plug) or ``mounted``
+        role: ``attribute``, ``child``, ``children``, ``plugged`` (a child element) or ``mounted``
             (a plug whose attributes stand in this element).
         kind: type of the value, of children of one of them.
         required: whether it must be given.
@@ -149,8 +150,8 @@ class Part:
     kind: Any
     required: bool
     default: Any
-    rule: Rule | None
-    plug: Plug | None
+    rule: Constraint | None
+    plug: PluginSpec | None
     about: str
     max: int = 1
     elements: Mapping[str, Any] = field(default_factory=dict)
@@ -181,7 +182,7 @@ def attribute(
     points: int = 0,
 ) -> Any:
     """Make a field that is an XML attribute: a number, a word, true or false, points, a distribution."""
-    rule = Rule(about, unit, min, exclusive_min, max, choices, pattern, points)
+    rule = Constraint(about, unit, min, exclusive_min, max, choices, pattern, points)
     return dataclasses.field(default=default, metadata={"role": "attribute", "rule": rule, "about": about})
 
 
@@ -208,32 +209,32 @@ def children(words: str | Mapping[str, type], *, about: str, min: int = 0, max: 
     return dataclasses.field(metadata=row) if min else dataclasses.field(default=(), metadata=row)
 
 
-def plugged(room: str, contract: str, *, about: str, default: Any = dataclasses.MISSING) -> Any:
+def plugin_field(room: str, contract: str, *, about: str, default: Any = dataclasses.MISSING) -> Any:
     """Make a field that is a child element with a ``type`` from a room, or with an address."""
-    row = {"role": "plugged", "plug": Plug(room, contract), "about": about}
+    row = {"role": "plugged", "plug": PluginSpec(room, contract), "about": about}
     return dataclasses.field(default=default, metadata=row)
 
 
-def mounted(room: str, contract: str, *, about: str, drawn: bool = False) -> Any:
+def mounted_field(room: str, contract: str, *, about: str, drawn: bool = False) -> Any:
     """Make a field whose ``type`` and attributes, ``drawn`` from distributions, stand in the element itself."""
-    return dataclasses.field(metadata={"role": "mounted", "plug": Plug(room, contract, drawn), "about": about})
+    return dataclasses.field(metadata={"role": "mounted", "plug": PluginSpec(room, contract, drawn), "about": about})
 
 
 @functools.cache
-def outline(cls: type) -> tuple[Part, ...]:
+def outline(cls: type) -> tuple[FieldSpec, ...]:
     """Return the fields of an element in the order in which they are written."""
     hints = typing.get_type_hints(cls)
     return tuple(_part(field, hints[field.name]) for field in dataclasses.fields(cls) if "role" in field.metadata)
 
 
-def _part(field: dataclasses.Field[Any], hint: Any) -> Part:
+def _part(field: dataclasses.Field[Any], hint: Any) -> FieldSpec:
     row = field.metadata
     several = row["role"] == "children" and row["into"] is None
     kind = typing.get_args(hint)[0] if several else _without_none(hint)
     words = row.get("words", field.name.replace("_", "-"))
     elements = dict(words) if isinstance(words, Mapping) else {words: kind}
     default = field.default if field.default_factory is dataclasses.MISSING else field.default_factory()
-    return Part(
+    return FieldSpec(
         field.name,
         next(iter(elements)),
         row["role"],
@@ -278,14 +279,14 @@ def check(element: Any) -> None:
         object.__setattr__(element, part.name, value)
         wrong = part.wrong(value)
         if wrong:
-            raise InputError(f"{cls.__name__}: {part.name}={shown(value)} {wrong}")
+            raise InputError(f"{cls.__name__}: {part.name}={quote_value(value)} {wrong}")
 
 
-def _contract(part: Part) -> type:
+def _contract(part: FieldSpec) -> type:
     return part.plug.places()[1] if part.plug else part.kind
 
 
-def _listed(element: Any, part: Part, value: Any) -> tuple[Any, ...]:
+def _listed(element: Any, part: FieldSpec, value: Any) -> tuple[Any, ...]:
     name = type(element).__name__
     if not isinstance(value, list | tuple):
         raise InputError(f"{name}: {part.name} is a {type(value).__name__}, it must be a list")
@@ -301,7 +302,7 @@ def _listed(element: Any, part: Part, value: Any) -> tuple[Any, ...]:
     return tuple(value)
 
 
-def _brought(element: Any, part: Part, value: Any) -> Any:
+def _brought(element: Any, part: FieldSpec, value: Any) -> Any:
     if value is None and part.default is None:
         return value
     try:
@@ -312,13 +313,24 @@ def _brought(element: Any, part: Part, value: Any) -> Any:
             if exact == value or math.isnan(value):
                 return exact
     except (TypeError, ValueError, OverflowError) as error:
-        raise InputError(f"{type(element).__name__}: {part.name}={shown(value)} {error}") from None
+        raise InputError(f"{type(element).__name__}: {part.name}={quote_value(value)} {error}") from None
     if type(value) is part.kind:
         return value
-    raise InputError(f"{type(element).__name__}: {part.name}={shown(value)} is not a {part.kind.__name__}")
+    raise InputError(f"{type(element).__name__}: {part.name}={quote_value(value)} is not a {part.kind.__name__}")
 
 
-def shown(value: Any, limit: int = 60) -> str:
+def element_word(cls: type) -> str:
+    """Return the word for the elements of a class in messages.
+
+    >>> from crowdbot.trials import RobotSpec, Spawner
+    >>> element_word(RobotSpec), element_word(Spawner)
+    ('robot', 'spawner')
+    """
+    name = cls.__name__.removesuffix("Spec")
+    return {"RobotGoal": "goal", "AgentParameter": "parameter", "ContactModel": "contact"}.get(name, name).lower()
+
+
+def quote_value(value: Any, limit: int = 60) -> str:
     """Return a value in quotes for a message, cut when it is long."""
     text = str(value)
     return f'"{text if len(text) <= limit else text[: limit - 3] + "..."}"'

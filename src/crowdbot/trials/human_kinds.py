@@ -5,7 +5,7 @@ from __future__ import annotations
 from crowdbot import humans
 from crowdbot.core import InputError, did_you_mean
 
-from .fields import shown
+from .fields import quote_value
 
 __all__ = ["ABOUT_ACTIVITY", "ABOUT_BODY", "ABOUT_RIDER", "KINDS", "check_words", "rider_problems", "word_problems"]
 
@@ -53,7 +53,7 @@ def word_problems(body: str, activity: str) -> list[str]:
         if word not in humans.ACTIVITIES
     ]
     return [
-        f"{what}={shown(text)} has {word[:40]!r}{did_you_mean(word, known)}; it takes {takes}"
+        f"{what}={quote_value(text)} has {word[:40]!r}{did_you_mean(word, known)}; it takes {takes}"
         for word, what, text, known, takes in wrong
     ]
 
@@ -65,5 +65,5 @@ def rider_problems(rider: str, kind: str) -> list[str]:
     ([], ['rider="woman" needs type="wheelchair": nothing else has a seat; leave it out'])
     """
     if rider and kind != "wheelchair":
-        return [f'rider={shown(rider)} needs type="wheelchair": nothing else has a seat; leave it out']
+        return [f'rider={quote_value(rider)} needs type="wheelchair": nothing else has a seat; leave it out']
     return [problem.replace("body=", "rider=", 1) for problem in word_problems(rider, "")]

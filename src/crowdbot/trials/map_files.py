@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 
 from .fields import LARGEST
-from .trial_files import beside, read_beside
+from .trial_files import read_beside, resolve_file
 
 if TYPE_CHECKING:
     import shapely
 
-__all__ = ["area_of", "is_file_of_area", "map_files", "map_of"]
+__all__ = ["area_of", "is_area_file", "map_files", "map_of"]
 
 MOST_CORNERS = 20_000
 MOST_TEXT = 4_000_000
@@ -44,8 +44,8 @@ def area_of(text: str, folder: Path | None, trust: bool) -> shapely.Geometry:
     """
     import shapely
 
-    if is_file_of_area(text):
-        path = beside(text, folder, trust)
+    if is_area_file(text):
+        path = resolve_file(text, folder, trust)
         stamp = path.stat()
         return _from_file(path, stamp.st_mtime_ns, stamp.st_size)
     try:
@@ -55,10 +55,10 @@ def area_of(text: str, folder: Path | None, trust: bool) -> shapely.Geometry:
     return _checked(shape, "the WKT")
 
 
-def is_file_of_area(text: str) -> bool:
+def is_area_file(text: str) -> bool:
     """Return whether an area is the name of a file, not WKT.
 
-    >>> is_file_of_area("hall.geojson"), is_file_of_area("POLYGON ((0 0, 4 0, 4 3, 0 0))")
+    >>> is_area_file("hall.geojson"), is_area_file("POLYGON ((0 0, 4 0, 4 3, 0 0))")
     (True, False)
     """
     return not WKT.match(text)
@@ -150,9 +150,9 @@ def map_files(name: str, folder: Path | None, trust: bool) -> dict[str, Path]:
 
 
 def _map_of(name: str, folder: Path | None, trust: bool) -> tuple[Path, _Map, Path]:
-    path = beside(name, folder, trust)
+    path = resolve_file(name, folder, trust)
     row = _yaml(read_beside(path, 100_000), path.name)
-    image = beside(row.image, path.parent, trust)
+    image = resolve_file(row.image, path.parent, trust)
     if not trust and not image.is_relative_to((folder or Path.cwd()).resolve()):
         raise InputError(f"the file {row.image[:80]!r} lies outside the folder of the trial")
     return path, row, image

@@ -10,13 +10,15 @@ from typing import Any
 from crowdbot.core import Element, TrialError
 
 from .crowd import Crowd, Crowds
+from .fields import element_word
+from .partial import kind_of
 from .stage import Obstacle
 from .sweep import sweep_problems
 from .trial import Trial
 from .validation.trial_checks import problems_of
 from .xml.document import parse_trial_xml
 from .xml.old_names import update_names
-from .xml.reader import ROOT, Reader
+from .xml.reader import ROOT, XmlReader
 from .xml.writer import element_of
 
 __all__ = ["check_trial", "parse_trial"]
@@ -56,7 +58,7 @@ max-neighbors, time-horizon, time-horizon-walls, max-speed, name
     if root.tag != ROOT:
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
     update_names(root, place, quiet=quiet)
-    reader = Reader(place, folder or Path.cwd(), trust)
+    reader = XmlReader(place, folder or Path.cwd(), trust)
     trial = _read_checked(reader, root)
     for sweep, sentence in sweep_problems(root, Trial, trial.sweeps, _variant_problems(reader)):
         reader.say(reader.lines[id(sweep)], "sweep", sentence)
@@ -75,7 +77,7 @@ def check_trial(trial: Trial, seed: int | None = None) -> None:
     found = problems_of(trial, Crowds.spread(trial.crowd), seed)
     sentences = [f"trial {trial.name!r}: {_called(thing)} {sentence}" for thing, sentence in found]
     if trial.sweeps and not sentences:
-        reader = Reader(trial.name, trial.folder or Path.cwd(), True, seed)
+        reader = XmlReader(trial.name, trial.folder or Path.cwd(), True, seed)
         sentences = [
             sentence
             for _, sentence in sweep_problems(element_of(trial), Trial, trial.sweeps, _variant_problems(reader))
@@ -84,7 +86,7 @@ def check_trial(trial: Trial, seed: int | None = None) -> None:
         raise TrialError(*sentences)
 
 
-def _read_checked(reader: Reader, root: Element) -> Any:
+def _read_checked(reader: XmlReader, root: Element) -> Any:
     """Return the trial that an element means, partial when it has a problem, after looking for all of them."""
     trial = reader.element(Trial, root)
     crowds = [one for one in reader.made if isinstance(one, Crowd)]
@@ -93,11 +95,11 @@ def _read_checked(reader: Reader, root: Element) -> Any:
     return trial
 
 
-def _variant_problems(base: Reader) -> Callable[[Element], list[str]]:
+def _variant_problems(base: XmlReader) -> Callable[[Element], list[str]]:
     """Return a function that lists the problems of a variant that the trial itself does not have."""
 
     def problems(root: Element) -> list[str]:
-        reader = Reader(base.place, base.folder, base.trust, base.seed)
+        reader = XmlReader(base.place, base.folder, base.trust, base.seed)
         _read_checked(reader, root)
         return [
             f"<{tag}> {sentence}" for line, tag, sentence in reader.found if (line, tag, sentence) not in base.found
@@ -110,4 +112,4 @@ def _called(thing: Any) -> str:
     if isinstance(thing, Obstacle):
         return "obstacle"
     name = getattr(thing, "name", "")
-    return type(thing).__name__.lower() + (f" {name!r}" if name else "")
+    return element_word(kind_of(thing)) + (f" {name!r}" if name else "")

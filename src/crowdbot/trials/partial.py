@@ -1,8 +1,8 @@
 """What could be read of an element with a mistake: it stands in for the element, so that others can still be judged.
 
 A torn element is of the class of its element and has every field that could be read. Whoever looks at another one gets
-:class:`Unread`, and a check that does ends there (:func:`told`): what is wrong was said already, and what depends on it
-has to wait until it is mended.
+:class:`UnreadableValue`, and a check that does ends there (:func:`told`): what is wrong was said already, and what
+depends on it has to wait until it is mended.
 """
 
 from __future__ import annotations
@@ -14,13 +14,25 @@ from typing import Any, TypeVar
 
 from crowdbot.core import InputError
 
-__all__ = ["EVERYTHING", "Unread", "begun", "is_torn", "kind_of", "origin", "readable", "rest", "told", "torn", "whole"]
+__all__ = [
+    "EVERYTHING",
+    "UnreadableValue",
+    "begun",
+    "is_torn",
+    "kind_of",
+    "origin",
+    "readable",
+    "rest",
+    "told",
+    "torn",
+    "whole",
+]
 
 T = TypeVar("T")
 LOST, ORIGIN, WHOLE = "_lost_of_it", "_origin_of_it", "_whole_of_it"
 
 
-class Unread(Exception):
+class UnreadableValue(Exception):
     """What is looked at could not be read, and that was said already."""
 
 
@@ -38,11 +50,11 @@ EVERYTHING = _Everything()
 def _torn_class(cls: type) -> type:
     def look(self: Any, name: str) -> Any:
         if name in object.__getattribute__(self, "__dict__").get(LOST, ()):
-            raise Unread(name)
+            raise UnreadableValue(name)
         return object.__getattribute__(self, name)
 
     def unknown(self: Any, *args: Any, **more: Any) -> Any:
-        raise Unread
+        raise UnreadableValue
 
     methods = dict.fromkeys(getattr(cls, "__abstractmethods__", ()), unknown)
     return type(cls)(cls.__name__, (cls,), methods | {"__getattribute__": look, "__module__": cls.__module__})
@@ -74,7 +86,7 @@ def begun(made: Any) -> str:
     """Begin a torn element as others do, as far as that goes, and return what is wrong with its fields together."""
     try:
         made.__post_init__()
-    except Unread:
+    except UnreadableValue:
         return ""
     except InputError as error:
         return str(error)
@@ -106,7 +118,7 @@ def whole(thing: Any) -> Any:
     if not is_torn(thing):
         return thing
     if (found := _own(thing)[WHOLE]) is None:
-        raise Unread
+        raise UnreadableValue
     return found
 
 
@@ -127,7 +139,7 @@ def rest(thing: T, *needs: str, **instead: Any) -> T:
     for field in dataclasses.fields(thing):  # type: ignore[arg-type]
         try:
             value = getattr(thing, field.name)
-        except Unread:
+        except UnreadableValue:
             missing = field.default is None and "None" not in str(field.type)
             if field.name in needs or field.default is dataclasses.MISSING or missing:
                 raise
@@ -145,7 +157,7 @@ def readable(things: Iterable[Any], name: str) -> list[tuple[int, Any]]:
     for k, thing in enumerate(things):
         try:
             found.append((k, getattr(thing, name)))
-        except Unread:
+        except UnreadableValue:
             continue
     return found
 
@@ -155,7 +167,7 @@ def told(*checks: Iterator[T]) -> Iterator[T]:
     for check in checks:
         try:
             yield from check
-        except Unread:
+        except UnreadableValue:
             continue
 
 

@@ -10,12 +10,12 @@ from typing import Any
 from crowdbot import world
 
 from .distribution import Distribution
-from .fields import Mistake, attribute, check, children
+from .fields import FieldProblem, attribute, check, children
 from .human_kinds import ABOUT_ACTIVITY, ABOUT_BODY, check_words, word_problems
 from .journey import Journey
 from .notation import Points
 
-__all__ = ["Group", "Source", "Spawner"]
+__all__ = ["Group", "SourceSpec", "Spawner"]
 
 WALKING_SPEED = Distribution("normal", (1.34, 0.26))
 """Free walking speed [m/s] (Weidmann 1993, Transporttechnik der Fussgaenger, https://doi.org/10.3929/ethz-a-000687810)."""
@@ -72,20 +72,20 @@ class Spawner:
         check_words(self.body, self.activity)
 
     @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[Mistake]:
+    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
         """Return what is wrong with the words of a file, whatever else is wrong in its element."""
         found = word_problems(values.get("body", ""), values.get("activity", ""))
         return [((), sentence) for sentence in found]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Source:
+class SourceSpec:
     """People who come in while the trial runs, at random places of a zone, as soon as there is room for them.
 
     Raises:
         InputError: a value is not allowed.
 
-    >>> Source(zone=[(0, 0), (2, 0), (2, 2)], goal="8,0 9,0 9,2", rate=0.5, begin=10).expected(60.0)
+    >>> SourceSpec(zone=[(0, 0), (2, 0), (2, 2)], goal="8,0 9,0 9,2", rate=0.5, begin=10).expected(60.0)
     26.0
     """
 
@@ -110,7 +110,7 @@ class Source:
         check_words(self.body, self.activity)
 
     @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[Mistake]:
+    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
         """Return what is wrong with the words of a file, whatever else is wrong in its element."""
         found = word_problems(values.get("body", ""), values.get("activity", ""))
         return [((), sentence) for sentence in found]

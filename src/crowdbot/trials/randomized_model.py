@@ -16,14 +16,14 @@ from crowdbot.models import CrowdModel
 
 from .distribution import Distribution
 
-__all__ = ["Drawn", "is_drawn", "names_of", "own"]
+__all__ = ["RandomizedModel", "is_drawn", "names_of", "own"]
 
 Floats = NDArray[np.float64]
 Values = Mapping[int, Mapping[str, float]]
 
 
 @dataclass(frozen=True)
-class Drawn(CrowdModel):
+class RandomizedModel(CrowdModel):
     """A model, and the distributions from which some of its parameters are drawn for each person.
 
     Whoever comes in while a trial runs takes over the parameters of the place in the arrays, drawn alike.
@@ -36,7 +36,7 @@ class Drawn(CrowdModel):
         InputError: the model has no such parameter, or cannot take every value that may be drawn.
 
     >>> from crowdbot.models import ORCA
-    >>> crowd = Drawn(ORCA(), {"time_horizon": "uniform(1, 3)"})
+    >>> crowd = RandomizedModel(ORCA(), {"time_horizon": "uniform(1, 3)"})
     >>> crowd.resolved(seed=0, crowd=0, agents=3).time_horizon.round(2).shape
     (3,)
     """
@@ -96,7 +96,7 @@ def is_drawn(text: str) -> bool:
 
 def own(model: CrowdModel, seed: int, crowd: int, agents: int, values: Values) -> CrowdModel:
     """Return a model in which parameters are drawn, and given people have the values given for them by name."""
-    whole = model.resolved(seed, crowd, agents) if isinstance(model, Drawn) else model
+    whole = model.resolved(seed, crowd, agents) if isinstance(model, RandomizedModel) else model
     if not values:
         return whole
     changed: dict[str, Floats] = {}
@@ -111,4 +111,4 @@ def own(model: CrowdModel, seed: int, crowd: int, agents: int, values: Values) -
 
 def names_of(model: CrowdModel) -> Sequence[str]:
     """Return the parameters of a model that a person can have an own value of."""
-    return [row.name for row in parameters(model.model if isinstance(model, Drawn) else model)]
+    return [row.name for row in parameters(model.model if isinstance(model, RandomizedModel) else model)]

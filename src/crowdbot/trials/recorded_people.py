@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError
 
 from .distribution import Distribution
-from .fields import Mistake, attribute, check, shown
+from .fields import FieldProblem, attribute, check, quote_value
 from .people import BODY_RADIUS
-from .trial_files import beside
+from .trial_files import resolve_file
 
 if TYPE_CHECKING:
     from crowdbot.data import Trajectories
@@ -81,18 +81,18 @@ class RecordedPeople:
         self.left_out()
 
     @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[Mistake]:
+    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
         """Return what is wrong with the name of the file and with ids, whatever else is wrong in its element."""
-        found: list[Mistake] = []
+        found: list[FieldProblem] = []
         try:
             _ids(values.get("without", ""))
         except InputError as error:
             found.append((("without",), str(error)))
         try:
             if "data" in values:
-                beside(values["data"], values["folder"], values["trust"])
+                resolve_file(values["data"], values["folder"], values["trust"])
         except InputError as error:
-            found.append((("data",), f"data={shown(values['data'])} {error}"))
+            found.append((("data",), f"data={quote_value(values['data'])} {error}"))
         return found
 
     def left_out(self) -> frozenset[int]:
@@ -106,7 +106,7 @@ class RecordedPeople:
             InputError: there is no such file in the folder of the trial.
             DataError: it cannot be read, or somebody who is left out is not in it.
         """
-        path = beside(self.data, self.folder, self.trust)
+        path = resolve_file(self.data, self.folder, self.trust)
         stamp = path.stat()
         options = (self.fps, self.format or None, self.units or None, self.time_base)
         return _loaded(path, stamp.st_mtime_ns, stamp.st_size, *options)

@@ -19,12 +19,12 @@ from crowdbot.navigation import Navigator
 from crowdbot.sensors import Sensor, SensorSchedule
 from crowdbot.world import Drive, builtin_robots, frame, roll_pitch_yaw
 
-from .fields import Mistake, attribute, check, child, children, mounted, plugged, shown
+from .fields import FieldProblem, attribute, check, child, children, mounted_field, plugin_field, quote_value
 from .human_kinds import ABOUT_RIDER, rider_problems
 from .notation import NAME
 from .partial import readable
 
-__all__ = ["Goal", "Mount", "Robot"]
+__all__ = ["Mount", "RobotGoal", "RobotSpec"]
 
 Floats = NDArray[np.float64]
 RADIUS, HEIGHT, MASS = 0.3, 1.0, 40.0
@@ -33,7 +33,7 @@ MOST_FILES = 500
 
 
 @dataclass(frozen=True)
-class Goal:
+class RobotGoal:
     """Where a robot has to go: it has arrived when its centre is within the tolerance."""
 
     x: float = attribute(about="place", unit="m")
@@ -59,7 +59,7 @@ class Mount:
     """
 
     name: str = attribute("scan", about="last part of its topic", pattern=NAME)
-    sensor: Sensor = mounted("sensors", "Sensor", about="what measures")
+    sensor: Sensor = mounted_field("sensors", "Sensor", about="what measures")
     link: str = attribute("", about="link of the robot that it sits on, by default the robot itself")
     x: float = attribute(0.0, about="forward of the robot's centre, or of the link", unit="m")
     y: float = attribute(0.0, about="left of the robot's centre, or of the link", unit="m")
@@ -85,7 +85,7 @@ class Mount:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Robot:
+class RobotSpec:
     """A robot: where it begins and has to go, what it is, what it sees with and who steers it.
 
     With a type it has the drive, size and sensors of that robot, colour cameras only when asked; what is given here
@@ -96,7 +96,7 @@ class Robot:
         InputError: a value is not allowed, there is no such type, or a sensor sits on no link.
 
     >>> from crowdbot.navigation import Straight
-    >>> robot = Robot(type="turtlebot2", x=0, y=0, goal=Goal(5, 0), navigator=Straight())
+    >>> robot = RobotSpec(type="turtlebot2", x=0, y=0, goal=RobotGoal(5, 0), navigator=Straight())
     >>> robot.drive.max_speed, round(robot.radius, 3), robot.sensors[0].name
     (0.65, 0.232, 'laser')
     """
@@ -128,9 +128,9 @@ class Robot:
     rider: str = attribute("", about=ABOUT_RIDER)
     visible: bool = attribute(True, about="whether the crowd reacts to it")
     control_period: float = attribute(0.1, about="time between two commands", unit="s", exclusive_min=0.0)
-    goal: Goal = child(about="where it has to go")
-    drive: Drive = plugged("world", "Drive", about="how it moves, by default as its type", default=None)
-    navigator: Navigator = plugged("navigation", "Navigator", about="who steers it")
+    goal: RobotGoal = child(about="where it has to go")
+    drive: Drive = plugin_field("world", "Drive", about="how it moves, by default as its type", default=None)
+    navigator: Navigator = plugin_field("navigation", "Navigator", about="who steers it")
     sensors: tuple[Mount, ...] = children("sensor", about="what it sees with", max=50)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     trust: bool = dataclasses.field(default=True, compare=False, repr=False)
@@ -147,7 +147,9 @@ class Robot:
             object.__setattr__(self, "sensors", _merged(self.carried, self.sensors))
         check(self)
         if self.type and (self.height, self.mass) != (usual["height"], usual["mass"]):
-            raise InputError(f"has height or mass beside type={shown(self.type)}, which has its own; leave them out")
+            raise InputError(
+                f"has height or mass beside type={quote_value(self.type)}, which has its own; leave them out"
+            )
         if self.cameras and not any(_drawn(mount) for mount in self.carried):
             raise InputError(
                 'has cameras="true" but none would come: it needs a type with colour cameras, such as pepper, and its'
@@ -158,13 +160,15 @@ class Robot:
         for mount in self.sensors:
             links = self.body.model.links
             if mount.link and mount.link not in links:
-                raise InputError(f"sensor {mount.name!r} sits on link={shown(mount.link)}, which it has not"
+                raise InputError(f"sensor {mount.name!r} sits on link={quote_value(mount.link)}, which it has not"
                                  f"{did_you_mean(mount.link, links)}")  # fmt: skip
 
     @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[Mistake]:
+    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
         """Return what is wrong with the type and the rider in a file, whatever else is wrong in its element."""
-        said: list[Mistake] = [((), one) for one in rider_problems(values.get("rider", ""), values.get("type", ""))]
+        said: list[FieldProblem] = [
+            ((), one) for one in rider_problems(values.get("rider", ""), values.get("type", ""))
+        ]
         try:
             if values.get("type"):
                 _kind(values["type"], values["folder"], values["trust"])
@@ -216,7 +220,7 @@ class Robot:
         """Return x, y, z [m], roll, pitch and yaw [rad] of a sensor in the frame of the robot.
 
         >>> from crowdbot.navigation import Straight
-        >>> robot = Robot(type="qolo", x=0, y=0, goal=Goal(5, 0), navigator=Straight())
+        >>> robot = RobotSpec(type="qolo", x=0, y=0, goal=RobotGoal(5, 0), navigator=Straight())
         >>> [round(value, 3) for value in robot.placed(robot.sensors[0])][:2]
         [0.035, 0.0]
         """
@@ -254,7 +258,7 @@ class Robot:
     @property
     def _kind(self) -> world.Robot:
         if not isinstance(self.type, str):
-            raise InputError(f"Robot: type={shown(self.type)} is not a str")
+            raise InputError(f"Robot: type={quote_value(self.type)} is not a str")
         return _kind(self.type, self.folder, self.trust)
 
 
@@ -282,16 +286,16 @@ def _folder(name: str, folder: Path | None, trust: bool) -> Path | None:
         there = False
     if there and not trust and not place.is_relative_to(root.resolve()):
         raise InputError(
-            f"type={shown(name)}: the robot lies outside {root.resolve()}; move its folder there, or pass --trust to"
-            " allow it"
+            f"type={quote_value(name)}: the robot lies outside {root.resolve()}; move its folder there, or pass"
+            " --trust to allow it"
         )
     if there:
         return place
     if name in known:
         return None
     raise InputError(
-        f"type={shown(name)} is no robot{did_you_mean(name, known)}: no folder {name[:60]!r} with a robot.xml is in"
-        f" {root.resolve()}, and built in are {', '.join(known)}"
+        f"type={quote_value(name)} is no robot{did_you_mean(name, known)}: no folder {name[:60]!r} with a robot.xml"
+        f" is in {root.resolve()}, and built in are {', '.join(known)}"
     )
 
 
@@ -319,4 +323,4 @@ def _loaded(place: Path, trust: bool, stamp: int) -> world.Robot:
         return world.Robot.load(place, trust=trust)
     except RobotError as error:
         more = f" (and {len(error.problems) - 1} more; see crowdbot check)" if len(error.problems) > 1 else ""
-        raise InputError(f"type={shown(place.name)}: {error.problems[0]}{more}") from None
+        raise InputError(f"type={quote_value(place.name)}: {error.problems[0]}{more}") from None

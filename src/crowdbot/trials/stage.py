@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Walls
 
-from .fields import Mistake, attribute, check, children, shown
+from .fields import FieldProblem, attribute, check, children, quote_value
 from .map_files import area_of, map_of
 from .notation import Points
 from .partial import readable
@@ -89,12 +89,12 @@ class Stage:
             try:
                 getattr(self, name)
             except InputError as error:
-                raise InputError(f"{word}={shown(getattr(self, word))} {error}") from None
+                raise InputError(f"{word}={quote_value(getattr(self, word))} {error}") from None
 
     @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[Mistake]:
+    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
         """Return what is wrong with the ground, whatever else is wrong in its element."""
-        said: list[Mistake] = []
+        said: list[FieldProblem] = []
         if values.get("walkable") and values.get("area"):
             said.append((("walkable", "area"), TWO_GROUNDS))
         folder, trust = values["folder"], values["trust"]
@@ -106,7 +106,7 @@ class Stage:
                 if values.get(word):
                     read(values[word], folder=folder, trust=trust)
             except InputError as error:
-                said.append(((word,), f"{word}={shown(values[word])} {error}"))
+                said.append(((word,), f"{word}={quote_value(values[word])} {error}"))
         return said
 
     @property

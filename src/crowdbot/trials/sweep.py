@@ -12,7 +12,7 @@ from typing import Any
 
 from crowdbot.core import Element, InputError
 
-from .fields import Mistake, attribute, check, shown
+from .fields import FieldProblem, attribute, check, quote_value
 from .partial import readable
 from .value_path import set_value, set_values
 
@@ -48,7 +48,7 @@ class Sweep:
         _each(self.values)
 
     @staticmethod
-    def mistakes(values: Mapping[str, Any]) -> list[Mistake]:
+    def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
         """Return what is wrong with the values, whatever else is wrong in its element."""
         try:
             _each(values.get("values", "1"))
@@ -71,7 +71,7 @@ def _each(values: str) -> tuple[str, ...]:
         elif int(span[2]) - int(span[1]) <= MOST_VARIANTS:
             found += [str(k) for k in range(int(span[1]), int(span[2]))]
         else:
-            raise InputError(f"has {shown(word)}, more than {MOST_VARIANTS} values")
+            raise InputError(f"has {quote_value(word)}, more than {MOST_VARIANTS} values")
     if not found:
         raise InputError("needs the attribute 'values' with at least one value, such as 10 20 50")
     return tuple(found)
@@ -95,7 +95,7 @@ def sweep_problems(
             try:
                 set_value(copy.deepcopy(root), kind, path, "")
             except InputError as error:
-                found.append((sweep, f"{shown(path)} {error}"))
+                found.append((sweep, f"{quote_value(path)} {error}"))
                 continue
             there += [sweep for _ in readable([sweep], "each")]
     count = math.prod(len(sweep.each) for sweep in there)

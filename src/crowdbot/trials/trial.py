@@ -12,24 +12,24 @@ from crowdbot.models import CrowdModel
 
 from .agent import Agent
 from .camera import Camera
-from .crowd import Contact, Crowd, Crowds, Limits, Routing
+from .crowd import ContactModel, Crowd, Crowds, Limits, Routing
 from .drawing import trial_svg
 from .fields import attribute, check, child, children
 from .journey import Exit, Journey, Portal
-from .people import Source, Spawner
+from .people import SourceSpec, Spawner
 from .recorded_people import RecordedPeople
-from .robot import Goal, Mount, Robot
+from .robot import Mount, RobotGoal, RobotSpec
 from .stage import Stage
 from .sweep import Sweep
 
-__all__ = ["End", "Goal", "Mount", "Recording", "Robot", "Trial", "When"]
+__all__ = ["End", "EndCondition", "Mount", "RecordingSpec", "RobotGoal", "RobotSpec", "Trial"]
 
 
 @dataclass(frozen=True)
-class When:
+class EndCondition:
     """A condition under which a trial ends: what a robot has crossed, how many people are there, how late it is.
 
-    >>> When("x", above=20.0).holds(21.0)
+    >>> EndCondition("x", above=20.0).holds(21.0)
     True
     """
 
@@ -58,14 +58,14 @@ class End:
     goal: bool = attribute(True, about="every robot has reached its goal")
     collision: bool = attribute(True, about="a robot touches a person, a wall or another robot")
     empty: bool = attribute(False, about="nobody is left and nobody will come")
-    conditions: tuple[When, ...] = children("when", about="other conditions, of which one suffices", max=100)
+    conditions: tuple[EndCondition, ...] = children("when", about="other conditions, of which one suffices", max=100)
 
     def __post_init__(self) -> None:
         check(self)
 
 
 @dataclass(frozen=True)
-class Recording:
+class RecordingSpec:
     """How often what is recorded. A trial ends at a recorded instant."""
 
     period: float = attribute(0.1, about="time between two recorded scenes", unit="s", exclusive_min=0.0)
@@ -119,19 +119,19 @@ class Trial:
     stage: Stage = child(Stage, about="where people and robots can be")
     routing: Routing | None = child(None, about="people find their way around walls")
     crowd: CrowdModel = children({"crowd": Crowd}, into=Crowds, about="how people walk", min=1, max=20)
-    contact: Contact | None = child(None, about="bodies that overlap are pushed apart")
+    contact: ContactModel | None = child(None, about="bodies that overlap are pushed apart")
     limits: Limits | None = child(None, about="what people cannot go beyond")
     journeys: tuple[Journey, ...] = children("journey", about="stops to go to one after the other", max=1000)
     agents: tuple[Agent, ...] = children("agent", about="people, one by one", max=20_000)
     spawners: tuple[Spawner, ...] = children("spawner", about="people", max=1000)
-    sources: tuple[Source, ...] = children("source", about="people who come in", max=1000)
+    sources: tuple[SourceSpec, ...] = children("source", about="people who come in", max=1000)
     recorded: tuple[RecordedPeople, ...] = children("recorded", about="people of a recording", max=100)
     exits: tuple[Exit, ...] = children("exit", about="where people leave", max=1000)
     portals: tuple[Portal, ...] = children("portal", about="where people come out elsewhere", max=1000)
-    robots: tuple[Robot, ...] = children("robot", about="robots", max=100)
+    robots: tuple[RobotSpec, ...] = children("robot", about="robots", max=100)
     cameras: tuple[Camera, ...] = children("camera", about="what looks on", max=100)
     end: End = child(End, about="what ends the trial")
-    recording: Recording = child(Recording, about="how often what is recorded")
+    recording: RecordingSpec = child(RecordingSpec, about="how often what is recorded")
     sweeps: tuple[Sweep, ...] = children("sweep", about="values that differ from variant to variant", max=20)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     """Where code that the trial names lies; not part of the tree."""

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from crowdbot.core import InputError
 
-__all__ = ["beside", "read_beside"]
+__all__ = ["read_beside", "resolve_file"]
 
 
-def beside(name: str, folder: Path | None, trust: bool) -> Path:
+def resolve_file(name: str, folder: Path | None, trust: bool) -> Path:
     """Return the path of a file that a trial names.
 
     Args:

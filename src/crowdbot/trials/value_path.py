@@ -10,7 +10,7 @@ import numpy as np
 
 from crowdbot.core import Element, InputError, did_you_mean
 
-from .fields import Part, outline, shown
+from .fields import FieldSpec, outline, quote_value
 from .xml.old_names import current_name
 
 __all__ = ["set_value", "set_values", "text_of"]
@@ -29,7 +29,7 @@ def set_values(root: Element, kind: type, values: Mapping[str, str]) -> None:
         try:
             set_value(root, kind, path, values[path])
         except InputError as error:
-            raise InputError(f"{shown(path)} {error}") from None
+            raise InputError(f"{quote_value(path)} {error}") from None
 
 
 def set_value(root: Element, kind: type, path: str, text: str) -> None:
@@ -107,7 +107,7 @@ def _inner(here: Element, kind: Any, step: str) -> tuple[Element, Any]:
     if match is None or match[1] not in parts:
         near = did_you_mean(step, parts)
         raise InputError(f"leads nowhere: <{here.tag}> has no element {step[:40]!r}{near}; it has {', '.join(parts)}")
-    part: Part = parts[match[1]]
+    part: FieldSpec = parts[match[1]]
     inner = None if part.role == "plugged" else part.elements[match[1]]
     there = [child for child in here.children if child.tag == match[1]]
     if not there and part.role in ("child", "plugged"):

@@ -16,9 +16,9 @@ from crowdbot.trials.agent import Agent
 from crowdbot.trials.crowd import Crowds, Routing
 from crowdbot.trials.journey import Direction, Journey, Point
 from crowdbot.trials.notation import Points
-from crowdbot.trials.robot import Goal, Robot
+from crowdbot.trials.robot import RobotGoal, RobotSpec
 from crowdbot.trials.stage import Obstacle, Stage, Wall
-from crowdbot.trials.trial import End, Trial, When
+from crowdbot.trials.trial import End, EndCondition, Trial
 from crowdbot.trials.xml.document import parse_trial_xml, read_trial_bytes
 
 from .original_crowd import Walker, crowds_of
@@ -196,7 +196,7 @@ class _Reader:
             corners = [(ax + nx, ay + ny), (bx + nx, by + ny), (bx - nx, by - ny), (ax - nx, ay - ny)]
             solids.append(Obstacle(Points.of(corners)))
 
-    def _end(self, root: Element) -> tuple[list[When], float]:
+    def _end(self, root: Element) -> tuple[list[EndCondition], float]:
         """Return conditions of the end and the duration."""
         when, duration = [], math.inf
         for one in _all(root, "condition"):
@@ -207,7 +207,9 @@ class _Reader:
             elif what in ("x", "y") and test in ("less", "greater"):
                 up = (test == "greater") == (what == "x")
                 value = -value if what == "y" else value
-                when.append(When(what, above=value if up else None, below=None if up else value, outcome="success"))
+                when.append(
+                    EndCondition(what, above=value if up else None, below=None if up else value, outcome="success")
+                )
             elif not (what == "time" and test == "less" and value <= 0.0):
                 self.note(f"the end condition {what} {test} {value:g}")
         if math.isinf(duration):
@@ -258,21 +260,21 @@ class _Reader:
             ways[Journey(name=name, stops=stops, then=then)] = name
         return name
 
-    def _robot(self, k: int, one: Element, when: list[When]) -> Robot:
-        from crowdbot.navigation import ORCA
+    def _robot(self, k: int, one: Element, when: list[EndCondition]) -> RobotSpec:
+        from crowdbot.navigation import ORCANavigator
         from crowdbot.world import DifferentialDrive
 
         x, y = _place(_find(one, "Position"))
         heading = _heading(_find(one, "Rotation"))
         crossed = next((w.above for w in when if w.what == "x" and w.above is not None), None)
         if crossed is not None and k == 0:
-            goal = Goal(crossed + 0.5, y, 0.5)
+            goal = RobotGoal(crossed + 0.5, y, 0.5)
             self.note("the goal of the first robot is set behind the line where the trial ends")
         else:
-            goal = Goal(x + 10.0 * math.cos(heading), y + 10.0 * math.sin(heading), 0.5)
+            goal = RobotGoal(x + 10.0 * math.cos(heading), y + 10.0 * math.sin(heading), 0.5)
             self.note("robots had no goal: it is set 10 m ahead of each")
         self.note("robots were steered from outside and had bodies: they are now discs with a differential drive, ORCA")
-        return Robot(
+        return RobotSpec(
             name=f"robot{k + 1}" if k else "robot",
             x=x,
             y=y,
@@ -281,7 +283,7 @@ class _Reader:
             visible=one.attributes.get("in_sim", "true").lower() == "true",
             goal=goal,
             drive=DifferentialDrive(),
-            navigator=ORCA(),
+            navigator=ORCANavigator(),
         )
 
     def _rest(self, root: Element) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 from crowdbot import models
 from crowdbot.core import Element, InputError, TrialError, parameters, parse_number
 from crowdbot.models import CrowdModel
-from crowdbot.trials.agent import Parameter
+from crowdbot.trials.agent import AgentParameter
 from crowdbot.trials.crowd import Crowds
 
 __all__ = ["Walker", "crowds_of"]
@@ -141,7 +141,9 @@ def crowds_of(walkers: Sequence[Walker], note: Callable[[str], None]) -> tuple[C
     for row, walker in zip(rows, walkers, strict=True):
         model = made[walker.kind]
         different = [
-            Parameter(name.replace("_", "-"), value) for name, value in row.items() if getattr(model, name) != value
+            AgentParameter(name.replace("_", "-"), value)
+            for name, value in row.items()
+            if getattr(model, name) != value
         ]
         own.append({"parameters": tuple(different)} if different else {})
     if len(kinds) == 1:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from crowdbot.core import InputError, TrialError
-from crowdbot.trials.trial_files import beside
+from crowdbot.trials.trial_files import resolve_file
 
 __all__ = ["Plan"]
 
@@ -47,7 +47,7 @@ class Plan:
         """
         order = self.named(self.pattern, user)
         try:
-            file = beside(order, self.folder, trust=False)
+            file = resolve_file(order, self.folder, trust=False)
             lines = [line.strip() for line in file.read_text(encoding="utf-8-sig").splitlines() if line.strip()]
         except (InputError, UnicodeDecodeError, OSError) as error:
             raise TrialError(f"{self.path}: the order file {order[:80]!r} cannot be read: {error}") from None
@@ -69,13 +69,13 @@ class Plan:
         """
         for folder in (self.folder, *self.folder.resolve().parents[:3]):
             try:
-                return beside(entry, folder, trust=False)
+                return resolve_file(entry, folder, trust=False)
             except InputError:
                 continue
-        return beside(entry, self.folder, trust=False)
+        return resolve_file(entry, self.folder, trust=False)
 
     def _is_there(self, user: int) -> bool:
         try:
-            return beside(self.named(self.pattern, user), self.folder, trust=False).is_file()
+            return resolve_file(self.named(self.pattern, user), self.folder, trust=False).is_file()
         except InputError:
             return False

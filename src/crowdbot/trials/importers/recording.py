@@ -13,8 +13,8 @@ from crowdbot.core import InputError
 from crowdbot.models import ORCA
 from crowdbot.sensors import Gaussian, Lidar2D
 from crowdbot.trials.recorded_people import RecordedPeople, Walk
-from crowdbot.trials.robot import Goal, Mount, Robot
-from crowdbot.trials.trial import Recording, Trial
+from crowdbot.trials.robot import Mount, RobotGoal, RobotSpec
+from crowdbot.trials.trial import RecordingSpec, Trial
 from crowdbot.world import DifferentialDrive
 
 if TYPE_CHECKING:
@@ -63,9 +63,9 @@ def recorded_trial(
     tracks = crowd.tracks()
     step = _step(tracks)
     period = step * round(tracks.dt / step) if tracks.dt <= 0.5 else step * max(1, round(0.1 / step))
-    recording = Recording(period=period, markers=period * math.ceil(0.5 / period - 1e-9))
+    recording = RecordingSpec(period=period, markers=period * math.ceil(0.5 / period - 1e-9))
     whole = max(step, float(tracks.time[-1]))
-    robots: tuple[Robot, ...] = ()
+    robots: tuple[RobotSpec, ...] = ()
     if replace is not None:
         walk = _walk_of(crowd, replace, whole)
         crowd = RecordedPeople(
@@ -106,7 +106,7 @@ def _walk_of(crowd: RecordedPeople, person: int, duration: float) -> Walk:
     return walk
 
 
-def _robot(walk: Walk, step: float) -> Robot:
+def _robot(walk: Walk, step: float) -> RobotSpec:
     """Return a robot from the start to the end of a walk, about as fast."""
     way = np.hypot(*np.diff(walk.position, axis=0).T)
     speed = float(np.clip(way.sum() / (walk.time[-1] - walk.time[0]), 0.3, 3.0))
@@ -114,13 +114,13 @@ def _robot(walk: Walk, step: float) -> Robot:
     ahead = later - walk.position[0]
     control = step * max(1, round(0.1 / step))
     (x, y), (goal_x, goal_y) = walk.position[[0, -1]].tolist()
-    return Robot(
+    return RobotSpec(
         x=x,
         y=y,
         heading=float(np.arctan2(ahead[1], ahead[0])),
         control_period=control,
-        goal=Goal(goal_x, goal_y, 0.3),
+        goal=RobotGoal(goal_x, goal_y, 0.3),
         drive=DifferentialDrive(max_speed=max(1.0, speed), max_turn_rate=1.5),
-        navigator=navigation.ORCA(speed=speed),
+        navigator=navigation.ORCANavigator(speed=speed),
         sensors=(Mount(sensor=Lidar2D(rays=360, range_max=10.0, rate=1.0 / control, noise=Gaussian(0.01))),),
     )

@@ -12,17 +12,17 @@ from crowdbot.trials.agent import Agent
 from crowdbot.trials.human_kinds import KINDS
 from crowdbot.trials.people import Spawner
 
-from .spawn_placement import People
+from .spawn_placement import InitialPeople
 
 if TYPE_CHECKING:
     from crowdbot.trials.trial import Trial
 
-__all__ = ["Figure", "Figures", "cast_of", "drawn"]
+__all__ = ["PeopleAppearance", "PersonAppearance", "draw_appearances", "people_appearance"]
 
 OUTFITS = 1000
 
 
-class Figure(NamedTuple):
+class PersonAppearance(NamedTuple):
     """One person: name of the body, number of the outfit, and activity; empty and -1 for what was not said."""
 
     body: str
@@ -30,7 +30,7 @@ class Figure(NamedTuple):
     activity: str
 
 
-class Figures(NamedTuple):
+class PeopleAppearance(NamedTuple):
     """Everybody who has a place, robots apart, then who rides in a robot.
 
     Fields:
@@ -43,10 +43,10 @@ class Figures(NamedTuple):
     riders: tuple[int, ...] = ()
 
 
-def pool(text: str) -> tuple[str, ...]:
+def body_names(text: str) -> tuple[str, ...]:
     """Return the names of the bodies that ``body`` names, one by one or by kind.
 
-    >>> len(pool("man")), pool("woman-36 mannequin")
+    >>> len(body_names("man")), body_names("woman-36 mannequin")
     (20, ('woman-36', 'mannequin'))
     """
     everyone = humans.names()
@@ -57,9 +57,9 @@ def pool(text: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def drawn(people: People, seed: int) -> list[Figure]:
+def draw_appearances(people: InitialPeople, seed: int) -> list[PersonAppearance]:
     """Return who the people at the beginning are, in the order of their places."""
-    found: list[Figure] = []
+    found: list[PersonAppearance] = []
     agents = sum(isinstance(one, Agent) for one in people.owners)
     counts = np.bincount(people.owner, minlength=len(people.owners)).tolist()
     for k, (owner, count) in enumerate(zip(people.owners, counts, strict=True)):
@@ -68,11 +68,11 @@ def drawn(people: People, seed: int) -> list[Figure]:
             outfit = getattr(owner, "outfit", None)
             found += _some(owner.body, owner.activity, count, (seed, *keys), outfit)
         else:
-            found += [Figure("", -1, "")] * count
+            found += [PersonAppearance("", -1, "")] * count
     return found
 
 
-def cast_of(trial: Trial, people: People, agents: int, seed: int) -> Figures:
+def people_appearance(trial: Trial, people: InitialPeople, agents: int, seed: int) -> PeopleAppearance:
     """Return bodies and activities of everybody of ``agents`` who is no robot, and of riders.
 
     Who is not told of is an adult, drawn as a world draws people. People of sources take free places in any order, so
@@ -80,7 +80,7 @@ def cast_of(trial: Trial, people: People, agents: int, seed: int) -> Figures:
     """
     count = agents - len(trial.robots)
     default = humans.People.drawn(count, stream(seed, "people"))
-    said = drawn(people, seed)
+    said = draw_appearances(people, seed)
     bodies = " ".join(source.body for source in trial.sources)
     busy = " ".join(source.activity or "walk" for source in trial.sources) if any(
         source.activity for source in trial.sources) else ""  # fmt: skip
@@ -95,19 +95,19 @@ def cast_of(trial: Trial, people: People, agents: int, seed: int) -> Figures:
         names.append(figure.body)
         outfits.append(figure.outfit)
     busy_with = tuple(figure.activity or "walk" for figure in said)
-    return Figures(humans.People.of(names, outfits), busy_with, tuple(len(people) + k for k in carriers))
+    return PeopleAppearance(humans.People.of(names, outfits), busy_with, tuple(len(people) + k for k in carriers))
 
 
-def _some(body: str, activity: str, count: int, keys: tuple[Any, ...], outfit: int | None) -> list[Figure]:
+def _some(body: str, activity: str, count: int, keys: tuple[Any, ...], outfit: int | None) -> list[PersonAppearance]:
     """Draw ``count`` figures; each kind of draw has a stream of its own."""
-    names, busy = pool(body), activity.split()
+    names, busy = body_names(body), activity.split()
     seed, *rest = keys
     clothes = stream(seed, *rest, "body")
     who = clothes.integers(len(names), size=count).tolist() if names else [-1] * count
     worn = clothes.integers(OUTFITS, size=count).tolist() if names else [-1] * count
     doing = stream(seed, *rest, "activity").integers(len(busy), size=count).tolist() if busy else [-1] * count
     return [
-        Figure(
+        PersonAppearance(
             names[who[k]] if names else "",
             (worn[k] if outfit is None else outfit) if names else (-1 if outfit is None else outfit),
             busy[doing[k]] if busy else "",

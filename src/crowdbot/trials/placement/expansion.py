@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crowdbot.core import TrialError
-from crowdbot.trials.agent import Agent, Parameter
+from crowdbot.trials.agent import Agent, AgentParameter
 from crowdbot.trials.crowd import Crowds, crowd_names
 from crowdbot.trials.notation import Points
 from crowdbot.trials.people import Spawner
-from crowdbot.trials.randomized_model import Drawn
+from crowdbot.trials.randomized_model import RandomizedModel
 
-from .appearance import Figure, drawn
+from .appearance import PersonAppearance, draw_appearances
 from .population import place
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def expand_spawners(trial: Trial, seed: int | None = None) -> Trial:
     if problems:
         raise TrialError(*(f"trial {trial.name!r}: {sentence}" for _, sentence in problems))
     agents = []
-    for a, figure in enumerate(drawn(people, chosen)):
+    for a, figure in enumerate(draw_appearances(people, chosen)):
         owner = people.owners[int(people.owner[a])]
         agent = _dressed(owner if isinstance(owner, Agent) else _agent(people, a, owner), figure)
         agents.append(_with_own(trial, agent, a, chosen))
@@ -79,7 +79,7 @@ def _agent(people: Any, a: int, spawner: Any) -> Agent:
     )
 
 
-def _dressed(agent: Agent, figure: Figure) -> Agent:
+def _dressed(agent: Agent, figure: PersonAppearance) -> Agent:
     outfit = figure.outfit if figure.outfit >= 0 else None
     return dataclasses.replace(agent, body=figure.body, outfit=outfit, activity=figure.activity)
 
@@ -89,12 +89,12 @@ def _with_own(trial: Trial, agent: Agent, a: int, seed: int) -> Agent:
     names = crowd_names(trial.crowd)
     k = names.index(agent.crowd) if agent.crowd else 0
     model: CrowdModel = trial.crowd.models[k] if isinstance(trial.crowd, Crowds) else trial.crowd
-    if not isinstance(model, Drawn):
+    if not isinstance(model, RandomizedModel):
         return agent
     given = {one.name.replace("-", "_") for one in agent.parameters}
     whole = model.resolved(seed, k, a + 1)
     new = [
-        Parameter(name.replace("_", "-"), float(getattr(whole, name)[a]))
+        AgentParameter(name.replace("_", "-"), float(getattr(whole, name)[a]))
         for name, _ in model.draws
         if name not in given
     ]

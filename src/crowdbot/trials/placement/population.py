@@ -11,10 +11,10 @@ from crowdbot.core import stream
 from crowdbot.trials.agent import Agent
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.recorded_people import RecordedPeople, Walk
-from crowdbot.trials.robot import Robot
+from crowdbot.trials.robot import RobotSpec
 from crowdbot.trials.stage import Stage, area
 
-from .spawn_placement import Company, People, Taken
+from .spawn_placement import InitialPeople, OccupiedDiscs, SpawnPlacement
 
 __all__ = ["place"]
 
@@ -25,11 +25,11 @@ EXACT = 1e-9
 def place(
     stage: Stage,
     spawners: Sequence[Spawner],
-    robots: Sequence[Robot],
+    robots: Sequence[RobotSpec],
     seed: int,
     agents: Sequence[Agent] = (),
     recorded: Sequence[tuple[RecordedPeople, Sequence[Walk]]] = (),
-) -> tuple[People, list[tuple[Any, str]]]:
+) -> tuple[InitialPeople, list[tuple[Any, str]]]:
     """Return the people of a trial at its beginning, and whatever could not be placed with a sentence each.
 
     Spawner k draws from ``stream(seed, "spawner", k, ...)`` only: places, goals, speeds and radii have a stream each.
@@ -42,7 +42,7 @@ def place(
     """
     widest = [s.radius.extent[1] for s in spawners] + [one.radius.extent[1] for one, _ in recorded]
     widest += [robot.radius for robot in robots] + [agent.radius for agent in agents]
-    taken = Taken(2.0 * max(widest, default=1.0))
+    taken = OccupiedDiscs(2.0 * max(widest, default=1.0))
     for robot in robots:
         taken.add(robot.x, robot.y, robot.radius)
     problems: list[tuple[Any, str]] = [*_standing(stage, agents, taken)]
@@ -55,7 +55,7 @@ def place(
     for index, spawner in enumerate(spawners):
         if len(problems) >= MOST_PROBLEMS:
             break
-        company = Company(stage, spawner, index, taken, seed)
+        company = SpawnPlacement(stage, spawner, index, taken, seed)
         group = company.people(1 + max((int(g.group.max(initial=-1)) for g in groups), default=-1))
         groups.append(group)
         if len(group) < spawner.count:
@@ -63,10 +63,10 @@ def place(
     walks = tuple(walk for _, walks in recorded for walk in walks)
     owners = (*agents, *spawners[: len(groups) - 1], *(one for one, _ in recorded))
     sizes = [len(agents), *(1 for _ in groups[1:]), *(1 for _ in replayed)]
-    return People.joined([*groups, *replayed], sizes, owners, walks), problems
+    return InitialPeople.joined([*groups, *replayed], sizes, owners, walks), problems
 
 
-def _standing(stage: Stage, agents: Sequence[Agent], taken: Taken) -> Iterator[tuple[Agent, str]]:
+def _standing(stage: Stage, agents: Sequence[Agent], taken: OccupiedDiscs) -> Iterator[tuple[Agent, str]]:
     """Yield agents that stand in something, and take the places of the others."""
     if not agents:
         return
@@ -80,10 +80,10 @@ def _standing(stage: Stage, agents: Sequence[Agent], taken: Taken) -> Iterator[t
         taken.add(agent.x, agent.y, agent.radius)
 
 
-def _explicit(agents: Sequence[Agent]) -> People:
+def _explicit(agents: Sequence[Agent]) -> InitialPeople:
     place = np.array([agent.position for agent in agents], dtype=np.float64).reshape(-1, 2)
     goal = np.array([agent.goal[0] if agent.goal else agent.position for agent in agents], dtype=np.float64)
-    return People(
+    return InitialPeople(
         place,
         goal.reshape(-1, 2),
         np.array([agent.radius for agent in agents], dtype=np.float64),
@@ -94,10 +94,10 @@ def _explicit(agents: Sequence[Agent]) -> People:
     )
 
 
-def _replayed(one: RecordedPeople, walks: Sequence[Walk], index: int, seed: int) -> People:
+def _replayed(one: RecordedPeople, walks: Sequence[Walk], index: int, seed: int) -> InitialPeople:
     count = len(walks)
     last = np.array([walk.position[-1] for walk in walks], dtype=np.float64).reshape(-1, 2)
-    return People(
+    return InitialPeople(
         np.array([_begin(walk) for walk in walks], dtype=np.float64).reshape(-1, 2),
         last,
         one.radius.draw(stream(seed, "recorded", index, "radius"), count),

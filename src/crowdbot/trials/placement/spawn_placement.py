@@ -17,7 +17,7 @@ from crowdbot.trials.people import Spawner
 from crowdbot.trials.recorded_people import RecordedPeople, Walk
 from crowdbot.trials.stage import Stage, area
 
-__all__ = ["Company", "People", "Taken", "points_in"]
+__all__ = ["InitialPeople", "OccupiedDiscs", "SpawnPlacement", "points_in"]
 
 Floats = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ PLACES = 50
 
 
 @dataclass(frozen=True)
-class People:
+class InitialPeople:
     """Where N people begin and want to go: agents, then the people of spawners, then recorded ones.
 
     Fields:
@@ -72,8 +72,8 @@ class People:
 
     @classmethod
     def joined(
-        cls, groups: Sequence[People], owners_of: Sequence[int], owners: tuple[Any, ...], walks: tuple[Walk, ...]
-    ) -> People:
+        cls, groups: Sequence[InitialPeople], owners_of: Sequence[int], owners: tuple[Any, ...], walks: tuple[Walk, ...]
+    ) -> InitialPeople:
         """Return the people of all groups, of which each has so many owners."""
         first = np.cumsum([0, *owners_of]).tolist()
 
@@ -111,20 +111,20 @@ def points_in(zone: Points, rng: np.random.Generator) -> Iterator[Floats]:
             yield inside
 
 
-class Company(NamedTuple):
+class SpawnPlacement(NamedTuple):
     """Who draws the people of a spawner: number ``number`` of a trial, among those whose places are ``taken``."""
 
     stage: Stage
     spawner: Spawner
     number: int
-    taken: Taken
+    taken: OccupiedDiscs
     seed: int
 
     def stream(self, word: str) -> np.random.Generator:
         """Return the randomness of one thing that is drawn."""
         return stream(self.seed, "spawner", self.number, word)
 
-    def people(self, first_group: int) -> People:
+    def people(self, first_group: int) -> InitialPeople:
         """Return the people of whom a place was found; their groups are numbered from ``first_group``."""
         spawner = self.spawner
         radius = spawner.radius.draw(self.stream("radius"), spawner.count)
@@ -143,7 +143,7 @@ class Company(NamedTuple):
                 speed[mates] = speed[at]
                 goal[mates] = goal[at] if spawner.goal else goal[mates]
             at += size
-        return People(
+        return InitialPeople(
             where, goal, radius[:count], speed[:count], self._heading(count), group, np.zeros(count, dtype=np.int64)
         )
 
@@ -262,7 +262,7 @@ def _goals(stage: Stage, spawner: Spawner, radius: Floats, rng: np.random.Genera
 
 
 @dataclass
-class Taken:
+class OccupiedDiscs:
     """Discs that stand already, in a grid of cells that are as wide as the largest disc."""
 
     cell: float

@@ -4,10 +4,10 @@ from .arenas import ARENAS
 from .challenge import CHALLENGE, FLOWS, SIZES
 from .crowds import CROWDS, DENSITIES
 from .meetings import MEETINGS
-from .preset import Option, Preset
+from .preset import Preset, PresetOption
 from .shared_ways import SHARED_WAYS
 
-__all__ = ["DENSITIES", "FLOWS", "PRESETS", "SIZES", "Option", "Preset"]
+__all__ = ["DENSITIES", "FLOWS", "PRESETS", "SIZES", "Preset", "PresetOption"]
 
 PRESETS = {preset.name: preset for preset in (*MEETINGS, *SHARED_WAYS, *CROWDS, *ARENAS, *CHALLENGE)}
 """Every preset by name."""

@@ -14,25 +14,25 @@ import dataclasses
 import math
 
 from crowdbot.trials.agent import Agent
-from crowdbot.trials.crowd import Contact, Routing
+from crowdbot.trials.crowd import ContactModel, Routing
 from crowdbot.trials.journey import Journey, Zone
 from crowdbot.trials.notation import Points
-from crowdbot.trials.people import Source, Spawner
+from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.stage import Obstacle, Stage
-from crowdbot.trials.trial import Robot, Trial
+from crowdbot.trials.trial import RobotSpec, Trial
 
 from .crowds import circle_crossing
 from .parts import STILL, box, number, robot, scenario, uniform
-from .preset import Option, Preset
+from .preset import Preset, PresetOption
 
 __all__ = ["ARENAS"]
 
 GOLDEN = 0.6180339887498949
 """Multiples of it, without their whole parts, are spread evenly however many there are."""
-RADIUS = Option(7.0, "of the circle", "m", 4.0, 30.0)
+RADIUS = PresetOption(7.0, "of the circle", "m", 4.0, 30.0)
 
 
-def _seen(robots: tuple[Robot, ...]) -> tuple[Robot, ...]:
+def _seen(robots: tuple[RobotSpec, ...]) -> tuple[RobotSpec, ...]:
     return tuple(dataclasses.replace(one, visible=True) for one in robots)
 
 
@@ -40,7 +40,7 @@ def delayed_circle(people: int, radius: float, delay: float) -> Trial:
     """A circle crossing for which people come one after the other."""
     plain = circle_crossing(people, radius, 0.35, 40.0, 5.0)
     sources = [
-        Source(
+        SourceSpec(
             name=one.name,
             zone=one.zone,
             goal=one.goal,
@@ -82,7 +82,7 @@ def corner_traffic(people: int, width: float, length: float) -> Trial:
         max(60.0, 5.0 * length),
         Stage(walkable=ground),
         routing=Routing(radius=0.3),
-        contact=Contact(),
+        contact=ContactModel(),
         journeys=[
             Journey(name="round", stops=(Zone(turn), Zone(box(-far + 0.3, -inside, -far + 1.3, inside), aim="random")))
         ],
@@ -102,7 +102,7 @@ def block(people: int, size: float) -> Trial:
         60.0,
         Stage(walkable=box(-10, -5, 10, 5), obstacles=(Obstacle(box(-1.5, -size / 2.0, 1.5, size / 2.0)),)),
         routing=Routing(radius=0.3),
-        contact=Contact(),
+        contact=ContactModel(),
         spawners=[Spawner(name="people", count=people, zone=box(3, -4, 9.5, 4), goal=box(-9.5, -4, -8, 4))],
         robots=[robot((-7.0, size / 4.0), goal)],
     )
@@ -125,7 +125,7 @@ def four_blocks(people: int, passage: float) -> Trial:
             obstacles=tuple(Obstacle(corner(x, y, near, far)) for x, y in corners.values()),
         ),
         routing=Routing(radius=0.3),
-        contact=Contact(),
+        contact=ContactModel(),
         spawners=[
             Spawner(
                 name=name,
@@ -178,7 +178,7 @@ def crowd_against_crowd(people: int, angle: float, formation: bool) -> Trial:
         "crowd-against-crowd",
         60.0,
         Stage(),
-        contact=Contact(),
+        contact=ContactModel(),
         spawners=crowds,
         agents=ranks,
         robots=[robot((x, y), (-x, -y))],
@@ -203,9 +203,9 @@ ARENAS = (
         "A circle crossing in which people come in one after the other within a few seconds.",
         delayed_circle,
         {
-            "people": Option(5, "people", "", 1, 60),
+            "people": PresetOption(5, "people", "", 1, 60),
             "radius": RADIUS,
-            "delay": Option(5.0, "largest time after which somebody comes in", "s", 0.0, 60.0),
+            "delay": PresetOption(5.0, "largest time after which somebody comes in", "s", 0.0, 60.0),
         },
         "social-jym: delayed circular crossing",
     ),
@@ -214,10 +214,10 @@ ARENAS = (
         "A circle crossing around people who stand in the circle and take much room.",
         circle_with_standing,
         {
-            "people": Option(2, "people who walk", "", 1, 60),
-            "standing": Option(3, "people who stand", "", 0, 8),
+            "people": PresetOption(2, "people who walk", "", 1, 60),
+            "standing": PresetOption(3, "people who stand", "", 0, 8),
             "radius": RADIUS,
-            "size": Option(1.0, "radius of the room that standing people take, +- 20 %", "m", 0.2, 1.5),
+            "size": PresetOption(1.0, "radius of the room that standing people take, +- 20 %", "m", 0.2, 1.5),
         },
         "social-jym: circular crossing with static obstacles",
     ),
@@ -226,9 +226,9 @@ ARENAS = (
         "People come round a corner of a corridor, and the robot goes round it the other way.",
         corner_traffic,
         {
-            "people": Option(5, "people", "", 1, 40),
-            "width": Option(3.0, "width of the corridor", "m", 1.6, 6.0),
-            "length": Option(7.0, "of both arms, from the middle of the corner", "m", 5.0, 30.0),
+            "people": PresetOption(5, "people", "", 1, 40),
+            "width": PresetOption(3.0, "width of the corridor", "m", 1.6, 6.0),
+            "length": PresetOption(7.0, "of both arms, from the middle of the corner", "m", 5.0, 30.0),
         },
         "social-jym: corner traffic",
     ),
@@ -237,8 +237,8 @@ ARENAS = (
         "A block stands in the middle of a hall; people go around it, and a robot comes towards them.",
         block,
         {
-            "people": Option(12, "people", "", 0, 40),
-            "size": Option(4.0, "size of the block across the way", "m", 1.0, 7.0),
+            "people": PresetOption(12, "people", "", 0, 40),
+            "size": PresetOption(4.0, "size of the block across the way", "m", 1.0, 7.0),
         },
         "UMANS: block",
     ),
@@ -247,8 +247,8 @@ ARENAS = (
         "People in four corners go to the opposite ones between four blocks; a robot crosses in their midst.",
         four_blocks,
         {
-            "people": Option(5, "people in each corner", "", 0, 12),
-            "passage": Option(2.5, "distance between blocks", "m", 1.2, 8.0),
+            "people": PresetOption(5, "people in each corner", "", 0, 12),
+            "passage": PresetOption(2.5, "distance between blocks", "m", 1.2, 8.0),
         },
         "UMANS: four blocks; RVO2: blocks",
     ),
@@ -257,9 +257,9 @@ ARENAS = (
         "A crowd of ten crosses the way of the robot at an angle, or comes towards it.",
         one_against_ten,
         {
-            "people": Option(10, "people in the crowd", "", 1, 60),
-            "angle": Option(90.0, "between the ways, 180 for head-on", "deg", 45.0, 180.0),
-            "speed": Option(1.2, "speed of the people", "m/s", 0.5, 2.5),
+            "people": PresetOption(10, "people in the crowd", "", 1, 60),
+            "angle": PresetOption(90.0, "between the ways, 180 for head-on", "deg", 45.0, 180.0),
+            "speed": PresetOption(1.2, "speed of the people", "m/s", 0.5, 2.5),
         },
         "UMANS: 1 to 10 at 45, 90 and 180 degrees",
     ),
@@ -268,9 +268,9 @@ ARENAS = (
         "Two crowds meet, scattered or in ranks, and a robot goes through where they do.",
         crowd_against_crowd,
         {
-            "people": Option(25, "people in each crowd", "", 1, 100),
-            "angle": Option(180.0, "between the ways of the crowds", "deg", 60.0, 180.0),
-            "formation": Option(False, "whether they walk in ranks"),
+            "people": PresetOption(25, "people in each crowd", "", 1, 100),
+            "angle": PresetOption(180.0, "between the ways of the crowds", "deg", 60.0, 180.0),
+            "formation": PresetOption(False, "whether they walk in ranks"),
         },
         "UMANS: 25 to 25, 50 to 50 in formation, 100 to 100",
     ),

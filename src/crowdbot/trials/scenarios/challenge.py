@@ -13,15 +13,15 @@ from __future__ import annotations
 import functools
 import math
 
-from crowdbot.trials.crowd import Contact, Limits
+from crowdbot.trials.crowd import ContactModel, Limits
 from crowdbot.trials.journey import Journey, Portal, Zone
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.stage import Stage
-from crowdbot.trials.trial import End, Robot, Trial
+from crowdbot.trials.trial import End, RobotSpec, Trial
 
 from .crowds import DEEP, ends
 from .parts import box, corridor, number, robot, scenario, uniform
-from .preset import Option, Preset
+from .preset import Preset, PresetOption
 
 __all__ = ["CHALLENGE", "FLOWS", "SIZES"]
 
@@ -46,10 +46,10 @@ JOURNEYS = {
 """Goals lie beyond the portals, where nobody arrives."""
 
 
-def turtlebot() -> Robot:
+def turtlebot() -> RobotSpec:
     """Return the robot: it moves at once as commanded, as in the challenge, and carries the laser of all presets."""
     plain = robot((-20.0, 0.0), (20.0, 0.0), 0.65, radius=0.5)
-    return Robot(
+    return RobotSpec(
         type="turtlebot2",
         x=plain.x,
         y=plain.y,
@@ -78,7 +78,7 @@ def challenge(kind: str, people: int, acceleration: float) -> Trial:
         f"challenge-{kind}-{people}" if kind else "challenge-alone",
         180.0,
         Stage() if crossing else corridor(LENGTH + 12.0, WIDTH),
-        contact=Contact(),
+        contact=ContactModel(),
         limits=Limits(max_speed=3.0, max_acceleration=acceleration if math.isfinite(acceleration) else None),
         journeys=[Journey(name=way, then="stay", stops=(JOURNEYS[way],)) for way in ways],
         spawners=[
@@ -93,7 +93,7 @@ def challenge(kind: str, people: int, acceleration: float) -> Trial:
 
 
 def _presets() -> tuple[Preset, ...]:
-    braking = Option(5.0, "largest change of velocity of people", "m/s2", 0.1, 100.0)
+    braking = PresetOption(5.0, "largest change of velocity of people", "m/s2", 0.1, 100.0)
     found = [
         Preset(
             "challenge-alone",
@@ -108,7 +108,7 @@ def _presets() -> tuple[Preset, ...]:
                 f"challenge-{kind}-{size}",
                 f"CrowdBot challenge, {code}: {size} people walk {words}, in a corridor of 50 m by 10 m.",
                 functools.partial(challenge, kind),
-                {"people": Option(size, "people", "", 0, 600), "acceleration": braking},
+                {"people": PresetOption(size, "people", "", 0, 600), "acceleration": braking},
             )
             for size in SIZES
         ]

@@ -11,16 +11,16 @@ import math
 from typing import Any
 
 from crowdbot.models import ORCA
-from crowdbot.trials.crowd import Contact, Routing
+from crowdbot.trials.crowd import ContactModel, Routing
 from crowdbot.trials.journey import Direction, Exit, Journey, Portal, Zone
 from crowdbot.trials.notation import Points
-from crowdbot.trials.people import Source, Spawner
+from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.stage import Obstacle, Stage, Wall
 from crowdbot.trials.trial import Trial
 from crowdbot.world import Omnidirectional
 
 from .parts import box, corridor, flow, number, pairs, robot, scenario
-from .preset import Option, Preset
+from .preset import Preset, PresetOption
 
 __all__ = ["CROWDS", "DENSITIES"]
 
@@ -34,9 +34,9 @@ EAST = Journey(name="east", stops=(Direction(0.0),))
 WEST = Journey(name="west", stops=(Direction(math.pi),))
 SOUTH = Journey(name="south", stops=(Direction(-math.pi / 2.0),))
 NORTH = Journey(name="north", stops=(Direction(math.pi / 2.0),))
-DENSITY = Option(0.3, "people", "1/m2", 0.0, 3.0)
-GROUPS = Option(0.0, "share of people in groups of two and three", "", 0.0, 1.0)
-WIDTH = Option(6.0, "width of the corridor", "m", 2.0, 20.0)
+DENSITY = PresetOption(0.3, "people", "1/m2", 0.0, 3.0)
+GROUPS = PresetOption(0.0, "share of people in groups of two and three", "", 0.0, 1.0)
+WIDTH = PresetOption(6.0, "width of the corridor", "m", 2.0, 20.0)
 
 
 def ends(length: float, width: float) -> tuple[Portal, Portal]:
@@ -62,7 +62,7 @@ def _flowing(name: str, width: float, flows: dict[str, float], groups: float, ga
         name,
         90.0,
         corridor(LENGTH + 10.0, width),
-        contact=Contact(),
+        contact=ContactModel(),
         journeys=[EAST, WEST],
         spawners=people,
         portals=ends(LENGTH, width),
@@ -103,7 +103,7 @@ def density_ladder(density: float) -> Trial:
         "density-ladder",
         60.0,
         corridor(30.0, 5.0),
-        contact=Contact(),
+        contact=ContactModel(),
         journeys=[EAST, WEST],
         spawners=people,
         portals=ends(20.0, 5.0),
@@ -123,7 +123,7 @@ def crossing(density: float, both: bool) -> Trial:
         60.0,
         Stage(walls=(Wall(Points.of([(-6.5, -10), (-6.5, -2)])), Wall(Points.of([(-6.5, 2), (-6.5, 10)])),
                      Wall(Points.of([(6.5, -10), (6.5, -2)])), Wall(Points.of([(6.5, 2), (6.5, 10)])))),
-        contact=Contact(),
+        contact=ContactModel(),
         journeys=[SOUTH, NORTH],
         spawners=[flow(way, count, box(-5.7, -5.7, 5.7, 5.7), way) for way in ways if count],
         portals=[low, high],
@@ -218,7 +218,7 @@ def random_goals(people: int, side: float) -> Trial:
         "random-goals",
         90.0,
         Stage(walkable=box(-h, -h, h, h)),
-        contact=Contact(),
+        contact=ContactModel(),
         journeys=[Journey(name="about", then="again", stops=(Zone(inside, aim="random"),))],
         spawners=[Spawner(name="people", count=people, zone=inside, journey="about")],
         robots=[robot((-h + 1.0, -h + 1.0), (h - 1.0, h - 1.0))],
@@ -239,7 +239,7 @@ def bottleneck(door: float, rate: float) -> Trial:
         ),
         routing=Routing(radius=min(0.3, half - 0.05)),
         crowd=ORCA(neighbor_distance=5.0, max_neighbors=10.0, time_horizon=2.0, time_horizon_walls=0.5),
-        contact=Contact(),
+        contact=ContactModel(),
         journeys=[
             Journey(
                 name="through",
@@ -250,7 +250,7 @@ def bottleneck(door: float, rate: float) -> Trial:
             )
         ],
         spawners=[flow("hall", 6, box(-7, -4.5, -5, 4.5), "through")],
-        sources=[Source(name="entrance", zone=box(-9.7, -4.5, -8, 4.5), journey="through", rate=rate)],
+        sources=[SourceSpec(name="entrance", zone=box(-9.7, -4.5, -8, 4.5), journey="through", rate=rate)],
         exits=[Exit(name="right", zone=box(8.8, -5, 10, 5))],
         robots=[robot((3.0, -4.0), (3.0, 4.0), 0.65)],
     )
@@ -282,13 +282,13 @@ CROWDS = (
         "density-ladder",
         "A two-way corridor of 20 m by 5 m without ends, from 0.05 to 3 people/m2.",
         density_ladder,
-        {"density": Option(0.5, f"people: {', '.join(f'{d:g}' for d in DENSITIES)}", "1/m2", 0.0, 3.0)},
+        {"density": PresetOption(0.5, f"people: {', '.join(f'{d:g}' for d in DENSITIES)}", "1/m2", 0.0, 3.0)},
     ),
     Preset(
         "perpendicular-flow",
         "People without end cross the way of the robot, from one side or from both.",
         crossing,
-        {"density": DENSITY, "both": Option(False, "whether people come from both sides")},
+        {"density": DENSITY, "both": PresetOption(False, "whether people come from both sides")},
         "social-jym: perpendicular traffic; CrowdBot: 2-D crossing",
     ),
     Preset(
@@ -296,11 +296,11 @@ CROWDS = (
         "Everybody on a circle goes to the other side, and so does a robot that people do not see.",
         circle_crossing,
         {
-            "people": Option(5, "people", "", 1, 60),
-            "radius": Option(4.0, "of the circle", "m", 2.0, 30.0),
-            "noise": Option(0.35, "half width of the square in which somebody begins", "m", 0.05, 2.0),
-            "limit": Option(25.0, "duration", "s", 5.0, 600.0),
-            "horizon": Option(5.0, "time horizon of people", "s", 0.5, 10.0),
+            "people": PresetOption(5, "people", "", 1, 60),
+            "radius": PresetOption(4.0, "of the circle", "m", 2.0, 30.0),
+            "noise": PresetOption(0.35, "half width of the square in which somebody begins", "m", 0.05, 2.0),
+            "limit": PresetOption(25.0, "duration", "s", 5.0, 600.0),
+            "horizon": PresetOption(5.0, "time horizon of people", "s", 0.5, 10.0),
         },
         "CrowdNav: circle crossing; social-jym: circular crossing (`radius=7`); UMANS: circle 5 to 50 (`people`)",
     ),
@@ -308,28 +308,34 @@ CROWDS = (
         "dense-circle",
         "Twenty people on a larger circle go to the other side, and so does a robot that they do not see.",
         dense_circle,
-        {"people": Option(20, "people", "", 1, 60), "radius": Option(8.49, "of the circle", "m", 2.0, 30.0)},
+        {
+            "people": PresetOption(20, "people", "", 1, 60),
+            "radius": PresetOption(8.49, "of the circle", "m", 2.0, 30.0),
+        },
         "CrowdNav_Prediction_AttnGraph: 20 people",
     ),
     Preset(
         "square-crossing",
         "People on two sides of a square swap sides, the robot crosses their way.",
         square_crossing,
-        {"people": Option(10, "people", "", 1, 60), "side": Option(10.0, "of the square", "m", 5.0, 40.0)},
+        {"people": PresetOption(10, "people", "", 1, 60), "side": PresetOption(10.0, "of the square", "m", 5.0, 40.0)},
         "CrowdNav: square crossing",
     ),
     Preset(
         "static-crowd",
         "People stand about, alone or in groups; the robot goes through.",
         static_crowd,
-        {"density": Option(0.25, "people", "1/m2", 0.0, 1.5), "groups": GROUPS},
+        {"density": PresetOption(0.25, "people", "1/m2", 0.0, 1.5), "groups": GROUPS},
         "social-jym: robot crowding; CrowdBot: static crowd",
     ),
     Preset(
         "random-goals",
         "People go about a square, each to one random place after the other.",
         random_goals,
-        {"people": Option(30, "people", "", 1, 400), "side": Option(20.0, "of the square", "m", 6.0, 100.0)},
+        {
+            "people": PresetOption(30, "people", "", 1, 400),
+            "side": PresetOption(20.0, "of the square", "m", 6.0, 100.0),
+        },
         "social-jym: crowd navigation; MengeROS, ir-sim: wandering",
     ),
     Preset(
@@ -337,8 +343,8 @@ CROWDS = (
         "People come in on the left and go out through a door; a robot crosses the hall behind it.",
         bottleneck,
         {
-            "door": Option(1.4, "width of the door", "m", 0.7, 6.0),
-            "rate": Option(0.7, "people who come in", "1/s", 0.01, 10.0),
+            "door": PresetOption(1.4, "width of the door", "m", 0.7, 6.0),
+            "rate": PresetOption(0.7, "people who come in", "1/s", 0.01, 10.0),
         },
         "Seyfried, Juelich: doors of 0.8 to 5 m (`door`)",
     ),

@@ -20,13 +20,13 @@ from crowdbot.trials.trial import Trial
 from crowdbot.world import DifferentialDrive
 
 from .parts import box, corridor, robot, scenario, uniform
-from .preset import Option, Preset
+from .preset import Preset, PresetOption
 
 __all__ = ["MEETINGS"]
 
-WIDTH = Option(3.0, "width of the corridor", "m", 1.2, 20.0)
-PERSON = Option(1.2, "speed of the person", "m/s", 0.1, 2.5)
-ROBOT = Option(1.0, "speed of the robot", "m/s", 0.1, 3.0)
+WIDTH = PresetOption(3.0, "width of the corridor", "m", 1.2, 20.0)
+PERSON = PresetOption(1.2, "speed of the person", "m/s", 0.1, 2.5)
+ROBOT = PresetOption(1.0, "speed of the robot", "m/s", 0.1, 3.0)
 
 
 def frontal(width: float, gap: float, low: float, high: float) -> Trial:
@@ -231,8 +231,8 @@ def passing_group(gap: float) -> Trial:
     )
 
 
-PEOPLE = Option(4, "people in the group", "", 1, 8)
-CIRCLE = Option(1.2, "radius of their circle", "m", 0.6, 3.0)
+PEOPLE = PresetOption(4, "people in the group", "", 1, 8)
+CIRCLE = PresetOption(1.2, "radius of their circle", "m", 0.6, 3.0)
 
 MEETINGS = (
     Preset(
@@ -241,9 +241,9 @@ MEETINGS = (
         frontal,
         {
             "width": WIDTH,
-            "gap": Option(9.0, "distance between them at the beginning", "m", 3.0, 40.0),
-            "low": Option(1.0, "smallest speed of the person", "m/s", 0.1, 2.5),
-            "high": Option(1.4, "largest speed of the person", "m/s", 0.1, 2.5),
+            "gap": PresetOption(9.0, "distance between them at the beginning", "m", 3.0, 40.0),
+            "low": PresetOption(1.0, "smallest speed of the person", "m/s", 0.1, 2.5),
+            "high": PresetOption(1.4, "largest speed of the person", "m/s", 0.1, 2.5),
         },
         "P&G: frontal approach; UMANS: 1 to 1, 180 degrees",
     ),
@@ -252,10 +252,10 @@ MEETINGS = (
         "Two corridors cross; a person, or with a density a flow, crosses the way of the robot.",
         intersection,
         {
-            "angle": Option(90.0, "between the ways", "deg", 30.0, 150.0),
-            "delay": Option(0.0, "of the person at the crossing", "s", -2.0, 2.0),
-            "width": Option(3.0, "width of the corridors", "m", 1.2, 6.0),
-            "density": Option(0.0, "people in the side corridor, 0 for one person", "1/m2", 0.0, 2.0),
+            "angle": PresetOption(90.0, "between the ways", "deg", 30.0, 150.0),
+            "delay": PresetOption(0.0, "of the person at the crossing", "s", -2.0, 2.0),
+            "width": PresetOption(3.0, "width of the corridors", "m", 1.2, 6.0),
+            "density": PresetOption(0.0, "people in the side corridor, 0 for one person", "1/m2", 0.0, 2.0),
             "speed": PERSON,
             "robot_speed": ROBOT,
         },
@@ -266,9 +266,9 @@ MEETINGS = (
         "An L of corridors hides a person until they are near.",
         blind_corner,
         {
-            "width": Option(1.8, "width of the corridors", "m", 1.4, 4.0),
+            "width": PresetOption(1.8, "width of the corridors", "m", 1.4, 4.0),
             "speed": PERSON,
-            "distance": Option(7.0, "of the person from the corner", "m", 1.0, 7.5),
+            "distance": PresetOption(7.0, "of the person from the corner", "m", 1.0, 7.5),
         },
         "P&G: blind corner",
     ),
@@ -276,14 +276,17 @@ MEETINGS = (
         "doorway",
         "A robot and a person want through a narrow door from both sides.",
         doorway,
-        {"door": Option(0.95, "width of the door", "m", 0.7, 3.0), "speed": PERSON},
+        {"door": PresetOption(0.95, "width of the door", "m", 0.7, 3.0), "speed": PERSON},
         "P&G: narrow doorway",
     ),
     Preset(
         "elevator",
         "People leave a small room that the robot wants to enter.",
         elevator,
-        {"door": Option(0.95, "width of the door", "m", 0.7, 2.0), "people": Option(1, "people who leave", "", 1, 4)},
+        {
+            "door": PresetOption(0.95, "width of the door", "m", 0.7, 2.0),
+            "people": PresetOption(1, "people who leave", "", 1, 4),
+        },
         "P&G: entering a room, entering an elevator",
     ),
     Preset(
@@ -292,8 +295,8 @@ MEETINGS = (
         overtaking,
         {
             "width": WIDTH,
-            "speed": Option(0.7, "speed of the person", "m/s", 0.1, 2.5),
-            "robot_speed": Option(1.2, "speed of the robot", "m/s", 0.1, 3.0),
+            "speed": PresetOption(0.7, "speed of the person", "m/s", 0.1, 2.5),
+            "robot_speed": PresetOption(1.2, "speed of the robot", "m/s", 0.1, 3.0),
         },
         "P&G: overtaking",
     ),
@@ -303,8 +306,8 @@ MEETINGS = (
         being_overtaken,
         {
             "width": WIDTH,
-            "speed": Option(1.4, "speed of the person", "m/s", 0.1, 2.5),
-            "robot_speed": Option(0.6, "speed of the robot", "m/s", 0.1, 3.0),
+            "speed": PresetOption(1.4, "speed of the person", "m/s", 0.1, 2.5),
+            "robot_speed": PresetOption(0.6, "speed of the robot", "m/s", 0.1, 3.0),
         },
         "P&G: being overtaken",
     ),
@@ -313,9 +316,9 @@ MEETINGS = (
         "A person walks ahead of the robot where the robot has to go too.",
         following,
         {
-            "gap": Option(1.75, "distance between their centres at the beginning", "m", 0.6, 10.0),
-            "speed": Option(1.0, "speed of the person", "m/s", 0.1, 2.5),
-            "robot_speed": Option(1.0, "speed of the robot", "m/s", 0.1, 3.0),
+            "gap": PresetOption(1.75, "distance between their centres at the beginning", "m", 0.6, 10.0),
+            "speed": PresetOption(1.0, "speed of the person", "m/s", 0.1, 2.5),
+            "robot_speed": PresetOption(1.0, "speed of the robot", "m/s", 0.1, 3.0),
         },
         "P&G: following",
     ),
@@ -337,6 +340,6 @@ MEETINGS = (
         "passing-group",
         "Two people talk across the way of the robot.",
         passing_group,
-        {"gap": Option(2.0, "distance between their centres", "m", 0.8, 5.0)},
+        {"gap": PresetOption(2.0, "distance between their centres", "m", 0.8, 5.0)},
     ),
 )

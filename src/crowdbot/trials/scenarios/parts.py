@@ -12,7 +12,7 @@ from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.notation import Points
 from crowdbot.trials.people import Group, Spawner
 from crowdbot.trials.stage import Stage, Wall
-from crowdbot.trials.trial import Goal, Mount, Robot, Trial
+from crowdbot.trials.trial import Mount, RobotGoal, RobotSpec, Trial
 from crowdbot.world import DifferentialDrive, Drive
 
 __all__ = ["CROWD", "STILL", "box", "corridor", "flow", "number", "pairs", "robot", "scenario", "uniform"]
@@ -47,17 +47,17 @@ def robot(
     tolerance: float = 0.3,
     drive: Drive | None = None,
     visible: bool = True,
-) -> Robot:
+) -> RobotSpec:
     """Return a robot with a laser scanner that looks to its goal."""
-    return Robot(
+    return RobotSpec(
         x=start[0],
         y=start[1],
         heading=math.atan2(goal[1] - start[1], goal[0] - start[0]),
         radius=radius,
         visible=visible,
-        goal=Goal(goal[0], goal[1], tolerance),
+        goal=RobotGoal(goal[0], goal[1], tolerance),
         drive=drive or DifferentialDrive(max_speed=speed, max_turn_rate=1.5),
-        navigator=navigation.ORCA(speed=speed),
+        navigator=navigation.ORCANavigator(speed=speed),
         sensors=(Mount(sensor=Lidar2D(rays=360, range_max=10.0, noise=Gaussian(0.01))),),
     )
 

@@ -11,13 +11,13 @@ from typing import Any
 from crowdbot import models, navigation
 from crowdbot.core import InputError, TrialError, did_you_mean, find_class, parse_number
 from crowdbot.trials.parser import check_trial
-from crowdbot.trials.trial import Robot, Trial
+from crowdbot.trials.trial import RobotSpec, Trial
 
-__all__ = ["Option", "Preset"]
+__all__ = ["Preset", "PresetOption"]
 
 
 @dataclass(frozen=True)
-class Option:
+class PresetOption:
     """A parameter of a preset: what it is when nothing is said, what it means, and what it may be."""
 
     default: float | int | str | bool
@@ -58,11 +58,11 @@ class Option:
 
 
 COMMON = {
-    "model": Option("orca", "crowd model of the people"),
-    "navigator": Option("orca", "who steers the robot"),
-    "robot": Option(True, "whether there is a robot"),
-    "reactive": Option(True, "whether people see the robot"),
-    "seed": Option(1, "seed of everything random", "", -(2**53), 2**53),
+    "model": PresetOption("orca", "crowd model of the people"),
+    "navigator": PresetOption("orca", "who steers the robot"),
+    "robot": PresetOption(True, "whether there is a robot"),
+    "reactive": PresetOption(True, "whether people see the robot"),
+    "seed": PresetOption(1, "seed of everything random", "", -(2**53), 2**53),
 }
 """Parameters of every preset."""
 
@@ -82,11 +82,11 @@ class Preset:
     name: str
     about: str
     make: Callable[..., Trial]
-    own: Mapping[str, Option] = field(default_factory=dict)
+    own: Mapping[str, PresetOption] = field(default_factory=dict)
     also: str = ""
 
     @property
-    def options(self) -> dict[str, Option]:
+    def options(self) -> dict[str, PresetOption]:
         """All parameters by name."""
         return {**self.own, **COMMON}
 
@@ -128,7 +128,7 @@ def _with_common_options(trial: Trial, preset: Preset, values: Mapping[str, Any]
     changes: dict[str, Any] = {"name": preset.name, "about": preset.about, "seed": values["seed"]}
     if values["model"] != "orca":
         changes["crowd"] = find_class(values["model"], models, models.CrowdModel, trust=False)()
-    robots: Iterable[Robot] = trial.robots if values["robot"] else ()
+    robots: Iterable[RobotSpec] = trial.robots if values["robot"] else ()
     found = find_class(values["navigator"], navigation, navigation.Navigator, trust=False)
     robots = [
         one if isinstance(one.navigator, found) else dataclasses.replace(one, navigator=found()) for one in robots

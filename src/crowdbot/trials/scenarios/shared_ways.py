@@ -15,12 +15,12 @@ from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
 
 from .parts import STILL, box, corridor, robot, scenario
-from .preset import Option, Preset
+from .preset import Preset, PresetOption
 
 __all__ = ["SHARED_WAYS"]
 
-WIDTH = Option(3.0, "width of the corridor", "m", 1.6, 20.0)
-ROBOT = Option(1.0, "speed of the robot", "m/s", 0.1, 3.0)
+WIDTH = PresetOption(3.0, "width of the corridor", "m", 1.6, 20.0)
+ROBOT = PresetOption(1.0, "speed of the robot", "m/s", 0.1, 3.0)
 BACK = math.pi
 """The heading of who looks to where the robot comes from [rad]."""
 
@@ -106,8 +106,8 @@ SHARED_WAYS = (
         "A robot goes ahead of a person who walks behind it at the own pace, and waits for nobody.",
         leading,
         {
-            "gap": Option(1.75, "distance between their centres at the beginning", "m", 0.6, 8.0),
-            "speed": Option(1.0, "speed of the person", "m/s", 0.1, 2.5),
+            "gap": PresetOption(1.75, "distance between their centres at the beginning", "m", 0.6, 8.0),
+            "speed": PresetOption(1.0, "speed of the person", "m/s", 0.1, 2.5),
             "robot_speed": ROBOT,
         },
         "P&G: leading",
@@ -118,8 +118,8 @@ SHARED_WAYS = (
         pedestrian_obstruction,
         {
             "width": WIDTH,
-            "people": Option(1, "people who stand in the way", "", 1, 20),
-            "gives_way": Option(False, "whether they step aside"),
+            "people": PresetOption(1, "people who stand in the way", "", 1, 20),
+            "gives_way": PresetOption(False, "whether they step aside"),
         },
         "P&G: pedestrian obstruction",
     ),
@@ -129,9 +129,9 @@ SHARED_WAYS = (
         down_path,
         {
             "width": WIDTH,
-            "people": Option(2, "people who walk the same way", "", 0, 4),
-            "against": Option(1, "people who walk towards the robot", "", 0, 3),
-            "speed": Option(0.8, "speed of the people", "m/s", 0.1, 2.5),
+            "people": PresetOption(2, "people who walk the same way", "", 0, 4),
+            "against": PresetOption(1, "people who walk towards the robot", "", 0, 3),
+            "speed": PresetOption(0.8, "speed of the people", "m/s", 0.1, 2.5),
         },
         "P&G, SEAN: down path",
     ),
@@ -140,8 +140,8 @@ SHARED_WAYS = (
         "A robot and a person walk side by side down a corridor.",
         parallel_walk,
         {
-            "gap": Option(1.2, "distance between their ways", "m", 0.6, 5.0),
-            "speed": Option(1.0, "speed of the person", "m/s", 0.1, 2.5),
+            "gap": PresetOption(1.2, "distance between their ways", "m", 0.6, 5.0),
+            "speed": PresetOption(1.0, "speed of the person", "m/s", 0.1, 2.5),
             "robot_speed": ROBOT,
         },
         "P&G: parallel walk",
@@ -152,8 +152,10 @@ SHARED_WAYS = (
         " ends: nothing is handed over, as robots have no hands here.",
         object_handover,
         {
-            "reach": Option(0.9, "distance between their centres at which the robot stops", "m", 0.6, 2.0),
-            "approach": Option(30.0, "between where the person looks and where the robot begins", "deg", -90.0, 90.0),
+            "reach": PresetOption(0.9, "distance between their centres at which the robot stops", "m", 0.6, 2.0),
+            "approach": PresetOption(
+                30.0, "between where the person looks and where the robot begins", "deg", -90.0, 90.0
+            ),
         },
         "P&G: object handover",
     ),

@@ -12,19 +12,19 @@ from crowdbot.core import InputError, nearest_name
 from crowdbot.trials.agent import Agent
 from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import outline
-from crowdbot.trials.partial import Unread, kind_of, readable, rest, torn
-from crowdbot.trials.people import Source, Spawner
+from crowdbot.trials.partial import UnreadableValue, kind_of, readable, rest, torn
+from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
 from crowdbot.world import Router
 
-__all__ = ["Checked", "Names", "Problems"]
+__all__ = ["DeclaredNames", "Problems", "ValidationContext"]
 
 Problems = Iterator[tuple[Any, str]]
 """Elements that have a problem, each with the end of a sentence about it."""
 
 
-class Names(NamedTuple):
+class DeclaredNames(NamedTuple):
     """The names of all elements of a kind, readable or not.
 
     Fields:
@@ -36,7 +36,7 @@ class Names(NamedTuple):
     doubtful: list[str | None]
 
     @classmethod
-    def of(cls, things: Sequence[Any]) -> Names:
+    def of(cls, things: Sequence[Any]) -> DeclaredNames:
         """Return the names of elements."""
         known, doubtful = list[str](), list[str | None]()
         for thing in things:
@@ -54,7 +54,7 @@ class Names(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Checked:
+class ValidationContext:
     """A trial, torn where something of it could not be read, and its crowds as they stand in its file."""
 
     trial: Trial
@@ -69,16 +69,16 @@ class Checked:
         return next((seed for _, seed in readable([self.trial], "seed")), 0)
 
     @property
-    def people(self) -> tuple[Agent | Spawner | Source, ...]:
+    def people(self) -> tuple[Agent | Spawner | SourceSpec, ...]:
         """Where people come from."""
         return (*self.trial.agents, *self.trial.spawners, *self.trial.sources)
 
     @property
-    def crowd_names(self) -> Names:
+    def crowd_names(self) -> DeclaredNames:
         """Names of the crowds; a single one needs none."""
         if len(self.crowds) == 1 and not self.crowds[0].name:
-            return Names([], [])
-        return Names.of(self.crowds) if self.crowds else Names([], [None])
+            return DeclaredNames([], [])
+        return DeclaredNames.of(self.crowds) if self.crowds else DeclaredNames([], [None])
 
     @functools.cached_property
     def stage(self) -> Stage:
@@ -95,7 +95,7 @@ class Checked:
         if self.trial.routing is None:
             return None
         if isinstance(self._routing, str):
-            raise Unread(self._routing)
+            raise UnreadableValue(self._routing)
         return self._routing
 
     @property
@@ -111,7 +111,7 @@ class Checked:
         except InputError as error:
             return str(error).removeprefix("Router: ")
 
-    def without(self, wrong: Mapping[int, set[str]]) -> Checked:
+    def without(self, wrong: Mapping[int, set[str]]) -> ValidationContext:
         """Return what is left when fields of elements, given by their ``id``, turn out wrong."""
         return dataclasses.replace(self, trial=_without(self.trial, wrong)) if wrong else self
 

@@ -10,20 +10,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, did_you_mean, stream
-from crowdbot.trials.agent import Agent, Parameter
+from crowdbot.trials.agent import Agent, AgentParameter
 from crowdbot.trials.distribution import Distribution
-from crowdbot.trials.fields import shown
+from crowdbot.trials.fields import quote_value
 from crowdbot.trials.journey import Direction, Exit, Point, Zone
 from crowdbot.trials.notation import Points
 from crowdbot.trials.partial import readable, whole
-from crowdbot.trials.people import Source, Spawner
+from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.placement.spawn_placement import points_in
-from crowdbot.trials.randomized_model import Drawn
+from crowdbot.trials.randomized_model import RandomizedModel
 from crowdbot.trials.stage import Stage, area
 from crowdbot.trials.trial import Trial
 from crowdbot.world import Router
 
-from .context import Checked, Names, Problems
+from .context import DeclaredNames, Problems, ValidationContext
 
 __all__ = ["astray", "expected", "flows", "names", "taken"]
 
@@ -42,7 +42,7 @@ def expected(trial: Trial) -> int:
     return round(sum(source.expected(trial.duration) for source in trial.sources))
 
 
-def names(checked: Checked) -> Iterator[Problems]:
+def names(checked: ValidationContext) -> Iterator[Problems]:
     """Yield checks of names that are taken or that nothing has, and of people who have no way to go or two."""
     trial = checked.trial
     yield taken(trial.journeys, "journey")
@@ -51,9 +51,9 @@ def names(checked: Checked) -> Iterator[Problems]:
     for one in checked.people:
         yield _goals(one)
         yield _arrival(one)
-        yield _named(one, "journey", Names.of(trial.journeys))
+        yield _named(one, "journey", DeclaredNames.of(trial.journeys))
         yield _named(one, "crowd", checked.crowd_names)
-        if isinstance(one, Source):
+        if isinstance(one, SourceSpec):
             yield _begins(one)
         if isinstance(one, Agent):
             yield from (_own(checked, one, parameter) for parameter in one.parameters)
@@ -69,33 +69,33 @@ def taken(things: Sequence[Any], others: str) -> Problems:
         known.add(name)
 
 
-def flows(checked: Checked) -> Iterator[Problems]:
+def flows(checked: ValidationContext) -> Iterator[Problems]:
     """Yield checks of zones without room and of ways that lead nowhere."""
     trial = checked.trial
     yield _routed(checked)
     yield from (_entrance(checked.stage, source) for source in trial.sources)
     for _, stops in readable(trial.journeys, "stops"):
         yield from (_stop(checked, stop) for stop in stops)
-    coming: tuple[Spawner | Source, ...] = (*trial.spawners, *trial.sources)
+    coming: tuple[Spawner | SourceSpec, ...] = (*trial.spawners, *trial.sources)
     yield from (_straight_out(one, k, way) for one in coming for k, way in enumerate(trial.exits, 1))
     yield from (_first_leg(checked, one) for one in checked.people)
     for _, stops in readable(trial.journeys, "stops"):
         yield from (_leg(checked, k, *pair) for k, pair in enumerate(itertools.pairwise(stops), 2))
 
 
-def _routed(checked: Checked) -> Problems:
+def _routed(checked: ValidationContext) -> Problems:
     if why := checked.no_routing:
         yield checked.trial.routing, f"is impossible on this stage: {why}"
 
 
-def _named(one: Any, word: str, names: Names) -> Problems:
+def _named(one: Any, word: str, names: DeclaredNames) -> Problems:
     """Yield a name that nothing has."""
     if (name := getattr(one, word)) and names.lack(name):
         there = f"there are {', '.join(names.known)}" if names.known else f"no {word} has a name here"
-        yield one, f"{word}={shown(name)} is not the name of a {word}{did_you_mean(name, names.known)}; {there}"
+        yield one, f"{word}={quote_value(name)} is not the name of a {word}{did_you_mean(name, names.known)}; {there}"
 
 
-def _goals(one: Agent | Spawner | Source) -> Problems:
+def _goals(one: Agent | Spawner | SourceSpec) -> Problems:
     stands = isinstance(one, Agent) or getattr(one, "stands", False)
     if one.goal and one.journey:
         yield one, 'has both a goal and a journey; give one of them: goal="x,y x,y x,y" or journey="name"'
@@ -105,12 +105,12 @@ def _goals(one: Agent | Spawner | Source) -> Problems:
         yield one, 'needs a goal zone or a journey: goal="x,y x,y x,y" or journey="name"'
 
 
-def _arrival(one: Agent | Spawner | Source) -> Problems:
+def _arrival(one: Agent | Spawner | SourceSpec) -> Problems:
     if one.journey and one.arrival != "leave" and not one.goal and not getattr(one, "stands", False):
         yield one, f'arrival="{one.arrival}" goes with a goal zone; for a journey say then="{one.arrival}" in it'
 
 
-def _begins(source: Source) -> Problems:
+def _begins(source: SourceSpec) -> Problems:
     if source.begin >= source.end:
         yield source, f"begin {source.begin:g} s must be before end {source.end:g} s"
 
@@ -124,14 +124,14 @@ def _more_than_fit(trial: Trial) -> Problems:
         yield last, f"makes {first} people at the beginning, more than the capacity {trial.capacity}"
 
 
-def _own(checked: Checked, agent: Agent, parameter: Parameter) -> Problems:
+def _own(checked: ValidationContext, agent: Agent, parameter: AgentParameter) -> Problems:
     """Yield a parameter that the model of a person does not have, or cannot take."""
     crowds = [crowd for crowd in checked.crowds if crowd.name == agent.crowd or not agent.crowd]
     if not crowds:
         return
     model = whole(crowds[0].model)
     draws = {parameter.name.replace("-", "_"): Distribution.of(parameter.value)}
-    for sentence in Drawn.problems(model.model if isinstance(model, Drawn) else model, draws):
+    for sentence in RandomizedModel.problems(model.model if isinstance(model, RandomizedModel) else model, draws):
         yield parameter, sentence.replace("drawn", "given", 1)
 
 
@@ -141,7 +141,7 @@ def _endless(stops: Sequence[Any]) -> Problems:
             yield stop, f"is stop {k + 1} of {len(stops)} and has no end; a direction must be the last stop"
 
 
-def _entrance(stage: Stage, source: Source) -> Problems:
+def _entrance(stage: Stage, source: SourceSpec) -> Problems:
     for label, zones in (("zone", readable([source], "zone")), ("goal zone", readable([source], "goal"))):
         for _, points in zones:
             if points and (block := stage.block_in(area(points), OVERLAP)):
@@ -157,7 +157,7 @@ def _entrance(stage: Stage, source: Source) -> Problems:
         )
 
 
-def astray(checked: Checked, stop: Point | Direction | Zone) -> Iterator[tuple[Any, str, str]]:
+def astray(checked: ValidationContext, stop: Point | Direction | Zone) -> Iterator[tuple[Any, str, str]]:
     """Yield a stop at a point where nobody can be: the stop, its field, and the end of a sentence."""
     import shapely
 
@@ -169,7 +169,7 @@ def astray(checked: Checked, stop: Point | Direction | Zone) -> Iterator[tuple[A
             yield stop, "x", f"at {stop.x:g},{stop.y:g} lies inside {block}"
 
 
-def _stop(checked: Checked, stop: Point | Direction | Zone) -> Problems:
+def _stop(checked: ValidationContext, stop: Point | Direction | Zone) -> Problems:
     stage = checked.stage
     if isinstance(stop, Zone):
         if stop.aim == "nearest" or checked.router is None:
@@ -180,7 +180,7 @@ def _stop(checked: Checked, stop: Point | Direction | Zone) -> Problems:
             yield stop, f"zone leaves no room for a body of radius {radius:g} m, which routing asks for"
 
 
-def _straight_out(one: Spawner | Source, number: int, way: Exit) -> Problems:
+def _straight_out(one: Spawner | SourceSpec, number: int, way: Exit) -> Problems:
     """Yield those who would leave where they come in."""
     if area(one.zone).intersection(area(way.zone)).area > OVERLAP:
         called = repr(way.name) if way.name else str(number)
@@ -201,7 +201,7 @@ class _Place(NamedTuple):
         return cls(stop.points, stop.aim == "random") if isinstance(stop, Zone) else None
 
 
-def _first_leg(checked: Checked, one: Agent | Spawner | Source) -> Problems:
+def _first_leg(checked: ValidationContext, one: Agent | Spawner | SourceSpec) -> Problems:
     """Yield who finds no way around walls into the own journey or to the own goal."""
     router = checked.router
     if router is None or router.unreachable != "error" or not (one.goal or one.journey):
@@ -218,7 +218,7 @@ def _first_leg(checked: Checked, one: Agent | Spawner | Source) -> Problems:
         yield one, f"no way leads from its {word} to {what} for a body of radius {router.radius:g} m"
 
 
-def _leg(checked: Checked, number: int, here: Any, there: Any) -> Problems:
+def _leg(checked: ValidationContext, number: int, here: Any, there: Any) -> Problems:
     """Yield a stop to which no way around walls leads from the one before."""
     router = checked.router
     if router is None or router.unreachable != "error":

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from crowdbot.core import FreeClock, InputError
-from crowdbot.trials.robot import Mount, Robot
+from crowdbot.trials.robot import Mount, RobotSpec
 from crowdbot.trials.trial import Trial
 
 __all__ = ["fitting", "misfits", "trial_remarks"]
@@ -26,7 +26,7 @@ def fitting(periods: Sequence[float]) -> float:
     return step
 
 
-def misfits(robot: Robot, step: float) -> list[Mount]:
+def misfits(robot: RobotSpec, step: float) -> list[Mount]:
     """Return the sensors of a robot's type whose period or delay is not a whole number of time steps [s]."""
     clock, found = FreeClock(step), []
     carried = robot.carried
@@ -46,7 +46,7 @@ def trial_remarks(trial: Trial) -> list[str]:
     >>> from crowdbot.models import ORCA
     >>> from crowdbot.navigation import Straight
     >>> from crowdbot.trials import Goal
-    >>> pepper = Robot(type="pepper", x=0, y=0, goal=Goal(5, 0), navigator=Straight())
+    >>> pepper = RobotSpec(type="pepper", x=0, y=0, goal=Goal(5, 0), navigator=Straight())
     >>> [sentence[-36:] for sentence in trial_remarks(Trial(name="t", duration=1, crowd=ORCA(), robots=[pepper]))]
     ['step="0.01" all would be as they are']
     """

@@ -12,17 +12,17 @@ import numpy as np
 from crowdbot.core import FreeClock, InputError, did_you_mean
 from crowdbot.trials.camera import Camera
 from crowdbot.trials.crowd import Crowd
-from crowdbot.trials.fields import shown
+from crowdbot.trials.fields import quote_value
 from crowdbot.trials.notation import Points
-from crowdbot.trials.partial import Unread, origin, readable, rest, told
+from crowdbot.trials.partial import UnreadableValue, origin, readable, rest, told
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.placement.population import place
 from crowdbot.trials.recorded_people import RecordedPeople
-from crowdbot.trials.robot import Goal, Mount, Robot
+from crowdbot.trials.robot import Mount, RobotGoal, RobotSpec
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
 
-from .context import Checked, Names, Problems
+from .context import DeclaredNames, Problems, ValidationContext
 from .flow_checks import astray, expected, flows, names, taken
 from .rates import fitting, misfits
 from .zones import areas, crooked
@@ -46,7 +46,7 @@ def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) ->
         crowds: as they stand in its file.
         seed: places people with it; None is the trial's own.
     """
-    checked = Checked(trial, crowds, seed)
+    checked = ValidationContext(trial, crowds, seed)
     too_large = [*told(*_size(checked))]
     found = [
         *told(_periods(checked), *(_exact(trial, robot) for robot in trial.robots), *_names(checked), *names(checked)),
@@ -76,7 +76,7 @@ def _by_thing(rows: Sequence[tuple[Any, str, str]]) -> dict[int, set[str]]:
     return found
 
 
-def _places(checked: Checked) -> list[tuple[Any, str]]:
+def _places(checked: ValidationContext) -> list[tuple[Any, str]]:
     """Return who finds no place: without those who could not be read, and without groups, there is only more room."""
     trial = checked.trial
     spawners = [_or(spawner, NOBODY, "zone", "count", "radius", groups=()) for spawner in trial.spawners]
@@ -84,7 +84,7 @@ def _places(checked: Checked) -> list[tuple[Any, str]]:
     robots = [robot for robot in trial.robots if all(readable([robot], name) for name in ("x", "y", "radius"))]
     walks = []
     for one in trial.recorded:
-        with contextlib.suppress(Unread, InputError):
+        with contextlib.suppress(UnreadableValue, InputError):
             walks.append((rest(one, "data"), one.walks(trial.duration)))
     there = [agent for agent in agents if agent is not None]
     return place(checked.stage, spawners, robots, checked.seed, there, walks)[1]
@@ -94,23 +94,23 @@ def _or(thing: Any, other: Any, *needs: str, **instead: Any) -> Any:
     """Return what :func:`rest` does, something other when what is needed could not be read."""
     try:
         return rest(thing, *needs, **instead)
-    except Unread:
+    except UnreadableValue:
         return other
 
 
-def _recording(checked: Checked, one: RecordedPeople) -> Problems:
+def _recording(checked: ValidationContext, one: RecordedPeople) -> Problems:
     """Yield why a recording cannot be replayed."""
     try:
         durations = [duration for _, duration in readable([checked.trial], "duration")]
         walks = one.walks(*durations) if durations else one.walks(0.0) or ("unknown",)
     except InputError as error:
-        yield one, f"data={shown(one.data)} {error}"
+        yield one, f"data={quote_value(one.data)} {error}"
         return
     if not walks:
-        yield one, f"data={shown(one.data)} has nobody from {one.begin:g} s on; take an earlier begin"
+        yield one, f"data={quote_value(one.data)} has nobody from {one.begin:g} s on; take an earlier begin"
 
 
-def _periods(checked: Checked) -> Problems:
+def _periods(checked: ValidationContext) -> Problems:
     trial = checked.trial
     clock = FreeClock(trial.step)
     periods = [*told(*_due(trial))]
@@ -136,7 +136,7 @@ def _period(thing: Any, name: str, called: str) -> Iterator[tuple[Any, str, floa
     yield thing, called, getattr(thing, name)
 
 
-def _measuring(robot: Robot, mount: Mount) -> Iterator[tuple[Any, str, float]]:
+def _measuring(robot: RobotSpec, mount: Mount) -> Iterator[tuple[Any, str, float]]:
     if mount in robot.carried:
         return
     yield mount, f"rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate
@@ -144,7 +144,7 @@ def _measuring(robot: Robot, mount: Mount) -> Iterator[tuple[Any, str, float]]:
         yield mount, "delay", mount.sensor.delay
 
 
-def _exact(trial: Trial, robot: Robot) -> Problems:
+def _exact(trial: Trial, robot: RobotSpec) -> Problems:
     """Yield a robot with sensors of its type that do not fit the time step although they must."""
     if robot.sensor_rates == "exact" and (others := misfits(robot, trial.step)):
         rates = ", ".join(f"{mount.name} {mount.sensor.rate:g} Hz" for mount in others)
@@ -157,7 +157,7 @@ def _exact(trial: Trial, robot: Robot) -> Problems:
         )
 
 
-def _names(checked: Checked) -> Iterator[Problems]:
+def _names(checked: ValidationContext) -> Iterator[Problems]:
     yield taken(checked.trial.robots, "robot")
     for _, mounts in readable(checked.trial.robots, "sensors"):
         yield taken(mounts, "sensor of this robot")
@@ -165,24 +165,24 @@ def _names(checked: Checked) -> Iterator[Problems]:
     yield from (_camera(checked.trial.robots, camera) for camera in checked.trial.cameras)
 
 
-def _camera(robots: Sequence[Robot], camera: Camera) -> Problems:
+def _camera(robots: Sequence[RobotSpec], camera: Camera) -> Problems:
     if not camera.robot:
         if camera.link:
-            yield camera, f"link={shown(camera.link)} needs robot: the name of the robot whose link it is"
+            yield camera, f"link={quote_value(camera.link)} needs robot: the name of the robot whose link it is"
         return
-    names = Names.of(robots)
+    names = DeclaredNames.of(robots)
     bodies = {name: robots[k] for k, name in readable(robots, "name")}
     if names.lack(camera.robot):
         near = did_you_mean(camera.robot, bodies)
-        yield camera, f"robot={shown(camera.robot)} is no robot{near}; there are {', '.join(bodies) or 'none'}"
+        yield camera, f"robot={quote_value(camera.robot)} is no robot{near}; there are {', '.join(bodies) or 'none'}"
     elif camera.robot not in bodies:
         return
     elif camera.link and camera.link not in (links := bodies[camera.robot].body.model.links):
         near = did_you_mean(camera.link, links)
-        yield camera, f"link={shown(camera.link)} is no link of robot {camera.robot!r}{near}"
+        yield camera, f"link={quote_value(camera.link)} is no link of robot {camera.robot!r}{near}"
 
 
-def _size(checked: Checked) -> Iterator[Problems]:
+def _size(checked: ValidationContext) -> Iterator[Problems]:
     yield _too_long(checked.trial)
     yield _too_many(checked)
     yield _too_large(checked)
@@ -196,7 +196,7 @@ def _too_long(trial: Trial) -> Problems:
         )
 
 
-def _too_many(checked: Checked) -> Problems:
+def _too_many(checked: ValidationContext) -> Problems:
     coming = expected(checked.trial)
     if coming > MOST_ARRIVALS:
         yield (
@@ -206,7 +206,7 @@ def _too_many(checked: Checked) -> Problems:
         )
 
 
-def _too_large(checked: Checked) -> Problems:
+def _too_large(checked: ValidationContext) -> Problems:
     trial = checked.trial
     first = len(trial.agents) + sum(spawner.count for spawner in trial.spawners)
     coming = expected(trial)
@@ -235,17 +235,17 @@ def _stage_shapes(stage: Stage) -> list[tuple[Any, str, str]]:
     return [(thing, name, f"{name} {wrong}") for thing, name, wrong in (*obstacles, *ground) if wrong]
 
 
-def _robots(stage: Stage, robots: Sequence[Robot]) -> Iterator[Problems]:
+def _robots(stage: Stage, robots: Sequence[RobotSpec]) -> Iterator[Problems]:
     for k, robot in enumerate(robots):
         yield _standing(stage, robot, "starts", robot)
         yield from (_standing(stage, robot, "has its goal", goal) for _, goal in readable([robot], "goal"))
         yield from (_apart(robot, other) for other in robots[:k])
 
 
-def _standing(stage: Stage, robot: Robot, word: str, there: Robot | Goal) -> Problems:
+def _standing(stage: Stage, robot: RobotSpec, word: str, there: RobotSpec | RobotGoal) -> Problems:
     import shapely
 
-    spot, reach = there.position, there.tolerance if isinstance(there, Goal) else 0.0
+    spot, reach = there.position, there.tolerance if isinstance(there, RobotGoal) else 0.0
     room = float(stage.clearance([spot])[0])
     block = stage.block_around(shapely.Point(spot))
     if not stage.holds(shapely.Point(spot)):
@@ -256,7 +256,7 @@ def _standing(stage: Stage, robot: Robot, word: str, there: Robot | Goal) -> Pro
         yield robot, f"{word} {room:.2f} m from a wall, and its radius is {robot.radius:g} m"
 
 
-def _apart(robot: Robot, other: Robot) -> Problems:
+def _apart(robot: RobotSpec, other: RobotSpec) -> Problems:
     away = float(np.hypot(robot.x - other.x, robot.y - other.y))
     if away < robot.radius + other.radius:
         yield (

@@ -11,7 +11,7 @@ from crowdbot.trials.notation import Points
 from crowdbot.trials.partial import readable
 from crowdbot.trials.stage import Stage, area
 
-from .context import Checked
+from .context import ValidationContext
 
 __all__ = ["Area", "areas", "crooked"]
 
@@ -54,7 +54,7 @@ class Area:
         return block and f"{self.label} lies inside {block}; nobody can be there, move it"
 
 
-def areas(checked: Checked) -> list[Area]:
+def areas(checked: ValidationContext) -> list[Area]:
     """Return every zone of a trial that could be read."""
     trial, found = checked.trial, list[Area]()
     for group, label, smallest in ((trial.spawners, "spawn zone", 0.0), (trial.sources, "zone", SMALLEST)):

@@ -26,17 +26,17 @@ from crowdbot.core import (
     required_fields,
 )
 from crowdbot.trials.distribution import Distribution
-from crowdbot.trials.fields import Part, Plug, outline, shown
+from crowdbot.trials.fields import FieldSpec, PluginSpec, outline, quote_value
 from crowdbot.trials.partial import EVERYTHING, begun, is_torn, readable, torn
-from crowdbot.trials.randomized_model import Drawn, is_drawn
+from crowdbot.trials.randomized_model import RandomizedModel, is_drawn
 
-__all__ = ["ROOT", "Reader"]
+__all__ = ["ROOT", "XmlReader"]
 
 MOST_PROBLEMS = 100
 ROOT = "trial"
 
 
-class Reader:
+class XmlReader:
     """Makes a tree of frozen dataclasses of XML elements, and collects every problem meanwhile.
 
     What is misspelt is read as what it means most likely, and an element with a mistake becomes a torn one: so nothing
@@ -121,7 +121,7 @@ class Reader:
         self.made.append(made)  # keeps it alive, so that its id stays its own
         return made
 
-    def _tried(self, element: Element, part: Part) -> bool:
+    def _tried(self, element: Element, part: FieldSpec) -> bool:
         """Whether the field was given, however wrong; that was said already."""
         if part.role == "attribute":
             return any(key.replace("_", "-") == part.word for key in element.attributes)
@@ -129,7 +129,7 @@ class Reader:
             return True
         return any(inner.tag in part.words for inner in element.children)
 
-    def _names(self, element: Element, parts: tuple[Part, ...]) -> type | None:
+    def _names(self, element: Element, parts: tuple[FieldSpec, ...]) -> type | None:
         """Bring misspelt attributes to what they mean; return the class of what the element mounts, if it is known."""
         own = [part.word for part in parts if part.role == "attribute"]
         mount = next((part.plug for part in parts if part.role == "mounted"), None)
@@ -150,7 +150,7 @@ class Reader:
                 element.attributes[nearest_name(key, known)] = text
                 given.add(nearest_name(key, known))
 
-    def _attributes(self, element: Element, parts: tuple[Part, ...], kind: type | None) -> dict[str, Any]:
+    def _attributes(self, element: Element, parts: tuple[FieldSpec, ...], kind: type | None) -> dict[str, Any]:
         own = {part.word: part for part in parts if part.role == "attribute"}
         values: dict[str, Any] = {}
         rest: dict[str, str] = {}
@@ -168,7 +168,7 @@ class Reader:
             except InputError as error:
                 wrong = str(error)
             if wrong:
-                self.say(element.line, element.tag, f"{part.word}={shown(text)} {wrong}")
+                self.say(element.line, element.tag, f"{part.word}={quote_value(text)} {wrong}")
             if not wrong or (part.word == "name" and value is not None):  # a wrong name is still what others say
                 values[part.name] = value
         mount = next((part for part in parts if part.role == "mounted"), None)
@@ -176,7 +176,7 @@ class Reader:
             values[mount.name] = self._plug(mount.plug, kind, element, rest)
         return values
 
-    def _children(self, element: Element, parts: tuple[Part, ...]) -> dict[str, Any]:
+    def _children(self, element: Element, parts: tuple[FieldSpec, ...]) -> dict[str, Any]:
         known = {word: part for part in parts for word in part.words}
         found: dict[str, list[Any]] = {part.name: [] for part in known.values()}
         self._stray(element)
@@ -207,7 +207,7 @@ class Reader:
                 element.line, element.tag, f"holds the text {element.stray[:40]!r}; values are written as attributes"
             )
 
-    def _gathered(self, part: Part, made: list[Any]) -> Any:
+    def _gathered(self, part: FieldSpec, made: list[Any]) -> Any:
         """Return the value of a field of which these are the child elements, None when there is none."""
         if part.role != "children":
             return made[0] if made else None
@@ -219,7 +219,7 @@ class Reader:
         right = made and not problems and not any(is_torn(one) for one in made)
         return part.into.gathered(made) if right else None
 
-    def _child(self, part: Part, inner: Element) -> Any:
+    def _child(self, part: FieldSpec, inner: Element) -> Any:
         if part.plug is None:
             return self.element(part.elements[inner.tag], inner)
         for deeper in inner.children:
@@ -230,7 +230,7 @@ class Reader:
             self._meant(inner, attribute_names(kind), ["type"])
         return self._plug(part.plug, kind, inner, dict(inner.attributes))
 
-    def _type(self, what: Plug, element: Element) -> type | None:
+    def _type(self, what: PluginSpec, element: Element) -> type | None:
         """Return the class that ``type`` names, or means most likely; None when nobody knows."""
         room, contract = what.places()
         known = builtin_classes(room, contract)
@@ -244,7 +244,7 @@ class Reader:
             self.say(element.line, element.tag, str(error))
             return known.get(nearest_name(name, known))
 
-    def _plug(self, what: Plug, cls: type | None, element: Element, attributes: dict[str, str]) -> Any:
+    def _plug(self, what: PluginSpec, cls: type | None, element: Element, attributes: dict[str, str]) -> Any:
         """Return the part of this class that the attributes make; a torn one where that is impossible."""
         if cls is None:
             return torn(what.places()[1], {}, EVERYTHING)
@@ -305,11 +305,11 @@ def _drawn(model: Any, draws: dict[str, str]) -> tuple[Any, dict[str, str]]:
         try:
             one = Distribution.parse(text)
             found[key.replace("-", "_")] = one
-            if sentences := [*Drawn.problems(model, {key.replace("-", "_"): one})]:
+            if sentences := [*RandomizedModel.problems(model, {key.replace("-", "_"): one})]:
                 wrong[key] = sentences[0]
         except InputError as error:
-            wrong[key] = f"{key[:40]}={shown(text)} {error}"
-    return (None, wrong) if wrong else (Drawn(model, tuple(found.items())), {})
+            wrong[key] = f"{key[:40]}={quote_value(text)} {error}"
+    return (None, wrong) if wrong else (RandomizedModel(model, tuple(found.items())), {})
 
 
 def _converted(text: str, kind: Any) -> Any:
@@ -329,7 +329,7 @@ def _converted(text: str, kind: Any) -> Any:
     return value
 
 
-def _kind(part: Part) -> str:
+def _kind(part: FieldSpec) -> str:
     if part.role == "attribute":
         unit = f" [{part.rule.unit}]" if part.rule and part.rule.unit else ""
         return f"the attribute {part.word!r}: {part.about}{unit}"

@@ -8,10 +8,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import Element, InputError, builtin_classes, format_xml, kebab_case
-from crowdbot.trials.fields import Part, outline
+from crowdbot.core import Element, InputError, builtin_classes, builtin_name, format_xml
+from crowdbot.trials.fields import FieldSpec, outline
 from crowdbot.trials.notation import plain
-from crowdbot.trials.randomized_model import Drawn
+from crowdbot.trials.randomized_model import RandomizedModel
 
 __all__ = ["element_from", "element_of", "trial_xml"]
 
@@ -53,7 +53,7 @@ def element_from(tag: str, thing: Any, folder: Path | None) -> Element:
     return element
 
 
-def _add(element: Element, part: Part, value: Any, folder: Path | None) -> None:
+def _add(element: Element, part: FieldSpec, value: Any, folder: Path | None) -> None:
     if part.role == "attribute":
         element.attributes[part.word] = _text(value, part.word)
     elif part.role in ("child", "children"):
@@ -65,12 +65,12 @@ def _add(element: Element, part: Part, value: Any, folder: Path | None) -> None:
         element.attributes |= _plug(part, value, folder)
 
 
-def _word(part: Part, value: Any) -> str:
+def _word(part: FieldSpec, value: Any) -> str:
     return next(word for word, kind in part.elements.items() if isinstance(value, kind))
 
 
-def _plug(part: Part, value: Any, folder: Path | None) -> dict[str, str]:
-    if isinstance(value, Drawn):
+def _plug(part: FieldSpec, value: Any, folder: Path | None) -> dict[str, str]:
+    if isinstance(value, RandomizedModel):
         draws = {name.replace("_", "-"): str(drawn) for name, drawn in value.draws}
         return _plug(part, value.model, folder) | draws
     words = {"type": _type(part, value, folder)}
@@ -82,13 +82,13 @@ def _plug(part: Part, value: Any, folder: Path | None) -> dict[str, str]:
     return words
 
 
-def _type(part: Part, value: Any, folder: Path | None) -> str:
+def _type(part: FieldSpec, value: Any, folder: Path | None) -> str:
     """Return the built-in name of a part, or the address of its class as seen from the folder of the trial."""
     assert part.plug is not None
     cls = type(value)
     room, contract = part.plug.places()
-    if builtin_classes(room, contract).get(kebab_case(cls.__name__)) is cls:
-        return kebab_case(cls.__name__)
+    if builtin_classes(room, contract).get(builtin_name(cls, contract)) is cls:
+        return builtin_name(cls, contract)
     module = sys.modules[cls.__module__]
     if cls.__module__.startswith("crowdbot_plug_") and module.__file__:
         file = Path(module.__file__)

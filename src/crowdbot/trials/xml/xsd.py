@@ -12,7 +12,7 @@ from typing import Any
 
 from crowdbot.core import Element, builtin_classes, format_xml
 from crowdbot.trials.distribution import Distribution
-from crowdbot.trials.fields import LARGEST, Part, Plug, Rule, outline
+from crowdbot.trials.fields import LARGEST, Constraint, FieldSpec, PluginSpec, outline
 from crowdbot.trials.notation import Points
 from crowdbot.trials.trial import Trial
 
@@ -66,7 +66,7 @@ def _add_type(cls: type, known: dict[str, Element]) -> str:
     return name
 
 
-def _elements(part: Part, known: dict[str, Element]) -> list[Element]:
+def _elements(part: FieldSpec, known: dict[str, Element]) -> list[Element]:
     if part.role in ("child", "children"):
         return [
             Element("xs:element", {"name": word, "type": _add_type(kind, known)}, [_about(part.about)])
@@ -78,7 +78,7 @@ def _elements(part: Part, known: dict[str, Element]) -> list[Element]:
     return [Element("xs:element", {"name": part.word}, [_about(part.about), kind])]
 
 
-def _plug_attributes(what: Plug, taken: set[str]) -> list[Element]:
+def _plug_attributes(what: PluginSpec, taken: set[str]) -> list[Element]:
     """Return the attributes of everything that may be plugged in; those of a user's own part have no limits."""
     room, contract = what.places()
     classes = builtin_classes(room, contract)
@@ -98,15 +98,15 @@ def _plug_attributes(what: Plug, taken: set[str]) -> list[Element]:
     return [*found, Element("xs:anyAttribute", {"namespace": "##local", "processContents": "skip"})]
 
 
-def _attribute(part: Part) -> Element:
-    rule = part.rule or Rule(part.about)
+def _attribute(part: FieldSpec) -> Element:
+    rule = part.rule or Constraint(part.about)
     unit = f" [{rule.unit}]" if rule.unit else ""
     default = "" if part.required or part.default in (None, "", ()) else f"; default {_plain(part.default)}"
     row = {"name": part.word} | ({"use": "required"} if part.required else {})
     return Element("xs:attribute", row, [_about(f"{part.about}{unit}{default}"), _values(part.kind, rule)])
 
 
-def _values(kind: Any, rule: Rule) -> Element:
+def _values(kind: Any, rule: Constraint) -> Element:
     if kind is Points:
         return _simple({}, "points", [])
     if kind is Distribution:

@@ -18,7 +18,7 @@ from crowdbot.metrics.contacts import HOLD
 from .body_region_limits import BODY_REGION_LIMITS, region_of, two_body_force
 from .contacts import ContactBody, EngineContact
 
-__all__ = ["BodyContactEvent", "ContactForce", "ContactTracker"]
+__all__ = ["BodyContactEvent", "BodyContactTracker", "ContactForce"]
 
 Floats = NDArray[np.float64]
 CLAMPED = 0.5
@@ -139,7 +139,7 @@ class _Running:
     region: dict[str, str] = field(default_factory=dict)
 
 
-class ContactTracker:
+class BodyContactTracker:
     """Keeps collisions from touches.
 
     Args:

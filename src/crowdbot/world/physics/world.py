@@ -23,7 +23,7 @@ from crowdbot.world.robots.robot import spatial as spatial_pose
 from crowdbot.world.world import Contact
 
 from .colliders import scene_bodies
-from .contact_events import BodyContactEvent, ContactForce, ContactTracker
+from .contact_events import BodyContactEvent, BodyContactTracker, ContactForce
 from .contacts import ContactBody, ContactReader
 from .engine import engine
 from .mjcf_model import build_mjcf_model
@@ -270,7 +270,7 @@ class PhysicsWorld(PlanarWorld):
             *both, prefixes, lambda slot: int(agent_of[slot]), lambda: self._people_bodies.swing
         )
         heading_of = lambda agent: float(self.scene.heading[0, agent])  # noqa: E731
-        self._contact_tracker = ContactTracker(self.physics_dt, self._mass_of, self.people.limb_mass, heading_of)
+        self._contact_tracker = BodyContactTracker(self.physics_dt, self._mass_of, self.people.limb_mass, heading_of)
         self._movable = [k for k, prop in enumerate(self.stage.props) if prop.movable]
         self._settle()
 
