@@ -175,6 +175,9 @@ class Tree:
         self.left_out[compiled] = []
         _, printed, _ = self._pytest(["--tb=no", "-rfE"], self.tests, compiled, self.limit * 20)
         failed = re.findall(r"^(?:FAILED|ERROR) (\S+(?: \S+)*?)(?: - .*)?$", printed, re.MULTILINE)
+        broken = [name for name in failed if "::" not in name]
+        if broken:
+            raise SystemExit(f"mutate: these tests cannot be loaded: {', '.join(broken)}")
         self.left_out[compiled] = [f"--deselect={name}" for name in failed]
         status, printed, seconds = self._pytest(["--tb=no"], self.tests, compiled, self.limit * 20)
         if status != 0:

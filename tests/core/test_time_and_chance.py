@@ -17,6 +17,7 @@ from crowdbot.core import (
     MissingExtra,
     PacedClock,
     Paper,
+    Parameter,
     Pose,
     TrialError,
     check_parameters,
@@ -105,6 +106,7 @@ def test_wrap_keeps_the_direction(angle):
     turned = wrap_angle(angle)
     assert -math.pi < turned <= math.pi
     assert math.cos(turned) == pytest.approx(math.cos(angle), abs=1e-9)
+    assert math.sin(turned) == pytest.approx(math.sin(angle), abs=1e-9)
 
 
 def test_mounted_pose():
@@ -180,3 +182,16 @@ def test_a_paced_clock_sleeps_until_its_tick_is_due(rate, monkeypatch):
     clock.advance()
     assert clock.tick == 6
     assert slept == [pytest.approx(0.1 / rate), pytest.approx(0.1 / rate - 0.02)]
+
+
+def test_a_parameter_is_bounded_by_itself_or_by_the_largest_number():
+    @dataclass(frozen=True)
+    class Model:
+        free: float = parameter(1.0, unit="1", low=0.5, high=2.0, source="here")
+        tight: float = parameter(1.0, unit="m", low=0.5, high=2.0, source="here", min=-1.0, max=3.0)
+
+    free, tight = parameters(Model)
+    assert free.bounds().allowed() == "finite and at least 0, without an upper limit"
+    assert free.bounds(9.0).allowed() == "at least 0 and at most 9"
+    assert tight.bounds(9.0).allowed() == tight.bounds().allowed() == "at least -1 m and at most 3 m"
+    assert (free.min, free.max) == (Parameter("a", "m", 1.0, 0.0, 2.0, "here").min, None) == (0.0, None)
