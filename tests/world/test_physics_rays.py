@@ -108,7 +108,7 @@ def test_skins_and_capsules_are_within_5_cm_of_each_other():
     for _ in range(7):
         scene = scene.replace(position=scene.position + 0.1 * scene.velocity)
         motion.walk(scene, 0.1)
-    seen = scene.replace(scene_bodies=scene_bodies(scene, motion, skins=0))
+    seen = scene.replace(bodies=scene_bodies(scene, motion, skins=0))
     pose = SpatialPose.of((0.0, 0.0, 1.0))
     directions = fan(np.linspace(-np.pi, np.pi, 720)[None], np.radians(np.linspace(-40.0, 30.0, 60))[:, None])
     flat = beams(directions.reshape(-1, 3))
@@ -152,7 +152,7 @@ def test_bodies_follow_the_scene_in_the_plane():
     assert np.all(gone.radius[0, gone.owner == 1] == 0.0)
     assert np.all(np.isnan(gone.skins.vertices))
     own = cast(
-        scene.replace(scene_bodies=found).without(0), Pose.of((1.0, 2.0), 0.0).lifted(0.1), beams(fan(np.zeros(8))), 9.0
+        scene.replace(bodies=found).without(0), Pose.of((1.0, 2.0), 0.0).lifted(0.1), beams(fan(np.zeros(8))), 9.0
     )
     assert 0 not in own.hit
     moved = scene_bodies(scene, None, {0: Robot.load("pepper")}, joints={0: {"HeadYaw": 1.0}})
