@@ -137,7 +137,7 @@ def _baseline(folder: Path) -> None:
     print(
         "\nThe row `all`, truncated to two decimals, equals the published linear baseline (GeoTDM 2024, table 2)."
         "\nThe row `partial` equals that of Schöller et al. 2020. Publications take 10 frames of biwi_eth as 0.4 s;"
-        "\nthe true step of that file is 0.667 s (`--time-base true`, the default). This changes speeds, not errors over rows."
+        "\nthe true step of that file is 0.667 s (`--time-base true`, the default). This changes speeds, not errors."
     )
 
 

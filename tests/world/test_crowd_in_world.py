@@ -42,7 +42,7 @@ def everything(scene, seed=0, **more):
         "limits": CrowdLimits(max_acceleration=5.0),
         "journeys": JourneyAssignment((WaypointSequence((far, near, far)),)),
         "sources": (PeopleSource(near, WaypointSequence((far,)), rate=0.5),),
-        "symmetry": 1e-3,
+        "heading_jitter": 1e-3,
         "substeps": 2,
     } | more
     which = np.arange(scene.shape[1]) % 2
@@ -62,7 +62,7 @@ def test_nothing_changes_unasked():
 
 @pytest.mark.parametrize("model", [ORCA(), SocialForce()], ids=["orca", "social force"])
 def test_nobody_stands_behind_a_wall_for_ever(model):
-    settings = {"leave_radius": 0.4, "symmetry": 1e-3, "contact": ContactModel()}
+    settings = {"leave_radius": 0.4, "heading_jitter": 1e-3, "contact": ContactModel()}
     led = PlanarWorld(maze(2), model, {}, 0.1, router=Router.of(MAZE, 0.3), **settings)
     straight = PlanarWorld(maze(2), model, {}, 0.1, **settings)
     while led.clock.time < 60.0 and np.any(led.scene.active):
@@ -206,7 +206,7 @@ def test_an_impossible_crowd_on_an_impossible_stage_takes_bounded_steps(seed):
     )  # in walls, outside, in one place
     scene = Scene.of(place, goal=rng.integers(-2, 14, (1, 25, 2)), radius=rng.choice([0.05, 0.3, 0.6], (1, 25)),
                      active=rng.random(25) < 0.8, walls=walls)  # fmt: skip
-    on = {"router": Router.of(walls, 0.3, unreachable="nearest"), "contact": ContactModel(), "symmetry": 1e-3}
+    on = {"router": Router.of(walls, 0.3, unreachable="nearest"), "contact": ContactModel(), "heading_jitter": 1e-3}
     world = PlanarWorld(scene, ORCA(), {}, float(rng.choice([0.01, 0.1, 1.0])), **on)
     for _ in range(15):
         before = world.scene
@@ -220,8 +220,8 @@ def test_an_impossible_crowd_on_an_impossible_stage_takes_bounded_steps(seed):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"symmetry": -0.1}, "symmetry -0.1 rad must be from 0 to pi"),
-        ({"symmetry": math.nan}, "symmetry nan rad"),
+        ({"heading_jitter": -0.1}, "heading_jitter -0.1 rad must be from 0 to pi"),
+        ({"heading_jitter": math.nan}, "heading_jitter nan rad"),
         ({"substeps": 0}, "substeps = 0 must be a whole number from 1 to 10000"),
         ({"substeps": 1.5}, "substeps = 1.5"),
         ({"router": Router.of([*MAZE, [(4.0, 6.0), (4.0, 8.0)]])}, "cannot be reached"),

@@ -140,9 +140,9 @@ def test_from_behind_it_is_the_back_and_the_one_who_walks_is_the_cause():
     for _ in range(100):
         walking.scene = walking.scene.replace(velocity=np.array([[[0.0, 0.0], [-1.0, 0.0]]]))
         walking.step({0: Twist()})
-        if walking.collisions:
+        if walking.contact_events:
             break
-    event = walking.collisions[0]
+    event = walking.contact_events[0]
     assert event.cause == "second"
     assert event.impact_speed == pytest.approx(1.0, abs=0.25)
 
@@ -158,7 +158,7 @@ def test_a_cube_is_pushed_and_a_fixed_one_is_not():
     assert free.prop(0)[2, 3] == pytest.approx(0.2, abs=0.01)
     assert fast.prop(0)[0, 3] == 1.0
     assert fast.scene.position[0, 0, 0] < 0.55
-    assert {event.second.kind for event in free.collisions} == {"prop"}
+    assert {event.second.kind for event in free.contact_events} == {"prop"}
     assert sum(row.force for row in free.forces) == pytest.approx(0.5 * 5.0 * 9.81, rel=0.5)
 
 

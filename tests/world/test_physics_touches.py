@@ -115,7 +115,7 @@ def test_an_impact_of_known_values():
     """A foot at 3 m/s, its person at 1.2 m/s, on a robot at 1 m/s: the leg hits at 4 m/s, the body at 2.2 m/s."""
     known = book()
     known.add(1.0, (touch((500.0, 0.0, 0.0), robot=(1.0, 0.0, 0.0), person=(-3.0, 0.0, 0.0), swing=(-1.8, 0.0, 0.0)),))
-    (event,) = known.collisions
+    (event,) = known.contact_events
     assert event.impact_speed == 4.0
     assert event.cause == "second"
     leg = two_body_force(4.0, 50.0, "lower leg", 4.0)
@@ -130,7 +130,7 @@ def test_what_bears_a_person_is_no_injury():
         known = book()
         for k in range(200):
             known.add(k * STEP, (touch(1000.0 * np.array(normal), normal, robot=np.array(normal)),))
-        (event,) = known.collisions
+        (event,) = known.contact_events
         assert event.steady_force == pytest.approx(1000.0 * share)
         assert event.peak_force == pytest.approx(share * two_body_force(1.0, 50.0, "lower leg", 70.0))
         assert event.simulated_peak == pytest.approx(1000.0)
@@ -141,7 +141,7 @@ def test_repeated_knocks_are_no_clamping():
     known = book()
     for k in range(400):
         known.add(k * STEP, (touch((900.0, 0.0, 0.0)),) if k % 50 < 10 else ())
-    (event,) = known.collisions
+    (event,) = known.contact_events
     assert event.duration > 1.0
     assert event.steady_force == 0.0
     assert event.simulated_peak == 900.0

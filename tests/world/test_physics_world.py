@@ -80,7 +80,7 @@ def test_without_a_touch_people_walk_as_in_the_plane():
         "router": Router.of(scene.walls),
         "contact": ContactModel(),
         "exits": [PolygonZone([(-8.0, -8.0), (-6.0, -8.0), (-6.0, 8.0), (-8.0, 8.0)])],
-        "symmetry": 1e-3,
+        "heading_jitter": 1e-3,
         "substeps": 2,
         "leave_radius": 0.3,
     }
@@ -108,7 +108,7 @@ def test_near_a_robot_but_untouched_people_walk_as_in_the_plane():
         bodies += int(np.count_nonzero(deep._people_bodies.agent >= 0))
         assert np.abs(one.position[0, 1] - other.position[0, 1]).max() < 1e-6
     assert bodies > 5
-    assert deep.collisions == ()
+    assert deep.contact_events == ()
 
 
 def test_the_same_seed_gives_the_same_bytes_and_people_come_and_go():

@@ -200,7 +200,7 @@ def test_a_spawner_may_change_the_scene_between_steps():
     [
         ({"drives": {12: FAST}}, "drive is given for agent 12, but the scene has agents 0 to 9"),
         ({"drives": {1: FAST}}, "agent 1 has a drive but is not external"),
-        ({"berth": -0.1}, "berth -0.1 m must be finite and at least 0"),
+        ({"robot_margin": -0.1}, "robot_margin -0.1 m must be finite and at least 0"),
         ({"leave_radius": -0.5}, "leave_radius -0.5 m must be finite and above 0"),
         ({"dt": 0.0}, "time step 0.0 s is outside"),
     ],

@@ -53,7 +53,8 @@ def branch(
 @overload
 def branch(
     source: Path | str | RecordedEpisode, at: float, *, seed: int | None = None,
-    changes: Mapping[str, Any] | None = None, trial: Trial | None = None, out: Path | str | None = None, folder: Path | None = None, trust: bool = False,
+    changes: Mapping[str, Any] | None = None, trial: Trial | None = None, out: Path | str | None = None,
+    folder: Path | None = None, trust: bool = False,
     progress: Progress | None = None,
 ) -> RunSummary: ...  # fmt: skip
 def branch(
