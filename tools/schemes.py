@@ -12,7 +12,7 @@ from pathlib import Path
 
 from crowdbot.benchmark import Evaluation, PredictorResult, plot_errors
 from crowdbot.data import Recording
-from crowdbot.models.goals import CurrentDirection
+from crowdbot.models import CurrentDirection
 from crowdbot.prediction import ConstantVelocity, Kalman, PredictorSpec, Simulated
 
 MODELS = ("orca", "social-force", "power-law", "boids")

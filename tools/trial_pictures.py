@@ -18,8 +18,7 @@ import numpy as np
 
 from crowdbot.recording import run
 from crowdbot.simulation import Episode
-from crowdbot.trials import Trial, builtin_trials, load_trial, parse_trial, trial_xml
-from crowdbot.trials.scenarios import PRESETS
+from crowdbot.trials import PRESETS, Trial, builtin_trials, load_trial, parse_trial, trial_xml
 
 SECONDS = 20.0
 PIXELS, DPI = 320, 100

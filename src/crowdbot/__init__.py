@@ -48,25 +48,31 @@ __all__ = [  # noqa: PLE0604
 
 
 if TYPE_CHECKING:
+    from crowdbot.calibration import Calibrator as Calibrator
+    from crowdbot.core import CrowdbotError as CrowdbotError
+    from crowdbot.core import Paper as Paper
+    from crowdbot.core import Pose as Pose
+    from crowdbot.core import Scene as Scene
+    from crowdbot.core import Twist as Twist
+    from crowdbot.core import Walls as Walls
+    from crowdbot.core import stream as stream
+    from crowdbot.data import Forecast as Forecast
+    from crowdbot.data import Trajectories as Trajectories
+    from crowdbot.data import Windows as Windows
+    from crowdbot.data import load as load
+    from crowdbot.data import save as save
+    from crowdbot.metrics import score as score
+    from crowdbot.models import ORCA as ORCA
+    from crowdbot.models import CrowdModel as CrowdModel
+    from crowdbot.models import CurrentDirection as CurrentDirection
+    from crowdbot.models import SocialForce as SocialForce
+    from crowdbot.sensors import Lidar2D as Lidar2D
+    from crowdbot.sensors import Sensor as Sensor
+    from crowdbot.trials import Trial as Trial
+    from crowdbot.trials import load_trial as load_trial
+    from crowdbot.world import Robot as Robot
+
     from .benchmark import cite as cite
-    from .calibration import Calibrator as Calibrator
-    from .core import CrowdbotError as CrowdbotError
-    from .core import Paper as Paper
-    from .core import Pose as Pose
-    from .core import Scene as Scene
-    from .core import Twist as Twist
-    from .core import Walls as Walls
-    from .core import stream as stream
-    from .data import Forecast as Forecast
-    from .data import Trajectories as Trajectories
-    from .data import Windows as Windows
-    from .data import load as load
-    from .data import save as save
-    from .metrics import score as score
-    from .models import ORCA as ORCA
-    from .models import CrowdModel as CrowdModel
-    from .models import CurrentDirection as CurrentDirection
-    from .models import SocialForce as SocialForce
     from .navigation import Navigator as Navigator
     from .navigation import Observation as Observation
     from .prediction import ConstantAcceleration as ConstantAcceleration
@@ -83,9 +89,4 @@ if TYPE_CHECKING:
     from .recording import read_episode as read_episode
     from .recording import replay as replay
     from .recording import run as run
-    from .sensors import Lidar2D as Lidar2D
-    from .sensors import Sensor as Sensor
     from .simulation import Episode as Episode
-    from .trials import Trial as Trial
-    from .trials import load_trial as load_trial
-    from .world import Robot as Robot

@@ -25,7 +25,7 @@ def test_every_format_has_a_synthetic_recording():
 
 @pytest.mark.parametrize("name", SYNTHETIC)
 def test_the_format_is_detected(files, name):
-    from crowdbot.data.load import _detect
+    from crowdbot.data.file_formats import _detect
 
     assert _detect(Source.of(files[name])).name == SYNTHETIC[name].format
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crowdbot.metrics.contacts import contact_events
+from crowdbot.metrics import contact_events
 
 STEP = 0.1
 RADIUS = np.array([0.25, 0.25])

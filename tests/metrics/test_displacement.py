@@ -10,15 +10,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core import InputError, stream
 from crowdbot.data import Forecast, Windows
-from crowdbot.metrics import (
-    ade,
-    best_of,
-    distances,
-    error_over_horizon,
-    fde,
-    miss_rate,
-    person_errors,
-)
+from crowdbot.metrics import ade, best_of, distances, error_over_horizon, fde, miss_rate, person_errors
 
 
 def slow_errors(forecast: Forecast, future: Windows, w: int, k: int, a: int) -> list[tuple[int, float]]:

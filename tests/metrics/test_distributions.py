@@ -11,13 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import InputError, stream
-from crowdbot.metrics import (
-    earth_mover_distance,
-    mode_count,
-    mode_coverage,
-    mode_shares,
-    nearest_neighbor_accuracy,
-)
+from crowdbot.metrics import earth_mover_distance, mode_count, mode_coverage, mode_shares, nearest_neighbor_accuracy
 
 
 def far(one: np.ndarray, other: np.ndarray) -> float:

@@ -9,7 +9,8 @@ import numpy as np
 
 from crowdbot.core import stream
 from crowdbot.data import Trajectories, Windows
-from crowdbot.models.goals import EnvironmentLayout, GroundTruth, LearnedDestinations
+from crowdbot.models import GroundTruth
+from crowdbot.models.goals import EnvironmentLayout, LearnedDestinations
 
 STEP = 0.4
 EXITS = ((12.0, 0.0), (0.0, 12.0), (-12.0, 0.0))

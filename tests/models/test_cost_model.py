@@ -22,13 +22,13 @@ from crowdbot.models.costs import (
     HalfPlanes,
     Inertia,
     ModelForce,
-    Noise,
+    NoiseTerm,
     PowerLawEnergy,
     PowerLawForce,
     PreferredVelocity,
     ReciprocalObstacles,
+    VelocityCost,
 )
-from crowdbot.models.costs.velocity_cost import VelocityCost
 
 EVERY = [
     Effort(),
@@ -40,7 +40,7 @@ EVERY = [
     PowerLawForce(),
     PreferredVelocity(),
 ]
-EVERY += [ReciprocalObstacles(), Noise(), ModelForce(SocialForce())]
+EVERY += [ReciprocalObstacles(), NoiseTerm(), ModelForce(SocialForce())]
 UMANS = {"max_acceleration": 5.0, "contact_stiffness": 62.5, "max_neighbors": 59.0}
 SAMPLED = {**UMANS, "samples": "umans", "optimiser": "sampling", "relaxation_time": 0.5, "neighbor_distance": 10.0}
 
@@ -282,7 +282,7 @@ def test_random_samples_come_from_a_seed_or_a_stream():
 
 def test_noise_needs_a_stream():
     scene = crowd(13, A=20, walls=())
-    model = CostModel(PreferredVelocity() + Noise(0.5))
+    model = CostModel(PreferredVelocity() + NoiseTerm(0.5))
     quiet = CostModel(PreferredVelocity(), optimiser="sampling").velocity(scene, 0.1)
     assert np.array_equal(model.velocity(scene, 0.1), quiet)
     loud = model.velocity(scene, 0.1, stream(0, "walk"))

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from crowdbot.core import InputError, builtin_classes, find_class, kebab_case
 from crowdbot.data import observed_velocity, steady_velocity
-from crowdbot.models import goals
-from crowdbot.models.goals import Choices, CurrentDirection, Goal
+from crowdbot.models import CurrentDirection, Goal, goals
+from crowdbot.models.goals import Choices
 
 KINDS = list(builtin_classes(goals, Goal).values())
 every_goal = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kebab_case(kind.__name__))

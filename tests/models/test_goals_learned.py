@@ -12,7 +12,8 @@ from scipy.optimize import minimize
 
 from crowdbot.core import InputError
 from crowdbot.data import Trajectories, fill_gaps, load, observed_velocity, steady_velocity
-from crowdbot.models.goals import CurrentDirection, LearnedDestinations
+from crowdbot.models import CurrentDirection
+from crowdbot.models.goals import LearnedDestinations
 from crowdbot.models.goals.exits import clusters, track_ends
 from crowdbot.models.goals.learned_velocity import LearnedVelocity, mean_velocity
 from crowdbot.models.goals.turn_histogram import BINS, TurnSamples, accumulate, median_turn

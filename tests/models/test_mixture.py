@@ -10,8 +10,8 @@ from model_crowds import crowd, renumbered
 
 from crowdbot.core import InputError, Paper, Scene, stream
 from crowdbot.core.neighbors import CROWD
-from crowdbot.models import ORCA, CrowdModel, SocialForce
-from crowdbot.models.mixture import MODEL, Mixture
+from crowdbot.models import ORCA, CrowdModel, Mixture, SocialForce
+from crowdbot.models.mixture import MODEL
 
 BOTH = (ORCA(), SocialForce())
 

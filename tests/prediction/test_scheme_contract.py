@@ -13,8 +13,8 @@ from crowdbot import calibration
 from crowdbot.calibration import Cost, Search
 from crowdbot.core import InputError, builtin_classes, stream
 from crowdbot.data import Forecast, Trajectories, Windows
-from crowdbot.models import CurrentDirection
-from crowdbot.models.goals import EnvironmentLayout, Goal, GroundTruth, LearnedDestinations
+from crowdbot.models import CurrentDirection, Goal, GroundTruth
+from crowdbot.models.goals import EnvironmentLayout, LearnedDestinations
 from crowdbot.prediction import Simulated
 
 Maker = Callable[..., Windows]

@@ -15,9 +15,10 @@ from crowdbot.sensors import (
     Quantised,
     RGBCamera,
     SensorSchedule,
+    distort_image,
     preset,
 )
-from crowdbot.sensors.lens import distort_image, pixel_directions, stereo_depth
+from crowdbot.sensors.lens import pixel_directions, stereo_depth
 
 BENT = (-0.28, 0.09, 0.0008, -0.0004, -0.01)
 

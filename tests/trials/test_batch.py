@@ -10,8 +10,7 @@ from space_trials import LEAN, room
 from trial_texts import FLOW
 
 from crowdbot.core import InputError, Scene
-from crowdbot.models import ORCA, CrowdModel, SocialForce
-from crowdbot.models.mixture import Mixture
+from crowdbot.models import ORCA, CrowdModel, Mixture, SocialForce
 from crowdbot.recording import run
 from crowdbot.simulation import run_batch
 from crowdbot.trials import Trial, expand_sweeps, load_trial, parse_trial

@@ -15,8 +15,7 @@ from trial_texts import FLOW
 from crowdbot import data, world
 from crowdbot.core import Scene, Twist
 from crowdbot.metrics import NAVIGATION_METRICS
-from crowdbot.models import ORCA, SocialForce
-from crowdbot.models.mixture import Mixture
+from crowdbot.models import ORCA, Mixture, SocialForce
 from crowdbot.navigation import Navigator, Observation, Straight
 from crowdbot.recording import read_episode, replay, run
 from crowdbot.sensors import Lidar2D

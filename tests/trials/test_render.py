@@ -23,8 +23,7 @@ from crowdbot.rendering import (
     color_segmentation,
     render_images,
 )
-from crowdbot.trials import load_trial, parse_trial
-from crowdbot.trials.camera import overview
+from crowdbot.trials import load_trial, overview, parse_trial
 from crowdbot.world.rendering import gl_context
 from samples import sample
 

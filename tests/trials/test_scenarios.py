@@ -14,8 +14,17 @@ from crowdbot.models import SocialForce
 from crowdbot.navigation import Straight
 from crowdbot.recording import run
 from crowdbot.simulation import Simulation
-from crowdbot.trials import builtin_trials, check_trial, load_trial, parse_trial, trial_xml
-from crowdbot.trials.scenarios import DENSITIES, FLOWS, PRESETS, SIZES
+from crowdbot.trials import (
+    DENSITIES,
+    FLOWS,
+    PRESETS,
+    SIZES,
+    builtin_trials,
+    check_trial,
+    load_trial,
+    parse_trial,
+    trial_xml,
+)
 from samples import sample
 
 LISTED = """

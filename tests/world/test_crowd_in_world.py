@@ -9,8 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crowdbot.core import InputError, Scene, Twist, stream
-from crowdbot.models import ORCA, SocialForce
-from crowdbot.models.mixture import Mixture
+from crowdbot.models import ORCA, Mixture, SocialForce
 from crowdbot.world import (
     ContactModel,
     CrowdLimits,

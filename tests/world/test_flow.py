@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from crowdbot.core import InputError, Scene, Twist
-from crowdbot.models import ORCA, SocialForce
-from crowdbot.models.mixture import MODEL, Mixture
+from crowdbot.models import ORCA, Mixture, SocialForce
+from crowdbot.models.mixture import MODEL
 from crowdbot.world import (
     ContactModel,
     DifferentialDrive,

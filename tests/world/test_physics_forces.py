@@ -20,8 +20,7 @@ from crowdbot.world import (
 )
 from crowdbot.world.physics.body_region_limits import reduced_mass, softness
 from crowdbot.world.physics.people_bodies import GIVEN, REACTION
-from crowdbot.world.urdf.model import LinkShape
-from crowdbot.world.urdf.shapes import Box
+from crowdbot.world.urdf import Box, LinkShape
 
 
 def weak(beam=False):

@@ -9,16 +9,7 @@ from crowdbot.core import InputError, Pose, Scene, SpatialPose, Twist
 from crowdbot.models import ORCA
 from crowdbot.sensors.beams import sort_beams, unit_vectors
 from crowdbot.sensors.ray_casting import cast_rays
-from crowdbot.world import (
-    CubeBody,
-    PeopleMotion,
-    PhysicsStage,
-    PhysicsWorld,
-    Robot,
-    TableBody,
-    TreeBody,
-    scene_bodies,
-)
+from crowdbot.world import CubeBody, PeopleMotion, PhysicsStage, PhysicsWorld, Robot, TableBody, TreeBody, scene_bodies
 
 FAR = 60.0
 ROOM = [[(-7.0, -7.0), (-7.0, 7.0), (7.0, 7.0), (7.0, -7.0)], [(3.0, 3.0), (5.0, 3.0), (5.0, 4.0), (3.0, 4.0)]]

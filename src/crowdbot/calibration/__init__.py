@@ -7,7 +7,7 @@ from .cma_es import CMAES
 from .cooling import Cooling, Geometric
 from .cost import Cost
 from .fit import Fit
-from .futures import futures
+from .fit_prediction import futures
 from .genetic import Genetic
 from .greedy import Greedy
 from .inter_pedestrian import InterPedestrian

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, kebab_case, stream
 from crowdbot.data import Windows
-from crowdbot.models import CrowdModel
-from crowdbot.models.goals import Goal
+from crowdbot.models import CrowdModel, Goal
 
 from .cost import Cost
 from .fit import Fit

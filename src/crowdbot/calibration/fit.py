@@ -12,7 +12,7 @@ from crowdbot.core import InputError, stream
 from crowdbot.data import Forecast, Windows
 from crowdbot.models import CrowdModel
 
-from .futures import futures
+from .fit_prediction import futures
 from .parameter_space import PREFERRED_SPEED, ParameterSpace
 from .rollout import Rollout
 

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Scene, Walls
 from crowdbot.data import Windows, fill_gaps, slice_rows
-from crowdbot.models import CrowdModel
-from crowdbot.models.goals import Goal
+from crowdbot.models import CrowdModel, Goal
 
 __all__ = ["Rollout"]
 

@@ -32,7 +32,7 @@ def main(options: argparse.Namespace) -> int:
 def _parameters(options: argparse.Namespace) -> int:
     """Print what can be set of a built-in trial."""
     from crowdbot.core import InputError, did_you_mean
-    from crowdbot.trials.scenarios import PRESETS
+    from crowdbot.trials import PRESETS
 
     preset = PRESETS.get(options.name)
     if options.kind != "trials" or preset is None:

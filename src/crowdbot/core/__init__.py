@@ -21,9 +21,9 @@ from .errors import (
     did_you_mean,
     nearest_name,
 )
-from .optional import import_optional
+from .model_parameter import Parameter, PerAgent, check_parameters, parameter, parameters, per_agent
+from .optional_imports import import_optional
 from .paper import Paper
-from .parameter import Parameter, PerAgent, check_parameters, parameter, parameters, per_agent
 from .plugin import (
     attribute_names,
     attribute_problems,

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from .errors import CrowdbotError, InputError
-from .optional import import_optional
+from .optional_imports import import_optional
 
 __all__ = ["Job", "Result", "each", "run_saved_jobs"]
 

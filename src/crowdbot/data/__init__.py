@@ -1,14 +1,14 @@
 """Floor 1: recordings of people, read, cut into windows and written; and forecasts of where they go."""
 
+from .file_formats import FORMATS, load
 from .forecast import Forecast
-from .load import FORMATS, load
 from .mcap_reader import MCAP_MAGIC, McapError, McapOpcode, McapReader, has_summary, read_attachment
 from .motion import fill_gaps, observed_velocity, slice_rows, steady_velocity
 from .protocols import PROTOCOLS
 from .readers.time_base import RowRateError
 from .readers.ucy import TO_METRES as UCY_TO_METRES
 from .recording import Recording
-from .save import save
+from .track_writers import save
 from .trajectories import PrimaryScene, Trajectories
 from .windows import Windows
 

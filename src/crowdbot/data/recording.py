@@ -9,7 +9,7 @@ from pathlib import Path
 
 from crowdbot.core import DataError, InputError
 
-from .load import load
+from .file_formats import load
 from .trajectories import Trajectories
 from .windows import Windows
 

@@ -3,18 +3,18 @@
 from .console import Console, ConsoleClosed
 from .event import Abort, Answered, Begin, Event, Fail, Finish, Next, Pause, Repeat, Resume, Start, event_of, record_of
 from .experiment import Block, Experiment, Screen, TrialEntry
-from .loading import FILE, builtin_experiments, is_experiment, load_experiment
+from .experiment_files import FILE, builtin_experiments, is_experiment, load_experiment
 from .log import SessionLog, read_log
 from .order import orders, rows_of, seed_of, williams
 from .original import import_experiment
 from .page import page_of, sanitise_html
 from .parser import check_experiment, experiment_xml, parse_experiment
-from .person import ConsoleRespondent, Respondent, ScriptedRespondent
-from .plan import plan
 from .question import Choice, ChoiceOption, FreeText, Number, Scale
+from .respondent import ConsoleRespondent, Respondent, ScriptedRespondent
 from .session import Session
-from .sitting import SessionRunner
-from .summary import save_summary, summary
+from .session_plan import plan
+from .session_runner import SessionRunner
+from .session_summary import save_summary, summary
 
 __all__ = [
     "FILE",

@@ -13,12 +13,12 @@ from types import FrameType
 
 from crowdbot.core import CrowdbotError, InputError
 
+from .background_run import BackgroundRun
 from .event import Abort, Answered, Event, Fail, Next, Pause, Repeat, Resume, Start
 from .page import CONTROL
-from .person import Respondent
 from .question import Choice, Question
-from .running import BackgroundRun
-from .sitting import SessionRunner
+from .respondent import Respondent
+from .session_runner import SessionRunner
 
 __all__ = ["Console", "ConsoleClosed"]
 

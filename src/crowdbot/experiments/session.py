@@ -24,8 +24,8 @@ from crowdbot.core import InputError, kebab_case
 
 from .event import Abort, Answered, Begin, Event, Fail, Finish, Next, Pause, Repeat, Resume, Start
 from .experiment import Experiment
-from .plan import SessionStep, plan
 from .question import Answer, Question
+from .session_plan import SessionStep, plan
 
 __all__ = ["Result", "Session"]
 

@@ -23,8 +23,7 @@ from crowdbot.calibration import (
     resolve_search,
 )
 from crowdbot.data import Forecast, Windows
-from crowdbot.models import ORCA, CrowdModel
-from crowdbot.models.goals import CurrentDirection, Goal
+from crowdbot.models import ORCA, CrowdModel, CurrentDirection, Goal
 
 from .predictor import Predictor, window_streams
 

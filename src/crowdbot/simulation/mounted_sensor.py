@@ -11,16 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, SpatialPose, stream
-from crowdbot.sensors import (
-    Reading,
-    SensorSchedule,
-    SensorView,
-    TrackedPeople,
-)
+from crowdbot.sensors import Reading, SensorSchedule, SensorView, TrackedPeople
 from crowdbot.trials import Mount, RobotSpec
 from crowdbot.world import MountPlacement, World
 
-from .sensor_view import WorldView
+from .world_view import WorldView
 
 __all__ = ["DeliveredReading", "MountedSensor", "mounted_sensors", "name_by_id", "spatial"]
 

@@ -31,9 +31,9 @@ from crowdbot.trials import Mount, RobotSpec, Trial, element_word, people_appear
 from crowdbot.world import StepGenerator, run_step
 
 from .mounted_sensor import MountedSensor, mounted_sensors
-from .sensor_view import WorldView
 from .termination import end_outcome, goal_zones
 from .world_builder import build_world, limits_of, start_scene
+from .world_view import WorldView
 
 if TYPE_CHECKING:
     from crowdbot.world import BodyContactEvent, ContactForce
@@ -332,7 +332,8 @@ class Simulation:
         elif self.event is None and self.carriers and all(carrier.arrived for carrier in self.carriers):
             self.event = "success"
         if self.ended is None:
-            self.ended = end_outcome(self)
+            robots = {carrier.robot.name: carrier.agent for carrier in self.carriers}
+            self.ended = end_outcome(self.trial, self.world, self.people, robots)
 
 
 def _rows(twists: Sequence[Twist]) -> NDArray[np.float64]:

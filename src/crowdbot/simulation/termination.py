@@ -1,18 +1,15 @@
-"""Leaving: who leaves because the goal is reached, and when a trial ends before its duration is over."""
+"""Termination: people who leave at their goals, and the conditions that end a trial before its duration."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.trials import Agent, InitialPeople, Spawner, area
-
-if TYPE_CHECKING:
-    from crowdbot.trials import EndCondition
-
-    from .simulation import Simulation
+from crowdbot.trials import Agent, EndCondition, InitialPeople, Spawner, Trial, area
+from crowdbot.world import PlanarWorld
 
 __all__ = ["end_outcome", "goal_zones"]
 
@@ -32,37 +29,41 @@ def goal_zones(people: InitialPeople) -> list[tuple[NDArray[np.int64], Any]]:
     return [(np.array(who, dtype=np.int64), zone) for who, zone in zip(members.values(), zones, strict=True)]
 
 
-def end_outcome(simulation: Simulation) -> str | None:
-    """Return the outcome that the conditions of a trial make now, None while none of them holds."""
-    end = simulation.trial.end
-    if end.empty and _here(simulation) == 0 and not _coming(simulation):
+def end_outcome(trial: Trial, world: PlanarWorld, people: InitialPeople, robots: Mapping[str, int]) -> str | None:
+    """Return the outcome that the end conditions of a trial give now, None if none of them holds.
+
+    Args:
+        trial: with its conditions.
+        world: as it is now.
+        people: at the start, with those of recordings.
+        robots: agent of each robot by name, in the order of the trial.
+    """
+    if trial.end.empty and _count_people(world) == 0 and not _expects_people(trial, world, people):
         return "finished"
-    for when in end.conditions:
-        value = _value(simulation, when)
-        if value is not None and when.holds(value):
-            return when.outcome
+    for condition in trial.end.conditions:
+        value = _value(condition, world, robots)
+        if value is not None and condition.holds(value):
+            return condition.outcome
     return None
 
 
-def _here(simulation: Simulation) -> int:
-    scene = simulation.world.scene
+def _count_people(world: PlanarWorld) -> int:
+    scene = world.scene
     return int(np.count_nonzero(scene.active[0] & ~scene.external[0]))
 
 
-def _coming(simulation: Simulation) -> bool:
-    """Whether anybody may still come in."""
-    time = simulation.world.clock.time
-    walks = any(walk.time[0] > time for walk in simulation.people.walks)
-    come = (source.expected(simulation.trial.duration) > source.expected(time) for source in simulation.trial.sources)
-    return walks or any(come) or bool(simulation.world.waiting[0] > 0)
+def _expects_people(trial: Trial, world: PlanarWorld, people: InitialPeople) -> bool:
+    """Return whether anybody may still come in."""
+    time = world.clock.time
+    walks = any(walk.time[0] > time for walk in people.walks)
+    come = (source.expected(trial.duration) > source.expected(time) for source in trial.sources)
+    return walks or any(come) or bool(world.waiting[0] > 0)
 
 
-def _value(simulation: Simulation, when: EndCondition) -> float | None:
-    if when.what == "time":
-        return simulation.world.clock.time
-    if when.what == "people":
-        return float(_here(simulation))
-    for carrier in simulation.carriers:
-        if when.robot in ("", carrier.robot.name):
-            return float(simulation.world.scene.position[0, carrier.agent, 0 if when.what == "x" else 1])
-    return None
+def _value(condition: EndCondition, world: PlanarWorld, robots: Mapping[str, int]) -> float | None:
+    if condition.what == "time":
+        return world.clock.time
+    if condition.what == "people":
+        return float(_count_people(world))
+    agent = robots.get(condition.robot) if condition.robot else next(iter(robots.values()), None)
+    return None if agent is None else float(world.scene.position[0, agent, 0 if condition.what == "x" else 1])

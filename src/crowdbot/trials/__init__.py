@@ -3,15 +3,16 @@
 from .agent import Agent, AgentParameter
 from .builtin import builtin_trials, load_trial
 from .camera import OVERVIEW, Camera, overview
-from .code_references import code_references, is_code
-from .crowd import ContactModel, Crowd, Crowds, Limits, Routing, crowd_names
+from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing, crowd_names
 from .distribution import Distribution
 from .fields import UNWRITABLE, attribute, check, children, element_word, outline, quote_value
+from .files.code_references import code_references, is_code
+from .files.stage_maps import is_area_file, map_files
+from .files.trial_files import resolve_file
 from .importers.original import Imported, import_original, plan_of, trials_of
 from .importers.original_order import Plan
 from .importers.recording import recorded_trial
 from .journey import Direction, Exit, Journey, Point, Portal, Zone
-from .map_files import is_area_file, map_files
 from .notation import Points, plain
 from .parser import check_trial, parse_trial
 from .partial import readable, told
@@ -30,12 +31,11 @@ from .scenarios.crowds import DENSITIES
 from .stage import Obstacle, Stage, Wall, area
 from .sweep import Sweep
 from .trial import End, EndCondition, RecordingSpec, Trial
-from .trial_files import resolve_file
 from .validation.rates import trial_remarks
 from .variants import apply_values, expand_sweeps
-from .xml.document import parse_trial_xml, read_trial_bytes
 from .xml.old_names import OldNameWarning, update_names
 from .xml.reader import XmlReader
+from .xml.trial_text import parse_trial_xml, read_trial_bytes
 from .xml.writer import element_from, trial_xml
 from .xml.xsd import schema
 
@@ -50,7 +50,7 @@ __all__ = [
     "Agent",
     "AgentParameter",
     "Camera",
-    "ContactModel",
+    "ContactSpec",
     "Crowd",
     "Crowds",
     "Cube",

@@ -13,7 +13,7 @@ from .parser import parse_trial
 from .scenarios import PRESETS
 from .trial import Trial
 from .variants import apply_values
-from .xml.document import read_trial_bytes
+from .xml.trial_text import read_trial_bytes
 
 __all__ = ["builtin_trials", "load_trial"]
 

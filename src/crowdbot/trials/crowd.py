@@ -11,13 +11,12 @@ from typing import Any
 
 from crowdbot import world
 from crowdbot.core import InputError, Walls
-from crowdbot.models import CrowdModel
-from crowdbot.models.mixture import Mixture
+from crowdbot.models import CrowdModel, Mixture
 
 from .fields import attribute, check, mounted_field
 from .notation import NAME
 
-__all__ = ["ContactModel", "Crowd", "Crowds", "Limits", "Routing", "crowd_names"]
+__all__ = ["ContactSpec", "Crowd", "Crowds", "Limits", "Routing", "crowd_names"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,7 +107,7 @@ class Routing:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ContactModel:
+class ContactSpec:
     """People whose bodies overlap after a step are pushed apart, and nobody ends up in a wall."""
 
     variant: str = attribute(

@@ -16,9 +16,9 @@ from .stage import Obstacle
 from .sweep import sweep_problems
 from .trial import Trial
 from .validation.trial_checks import problems_of
-from .xml.document import parse_trial_xml
 from .xml.old_names import update_names
 from .xml.reader import ROOT, XmlReader
+from .xml.trial_text import parse_trial_xml
 from .xml.writer import element_of
 
 __all__ = ["check_trial", "parse_trial"]

@@ -18,8 +18,8 @@ from crowdbot.core import InputError
 
 from .distribution import Distribution
 from .fields import FieldProblem, attribute, check, quote_value
+from .files.trial_files import resolve_file
 from .people import BODY_RADIUS
-from .trial_files import resolve_file
 
 if TYPE_CHECKING:
     from crowdbot.data import Trajectories

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from crowdbot.core import InputError, Walls
 
 from .fields import FieldProblem, attribute, check, children, quote_value
-from .map_files import area_of, map_of
+from .files.stage_maps import area_of, map_of
 from .notation import Points
 from .partial import readable
 from .props import Cube, Light, Prop, Table, Tree

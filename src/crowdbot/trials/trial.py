@@ -12,7 +12,7 @@ from crowdbot.models import CrowdModel
 
 from .agent import Agent
 from .camera import Camera
-from .crowd import ContactModel, Crowd, Crowds, Limits, Routing
+from .crowd import ContactSpec, Crowd, Crowds, Limits, Routing
 from .drawing import trial_svg
 from .fields import attribute, check, child, children
 from .journey import Exit, Journey, Portal
@@ -119,7 +119,7 @@ class Trial:
     stage: Stage = child(Stage, about="where people and robots can be")
     routing: Routing | None = child(None, about="people find their way around walls")
     crowd: CrowdModel = children({"crowd": Crowd}, into=Crowds, about="how people walk", min=1, max=20)
-    contact: ContactModel | None = child(None, about="bodies that overlap are pushed apart")
+    contact: ContactSpec | None = child(None, about="bodies that overlap are pushed apart")
     limits: Limits | None = child(None, about="what people cannot go beyond")
     journeys: tuple[Journey, ...] = children("journey", about="stops to go to one after the other", max=1000)
     agents: tuple[Agent, ...] = children("agent", about="people, one by one", max=20_000)

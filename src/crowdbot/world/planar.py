@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Clock, FreeClock, InputError, Pose, Scene, SpatialPose, Twist, Walls, stream
 from crowdbot.metrics import swept_distance, wall_clearance
-from crowdbot.models import CrowdModel
-from crowdbot.models.mixture import MODEL, Mixture
+from crowdbot.models import CrowdModel, Mixture
+from crowdbot.models.mixture import MODEL
 
-from .crowd.contact import ContactModel, WallSurfaces
+from .crowd.contact import ContactModel, ContactSurfaces
 from .crowd.journey import JOURNEY, JourneyAssignment
 from .crowd.limits import CrowdLimits
 from .crowd.people_flow import PeopleFlow
@@ -138,7 +138,7 @@ class PlanarWorld(World):
         if self.script is not None:
             self.scene = self.script.begun(self.scene)
         self.scene = self._traffic.begun(self._with_replayed_external(self.scene)).replace(external=external)
-        self._surfaces: WallSurfaces | None = None
+        self._surfaces: ContactSurfaces | None = None
         self._bodies: KinematicBodies | None = None
         self._previous = self.scene
         self._segments: tuple[Walls, Floats] | None = None
@@ -315,7 +315,7 @@ class PlanarWorld(World):
         largest = float(after.radius[after.active].max(initial=0.0))
         known = self._surfaces
         if known is None or known.walls is not after.walls or known.reach < largest:
-            self._surfaces = known = WallSurfaces.of(after.walls, largest)
+            self._surfaces = known = ContactSurfaces.of(after.walls, largest)
         return self.contact.resolve_overlaps(earlier, after, self.dt / self.substeps, known)
 
     def _check(self) -> None:

@@ -23,7 +23,7 @@ __all__ = [
     "HalfPlanes",
     "Inertia",
     "ModelForce",
-    "Noise",
+    "NoiseTerm",
     "PowerLawEnergy",
     "PowerLawForce",
     "PreferredVelocity",
@@ -83,7 +83,7 @@ class Inertia(VelocityCost):
 
 
 @dataclass(frozen=True)
-class Noise(VelocityCost):
+class NoiseTerm(VelocityCost):
     """A cost at random for every velocity, from the stream of the step; 0 without one.
 
     Args:

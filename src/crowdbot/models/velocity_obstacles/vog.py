@@ -151,9 +151,16 @@ def _keep(best: Floats, samples: Floats, k: int, score: float) -> None:
 
 @kernel
 def _pick_fellows(
-    row: int, mates: Rows, place: Floats, velocity: Floats, desired: Floats, reach: float, most: int,
-    found: Rows, key: Floats,
-) -> int:  # fmt: skip
+    row: int,
+    mates: Rows,
+    place: Floats,
+    velocity: Floats,
+    desired: Floats,
+    reach: float,
+    most: int,
+    found: Rows,
+    key: Floats,
+) -> int:
     """Find the fellows to keep with: near, ahead and going the same way; return how many."""
     held = 0
     px, py = desired[row, 0], desired[row, 1]
@@ -198,8 +205,26 @@ def _choose_part(
     begin: int, end: int, crowd: _Crowd, near: Neighbors, groups: _Groups, walls: Floats, out: Floats
 ) -> None:
     # fields are taken out of the tuples here: inside the loop each access would count references
-    (place, velocity, desired, radius, top, calm, external, walking, horizon, wall_horizon, preference, weight,
-     most, keep, reach, group_horizon, formation, closeness) = crowd  # fmt: skip
+    (
+        place,
+        velocity,
+        desired,
+        radius,
+        top,
+        calm,
+        external,
+        walking,
+        horizon,
+        wall_horizon,
+        preference,
+        weight,
+        most,
+        keep,
+        reach,
+        group_horizon,
+        formation,
+        closeness,
+    ) = crowd
     agent, number, order = near
     member, first, last = groups
     A = agent.shape[1]
@@ -215,16 +240,38 @@ def _choose_part(
         px, py, r = desired[row, 0], desired[row, 1], radius[row]
         for n in range(number[e, a]):
             other = row - a + agent[e, a, n]
-            cone(cones, n, place[other, 0] - x, place[other, 1] - y, vx, vy, velocity[other, 0], velocity[other, 1],
-                 r + radius[other], horizon[row], not external[other], 1.0 if row < other else -1.0)  # fmt: skip
+            cone(
+                cones,
+                n,
+                place[other, 0] - x,
+                place[other, 1] - y,
+                vx,
+                vy,
+                velocity[other, 0],
+                velocity[other, 1],
+                r + radius[other],
+                horizon[row],
+                not external[other],
+                1.0 if row < other else -1.0,
+            )
         wall_count = walls_near(walls, x, y, top[row] * wall_horizon[row] + r, close)
         mates = member[first[row] : last[row]]
         fellow_count = _pick_fellows(row, mates, place, velocity, desired, reach[row], most[row], found, key)
         for n in range(fellow_count):
             other = found[n]
             wx, wy = _walking_direction(px, py, desired[other, 0], desired[other, 1], vx, vy)
-            companion(fellows, n, place[other, 0] - x, place[other, 1] - y, velocity[other, 0], velocity[other, 1],
-                      wx, wy, keep[row], group_horizon[row])  # fmt: skip
+            companion(
+                fellows,
+                n,
+                place[other, 0] - x,
+                place[other, 1] - y,
+                velocity[other, 0],
+                velocity[other, 1],
+                wx,
+                wy,
+                keep[row],
+                group_horizon[row],
+            )
         wish, now = (px, py, *_unit(px, py)), _unit(vx, vy)
         count = _sample_first(samples, vx, vy, px, py, r)
         best[:, :3] = 0.0
@@ -372,15 +419,25 @@ class VOG(CrowdModel):
         seen = scene.active & scene.visible
         near = nearest(scene.position, each("neighbor_distance"), np.rint(each("max_neighbors")), seen, walking)
         crowd = _Crowd(
-            rows(scene.position), rows(scene.velocity), rows(wish), rows(scene.radius),
+            rows(scene.position),
+            rows(scene.velocity),
+            rows(wish),
+            rows(scene.radius),
             rows(speed_limit(self.max_speed, scene)),
             rows(per_agent(scene.memory.get(MEMORY, CALM), scene.shape, MEMORY)),
-            rows(scene.external), rows(walking), rows(each("time_horizon")), rows(each("wall_horizon")),
-            rows(each("preference_weight")), rows(each("group_weight")),
-            rows(np.rint(each("group_neighbors")).astype(np.int64)), rows(each("group_radius")),
-            rows(each("group_distance")), rows(each("group_horizon")), rows(each("formation")),
+            rows(scene.external),
+            rows(walking),
+            rows(each("time_horizon")),
+            rows(each("wall_horizon")),
+            rows(each("preference_weight")),
+            rows(each("group_weight")),
+            rows(np.rint(each("group_neighbors")).astype(np.int64)),
+            rows(each("group_radius")),
+            rows(each("group_distance")),
+            rows(each("group_horizon")),
+            rows(each("formation")),
             rows(each("closeness")),
-        )  # fmt: skip
+        )
         out = np.zeros((*scene.shape, 3))
         out[..., :2] = initial_velocity(scene)
         _choose(crowd, near, _groups(scene.group, seen), scene.walls.segments(), rows(out))

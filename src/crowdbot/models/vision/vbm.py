@@ -83,9 +83,17 @@ class _Crowd(NamedTuple):
 
 @kernel
 def _slopes(
-    x: float, y: float, wx: float, wy: float, hx: float, hy: float, speed: float,
-    late: float, near: float, ridge: float,
-) -> tuple[float, float, float]:  # fmt: skip
+    x: float,
+    y: float,
+    wx: float,
+    wy: float,
+    hx: float,
+    hy: float,
+    speed: float,
+    late: float,
+    near: float,
+    ridge: float,
+) -> tuple[float, float, float]:
     """Return the cost of something at x, y with relative velocity w, and its slopes over own angle and own speed.
 
     ``h`` is the own direction, ``late`` and ``near`` the scales of time and distance. 0 when it goes away or comes
@@ -156,10 +164,23 @@ def _look_at_walls(
 
 @kernel
 def _see(
-    row: int, others: NDArray[np.int32], place: Floats, velocity: Floats, radius: Floats, hx: float, hy: float,
-    speed: float, late: float, near: float, rays: Floats, depth: Floats, taken: NDArray[np.bool_],
-    field: bool, ridge: float, sums: Floats,
-) -> None:  # fmt: skip
+    row: int,
+    others: NDArray[np.int32],
+    place: Floats,
+    velocity: Floats,
+    radius: Floats,
+    hx: float,
+    hy: float,
+    speed: float,
+    late: float,
+    near: float,
+    rays: Floats,
+    depth: Floats,
+    taken: NDArray[np.bool_],
+    field: bool,
+    ridge: float,
+    sums: Floats,
+) -> None:
     """Add up the slopes of all that is seen: over angle, over speed, rising ones over angle or costs, weights.
 
     In the ``field`` of view every ray counts, and the nearest thing hides the others; else every agent counts as much
@@ -249,9 +270,17 @@ def _choose(
 
 @kernel
 def _choose_part(
-    begin: int, end: int, crowd: _Crowd, seen: Neighbors, walls: Floats, rays: Floats, field: bool, luck: Floats,
-    dt: float, out: Floats,
-) -> None:  # fmt: skip
+    begin: int,
+    end: int,
+    crowd: _Crowd,
+    seen: Neighbors,
+    walls: Floats,
+    rays: Floats,
+    field: bool,
+    luck: Floats,
+    dt: float,
+    out: Floats,
+) -> None:
     # fields are taken out of the tuples here: inside the loop each access would count references
     place, velocity, heading, desired, radius, top, walking, late, near, slow, wide, far, most, sharp, ridge, gain = (
         crowd
@@ -276,14 +305,36 @@ def _choose_part(
             hx, hy = vx / speed, vy / speed
         chance = 0.75 + 0.5 * luck[row]
         _look_at_walls(walls, place[row, 0], place[row, 1], hx, hy, far[row], rays, depth)
-        _see(row, others[: number[e, a]], place, velocity, radius, hx, hy, speed, late[row], near[row], rays, depth,
-             taken, field, chance * ridge[row], sums)  # fmt: skip
+        _see(
+            row,
+            others[: number[e, a]],
+            place,
+            velocity,
+            radius,
+            hx,
+            hy,
+            speed,
+            late[row],
+            near[row],
+            rays,
+            depth,
+            taken,
+            field,
+            chance * ridge[row],
+            sums,
+        )
         turn, change = _mean(sums, STEEP * chance if field else 0.0)
         pull = gain[row] * dt
         turn0, change0 = _wanted(
-            hx, hy, speed, desired[row, 0], desired[row, 1], slow[row], wide[row],
+            hx,
+            hy,
+            speed,
+            desired[row, 0],
+            desired[row, 1],
+            slow[row],
+            wide[row],
             math.inf if field or pull == 0.0 else 1.0 / pull,
-        )  # fmt: skip
+        )
         sharpest = min(sharp[row] * dt / max(STILL, speed), FAST)
         angle = -min(sharpest, max(-sharpest, pull * (turn + turn0)))
         speed = min(top[row], max(0.0, speed - max(pull * (change + change0), -most[row] * dt)))
@@ -393,11 +444,23 @@ class VBM(CrowdModel):
             walking,
         )
         crowd = _Crowd(
-            rows(scene.position), rows(scene.velocity), rows(scene.heading), rows(wish), rows(scene.radius),
-            rows(speed_limit(self.max_speed, scene)), rows(walking), each("time_scale"), each("distance_scale"),
-            each("speed_scale"), each("angle_scale"), each("wall_distance"), each("max_acceleration"),
-            each("max_turn"), each("ridge"), each("gain"),
-        )  # fmt: skip
+            rows(scene.position),
+            rows(scene.velocity),
+            rows(scene.heading),
+            rows(wish),
+            rows(scene.radius),
+            rows(speed_limit(self.max_speed, scene)),
+            rows(walking),
+            each("time_scale"),
+            each("distance_scale"),
+            each("speed_scale"),
+            each("angle_scale"),
+            each("wall_distance"),
+            each("max_acceleration"),
+            each("max_turn"),
+            each("ridge"),
+            each("gain"),
+        )
         field = self.variant == "crowdbot"
         angle = np.linspace(-0.5 * FIELD, 0.5 * FIELD, self.rays if field else FAN)
         luck = np.full(scene.shape, 0.5) if rng is None else rng.random(scene.shape)

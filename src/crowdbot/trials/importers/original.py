@@ -19,7 +19,7 @@ from crowdbot.trials.notation import Points
 from crowdbot.trials.robot import RobotGoal, RobotSpec
 from crowdbot.trials.stage import Obstacle, Stage, Wall
 from crowdbot.trials.trial import End, EndCondition, Trial
-from crowdbot.trials.xml.document import parse_trial_xml, read_trial_bytes
+from crowdbot.trials.xml.trial_text import parse_trial_xml, read_trial_bytes
 
 from .original_crowd import Walker, crowds_of
 from .original_order import DEFAULT, Plan

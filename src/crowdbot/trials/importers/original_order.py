@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from crowdbot.core import InputError, TrialError
-from crowdbot.trials.trial_files import resolve_file
+from crowdbot.trials.files.trial_files import resolve_file
 
 __all__ = ["Plan"]
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 import functools
 import math
 
-from crowdbot.trials.crowd import ContactModel, Limits
+from crowdbot.trials.crowd import ContactSpec, Limits
 from crowdbot.trials.journey import Journey, Portal, Zone
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.stage import Stage
@@ -78,7 +78,7 @@ def challenge(kind: str, people: int, acceleration: float) -> Trial:
         f"challenge-{kind}-{people}" if kind else "challenge-alone",
         180.0,
         Stage() if crossing else corridor(LENGTH + 12.0, WIDTH),
-        contact=ContactModel(),
+        contact=ContactSpec(),
         limits=Limits(max_speed=3.0, max_acceleration=acceleration if math.isfinite(acceleration) else None),
         journeys=[Journey(name=way, then="stay", stops=(JOURNEYS[way],)) for way in ways],
         spawners=[

@@ -11,7 +11,7 @@ import math
 from typing import Any
 
 from crowdbot.models import ORCA
-from crowdbot.trials.crowd import ContactModel, Routing
+from crowdbot.trials.crowd import ContactSpec, Routing
 from crowdbot.trials.journey import Direction, Exit, Journey, Portal, Zone
 from crowdbot.trials.notation import Points
 from crowdbot.trials.people import SourceSpec, Spawner
@@ -62,7 +62,7 @@ def _flowing(name: str, width: float, flows: dict[str, float], groups: float, ga
         name,
         90.0,
         corridor(LENGTH + 10.0, width),
-        contact=ContactModel(),
+        contact=ContactSpec(),
         journeys=[EAST, WEST],
         spawners=people,
         portals=ends(LENGTH, width),
@@ -103,7 +103,7 @@ def density_ladder(density: float) -> Trial:
         "density-ladder",
         60.0,
         corridor(30.0, 5.0),
-        contact=ContactModel(),
+        contact=ContactSpec(),
         journeys=[EAST, WEST],
         spawners=people,
         portals=ends(20.0, 5.0),
@@ -123,7 +123,7 @@ def crossing(density: float, both: bool) -> Trial:
         60.0,
         Stage(walls=(Wall(Points.of([(-6.5, -10), (-6.5, -2)])), Wall(Points.of([(-6.5, 2), (-6.5, 10)])),
                      Wall(Points.of([(6.5, -10), (6.5, -2)])), Wall(Points.of([(6.5, 2), (6.5, 10)])))),
-        contact=ContactModel(),
+        contact=ContactSpec(),
         journeys=[SOUTH, NORTH],
         spawners=[flow(way, count, box(-5.7, -5.7, 5.7, 5.7), way) for way in ways if count],
         portals=[low, high],
@@ -218,7 +218,7 @@ def random_goals(people: int, side: float) -> Trial:
         "random-goals",
         90.0,
         Stage(walkable=box(-h, -h, h, h)),
-        contact=ContactModel(),
+        contact=ContactSpec(),
         journeys=[Journey(name="about", then="again", stops=(Zone(inside, aim="random"),))],
         spawners=[Spawner(name="people", count=people, zone=inside, journey="about")],
         robots=[robot((-h + 1.0, -h + 1.0), (h - 1.0, h - 1.0))],
@@ -239,7 +239,7 @@ def bottleneck(door: float, rate: float) -> Trial:
         ),
         routing=Routing(radius=min(0.3, half - 0.05)),
         crowd=ORCA(neighbor_distance=5.0, max_neighbors=10.0, time_horizon=2.0, time_horizon_walls=0.5),
-        contact=ContactModel(),
+        contact=ContactSpec(),
         journeys=[
             Journey(
                 name="through",

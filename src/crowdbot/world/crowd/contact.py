@@ -16,7 +16,7 @@ from crowdbot.core.neighbors import nearest
 
 from .wall_cells import WallCells, wall_cells
 
-__all__ = ["ContactModel", "WallSurfaces"]
+__all__ = ["ContactModel", "ContactSurfaces"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -228,7 +228,7 @@ def _off(
     return nx - side * ey / length * r, ny + side * ex / length * r
 
 
-class WallSurfaces(NamedTuple):
+class ContactSurfaces(NamedTuple):
     """Walls as bodies meet them.
 
     Fields:
@@ -244,7 +244,7 @@ class WallSurfaces(NamedTuple):
     reach: float
 
     @classmethod
-    def of(cls, walls: Walls, reach: float) -> WallSurfaces:
+    def of(cls, walls: Walls, reach: float) -> ContactSurfaces:
         """Sort walls for bodies up to a radius of ``reach`` [m]."""
         thin = walls.previous == walls.next
         once = ~thin | (np.arange(len(walls)) < walls.next)
@@ -287,13 +287,15 @@ class ContactModel:
         if not 1 <= self.iterations <= 1000:
             raise InputError(f"ContactModel: iterations = {self.iterations}, it must be from 1 to 1000")
 
-    def resolve_overlaps(self, before: Scene, after: Scene, dt: float, surfaces: WallSurfaces | None = None) -> Scene:
+    def resolve_overlaps(
+        self, before: Scene, after: Scene, dt: float, surfaces: ContactSurfaces | None = None
+    ) -> Scene:
         """Return the scene ``after`` a step of ``dt`` [s] from ``before``, with people pushed apart."""
         here = after.active
         radius = np.where(here, after.radius, 0.0)
         largest = radius.max(axis=1, initial=0.0)
         if surfaces is None:
-            surfaces = WallSurfaces.of(after.walls, largest.max(initial=0.0))
+            surfaces = ContactSurfaces.of(after.walls, largest.max(initial=0.0))
         pushed = here & ~after.external
         seen = here & after.visible
         near = nearest(after.position, radius + (1.0 + SPARE) * largest[:, None], MOST, seen, pushed)

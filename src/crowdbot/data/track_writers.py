@@ -15,7 +15,8 @@ from crowdbot.core import DataError, InputError, did_you_mean
 
 from .readers.tables import ROBOT
 from .rows import runs
-from .trajectories import PrimaryScene, Trajectories
+from .track_table import PrimaryScene
+from .trajectories import Trajectories
 
 __all__ = ["SUFFIXES", "save"]
 

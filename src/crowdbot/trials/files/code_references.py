@@ -8,8 +8,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
 from crowdbot.core import Element, InputError, parse_xml, read_bytes
-
-from .xml.document import parse_trial_xml
+from crowdbot.trials.xml.trial_text import parse_trial_xml
 
 __all__ = ["code_references", "is_code"]
 

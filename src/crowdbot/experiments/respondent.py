@@ -11,8 +11,8 @@ from typing import Any, TextIO
 from crowdbot.core import InputError, did_you_mean
 
 from .experiment import Experiment
-from .plan import plan
 from .question import Question
+from .session_plan import plan
 
 __all__ = ["ConsoleRespondent", "Respondent", "ScriptedRespondent"]
 

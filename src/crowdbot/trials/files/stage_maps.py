@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot.core import InputError
+from crowdbot.trials.fields import LARGEST
 
-from .fields import LARGEST
 from .trial_files import read_beside, resolve_file
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from .event import event_of
 from .log import read_log
 from .parser import parse_experiment
 from .session import Session
-from .sitting import COPY, LOG
+from .session_runner import COPY, LOG
 
 __all__ = ["save_summary", "session_of", "summary"]
 
