@@ -47,12 +47,15 @@ def kebab_case(name: str) -> str:
 def builtin_name(cls: type, contract: type) -> str:
     """Return the name of a built-in class: kebab-case, without the name of its contract at the end.
 
+    A class attribute ``builtin_name`` overrides it.
+
     >>> class Navigator: pass
     >>> class ORCANavigator(Navigator): pass
     >>> builtin_name(ORCANavigator, Navigator)
     'orca'
     """
-    return kebab_case(cls.__name__.removesuffix(contract.__name__) or cls.__name__)
+    fixed = vars(cls).get("builtin_name")
+    return str(fixed) if fixed else kebab_case(cls.__name__.removesuffix(contract.__name__) or cls.__name__)
 
 
 def builtin_classes(room: types.ModuleType, contract: type) -> dict[str, type]:
@@ -86,12 +89,13 @@ def find_class(
         InputError: the address cannot be loaded, is not of the contract, or is not trusted.
     """
     known = builtin_classes(room, contract)
-    plain = {key.replace("-", ""): value for key, value in known.items()}
+    plain = {value.__name__.lower(): value for value in known.values()}
+    plain |= {key.replace("-", ""): value for key, value in known.items()}
     short = name.strip().replace("-", "").replace("_", "").lower()
     if short in plain:
         return plain[short]
     if ":" not in name:
-        raise UnknownName(_spoken(contract), name, known, address=True)
+        raise UnknownName(_plain_name(contract), name, known, address=True)
     place, _, attribute = name.rpartition(":")
     module = _load_file(place, folder or Path.cwd(), trust) if place.endswith(".py") else _load(place, trust)
     value = getattr(module, attribute, None)
@@ -219,7 +223,7 @@ def _number(text: str, what: str) -> float:
     return value
 
 
-def _spoken(contract: type) -> str:
+def _plain_name(contract: type) -> str:
     return kebab_case(contract.__name__).replace("-", " ")
 
 
