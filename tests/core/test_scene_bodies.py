@@ -60,7 +60,7 @@ def test_after_a_step_only_the_stage_keeps_its_bodies():
     assert later.bodies.owner.tolist() == [STAGE]
     assert later.bodies.post_foot.shape == (1, 0, 3)
     assert later.bodies.skins.faces.tolist() == [[2, 1, 0]]
-    assert Bodies.of(**LIMBS, skins=Skins.of(np.eye(3), [[0, 1, 2]], owner=0)).staged().skins is None
+    assert Bodies.of(**LIMBS, skins=Skins.of(np.eye(3), [[0, 1, 2]], owner=0)).stage_bodies().skins is None
     assert Scene.of([[0.0, 0.0]]).advance(np.zeros((1, 1, 2)), 0.1).bodies is None
 
 

@@ -92,10 +92,10 @@ class Search(ABC):
         check_box(low, high, budget)
         check_start(start, len(low), len(rngs))
         state = SearchState(function, low, high, rngs, budget, start[0], self.tolerance, self.patience)
-        if state.left:
+        if state.remaining:
             cost = state.evaluate(start)
-            population, cost = state.drop_finished(start[: len(cost)], cost)
-        if state.left:
+            population, cost = state.prune(start[: len(cost)], cost)
+        if state.remaining:
             self.search(state, population, cost)
         return SearchResult(state.best, state.cost, state.evaluations, state.history)
 

@@ -52,7 +52,7 @@ class SearchState:
         self._counts: NDArray[np.bool_] = np.ones((W, N), dtype=bool)
 
     @property
-    def left(self) -> int:
+    def remaining(self) -> int:
         """How many evaluations each problem that is not done still has; 0 when all are done."""
         return self.budget - self._spent if len(self.live) else 0
 
@@ -67,7 +67,7 @@ class SearchState:
         Raises:
             InputError: the function returns another shape.
         """
-        candidates = candidates[: self.left]
+        candidates = candidates[: self.remaining]
         P, L, N, _ = candidates.shape
         counts = self.counts
         if not counts.all():
@@ -95,7 +95,7 @@ class SearchState:
         self._spent += P
         self.evaluations[live] = self._spent
 
-    def drop_finished(self, *arrays: Floats) -> tuple[Floats, ...]:
+    def prune(self, *arrays: Floats) -> tuple[Floats, ...]:
         """Return the arrays ``[_, L, ...]`` with only those problems that are not done, and forget the others."""
         live = self.live
         nobody = ~self.counts.any(axis=1)

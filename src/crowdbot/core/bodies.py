@@ -140,11 +140,11 @@ class Bodies:
         skins = None if self.skins is None else dataclasses.replace(self.skins, vertices=self.skins.vertices[index])
         return dataclasses.replace(self, **arrays, skins=skins)
 
-    def staged(self) -> Bodies:
+    def stage_bodies(self) -> Bodies:
         """Return only what belongs to the stage.
 
         >>> both = Bodies.of(start=[[0, 0, 0], [1, 0, 0]], end=[[0, 0, 1], [1, 0, 1]], radius=[0.1, 0.1], owner=[4, -1])
-        >>> both.staged().start[0].tolist()
+        >>> both.stage_bodies().start[0].tolist()
         [[1.0, 0.0, 0.0]]
         """
         values: dict[str, Any] = {}

@@ -86,7 +86,7 @@ def check_parameters(model: Any, largest: float | None = None) -> None:
         if not bounds.holds(value):
             raise InputError(
                 f"{type(model).__name__}: {row.name} = {bounds.worst(value)} [{row.unit}] is not allowed,"
-                f" it must be {bounds.allowed()}"
+                f" it must be {bounds.describe()}"
             )
 
 

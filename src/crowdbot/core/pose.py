@@ -55,7 +55,7 @@ class Pose:
         angle = np.broadcast_to(np.asarray(heading, dtype=np.float64), point.shape[:1]).copy()
         return cls(point, angle)
 
-    def mounted(self, x: float, y: float, heading: float) -> Pose:
+    def offset(self, x: float, y: float, heading: float) -> Pose:
         """Return the pose of a part that sits at ``x``, ``y`` [m] and ``heading`` [rad] in this frame."""
         cos, sin = np.cos(self.heading), np.sin(self.heading)
         shift = np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
@@ -77,7 +77,7 @@ class SpatialPose:
 
     The frame is that of REP-103: x forward, y left, z up; rotations turn the thing's own frame into the world's.
 
-    >>> ahead = SpatialPose.of((0.0, 0.0, 1.0), yaw=math.pi / 2).mounted(0.2, 0.0, 0.1)
+    >>> ahead = SpatialPose.of((0.0, 0.0, 1.0), yaw=math.pi / 2).offset(0.2, 0.0, 0.1)
     >>> ahead.position.round(12).tolist(), ahead.heading.round(6).tolist()
     ([[0.0, 0.2, 1.1]], [1.570796])
     """
@@ -126,7 +126,7 @@ class SpatialPose:
         """The pose seen from above."""
         return Pose(self.position[:, :2].copy(), self.heading)
 
-    def mounted(
+    def offset(
         self, x: float, y: float, z: float = 0.0, roll: float = 0.0, pitch: float = 0.0, yaw: float = 0.0
     ) -> SpatialPose:
         """Return the pose of a part that sits at ``x``, ``y``, ``z`` [m] in this frame, turned by the angles [rad]."""

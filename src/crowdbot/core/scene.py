@@ -182,7 +182,7 @@ class Scene:
         speed = np.sqrt(moved[..., 0] ** 2 + moved[..., 1] ** 2)
         turned = np.where(own & (speed > TURNING_SPEED), np.arctan2(moved[..., 1], moved[..., 0]), self.heading)
         place = np.where(self.active[..., None], self.position + moved * dt, self.position)
-        bodies = None if self.bodies is None else self.bodies.staged()
+        bodies = None if self.bodies is None else self.bodies.stage_bodies()
         return dataclasses.replace(
             self, position=place, velocity=moved, heading=turned, time=self.time + dt, bodies=bodies
         )
