@@ -84,7 +84,7 @@ def test_wrong_bodies_are_explained(values, message):
     ("values", "message"),
     [
         (([[0, 0]], [[0, 0, 0]], 0), "vertices have shape \\[1, 2\\]"),
-        ((np.zeros((3, 3)), [[0, 1, 3]], 0), "faces name vertex 3, there are 3"),
+        ((np.zeros((3, 3)), [[0, 1, 3]], 0), "a face refers to vertex 3, but there are 3 vertices"),
         ((np.zeros((3, 3)), [[0, 1, 2]], [0, 1]), "skins: owner has shape \\[2\\]"),
     ],
 )

@@ -1,7 +1,7 @@
-"""Plugs: from a name or an address to a class, from text attributes to its fields.
+"""Plugins: classes by name or address, and their fields from text attributes.
 
-Built-in names are the classes in a room's ``__all__``, written in kebab-case. Anything else is an address:
-``package.module:Name`` or ``file.py:Name``. The same words work in Python, XML and on the command line.
+Built-in names are the classes in the ``__all__`` of a package, in kebab-case. An address is ``package.module:Name`` or
+``file.py:Name``. Names and addresses are the same in Python, in XML and on the command line.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ __all__ = [
 
 
 def kebab_case(name: str) -> str:
-    """Return a class name as it is written on the command line and in XML.
+    """Return the kebab-case form of a class name, as used on the command line and in XML.
 
     >>> kebab_case("ConstantVelocity"), kebab_case("ORCA"), kebab_case("Lidar2D"), kebab_case("PLEdestrians")
     ('constant-velocity', 'orca', 'lidar2d', 'pledestrians')
@@ -75,18 +75,18 @@ def builtin_classes(room: types.ModuleType, contract: type) -> dict[str, type]:
 def find_class(
     name: str, room: types.ModuleType, contract: type, *, folder: Path | None = None, trust: bool = True
 ) -> type:
-    """Return the class that ``name`` means: a built-in name or an address.
+    """Return the class with a built-in name or an address.
 
     Args:
         name: ``social-force``, ``SocialForce``, ``package.module:Name`` or ``file.py:Name``.
-        room: the package of the built-in ones.
-        contract: what the class must be.
-        folder: where relative files are looked up (default: the working folder).
-        trust: when False, only files inside ``folder`` are loaded; that is how trials from elsewhere are read.
+        room: package of the built-in classes.
+        contract: base class of the result.
+        folder: base of relative file names (default: the working folder).
+        trust: if False, only files inside ``folder`` are loaded, as for trials of other authors.
 
     Raises:
-        UnknownName: no built-in has this name.
-        InputError: the address cannot be loaded, is not of the contract, or is not trusted.
+        UnknownName: no built-in class has this name.
+        InputError: the address cannot be loaded, is no concrete subclass of ``contract``, or is not trusted.
     """
     known = builtin_classes(room, contract)
     plain = {value.__name__.lower(): value for value in known.values()}
@@ -101,15 +101,15 @@ def find_class(
     value = getattr(module, attribute, None)
     if not (inspect.isclass(value) and issubclass(value, contract)) or inspect.isabstract(value):
         here = [n for n, v in vars(module).items() if inspect.isclass(v) and issubclass(v, contract)]
-        raise InputError(f"{name} is not a concrete {contract.__name__}; {place} holds {', '.join(here) or 'none'}")
+        raise InputError(f"{name} is not a concrete {contract.__name__}; {place} defines {', '.join(here) or 'none'}")
     return value
 
 
 def from_attributes(cls: type, attributes: Mapping[str, str], where: str = "") -> Any:
-    """Make an instance of a dataclass from text attributes (kebab-case names allowed).
+    """Return an instance of a dataclass from text attributes; names may be in kebab-case.
 
     Raises:
-        InputError: an attribute is unknown, missing or has a value that its field cannot take.
+        InputError: an attribute is unknown, missing or has an invalid value.
     """
     prefix = f"{where}: " if where else ""
     hints = _hints(cls)
@@ -134,12 +134,12 @@ def from_attributes(cls: type, attributes: Mapping[str, str], where: str = "") -
 
 
 def attribute_problems(cls: type, attributes: Mapping[str, str], also: Iterable[str] = ()) -> dict[str, str]:
-    """Return a sentence for every attribute that is unknown, missing or cannot be converted, not only the first.
+    """Return a message for every attribute that is unknown, missing or invalid.
 
     Args:
         cls: a dataclass.
-        attributes: as :func:`from_attributes` takes them.
-        also: attributes that belong to somebody else and may be what was meant.
+        attributes: the attributes, as for :func:`from_attributes`.
+        also: further attributes of the element, for suggestions.
 
     >>> from crowdbot.core import Paper
     >>> attribute_problems(Paper, {"yeer": "1995", "year": "x", "authors": "a", "title": "t", "venue": "v"})["yeer"]
@@ -165,7 +165,7 @@ def attribute_problems(cls: type, attributes: Mapping[str, str], also: Iterable[
 
 
 def attribute_names(cls: Any) -> list[str]:
-    """Return the attributes that a dataclass takes.
+    """Return the attribute names of a dataclass.
 
     >>> from crowdbot.core import Paper
     >>> attribute_names(Paper)
