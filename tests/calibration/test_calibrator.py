@@ -185,7 +185,7 @@ def test_a_prior_of_other_parameters_or_of_nobody_is_refused(past: Windows, tmp_
         Calibrator(Shy(), "absolute", "random-search", budget=5, free=("strength",), prior=prior).fit(past)
     with pytest.raises(InputError, match="learned from fits of each person"):
         PopulationPrior.from_fits(shared(5).fit(past))
-    with pytest.raises(InputError, match="a population prior is about each person's own parameters"):
+    with pytest.raises(InputError, match="a population prior requires individual parameters"):
         shared(5, prior=prior)
     (tmp_path / "wrong.json").write_text('{"names": ["a"], "mean": [1.0]}')
     with pytest.raises(InputError, match=r"wrong\.json is not a population prior"):
@@ -210,7 +210,7 @@ def test_wrong_use_is_said_in_a_sentence(past: Windows) -> None:
             scheme.fit(replace(past, present=np.zeros_like(past.present)))
     with pytest.raises(InputError, match="nobody in 0 windows of no recording can be compared"):
         shared(5).fit([])
-    with pytest.raises(InputError, match="strength must be one number before it, not one for each agent"):
+    with pytest.raises(InputError, match="strength must be one number before a calibration, not one for each agent"):
         Calibrator(Shy(strength=np.ones((8, 6))), search="random-search").fit(past)
     one = replace(past, present=past.present & (np.arange(6) == 0))
     with pytest.raises(InputError, match="can be compared by inter-pedestrian; people must be .* with others"):

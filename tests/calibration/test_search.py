@@ -221,9 +221,9 @@ def test_an_impossible_search_is_refused(name: str) -> None:
     for low, high, budget, first, message in (
         (LOW, HIGH, 0, start, "budget = 0 evaluations must be at least 1"),
         (HIGH, LOW, 5, start, "the box is empty"),
-        (LOW[:2], HIGH, 5, start, "two lists of as many finite numbers"),
-        (LOW, HIGH * np.nan, 5, start, "two lists of as many finite numbers"),
-        (LOW[:0], HIGH[:0], 5, start[..., :0], "the box has no sides"),
+        (LOW[:2], HIGH, 5, start, "two lists of finite numbers of equal length"),
+        (LOW, HIGH * np.nan, 5, start, "two lists of finite numbers of equal length"),
+        (LOW[:0], HIGH[:0], 5, start[..., :0], "the box has no dimensions"),
         (LOW, HIGH, 5, start[0], "must be \\[S, W, N, D\\]"),
         (LOW, HIGH, 5, start[:0], "at least one start"),
         (LOW, HIGH, 5, start * np.nan, "start must be finite"),

@@ -323,7 +323,7 @@ def test_impossible_crowds_take_a_bounded_step(cost, optimiser):
     [
         (lambda: CostModel(optimiser="gradiant"), "optimiser 'gradiant' is unknown, did you mean 'gradient'"),
         (lambda: CostModel(samples="grid"), "samples 'grid' is unknown"),
-        (lambda: CostModel("orca"), "costs are 'orca', they must be a VelocityCost or a sum of some"),
+        (lambda: CostModel("orca"), "costs = 'orca' must be a VelocityCost or a sum of them"),
         (lambda: CostModel(speeds=0), "speeds = 0 is not allowed, it must be a whole number from 1 to 1000"),
         (lambda: CostModel(refinements=1.5), "refinements = 1.5 is not allowed"),
         (lambda: CostModel(max_acceleration=-1.0), "max_acceleration = -1.0"),

@@ -97,7 +97,7 @@ def test_the_ground_truth_of_some_windows_and_of_their_first_rows():
 
 def test_the_ground_truth_of_other_people():
     future = windows(np.zeros((1, 2, 3, 2)), number=7)
-    with pytest.raises(InputError, match="must be cut with one call"):
+    with pytest.raises(InputError, match="must come from one call"):
         GroundTruth(walk(), future)
     with pytest.raises(InputError, match=r"people \[1, 3\] and the future \[2, 3\]"):
         GroundTruth(walk(), windows(np.zeros((2, 2, 3, 2))))

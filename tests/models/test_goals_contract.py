@@ -134,7 +134,7 @@ def test_one_row_two_rows_many_rows_and_nobody(kind):
     "kind", [kind for kind in KINDS if not kind.learns], ids=lambda kind: kebab_case(kind.__name__)
 )
 def test_what_does_not_learn_says_so(kind):
-    with pytest.raises(InputError, match=rf"{kebab_case(kind.__name__)} does not learn from recordings: make it by"):
+    with pytest.raises(InputError, match=rf"{kebab_case(kind.__name__)} does not learn from recordings; use"):
         kind.learn(street())
 
 

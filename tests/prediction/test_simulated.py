@@ -115,5 +115,5 @@ def test_wrong_use_is_said_in_a_sentence(windows: Maker) -> None:
         Simulated(substep=0.0)
     with pytest.raises(InputError, match=r"radius = -1\.0 m must be finite and above 0"):
         Simulated(radius=-1.0)
-    with pytest.raises(InputError, match="crowd models walk in metres"):
+    with pytest.raises(InputError, match="crowd models need metres"):
         Simulated().predict(windows(np.zeros((1, 8, 1, 2)), units="px"), 12)

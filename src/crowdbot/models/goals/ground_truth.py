@@ -26,7 +26,7 @@ class GroundTruth(Goal):
     It measures the share of an error that comes from unknown goals. People without a future keep their position.
 
     Args:
-        past, future: windows cut with one call; any of them, or their first observed rows, may then be resolved.
+        past, future: windows from one call; any of them, or their first observed rows, can be resolved.
 
     Raises:
         InputError: past and future have different people; on resolving, a window is unknown.
