@@ -45,14 +45,15 @@ def kebab_case(name: str) -> str:
 
 
 def builtin_name(cls: type, contract: type) -> str:
-    """Return the name of a built-in class: kebab-case, without the name of its contract at the end.
+    """Return the name of a built-in class: its ``NAME``, or kebab-case without the name of its contract at the end.
 
     >>> class Navigator: pass
     >>> class ORCANavigator(Navigator): pass
     >>> builtin_name(ORCANavigator, Navigator)
     'orca'
     """
-    return kebab_case(cls.__name__.removesuffix(contract.__name__) or cls.__name__)
+    own = vars(cls).get("NAME")
+    return str(own) if own else kebab_case(cls.__name__.removesuffix(contract.__name__) or cls.__name__)
 
 
 def builtin_classes(room: types.ModuleType, contract: type) -> dict[str, type]:
