@@ -44,23 +44,21 @@ def kebab_case(name: str) -> str:
     return re.sub(r"(?<=[a-z])(?=[A-Z])", "-", name).lower()
 
 
-def builtin_name(cls: type, contract: type) -> str:
-    """Return the name of a built-in class: its ``NAME``, or kebab-case without the name of its contract at the end.
+def builtin_name(cls: type) -> str:
+    """Return the name of a built-in class in files and commands: its ``NAME``, or the class name in kebab-case.
 
-    >>> class Navigator: pass
-    >>> class ORCANavigator(Navigator): pass
-    >>> builtin_name(ORCANavigator, Navigator)
+    >>> class ORCANavigator: NAME = "orca"
+    >>> builtin_name(ORCANavigator)
     'orca'
     """
-    own = vars(cls).get("NAME")
-    return str(own) if own else kebab_case(cls.__name__.removesuffix(contract.__name__) or cls.__name__)
+    return str(vars(cls).get("NAME") or kebab_case(cls.__name__))
 
 
 def builtin_classes(room: types.ModuleType, contract: type) -> dict[str, type]:
     """Return the concrete classes of ``contract`` in ``room.__all__`` by their kebab-case names, sorted."""
     classes = (getattr(room, name) for name in room.__all__)
     found = {
-        builtin_name(value, contract): value
+        builtin_name(value): value
         for value in classes
         if inspect.isclass(value)
         and issubclass(value, contract)

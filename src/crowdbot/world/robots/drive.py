@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -114,7 +113,6 @@ class DifferentialDrive(Drive):
     (Twist(forward=0.5, turn=0.0, left=0.0), [[0.25, 0.0]])
     """
 
-    NAME: ClassVar[str] = "differential-drive"
     max_speed: float = 1.0
     max_turn_rate: float = 1.5
     max_acceleration: float = 1.0
