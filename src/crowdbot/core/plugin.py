@@ -35,6 +35,10 @@ __all__ = [
 ]
 
 
+SHORTENED = ("Navigator",)
+"""Contracts whose names are left out at the end of a built-in name, since a crowd model may have the same name."""
+
+
 def kebab_case(name: str) -> str:
     """Return a class name as it is written on the command line and in XML.
 
@@ -44,21 +48,23 @@ def kebab_case(name: str) -> str:
     return re.sub(r"(?<=[a-z])(?=[A-Z])", "-", name).lower()
 
 
-def builtin_name(cls: type) -> str:
-    """Return the name of a built-in class in files and commands: its ``NAME``, or the class name in kebab-case.
+def builtin_name(cls: type, contract: type) -> str:
+    """Return the name of a built-in class: kebab-case, without the name of its contract at the end.
 
-    >>> class ORCANavigator: NAME = "orca"
-    >>> builtin_name(ORCANavigator)
+    >>> class Navigator: pass
+    >>> class ORCANavigator(Navigator): pass
+    >>> builtin_name(ORCANavigator, Navigator)
     'orca'
     """
-    return str(vars(cls).get("NAME") or kebab_case(cls.__name__))
+    short = cls.__name__.removesuffix(contract.__name__) if contract.__name__ in SHORTENED else ""
+    return kebab_case(short or cls.__name__)
 
 
 def builtin_classes(room: types.ModuleType, contract: type) -> dict[str, type]:
     """Return the concrete classes of ``contract`` in ``room.__all__`` by their kebab-case names, sorted."""
     classes = (getattr(room, name) for name in room.__all__)
     found = {
-        builtin_name(value): value
+        builtin_name(value, contract): value
         for value in classes
         if inspect.isclass(value)
         and issubclass(value, contract)

@@ -62,7 +62,6 @@ class ORCANavigator(Navigator):
 
     paper: ClassVar[Paper] = models.ORCA.paper
 
-    NAME: ClassVar[str] = "orca"
     speed: float = 1.0
     safety: float = 0.05
     share: float = 1.0

@@ -87,8 +87,8 @@ def _type(part: FieldSpec, value: Any, folder: Path | None) -> str:
     assert part.plug is not None
     cls = type(value)
     room, contract = part.plug.places()
-    if builtin_classes(room, contract).get(builtin_name(cls)) is cls:
-        return builtin_name(cls)
+    if builtin_classes(room, contract).get(builtin_name(cls, contract)) is cls:
+        return builtin_name(cls, contract)
     module = sys.modules[cls.__module__]
     if cls.__module__.startswith("crowdbot_plug_") and module.__file__:
         file = Path(module.__file__)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -47,7 +46,6 @@ class AckermannDrive(Drive):
     True
     """
 
-    NAME: ClassVar[str] = "ackermann"
     max_speed: float = 1.5
     max_acceleration: float = 1.0
     max_steering: float = 0.6
