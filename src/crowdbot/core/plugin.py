@@ -35,6 +35,10 @@ __all__ = [
 ]
 
 
+SHORTENED = ("Navigator",)
+"""Contracts whose names are left out at the end of a built-in name, since a crowd model may have the same name."""
+
+
 def kebab_case(name: str) -> str:
     """Return the kebab-case form of a class name, as used on the command line and in XML.
 
@@ -54,8 +58,8 @@ def builtin_name(cls: type, contract: type) -> str:
     >>> builtin_name(ORCANavigator, Navigator)
     'orca'
     """
-    fixed = vars(cls).get("builtin_name")
-    return str(fixed) if fixed else kebab_case(cls.__name__.removesuffix(contract.__name__) or cls.__name__)
+    short = cls.__name__.removesuffix(contract.__name__) if contract.__name__ in SHORTENED else ""
+    return kebab_case(short or cls.__name__)
 
 
 def builtin_classes(room: types.ModuleType, contract: type) -> dict[str, type]:
