@@ -127,7 +127,9 @@ def trials_of(plan: Plan, user: int) -> tuple[list[tuple[str, Trial]], tuple[str
         notes |= dict.fromkeys(inner.left_out)
     if not rows:
         said = "; ".join(notes)
-        raise TrialError(f"{plan.path}: no trial of the order {plan.named(plan.pattern, user)[:80]!r} is read: {said}")
+        raise TrialError(
+            f"{plan.path}: no trial of the order {plan.fill_in(plan.pattern, user)[:80]!r} is read: {said}"
+        )
     return rows, tuple(notes)
 
 

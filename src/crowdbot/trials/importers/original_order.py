@@ -42,7 +42,7 @@ class Plan:
     notes: tuple[str, ...] = ()
     root: Path | None = None
 
-    def named(self, name: str, user: int) -> str:
+    def fill_in(self, name: str, user: int) -> str:
         """Return a name with the number of a participant filled in."""
         return name.replace("\\", "/").replace("{USER}", str(user)).replace("{TWO}", str(user % 2))
 
@@ -52,14 +52,14 @@ class Plan:
         Raises:
             TrialError: there is no order file, or it is no text.
         """
-        order = self.named(self.pattern, user)
+        order = self.fill_in(self.pattern, user)
         try:
             file = self.find(order)
             lines = [line.strip() for line in file.read_text(encoding="utf-8-sig").splitlines() if line.strip()]
         except (InputError, UnicodeDecodeError, OSError) as error:
             raise TrialError(f"{self.path}: the order file {order[:80]!r} cannot be read: {error}") from None
         chosen = lines[self.first : self.first + MOST_LINES]
-        return tuple(self.named(line.split(";")[0].split(",")[0].strip(), user) for line in chosen)
+        return tuple(self.fill_in(line.split(";")[0].split(",")[0].strip(), user) for line in chosen)
 
     def users(self) -> tuple[int, ...]:
         """Return the participants, from 0, who have an order file of their own; only that of the file without any."""
@@ -114,7 +114,7 @@ class Plan:
 
     def _is_there(self, user: int) -> bool:
         try:
-            return self.find(self.named(self.pattern, user)).is_file()
+            return self.find(self.fill_in(self.pattern, user)).is_file()
         except InputError:
             return False
 
