@@ -8,6 +8,7 @@ from crowdbot.lazy import lazy_exports
 
 from .bodies import STAGE, Bodies, Skins
 from .bounds import Bounds, check_number
+from .class_source import UnreadableValue, class_file, reads_only, unread_fields, without_running_code
 from .clock import Clock, ExternalClock, FreeClock, PacedClock
 from .errors import (
     CrowdbotError,
@@ -93,6 +94,7 @@ __all__ = [
     "TrialError",
     "Twist",
     "UnknownName",
+    "UnreadableValue",
     "Walls",
     "attribute_names",
     "attribute_problems",
@@ -101,6 +103,7 @@ __all__ = [
     "cache_folder",
     "check_number",
     "check_parameters",
+    "class_file",
     "did_you_mean",
     "draw_svg",
     "each",
@@ -120,10 +123,13 @@ __all__ = [
     "per_agent",
     "product",
     "read_bytes",
+    "reads_only",
     "reject_entities",
     "required_fields",
     "run_saved_jobs",
     "source_digest",
     "stream",
+    "unread_fields",
+    "without_running_code",
     "wrap_angle",
 ]

@@ -9,8 +9,10 @@ from __future__ import annotations
 import dataclasses
 import functools
 import importlib
+import importlib.machinery
 import importlib.util
 import inspect
+import logging
 import re
 import sys
 import types
@@ -21,7 +23,12 @@ from typing import Any
 
 import numpy as np
 
+from .class_source import describe_class, reads_only
 from .errors import InputError, UnknownName, did_you_mean
+
+SHORTENED = ("Navigator",)
+"""Contracts whose names are left out at the end of a built-in name, since a crowd model may have the same name."""
+logger = logging.getLogger("crowdbot")
 
 __all__ = [
     "attribute_names",
@@ -49,7 +56,7 @@ def kebab_case(name: str) -> str:
 
 
 def builtin_name(cls: type, contract: type) -> str:
-    """Return the name of a built-in class: kebab-case, without the name of its contract at the end.
+    """Return the name of a built-in class in kebab-case, of a navigator without ``Navigator`` at its end.
 
     A class attribute ``builtin_name`` overrides it.
 
@@ -57,6 +64,10 @@ def builtin_name(cls: type, contract: type) -> str:
     >>> class ORCANavigator(Navigator): pass
     >>> builtin_name(ORCANavigator, Navigator)
     'orca'
+    >>> class Drive: pass
+    >>> class DifferentialDrive(Drive): pass
+    >>> builtin_name(DifferentialDrive, Drive)
+    'differential-drive'
     """
     short = cls.__name__.removesuffix(contract.__name__) if contract.__name__ in SHORTENED else ""
     return kebab_case(short or cls.__name__)
@@ -101,6 +112,8 @@ def find_class(
     if ":" not in name:
         raise UnknownName(_plain_name(contract), name, known, address=True)
     place, _, attribute = name.rpartition(":")
+    if reads_only():
+        return describe_class(_source_file(place, folder or Path.cwd(), trust), attribute, contract, name)
     module = _load_file(place, folder or Path.cwd(), trust) if place.endswith(".py") else _load(place, trust)
     value = getattr(module, attribute, None)
     if not (inspect.isclass(value) and issubclass(value, contract)) or inspect.isabstract(value):
@@ -231,27 +244,55 @@ def _plain_name(contract: type) -> str:
     return kebab_case(contract.__name__).replace("-", " ")
 
 
-def _load(place: str, trust: bool) -> types.ModuleType:
+def _check_module(place: str, trust: bool) -> None:
     if not trust:
         raise InputError(f"the module {place!r} is not loaded from here; pass --trust to allow it")
+
+
+def _load(place: str, trust: bool) -> types.ModuleType:
+    _check_module(place, trust)
     try:
         return importlib.import_module(place)
     except ImportError as error:
         raise InputError(f"the module {place!r} cannot be imported: {error}") from None
 
 
-def _load_file(place: str, folder: Path, trust: bool) -> types.ModuleType:
+def _source_file(place: str, folder: Path, trust: bool) -> Path:
+    """Return the file of an address, found without importing anything."""
+    if place.endswith(".py"):
+        return _code_file(place, folder, trust)
+    _check_module(place, trust)
+    search: Any = None
+    spec = None
+    parts = place.split(".")
+    for k in range(len(parts)):
+        spec = importlib.machinery.PathFinder.find_spec(".".join(parts[: k + 1]), search)
+        if spec is None:
+            break
+        search = spec.submodule_search_locations or []
+    if spec is None or not (spec.origin or "").endswith(".py"):
+        raise InputError(f"the module {place!r} is not found as a Python file")
+    return Path(str(spec.origin))
+
+
+def _code_file(place: str, folder: Path, trust: bool) -> Path:
     path = (folder / place).resolve()
     if not trust and not path.is_relative_to(folder.resolve()):
         raise InputError(f"the file {place!r} lies outside {folder}; pass --trust to allow it")
     if not path.is_file():
         raise InputError(f"there is no file {path}")
+    return path
+
+
+def _load_file(place: str, folder: Path, trust: bool) -> types.ModuleType:
+    path = _code_file(place, folder, trust)
     name = f"crowdbot_plug_{path.stem}_{abs(hash(str(path)))}"
     if name in sys.modules:
         return sys.modules[name]
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None
     assert spec.loader is not None
+    logger.info("loads code from %s", place)
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
     try:

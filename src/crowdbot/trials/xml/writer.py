@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import Element, InputError, builtin_classes, builtin_name, format_xml
+from crowdbot.core import Element, InputError, builtin_classes, builtin_name, class_file, format_xml
 from crowdbot.trials.fields import FieldSpec, outline
 from crowdbot.trials.notation import plain
 from crowdbot.trials.randomized_model import RandomizedModel
@@ -89,9 +89,11 @@ def _type(part: FieldSpec, value: Any, folder: Path | None) -> str:
     room, contract = part.plug.places()
     if builtin_classes(room, contract).get(builtin_name(cls, contract)) is cls:
         return builtin_name(cls, contract)
-    module = sys.modules[cls.__module__]
-    if cls.__module__.startswith("crowdbot_plug_") and module.__file__:
+    module = sys.modules.get(cls.__module__)
+    file = class_file(cls)
+    if cls.__module__.startswith("crowdbot_plug_") and module is not None and module.__file__:
         file = Path(module.__file__)
+    if file is not None:
         place = file.name if folder is None else Path(os.path.relpath(file, folder.resolve())).as_posix()
         return f"{place}:{cls.__qualname__}"
     if "<locals>" in cls.__qualname__ or cls.__module__ == "__main__":
