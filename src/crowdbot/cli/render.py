@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .output import add_json, number, print_json, print_table, progress
-from .settings import add_settings, add_world, chosen, settings
+from .settings import add_settings, add_world, select_variant, settings
 
 if TYPE_CHECKING:
     from crowdbot.rendering import RenderRequest
@@ -49,7 +49,7 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.rendering import ImageWriter, camera_names, render_images
     from crowdbot.trials import load_trial
 
-    trial = chosen(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
+    trial = select_variant(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
     if options.list:
         return _listed(trial, options.json)
     take = _take(options, trial.duration)

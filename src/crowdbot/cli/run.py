@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from crowdbot.trials import trial_remarks
 
 from .output import add_json, number, print_json, print_metrics, print_table, progress, spoken_warnings
-from .settings import add_settings, add_world, chosen, settings
+from .settings import add_settings, add_world, select_variant, settings
 
 if TYPE_CHECKING:
     from crowdbot.simulation import RunSummary
@@ -35,7 +35,7 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.recording import record
     from crowdbot.trials import load_trial
 
-    trial = chosen(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
+    trial = select_variant(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
     file = None if options.out is None else options.out / "episode.mcap"
     clock = None if options.pace is None else PacedClock(trial.step, rate=options.pace)
     begin = time.perf_counter()

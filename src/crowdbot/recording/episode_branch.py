@@ -159,7 +159,7 @@ def _there(
     last = course.parts[-1]
     tick = _tick(last, at, name, latest)
     half = None if progress is None else lambda share: progress(0.5 * share)
-    simulation = course.begun(comparison, stop, half, until=tick)
+    simulation = course.simulate_until(comparison, stop, half, until=tick)
     if comparison.differs is not None:
         raise EpisodeError(
             f"{name} does not replay to the same bytes from {comparison.differs:g} s on, so there is no state to"

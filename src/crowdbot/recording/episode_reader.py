@@ -222,7 +222,7 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep])
     if complete:
         count = int(known["people"]) + len(robots)
     else:
-        count = 1 + max([-1, *places, *(who for moment in found for who in moment.named())])
+        count = 1 + max([-1, *places, *(who for moment in found for who in moment.largest_ids())])
     arrays = _Arrays.of(len(due), count)
     commands = np.zeros((len(due), len(robots), 3))
     for k, (moment, people) in enumerate(due):

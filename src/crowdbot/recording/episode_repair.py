@@ -49,7 +49,7 @@ class EpisodeEnd:
 
     def take(self, moment: RecordedStep) -> None:
         """Take an instant."""
-        self.count = max(self.count, *(1 + who for who in moment.named()), 0)
+        self.count = max(self.count, *(1 + who for who in moment.largest_ids()), 0)
         names = {name for one in moment.contacts for name in (one.robot, one.other)}
         self.touching |= {body[0] for name, body in self.bodies.items() if name in names}
         if moment.people is not None:

@@ -115,7 +115,7 @@ def replay(
     comparison = DigestComparison(EpisodeDigest(), wanted)
     with unpack_attachments(path, known, folder, trust) as place, catch_interrupt() as stop:
         course = Provenance.of(path, place.folder, trust)
-        simulation = course.begun(comparison, stop)
+        simulation = course.simulate_until(comparison, stop)
         ticks = int(recorded["steps"]) if recorded["outcome"] == "interrupted" else None
         outcome = run_to_end(simulation, [comparison], stop, progress, ticks)
         if stop.asked and simulation.tick != ticks:
@@ -126,7 +126,7 @@ def replay(
         recorded["trial_name"],
         int(recorded["seed"]),
         recorded["digest"],
-        comparison.digest.ended(outcome),
+        comparison.digest.hexdigest(outcome),
         (recorded["outcome"], outcome),
         {name: recorded.get(name, "unknown") for name in now},
         now,

@@ -26,7 +26,7 @@ from crowdbot.messages.marker_array import KIND as MARKERS
 from crowdbot.simulation import WALL, EpisodeStatistics, StepRecord
 from crowdbot.trials import Trial, trial_xml
 
-from .attachments import SkippedAttachmentWarning, collect_attachments, describe_skipped
+from .attachments import SkippedAttachmentWarning, collect_attachments, skip_message
 from .mcap_writer import McapWriter
 from .metadata import CONTACTS, DIGEST, ENDING, FORMAT, METADATA, as_json, versions
 
@@ -83,7 +83,7 @@ class Recorder:
         self.trial, self.seed = tally.trial, tally.seed
         self.xml = trial_xml(self.trial)
         self.files = collect_attachments([self.trial, *earlier])
-        if sentence := describe_skipped(file for file, _ in self.files):
+        if sentence := skip_message(file for file, _ in self.files):
             warnings.warn(sentence, SkippedAttachmentWarning, stacklevel=2)
         self.messages = Messages()
         self.channels: dict[str, int] = {}
@@ -145,7 +145,7 @@ class Recorder:
             self._write(topic, message, now)
         if frame.due:
             self._scene(frame, first)
-            self.last = frame.tick, self.tally.digest.ended("interrupted")
+            self.last = frame.tick, self.tally.digest.hexdigest("interrupted")
             self._write(DIGEST, make.text(self.last[1]), now)
         assert self.tape is not None
         if (frame.due and now >= self._write_due) or self.tape.large:
@@ -157,7 +157,7 @@ class Recorder:
         assert self.tape is not None
         interrupted = outcome == "interrupted"
         ending = {
-            "digest": self.last[1] if interrupted else self.tally.digest.ended(outcome),
+            "digest": self.last[1] if interrupted else self.tally.digest.hexdigest(outcome),
             "outcome": outcome,
             "steps": str(self.last[0] if interrupted else steps),
             "people": str(self.tally.agents - len(self.trial.robots)),
@@ -209,7 +209,7 @@ class Recorder:
         return [(names[one.robot], names.get(one.other, str(one.other)), one.clearance) for one in frame.touches]
 
     def _write(self, topic: str, message: Any, nanoseconds: int) -> None:
-        self._put(topic, message.__msgtype__, self.messages.encoded(message), nanoseconds)
+        self._put(topic, message.__msgtype__, self.messages.encode_message(message), nanoseconds)
 
     def _put(self, topic: str, kind: str, data: bytes, nanoseconds: int) -> None:
         assert self.tape is not None

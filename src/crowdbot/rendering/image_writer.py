@@ -93,10 +93,10 @@ class ImageWriter:
                 count += 1
                 for kind, one in zip(kinds, reels, strict=True):
                     one.add(_painted(shot, kind))
-            return [one.finished() for one in reels], count
+            return [one.finish() for one in reels], count
         finally:
             for one in reels:
-                one.abandoned()
+                one.abandon()
 
 
 def _saved(shot: RenderedImage, kind: str, path: Path) -> Path:

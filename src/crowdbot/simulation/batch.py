@@ -47,7 +47,7 @@ def run_batch(
         runs = [SimulationRun(Simulation(trial, log.seed), [log], stop=stop) for log in logs]
         told = -1
         while going := [running for running in runs if running.outcome is None]:
-            _step([running.stepping() for running in going])
+            _step([running.step_requests() for running in going])
             share = max(running.simulation.tick for running in going) * 100 // trial.ticks
             if progress is not None and share > told:
                 told = share

@@ -184,7 +184,7 @@ class EpisodeLog(EpisodeStatistics):
             np.stack(commands),
             {name: tuple(rows) for name, rows in self.readings.items()},
             self.metrics(outcome),
-            self.digest.ended(outcome),
+            self.digest.hexdigest(outcome),
         )
 
 

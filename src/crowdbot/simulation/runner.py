@@ -90,13 +90,13 @@ class SimulationRun:
         Raises:
             InputError: it has ended before.
         """
-        return run_step(self.stepping())
+        return run_step(self.step_requests())
 
-    def stepping(self) -> StepGenerator[str | None]:
+    def step_requests(self) -> StepGenerator[str | None]:
         """Go one step on as :meth:`step` does, and ask somebody else how the crowd walks."""
         if self.outcome is not None:
             raise InputError(f"the run has ended ({self.outcome}) at {self.simulation.world.clock.time:g} s")
-        yield from self.simulation.stepping()
+        yield from self.simulation.step_requests()
         self._observe()
         return self.outcome
 

@@ -161,9 +161,9 @@ class Simulation:
 
     def step(self) -> None:
         """Go one step on: parts 1 to 5 of the order."""
-        run_step(self.stepping())
+        run_step(self.step_requests())
 
-    def stepping(self) -> StepGenerator[None]:
+    def step_requests(self) -> StepGenerator[None]:
         """Go one step on, and ask somebody else how the crowd walks: see :func:`crowdbot.simulation.run_batch`."""
         before, ids = self.world.scene, self.ids.copy()
         yield from self.world.step_requests({carrier.agent: carrier.command for carrier in self.carriers})

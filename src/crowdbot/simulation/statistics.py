@@ -68,7 +68,7 @@ class EpisodeDigest:
         for collision in frame.collisions:
             self._sum.update(f"collision {dataclasses.astuple(collision)!r}\n".encode())
 
-    def ended(self, outcome: str) -> str:
+    def hexdigest(self, outcome: str) -> str:
         """Return the hash of everything so far and the outcome."""
         whole = self._sum.copy()
         whole.update(f"outcome {outcome}\n".encode())
@@ -128,7 +128,7 @@ class EpisodeStatistics:
             self.end,
             self.agents,
             self.metrics(outcome),
-            self.digest.ended(outcome),
+            self.digest.hexdigest(outcome),
             path,
         )
 
