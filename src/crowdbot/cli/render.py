@@ -29,6 +29,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help=".png, .jpg or .webp for an image, .mp4, .gif or .webp for a film, or a folder for numbered images",
     )
+    parser.add_argument("--force", action="store_true", help="overwrite an existing file")
     parser.add_argument("--at", type=float, metavar="T", help="one image at T s (default: 0)")
     parser.add_argument("--from", dest="begin", type=float, metavar="T", help="a film from T s on (default: 0)")
     parser.add_argument("--to", dest="end", type=float, metavar="T", help="a film until T s")
@@ -55,7 +56,7 @@ def main(options: argparse.Namespace) -> int:
     take = _take(options, trial.duration)
     camera = options.camera or camera_names(trial)[0]
     film = take.end is not None
-    album = ImageWriter(options.out or _default(trial.name, camera, film), film, _rate(take, trial.step))
+    album = ImageWriter(options.out or _default(trial.name, camera, film), film, _rate(take, trial.step), options.force)
     with progress(options.json) as report:
         found = render_images(
             trial,

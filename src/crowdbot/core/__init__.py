@@ -23,6 +23,7 @@ from .errors import (
 )
 from .model_parameter import Parameter, PerAgent, check_parameters, parameter, parameters, per_agent
 from .optional_imports import import_optional
+from .output_lock import lock_output, release_stale_lock
 from .paper import Paper
 from .plugin import (
     attribute_names,
@@ -111,6 +112,7 @@ __all__ = [
     "is_cold",
     "kebab_case",
     "kernel",
+    "lock_output",
     "nearest_name",
     "notify_compiling",
     "parameter",
@@ -121,6 +123,7 @@ __all__ = [
     "product",
     "read_bytes",
     "reject_entities",
+    "release_stale_lock",
     "required_fields",
     "run_saved_jobs",
     "source_digest",

@@ -38,8 +38,8 @@ __all__ = [
     "SkippedAttachmentWarning",
     "UnpackedFiles",
     "collect_attachments",
-    "skip_message",
     "named_files",
+    "skip_message",
     "unpack_attachments",
 ]
 

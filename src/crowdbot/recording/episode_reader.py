@@ -17,13 +17,13 @@ from crowdbot.data import MCAP_MAGIC, McapReader, Trajectories
 from crowdbot.messages import ContactEventRecord, ContactForceRecord
 from crowdbot.metrics import AgentStates
 from crowdbot.sensors import Reading
-from crowdbot.simulation import ScanRow, tracks_of
+from crowdbot.simulation import RunFailure, ScanRow, tracks_of
 
 from .episode_repair import EpisodeEnd
 from .metadata import END_KEYS, ENDING, KEYS, METADATA, from_json
 from .step_records import RecordedContact, RecordedStep, read_steps
 
-__all__ = ["RecordedEpisode", "iterate_steps", "read_episode", "read_metadata"]
+__all__ = ["RecordedEpisode", "iterate_steps", "read_episode", "read_metadata", "recorded_failure"]
 
 Floats = NDArray[np.float64]
 T = TypeVar("T")
@@ -100,6 +100,11 @@ class RecordedEpisode:
     def outcome(self) -> str:
         """How the run ended."""
         return self.metadata["outcome"]
+
+    @property
+    def failure(self) -> RunFailure | None:
+        """The exception that ended the run, for the outcome ``error``."""
+        return recorded_failure(self.metadata)
 
     @property
     def digest(self) -> str:
@@ -202,6 +207,13 @@ def _known(path: Path, records: Mapping[str, dict[str, str]]) -> dict[str, str]:
     if any(key not in known for key in KEYS):
         raise EpisodeError(f"{path} is an MCAP file but not an episode of crowdbot: it has no record {METADATA!r}")
     return known
+
+
+def recorded_failure(known: Mapping[str, str]) -> RunFailure | None:
+    """Return the exception that the metadata of an episode name, if any."""
+    if "error" not in known:
+        return None
+    return RunFailure(known["error"], known.get("error_place", "unknown"), float(known.get("error_time", "nan")))
 
 
 def _by_topic(found: Iterable[Mapping[str, T]]) -> dict[str, list[T]]:

@@ -125,7 +125,7 @@ def _on(
     while simulation.tick < end:
         if running.outcome is not None:
             raise EpisodeError(
-                f"the episode ends at {simulation.world.clock.time:g} s ({running.outcome}), before"
+                f"the episode ends at {simulation.world.clock.time:g} s ({running.failure or running.outcome}), before"
                 f" {end * simulation.world.clock.step_ns / 1e9:g} s"
             )
         running.step()

@@ -30,6 +30,7 @@ from crowdbot.sensors import Reading, Scan
 from crowdbot.trials import Mount, RobotSpec, Trial, element_word, people_appearance, place
 from crowdbot.world import StepGenerator, run_step
 
+from .failure import RunFailure
 from .mounted_sensor import MountedSensor, mounted_sensors
 from .termination import end_outcome, goal_zones
 from .world_builder import build_world, limits_of, start_scene
@@ -123,6 +124,7 @@ class Simulation:
         touches: contacts of the latest step.
         begun: whether the parts 6 to 8 of tick 0 are done.
         ended: the outcome once another condition of the trial for its end holds.
+        failure: the exception that ended the run, if one did.
 
     Raises:
         TrialError: people do not fit with this seed.
@@ -156,6 +158,7 @@ class Simulation:
         if clock is not None:
             self._keep_time(clock)
         self.ended: str | None = None
+        self.failure: RunFailure | None = None
         self._ways_out = goal_zones(people)
         self._told = 0
 

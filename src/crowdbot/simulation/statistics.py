@@ -17,6 +17,7 @@ from crowdbot.core import Pose, SpatialPose
 from crowdbot.metrics import AgentStates, NavigationMetrics
 from crowdbot.trials import Trial
 
+from .failure import RunFailure
 from .simulation import StepRecord
 
 __all__ = ["EpisodeDigest", "EpisodeStatistics", "RunSummary", "present", "robot_metrics"]
@@ -32,6 +33,7 @@ class RunSummary:
         begin, end: times of the first and the last recorded instant [s].
         agents: how many people and robots there ever were.
         path: the recording, if there is one.
+        failure: the exception that ended the run, for the outcome ``error``.
     """
 
     trial: Trial
@@ -44,6 +46,7 @@ class RunSummary:
     metrics: Mapping[str, float]
     digest: str
     path: Path | None = None
+    failure: RunFailure | None = None
 
 
 class EpisodeDigest:
@@ -117,7 +120,9 @@ class EpisodeStatistics:
         """Return the metrics of every robot."""
         return robot_metrics(self.travels, [robot.name for robot in self.trial.robots], outcome)
 
-    def summary(self, outcome: str, steps: int, path: Path | None = None) -> RunSummary:
+    def summary(
+        self, outcome: str, steps: int, path: Path | None = None, failure: RunFailure | None = None
+    ) -> RunSummary:
         """Return how the run went."""
         return RunSummary(
             self.trial,
@@ -130,6 +135,7 @@ class EpisodeStatistics:
             self.metrics(outcome),
             self.digest.hexdigest(outcome),
             path,
+            failure,
         )
 
 
