@@ -24,6 +24,7 @@ from .errors import (
 )
 from .model_parameter import Parameter, PerAgent, check_parameters, parameter, parameters, per_agent
 from .optional_imports import import_optional
+from .output_lock import lock_output, release_stale_lock
 from .paper import Paper
 from .plugin import (
     attribute_names,
@@ -114,6 +115,7 @@ __all__ = [
     "is_cold",
     "kebab_case",
     "kernel",
+    "lock_output",
     "nearest_name",
     "notify_compiling",
     "parameter",
@@ -125,6 +127,7 @@ __all__ = [
     "read_bytes",
     "reads_only",
     "reject_entities",
+    "release_stale_lock",
     "required_fields",
     "run_saved_jobs",
     "source_digest",

@@ -38,8 +38,8 @@ __all__ = [
     "SkippedAttachmentWarning",
     "UnpackedFiles",
     "collect_attachments",
-    "describe_skipped",
     "named_files",
+    "skip_message",
     "unpack_attachments",
 ]
 
@@ -163,7 +163,7 @@ def collect_attachments(trials: Iterable[Trial]) -> list[tuple[AttachedFile, Pat
     return rows
 
 
-def describe_skipped(rows: Iterable[AttachedFile]) -> str:
+def skip_message(rows: Iterable[AttachedFile]) -> str:
     """Return a sentence about the files that an episode does not keep, empty when there are none."""
     gone = [row for row in rows if not row.kept]
     if not gone:
