@@ -8,7 +8,7 @@ from physics_worlds import alone
 from real_robots import ROBOTS
 from robot_texts import joint, link, robot
 
-from crowdbot.core import InputError, RobotError, Twist
+from crowdbot.core import InputError, Twist
 from crowdbot.world import AckermannDrive, DifferentialDrive, Omnidirectional, Robot, Wheel, read_urdf
 
 ROUND = 0.4 * np.stack([np.cos(np.arange(8) * math.pi / 4), np.sin(np.arange(8) * math.pi / 4)], axis=1)

@@ -31,7 +31,7 @@ from .nearby_people import people_near
 from .people_bodies import PeopleBodies
 from .people_motion import LimbCapsules, PeopleMotion
 from .robot_body import RobotBody
-from .scenery import joined, outline_props
+from .scenery import add_rings, outline_props
 from .stage import PhysicsStage
 from .world_checks import check_arguments
 
@@ -114,7 +114,7 @@ class PhysicsWorld(PlanarWorld):
         stage = stage or PhysicsStage()
         check_arguments(scene, robots, dt, physics_dt, slots)
         self._steps = round(dt / physics_dt)
-        self._outlined = joined(scene.walls, stage.outlines())
+        self._outlined = add_rings(scene.walls, stage.outlines())
         super().__init__(scene, model, {agent: robot.drive for agent, robot in robots.items()}, dt, seed, **planar)
         persons = np.array([a for a in range(scene.shape[1]) if a not in robots], dtype=np.int64)
         self.stage, self.physics_dt = stage, physics_dt
