@@ -11,12 +11,12 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from pages import ROOT
-from samples import sample
 
 import crowdbot as cb
 from crowdbot.core import Disc, Path2D, draw_svg
 from crowdbot.data import Forecast
 from crowdbot.trials import builtin_trials
+from samples import sample
 
 NOTEBOOKS = sorted((ROOT / "examples").glob("*.ipynb"))
 

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 from pages import DOCS, ROOT, Block, blocks
-from samples import sample
 
 from crowdbot.cli import COMMANDS, main
+from samples import sample
 
 OWN_TEST = {"tutorials/first-trial.md", "tutorials/first-experiment.md"}
 """Pages that tests of their own follow, since a reader types or edits in between."""
