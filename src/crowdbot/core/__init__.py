@@ -34,6 +34,7 @@ from .plugin import (
     kebab_case,
     required_fields,
 )
+from .plugin_module import plugin_address, plugin_sources, sources_of
 from .pose import MOUNT_HEIGHT, Pose, SpatialPose, Twist, product, wrap_angle
 from .random import stream
 from .scene import PERSON_HEIGHT, Scene
@@ -118,12 +119,15 @@ __all__ = [
     "parse_number",
     "parse_xml",
     "per_agent",
+    "plugin_address",
+    "plugin_sources",
     "product",
     "read_bytes",
     "reject_entities",
     "required_fields",
     "run_saved_jobs",
     "source_digest",
+    "sources_of",
     "stream",
     "wrap_angle",
 ]

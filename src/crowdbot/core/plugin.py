@@ -1,18 +1,16 @@
-"""Plugs: from a name or an address to a class, from text attributes to its fields.
+"""Plugins: from a name or an address to a class, from text attributes to its fields.
 
 Built-in names are the classes in a room's ``__all__``, written in kebab-case. Anything else is an address:
-``package.module:Name`` or ``file.py:Name``. The same words work in Python, XML and on the command line.
+``file.py:Name``, ``folder/:Name`` or ``package.module:Name``. The same words work in Python, XML and on the command
+line.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import functools
-import importlib
-import importlib.util
 import inspect
 import re
-import sys
 import types
 import typing
 from collections.abc import Iterable, Mapping
@@ -22,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from .errors import InputError, UnknownName, did_you_mean
+from .plugin_module import load_plugin_module
 
 __all__ = [
     "attribute_names",
@@ -75,11 +74,12 @@ def find_class(
     """Return the class that ``name`` means: a built-in name or an address.
 
     Args:
-        name: ``social-force``, ``SocialForce``, ``package.module:Name`` or ``file.py:Name``.
-        room: the package of the built-in ones.
-        contract: what the class must be.
-        folder: where relative files are looked up (default: the working folder).
-        trust: when False, only files inside ``folder`` are loaded; that is how trials from elsewhere are read.
+        name: ``social-force``, ``SocialForce``, ``file.py:Name``, ``folder/:Name``, ``folder.file:Name`` or
+            ``package.module:Name``.
+        room: package of the built-in classes.
+        contract: base class of the class.
+        folder: folder of relative files and folders (default: the working folder).
+        trust: if False, only code inside ``folder`` is loaded.
 
     Raises:
         UnknownName: no built-in has this name.
@@ -93,7 +93,7 @@ def find_class(
     if ":" not in name:
         raise UnknownName(_spoken(contract), name, known, address=True)
     place, _, attribute = name.rpartition(":")
-    module = _load_file(place, folder or Path.cwd(), trust) if place.endswith(".py") else _load(place, trust)
+    module, attribute = load_plugin_module(place, attribute, folder or Path.cwd(), trust)
     value = getattr(module, attribute, None)
     if not (inspect.isclass(value) and issubclass(value, contract)) or inspect.isabstract(value):
         here = [n for n, v in vars(module).items() if inspect.isclass(v) and issubclass(v, contract)]
@@ -221,34 +221,3 @@ def _number(text: str, what: str) -> float:
 
 def _spoken(contract: type) -> str:
     return kebab_case(contract.__name__).replace("-", " ")
-
-
-def _load(place: str, trust: bool) -> types.ModuleType:
-    if not trust:
-        raise InputError(f"the module {place!r} is not loaded from here; pass --trust to allow it")
-    try:
-        return importlib.import_module(place)
-    except ImportError as error:
-        raise InputError(f"the module {place!r} cannot be imported: {error}") from None
-
-
-def _load_file(place: str, folder: Path, trust: bool) -> types.ModuleType:
-    path = (folder / place).resolve()
-    if not trust and not path.is_relative_to(folder.resolve()):
-        raise InputError(f"the file {place!r} lies outside {folder}; pass --trust to allow it")
-    if not path.is_file():
-        raise InputError(f"there is no file {path}")
-    name = f"crowdbot_plug_{path.stem}_{abs(hash(str(path)))}"
-    if name in sys.modules:
-        return sys.modules[name]
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    try:
-        spec.loader.exec_module(module)
-    except Exception as error:
-        del sys.modules[name]
-        raise InputError(f"{path} cannot be loaded: {type(error).__name__}: {error}") from error
-    return module
