@@ -8,6 +8,7 @@ from crowdbot.lazy import lazy_exports
 
 from .bodies import STAGE, Bodies, Skins
 from .bounds import Bounds, check_number
+from .class_source import UnreadableValue, reads_only, unread_fields, without_running_code
 from .clock import Clock, ExternalClock, FreeClock, PacedClock
 from .errors import (
     CrowdbotError,
@@ -94,6 +95,7 @@ __all__ = [
     "TrialError",
     "Twist",
     "UnknownName",
+    "UnreadableValue",
     "Walls",
     "attribute_names",
     "attribute_problems",
@@ -123,11 +125,14 @@ __all__ = [
     "plugin_sources",
     "product",
     "read_bytes",
+    "reads_only",
     "reject_entities",
     "required_fields",
     "run_saved_jobs",
     "source_digest",
     "sources_of",
     "stream",
+    "unread_fields",
+    "without_running_code",
     "wrap_angle",
 ]

@@ -19,8 +19,12 @@ from typing import Any
 
 import numpy as np
 
+from .class_source import describe_class, reads_only
 from .errors import InputError, UnknownName, did_you_mean
-from .plugin_module import load_plugin_module
+from .plugin_module import load_plugin_module, plugin_source
+
+SHORTENED = ("Navigator",)
+"""Contracts whose names are left out at the end of a built-in name, since a crowd model may have the same name."""
 
 __all__ = [
     "attribute_names",
@@ -44,14 +48,19 @@ def kebab_case(name: str) -> str:
 
 
 def builtin_name(cls: type, contract: type) -> str:
-    """Return the name of a built-in class: kebab-case, without the name of its contract at the end.
+    """Return the name of a built-in class in kebab-case, of a navigator without ``Navigator`` at its end.
 
     >>> class Navigator: pass
     >>> class ORCANavigator(Navigator): pass
     >>> builtin_name(ORCANavigator, Navigator)
     'orca'
+    >>> class Drive: pass
+    >>> class DifferentialDrive(Drive): pass
+    >>> builtin_name(DifferentialDrive, Drive)
+    'differential-drive'
     """
-    return kebab_case(cls.__name__.removesuffix(contract.__name__) or cls.__name__)
+    short = cls.__name__.removesuffix(contract.__name__) if contract.__name__ in SHORTENED else ""
+    return kebab_case(short or cls.__name__)
 
 
 def builtin_classes(room: types.ModuleType, contract: type) -> dict[str, type]:
@@ -86,13 +95,17 @@ def find_class(
         InputError: the address cannot be loaded, is not of the contract, or is not trusted.
     """
     known = builtin_classes(room, contract)
-    plain = {key.replace("-", ""): value for key, value in known.items()}
+    plain = {value.__name__.lower(): value for value in known.values()}
+    plain |= {key.replace("-", ""): value for key, value in known.items()}
     short = name.strip().replace("-", "").replace("_", "").lower()
     if short in plain:
         return plain[short]
     if ":" not in name:
         raise UnknownName(_spoken(contract), name, known, address=True)
     place, _, attribute = name.rpartition(":")
+    if reads_only():
+        file, attribute = plugin_source(place, attribute, folder or Path.cwd(), trust)
+        return describe_class(file, attribute, contract, name)
     module, attribute = load_plugin_module(place, attribute, folder or Path.cwd(), trust)
     value = getattr(module, attribute, None)
     if not (inspect.isclass(value) and issubclass(value, contract)) or inspect.isabstract(value):

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import importlib
+import importlib.machinery
 import importlib.util
+import logging
 import os
 import re
 import sys
 import types
 from pathlib import Path
+from typing import Any
 
+from .class_source import class_file
 from .errors import InputError
 
-__all__ = ["load_plugin_module", "plugin_address", "plugin_sources", "sources_of"]
+__all__ = ["load_plugin_module", "plugin_address", "plugin_source", "plugin_sources", "sources_of"]
 
 PREFIX = "crowdbot_plug_"
+logger = logging.getLogger("crowdbot")
 
 
 def load_plugin_module(place: str, attribute: str, folder: Path, trust: bool) -> tuple[types.ModuleType, str]:
@@ -32,26 +37,33 @@ def load_plugin_module(place: str, attribute: str, folder: Path, trust: bool) ->
     Raises:
         InputError: the code cannot be loaded or is not trusted.
     """
-    if place.endswith(".py"):
-        return _load_file(_inside(folder, place, trust)), attribute
-    local = _local(place, folder)
-    if local is None:
-        if "/" in place or "\\" in place:
-            raise InputError(f"there is no folder {folder / place}")
+    path, inner, name = _locate(place, attribute, folder, trust)
+    if path is None:
         return _import(place, trust), attribute
-    root, inner = local
-    if root.is_file():
-        return _load_file(_inside(folder, root.name, trust)), attribute
-    path = _inside(folder, str(root), trust)
-    own = sys.modules.get(path.name)
-    if own is not None and str(path) in [str(Path(one).resolve()) for one in getattr(own, "__path__", ())]:
-        return _import(place, trust=True), attribute  # the folder is a package that is imported already
-    package = _load_package(path)
-    *modules, name = attribute.split(".")
-    inner = ".".join([inner, *modules]).strip(".")
-    if inner == "" and not hasattr(package, name):
-        inner = _defining_file(path, name)
+    if path.is_file():
+        return _load_file(path, place), name
+    package = _load_package(path, place)
     return (_submodule(package, inner, path) if inner else package), name
+
+
+def plugin_source(place: str, attribute: str, folder: Path, trust: bool) -> tuple[Path, str]:
+    """Return the file of an address and the name of the class in it, without running any code.
+
+    Args:
+        place, attribute, folder, trust: arguments of :func:`load_plugin_module`.
+
+    Raises:
+        InputError: there is no such file, or it is not trusted.
+    """
+    path, inner, name = _locate(place, attribute, folder, trust)
+    if path is None:
+        return _module_file(place, trust), attribute
+    if path.is_dir():
+        file = path.joinpath(*inner.split(".")) if inner else path
+        path = file / "__init__.py" if file.is_dir() else file.with_name(f"{file.name}.py")
+        if not path.is_file():
+            raise InputError(f"there is no file {path}")
+    return path, name
 
 
 def plugin_sources(place: str, folder: Path) -> tuple[str, ...]:
@@ -71,7 +83,9 @@ def plugin_sources(place: str, folder: Path) -> tuple[str, ...]:
 
 def sources_of(cls: type) -> tuple[Path, ...]:
     """Return the Python files of a class that was loaded from a file or a folder; empty for other classes."""
-    package = _package_of(cls)
+    described, package = class_file(cls), _package_of(cls)
+    if described is not None:
+        return (described,)
     if package is not None:
         return tuple(_python_files(Path(package.__path__[0])))
     module = sys.modules.get(cls.__module__)
@@ -122,6 +136,56 @@ def _local(place: str, folder: Path) -> tuple[Path, str] | None:
     return (path, inner) if path.is_dir() and there and _python_files(path) else None
 
 
+def _locate(place: str, attribute: str, folder: Path, trust: bool) -> tuple[Path | None, str, str]:
+    """Return the file or folder of an address, the dotted module in the folder and the name of the class.
+
+    The path is None for an installed module.
+    """
+    if place.endswith(".py"):
+        return _inside(folder, place, trust), "", attribute
+    local = _local(place, folder)
+    if local is None:
+        if "/" in place or "\\" in place:
+            raise InputError(f"there is no folder {folder / place}")
+        return None, "", attribute
+    root, inner = local
+    path = _inside(folder, str(root), trust)
+    if path.is_file():
+        return path, "", attribute
+    if _is_imported(path):
+        return None, "", attribute
+    *modules, name = attribute.split(".")
+    inner = ".".join([inner, *modules]).strip(".") or _defining_file(path, name)
+    return path, "" if inner == "__init__" else inner, name
+
+
+def _is_imported(path: Path) -> bool:
+    """Return whether a folder is a package that has been imported under its own name."""
+    own = getattr(sys.modules.get(path.name), "__path__", ())
+    return str(path) in [str(Path(one).resolve()) for one in own]
+
+
+def _module_file(place: str, trust: bool) -> Path:
+    """Return the file of an installed module, found without importing it."""
+    _check_module(place, trust)
+    search: Any = None
+    spec = None
+    parts = place.split(".")
+    for k in range(len(parts)):
+        spec = importlib.machinery.PathFinder.find_spec(".".join(parts[: k + 1]), search)
+        if spec is None:
+            break
+        search = spec.submodule_search_locations or []
+    if spec is None or not (spec.origin or "").endswith(".py"):
+        raise InputError(f"the module {place!r} is not found as a Python file")
+    return Path(str(spec.origin))
+
+
+def _check_module(place: str, trust: bool) -> None:
+    if not trust:
+        raise InputError(f"the module {place!r} is not loaded from here; pass --trust to allow it")
+
+
 def _python_files(folder: Path) -> list[Path]:
     return sorted(path for path in folder.rglob("*.py") if "__pycache__" not in path.parts)
 
@@ -129,7 +193,7 @@ def _python_files(folder: Path) -> list[Path]:
 def _defining_file(folder: Path, name: str) -> str:
     """Return the module in a folder that defines a class, found without running any code."""
     pattern = re.compile(r"^class\s+(\w+)", flags=re.MULTILINE)
-    files = [path for path in sorted(folder.glob("*.py")) if not path.stem.startswith(("test_", "_"))]
+    files = [path for path in sorted(folder.glob("*.py")) if not path.stem.startswith("test_")]
     names = {path.stem: pattern.findall(path.read_text(encoding="utf-8", errors="replace")) for path in files}
     found = [stem for stem, classes in names.items() if name in classes]
     if len(found) == 1:
@@ -152,8 +216,7 @@ def _inside(folder: Path, place: str, trust: bool) -> Path:
 
 
 def _import(place: str, trust: bool) -> types.ModuleType:
-    if not trust:
-        raise InputError(f"the module {place!r} is not loaded from here; pass --trust to allow it")
+    _check_module(place, trust)
     try:
         return importlib.import_module(place)
     except ImportError as error:
@@ -165,7 +228,7 @@ def _plugin_name(path: Path) -> str:
     return f"{PREFIX}{stem}_{abs(hash(str(path)))}"
 
 
-def _load_file(path: Path, search: list[str] | None = None) -> types.ModuleType:
+def _load_file(path: Path, place: str, search: list[str] | None = None) -> types.ModuleType:
     """Run a Python file as a module, or return the module if it has run."""
     if not path.is_file():
         raise InputError(f"there is no file {path}")
@@ -175,6 +238,7 @@ def _load_file(path: Path, search: list[str] | None = None) -> types.ModuleType:
     spec = importlib.util.spec_from_file_location(name, path, submodule_search_locations=search)
     assert spec is not None
     assert spec.loader is not None
+    logger.info("loads code from %s", place)
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
     try:
@@ -185,12 +249,13 @@ def _load_file(path: Path, search: list[str] | None = None) -> types.ModuleType:
     return module
 
 
-def _load_package(path: Path) -> types.ModuleType:
+def _load_package(path: Path, place: str) -> types.ModuleType:
     """Return a folder as a package; ``__init__.py`` is optional."""
     if (path / "__init__.py").is_file():
-        return _load_file(path / "__init__.py", [str(path)])
+        return _load_file(path / "__init__.py", place, [str(path)])
     name = _plugin_name(path)
     if name not in sys.modules:
+        logger.info("loads code from %s", place)
         package = types.ModuleType(name)
         package.__path__ = [str(path)]
         sys.modules[name] = package
@@ -198,8 +263,11 @@ def _load_package(path: Path) -> types.ModuleType:
 
 
 def _submodule(package: types.ModuleType, inner: str, path: Path) -> types.ModuleType:
+    name = f"{package.__name__}.{inner}"
+    if name in sys.modules:
+        return sys.modules[name]
     try:
         importlib.invalidate_caches()
-        return importlib.import_module(f"{package.__name__}.{inner}")
+        return importlib.import_module(name)
     except Exception as error:
         raise InputError(f"{inner} in {path} cannot be loaded: {type(error).__name__}: {error}") from error

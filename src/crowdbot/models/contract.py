@@ -88,11 +88,9 @@ def _check_frozen(value: object) -> None:
 
 def _places(goal: Goal, past: Windows) -> Floats:
     name, before, here = type(goal).__name__, past.position.copy(), past.present[:, -1]
-    place = np.asarray(goal.resolve(past))
-    if place.shape != (*here.shape, 2):
-        raise InputError(
-            f"{name}.resolve returned shape {list(place.shape)}, it must be [W, A, 2] = {[*here.shape, 2]}"
-        )
+    place, wanted = np.asarray(goal.resolve(past)), [*here.shape, 2]
+    if list(place.shape) != wanted:
+        raise InputError(f"{name}.resolve returned shape {list(place.shape)}, it must be [W, A, 2] = {wanted}")
     if not np.all(np.isfinite(place)) or np.any(place[~here] != 0.0):
         raise InputError(f"{name}.resolve must be finite, and 0 for people who are absent at the last row")
     if not np.array_equal(past.position, before):

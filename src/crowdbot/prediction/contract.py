@@ -39,7 +39,7 @@ def check_predictor(predictor: Predictor) -> None:
         except InputError:
             continue
         raise InputError(
-            f"{name}.predict accepts steps={steps}, samples={samples}; call self.check(past, steps, samples)"
+            f"{name}.predict accepts steps = {steps}, samples = {samples}; call self.check(past, steps, samples) first"
         )
 
 

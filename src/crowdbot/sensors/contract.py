@@ -38,9 +38,7 @@ def check_sensor(sensor: Sensor, renderer: ImageSource | None = None) -> None:
     views = [SensorView(_scene(time), _pose(time), renderer) for time in (0.0, 0.1, 0.2)]
     readings = _sequence(sensor, views)
     if not all(_same(one, other) for one, other in zip(readings, _sequence(sensor, views), strict=True)):
-        raise InputError(
-            f"{name}.measure is not deterministic: the same view, state and generator gave another reading"
-        )
+        raise InputError(f"{name}.measure is not deterministic: the same input gave another reading")
     for view, time in zip(views, (0.0, 0.1, 0.2), strict=True):
         if not _same(view.scene.position, _scene(time).position) or not _same(view.pose.position, _pose(time).position):
             raise InputError(f"{name}.measure changes the view; it must only read it")
@@ -70,9 +68,11 @@ def _check_alone(name: str, alone: Reading, both: Reading) -> None:
     """Check the arrays that have environments first."""
     for field in dataclasses.fields(both):
         one, two = getattr(alone, field.name), getattr(both, field.name)
-        if isinstance(two, np.ndarray) and two.ndim and (two.shape[0] != 2 or not _same(np.asarray(one)[0], two[0])):
+        if not isinstance(two, np.ndarray) or two.ndim == 0 or _same(one, two):  # equal: it has no environments
+            continue
+        if two.shape[0] != 2 or not _same(np.asarray(one)[:1], two[:1]):
             raise InputError(
-                f"{name}: {field.name} of environment 0 has shape {list(two.shape)}; the first axis must be the"
+                f"{name}: {field.name} has shape {list(two.shape)} in 2 environments; the first axis must be the"
                 " environments, and each environment must give the same values alone"
             )
 
@@ -86,7 +86,7 @@ def _same(one: Any, other: Any) -> bool:
         return len(one) == len(other) and all(map(_same, one, other))
     if isinstance(one, np.ndarray):
         return np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
-    return bool(one == other or (one != one and other != other))
+    return np.array_equal(np.asarray(one), np.asarray(other), equal_nan=isinstance(one, float))
 
 
 def _pose(time: float) -> Pose:

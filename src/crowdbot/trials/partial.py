@@ -12,7 +12,7 @@ import functools
 from collections.abc import Container, Iterable, Iterator, Mapping
 from typing import Any, TypeVar
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, UnreadableValue
 
 __all__ = [
     "EVERYTHING",
@@ -30,10 +30,6 @@ __all__ = [
 
 T = TypeVar("T")
 LOST, ORIGIN, WHOLE = "_lost_of_it", "_origin_of_it", "_whole_of_it"
-
-
-class UnreadableValue(Exception):
-    """What is looked at could not be read, and that was said already."""
 
 
 class _Everything:

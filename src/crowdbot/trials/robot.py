@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot import world
-from crowdbot.core import MOUNT_HEIGHT, Clock, InputError, RobotError, did_you_mean
+from crowdbot.core import MOUNT_HEIGHT, Clock, InputError, RobotError, did_you_mean, reads_only
 from crowdbot.navigation import Navigator
 from crowdbot.sensors import Sensor, SensorSchedule
 from crowdbot.world import Drive, builtin_robots, frame, roll_pitch_yaw
@@ -303,7 +303,7 @@ def _kind(name: str, folder: Path | None, trust: bool) -> world.Robot:
     place = _folder(name, folder, trust)
     if place is None:
         return _built_in(name)
-    return _loaded(place, trust, (place / "robot.xml").stat().st_mtime_ns)
+    return _loaded(place, trust, (place / "robot.xml").stat().st_mtime_ns, reads_only())
 
 
 @functools.cache
@@ -318,7 +318,7 @@ def _assets(name: str) -> Path:
 
 
 @functools.lru_cache(maxsize=16)
-def _loaded(place: Path, trust: bool, stamp: int) -> world.Robot:
+def _loaded(place: Path, trust: bool, stamp: int, described: bool) -> world.Robot:
     try:
         return world.Robot.load(place, trust=trust)
     except RobotError as error:

@@ -30,9 +30,7 @@ def check_robot(robot: Robot) -> None:
         scene = world.step({0: Twist(speed)})
     x, y = scene.position[0, 0]
     if not 0.0 < x <= 50 * DT * speed + 1e-6 or abs(y) > 0.1 * x:
-        raise InputError(
-            f"{robot.name}: driven forward with {speed:g} m/s for 5 s, it is at x = {x:.3f}, y = {y:.3f} m"
-        )
+        raise InputError(f"{robot.name}: after 5 s forward at {speed:g} m/s it is at x = {x:.3f}, y = {y:.3f} m")
     still = Pose.of((0.0, 0.0), 0.0)
     for mount in robot.mounts:
         place = robot.sensor_pose(mount.name, still).position[0]

@@ -24,6 +24,7 @@ from crowdbot.core import (
     nearest_name,
     parse_number,
     required_fields,
+    unread_fields,
 )
 from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.fields import FieldSpec, PluginSpec, outline, quote_value
@@ -261,7 +262,8 @@ class XmlReader:
         for sentence in wrong.values():
             self.say(element.line, element.tag, sentence)
         if not wrong and made is not None:
-            return made
+            unread = {name for name in unread_fields(cls) if name.replace("_", "-") not in texts and name not in texts}
+            return made if not unread else torn(cls, vars(made), unread)
         lost = {key.replace("-", "_") for key in wrong}
         values = {} if made is None else {field.name: getattr(made, field.name) for field in dataclasses.fields(cls)}
         lost |= {field.name for field in dataclasses.fields(cls) if field.name not in values}
