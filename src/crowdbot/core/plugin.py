@@ -1,20 +1,16 @@
-"""Plugins: classes by name or address, and their fields from text attributes.
+"""Plugins: from a name or an address to a class, from text attributes to its fields.
 
-Built-in names are the classes in the ``__all__`` of a package, in kebab-case. An address is ``package.module:Name`` or
-``file.py:Name``. Names and addresses are the same in Python, in XML and on the command line.
+Built-in names are the classes in a room's ``__all__``, written in kebab-case. Anything else is an address:
+``file.py:Name``, ``folder/:Name`` or ``package.module:Name``. The same words work in Python, XML and on the command
+line.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import functools
-import importlib
-import importlib.machinery
-import importlib.util
 import inspect
-import logging
 import re
-import sys
 import types
 import typing
 from collections.abc import Iterable, Mapping
@@ -25,10 +21,10 @@ import numpy as np
 
 from .class_source import describe_class, reads_only
 from .errors import InputError, UnknownName, did_you_mean
+from .plugin_module import load_plugin_module, plugin_source
 
 SHORTENED = ("Navigator",)
 """Contracts whose names are left out at the end of a built-in name, since a crowd model may have the same name."""
-logger = logging.getLogger("crowdbot")
 
 __all__ = [
     "attribute_names",
@@ -93,11 +89,12 @@ def find_class(
     """Return the class with a built-in name or an address.
 
     Args:
-        name: ``social-force``, ``SocialForce``, ``package.module:Name`` or ``file.py:Name``.
+        name: ``social-force``, ``SocialForce``, ``file.py:Name``, ``folder/:Name``, ``folder.file:Name`` or
+            ``package.module:Name``.
         room: package of the built-in classes.
-        contract: base class of the result.
-        folder: base of relative file names (default: the working folder).
-        trust: if False, only files inside ``folder`` are loaded, as for trials of other authors.
+        contract: base class of the class.
+        folder: folder of relative files and folders (default: the working folder).
+        trust: if False, only code inside ``folder`` is loaded.
 
     Raises:
         UnknownName: no built-in class has this name.
@@ -113,8 +110,9 @@ def find_class(
         raise UnknownName(_plain_name(contract), name, known, address=True)
     place, _, attribute = name.rpartition(":")
     if reads_only():
-        return describe_class(_source_file(place, folder or Path.cwd(), trust), attribute, contract, name)
-    module = _load_file(place, folder or Path.cwd(), trust) if place.endswith(".py") else _load(place, trust)
+        file, attribute = plugin_source(place, attribute, folder or Path.cwd(), trust)
+        return describe_class(file, attribute, contract, name)
+    module, attribute = load_plugin_module(place, attribute, folder or Path.cwd(), trust)
     value = getattr(module, attribute, None)
     if not (inspect.isclass(value) and issubclass(value, contract)) or inspect.isabstract(value):
         here = [n for n, v in vars(module).items() if inspect.isclass(v) and issubclass(v, contract)]
@@ -242,62 +240,3 @@ def _number(text: str, what: str) -> float:
 
 def _plain_name(contract: type) -> str:
     return kebab_case(contract.__name__).replace("-", " ")
-
-
-def _check_module(place: str, trust: bool) -> None:
-    if not trust:
-        raise InputError(f"the module {place!r} is not loaded from here; pass --trust to allow it")
-
-
-def _load(place: str, trust: bool) -> types.ModuleType:
-    _check_module(place, trust)
-    try:
-        return importlib.import_module(place)
-    except ImportError as error:
-        raise InputError(f"the module {place!r} cannot be imported: {error}") from None
-
-
-def _source_file(place: str, folder: Path, trust: bool) -> Path:
-    """Return the file of an address, found without importing anything."""
-    if place.endswith(".py"):
-        return _code_file(place, folder, trust)
-    _check_module(place, trust)
-    search: Any = None
-    spec = None
-    parts = place.split(".")
-    for k in range(len(parts)):
-        spec = importlib.machinery.PathFinder.find_spec(".".join(parts[: k + 1]), search)
-        if spec is None:
-            break
-        search = spec.submodule_search_locations or []
-    if spec is None or not (spec.origin or "").endswith(".py"):
-        raise InputError(f"the module {place!r} is not found as a Python file")
-    return Path(str(spec.origin))
-
-
-def _code_file(place: str, folder: Path, trust: bool) -> Path:
-    path = (folder / place).resolve()
-    if not trust and not path.is_relative_to(folder.resolve()):
-        raise InputError(f"the file {place!r} lies outside {folder}; pass --trust to allow it")
-    if not path.is_file():
-        raise InputError(f"there is no file {path}")
-    return path
-
-
-def _load_file(place: str, folder: Path, trust: bool) -> types.ModuleType:
-    path = _code_file(place, folder, trust)
-    name = f"crowdbot_plug_{path.stem}_{abs(hash(str(path)))}"
-    if name in sys.modules:
-        return sys.modules[name]
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None
-    assert spec.loader is not None
-    logger.info("loads code from %s", place)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    try:
-        spec.loader.exec_module(module)
-    except Exception as error:
-        del sys.modules[name]
-        raise InputError(f"{path} cannot be loaded: {type(error).__name__}: {error}") from error
-    return module
