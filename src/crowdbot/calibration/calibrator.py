@@ -34,6 +34,8 @@ Report = Callable[[int], None]
 
 AGENTS_AT_ONCE = 200_000
 """Approximate number of agents (candidates x windows x people) in one batch."""
+AGENTS_PER_CALL = 20_000
+"""About this many agents (candidates x windows x people x rows) are simulated per call; Ctrl-C waits for one call."""
 CANDIDATES = 100
 """Expected number of candidates that a search evaluates at once."""
 
@@ -233,10 +235,19 @@ class _Task:
         self.done = 0
 
     def __call__(self, values: Floats, which: Integers) -> Floats:
-        people = max(1, values.shape[2] * len(which))
-        size = max(1, AGENTS_AT_ONCE // people)
-        chunks = [self._measure(values[first : first + size], which) for first in range(0, len(values), size)]
-        cost = np.concatenate(chunks)
+        T, A = self.resimulation.past.position.shape[1:3]
+        each = np.broadcast_to(values, (len(values), len(which), *values.shape[2:]))
+        largest = max(1, AGENTS_PER_CALL // max(1, A * (T - 1)))
+        length = min(max(1, len(which)), largest)
+        size = max(1, largest // length)
+        chunks = [
+            [
+                self._measure(each[first : first + size, begin : begin + length], which[begin : begin + length])
+                for begin in range(0, max(1, len(which)), length)
+            ]
+            for first in range(0, len(values), size)
+        ]
+        cost = np.concatenate([np.concatenate(row, axis=1) for row in chunks])
         if self.calibrator.prior is not None:
             cost = cost + self.calibrator.prior.penalty(self.space, values, self.given[which])
         self.counted[which] |= np.any(~np.isnan(cost), axis=0)

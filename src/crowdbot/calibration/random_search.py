@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -30,8 +29,6 @@ class RandomSearch(Search):
     >>> found.best.shape, found.evaluations.tolist(), bool(found.cost[0] < 0.05)
     ((1, 3, 2), [500], True)
     """
-
-    builtin_name: ClassVar[str] = "random-search"
 
     batch: int = 100
 

@@ -1,18 +1,16 @@
-"""Plugins: classes by name or address, and their fields from text attributes.
+"""Plugins: from a name or an address to a class, from text attributes to its fields.
 
-Built-in names are the classes in the ``__all__`` of a package, in kebab-case. An address is ``package.module:Name`` or
-``file.py:Name``. Names and addresses are the same in Python, in XML and on the command line.
+Built-in names are the classes in a room's ``__all__``, written in kebab-case. Anything else is an address:
+``file.py:Name``, ``folder/:Name`` or ``package.module:Name``. The same words work in Python, XML and on the command
+line.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import functools
-import importlib
-import importlib.util
 import inspect
 import re
-import sys
 import types
 import typing
 from collections.abc import Iterable, Mapping
@@ -21,7 +19,12 @@ from typing import Any
 
 import numpy as np
 
+from .class_source import describe_class, reads_only
 from .errors import InputError, UnknownName, did_you_mean
+from .plugin_module import load_plugin_module, plugin_source
+
+SHORTENED = ("Navigator",)
+"""Contracts whose names are left out at the end of a built-in name, since a crowd model may have the same name."""
 
 __all__ = [
     "attribute_names",
@@ -35,6 +38,10 @@ __all__ = [
 ]
 
 
+SHORTENED = ("Navigator",)
+"""Contracts whose names are left out at the end of a built-in name, since a crowd model may have the same name."""
+
+
 def kebab_case(name: str) -> str:
     """Return the kebab-case form of a class name, as used on the command line and in XML.
 
@@ -45,7 +52,7 @@ def kebab_case(name: str) -> str:
 
 
 def builtin_name(cls: type, contract: type) -> str:
-    """Return the name of a built-in class: kebab-case, without the name of its contract at the end.
+    """Return the name of a built-in class in kebab-case, of a navigator without ``Navigator`` at its end.
 
     A class attribute ``builtin_name`` overrides it.
 
@@ -53,9 +60,13 @@ def builtin_name(cls: type, contract: type) -> str:
     >>> class ORCANavigator(Navigator): pass
     >>> builtin_name(ORCANavigator, Navigator)
     'orca'
+    >>> class Drive: pass
+    >>> class DifferentialDrive(Drive): pass
+    >>> builtin_name(DifferentialDrive, Drive)
+    'differential-drive'
     """
-    fixed = vars(cls).get("builtin_name")
-    return str(fixed) if fixed else kebab_case(cls.__name__.removesuffix(contract.__name__) or cls.__name__)
+    short = cls.__name__.removesuffix(contract.__name__) if contract.__name__ in SHORTENED else ""
+    return kebab_case(short or cls.__name__)
 
 
 def builtin_classes(room: types.ModuleType, contract: type) -> dict[str, type]:
@@ -78,11 +89,12 @@ def find_class(
     """Return the class with a built-in name or an address.
 
     Args:
-        name: ``social-force``, ``SocialForce``, ``package.module:Name`` or ``file.py:Name``.
+        name: ``social-force``, ``SocialForce``, ``file.py:Name``, ``folder/:Name``, ``folder.file:Name`` or
+            ``package.module:Name``.
         room: package of the built-in classes.
-        contract: base class of the result.
-        folder: base of relative file names (default: the working folder).
-        trust: if False, only files inside ``folder`` are loaded, as for trials of other authors.
+        contract: base class of the class.
+        folder: folder of relative files and folders (default: the working folder).
+        trust: if False, only code inside ``folder`` is loaded.
 
     Raises:
         UnknownName: no built-in class has this name.
@@ -97,7 +109,10 @@ def find_class(
     if ":" not in name:
         raise UnknownName(_plain_name(contract), name, known, address=True)
     place, _, attribute = name.rpartition(":")
-    module = _load_file(place, folder or Path.cwd(), trust) if place.endswith(".py") else _load(place, trust)
+    if reads_only():
+        file, attribute = plugin_source(place, attribute, folder or Path.cwd(), trust)
+        return describe_class(file, attribute, contract, name)
+    module, attribute = load_plugin_module(place, attribute, folder or Path.cwd(), trust)
     value = getattr(module, attribute, None)
     if not (inspect.isclass(value) and issubclass(value, contract)) or inspect.isabstract(value):
         here = [n for n, v in vars(module).items() if inspect.isclass(v) and issubclass(v, contract)]
@@ -225,34 +240,3 @@ def _number(text: str, what: str) -> float:
 
 def _plain_name(contract: type) -> str:
     return kebab_case(contract.__name__).replace("-", " ")
-
-
-def _load(place: str, trust: bool) -> types.ModuleType:
-    if not trust:
-        raise InputError(f"the module {place!r} is not loaded from here; pass --trust to allow it")
-    try:
-        return importlib.import_module(place)
-    except ImportError as error:
-        raise InputError(f"the module {place!r} cannot be imported: {error}") from None
-
-
-def _load_file(place: str, folder: Path, trust: bool) -> types.ModuleType:
-    path = (folder / place).resolve()
-    if not trust and not path.is_relative_to(folder.resolve()):
-        raise InputError(f"the file {place!r} lies outside {folder}; pass --trust to allow it")
-    if not path.is_file():
-        raise InputError(f"there is no file {path}")
-    name = f"crowdbot_plug_{path.stem}_{abs(hash(str(path)))}"
-    if name in sys.modules:
-        return sys.modules[name]
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    try:
-        spec.loader.exec_module(module)
-    except Exception as error:
-        del sys.modules[name]
-        raise InputError(f"{path} cannot be loaded: {type(error).__name__}: {error}") from error
-    return module
