@@ -72,7 +72,7 @@ def test_after_a_step_only_the_stage_keeps_its_bodies():
         ({**LIMBS, "radius": [0.1, 0.2, 0.3]}, "must fit"),
         ({**LIMBS, "owner": [0]}, "owner has shape \\[1\\], it must be one for each of 2"),
         ({**LIMBS, "owner": [0, -2]}, "owner -2 is below -1"),
-        ({"start": np.zeros((2, 1, 3)), "end": np.zeros((3, 1, 3)), "radius": [0.1]}, "for \\[2, 3\\] environments"),
+        ({"start": np.zeros((2, 1, 3)), "end": np.zeros((3, 1, 3)), "radius": [0.1]}, "have \\[2, 3\\] environments"),
     ],
 )
 def test_wrong_bodies_are_explained(values, message):

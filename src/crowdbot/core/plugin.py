@@ -23,9 +23,6 @@ from .class_source import describe_class, reads_only
 from .errors import InputError, UnknownName, did_you_mean
 from .plugin_module import load_plugin_module, plugin_source
 
-SHORTENED = ("Navigator",)
-"""Contracts whose names are left out at the end of a built-in name, since a crowd model may have the same name."""
-
 __all__ = [
     "attribute_names",
     "attribute_problems",
@@ -36,7 +33,6 @@ __all__ = [
     "kebab_case",
     "required_fields",
 ]
-
 
 SHORTENED = ("Navigator",)
 """Contracts whose names are left out at the end of a built-in name, since a crowd model may have the same name."""
@@ -53,8 +49,6 @@ def kebab_case(name: str) -> str:
 
 def builtin_name(cls: type, contract: type) -> str:
     """Return the name of a built-in class in kebab-case, of a navigator without ``Navigator`` at its end.
-
-    A class attribute ``builtin_name`` overrides it.
 
     >>> class Navigator: pass
     >>> class ORCANavigator(Navigator): pass
