@@ -34,7 +34,7 @@ def street(seed: int = 0, people: int = 60, noise: float = 0.01) -> Trajectories
     id = np.append(id, [people, people])
     frame = np.append(frame, [last + 10, last + 20])
     x, y = np.append(x, [-9.0, -9.0]), np.append(y, [-5.0, -5.0])
-    return Trajectories(id.astype(int), frame.astype(int), x, y, frame_rate=1.0 / STEP, frame_step=10, name="street")
+    return Trajectories(id.astype(int), frame.astype(int), x, y, row_rate=1.0 / STEP, frame_step=10, name="street")
 
 
 def moved(place: np.ndarray, angle: float, shift: tuple[float, float]) -> np.ndarray:

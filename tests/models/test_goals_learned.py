@@ -176,7 +176,7 @@ def test_what_was_learned_is_the_same_again():
 
 def slow_clock():
     tracks = street()
-    return Trajectories(tracks.id, tracks.frame, tracks.x, tracks.y, frame_rate=1.0, frame_step=10, name="slow")
+    return Trajectories(tracks.id, tracks.frame, tracks.x, tracks.y, row_rate=1.0, frame_step=10, name="slow")
 
 
 @pytest.mark.parametrize(
