@@ -57,7 +57,7 @@ def _expects_people(trial: Trial, world: PlanarWorld, people: InitialPeople) -> 
     time = world.clock.time
     walks = any(walk.time[0] > time for walk in people.walks)
     come = (source.arrival_count(trial.duration) > source.arrival_count(time) for source in trial.sources)
-    return walks or any(come) or bool(world.waiting[0] > 0)
+    return walks or any(come) or bool(world.waiting_count[0] > 0)
 
 
 def _value(condition: EndCondition, world: PlanarWorld, robots: Mapping[str, int]) -> float | None:

@@ -29,6 +29,7 @@ from .scenarios import PRESETS
 from .scenarios.challenge import FLOWS, SIZES
 from .scenarios.crowds import DENSITIES
 from .stage import Obstacle, Stage, Wall, area
+from .stage_contract import check_stage
 from .sweep import Sweep
 from .trial import End, EndCondition, RecordingSpec, Trial
 from .validation.rates import trial_remarks
@@ -94,6 +95,7 @@ __all__ = [
     "attribute",
     "builtin_trials",
     "check",
+    "check_stage",
     "check_trial",
     "children",
     "code_references",

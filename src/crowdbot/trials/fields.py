@@ -78,7 +78,7 @@ class Constraint:
         if self.bounds.holds(low) and self.bounds.holds(high):
             return ""
         too_high = dataclasses.replace(self.bounds, max=None).holds(low)
-        return f"must be {self.bounds.allowed(too_high)}{self._reach(low, high)}"
+        return f"must be {self.bounds.describe(too_high)}{self._reach(low, high)}"
 
     @functools.cached_property
     def bounds(self) -> Bounds:

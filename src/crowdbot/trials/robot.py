@@ -209,8 +209,10 @@ class RobotSpec:
     def body(self) -> world.Robot:
         """The robot of a world, with the drive and the latency that count here."""
         if not self.type:
-            return world.Robot.disc(self.name, self.drive, self.radius, height=self.height, mass=self.mass)
-        return dataclasses.replace(self._kind, drive=self.drive, latency=self.latency)
+            made = world.Robot.disc(self.name, self.drive, self.radius, height=self.height, mass=self.mass)
+        else:
+            made = dataclasses.replace(self._kind, drive=self.drive)
+        return dataclasses.replace(made, latency=self.latency)
 
     def frame_of(self, mount: Mount) -> Floats:
         """Return the frame ``[4, 4]`` of a sensor in that of the robot, which is on the floor, in its posture."""
