@@ -132,3 +132,10 @@ def test_modules_are_found_without_importing_them(tmp_path: Path, monkeypatch: p
             find_class("guests.shy:Shy", navigation, navigation.Navigator, trust=False)
     assert issubclass(found, navigation.Navigator)
     assert not (package / "ran").exists()
+
+
+@pytest.mark.parametrize("noise", ["gaussian(-0.0)", "gaussian(0)", "peak(0.1, 1.0, -0.0)"])
+def test_a_noise_of_zero_width_is_checked_and_run_alike(tmp_path: Path, noise: str) -> None:
+    trial = written(tmp_path, changed('noise="gaussian(0.01)"', f'noise="{noise}"'))
+    assert main(["check", str(trial)]) == 0
+    assert main(["run", str(trial)]) in (0, 1)

@@ -169,7 +169,7 @@ MISTAKES = {
     "no stops": (
         '<point x="-2" y="0"/>',
         "",
-        r":17: <journey> needs the element <point> or <direction> or <zone>: where they go",
+        r":17: <journey> needs the element <point> or <direction> or <zone>: stops, in order",
     ),
     "unknown stop": (
         "<direction ",
@@ -321,7 +321,7 @@ def test_zones_of_journeys_need_room() -> None:
 
 
 def test_flows_made_in_python_are_checked_too() -> None:
-    with pytest.raises(InputError, match="Journey: stops is empty; it must hold at least one: where they go"):
+    with pytest.raises(InputError, match="Journey: stops is empty; it must hold at least one: stops, in order"):
         Journey(name="none", stops=[])
     with pytest.raises(InputError, match="Journey: stops holds a Exit, it takes Point or Direction or Zone"):
         Journey(name="wrong", stops=[Exit(zone=ZONE)])  # type: ignore[list-item]

@@ -201,7 +201,7 @@ MISTAKES = {
     "missing element": (
         '<navigator type="straight"/>',
         "",
-        r":10: <robot> needs the element <navigator>: who steers it",
+        r":10: <robot> needs the element <navigator>: navigator",
     ),
     "missing type": ('type="orca" ', "", r":7: <crowd> needs the attribute 'type': .*orca.* or an address"),
     "unknown type": (

@@ -166,6 +166,18 @@ def test_a_robot_takes_the_place_of_somebody(track: Path, recordings: Path) -> N
         recorded_trial(track, fps=25.0, replace=4)
 
 
+def test_a_trial_lasts_as_long_as_the_recording(track: Path) -> None:
+    assert recorded_trial(track, fps=25.0).duration == pytest.approx(11.6)
+    replaced = recorded_trial(track, fps=25.0, replace=3)
+    assert replaced.duration == pytest.approx(23.2)  # twice as long as the person walked
+    rows = TRACK + "".join(f"{10 * k}\t9\t0\t{0.5 * k}\n" for k in range(200))
+    long = recorded_trial(written(track.parent, rows, "long.txt"), fps=25.0, replace=3)
+    assert long.duration == pytest.approx(79.6)  # to the end of the recording
+    late = TRACK + "".join(f"{10 * k}\t9\t0\t{0.5 * k}\n" for k in range(100, 200))
+    one = recorded_trial(written(track.parent, late, "late.txt"), fps=25.0, replace=9)
+    assert (one.recorded[0].begin, one.duration) == (pytest.approx(40.0), pytest.approx(79.2))
+
+
 def test_a_trial_of_recorded_people_is_a_file(track: Path) -> None:
     trial = recorded_trial(track, fps=25.0, replace=3)
     file = written(track.parent, trial_xml(trial))

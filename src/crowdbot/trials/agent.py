@@ -22,8 +22,8 @@ class AgentParameter:
     1.5
     """
 
-    name: str = attribute(about="of the model of the person's crowd")
-    value: float = attribute(about="for this person")
+    name: str = attribute(about="name of a parameter of the crowd model")
+    value: float = attribute(about="value for this person")
 
     def __post_init__(self) -> None:
         check(self)
@@ -41,23 +41,23 @@ class Agent:
     """
 
     name: str = attribute("", about="name for messages")
-    x: float = attribute(about="start", unit="m")
-    y: float = attribute(about="start", unit="m")
+    x: float = attribute(about="start x", unit="m")
+    y: float = attribute(about="start y", unit="m")
     heading: float | None = attribute(
-        None, about="start, counter-clockwise from +x, by default towards the goal", unit="rad"
+        None, about="start heading, counter-clockwise from +x (default: towards the goal)", unit="rad"
     )
-    goal: Points = attribute(Points(), about="point x,y to go to, without a journey", unit="m", points=1)
-    goal_zone: Points = attribute(Points(), about="corners x,y of a zone in which one is there already", unit="m")
-    journey: str = attribute("", about="name of the journey, without a goal")
+    goal: Points = attribute(Points(), about="goal point x,y; not with a journey", unit="m", points=1)
+    goal_zone: Points = attribute(Points(), about="corners x,y of the goal zone", unit="m")
+    journey: str = attribute("", about="name of the journey; not with a goal")
     speed: float = attribute(1.34, about="preferred speed", unit="m/s", exclusive_min=0.0, max=10.0)
     radius: float = attribute(0.25, about="radius of the body", unit="m", exclusive_min=0.0, max=5.0)
-    arrival: str = attribute("leave", about="what one does at the goal", choices=("leave", "stay"))
-    crowd: str = attribute("", about="name of the crowd, by default the first")
-    group: int = attribute(-1, about="number of the group that one walks with, -1 alone", min=-1, max=1e6)
+    arrival: str = attribute("leave", about="behaviour at the goal", choices=("leave", "stay"))
+    crowd: str = attribute("", about="name of the crowd (default: the first)")
+    group: int = attribute(-1, about="number of the group, -1 for none", min=-1, max=1e6)
     body: str = attribute("", about=ABOUT_BODY)
-    outfit: int | None = attribute(None, about="number of the clothes and colours", min=0, max=1e6)
+    outfit: int | None = attribute(None, about="number of the appearance (clothes and colours)", min=0, max=1e6)
     activity: str = attribute("", about=ABOUT_ACTIVITY)
-    parameters: tuple[AgentParameter, ...] = children("parameter", about="own parameters of the model", max=100)
+    parameters: tuple[AgentParameter, ...] = children("parameter", about="model parameters of this person", max=100)
 
     def __post_init__(self) -> None:
         check(self)

@@ -37,21 +37,21 @@ class Camera:
     1.6
     """
 
-    name: str = attribute(about="by which it is chosen", pattern=NAME)
-    x: float = attribute(0.0, about="place, in the world or forward on its robot", unit="m")
-    y: float = attribute(0.0, about="place, in the world or left on its robot", unit="m")
-    z: float = attribute(1.6, about="above the floor, or above the link", unit="m")
-    heading: float = attribute(0.0, about="where it looks, counter-clockwise", unit="rad")
-    pitch: float = attribute(0.0, about="nose down", unit="rad", min=-math.pi / 2, max=math.pi / 2)
-    width: int = attribute(640, about="of the image in pixels", min=16, max=1920)
-    height: int = attribute(480, about="of the image in pixels", min=16, max=1200)
+    name: str = attribute(about="name of the camera", pattern=NAME)
+    x: float = attribute(0.0, about="x in the world, or forward of the robot's centre", unit="m")
+    y: float = attribute(0.0, about="y in the world, or left of the robot's centre", unit="m")
+    z: float = attribute(1.6, about="height above the floor, or above the link", unit="m")
+    heading: float = attribute(0.0, about="viewing direction, counter-clockwise", unit="rad")
+    pitch: float = attribute(0.0, about="pitch, positive downwards", unit="rad", min=-math.pi / 2, max=math.pi / 2)
+    width: int = attribute(640, about="image width in pixels", min=16, max=1920)
+    height: int = attribute(480, about="image height in pixels", min=16, max=1200)
     field_of_view: float = attribute(
-        math.radians(70.0), about="horizontal", unit="rad", min=0.01, max=math.radians(170.0)
+        math.radians(70.0), about="horizontal field of view", unit="rad", min=0.01, max=math.radians(170.0)
     )
-    detail: int = attribute(1, about="of people, 0 the finest", min=0, max=2)
-    shadows: bool = attribute(False, about="whether lights throw shadows, which takes longer")
-    robot: str = attribute("", about="name of the robot that carries it")
-    link: str = attribute("", about="link of that robot, by default the robot itself")
+    detail: int = attribute(1, about="level of detail of people, 0 is the finest", min=0, max=2)
+    shadows: bool = attribute(False, about="whether lights cast shadows (slower)")
+    robot: str = attribute("", about="name of the robot that the camera is mounted on")
+    link: str = attribute("", about="link of that robot (default: the robot frame)")
 
     def __post_init__(self) -> None:
         check(self)

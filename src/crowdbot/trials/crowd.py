@@ -23,8 +23,8 @@ __all__ = ["ContactSpec", "Crowd", "Crowds", "Limits", "Routing", "crowd_names"]
 class Crowd:
     """A model and, when there are several, the name by which spawners and sources choose it."""
 
-    name: str = attribute("", about="name that spawners and sources choose it by", pattern=NAME)
-    model: CrowdModel = mounted_field("models", "CrowdModel", drawn=True, about="how its people walk")
+    name: str = attribute("", about="name that spawners and sources refer to", pattern=NAME)
+    model: CrowdModel = mounted_field("models", "CrowdModel", drawn=True, about="crowd model")
 
     def __post_init__(self) -> None:
         check(self)
@@ -93,9 +93,11 @@ def crowd_names(model: Any) -> tuple[str, ...]:
 class Routing:
     """People find the shortest way around walls to their goals; without it they walk straight towards them."""
 
-    radius: float = attribute(0.3, about="ways keep this far from walls", unit="m", exclusive_min=0.0, max=10.0)
+    radius: float = attribute(0.3, about="distance that paths keep from walls", unit="m", exclusive_min=0.0, max=10.0)
     unreachable: str = attribute(
-        "error", about="a goal that cannot be reached is an error, or the nearest place", choices=("error", "nearest")
+        "error",
+        about="treatment of unreachable goals: an error, or the nearest reachable point",
+        choices=("error", "nearest"),
     )
 
     def __post_init__(self) -> None:
@@ -111,10 +113,12 @@ class ContactSpec:
     """People whose bodies overlap after a step are pushed apart, and nobody ends up in a wall."""
 
     variant: str = attribute(
-        "position", about="overlaps end at once, or push with a force", choices=("position", "force")
+        "position",
+        about="contact model: overlaps are resolved by position or by a force",
+        choices=("position", "force"),
     )
-    stiffness: float = attribute(62.5, about="of a force, for each metre", unit="1/s2", exclusive_min=0.0, max=1e9)
-    iterations: int = attribute(8, about="rounds of pushing by position in a step", min=1, max=1000)
+    stiffness: float = attribute(62.5, about="stiffness per mass", unit="1/s2", exclusive_min=0.0, max=1e9)
+    iterations: int = attribute(8, about="position iterations per step", min=1, max=1000)
 
     def __post_init__(self) -> None:
         check(self)
@@ -128,9 +132,9 @@ class ContactSpec:
 class Limits:
     """What people cannot go beyond, whatever their model asks for."""
 
-    max_speed: float | None = attribute(None, about="largest speed", unit="m/s", exclusive_min=0.0)
+    max_speed: float | None = attribute(None, about="maximum speed", unit="m/s", exclusive_min=0.0)
     max_acceleration: float | None = attribute(
-        None, about="largest change of velocity: speeding up, braking, turning", unit="m/s2", exclusive_min=0.0
+        None, about="maximum acceleration, including braking and turning", unit="m/s2", exclusive_min=0.0
     )
 
     def __post_init__(self) -> None:

@@ -19,10 +19,11 @@ KINDS = {
     "mannequin": ("mannequin",),
 }
 ABOUT_BODY = (
-    "name of a body (woman-36) or kind (man, woman, adult, boy, girl, child, mannequin); of several one is drawn"
+    "name of a body (woman-36) or kind (man, woman, adult, boy, girl, child, mannequin); from a list, one is chosen at"
+    " random"
 )
-ABOUT_RIDER = "who sits in it, as body of a person; by default nobody, and only the type wheelchair has a seat"
-ABOUT_ACTIVITY = "walk, talk, phone, bottle, text or sit; of several one is drawn"
+ABOUT_RIDER = "person in the seat, as the body of a person (default: none); only the type wheelchair has a seat"
+ABOUT_ACTIVITY = "walk, talk, phone, bottle, text or sit; from a list, one is chosen at random"
 
 
 def check_words(body: str, activity: str) -> None:

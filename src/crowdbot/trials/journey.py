@@ -20,9 +20,9 @@ TOLERANCE = 0.3
 class Point:
     """A stop at a point."""
 
-    x: float = attribute(about="place", unit="m")
-    y: float = attribute(about="place", unit="m")
-    tolerance: float = attribute(TOLERANCE, about="how near one must come", unit="m", exclusive_min=0.0)
+    x: float = attribute(about="x coordinate", unit="m")
+    y: float = attribute(about="y coordinate", unit="m")
+    tolerance: float = attribute(TOLERANCE, about="arrival tolerance", unit="m", exclusive_min=0.0)
 
     def __post_init__(self) -> None:
         check(self)
@@ -50,13 +50,13 @@ class Direction:
 class Zone:
     """A stop in a polygon."""
 
-    points: Points = attribute(about="corners of the zone x,y", unit="m", points=3)
+    points: Points = attribute(about="corners x,y of the zone", unit="m", points=3)
     aim: str = attribute(
-        "nearest", about="one goes to its nearest point, or to a random one of one's own", choices=("nearest", "random")
+        "nearest",
+        about="target in the zone: its nearest point, or a random point per person",
+        choices=("nearest", "random"),
     )
-    tolerance: float = attribute(
-        TOLERANCE, about="how near to the own point is near enough", unit="m", exclusive_min=0.0
-    )
+    tolerance: float = attribute(TOLERANCE, about="arrival tolerance of the random point", unit="m", exclusive_min=0.0)
 
     def __post_init__(self) -> None:
         check(self)
@@ -74,12 +74,12 @@ class Journey:
     'leave'
     """
 
-    name: str = attribute(about="name that spawners and sources choose it by", pattern=NAME)
+    name: str = attribute(about="name that spawners and sources refer to", pattern=NAME)
     then: str = attribute(
-        "leave", about="at the last stop people leave, stay, or begin again", choices=("leave", "stay", "again")
+        "leave", about="behaviour at the last stop: leave, stay or begin again", choices=("leave", "stay", "again")
     )
     stops: tuple[Point | Direction | Zone, ...] = children(
-        {"point": Point, "direction": Direction, "zone": Zone}, about="where they go", min=1, max=1000
+        {"point": Point, "direction": Direction, "zone": Zone}, about="stops, in order", min=1, max=1000
     )
 
     def __post_init__(self) -> None:
@@ -95,7 +95,7 @@ class Exit:
     """A zone in which everybody leaves, wherever they wanted to go; robots stay."""
 
     name: str = attribute("", about="name for messages")
-    zone: Points = attribute(about="corners of the zone x,y", unit="m", points=3)
+    zone: Points = attribute(about="corners x,y of the zone", unit="m", points=3)
 
     def __post_init__(self) -> None:
         check(self)
@@ -114,9 +114,9 @@ class Portal:
     """
 
     name: str = attribute("", about="name for messages")
-    zone: Points = attribute(about="corners of the zone x,y", unit="m", points=3)
-    dx: float = attribute(0.0, about="from there to where they come out", unit="m")
-    dy: float = attribute(0.0, about="from there to where they come out", unit="m")
+    zone: Points = attribute(about="corners x,y of the zone", unit="m", points=3)
+    dx: float = attribute(0.0, about="offset from the zone to the exit of the portal", unit="m")
+    dy: float = attribute(0.0, about="offset from the zone to the exit of the portal", unit="m")
 
     def __post_init__(self) -> None:
         check(self)

@@ -30,8 +30,8 @@ class Group:
     0.5
     """
 
-    size: int = attribute(about="people in the group, 1 for who is alone", min=1, max=50)
-    share: float = attribute(1.0, about="how often it comes compared to other sizes", exclusive_min=0.0)
+    size: int = attribute(about="number of people in the group, 1 for no group", min=1, max=50)
+    share: float = attribute(1.0, about="relative frequency of this size", exclusive_min=0.0)
 
     def __post_init__(self) -> None:
         check(self)
@@ -52,20 +52,22 @@ class Spawner:
 
     name: str = attribute("", about="name for messages")
     count: int = attribute(about="number of people", min=0, max=100_000)
-    zone: Points = attribute(about="corners of the spawn zone x,y; centres of people lie inside", unit="m", points=3)
-    goal: Points = attribute(Points(), about="corners of the goal zone x,y, without a journey", unit="m", points=3)
-    journey: str = attribute("", about="name of their journey, without a goal zone")
+    zone: Points = attribute(
+        about="corners x,y of the spawn zone, which contains the centres of people", unit="m", points=3
+    )
+    goal: Points = attribute(Points(), about="corners x,y of the goal zone; not with a journey", unit="m", points=3)
+    journey: str = attribute("", about="name of the journey; not with a goal zone")
     speed: Distribution = attribute(WALKING_SPEED, about="preferred speed", unit="m/s", exclusive_min=0.0, max=10.0)
     radius: Distribution = attribute(BODY_RADIUS, about="radius of the body", unit="m", exclusive_min=0.0, max=5.0)
-    arrival: str = attribute("leave", about="what people do in the goal zone", choices=("leave", "stay"))
-    crowd: str = attribute("", about="name of their crowd, by default the first")
+    arrival: str = attribute("leave", about="behaviour in the goal zone", choices=("leave", "stay"))
+    crowd: str = attribute("", about="name of the crowd (default: the first)")
     body: str = attribute("", about=ABOUT_BODY)
     activity: str = attribute("", about=ABOUT_ACTIVITY)
-    stands: bool = attribute(False, about="they stay where they are placed, without goal and journey")
+    stands: bool = attribute(False, about="whether people stand still, without goal and journey")
     heading: float | None = attribute(
-        None, about="where they look at first, by default towards the goal, of who stands at random", unit="rad"
+        None, about="initial heading (default: towards the goal; random for standing people)", unit="rad"
     )
-    groups: tuple[Group, ...] = children("group", about="sizes of groups; without them everybody is alone", max=50)
+    groups: tuple[Group, ...] = children("group", about="group sizes (default: no groups)", max=50)
 
     def __post_init__(self) -> None:
         check(self)
@@ -90,18 +92,20 @@ class SourceSpec:
     """
 
     name: str = attribute("", about="name for messages")
-    zone: Points = attribute(about="corners of the zone x,y where they come in", unit="m", points=3)
-    goal: Points = attribute(Points(), about="corners of the goal zone x,y, without a journey", unit="m", points=3)
-    journey: str = attribute("", about="name of their journey, without a goal zone")
-    rate: float = attribute(about="people for each second", unit="1/s", exclusive_min=0.0, max=1e4)
-    timing: str = attribute("poisson", about="they come at random, or evenly", choices=("poisson", "regular"))
-    begin: float = attribute(0.0, about="when the first may come", unit="s", min=0.0, max=86_400.0)
-    end: float = attribute(math.inf, about="when nobody comes any more", unit="s", exclusive_min=0.0, max=86_400.0)
-    max_count: int | None = attribute(None, about="no more people than this", min=0, max=100_000)
+    zone: Points = attribute(about="corners x,y of the zone where people enter", unit="m", points=3)
+    goal: Points = attribute(Points(), about="corners x,y of the goal zone; not with a journey", unit="m", points=3)
+    journey: str = attribute("", about="name of the journey; not with a goal zone")
+    rate: float = attribute(about="mean number of people per second", unit="1/s", exclusive_min=0.0, max=1e4)
+    timing: str = attribute(
+        "poisson", about="arrivals as a Poisson process, or at regular intervals", choices=("poisson", "regular")
+    )
+    begin: float = attribute(0.0, about="start of the arrivals", unit="s", min=0.0, max=86_400.0)
+    end: float = attribute(math.inf, about="end of the arrivals", unit="s", exclusive_min=0.0, max=86_400.0)
+    max_count: int | None = attribute(None, about="maximum number of people", min=0, max=100_000)
     speed: Distribution = attribute(WALKING_SPEED, about="preferred speed", unit="m/s", exclusive_min=0.0, max=10.0)
     radius: Distribution = attribute(BODY_RADIUS, about="radius of the body", unit="m", exclusive_min=0.0, max=5.0)
-    arrival: str = attribute("leave", about="what people do in the goal zone", choices=("leave", "stay"))
-    crowd: str = attribute("", about="name of their crowd, by default the first")
+    arrival: str = attribute("leave", about="behaviour in the goal zone", choices=("leave", "stay"))
+    crowd: str = attribute("", about="name of the crowd (default: the first)")
     body: str = attribute("", about=ABOUT_BODY)
     activity: str = attribute("", about=ABOUT_ACTIVITY)
 

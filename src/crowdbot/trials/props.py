@@ -36,13 +36,13 @@ class Cube:
     [0.8, 1.8]
     """
 
-    x: float = attribute(about="middle", unit="m")
-    y: float = attribute(about="middle", unit="m")
+    x: float = attribute(about="x of the centre", unit="m")
+    y: float = attribute(about="y of the centre", unit="m")
     heading: float = attribute(0.0, about="counter-clockwise from +x", unit="rad")
-    size: float = attribute(0.5, about="of its sides", unit="m", min=0.001, max=100.0)
-    mass: float = attribute(10.0, about="of the whole", unit="kg", min=0.001, max=1e5)
-    friction: float = attribute(0.5, about="coefficient on the floor", exclusive_min=0.0, max=10.0)
-    fixed: bool = attribute(False, about="whether nothing moves it")
+    size: float = attribute(0.5, about="edge length", unit="m", min=0.001, max=100.0)
+    mass: float = attribute(10.0, about="mass", unit="kg", min=0.001, max=1e5)
+    friction: float = attribute(0.5, about="friction coefficient on the floor", exclusive_min=0.0, max=10.0)
+    fixed: bool = attribute(False, about="whether it is fixed to the floor")
 
     def __post_init__(self) -> None:
         check(self)
@@ -61,11 +61,11 @@ class Cube:
 class Table(_Standing):
     """A table that stands fast."""
 
-    x: float = attribute(about="middle", unit="m")
-    y: float = attribute(about="middle", unit="m")
-    heading: float = attribute(0.0, about="of its long side, counter-clockwise from +x", unit="rad")
-    length: float = attribute(1.6, about="of its top", unit="m", exclusive_min=0.05, max=100.0)
-    width: float = attribute(0.8, about="of its top", unit="m", exclusive_min=0.05, max=100.0)
+    x: float = attribute(about="x of the centre", unit="m")
+    y: float = attribute(about="y of the centre", unit="m")
+    heading: float = attribute(0.0, about="heading of the long side, counter-clockwise from +x", unit="rad")
+    length: float = attribute(1.6, about="length of the top", unit="m", exclusive_min=0.05, max=100.0)
+    width: float = attribute(0.8, about="width of the top", unit="m", exclusive_min=0.05, max=100.0)
     height: float = attribute(0.74, about="above the floor", unit="m", exclusive_min=0.05, max=100.0)
 
     def prop(self) -> world.PropBody:
@@ -77,10 +77,10 @@ class Table(_Standing):
 class Tree(_Standing):
     """A tree that stands fast."""
 
-    x: float = attribute(about="middle", unit="m")
-    y: float = attribute(about="middle", unit="m")
+    x: float = attribute(about="x of the centre", unit="m")
+    y: float = attribute(about="y of the centre", unit="m")
     heading: float = attribute(0.0, about="counter-clockwise from +x", unit="rad")
-    height: float = attribute(5.0, about="to the top", unit="m", min=0.001, max=100.0)
+    height: float = attribute(5.0, about="height", unit="m", min=0.001, max=100.0)
     trunk: float = attribute(0.15, about="radius of the trunk", unit="m", min=0.001, max=10.0)
     crown: float = attribute(1.4, about="radius of the crown", unit="m", min=0.001, max=50.0)
 
@@ -93,11 +93,11 @@ class Tree(_Standing):
 class Light:
     """A lamp that shines down; without lamps it is day."""
 
-    x: float = attribute(about="place", unit="m")
-    y: float = attribute(about="place", unit="m")
+    x: float = attribute(about="x coordinate", unit="m")
+    y: float = attribute(about="y coordinate", unit="m")
     z: float = attribute(4.0, about="above the floor", unit="m", exclusive_min=0.0, max=1000.0)
-    brightness: float = attribute(0.5, about="from 0 to 1", min=0.0, max=1.0)
-    shadows: bool = attribute(False, about="whether it throws shadows")
+    brightness: float = attribute(0.5, about="brightness, 0 to 1", min=0.0, max=1.0)
+    shadows: bool = attribute(False, about="whether it casts shadows")
 
     def __post_init__(self) -> None:
         check(self)

@@ -55,23 +55,27 @@ class RecordedPeople:
     """
 
     name: str = attribute("", about="name for messages")
-    data: str = attribute(about="file of the recording, in the folder of the trial", pattern=r"[^\x00]{1,500}")
+    data: str = attribute(about="recording file in the folder of the trial", pattern=r"[^\x00]{1,500}")
     fps: float | None = attribute(
-        None, about="frames per second, when the file does not say", unit="1/s", exclusive_min=0.0
+        None, about="frame rate of the recording (default: from the file)", unit="1/s", exclusive_min=0.0
     )
-    format: str = attribute("", about="format of the file, by default found by its content")
-    units: str = attribute("", about="of its numbers, when it does not say", choices=("", "m", "cm", "mm", "px"))
+    format: str = attribute("", about="file format (default: detected automatically)")
+    units: str = attribute(
+        "", about="length unit of the file (default: from the file)", choices=("", "m", "cm", "mm", "px")
+    )
     time_base: str = attribute(
-        "true", about="of the one ETH text that is published with a wrong one", choices=("true", "published")
+        "true",
+        about="time base of the published ETH text file, whose frame rate is wrong",
+        choices=("true", "published"),
     )
     mode: str = attribute("scripted", about="whether people react to robots", choices=("scripted", "reactive"))
     reaction_distance: float = attribute(
-        5.0, about="who reacts does so from here on", unit="m", exclusive_min=0.0, max=1000.0
+        5.0, about="distance to a robot below which people react", unit="m", exclusive_min=0.0, max=1000.0
     )
-    begin: float = attribute(0.0, about="time of the recording at which the trial begins", unit="s", min=0.0)
-    exclude: str = attribute("", about="ids of people who are left out, such as those whom a robot replaces")
+    begin: float = attribute(0.0, about="time in the recording at which the trial begins", unit="s", min=0.0)
+    exclude: str = attribute("", about="ids of people to exclude, such as those that robots replace")
     radius: Distribution = attribute(BODY_RADIUS, about="radius of the body", unit="m", exclusive_min=0.0, max=5.0)
-    crowd: str = attribute("", about="name of the crowd by which they react, by default the first")
+    crowd: str = attribute("", about="name of the crowd whose model reacting people follow (default: the first)")
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     trust: bool = dataclasses.field(default=True, compare=False, repr=False)
     """Where the file lies, and whether it may lie outside; not part of the tree."""

@@ -36,9 +36,9 @@ MOST_FILES = 500
 class RobotGoal:
     """Where a robot has to go: it has arrived when its centre is within the tolerance."""
 
-    x: float = attribute(about="place", unit="m")
-    y: float = attribute(about="place", unit="m")
-    tolerance: float = attribute(0.3, about="how near its centre must come", unit="m", exclusive_min=0.0)
+    x: float = attribute(about="x coordinate", unit="m")
+    y: float = attribute(about="y coordinate", unit="m")
+    tolerance: float = attribute(0.3, about="arrival tolerance of the robot's centre", unit="m", exclusive_min=0.0)
 
     def __post_init__(self) -> None:
         check(self)
@@ -58,15 +58,15 @@ class Mount:
     (0.4, 0.0)
     """
 
-    name: str = attribute("scan", about="last part of its topic", pattern=NAME)
-    sensor: Sensor = mounted_field("sensors", "Sensor", about="what measures")
-    link: str = attribute("", about="link of the robot that it sits on, by default the robot itself")
-    x: float = attribute(0.0, about="forward of the robot's centre, or of the link", unit="m")
-    y: float = attribute(0.0, about="left of the robot's centre, or of the link", unit="m")
-    z: float = attribute(None, about="above the floor, by default 0.4, or above the link, by default 0", unit="m")
-    roll: float = attribute(0.0, about="about forward, as in URDF", unit="rad")
-    pitch: float = attribute(0.0, about="nose down, as in URDF", unit="rad")
-    heading: float = attribute(0.0, about="counter-clockwise from forward", unit="rad")
+    name: str = attribute("scan", about="name of the sensor, the last part of its topic", pattern=NAME)
+    sensor: Sensor = mounted_field("sensors", "Sensor", about="sensor")
+    link: str = attribute("", about="link that the sensor is mounted on (default: the robot frame)")
+    x: float = attribute(0.0, about="x in the frame of the robot or of the link, forward", unit="m")
+    y: float = attribute(0.0, about="y in the frame of the robot or of the link, left", unit="m")
+    z: float = attribute(None, about="z above the floor (default: 0.4) or above the link (default: 0)", unit="m")
+    roll: float = attribute(0.0, about="roll about x, as in URDF", unit="rad")
+    pitch: float = attribute(0.0, about="pitch about y, as in URDF", unit="rad")
+    heading: float = attribute(0.0, about="yaw about z, counter-clockwise from forward", unit="rad")
 
     def __post_init__(self) -> None:
         if getattr(self, "z", None) is None:
@@ -101,37 +101,39 @@ class RobotSpec:
     (0.65, 0.232, 'laser')
     """
 
-    name: str = attribute("robot", about="first part of its topics", pattern=NAME)
-    type: str = attribute("", about="what it is: a built-in robot such as pepper, or a robot folder beside the trial")
-    x: float = attribute(about="start", unit="m")
-    y: float = attribute(about="start", unit="m")
-    heading: float = attribute(0.0, about="start, counter-clockwise from +x", unit="rad")
+    name: str = attribute("robot", about="name of the robot, the first part of its topics", pattern=NAME)
+    type: str = attribute("", about="built-in robot such as pepper, or a robot folder next to the trial file")
+    x: float = attribute(about="start x", unit="m")
+    y: float = attribute(about="start y", unit="m")
+    heading: float = attribute(0.0, about="start heading, counter-clockwise from +x", unit="rad")
     radius: float = attribute(
-        None, about="radius of the disc that holds it, by default that of its type, or 0.3", unit="m", min=0.001,
+        None, about="radius of the bounding disc (default: from the type, or 0.3)", unit="m", min=0.001,
         max=10.0,
     )  # fmt: skip
-    height: float = attribute(None, about="without a type: how tall it is, by default 1", unit="m", min=0.001, max=10.0)
-    mass: float = attribute(None, about="without a type: by default 40", unit="kg", min=0.001, max=1e5)
+    height: float = attribute(
+        None, about="height of a robot without a type (default: 1)", unit="m", min=0.001, max=10.0
+    )
+    mass: float = attribute(None, about="mass of a robot without a type (default: 40)", unit="kg", min=0.001, max=1e5)
     latency: float = attribute(
-        None, about="between a command and the wheels, by default that of its type, or 0", unit="s", min=0.0,
+        None, about="delay from command to actuation (default: from the type, or 0)", unit="s", min=0.0,
         max=10.0,
     )  # fmt: skip
-    default_sensors: bool = attribute(True, about="whether it carries the sensors of its type")
+    default_sensors: bool = attribute(True, about="whether the robot has the sensors of its type")
     cameras: bool = attribute(
-        False, about="whether it also carries the colour cameras of its type, which are drawn and slow"
+        False, about="whether the robot has the colour cameras of its type, which are rendered (slow)"
     )
     sensor_rates: str = attribute(
         "nearest",
-        about="whether sensors of its type measure as often as the time step allows, or must fit it",
+        about="sensor rates of the type: rounded to the time step, or exact",
         choices=("nearest", "exact"),
     )
     rider: str = attribute("", about=ABOUT_RIDER)
-    visible: bool = attribute(True, about="whether the crowd reacts to it")
-    control_period: float = attribute(0.1, about="time between two commands", unit="s", exclusive_min=0.0)
-    goal: RobotGoal = child(about="where it has to go")
-    drive: Drive = plugin_field("world", "Drive", about="how it moves, by default as its type", default=None)
-    navigator: Navigator = plugin_field("navigation", "Navigator", about="who steers it")
-    sensors: tuple[Mount, ...] = children("sensor", about="what it sees with", max=50)
+    visible: bool = attribute(True, about="whether people react to the robot")
+    control_period: float = attribute(0.1, about="control period", unit="s", exclusive_min=0.0)
+    goal: RobotGoal = child(about="goal")
+    drive: Drive = plugin_field("world", "Drive", about="drive (default: from the type)", default=None)
+    navigator: Navigator = plugin_field("navigation", "Navigator", about="navigator")
+    sensors: tuple[Mount, ...] = children("sensor", about="sensors", max=50)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     trust: bool = dataclasses.field(default=True, compare=False, repr=False)
     """Where its folder lies, and whether it may lie outside; not part of the tree."""

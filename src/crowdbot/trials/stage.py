@@ -36,7 +36,7 @@ class Wall:
     ((0.0, 0.0), (4.0, 0.0))
     """
 
-    points: Points = attribute(about="corners of the line x,y", unit="m", points=2)
+    points: Points = attribute(about="corners x,y of the line", unit="m", points=2)
 
     def __post_init__(self) -> None:
         check(self)
@@ -46,7 +46,7 @@ class Wall:
 class Obstacle:
     """A solid polygon, listed either way round."""
 
-    points: Points = attribute(about="corners of the polygon x,y", unit="m", points=3)
+    points: Points = attribute(about="corners x,y of the polygon", unit="m", points=3)
 
     def __post_init__(self) -> None:
         check(self)
@@ -65,18 +65,18 @@ class Stage:
     array([1., 0.])
     """
 
-    walkable: Points = attribute(Points(), about="corners of the area that can be walked on x,y", unit="m")
-    area: str = attribute(
-        "", about="the area that can be walked on as WKT, or the name of a file of WKT or GeoJSON", unit="m"
+    walkable: Points = attribute(Points(), about="corners x,y of the walkable area", unit="m")
+    area: str = attribute("", about="walkable area as WKT, or the name of a WKT or GeoJSON file", unit="m")
+    map: str = attribute("", about="name of the .yaml file of a ROS map; occupied cells are solid")
+    unknown: str = attribute("occupied", about="treatment of unknown cells of the map", choices=("occupied", "free"))
+    wall_height: float = attribute(2.5, about="height of walls and obstacles", unit="m", min=0.001, max=100.0)
+    friction: float = attribute(
+        1.0, about="friction coefficient of the floor in the physics world", exclusive_min=0.0, max=10.0
     )
-    map: str = attribute("", about="name of the .yaml of a map of ROS: occupied cells are solid")
-    unknown: str = attribute("occupied", about="what unknown cells of the map are", choices=("occupied", "free"))
-    wall_height: float = attribute(2.5, about="of all walls and obstacles", unit="m", min=0.001, max=100.0)
-    friction: float = attribute(1.0, about="coefficient of the floor in the physics world", exclusive_min=0.0, max=10.0)
     walls: tuple[Wall, ...] = children("wall", about="thin walls")
     obstacles: tuple[Obstacle, ...] = children("obstacle", about="solid polygons")
-    props: tuple[Prop, ...] = children({"cube": Cube, "table": Table, "tree": Tree}, about="what stands there")
-    lights: tuple[Light, ...] = children("light", about="lamps; without them it is day", max=50)
+    props: tuple[Prop, ...] = children({"cube": Cube, "table": Table, "tree": Tree}, about="furniture and plants")
+    lights: tuple[Light, ...] = children("light", about="lamps (default: daylight)", max=50)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     trust: bool = dataclasses.field(default=True, compare=False, repr=False)
     """Where the files lie, and whether they may lie outside; not part of the tree."""

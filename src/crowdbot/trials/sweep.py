@@ -40,8 +40,8 @@ class Sweep:
     (('0', '1', '2'), ('1.2', 'normal(1.3, 0.2)'))
     """
 
-    path: str = attribute(about="place of the attribute, such as spawner[1]/count")
-    values: str = attribute(about="its values")
+    path: str = attribute(about="path of the attribute, such as spawner[1]/count")
+    values: str = attribute(about="values, separated by blanks")
 
     def __post_init__(self) -> None:
         check(self)

@@ -39,7 +39,7 @@ class EndCondition:
     below: float | None = attribute(None, about="it is below this")
     above: float | None = attribute(None, about="it is above this")
     robot: str = attribute("", about="name of the robot, by default the first")
-    outcome: str = attribute("finished", about="of the trial", choices=("finished", "success", "timeout"))
+    outcome: str = attribute("finished", about="outcome of the trial", choices=("finished", "success", "timeout"))
 
     def __post_init__(self) -> None:
         check(self)
@@ -57,7 +57,7 @@ class End:
 
     goal: bool = attribute(True, about="every robot has reached its goal")
     collision: bool = attribute(True, about="a robot touches a person, a wall or another robot")
-    empty: bool = attribute(False, about="nobody is left and nobody will come")
+    empty: bool = attribute(False, about="ends when no people are left and none will enter")
     conditions: tuple[EndCondition, ...] = children("when", about="other conditions, of which one suffices", max=100)
 
     def __post_init__(self) -> None:
@@ -93,46 +93,48 @@ class Trial:
     about: str = attribute("", about="one line for people")
     duration: float = attribute(about="longest simulated time", unit="s", exclusive_min=0.0, max=86_400.0)
     world: str = attribute(
-        "planar", about="discs in the plane, or bodies with forces between them", choices=("planar", "physics")
+        "planar", about="discs in the plane, or bodies with contact forces", choices=("planar", "physics")
     )
-    physics_step: float = attribute(
-        0.005, about="time step of bodies in the physics world", unit="s", min=0.0001, max=0.02
-    )
+    physics_step: float = attribute(0.005, about="time step of the physics world", unit="s", min=0.0001, max=0.02)
     bodies: str | None = attribute(
         None,
-        about="what laser scanners see of people, by default discs in the plane and limbs in the physics world;"
-        " other sensors see limbs at least",
+        about="shape of people for laser scanners (default: discs in the planar, limbs in the physics world);"
+        " other sensors see limbs or skins",
         choices=("discs", "limbs", "skins"),
     )
     step: float = attribute(0.05, about="time step of the world", unit="s", min=0.001, max=1.0)
-    substeps: int = attribute(1, about="steps of the crowd in a step of the world", min=1, max=10_000)
+    substeps: int = attribute(1, about="crowd steps per step of the world", min=1, max=10_000)
     seed: int = attribute(0, about="seed of everything random", min=-(2**53), max=2**53)
-    capacity: int | None = attribute(None, about="most people there at a time, others wait outside", min=0, max=100_000)
-    robot_margin: float = attribute(0.1, about="how much wider people take a robot to be", unit="m", min=0.0, max=10.0)
+    capacity: int | None = attribute(
+        None, about="maximum number of people at a time; others wait outside", min=0, max=100_000
+    )
+    robot_margin: float = attribute(
+        0.1, about="margin that people add to the radius of a robot", unit="m", min=0.0, max=10.0
+    )
     heading_jitter: float = attribute(
         0.0,
-        about="how far everyone's direction may be off, so that nobody stops face to face",
+        about="maximum random deviation of each person's direction, which breaks symmetric deadlocks",
         unit="rad",
         min=0.0,
         max=math.pi,
     )
-    stage: Stage = child(Stage, about="where people and robots can be")
-    routing: Routing | None = child(None, about="people find their way around walls")
-    crowd: CrowdModel = children({"crowd": Crowd}, into=Crowds, about="how people walk", min=1, max=20)
-    contact: ContactSpec | None = child(None, about="bodies that overlap are pushed apart")
-    limits: Limits | None = child(None, about="what people cannot go beyond")
-    journeys: tuple[Journey, ...] = children("journey", about="stops to go to one after the other", max=1000)
-    agents: tuple[Agent, ...] = children("agent", about="people, one by one", max=20_000)
+    stage: Stage = child(Stage, about="stage: walls, obstacles and the walkable area")
+    routing: Routing | None = child(None, about="routing around walls")
+    crowd: CrowdModel = children({"crowd": Crowd}, into=Crowds, about="crowd models", min=1, max=20)
+    contact: ContactSpec | None = child(None, about="contact between people")
+    limits: Limits | None = child(None, about="limits of speed and acceleration")
+    journeys: tuple[Journey, ...] = children("journey", about="sequences of stops", max=1000)
+    agents: tuple[Agent, ...] = children("agent", about="single people", max=20_000)
     spawners: tuple[Spawner, ...] = children("spawner", about="people", max=1000)
-    sources: tuple[SourceSpec, ...] = children("source", about="people who come in", max=1000)
-    recorded: tuple[RecordedPeople, ...] = children("recorded", about="people of a recording", max=100)
-    exits: tuple[Exit, ...] = children("exit", about="where people leave", max=1000)
-    portals: tuple[Portal, ...] = children("portal", about="where people come out elsewhere", max=1000)
+    sources: tuple[SourceSpec, ...] = children("source", about="people who enter during the trial", max=1000)
+    recorded: tuple[RecordedPeople, ...] = children("recorded", about="people who follow a recording", max=100)
+    exits: tuple[Exit, ...] = children("exit", about="zones where people leave", max=1000)
+    portals: tuple[Portal, ...] = children("portal", about="zones that move people elsewhere", max=1000)
     robots: tuple[RobotSpec, ...] = children("robot", about="robots", max=100)
-    cameras: tuple[Camera, ...] = children("camera", about="what looks on", max=100)
-    end: End = child(End, about="what ends the trial")
-    recording: RecordingSpec = child(RecordingSpec, about="how often what is recorded")
-    sweeps: tuple[Sweep, ...] = children("sweep", about="values that differ from variant to variant", max=20)
+    cameras: tuple[Camera, ...] = children("camera", about="cameras", max=100)
+    end: End = child(End, about="end conditions")
+    recording: RecordingSpec = child(RecordingSpec, about="recording rates")
+    sweeps: tuple[Sweep, ...] = children("sweep", about="parameter sweeps", max=20)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     """Where code that the trial names lies; not part of the tree."""
 
