@@ -44,8 +44,8 @@ class SocialWaysConfig:
         clip: maximum norm of a gradient; 0 for no limit.
         mixed: train the generator with bfloat16 products (about twice as fast on processors with support);
             everything else, and all forecasts, in float32.
-        noise_gain: factor of codes and noise after centering; sqrt(12) gives variance 1, 0 keeps the interval 0..1 as in
-            the report.
+        noise_gain: factor of codes and noise after centering; sqrt(12) gives variance 1, 0 keeps the interval 0..1 as
+            in the report.
         code_levels: number of equal steps to which codes are quantized; 0 for continuous codes as in the report.
         slope_penalty: weight of the squared gradient of the discriminator at true and drawn futures (Mescheder et al.
             2018, doi 10.48550/arXiv.1801.04406, R1 + R2, by finite differences as in Lin et al. 2025, doi

@@ -5,8 +5,8 @@ States are (x, y, vx, vy) in the frame of each person, divided by scales of the 
 
 Choices where the report is not specific: attention scores are divided by sqrt(P); values are a linear map of the
 hidden vectors to the 64 components of the pooled vector; no gradient passes through the social features (the bearing
-angle of a standing person has none); the layers between LSTMs and heads of the discriminator are 128 x 64 each, then 128 x 64,
-since the sizes in the text are inconsistent.
+angle of a standing person has none); the layers between LSTMs and heads of the discriminator are 128 x 64 each, then
+128 x 64, since the sizes in the text are inconsistent.
 
 Paper: Amirian, Hayet, Pettré (2019), Social Ways, CVPR Workshops, doi 10.48550/arXiv.1904.09507.
 """
