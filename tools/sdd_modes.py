@@ -53,7 +53,7 @@ def drawn(options: argparse.Namespace, place: str, method: str, learned: Windowe
     from crowdbot.prediction.social_ways.training import learner
 
     settings, values = METHODS[method]
-    samples, folder = Samples.cut(*learned, place), options.out / f"{place}-{method}"
+    samples, folder = Samples.from_windows(*learned, place), options.out / f"{place}-{method}"
     model = learner(settings, values, samples, samples, 0, "cpu")
     with torch_threads():
         train(

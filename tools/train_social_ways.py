@@ -40,7 +40,7 @@ ALONE = "20 draws without contact"
 
 def samples_of(recordings: list[Trajectories], protocol: str = "all") -> Samples:
     """Return all windows of some recordings."""
-    return Samples.joined([Samples.cut(*one.windows(protocol=protocol), one.name) for one in recordings])
+    return Samples.concatenate([Samples.from_windows(*one.windows(protocol=protocol), one.name) for one in recordings])
 
 
 def texts(folder: Path, fold: str, left_out: bool = False) -> list[Trajectories]:

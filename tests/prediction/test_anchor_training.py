@@ -153,7 +153,7 @@ def test_calibrated_numbers_are_complete(material: TrainingSet) -> None:
 def test_windows_of_any_recording_give_the_same_people(
     material: TrainingSet, recorded: Callable[[str], Trajectories]
 ) -> None:
-    samples = Samples.cut(*recorded("biwi_hotel").windows(), "hotel")
+    samples = Samples.from_windows(*recorded("biwi_hotel").windows(), "hotel")
     plain, both = training_set_of(samples, reverse=False), training_set_of(samples)
     forward = training_set([recorded("biwi_hotel")], reverse=False)
     assert (len(plain), len(both)) == (1197, 2 * 1197)
@@ -164,7 +164,7 @@ def test_windows_of_any_recording_give_the_same_people(
 
 
 def test_what_the_command_line_says_is_read(recorded: Callable[[str], Trajectories]) -> None:
-    samples = Samples.cut(*recorded("biwi_hotel").windows(), "hotel")
+    samples = Samples.from_windows(*recorded("biwi_hotel").windows(), "hotel")
     model = learner(None, {"width": "16", "social": "8", "scale": "0.1"}, samples, samples, 3, "cpu")
     assert (model.config.width, model.config.variation.scale, model.config.seed) == (16, 0.1, 3)
     with pytest.raises(InputError, match="unknown settings 'shiped', did you mean"):

@@ -1,4 +1,4 @@
-"""Demo: the main job end to end on built-in input: run a trial, predict its people, write a report."""
+"""Demo: run a built-in trial, predict its people and write a report."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ __all__ = ["Demo", "run_demo"]
 
 TRIAL = "crossing-flows"
 STEP = 0.4
-"""Predictions are made every 0.4 s, the step of the field's data sets."""
+"""Time step of the predictions [s], as in the ETH and UCY benchmarks."""
 OBSERVE, PREDICT = 8, 12
 NEAR = 5.0
 """People within this distance [m] of the robot are predicted."""
 OTHER_SEED = 1000
-"""The crowd that the simulated predictor is calibrated on has the demo's seed plus this."""
+"""Added to the seed of the demo for the crowd used in the calibration."""
 BUDGET = 64
 
 
 @dataclass(frozen=True)
 class Demo:
-    """What the demo made: the episode, the scores of the predictors and the files."""
+    """Result of the demo: the episode, the scores of the predictors and the files."""
 
     episode: Episode
     scores: tuple[Score, ...]
@@ -44,7 +44,7 @@ class Demo:
     caption: str
 
     def as_dict(self) -> dict[str, Any]:
-        """Return what ``crowdbot demo --json`` prints."""
+        """Return the output of ``crowdbot demo --json``."""
         return {
             "trial": self.episode.trial.name,
             "seed": self.episode.seed,
@@ -61,9 +61,9 @@ def run_demo(out: Path, seed: int | None = None, progress: Callable[[str, float]
     """Run ``crossing-flows``, predict the people near its robot and write ``episode.mcap`` and ``report.html``.
 
     Args:
-        out: folder of the results, made when missing.
-        seed: of everything random; None is the trial's own.
-        progress: called with what is being done and the share that is done.
+        out: folder of the results; created if missing.
+        seed: random seed (default: the seed of the trial).
+        progress: called with the name of the current task and the completed share.
     """
     from crowdbot.trials import load_trial
 
@@ -86,7 +86,7 @@ def run_demo(out: Path, seed: int | None = None, progress: Callable[[str, float]
 
 
 def _calibrated(trial: Trial, seed: int, progress: Callable[[float], None]) -> Fit:
-    """Fit one ORCA parameter set to another crowd of the same trial, so that no scored person is seen."""
+    """Fit one ORCA parameter set to another crowd of the same trial, without the scored people."""
     from crowdbot.calibration import Calibrator
 
     past, _ = run(trial, seed=seed).tracks(STEP).windows(PREDICT, 1)

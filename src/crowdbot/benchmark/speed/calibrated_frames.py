@@ -1,4 +1,4 @@
-"""Frames: how long a calibrated crowd of about 30 people takes from observation to forecast, frame by frame."""
+"""Time per frame of calibration and forecast for about 30 people."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ from .measurement import Gauge
 __all__ = ["scheme_frames"]
 
 PEOPLE = 30
-"""Frames whose number of people is nearest to this are taken."""
+"""The frames with the closest number of people are used."""
 FRAMES = 15
 STEPS = 12
 COLD, WARM = (2000, 300.0), (500, 100.0)
-"""Candidate evaluations and the time [ms] that they may take, from nothing and from the fit of the frame before."""
+"""Candidate evaluations and time limit [ms]: without, and with the fit of the previous frame."""
 
 
 def scheme_frames(warm: bool, recording: Path | None) -> Gauge:
     """Return the median time [ms] of a frame: 8 observed rows, ORCA, genetic search, a forecast of 12 steps.
 
     Args:
-        warm: begin with the fit of the frame before, and try 500 crowds instead of 2000.
-        recording: where the frames are from; None takes the built-in crossing flows.
+        warm: start from the fit of the previous frame, with 500 evaluations instead of 2000.
+        recording: source of the frames (default: the built-in trial crossing-flows).
 
     Raises:
         InputError: the recording is shorter than nine frames.
@@ -53,11 +53,11 @@ def scheme_frames(warm: bool, recording: Path | None) -> Gauge:
 
 
 def _pairs(recording: Path | None) -> list[tuple[Windows, Windows]]:
-    """Return windows of two frames in a row with as nearly 30 people as there are; the first pair warms up."""
+    """Return pairs of consecutive frames with the closest number of people to 30; the first pair is for warm-up."""
     tracks = _tracks(recording)
     frames, count = np.unique(tracks.frame, return_counts=True)
     if len(frames) < 9:
-        raise InputError(f"{tracks.name} has {len(frames)} frames; a frame of a calibrated crowd needs 9 at least")
+        raise InputError(f"{tracks.name} has {len(frames)} frames; a calibrated frame needs at least 9")
     away = np.abs(count[8:] - PEOPLE)
     chosen = 8 + np.sort(np.argsort(away, kind="stable")[: FRAMES + 1])
     return [(tracks.past(frame=int(frames[k - 1])), tracks.past(frame=int(frames[k]))) for k in chosen]

@@ -1,4 +1,4 @@
-"""Learning and learned predictors in ``crowdbot bench``: windows a second, seconds an epoch, memory, and live speed."""
+"""Learned predictors in ``crowdbot bench``: windows per second, seconds per epoch, memory, prediction time."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ __all__ = ["learning_measurements"]
 
 UPDATES = 4
 SIZES = (1, 1, 2, 2, 3, 3, 4, 5, 8, 20, 35)
-"""People in the made scenes: most windows of recordings hold a few, those of a busy square dozens."""
+"""People in the synthetic scenes: most windows of recordings have a few people, those of a busy square dozens."""
 MEMORY = 2000.0
-"""Learning takes less than this [MB]."""
+"""Maximum memory of training [MB]."""
 PEOPLE = 50
 
 
 def learning_measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
-    """Return name -> how to set the measurement up.
+    """Return name -> function that prepares the measurement.
 
     >>> "learn-anchor-net" in learning_measurements()
     True
@@ -45,14 +45,14 @@ def learning_measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
         found[f"learn-{name}"] = functools.partial(_learning, name)
         found[f"epoch-{name}"] = functools.partial(_epoch, name)
         found[f"predict-{name}-{PEOPLE}"] = functools.partial(_live, name)
-    if sys.platform != "win32":  # which does not tell a process its peak
+    if sys.platform != "win32":  # has no peak memory of a process
         found["learn-memory"] = _memory
     return found
 
 
 def synthetic_samples(scenes: int = 440) -> Samples:
-    """Return windows of 8 + 12 rows with people who turn a little, as many as in usual recordings."""
-    torch_module()  # says how to install it, when it is missing
+    """Return windows of 8 + 12 rows with slowly turning people, as many as in usual recordings."""
+    torch_module()  # raises MissingExtra if it is not installed
     rng = stream(0, "learning")
     count = np.tile(SIZES, -(-scenes // len(SIZES)))[:scenes]
     people, first = int(count.sum()), np.concatenate([[0], np.cumsum(count)])
@@ -80,7 +80,7 @@ def _learning(name: str) -> Measurement:
 
 
 def _epoch(name: str) -> Gauge:
-    """Time one epoch of the made windows; real ones have other numbers of people."""
+    """Time one epoch of the synthetic windows."""
     import time
 
     samples = synthetic_samples()
@@ -120,7 +120,7 @@ def _square() -> Windows:
 
 
 def _memory() -> Gauge:
-    """Read the peak memory of a process of its own that learns Social Ways."""
+    """Read the peak memory of a child process that trains Social Ways."""
     synthetic_samples(1)
     program = (
         "import re, resource, sys; from pathlib import Path;"
@@ -133,5 +133,5 @@ def _memory() -> Gauge:
     )
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)  # noqa: S603
     if run.returncode:
-        raise InputError(f"learning in a process of its own failed: {run.stderr.strip().splitlines()[-1]}")
+        raise InputError(f"training in a child process failed: {run.stderr.strip().splitlines()[-1]}")
     return Gauge("MB", float(run.stdout), f"{MEMORY:.0f} MB while Social Ways learns", MEMORY)

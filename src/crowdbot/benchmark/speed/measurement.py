@@ -1,4 +1,4 @@
-"""What a benchmark returns: timed work, or a value that is read once."""
+"""Results of a benchmark: timed work, or a value that is read once."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ __all__ = ["Gauge", "Measurement"]
 
 @dataclass(frozen=True)
 class Measurement:
-    """A piece of work to time: ``work()`` does ``amount`` units; the ratio is to ``reference`` units a second.
+    """Work to time: ``work()`` processes ``amount`` units; its speed is divided by ``reference`` [units/s].
 
-    When ``other`` is given, it does ``other_amount`` of the same units in another way, and its speed is the reference.
+    If ``other`` is given, it processes ``other_amount`` of the same units, and its speed is the reference.
     """
 
     unit: str
@@ -26,7 +26,7 @@ class Measurement:
 
 @dataclass(frozen=True)
 class Gauge:
-    """Something that is read once and not timed; the ratio is ``value / reference``."""
+    """A value that is read once and not timed; the ratio is ``value / reference``."""
 
     unit: str
     value: float

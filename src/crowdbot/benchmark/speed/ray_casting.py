@@ -1,4 +1,4 @@
-"""People with limbs for the rays that are timed, and MuJoCo's rays at the same shapes."""
+"""Scenes for timing rays at people with limbs, and MuJoCo rays at the same shapes."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def people_with_limbs(people: int, seed: int = 0) -> Scene:
 
 
 def mujoco_rays(scene: Scene, sensor: Any, pose: SpatialPose) -> Callable[[], Any]:
-    """Return what casts the sensor's beams with ``mj_multiRay``: distances, normals and geometries.
+    """Return a function that casts the beams of the sensor with ``mj_multiRay``: distances, normals and geometries.
 
     Raises:
         MissingExtra: MuJoCo is not installed.
@@ -49,7 +49,7 @@ def mujoco_rays(scene: Scene, sensor: Any, pose: SpatialPose) -> Callable[[], An
         world.add_geom(type=shapes.mjGEOM_BOX, size=size, pos=middle, quat=turn)
     bodies = scene.bodies or Bodies.of()
     for start, end, radius in zip(bodies.start[0], bodies.end[0], bodies.radius[0], strict=True):
-        limb = world.add_body(mocap=True)  # each limb moves on its own
+        limb = world.add_body(mocap=True)  # limbs move independently
         limb.add_geom(type=shapes.mjGEOM_CAPSULE, fromto=[*start, *end], size=[radius, 0, 0])
     model = spec.compile()
     data = mujoco.MjData(model)

@@ -1,4 +1,4 @@
-"""Engines: what crowd models are timed against, JuPedSim and a plain NumPy twin."""
+"""Reference engines for the speed of crowd models: JuPedSim, and a plain NumPy implementation."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ __all__ = ["JUPEDSIM", "jupedsim_step", "power_law_in_numpy"]
 Floats = NDArray[np.float64]
 
 JUPEDSIM = ("SocialForceModel", "CollisionFreeSpeedModelV2", "AnticipationVelocityModel")
-"""The models of JuPedSim that are timed; the first was the fastest at 10 000 people."""
+"""Timed models of JuPedSim; the first was the fastest at 10 000 people."""
 
 
 def jupedsim_step(model: str, scene: Scene) -> Callable[[], object]:
-    """Return a function that does one step of JuPedSim with the people of environment 0 in an empty square.
+    """Return a function that makes one step of JuPedSim with the people of environment 0 in an empty square.
 
-    Everyone is steered directly to a point 100 m ahead, the least work that JuPedSim can be given.
+    Everyone has direct steering to a point 100 m ahead, the least work for JuPedSim.
 
     Raises:
         MissingExtra: jupedsim is not installed.
@@ -43,7 +43,7 @@ def jupedsim_step(model: str, scene: Scene) -> Callable[[], object]:
 def power_law_in_numpy(scene: Scene, reach: float = 5.0) -> Floats:
     """Return the accelerations ``[A, 2]`` [m/s2] of Karamouzas et al. 2014 in environment 0, all pairs at once.
 
-    The plain way to write the model: no kernel and no search, the twin that shows what both buy.
+    A direct implementation without kernel and neighbor search.
     """
     strength, exponent, decay = 1.5, 2.0, 3.0
     x, v, r = scene.position[0], scene.velocity[0], scene.radius[0]

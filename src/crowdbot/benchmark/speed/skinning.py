@@ -7,7 +7,7 @@ from .measurement import Measurement
 __all__ = ["posing_and_skinning"]
 
 PEOPLE, OFTEN, ALLOWED = 100, 100, 0.01
-"""So many people, so often in one piece of work; the reference is once in so long [s]."""
+"""Number of people, repeats per work, and reference time of one repeat [s]."""
 
 
 def posing_and_skinning() -> Measurement:

@@ -1,6 +1,6 @@
-"""Speed: what ``crowdbot bench`` measures.
+"""Measurements of ``crowdbot bench``.
 
-Medians of repeats after a warm-up, with the environment printed; ratios are to something timed in the same run or to
+Each is the median of several repeats after a warm-up. Ratios compare with another measurement of the same run, or with
 real time.
 """
 
@@ -30,7 +30,7 @@ __all__ = ["SpeedRow", "environment", "measure"]
 
 @dataclass(frozen=True)
 class SpeedRow:
-    """One measured speed and its ratio to something measured or known in the same run."""
+    """One measured speed and its ratio to a reference."""
 
     name: str
     median: float
@@ -50,11 +50,11 @@ def measure(
     progress: Callable[[str, float], None] | None = None,
     recording: Path | None = None,
 ) -> list[SpeedRow]:
-    """Time the named measurements (all when none is named); calibrated frames are taken from ``recording``, if given.
+    """Time the named measurements (default: all); calibrated frames are taken from ``recording``, if given.
 
     Raises:
         UnknownName: a name is not among :func:`crowdbot.benchmark.measurements`.
-        MissingExtra: what is named needs another engine that is not installed; unnamed it is left out and said so.
+        MissingExtra: a named measurement needs a package that is not installed (without names: skipped).
         InputError: ``repeats`` is below 1.
     """
     if repeats < 1:
@@ -76,7 +76,7 @@ def measure(
         except MissingExtra as error:
             if names:
                 raise
-            report(f"{name} left out: {error}", 1.0)
+            report(f"{name} skipped: {error}", 1.0)
             continue
         rows.append(_row(name, task, repeats, report))
     return rows
@@ -91,7 +91,7 @@ def _row(name: str, task: Measurement | Gauge, repeats: int, report: Callable[[s
         task.other()
     mine: list[float] = []
     theirs: list[float] = []
-    for repeat in range(repeats):  # in turns, so that a change of the machine's load meets both
+    for repeat in range(repeats):  # alternating: a change of the load affects both
         mine.append(_seconds(task.work))
         if task.other is not None:
             theirs.append(_seconds(task.other))

@@ -26,5 +26,7 @@ METHODS: dict[str, dict[str, Any]] = {
         "use_info_loss": True, **PRESETS["modes"], "variety_draws": 20, "variety_growth": 100.0
     },
 }  # fmt: skip
-"""What figures 17 and 18 of the report compare (the first seven), what its published code sets instead, and what this
-code adds; each with how it differs from a plain GAN with the settings of the report."""
+"""Settings of each method that differ from a plain GAN with the settings of the report.
+
+The first seven are those of figures 17 and 18 of the report; ``info+rates-of-code`` has the settings of its published
+code; the others are new."""

@@ -1,4 +1,4 @@
-"""The toy set of the report: people come from six places on a circle, and each may go on in three ways."""
+"""Toy data of the report: people start at six places on a circle, and each continues in one of three directions."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ToyData:
-    """The toy set: who is seen walking towards the middle goes on straight or turns off to one side.
+    """Toy data: people walk towards the center, then continue straight or turn to one side.
 
-    The rows of a track lie on circles of falling radius. Those that are seen are the same for all of a group; a later
-    row is turned about the middle by the angle of the mode and by an even jitter.
+    The rows of a track lie on circles of decreasing radius. The observed rows are the same for all tracks of a group;
+    later rows are rotated about the center by the angle of the mode and a uniform jitter.
 
     Fields:
-        groups: places on the circle, evenly around.
-        modes: angles [rad] by which the later rows of a mode are turned, one for each mode.
+        groups: number of start places, evenly spaced on the circle.
+        modes: rotation of the later rows [rad], one for each mode.
         radii: radius of each row [m].
-        observe: how many of the rows are seen.
-        jitter: half width [rad] of the even jitter of each later row.
-        tracks: for each mode of each group.
+        observe: number of observed rows.
+        jitter: half width of the uniform jitter of each later row [rad].
+        tracks: number of tracks for each mode of each group.
 
     Report: CROWDBOT D4.2, figure 14; the values are those of its published code, 768 tracks rounded to even modes.
 
     Raises:
-        InputError: the numbers do not fit together.
+        InputError: a value is not allowed.
 
     >>> ToyData().paths(np.random.default_rng(0), 5).shape
     (6, 3, 5, 4, 2)
@@ -58,7 +58,7 @@ class ToyData:
 
     @property
     def predict(self) -> int:
-        """Number of rows that are predicted."""
+        """Number of predicted rows."""
         return len(self.radii) - self.observe
 
     def paths(self, rng: np.random.Generator, tracks: int) -> Floats:
@@ -67,12 +67,12 @@ class ToyData:
         return self._turned(jitter + np.array(self.modes)[:, None, None])
 
     def middles(self) -> Floats:
-        """Return the middle of every mode ``[groups, modes, rows, 2]`` [m]."""
+        """Return the center of every mode ``[groups, modes, rows, 2]`` [m]."""
         zero = np.zeros((self.groups, len(self.modes), 1, self.predict))
         return self._turned(zero + np.array(self.modes)[:, None, None])[:, :, 0]
 
     def samples(self, rng: np.random.Generator) -> Samples:
-        """Return a drawn set as samples to learn from: every track is a scene with one person."""
+        """Return drawn tracks as training samples; every track is a scene with one person."""
         position = self.paths(rng, self.tracks).reshape(-1, len(self.radii), 2)
         count = len(position)
         return Samples(

@@ -1,4 +1,4 @@
-"""Social Ways on the toy set: the subsystems of its GAN compared, everything else equal."""
+"""Training of Social Ways on the toy data, with different subsystems of its GAN."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from .toy_data import ToyData
 __all__ = ["ToyTraining", "compare_distributions", "gan_config", "real_paths", "sample_futures"]
 
 COMPARED, REPEATS = 20, 10
-"""So many real and drawn paths of each group are compared, so many times."""
+"""Number of real and drawn paths per group in one comparison, and number of comparisons."""
 WITHIN = 0.05
-"""A path belongs to a mode within this distance [m] of its middle; neighbouring modes are 0.1 m apart."""
+"""Maximum distance [m] of a path from the center of its mode; adjacent modes are 0.1 m apart."""
 
 
 def gan_config(method: str, toy: ToyData, values: Mapping[str, Any] | None = None) -> SocialWaysConfig:
-    """Return the settings of a method: nobody has neighbours, and tracks are seen as they are.
+    """Return the settings of a method: no neighbors, world frame.
 
     Raises:
         InputError: the method is unknown.
@@ -39,7 +39,7 @@ def gan_config(method: str, toy: ToyData, values: Mapping[str, Any] | None = Non
 
 
 class ToyTraining(SocialWaysTraining):
-    """A method on the toy set; what is watched are the metrics of distributions."""
+    """Training of a method on the toy data, monitored by metrics of distributions."""
 
     kind: ClassVar[str] = "social-ways"
 
@@ -49,7 +49,7 @@ class ToyTraining(SocialWaysTraining):
         self.toy, self.seed = toy, seed
 
     def check(self) -> Mapping[str, float]:
-        """Return 1-NN accuracy, EMD [m], modes found and their coverage, means over groups and repeats."""
+        """Return 1-NN accuracy, EMD [m], number of modes and coverage, means over groups and repeats."""
         real = real_paths(self.toy, stream(self.seed, "real"))
         return compare_distributions(
             self.toy, real, sample_futures(self, COMPARED * REPEATS, stream(self.seed, "drawn"))
@@ -57,18 +57,18 @@ class ToyTraining(SocialWaysTraining):
 
 
 def real_paths(toy: ToyData, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Draw real future paths of every group, of random modes, ``[groups, draws, T, 2]`` [m]."""
+    """Draw real future paths with random modes for every group, ``[groups, draws, T, 2]`` [m]."""
     count = COMPARED * REPEATS
     mode = rng.integers(len(toy.modes), size=(toy.groups, count))
     return toy.paths(rng, count)[np.arange(toy.groups)[:, None], mode, np.arange(count), toy.observe :]
 
 
 def compare_distributions(toy: ToyData, real: NDArray[np.float64], drawn: NDArray[np.float64]) -> dict[str, float]:
-    """Return the measures of drawn paths against as many real ones, means over the groups.
+    """Return metrics of drawn paths against the same number of real paths, means over the groups.
 
-    ``nearest_neighbor`` and ``emd`` compare all 200 paths of a group; those with ``_20`` compare 20 at a time as the
-    report does, ten times: chance in how many of 20 go each way alone makes their EMD 0.027 m for real paths against
-    real ones. ``whole`` is the share of groups with all modes.
+    ``nearest_neighbor`` and ``emd`` compare all 200 paths of a group. The keys with ``_20`` compare 20 paths at a time,
+    ten times, as the report does; real paths against real paths then have an EMD of 0.027 m, since the number of paths
+    per mode is random. ``whole`` is the share of groups with all modes.
     """
     split = (toy.groups, REPEATS, COMPARED, toy.predict, 2)
     few = real.reshape(split), drawn.reshape(split)
@@ -87,7 +87,7 @@ def compare_distributions(toy: ToyData, real: NDArray[np.float64], drawn: NDArra
 
 
 def sample_futures(model: ToyTraining, draws: int, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Return future paths ``[groups, draws, T, 2]`` [m] that the averaged generator draws for each group."""
+    """Draw future paths of each group with the averaged generator, ``[groups, draws, T, 2]`` [m]."""
     past = model.toy.middles()[:, 0, : model.toy.observe, None]  # [groups, T, 1, 2]
     futures = model.sample_futures(past, draws, rng)  # [K, groups, T, 1, 2]
     return np.ascontiguousarray(futures[:, :, :, 0].swapaxes(0, 1))

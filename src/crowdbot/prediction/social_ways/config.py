@@ -20,40 +20,38 @@ class SocialWaysConfig:
     """Settings of the network and its training; the defaults are those of the report (table 2, section 2.2.8).
 
     Fields of table 2:
-        unrolling_steps: steps of the discriminator ahead of each step of the generator; 0 is the plain GAN.
-        use_info_loss, info_weight: whether the latent codes must be readable from the prediction.
-        latent_codes: how many of the inputs are codes.
-        use_l2_loss, l2_weight: squared distance of one draw to the truth.
+        unrolling_steps: unrolled discriminator steps per generator step; 0 for a plain GAN.
+        use_info_loss, info_weight: loss for recovering the latent codes from the prediction.
+        latent_codes: number of latent codes.
+        use_l2_loss, l2_weight: squared distance of one sample to the ground truth.
         generator_rate, discriminator_rate: learning rates of Adam.
     Fields of the text:
-        adversarial: cross-entropy, or least-squares; ``adversarial_weight`` weighs it for the generator.
-        use_variety_loss, variety_weight, variety_draws: squared distance of the best draw of each person.
-        momentum: first moment of Adam.
-        batch: people (with a known future) in an update; whole scenes, so that it is about this number.
-        observe, predict: rows, that is tau + 1 and T.
-        hidden, pooled, noise: sizes of the LSTMs, of the pooled vector, and of the noise beside the codes.
-        slope: of the LeakyReLU.
-        social: attention pooling; without it everyone is alone, as in the toy study.
+        adversarial: ``cross-entropy`` or ``least-squares``; ``adversarial_weight`` is its weight for the generator.
+        use_variety_loss, variety_weight, variety_draws: squared distance of the best sample of each person.
+        momentum: first-moment coefficient of Adam.
+        batch: approximate number of people with a known future per update; scenes are not split.
+        observe, predict: number of rows, tau + 1 and T.
+        hidden, pooled, noise: sizes of the LSTMs, the pooled vector and the noise without the codes.
+        slope: negative slope of the LeakyReLU.
+        social: attention pooling over neighbors.
     Fields of this code:
-        frame: ``person``: tracks are seen from where each person is and heads, so that predictions turn and shift with
-            the world; ``world``: in the coordinates of the recording, as in the report, for use in that place only.
-        residual: the network corrects the last seen velocity instead of saying the velocity itself.
-        mirror, reverse, scale_sd: training scenes are mirrored, run backwards, and stretched by exp(normal) at random.
-        average: weights for predicting are a moving average with this factor over updates; 0 takes the last ones.
-        decay: learning rates fall to 0 along a cosine.
-        clip: largest norm of a gradient; 0 does not clip.
-        mixed: matrices of the generator are multiplied in bfloat16 while it learns (about twice as fast on processors
-            that know it), all else and all forecasts in float32.
-        noise_gain: codes and noise reach the network from their middle and so many times as large; the root of 12 gives
-            them variance 1, 0 leaves them in 0..1 as in the report.
-        code_levels: the network sees codes as the middles of so many equal steps of 0..1, so that it may jump from one
-            way to another; 0 leaves them continuous as in the report.
-        slope_penalty: weight of the squared slope of the discriminator at true and drawn futures (Mescheder et al.
-            2018, doi 10.48550/arXiv.1801.04406, R1 + R2, by a small step aside as in Lin et al. 2025, doi
-            10.48550/arXiv.2501.08316); 0 does without.
-        slope_penalty_left: the penalty falls to this share of its weight between 30 and 90 % of the updates.
-        variety_growth: the weight of the variety loss grows to so many times between 30 and 80 % of the updates: early
-            it would fill the space between modes, late it brings the draws of a mode to where the truth lies.
+        frame: ``person``: the frame of each person, which makes predictions independent of place and direction;
+            ``world``: the frame of the recording, as in the report, valid at that place only.
+        residual: the network predicts the difference to the last observed velocity.
+        mirror, reverse, scale_sd: random mirroring, time reversal and scaling by exp(normal) of training scenes.
+        average: factor of the moving average of the weights used for prediction; 0 for the last weights.
+        decay: cosine decay of the learning rates to 0.
+        clip: maximum norm of a gradient; 0 for no limit.
+        mixed: train the generator with bfloat16 products (about twice as fast on processors with support);
+            everything else, and all forecasts, in float32.
+        noise_gain: factor of codes and noise after centering; sqrt(12) gives variance 1, 0 keeps the interval 0..1 as
+            in the report.
+        code_levels: number of equal steps to which codes are quantized; 0 for continuous codes as in the report.
+        slope_penalty: weight of the squared gradient of the discriminator at true and drawn futures (Mescheder et al.
+            2018, doi 10.48550/arXiv.1801.04406, R1 + R2, by finite differences as in Lin et al. 2025, doi
+            10.48550/arXiv.2501.08316); 0 for none.
+        slope_penalty_left: final share of the penalty; it decreases between 30 and 90 % of the updates.
+        variety_growth: final factor of the weight of the variety loss; it grows between 30 and 80 % of the updates.
 
     Raises:
         InputError: a value is not allowed.
@@ -121,7 +119,7 @@ class SocialWaysConfig:
         if not 0.0 < self.variety_growth <= 1e6:
             raise InputError(f"social ways: variety_growth = {self.variety_growth} must be above 0 and at most 1000000")
         if self.use_info_loss and self.latent_codes == 0:
-            raise InputError("social ways: the information loss needs latent codes; set latent_codes or no info loss")
+            raise InputError("social ways: the information loss requires latent_codes >= 1, or use_info_loss=False")
 
     @property
     def inputs(self) -> int:
@@ -133,7 +131,7 @@ STEADY: dict[str, Any] = {
     "slope_penalty": 0.002, "slope_penalty_left": 0.1, "noise_gain": 12.0**0.5, "momentum": 0.0, "decay": True,
     "generator_rate": 2e-3, "discriminator_rate": 2e-3, "average": 0.99,
 }  # fmt: skip
-"""What keeps all modes: a discriminator that learns as fast as the generator and is not steep."""
+"""Settings that keep all modes: equal learning rates and a gradient penalty."""
 PRESETS: dict[str, dict[str, Any]] = {
     "report": {},
     "variety": {
@@ -146,8 +144,8 @@ PRESETS: dict[str, dict[str, Any]] = {
         "variety_weight": 10.0, "variety_draws": 10, "variety_growth": 30.0,
     },
 }  # fmt: skip
-"""``report``: the defaults; ``variety``: what is trained for the tables of best-of-20 errors; ``modes``: one code of
-three steps tells apart the ways that people take."""
+"""``report``: the defaults; ``variety``: settings of the best-of-20 tables; ``modes``: one code with three steps
+selects the mode."""
 
 
 def preset(name: str, values: Mapping[str, Any] | None = None) -> SocialWaysConfig:

@@ -3,10 +3,10 @@
 Axes: B scenes (draws of one scene are B apart), A people, T rows, H = 128 hidden, P = 64 pooled, M = 64 noise.
 States are (x, y, vx, vy) in the frame of each person, divided by scales of the training data.
 
-Where the report leaves something open: attention scores are divided by the root of P, as usual; the values are a linear
-map of the hidden vectors to the 64 numbers that the text gives the pooled vector; the social features are observed, no
-gradient goes through them (the angle of somebody who stands has none); the sizes that the text gives the layers between
-LSTMs and heads of the discriminator do not fit together, here they are 128 x 64 each, then 128 x 64.
+Choices where the report is not specific: attention scores are divided by sqrt(P); values are a linear map of the
+hidden vectors to the 64 components of the pooled vector; no gradient passes through the social features (the bearing
+angle of a standing person has none); the layers between LSTMs and heads of the discriminator are 128 x 64 each, then
+128 x 64, since the sizes in the text are inconsistent.
 
 Paper: Amirian, Hayet, Pettré (2019), Social Ways, CVPR Workshops, doi 10.48550/arXiv.1904.09507.
 """
@@ -26,14 +26,14 @@ SMALL = 1e-6
 
 
 class SceneInput(NamedTuple):
-    """What the generator sees of B scenes, as tensors.
+    """Input of the generator: B scenes, as tensors.
 
     Fields:
         state: ``[B, T, A, 4]`` observed states.
         here: ``[B, A]`` bool.
         origin, turn: ``[B, A, 2]`` [m] and cosine, sine: the frames of the people.
-        velocity: ``[B, A, 2]`` [m/s] the last seen velocity, in the own frame.
-        place: ``[B, A, 2]`` [m] the last seen position, in the own frame.
+        velocity: ``[B, A, 2]`` [m/s] last observed velocity, in the frame of the person.
+        place: ``[B, A, 2]`` [m] last observed position, in the frame of the person.
     """
 
     state: Tensor
@@ -44,15 +44,15 @@ class SceneInput(NamedTuple):
     place: Tensor
 
     def repeat(self, draws: int) -> SceneInput:
-        """Return every scene ``draws`` times: all scenes, then all scenes again."""
+        """Return all scenes ``draws`` times, one copy after the other."""
         return SceneInput(*(one.repeat(draws, *(1,) * (one.dim() - 1)) for one in self))
 
 
 class Generator(nn.Module):
-    """Draws futures of everyone in a scene; what is drawn for one person is seen by the others."""
+    """Generator of joint futures: at each step, everyone attends to the drawn positions of the others."""
 
     def __init__(self, config: SocialWaysConfig, dt: float, scales: tuple[float, float, float]) -> None:
-        """Make it with random weights; scales are those of position [m], velocity [m/s] and distance [m]."""
+        """Initialize with random weights; ``scales``: position [m], velocity [m/s] and distance [m]."""
         super().__init__()
         c = self.config = config
         self.dt, self.scales = dt, scales
@@ -75,7 +75,7 @@ class Generator(nn.Module):
             sight: B scenes.
             noise: ``[K, B, A, M]`` in 0..1, K draws; the codes come first.
             steps: rows ahead.
-            plan: ``[B, T, A, 2]`` [m] where some are known to be, in the own frames; NaN for everyone else.
+            plan: ``[B, T, A, 2]`` [m] known positions, in the frame of each person; NaN where unknown.
         """
         draws, scenes, people, _ = noise.shape
         hidden = self.encode(sight.state)  # h, c: [B * A, H]
@@ -104,7 +104,7 @@ class Generator(nn.Module):
             place = moved
             state = torch.cat([place / self.scales[0], velocity / self.scales[1]], dim=-1)  # [K * B, A, 4]
             if step + 1 < steps:
-                hidden = self.encoder(self.embed(state).flatten(0, 1), hidden)  # h goes on with what was said
+                hidden = self.encoder(self.embed(state).flatten(0, 1), hidden)  # h continues with the drawn state
             places.append(place)
             states.append(state)
         shape = (draws, scenes, people)
@@ -119,12 +119,12 @@ class Generator(nn.Module):
         return hidden
 
     def pool(self, hidden: Tensor, place: Tensor, velocity: Tensor, sight: SceneInput) -> Tensor:
-        """Return what the neighbors mean to everyone ``[B * A, P]``; 0 for who has none.
+        """Return the attention-pooled neighbors of everyone ``[B * A, P]``; 0 without neighbors.
 
         Args:
             hidden: ``[B * A, H]`` encoded tracks up to now.
             place, velocity: ``[B, A, 2]`` [m] and [m/s] in the own frames.
-            sight: whose frames these are, and who is there.
+            sight: the scenes.
         """
         count, people, _ = place.shape
         if not self.config.social or people == 1:
