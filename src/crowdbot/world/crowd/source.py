@@ -229,11 +229,11 @@ class Arrivals:
 
     @property
     def waiting_count(self) -> Numbers:
-        """How many wait outside, ``[E]``."""
+        """Number of people waiting to enter, ``[E]``."""
         return np.array([sum(queue.waiting for queue in queues) for queues in self._queues], dtype=np.int64)
 
     def reconfigure(self, sources: Sequence[PeopleSource], seeds: Sequence[int] | None = None) -> None:
-        """Go on with other sources in the places of these; who is due or waits stays so.
+        """Replace the sources; people who are due or wait are kept.
 
         Args:
             sources: as many as before, with the same journeys.

@@ -66,7 +66,7 @@ class Waypoint(ABC):
 
     @abstractmethod
     def is_reached(self, place: Floats, goal: Floats) -> Bools:
-        """Return ``[N]`` who is there."""
+        """Return ``[N]``, whether each person is there."""
 
 
 @dataclass(frozen=True)
@@ -119,7 +119,7 @@ class HeadingWaypoint(Waypoint):
         return place + AHEAD * np.array([math.cos(self.heading), math.sin(self.heading)])
 
     def is_reached(self, place: Floats, goal: Floats) -> Bools:
-        """Return that nobody is there."""
+        """Return False for everybody."""
         return np.zeros(len(place), dtype=np.bool_)
 
 
@@ -185,7 +185,7 @@ class PolygonZone(Waypoint):
         return inside
 
     def sample(self, luck: PersonRandom) -> Floats:
-        """Return a random point of the zone ``[N, 2]`` for everyone, where a body has room.
+        """Return a random free point of the zone for each person, ``[N, 2]`` [m].
 
         Raises:
             InputError: there is none.

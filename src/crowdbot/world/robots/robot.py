@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, RobotError, SpatialPose, Twist, did_you_mean
 from crowdbot.world.urdf import Cylinder, Link, LinkInertia, LinkShape, RobotModel
-from crowdbot.world.urdf.transforms import frame, quaternion, turning
+from crowdbot.world.urdf.transforms import axis_rotation, frame, quaternion
 
 from .drive import Drive
 from .mount import SensorMount
@@ -191,7 +191,7 @@ class Robot:
         [[0.484, 0.0, 0.364]]
         """
         seat = self.sensor_frame(name, positions)
-        found = [spatial(frame((x, y, self.lift), turning((0.0, 0.0, 1.0), a)) @ seat) for (x, y), a in zip(
+        found = [spatial(frame((x, y, self.lift), axis_rotation((0.0, 0.0, 1.0), a)) @ seat) for (x, y), a in zip(
             pose.position.tolist(), pose.heading.tolist(), strict=True)]  # fmt: skip
         return SpatialPose(
             np.concatenate([one.position for one in found]), np.concatenate([one.rotation for one in found])

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Element, InputError, RobotError, did_you_mean, parse_number
+from crowdbot.core import Element, InputError, RobotError, parse_number
 
 from .folders import Folders
 from .meshes import read_mesh, with_pieces
@@ -66,11 +66,6 @@ class UrdfReader:
         if sentences:
             raise RobotError(*sentences)
 
-    @staticmethod
-    def meant(word: str, known: Iterable[str]) -> str:
-        """Return ``, did you mean 'x'?`` when a name is near."""
-        return did_you_mean(word, known)
-
     def new(self, element: Element, name: str, known: Iterable[str]) -> bool:
         """Return whether a name is new; say so when it is not."""
         if name in known:
@@ -100,7 +95,7 @@ class UrdfReader:
             return default
         return found
 
-    def needed(self, element: Element, key: str, least: float = -np.inf) -> float | None:
+    def required_value(self, element: Element, key: str, least: float = -np.inf) -> float | None:
         """Return a number that must be there, None when it is wrong or missing."""
         if key not in element.attributes:
             self.say(element, f"needs the attribute {key!r}, a number")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from crowdbot.core import Element, InputError, RobotError, parse_xml, read_bytes
+from crowdbot.core import Element, InputError, RobotError, did_you_mean, parse_xml, read_bytes
 
 from .elements import UrdfReader
 from .folders import Folders, robot_folder
@@ -128,7 +128,7 @@ def _check_tree(
         at = Element("joint", {"name": joint.name}, line=lines[joint.name])
         for role, name in (("parent", joint.parent), ("child", joint.child)):
             if name not in links:
-                reader.say(at, f"has the {role} {name!r}, which is no link{reader.meant(name, links)}")
+                reader.say(at, f"has the {role} {name!r}, which is no link{did_you_mean(name, links)}")
         if joint.child in above:
             other = above[joint.child].name
             reader.say(at, f"moves the link {joint.child!r}, which {other!r} moves already: the links form a loop")
@@ -161,7 +161,7 @@ def _check_mimics(reader: UrdfReader, joints: dict[str, Joint], lines: dict[str,
         while leader.mimic:
             name = leader.mimic.joint
             if name not in joints:
-                reader.say(at, f"mimics {name!r}, which is no joint{reader.meant(name, joints)}")
+                reader.say(at, f"mimics {name!r}, which is no joint{did_you_mean(name, joints)}")
                 break
             if name in seen:
                 reader.say(at, f"mimics itself by way of {name!r}")
