@@ -19,8 +19,8 @@ from crowdbot.trials import load_trial
 
 RUN = """import sys
 from crowdbot.trials import load_trial
-from crowdbot.recording import opened
-with opened(load_trial(sys.argv[1]), out=sys.argv[2]) as running:
+from crowdbot.recording import open_run
+with open_run(load_trial(sys.argv[1]), out=sys.argv[2]) as running:
     while running.step() is None:
         print(running.simulation.world.clock.time, flush=True)
 """
@@ -62,6 +62,7 @@ def main() -> None:
             folder = top / "out" / str(number)
             _, told = killed(folder, chance)
             left = sorted(entry.name for entry in folder.iterdir()) if folder.exists() else []
+            left = [name for name in left if not name.endswith(".lock")]  # the next run takes it over
             if "episode.mcap" not in left:
                 assert told < 0.0, (told, left)
                 empty += 1

@@ -27,12 +27,12 @@ def memory() -> float:
     return int(re.search(r"VmRSS:\s+(\d+)", status)[1]) / 1024
 
 
-def main(out: str, trial: str = str(HOME / "docs" / "trials" / "thousand.xml"), seconds: str = "") -> None:
+def main(out: str, trial: str = str(HOME / "docs" / "gallery" / "trials" / "thousand.xml"), seconds: str = "") -> None:
     """Run, and print."""
     one = load_trial(trial)
     if seconds:
         one = dataclasses.replace(one, duration=float(seconds))
-    record(dataclasses.replace(one, duration=2.0), out=Path(out) / "warm.mcap")  # kernels are compiled once
+    record(dataclasses.replace(one, duration=2.0), out=Path(out) / "warm.mcap", force=True)  # kernels are compiled once
     (Path(out) / "warm.mcap").unlink()
     used: list[float] = []
 
@@ -42,7 +42,7 @@ def main(out: str, trial: str = str(HOME / "docs" / "trials" / "thousand.xml"), 
 
     load = os.getloadavg()[0]
     begin = time.perf_counter()
-    done = record(one, out=out, progress=quarter)
+    done = record(one, out=out, progress=quarter, force=True)
     took = time.perf_counter() - begin
     size = (Path(out) / "episode.mcap").stat().st_size / 1e6
     print(f"{one.name}: {one.people} people, {done.end:g} s simulated in {took:.1f} s, outcome {done.outcome}")

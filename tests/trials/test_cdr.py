@@ -32,7 +32,7 @@ def test_people(ids: list[int], seed: int) -> None:
         )
         for k, who in enumerate(ids)
     ]
-    slow = MAKE.encoded(MAKE.make("people_msgs/msg/People", header=MAKE.header(NOW), people=everyone))
+    slow = MAKE.encode_message(MAKE.make("people_msgs/msg/People", header=MAKE.header(NOW), people=everyone))
     assert people_bytes(NOW, np.array(ids, dtype=np.int64), position, velocity, radius, heading) == slow
 
 
@@ -83,4 +83,4 @@ SHAPES = st.builds(
 @settings(deadline=None, max_examples=60)
 def test_markers(shapes: list[Shape]) -> None:
     slow = MAKE.make("visualization_msgs/msg/MarkerArray", markers=[slow_marker(shape) for shape in shapes])
-    assert marker_bytes(NOW, shapes) == MAKE.encoded(slow)
+    assert marker_bytes(NOW, shapes) == MAKE.encode_message(slow)

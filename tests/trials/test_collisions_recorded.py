@@ -98,7 +98,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
             recorder.take(frame)
             simulation.step()
         recorder.complete("collision", 8)
-    return path, tally.digest.ended("collision")
+    return path, tally.digest.hexdigest("collision")
 
 
 def test_forces_and_collisions_come_back(recorded: tuple[Path, str]) -> None:
@@ -134,11 +134,11 @@ def test_they_count_for_the_digest_and_a_world_without_them_is_as_before() -> No
     for more in ({}, {"forces": (FORCE,)}, {"forces": (FORCE._replace(force=85.6),)}, {"collisions": (HIT,)}):
         digest = EpisodeDigest()
         digest.take(physical(simulation.frame(), **more))
-        sums.append(digest.ended("x"))
+        sums.append(digest.hexdigest("x"))
     plain = EpisodeDigest()
     plain.take(simulation.frame())
     assert len(set(sums)) == 4
-    assert plain.ended("x") == sums[0]
+    assert plain.hexdigest("x") == sums[0]
 
 
 def test_they_are_tables(recorded: tuple[Path, str], tmp_path: Path) -> None:

@@ -24,9 +24,9 @@ from crowdbot.trials import parse_trial
 
 LONG = changed('duration="4"', 'duration="4000"').replace("<end ", '<end goal="false" ')
 RUN = """import sys
-from crowdbot.trials import Trial
-from crowdbot.recording import opened
-with opened(Trial.parse(sys.stdin.read()), out=sys.argv[1]) as running:
+from crowdbot.trials import parse_trial
+from crowdbot.recording import open_run
+with open_run(parse_trial(sys.stdin.read()), out=sys.argv[1]) as running:
     while running.step() is None:
         print(running.simulation.world.clock.time, flush=True)
 """
@@ -66,7 +66,7 @@ def killed(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[Path, float]]
                 time.sleep(0.005)
             process.send_signal(signal.SIGSTOP if number < 7 else signal.SIGKILL)
             time.sleep(0.05)
-            assert os.listdir(folder / "out") == ["episode.mcap"]
+            assert sorted(os.listdir(folder / "out")) == [".episode.mcap.lock", "episode.mcap"]
             found.append((folder / f"{number}.mcap", told))
             found[-1][0].write_bytes((folder / "out" / "episode.mcap").read_bytes())
             process.send_signal(signal.SIGCONT)

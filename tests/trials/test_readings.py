@@ -112,7 +112,7 @@ def back(reading: Reading, sensor: Any) -> Reading:
     make = Messages()
     found = {}
     for ending, message in encode_reading(make, MeasuredReading(reading, sensor, "robot", "robot/eye")):
-        found[ending] = make.decoded(make.encoded(message), message.__msgtype__)
+        found[ending] = make.decode_message(make.encode_message(message), message.__msgtype__)
     whole = found.pop(REST)
     assert whole.__msgtype__ == KIND
     return decode_reading(whole, found)

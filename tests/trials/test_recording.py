@@ -136,7 +136,10 @@ def test_the_same_run_writes_the_same_file_over_an_old_one(recorded: tuple[Path,
     target = tmp_path / "a" / "b" / "mine.mcap"
     target.parent.mkdir(parents=True)
     target.write_text("old")
-    run(TRIAL, out=target)
+    with pytest.raises(InputError, match=r"mine\.mcap already exists; give another place, or --force"):
+        run(TRIAL, out=target)
+    assert (target.read_text(), os.listdir(target.parent)) == ("old", ["mine.mcap"])
+    run(TRIAL, out=target, force=True)
     assert target.read_bytes() == recorded[0].read_bytes()
     assert os.listdir(target.parent) == ["mine.mcap"]
 
@@ -156,9 +159,9 @@ def test_ctrl_c_leaves_a_whole_file(tmp_path: Path) -> None:
 
 def test_ctrl_c_from_the_keyboard_leaves_a_whole_file(tmp_path: Path) -> None:
     code = (
-        "import sys; from crowdbot.trials import Trial\n"
+        "import sys; from crowdbot.recording import run; from crowdbot.trials import parse_trial\n"
         "say = lambda share: print(share, flush=True)\n"
-        "print(Trial.parse(sys.stdin.read()).run(out=sys.argv[1], progress=say).outcome)"
+        "print(run(parse_trial(sys.stdin.read()), out=sys.argv[1], progress=say).outcome)"
     )
     text = changed('duration="4"', 'duration="4000"')
     process = subprocess.Popen(
@@ -209,7 +212,7 @@ def test_nothing_is_left_behind_before_the_first_instant(tmp_path: Path) -> None
         with pytest.raises(
             EpisodeError, match=r"'robot/warm' gives a Reading, which has no ROS message; let it give one of Scan"
         ):
-            run(dataclasses.replace(TRIAL, robots=[warm]), out=tmp_path / place)
+            run(dataclasses.replace(TRIAL, robots=[warm]), out=tmp_path / place, force=True)
     assert os.listdir(tmp_path) == ["kept"]
     assert os.listdir(tmp_path / "kept") == ["episode.mcap"]
     assert (tmp_path / "kept" / "episode.mcap").read_text() == "old"

@@ -20,7 +20,7 @@ from crowdbot.models import ORCA
 from crowdbot.navigation import Navigator, Observation, Straight
 from crowdbot.recording import read_episode, run
 from crowdbot.sensors import Gaussian, Lidar2D
-from crowdbot.simulation import Episode, EpisodeLog, Simulation, StopRequest, run_to_end, start_scene
+from crowdbot.simulation import Episode, EpisodeLog, RunFailureWarning, Simulation, StopRequest, run_to_end, start_scene
 from crowdbot.trials import Mount, RobotGoal, RobotSpec, Spawner, Stage, Trial, Wall, load_trial, parse_trial, place
 from crowdbot.world import DifferentialDrive
 
@@ -43,7 +43,7 @@ def robot(**changes: object) -> RobotSpec:
         "x": -2.0,
         "y": 0.0,
         "goal": RobotGoal(2.0, 0.0),
-        "run_to_end": DifferentialDrive(),
+        "drive": DifferentialDrive(),
         "navigator": Straight(),
     }
     return RobotSpec(**(given | changes))  # type: ignore[arg-type]
@@ -87,9 +87,9 @@ def test_time_runs_out() -> None:
 
 
 def test_a_wall_is_touched_even_by_a_fast_robot() -> None:
-    run_to_end = DifferentialDrive(max_speed=60.0, max_acceleration=1e4)
+    drive = DifferentialDrive(max_speed=60.0, max_acceleration=1e4)
     thin = Stage(walls=[Wall([(0.0, -1.0), (0.0, 1.0)])])
-    fast = robot(run_to_end=run_to_end, navigator=Fast(), goal=RobotGoal(40.0, 0.0), radius=0.05)
+    fast = robot(drive=drive, navigator=Fast(), goal=RobotGoal(40.0, 0.0), radius=0.05)
     episode = run(trial(stage=thin, robots=[fast]))
     assert episode.outcome == "collision"
     assert episode.metrics["min_wall_clearance"] < 0.0
@@ -102,8 +102,12 @@ class Mute(Navigator):
 
 
 def test_a_navigator_that_says_nothing_is_named() -> None:
-    with pytest.raises(InputError, match="navigator Mute of robot 'robot' gave a NoneType, it must give a Twist"):
-        run(trial(robots=[robot(navigator=Mute())]))
+    sentence = "navigator Mute of robot 'robot' gave a NoneType, it must give a Twist"
+    with pytest.warns(RunFailureWarning, match=sentence):
+        episode = run(trial(robots=[robot(navigator=Mute())]))
+    assert (episode.outcome, len(episode.times)) == ("error", 1)
+    assert episode.failure is not None
+    assert episode.failure.message == f"InputError: {sentence}"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -233,7 +237,10 @@ def test_the_digest_is_that_of_the_bytes() -> None:
 
 @pytest.mark.parametrize("threads", ["1", "2"])
 def test_another_process_gives_the_same_digest(threads: str) -> None:
-    code = "import sys; from crowdbot.trials import Trial; print(Trial.parse(sys.stdin.read()).run().digest)"
+    code = (
+        "import sys; from crowdbot.recording import run; from crowdbot.trials import parse_trial;"
+        " print(run(parse_trial(sys.stdin.read())).digest)"
+    )
     done = subprocess.run(
         [sys.executable, "-c", code],
         input=GOOD,

@@ -182,7 +182,7 @@ def driven(trial: Trial, clock: Clock | None, times: list[int] | None, out: Path
         running.until(nanoseconds)
     while running.outcome is None:
         running.step()
-    return tally.digest.ended(running.outcome)
+    return tally.digest.hexdigest(running.outcome)
 
 
 @pytest.mark.parametrize("text", [GOOD, FLOW], ids=["small", "flow"])

@@ -71,7 +71,7 @@ def run_demo(out: Path, seed: int | None = None, progress: Callable[[str, float]
     trial = load_trial(TRIAL)
     out.mkdir(parents=True, exist_ok=True)
     file = out / "episode.mcap"
-    episode = run(trial, seed=seed, out=file, progress=lambda share: report("1 run the trial", share))
+    episode = run(trial, seed=seed, out=file, progress=lambda share: report("1 run the trial", share), force=True)
     report("1 run the trial", 1.0)
     fit = _calibrated(trial, episode.seed + OTHER_SEED, lambda share: report("2 calibrate the simulated crowd", share))
     past, future = episode.tracks(STEP).windows(OBSERVE, PREDICT, near=NEAR)

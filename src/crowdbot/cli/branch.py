@@ -8,7 +8,7 @@ from pathlib import Path
 
 from .output import add_json, progress, spoken_warnings
 from .replay import add_places
-from .run import tell
+from .run import print_run
 from .schemes import assignments
 
 
@@ -26,6 +26,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     add("--seed", type=int, help="seed of new chance from then on (default: chance goes on)")
     add("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
+    add("--force", action="store_true", help="overwrite an existing file")
     add_places(parser)
     add_json(parser)
 
@@ -42,9 +43,9 @@ def main(options: argparse.Namespace) -> int:
             seed=options.seed,
             changes=assignments(options.set),
             out=None if options.out is None else options.out / "episode.mcap",
+            force=options.force,
             folder=options.folder,
             trust=options.trust,
             progress=lambda share: report("branch", share),
         )
-    tell(done, options.json, time.perf_counter() - begin)
-    return 0
+    return print_run(done, options, time.perf_counter() - begin)

@@ -12,6 +12,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument("episode", metavar="EPISODE.mcap", type=Path)
     parser.add_argument("--to", type=Path, required=True, metavar="FILE", help="name that ends in .parquet or .csv")
+    parser.add_argument("--force", action="store_true", help="overwrite an existing file")
     parser.add_argument(
         "--table",
         default="people",
@@ -26,7 +27,7 @@ def main(options: argparse.Namespace) -> int:
     """Write the table."""
     from crowdbot.recording import export, folder_of
 
-    rows = export(options.episode, options.to, options.table)
+    rows = export(options.episode, options.to, options.table, options.force)
     drawn = rows > 0 and options.table == "pictures"
     images = {"images": str(folder_of(options.to))} if drawn else {}
     if options.json:

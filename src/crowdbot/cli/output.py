@@ -101,7 +101,8 @@ def note(sentence: str) -> None:
 
 @contextmanager
 def spoken_warnings() -> Iterator[None]:
-    """Say warnings of crowdbot as plain sentences on stderr."""
+    """Print warnings of crowdbot as plain sentences on stderr."""
+    from crowdbot.simulation import RunFailureWarning
 
     def say(
         message: Warning | str, category: type[Warning], filename: str, lineno: int,
@@ -111,6 +112,7 @@ def spoken_warnings() -> Iterator[None]:
 
     with warnings.catch_warnings():
         warnings.filterwarnings("always", category=UserWarning, module="crowdbot")
+        warnings.filterwarnings("ignore", category=RunFailureWarning)  # the command reports it
         warnings.showwarning = say
         yield
 

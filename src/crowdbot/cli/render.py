@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .output import add_json, number, print_json, print_table, progress
-from .settings import add_settings, add_world, chosen, settings
+from .settings import add_settings, add_world, select_variant, settings
 
 if TYPE_CHECKING:
     from crowdbot.rendering import RenderRequest
@@ -29,6 +29,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help=".png, .jpg or .webp for an image, .mp4, .gif or .webp for a film, or a folder for numbered images",
     )
+    parser.add_argument("--force", action="store_true", help="overwrite an existing file")
     parser.add_argument("--at", type=float, metavar="T", help="one image at T s (default: 0)")
     parser.add_argument("--from", dest="begin", type=float, metavar="T", help="a film from T s on (default: 0)")
     parser.add_argument("--to", dest="end", type=float, metavar="T", help="a film until T s")
@@ -49,13 +50,13 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.rendering import ImageWriter, camera_names, render_images
     from crowdbot.trials import load_trial
 
-    trial = chosen(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
+    trial = select_variant(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
     if options.list:
         return _listed(trial, options.json)
     take = _take(options, trial.duration)
     camera = options.camera or camera_names(trial)[0]
     film = take.end is not None
-    album = ImageWriter(options.out or _default(trial.name, camera, film), film, _rate(take, trial.step))
+    album = ImageWriter(options.out or _default(trial.name, camera, film), film, _rate(take, trial.step), options.force)
     with progress(options.json) as report:
         found = render_images(
             trial,

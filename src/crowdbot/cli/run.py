@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from crowdbot.trials import trial_remarks
 
-from .output import add_json, number, print_json, print_metrics, print_table, progress, spoken_warnings
-from .settings import add_settings, add_world, chosen, settings
+from .output import add_json, note, number, print_json, print_metrics, print_table, progress, spoken_warnings
+from .settings import add_settings, add_world, select_variant, settings
 
 if TYPE_CHECKING:
     from crowdbot.simulation import RunSummary
@@ -21,6 +21,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("trial", metavar="TRIAL", help="a trial file or a built-in name, such as crossing-flows")
     parser.add_argument("--seed", type=int, help="seed of everything random (default: the trial's own)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
+    parser.add_argument("--force", action="store_true", help="overwrite an existing file")
     parser.add_argument("--pace", type=float, metavar="X", help="X times real time (default: as fast as it can)")
     parser.add_argument("--trust", action="store_true", help="let the trial load code from outside its own folder")
     add_world(parser)
@@ -35,18 +36,24 @@ def main(options: argparse.Namespace) -> int:
     from crowdbot.recording import record
     from crowdbot.trials import load_trial
 
-    trial = chosen(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
+    trial = select_variant(load_trial(options.trial, trust=options.trust, **settings(options)), options.variant)
     file = None if options.out is None else options.out / "episode.mcap"
     clock = None if options.pace is None else PacedClock(trial.step, rate=options.pace)
     begin = time.perf_counter()
     with spoken_warnings(), progress(options.json) as report:
-        done = record(trial, options.seed, file, progress=lambda share: report(f"run {trial.name}", share), clock=clock)
-    tell(done, options.json, time.perf_counter() - begin)
-    return 0
+        done = record(
+            trial,
+            options.seed,
+            file,
+            progress=lambda share: report(f"run {trial.name}", share),
+            clock=clock,
+            force=options.force,
+        )
+    return print_run(done, options, time.perf_counter() - begin)
 
 
-def tell(done: RunSummary, as_json: bool, wall: float) -> None:
-    """Print how a run went."""
+def print_run(done: RunSummary, options: argparse.Namespace, wall: float) -> int:
+    """Print the summary of a run and return the exit status: 1 after an exception in the code of the trial."""
     summary = {
         "trial": done.trial.name,
         "seed": done.seed,
@@ -57,10 +64,23 @@ def tell(done: RunSummary, as_json: bool, wall: float) -> None:
         "digest": done.digest,
         "episode": None if done.path is None else str(done.path),
     }
-    if as_json:
+    if done.failure is not None:
+        summary |= {"error": done.failure.message, "error_place": done.failure.place}
+    if options.json:
         print_json({**summary, "metrics": done.metrics})
-        return
+        return _report_failure(done, options.debug)
     print_table(f"{done.trial.name}, seed {done.seed}", ("", ""), [(key, number(v)) for key, v in summary.items()])
     print_metrics("navigation", done.metrics)
     for remark in trial_remarks(done.trial):
         print(f"note: {remark}")
+    return _report_failure(done, options.debug)
+
+
+def _report_failure(done: RunSummary, debug: bool) -> int:
+    if done.failure is None:
+        return 0
+    if debug:
+        note(done.failure.trace)
+    hint = "" if debug else "; --debug prints the trace"
+    note(f"crowdbot: trial {done.trial.name!r} ended with an error: {done.failure}{hint}")
+    return 1

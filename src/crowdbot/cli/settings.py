@@ -10,7 +10,7 @@ from crowdbot.trials import expand_sweeps
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
-__all__ = ["add_settings", "add_world", "chosen", "settings"]
+__all__ = ["add_settings", "add_world", "select_variant", "settings"]
 
 WORLDS = ("planar", "physics")
 
@@ -64,7 +64,7 @@ def settings(options: argparse.Namespace) -> dict[str, str]:
     return found
 
 
-def chosen(trial: Trial, variant: int | None) -> Trial:
+def select_variant(trial: Trial, variant: int | None) -> Trial:
     """Return a trial, or of a trial with sweeps the variant that was asked for, from 1.
 
     Raises:

@@ -8,6 +8,7 @@ from crowdbot.lazy import lazy_exports
 
 from .bodies import STAGE, Bodies, Skins
 from .bounds import Bounds, check_number
+from .class_source import UnreadableValue, reads_only, unread_fields, without_running_code
 from .clock import Clock, ExternalClock, FreeClock, PacedClock
 from .errors import (
     CrowdbotError,
@@ -23,6 +24,7 @@ from .errors import (
 )
 from .model_parameter import Parameter, PerAgent, check_parameters, parameter, parameters, per_agent
 from .optional_imports import import_optional
+from .output_lock import lock_output, release_stale_lock
 from .paper import Paper
 from .plugin import (
     attribute_names,
@@ -34,6 +36,7 @@ from .plugin import (
     kebab_case,
     required_fields,
 )
+from .plugin_module import plugin_address, plugin_sources, sources_of
 from .pose import MOUNT_HEIGHT, Pose, SpatialPose, Twist, product, wrap_angle
 from .random import stream
 from .scene import PERSON_HEIGHT, Scene
@@ -93,6 +96,7 @@ __all__ = [
     "TrialError",
     "Twist",
     "UnknownName",
+    "UnreadableValue",
     "Walls",
     "attribute_names",
     "attribute_problems",
@@ -111,6 +115,7 @@ __all__ = [
     "is_cold",
     "kebab_case",
     "kernel",
+    "lock_output",
     "nearest_name",
     "notify_compiling",
     "parameter",
@@ -118,12 +123,19 @@ __all__ = [
     "parse_number",
     "parse_xml",
     "per_agent",
+    "plugin_address",
+    "plugin_sources",
     "product",
     "read_bytes",
+    "reads_only",
     "reject_entities",
+    "release_stale_lock",
     "required_fields",
     "run_saved_jobs",
     "source_digest",
+    "sources_of",
     "stream",
+    "unread_fields",
+    "without_running_code",
     "wrap_angle",
 ]

@@ -166,7 +166,12 @@ class Console:
             report.write_text("".join(traceback.format_exception(error)), encoding="utf-8")
             self.sitting.do(Fail(f"{type(error).__name__}: {error}; more in {report.name}"))
         else:
-            self.sitting.finish(episode)
+            if episode.failure is None:
+                self.sitting.finish(episode)
+                return
+            report = folder / "error.txt"
+            report.write_text(episode.failure.trace, encoding="utf-8")
+            self.sitting.do(Fail(f"{episode.failure.message}; more in {report.name}"))
 
     def _menu(self) -> None:
         session = self.sitting.session

@@ -95,11 +95,11 @@ class Messages:
         """Return the text of a message type with everything it is made of, as ``ros2msg`` schemas hold it."""
         return str(self.store.generate_msgdef(kind, ros_version=2)[0])
 
-    def encoded(self, message: Any) -> bytes:
+    def encode_message(self, message: Any) -> bytes:
         """Return the CDR bytes of a message."""
         return bytes(self.store.serialize_cdr(message, message.__msgtype__))
 
-    def decoded(self, data: bytes, kind: str) -> Any:
+    def decode_message(self, data: bytes, kind: str) -> Any:
         """Return the message that CDR bytes hold."""
         return self.store.deserialize_cdr(data, kind)
 

@@ -13,14 +13,13 @@ import hashlib
 import json
 import os
 import shutil
-import sys
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
-from crowdbot.core import EpisodeError
+from crowdbot.core import EpisodeError, sources_of
 from crowdbot.data import McapError, McapOpcode, McapReader, read_attachment
 from crowdbot.trials import (
     RandomizedModel,
@@ -38,8 +37,8 @@ __all__ = [
     "SkippedAttachmentWarning",
     "UnpackedFiles",
     "collect_attachments",
-    "describe_skipped",
     "named_files",
+    "skip_message",
     "unpack_attachments",
 ]
 
@@ -122,9 +121,7 @@ def named_files(trial: Trial) -> dict[str, tuple[str, Path]]:
             for path in thing.files():
                 if "__pycache__" not in path.parts:  # made by Python from what is kept anyway
                     found[_name(path, trial.folder)] = CODE if is_code(path.name) else DATA, path
-        module = sys.modules.get(type(thing).__module__)
-        if type(thing).__module__.startswith("crowdbot_plug_") and module is not None and module.__file__:
-            path = Path(module.__file__)
+        for path in sources_of(type(thing)):
             found[_name(path, trial.folder)] = CODE, path
     return dict(sorted(found.items()))
 
@@ -163,7 +160,7 @@ def collect_attachments(trials: Iterable[Trial]) -> list[tuple[AttachedFile, Pat
     return rows
 
 
-def describe_skipped(rows: Iterable[AttachedFile]) -> str:
+def skip_message(rows: Iterable[AttachedFile]) -> str:
     """Return a sentence about the files that an episode does not keep, empty when there are none."""
     gone = [row for row in rows if not row.kept]
     if not gone:

@@ -20,6 +20,7 @@ from crowdbot.simulation import (
     apply_overrides,
     catch_interrupt,
     run_to_end,
+    warn_of_failure,
 )
 from crowdbot.trials import Trial, apply_values, trial_xml
 
@@ -42,19 +43,20 @@ class _Options:
     changes: Mapping[str, Any]
     trial: Trial | None
     out: Path | str | None
+    force: bool
     progress: Progress | None
 
 
 @overload
 def branch(
     source: Episode, at: float, *, seed: int | None = None, changes: Mapping[str, Any] | None = None,
-    trial: Trial | None = None, out: Path | str | None = None, progress: Progress | None = None,
+    trial: Trial | None = None, out: Path | str | None = None, force: bool = False, progress: Progress | None = None,
 ) -> Episode: ...  # fmt: skip
 @overload
 def branch(
     source: Path | str | RecordedEpisode, at: float, *, seed: int | None = None,
     changes: Mapping[str, Any] | None = None, trial: Trial | None = None, out: Path | str | None = None,
-    folder: Path | None = None, trust: bool = False,
+    force: bool = False, folder: Path | None = None, trust: bool = False,
     progress: Progress | None = None,
 ) -> RunSummary: ...  # fmt: skip
 def branch(
@@ -65,6 +67,7 @@ def branch(
     changes: Mapping[str, Any] | None = None,
     trial: Trial | None = None,
     out: Path | str | None = None,
+    force: bool = False,
     folder: Path | None = None,
     trust: bool = False,
     progress: Progress | None = None,
@@ -83,6 +86,7 @@ def branch(
         changes: other values by path, as in :class:`crowdbot.trials.Sweep`; they apply from the next step.
         trial: the trial to continue with; ``changes`` apply to it.
         out: file to record to, or a folder for ``episode.mcap``.
+        force: whether an existing file may be overwritten.
         folder, trust: as in :func:`replay`, for files only.
         progress: called with the completed share, 0 to 1.
 
@@ -100,7 +104,7 @@ def branch(
     >>> float(later.times[0]), float(later.times[-1]), branch(episode, at=1.0).digest == episode.digest
     (1.5, 3.0, True)
     """
-    options = _Options(seed, changes or {}, trial, out, progress)
+    options = _Options(seed, changes or {}, trial, out, force, progress)
     if isinstance(source, Episode):
         return _branch_of_episode(source, at, options)
     path = source.path if isinstance(source, RecordedEpisode) else Path(source)
@@ -113,8 +117,10 @@ def _branch_of_file(source: Path, at: float, folder: Path | None, trust: bool, o
         raise InputError(f"{source} is the episode to branch from; record the branch to another place")
     with unpack_attachments(source, read_metadata(source), folder, trust) as place:
         course = Provenance.of(source, place.folder, trust)
-        tally, outcome, steps = _run(course, at, digests(source), options, EpisodeStatistics, str(source))
-    summary: RunSummary = tally.summary(outcome, steps, None if out is None else episode_path(out))
+        tally, outcome, simulation = _run(course, at, digests(source), options, EpisodeStatistics, str(source))
+    warn_of_failure(simulation)
+    written = None if out is None else episode_path(out)
+    summary: RunSummary = tally.summary(outcome, simulation.tick, written, simulation.failure)
     return summary
 
 
@@ -122,14 +128,15 @@ def _branch_of_episode(episode: Episode, at: float, options: _Options) -> Episod
     if episode.times[0] > 0.0:
         raise InputError("this episode is a branch; record the first one and branch from the files")
     course = Provenance((ProvenanceSegment(0, episode.trial, episode.seed),))
-    log, outcome, steps = _run(course, at, {}, options, EpisodeLog, f"episode {episode.trial.name!r}")
-    after: Episode = log.episode(outcome, steps)
+    log, outcome, simulation = _run(course, at, {}, options, EpisodeLog, f"episode {episode.trial.name!r}")
+    warn_of_failure(simulation)
+    after: Episode = log.episode(outcome, simulation.tick, simulation.failure)
     return after
 
 
 def _run(
     course: Provenance, at: float, wanted: Mapping[int, str], options: _Options, kind: type[Any], name: str
-) -> tuple[Any, str, int]:
+) -> tuple[Any, str, Simulation]:
     last = course.parts[-1]
     old = last.trial if options.trial is None else options.trial
     new = apply_values(old, options.changes, place=f"trial {old.name!r} with changes")
@@ -143,7 +150,7 @@ def _run(
         part = ProvenanceSegment(simulation.tick, new, last.seed if options.seed is None else int(options.seed))
         tally = kind(new, part.seed, comparison.digest)
         parts = (*course.parts, part)
-        return tally, *_recorded(simulation, tally, comparison, parts, options.out, stop, options.progress)
+        return tally, _record(simulation, tally, comparison, parts, options, stop), simulation
 
 
 def _there(
@@ -159,7 +166,7 @@ def _there(
     last = course.parts[-1]
     tick = _tick(last, at, name, latest)
     half = None if progress is None else lambda share: progress(0.5 * share)
-    simulation = course.begun(comparison, stop, half, until=tick)
+    simulation = course.simulate_until(comparison, stop, half, until=tick)
     if comparison.differs is not None:
         raise EpisodeError(
             f"{name} does not replay to the same bytes from {comparison.differs:g} s on, so there is no state to"
@@ -189,26 +196,28 @@ def _check_period(simulation: Simulation, new: Trial, at: float) -> None:
         raise InputError(f"a recording period of {new.recording.period:g} s has no instant at {at:g} s")
 
 
-def _recorded(
+def _record(
     simulation: Simulation,
     tally: Any,
     comparison: DigestComparison,
     parts: tuple[ProvenanceSegment, ...],
-    out: Path | str | None,
+    options: _Options,
     stop: StopRequest,
-    progress: Progress | None,
-) -> tuple[str, int]:
-    """Record the instant itself and everything after; return outcome and steps."""
+) -> str:
+    """Record the instant itself and everything after; return the outcome."""
+    out, progress = options.out, options.progress
     frame = comparison.latest
     assert frame is not None
     tally.keep(frame)
     rest = None if progress is None else lambda share: progress(0.5 + 0.5 * share)
     sinks: list[Sink] = [tally]
     if out is None:
-        return run_to_end(simulation, sinks, stop, rest), simulation.tick
+        return run_to_end(simulation, sinks, stop, rest)
     course, earlier = Provenance(parts), [part.trial for part in parts[:-1]]
-    with Recorder(episode_path(out), tally, course.origin, begin=parts[-1].tick, earlier=earlier) as recorder:
+    with Recorder(
+        episode_path(out), tally, course.origin, begin=parts[-1].tick, earlier=earlier, force=options.force
+    ) as recorder:
         recorder.take(frame)
         outcome = run_to_end(simulation, [tally, recorder], stop, rest)
-        recorder.complete(outcome, simulation.tick)
-    return outcome, simulation.tick
+        recorder.complete(outcome, simulation.tick, simulation.failure)
+    return outcome

@@ -9,7 +9,7 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
-from crowdbot.core import EpisodeError, InputError, did_you_mean
+from crowdbot.core import EpisodeError, InputError, did_you_mean, lock_output
 from crowdbot.messages import ContactEventRecord, ContactForceRecord
 
 from .episode_reader import iterate_steps, read_metadata
@@ -24,7 +24,7 @@ ROWS = 100_000
 """So many rows are written at once."""
 
 
-def export(path: Path | str, to: Path | str, table: str = "people") -> int:
+def export(path: Path | str, to: Path | str, table: str = "people", force: bool = False) -> int:
     """Write a table of an episode file; the ending of the name says how: ``.parquet`` or ``.csv``.
 
     Tables, each with the time [s] and one row for each instant and
@@ -49,7 +49,7 @@ def export(path: Path | str, to: Path | str, table: str = "people") -> int:
         The number of rows.
 
     Raises:
-        InputError: there is no such table, or no such ending.
+        InputError: the table or the file name extension is unknown, or ``to`` exists and ``force`` is false.
         EpisodeError: the episode cannot be read, or the table not written.
     """
     path, to = Path(path), Path(to)
@@ -64,13 +64,14 @@ def export(path: Path | str, to: Path | str, table: str = "people") -> int:
     draft = to.with_name(f".{to.name}.{os.getpid()}.part")
     try:
         to.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            count = _write(batches, draft, to.suffix)
-            pictures.finish()
-            os.replace(draft, to)
-        finally:
-            draft.unlink(missing_ok=True)
-            pictures.drop()
+        with lock_output(to, force):
+            try:
+                count = _write(batches, draft, to.suffix)
+                pictures.finish()
+                os.replace(draft, to)
+            finally:
+                draft.unlink(missing_ok=True)
+                pictures.drop()
     except OSError as error:
         raise EpisodeError(f"{to} cannot be written: {error.strerror}") from None
     return count

@@ -17,13 +17,13 @@ from crowdbot.data import MCAP_MAGIC, McapReader, Trajectories
 from crowdbot.messages import ContactEventRecord, ContactForceRecord
 from crowdbot.metrics import AgentStates
 from crowdbot.sensors import Reading
-from crowdbot.simulation import ScanRow, tracks_of
+from crowdbot.simulation import RunFailure, ScanRow, tracks_of
 
 from .episode_repair import EpisodeEnd
 from .metadata import END_KEYS, ENDING, KEYS, METADATA, from_json
 from .step_records import RecordedContact, RecordedStep, read_steps
 
-__all__ = ["RecordedEpisode", "iterate_steps", "read_episode", "read_metadata"]
+__all__ = ["RecordedEpisode", "iterate_steps", "read_episode", "read_metadata", "recorded_failure"]
 
 Floats = NDArray[np.float64]
 T = TypeVar("T")
@@ -100,6 +100,11 @@ class RecordedEpisode:
     def outcome(self) -> str:
         """How the run ended."""
         return self.metadata["outcome"]
+
+    @property
+    def failure(self) -> RunFailure | None:
+        """The exception that ended the run, for the outcome ``error``."""
+        return recorded_failure(self.metadata)
 
     @property
     def digest(self) -> str:
@@ -204,6 +209,13 @@ def _known(path: Path, records: Mapping[str, dict[str, str]]) -> dict[str, str]:
     return known
 
 
+def recorded_failure(known: Mapping[str, str]) -> RunFailure | None:
+    """Return the exception that the metadata of an episode name, if any."""
+    if "error" not in known:
+        return None
+    return RunFailure(known["error"], known.get("error_place", "unknown"), float(known.get("error_time", "nan")))
+
+
 def _by_topic(found: Iterable[Mapping[str, T]]) -> dict[str, list[T]]:
     rows: dict[str, list[T]] = {}
     for one in found:
@@ -222,7 +234,7 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep])
     if complete:
         count = int(known["people"]) + len(robots)
     else:
-        count = 1 + max([-1, *places, *(who for moment in found for who in moment.named())])
+        count = 1 + max([-1, *places, *(who for moment in found for who in moment.largest_ids())])
     arrays = _Arrays.of(len(due), count)
     commands = np.zeros((len(due), len(robots), 3))
     for k, (moment, people) in enumerate(due):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from crowdbot.core import EpisodeError, Walls
+from crowdbot.core import EpisodeError, InputError, Walls, release_stale_lock
 from crowdbot.data import MCAP_MAGIC, McapError, McapReader, has_summary
 from crowdbot.metrics import NavigationMetrics
 from crowdbot.simulation import robot_metrics
@@ -49,7 +49,7 @@ class EpisodeEnd:
 
     def take(self, moment: RecordedStep) -> None:
         """Take an instant."""
-        self.count = max(self.count, *(1 + who for who in moment.named()), 0)
+        self.count = max(self.count, *(1 + who for who in moment.largest_ids()), 0)
         names = {name for one in moment.contacts for name in (one.robot, one.other)}
         self.touching |= {body[0] for name, body in self.bodies.items() if name in names}
         if moment.people is not None:
@@ -83,9 +83,11 @@ def repair(path: Path | str) -> float | None:
 
     Raises:
         EpisodeError: the file is damaged, no episode of crowdbot, or cannot be written.
+        InputError: the run is still writing it.
     """
     path = Path(path)
     try:
+        release_stale_lock(path)
         with path.open("r+b") as stream:
             if has_summary(stream):
                 return None
@@ -105,6 +107,6 @@ def repair(path: Path | str) -> float | None:
     except OSError as error:
         raise EpisodeError(f"{path} cannot be repaired: {error.strerror}") from None
     except (McapError, KeyError, ValueError, IndexError, AttributeError) as error:
-        if isinstance(error, EpisodeError):
+        if isinstance(error, EpisodeError | InputError):
             raise
         raise EpisodeError(f"{path} is damaged: {type(error).__name__}: {str(error)[:80]}") from error

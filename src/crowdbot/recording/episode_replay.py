@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core import EpisodeError
-from crowdbot.simulation import EpisodeDigest, catch_interrupt, run_to_end
+from crowdbot.simulation import EpisodeDigest, RunFailure, catch_interrupt, run_to_end
 
 from .attachments import unpack_attachments
-from .episode_reader import read_metadata
+from .episode_reader import read_metadata, recorded_failure
 from .metadata import END_KEYS, versions
 from .provenance import DigestComparison, Provenance, digests
 
@@ -30,6 +30,7 @@ class Replay:
         recorded_versions, versions: of crowdbot, Python, numpy and numba, then and now.
         differs: the first recorded instant [s] at which they differ; None when it is not known or there is none.
         complete: whether the recording came to its end; one that was killed is compared as far as it goes.
+        failures: the exceptions that ended the recording and the new run.
         changed: files of code that have other bytes than the recorded ones, and were trusted.
     """
 
@@ -44,6 +45,7 @@ class Replay:
     differs: float | None = None
     complete: bool = True
     changed: tuple[str, ...] = ()
+    failures: tuple[RunFailure | None, RunFailure | None] = (None, None)
 
     @property
     def equal(self) -> bool:
@@ -66,6 +68,8 @@ class Replay:
             "differs": self.differs,
             "complete": self.complete,
             "changed": list(self.changed),
+            "error": None if self.failures[0] is None else str(self.failures[0]),
+            "replayed_error": None if self.failures[1] is None else str(self.failures[1]),
         }
 
     def __str__(self) -> str:
@@ -74,6 +78,11 @@ class Replay:
         if not self.complete:
             what += ", killed before its end,"
         told = f"; {', '.join(self.changed)} has other bytes than the recorded code" if self.changed else ""
+        recorded, replayed = self.failures
+        if recorded is not None:
+            told += f"; the recorded run ended with an error: {recorded}"
+        if replayed is not None and replayed != recorded:
+            told += f"; the replay ended with an error: {replayed}"
         if self.equal:
             return f"{what} replays to the same bytes, digest {self.recorded}{told}"
         other = [f"{n} {v} then, {self.versions[n]} now" for n, v in self.recorded_versions.items()
@@ -92,7 +101,7 @@ def replay(
 ) -> Replay:
     """Run the trial of an episode file again, with its seed, and compare the digests.
 
-    An interrupted episode is run for as many steps as it has.
+    An episode that was interrupted or ended with an error is run for as many steps as it has.
 
     Args:
         path: of the episode.
@@ -115,8 +124,8 @@ def replay(
     comparison = DigestComparison(EpisodeDigest(), wanted)
     with unpack_attachments(path, known, folder, trust) as place, catch_interrupt() as stop:
         course = Provenance.of(path, place.folder, trust)
-        simulation = course.begun(comparison, stop)
-        ticks = int(recorded["steps"]) if recorded["outcome"] == "interrupted" else None
+        simulation = course.simulate_until(comparison, stop)
+        ticks = int(recorded["steps"]) if recorded["outcome"] in ("interrupted", "error") else None
         outcome = run_to_end(simulation, [comparison], stop, progress, ticks)
         if stop.asked and simulation.tick != ticks:
             raise KeyboardInterrupt
@@ -126,13 +135,14 @@ def replay(
         recorded["trial_name"],
         int(recorded["seed"]),
         recorded["digest"],
-        comparison.digest.ended(outcome),
+        comparison.digest.hexdigest(outcome),
         (recorded["outcome"], outcome),
         {name: recorded.get(name, "unknown") for name in now},
         now,
         comparison.differs,
         complete,
         place.changed,
+        (recorded_failure(recorded), simulation.failure),
     )
 
 

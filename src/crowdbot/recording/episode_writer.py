@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import errno
 import os
@@ -11,7 +12,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from crowdbot.core import EpisodeError
+from crowdbot.core import EpisodeError, InputError, lock_output
 from crowdbot.messages import (
     MAP,
     MeasuredReading,
@@ -23,10 +24,10 @@ from crowdbot.messages import (
     mount_pose,
 )
 from crowdbot.messages.marker_array import KIND as MARKERS
-from crowdbot.simulation import WALL, EpisodeStatistics, StepRecord
+from crowdbot.simulation import WALL, EpisodeStatistics, RunFailure, StepRecord
 from crowdbot.trials import Trial, trial_xml
 
-from .attachments import SkippedAttachmentWarning, collect_attachments, describe_skipped
+from .attachments import SkippedAttachmentWarning, collect_attachments, skip_message
 from .mcap_writer import McapWriter
 from .metadata import CONTACTS, DIGEST, ENDING, FORMAT, METADATA, as_json, versions
 
@@ -62,10 +63,12 @@ class Recorder:
         origin: what the run branched from, as the metadata keeps it.
         begin: tick of the first instant.
         earlier: the trials that it branched from, whose files it keeps too.
+        force: whether an existing file may be overwritten.
 
     Raises:
-        InputError: the trial cannot be written as XML.
         EpisodeError: the file cannot be written.
+        InputError: the trial cannot be written as XML, the file exists and ``force`` is false, or another run is
+            writing it.
 
     Warns:
         LeftOut: files that the trial names are not kept.
@@ -78,12 +81,14 @@ class Recorder:
         origin: Sequence[Mapping[str, Any]] = (),
         begin: int = 0,
         earlier: Sequence[Trial] = (),
+        force: bool = False,
     ) -> None:
-        self.path, self.tally, self.origin, self.begin = path, tally, origin, begin
+        self.path, self.tally, self.origin, self.begin, self.force = path, tally, origin, begin, force
+        self._lock = contextlib.ExitStack()
         self.trial, self.seed = tally.trial, tally.seed
         self.xml = trial_xml(self.trial)
         self.files = collect_attachments([self.trial, *earlier])
-        if sentence := describe_skipped(file for file, _ in self.files):
+        if sentence := skip_message(file for file, _ in self.files):
             warnings.warn(sentence, SkippedAttachmentWarning, stacklevel=2)
         self.messages = Messages()
         self.channels: dict[str, int] = {}
@@ -104,11 +109,15 @@ class Recorder:
         ]
 
     def __enter__(self) -> Recorder:
-        """Make the folder."""
+        """Make the folder and lock the file."""
         try:
             self._make_folder(self.path.parent)
             if not os.access(self.path.parent, os.W_OK):
                 raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+            self._lock.enter_context(lock_output(self.path, self.force))
+        except InputError:
+            self._clear()
+            raise
         except OSError as error:
             self._clear()
             raise EpisodeError(f"{self.path} cannot be written: {error.strerror}; give another place") from None
@@ -125,6 +134,7 @@ class Recorder:
         """Leave what has been written; remove what is empty."""
         if self.tape is not None:
             self.tape.close(finished=False)
+        self._lock.close()
         self._clear()
 
     def take(self, frame: StepRecord) -> None:
@@ -145,24 +155,26 @@ class Recorder:
             self._write(topic, message, now)
         if frame.due:
             self._scene(frame, first)
-            self.last = frame.tick, self.tally.digest.ended("interrupted")
+            self.last = frame.tick, self.tally.digest.hexdigest("interrupted")
             self._write(DIGEST, make.text(self.last[1]), now)
         assert self.tape is not None
         if (frame.due and now >= self._write_due) or self.tape.large:
             self._write_due = now - now % APART + APART
             self._flush()
 
-    def complete(self, outcome: str, steps: int) -> None:
-        """Write how it ended, and finish the file; who is interrupted ends at the last recorded instant."""
+    def complete(self, outcome: str, steps: int, failure: RunFailure | None = None) -> None:
+        """Write the outcome and finish the file; an interrupted run ends at the last recorded instant."""
         assert self.tape is not None
         interrupted = outcome == "interrupted"
         ending = {
-            "digest": self.last[1] if interrupted else self.tally.digest.ended(outcome),
+            "digest": self.last[1] if interrupted else self.tally.digest.hexdigest(outcome),
             "outcome": outcome,
             "steps": str(self.last[0] if interrupted else steps),
             "people": str(self.tally.agents - len(self.trial.robots)),
             "metrics": as_json(self.tally.metrics(outcome)),
         }
+        if failure is not None:
+            ending |= {"error": failure.message, "error_place": failure.place, "error_time": repr(failure.time)}
         self.tape.metadata(ENDING, ending)
         self._flush()
         try:
@@ -209,7 +221,7 @@ class Recorder:
         return [(names[one.robot], names.get(one.other, str(one.other)), one.clearance) for one in frame.touches]
 
     def _write(self, topic: str, message: Any, nanoseconds: int) -> None:
-        self._put(topic, message.__msgtype__, self.messages.encoded(message), nanoseconds)
+        self._put(topic, message.__msgtype__, self.messages.encode_message(message), nanoseconds)
 
     def _put(self, topic: str, kind: str, data: bytes, nanoseconds: int) -> None:
         assert self.tape is not None

@@ -144,12 +144,13 @@ class McapWriter:
         stream = self.draft.open("w+b", buffering=0)
         try:
             _write(stream, data)
+            stream.close()  # Windows cannot rename an open file
             os.replace(self.draft, self.path)
         except BaseException:
             stream.close()
             self.draft.unlink(missing_ok=True)
             raise
-        self.stream = stream
+        self.stream = self.path.open("r+b", buffering=0)
 
 
 @dataclass

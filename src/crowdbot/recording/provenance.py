@@ -46,7 +46,7 @@ class DigestComparison:
         if frame.due:
             self.latest = frame
             wanted = self.wanted.get(frame.nanoseconds, "")
-            if self.differs is None and wanted and wanted != self.digest.ended("interrupted"):
+            if self.differs is None and wanted and wanted != self.digest.hexdigest("interrupted"):
                 self.differs = frame.nanoseconds / 1e9
 
 
@@ -83,7 +83,7 @@ class Provenance:
         """What the metadata of an episode keep of the parts before the last."""
         return [{"tick": part.tick, "trial": trial_xml(part.trial), "seed": part.seed} for part in self.parts[:-1]]
 
-    def begun(
+    def simulate_until(
         self,
         sink: DigestComparison,
         stop: StopRequest,
@@ -125,7 +125,7 @@ def _on(
     while simulation.tick < end:
         if running.outcome is not None:
             raise EpisodeError(
-                f"the episode ends at {simulation.world.clock.time:g} s ({running.outcome}), before"
+                f"the episode ends at {simulation.world.clock.time:g} s ({running.failure or running.outcome}), before"
                 f" {end * simulation.world.clock.step_ns / 1e9:g} s"
             )
         running.step()
@@ -149,7 +149,7 @@ def digests(path: Path) -> dict[int, str]:
         with path.open("rb") as stream:
             for heard in McapReader(stream).messages():
                 if heard.topic.topic == DIGEST:
-                    found[heard.stamp] = str(messages.decoded(heard.data, heard.topic.kind).data)
+                    found[heard.stamp] = str(messages.decode_message(heard.data, heard.topic.kind).data)
     except Exception as error:  # damaged bytes make their readers fail in many ways; all mean the same to the user
         raise EpisodeError(f"{path} is damaged: {type(error).__name__}: {str(error)[:80] or 'no details'}") from error
     return found

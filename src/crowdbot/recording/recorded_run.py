@@ -20,6 +20,7 @@ from crowdbot.simulation import (
     catch_interrupt,
     run_to_end,
     simulate,
+    warn_of_failure,
 )
 from crowdbot.trials import Trial, check_trial
 
@@ -37,6 +38,7 @@ def run(
     out: Path | str | None = None,
     progress: Progress | None = None,
     clock: Clock | None = None,
+    force: bool = False,
 ) -> Episode:
     """Run a trial; see :mod:`crowdbot.simulation.simulation` for the order of a step.
 
@@ -45,15 +47,20 @@ def run(
     kept, in the file too. A second one raises :class:`KeyboardInterrupt` and leaves the file as ``kill`` does: it
     opens, and at most the last second of simulated time is missing.
 
+    An exception in a navigator, sensor or crowd model ends the run too: the episode has the outcome ``error`` and
+    names the exception and its place in ``failure``, and a :class:`~crowdbot.simulation.RunFailureWarning` is issued.
+
     Args:
         trial: what to run.
         seed: of everything random; None is the trial's own.
         out: file to record to, or a folder for ``episode.mcap``; it can be read while the run goes on.
         progress: called with the share of the duration that is done, 0 to 1.
-        clock: :class:`~crowdbot.core.PacedClock` for real time; None runs as fast as it can.
+        clock: :class:`~crowdbot.core.PacedClock` for real time; None runs as fast as possible.
+        force: whether an existing episode file may be overwritten.
 
     Raises:
         TrialError: the trial is impossible; every problem is named, and nothing is written.
+        InputError: ``out`` exists and ``force`` is false, or another run is writing it.
 
     >>> from crowdbot.models import ORCA
     >>> episode = run(Trial(name="empty", duration=1.0, crowd=ORCA()))
@@ -62,8 +69,9 @@ def run(
     """
     if out is None:
         return simulate(trial, seed, progress, clock)
-    log, outcome, steps = _driven(EpisodeLog, trial, seed, out, progress, clock)
-    return log.episode(outcome, steps)
+    log, outcome, simulation = _record(EpisodeLog, trial, seed, out, progress, clock, force)
+    warn_of_failure(simulation)
+    return log.episode(outcome, simulation.tick, simulation.failure)
 
 
 def record(
@@ -72,6 +80,7 @@ def record(
     out: Path | str | None = None,
     progress: Progress | None = None,
     clock: Clock | None = None,
+    force: bool = False,
 ) -> RunSummary:
     """Run a trial as :func:`run` does, but keep no arrays: memory does not grow with the length of the run.
 
@@ -79,18 +88,21 @@ def record(
     >>> record(Trial(name="empty", duration=1.0, crowd=ORCA())).outcome
     'finished'
     """
-    tally, outcome, steps = _driven(EpisodeStatistics, trial, seed, out, progress, clock)
-    return tally.summary(outcome, steps, None if out is None else episode_path(out))
+    tally, outcome, simulation = _record(EpisodeStatistics, trial, seed, out, progress, clock, force)
+    warn_of_failure(simulation)
+    path = None if out is None else episode_path(out)
+    return tally.summary(outcome, simulation.tick, path, simulation.failure)
 
 
-def _driven(
+def _record(
     kind: type[T],
     trial: Trial,
     seed: int | None,
     out: Path | str | None,
     progress: Progress | None,
     clock: Clock | None,
-) -> tuple[T, str, int]:
+    force: bool,
+) -> tuple[T, str, Simulation]:
     chosen = trial.seed if seed is None else int(seed)
     check_trial(trial, chosen)
     tally = kind(trial, chosen)
@@ -99,11 +111,11 @@ def _driven(
         stop = stack.enter_context(catch_interrupt())
         sinks: list[Sink] = [tally]
         if out is None:
-            return tally, run_to_end(simulation, sinks, stop, progress), simulation.tick
-        recorder = stack.enter_context(Recorder(episode_path(out), tally))
+            return tally, run_to_end(simulation, sinks, stop, progress), simulation
+        recorder = stack.enter_context(Recorder(episode_path(out), tally, force=force))
         outcome = run_to_end(simulation, [tally, recorder], stop, progress)
-        recorder.complete(outcome, simulation.tick)
-        return tally, outcome, simulation.tick
+        recorder.complete(outcome, simulation.tick, simulation.failure)
+        return tally, outcome, simulation
 
 
 @contextlib.contextmanager
@@ -113,6 +125,7 @@ def open_run(
     out: Path | str | None = None,
     clock: Clock | None = None,
     bridges: Sequence[Bridge] = (),
+    force: bool = False,
 ) -> Iterator[SimulationRun]:
     """Open a trial to be stepped from outside; when the context ends before the run does, it was interrupted.
 
@@ -130,12 +143,12 @@ def open_run(
         sinks: list[Sink] = [tally]
         recorder = None
         if out is not None:
-            recorder = stack.enter_context(Recorder(episode_path(out), tally))
+            recorder = stack.enter_context(Recorder(episode_path(out), tally, force=force))
             sinks.append(recorder)
         running = SimulationRun(Simulation(trial, chosen, clock), sinks, bridges)
         yield running
         if recorder is not None:
-            recorder.complete(running.outcome or "interrupted", running.simulation.tick)
+            recorder.complete(running.outcome or "interrupted", running.simulation.tick, running.failure)
 
 
 def episode_path(out: Path | str) -> Path:

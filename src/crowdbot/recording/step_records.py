@@ -88,7 +88,7 @@ class RecordedStep:
         """Simulated time [s]."""
         return self.nanoseconds / 1e9
 
-    def named(self) -> set[int]:
+    def largest_ids(self) -> set[int]:
         """Return the largest id of people that this instant names, if any."""
         seen = [] if self.people is None else [int(self.people.ids.max(initial=-1))]
         hits = [getattr(reading, "hit", None) for reading in self.readings.values()]
@@ -128,7 +128,7 @@ def read_steps(tape: McapReader) -> Iterator[RecordedStep]:
     messages = Messages()
     for stamp, group in itertools.groupby(tape.messages(), key=lambda heard: heard.stamp):
         decoded = [
-            (heard.topic.topic, messages.decoded(heard.data, heard.topic.kind))
+            (heard.topic.topic, messages.decode_message(heard.data, heard.topic.kind))
             for heard in group
             if heard.topic.topic != "/crowd/markers" and heard.topic.kind in messages.store.types
         ]
@@ -212,7 +212,7 @@ def _scan(poses: dict[str, tuple[str, float, float, float]], topic: str, time: f
     parent, *place = poses[carrier]
     if parent != MAP:
         raise ValueError(f"frame {carrier!r} is not in {MAP!r}")
-    pose = Pose.of(place[:2], place[2]).mounted(*mount)
+    pose = Pose.of(place[:2], place[2]).offset(*mount)
     return ScanRow(
         time,
         (float(pose.position[0, 0]), float(pose.position[0, 1]), float(pose.heading[0])),

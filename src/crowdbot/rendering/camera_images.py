@@ -83,7 +83,8 @@ def render_images(
         progress: called with the share that is done.
 
     Raises:
-        InputError: there is no such camera or no way to draw, or the run is over before the first image.
+        InputError: there is no such camera or no way to draw, the run is over before the first image, or ends with an
+            exception.
         MissingExtra: mujoco is not installed.
 
     >>> from crowdbot.trials import load_trial
@@ -106,6 +107,8 @@ def render_images(
             running.step()
             if progress is not None:
                 progress(simulation.tick / max(1, last))
+        if simulation.failure is not None:
+            raise InputError(f"{trial.name} cannot be rendered: the trial ended with an error: {simulation.failure}")
         if simulation.tick < tick:
             break
         yield lens.shot()

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, lock_output
 
 from .camera_images import RenderedImage
 from .video_writer import av_module, reel
@@ -31,14 +31,16 @@ class ImageWriter:
         path: a file with one of the endings :data:`IMAGES` (one shot) or :data:`FILMS`, or a folder.
         film: whether there are several shots.
         rate: of a film [Hz].
+        force: whether existing images and films may be overwritten.
 
     Raises:
-        InputError: the ending is unknown, or there is no such place.
+        InputError: the file name extension is unknown, the folder does not exist, or the file exists and ``force`` is
+            false.
         MissingExtra: an MP4 is asked for and av is not installed.
     """
 
-    def __init__(self, path: Path, film: bool, rate: float = 20.0) -> None:
-        self.path, self.film, self.rate = path, film, rate
+    def __init__(self, path: Path, film: bool, rate: float = 20.0, force: bool = False) -> None:
+        self.path, self.film, self.rate, self.force = path, film, rate, force
         known = FILMS if film else IMAGES
         self.folder = path.suffix == "" or path.is_dir()
         if not self.folder and path.suffix.lower() not in known:
@@ -49,6 +51,7 @@ class ImageWriter:
             raise InputError(f"{path.parent} is a file; give another place for {path.name}")
         if self.folder and path.is_file():
             raise InputError(f"{path} is a file without an ending that is known; give {', '.join(known)}, or a folder")
+        self._check_overwrite()
         if path.suffix.lower() == ".mp4":
             av_module()
 
@@ -64,13 +67,22 @@ class ImageWriter:
         every = itertools.chain([first], shots)
         try:
             (self.path if self.folder else self.path.parent).mkdir(parents=True, exist_ok=True)
-            if self.folder:
-                return self._numbered(every, kinds)
-            if not self.film:
-                return [_saved(first, kind, self._named(kind)) for kind in kinds], 1
-            return self._films(every, kinds)
+            with lock_output(self.path / "rgb-00000.png" if self.folder else self.path, self.force):
+                if self.folder:
+                    return self._numbered(every, kinds)
+                if not self.film:
+                    return [_saved(first, kind, self._named(kind)) for kind in kinds], 1
+                return self._films(every, kinds)
         except OSError as error:
             raise InputError(f"{self.path} cannot be written: {error.strerror or error}; give another place") from None
+
+    def _check_overwrite(self) -> None:
+        """Refuse an existing file before the run, which may take long."""
+        found = (
+            next(iter(sorted(self.path.glob("*-[0-9][0-9][0-9][0-9][0-9].png"))), None) if self.folder else self.path
+        )
+        if found is not None and found.exists() and not self.force:
+            raise InputError(f"{found} already exists; give another place, or --force (force=True) to overwrite it")
 
     def _named(self, kind: str) -> Path:
         more = "" if kind == "rgb" else f"-{kind}"
@@ -93,10 +105,10 @@ class ImageWriter:
                 count += 1
                 for kind, one in zip(kinds, reels, strict=True):
                     one.add(_painted(shot, kind))
-            return [one.finished() for one in reels], count
+            return [one.finish() for one in reels], count
         finally:
             for one in reels:
-                one.abandoned()
+                one.abandon()
 
 
 def _saved(shot: RenderedImage, kind: str, path: Path) -> Path:

@@ -45,14 +45,14 @@ class VideoWriter(ABC):
     def drop(self) -> None:
         """Close the file, whole or not."""
 
-    def finished(self) -> Path:
+    def finish(self) -> Path:
         """Give the file its name."""
         self.close()
         self.drop()
         self.part.replace(self.path)
         return self.path
 
-    def abandoned(self) -> None:
+    def abandon(self) -> None:
         """Remove what is not finished."""
         self.drop()
         self.part.unlink(missing_ok=True)

@@ -2,8 +2,9 @@
 
 from .batch import run_batch
 from .episode import Episode, EpisodeLog, ScanRow, scan_row, tracks_of
+from .failure import RunFailure, RunFailureWarning
 from .overrides import apply_overrides
-from .runner import Bridge, SimulationRun, Sink, StopRequest, catch_interrupt, run_to_end, simulate
+from .runner import Bridge, SimulationRun, Sink, StopRequest, catch_interrupt, run_to_end, simulate, warn_of_failure
 from .simulation import WALL, RobotContact, RobotRuntime, Simulation, StepRecord
 from .statistics import EpisodeDigest, EpisodeStatistics, RunSummary, robot_metrics
 from .world_builder import start_scene
@@ -17,6 +18,8 @@ __all__ = [
     "EpisodeStatistics",
     "RobotContact",
     "RobotRuntime",
+    "RunFailure",
+    "RunFailureWarning",
     "RunSummary",
     "ScanRow",
     "Simulation",
@@ -33,4 +36,5 @@ __all__ = [
     "simulate",
     "start_scene",
     "tracks_of",
+    "warn_of_failure",
 ]

@@ -9,7 +9,7 @@ from crowdbot.trials import Trial, check_trial
 from crowdbot.world import CrowdStepRequest, StepGenerator, compute_together
 
 from .episode import Episode, EpisodeLog
-from .runner import SimulationRun, catch_interrupt
+from .runner import SimulationRun, catch_interrupt, warn_of_failure
 from .simulation import Simulation
 
 __all__ = ["run_batch"]
@@ -34,8 +34,9 @@ def run_batch(
         TrialError: the trial is impossible with one of the seeds.
 
     >>> from crowdbot.trials import load_trial
+    >>> from crowdbot.simulation import simulate
     >>> trial = load_trial("frontal", duration=2.0)
-    >>> [episode.digest for episode in run_batch(trial, [3, 4])] == [trial.run(seed).digest for seed in (3, 4)]
+    >>> [episode.digest for episode in run_batch(trial, [3, 4])] == [simulate(trial, seed).digest for seed in (3, 4)]
     True
     """
     if not seeds:
@@ -47,32 +48,54 @@ def run_batch(
         runs = [SimulationRun(Simulation(trial, log.seed), [log], stop=stop) for log in logs]
         told = -1
         while going := [running for running in runs if running.outcome is None]:
-            _step([running.stepping() for running in going])
+            _step([running.step_requests() for running in going])
             share = max(running.simulation.tick for running in going) * 100 // trial.ticks
             if progress is not None and share > told:
                 told = share
                 progress(min(1.0, share / 100.0))
+    for running in runs:
+        warn_of_failure(running.simulation)
     return tuple(
-        log.episode(running.outcome or "interrupted", running.simulation.tick)
+        log.episode(running.outcome or "interrupted", running.simulation.tick, running.failure)
         for log, running in zip(logs, runs, strict=True)
     )
 
 
 def _step(steps: Sequence[StepGenerator[str | None]]) -> None:
     """Let all go one step, their questions answered together."""
-    asking = [(one, next(one)) for one in steps]
+    asking = [(one, request) for one in steps if (request := _next(one, None)) is not None]
     while asking:
-        answers = compute_together([walk for _, walk in asking])
+        answers = _compute([request for _, request in asking])
         asking = [
-            (one, walk)
+            (one, request)
             for (one, _), answer in zip(asking, answers, strict=True)
-            if (walk := _next(one, answer)) is not None
+            if (request := _next(one, answer)) is not None
         ]
 
 
-def _next(one: StepGenerator[str | None], answer: Scene) -> CrowdStepRequest | None:
-    """Return the next question of a step, None when it is done."""
+def _compute(requests: Sequence[CrowdStepRequest]) -> Sequence[Scene | Exception]:
+    """Return the answers; if the model raises, each request is computed alone and only some have an exception."""
+    states = [request.rng.bit_generator.state for request in requests]
     try:
-        return one.send(answer)
+        return compute_together(requests)
+    except Exception:  # raised again below, by the request that causes it
+        for request, state in zip(requests, states, strict=True):
+            request.rng.bit_generator.state = state
+        return [_attempt(request) for request in requests]
+
+
+def _attempt(request: CrowdStepRequest) -> Scene | Exception:
+    try:
+        return request.compute()
+    except Exception as error:  # raised in the run of this request
+        return error
+
+
+def _next(one: StepGenerator[str | None], answer: Scene | Exception | None) -> CrowdStepRequest | None:
+    """Return the next request of a step, None when it is done."""
+    try:
+        if isinstance(answer, Exception):
+            return one.throw(answer)
+        return next(one) if answer is None else one.send(answer)
     except StopIteration:
         return None

@@ -15,6 +15,7 @@ from crowdbot.data import Trajectories
 from crowdbot.sensors import Reading, Scan, planar_pose
 from crowdbot.trials import Trial
 
+from .failure import RunFailure
 from .simulation import StepRecord
 from .statistics import EpisodeDigest, EpisodeStatistics, present
 
@@ -51,7 +52,7 @@ class Episode:
     Fields:
         trial, seed: what was run.
         outcome: ``success``, ``collision`` or ``timeout``; ``finished`` when there was no robot, ``interrupted`` when
-            it was stopped from outside.
+            it was stopped from outside, ``error`` when an exception in user code ended it.
         steps: number of time steps done.
         times: ``[T]`` [s].
         position, velocity: ``[T, A, 2]`` [m], [m/s]; 0 for who is not there.
@@ -65,6 +66,7 @@ class Episode:
         readings: by ``robot/sensor``, everything that was measured.
         metrics: of the first robot; those of others are called ``name.metric``. See ``NAVIGATION_METRICS``.
         digest: hash of every recorded array, reading, command and the outcome; equal exactly when these are.
+        failure: the exception that ended the run, for the outcome ``error``.
     """
 
     trial: Trial
@@ -84,6 +86,7 @@ class Episode:
     readings: Mapping[str, tuple[Reading, ...]]
     metrics: Mapping[str, float]
     digest: str
+    failure: RunFailure | None = None
 
     @property
     def walls(self) -> tuple[Floats, ...]:
@@ -161,7 +164,7 @@ class EpisodeLog(EpisodeStatistics):
             self.bodies |= zip(frame.ids[here].tolist(), frame.scene.radius[0, here].tolist(), strict=True)
             self.frames.append((frame.ids, *present(frame), frame.twists, frame.commands))
 
-    def episode(self, outcome: str, steps: int) -> Episode:
+    def episode(self, outcome: str, steps: int, failure: RunFailure | None = None) -> Episode:
         """Return the episode."""
         ids, *arrays, twists, commands = ([*column] for column in zip(*self.frames, strict=True))
         first = self.trial.people
@@ -184,7 +187,8 @@ class EpisodeLog(EpisodeStatistics):
             np.stack(commands),
             {name: tuple(rows) for name, rows in self.readings.items()},
             self.metrics(outcome),
-            self.digest.ended(outcome),
+            self.digest.hexdigest(outcome),
+            failure,
         )
 
 

@@ -5,21 +5,32 @@ from __future__ import annotations
 import contextlib
 import signal
 import threading
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from types import FrameType
 from typing import Protocol, TypeVar
 
-from crowdbot.core import Clock, ExternalClock, InputError
+from crowdbot.core import Clock, ExternalClock, InputError, MissingExtra
 from crowdbot.sensors import Reading
 from crowdbot.trials import Mount, RobotSpec, Trial, check_trial
 from crowdbot.world import StepGenerator, run_step
 
 from .episode import Episode, EpisodeLog
+from .failure import RunFailure, RunFailureWarning
 from .simulation import Simulation, StepRecord
 from .statistics import EpisodeStatistics
 
-__all__ = ["Bridge", "SimulationRun", "Sink", "StopRequest", "catch_interrupt", "run_to_end", "simulate"]
+__all__ = [
+    "Bridge",
+    "SimulationRun",
+    "Sink",
+    "StopRequest",
+    "catch_interrupt",
+    "run_to_end",
+    "simulate",
+    "warn_of_failure",
+]
 
 Progress = Callable[[float], None]
 Measured = tuple[tuple[RobotSpec, Mount, Reading], ...]
@@ -57,7 +68,9 @@ class SimulationRun:
         ticks: it is interrupted after so many steps; None: it is not.
 
     Attributes:
-        outcome: how it ended, None while it goes on.
+        outcome: how it ended, None while it goes on; ``error`` after an exception in the code of a model, sensor,
+            navigator or bridge.
+        failure: that exception.
 
     >>> from crowdbot.models import ORCA
     >>> clock = ExternalClock(0.05)
@@ -90,13 +103,19 @@ class SimulationRun:
         Raises:
             InputError: it has ended before.
         """
-        return run_step(self.stepping())
+        return run_step(self.step_requests())
 
-    def stepping(self) -> StepGenerator[str | None]:
+    def step_requests(self) -> StepGenerator[str | None]:
         """Go one step on as :meth:`step` does, and ask somebody else how the crowd walks."""
         if self.outcome is not None:
             raise InputError(f"the run has ended ({self.outcome}) at {self.simulation.world.clock.time:g} s")
-        yield from self.simulation.stepping()
+        try:
+            yield from self.simulation.step_requests()
+        except MissingExtra:
+            raise
+        except Exception as error:  # the code of a model may raise anything
+            self._fail(error)
+            return self.outcome
         self._observe()
         return self.outcome
 
@@ -117,18 +136,34 @@ class SimulationRun:
     def _observe(self) -> None:
         """Do what follows a step: sense, decide, pass on, record; this may be the last recorded instant."""
         simulation = self.simulation
-        readings = simulation.sense()
-        simulation.decide()
-        for bridge in self.bridges:
-            bridge.exchange(simulation, readings)
+        readings: Measured = ()
+        try:
+            readings = simulation.sense()
+            simulation.decide()
+            for bridge in self.bridges:
+                bridge.exchange(simulation, readings)
+        except MissingExtra:
+            raise
+        except Exception as error:  # the code of sensors, navigators and bridges may raise anything
+            self._fail(error)
         due = simulation.tick % self._every == 0
-        if due:
+        if due and self.outcome is None:
             stopped = self.stop.asked or (self.ticks is not None and simulation.tick >= self.ticks)
             self.outcome = _outcome(simulation) or ("interrupted" if stopped else None)
         if due or readings or simulation.eventful:
             frame = simulation.frame(readings, due, last=self.outcome is not None)
             for sink in self.sinks:
                 sink.take(frame)
+
+    @property
+    def failure(self) -> RunFailure | None:
+        """The exception that ended the run."""
+        return self.simulation.failure
+
+    def _fail(self, error: Exception) -> None:
+        simulation = self.simulation
+        simulation.failure = RunFailure.of(error, simulation.world.clock.time, simulation.trial.folder)
+        self.outcome = "error"
 
 
 def simulate(
@@ -152,7 +187,15 @@ def simulate(
     simulation = Simulation(trial, chosen, clock)
     with catch_interrupt() as stop:
         outcome = run_to_end(simulation, [log], stop, progress)
-    return log.episode(outcome, simulation.tick)
+    warn_of_failure(simulation)
+    return log.episode(outcome, simulation.tick, simulation.failure)
+
+
+def warn_of_failure(simulation: Simulation) -> None:
+    """Issue a :class:`RunFailureWarning` if an exception ended the run."""
+    if simulation.failure is not None:
+        sentence = f"trial {simulation.trial.name!r} ended with an error: {simulation.failure}"
+        warnings.warn(sentence, RunFailureWarning, stacklevel=3)
 
 
 def run_to_end(

@@ -30,6 +30,7 @@ from crowdbot.sensors import Reading, Scan
 from crowdbot.trials import Mount, RobotSpec, Trial, element_word, people_appearance, place
 from crowdbot.world import StepGenerator, run_step
 
+from .failure import RunFailure
 from .mounted_sensor import MountedSensor, mounted_sensors
 from .termination import end_outcome, goal_zones
 from .world_builder import build_world, limits_of, start_scene
@@ -123,6 +124,7 @@ class Simulation:
         touches: contacts of the latest step.
         begun: whether the parts 6 to 8 of tick 0 are done.
         ended: the outcome once another condition of the trial for its end holds.
+        failure: the exception that ended the run, if one did.
 
     Raises:
         TrialError: people do not fit with this seed.
@@ -156,14 +158,15 @@ class Simulation:
         if clock is not None:
             self._keep_time(clock)
         self.ended: str | None = None
+        self.failure: RunFailure | None = None
         self._ways_out = goal_zones(people)
         self._told = 0
 
     def step(self) -> None:
         """Go one step on: parts 1 to 5 of the order."""
-        run_step(self.stepping())
+        run_step(self.step_requests())
 
-    def stepping(self) -> StepGenerator[None]:
+    def step_requests(self) -> StepGenerator[None]:
         """Go one step on, and ask somebody else how the crowd walks: see :func:`crowdbot.simulation.run_batch`."""
         before, ids = self.world.scene, self.ids.copy()
         yield from self.world.step_requests({carrier.agent: carrier.command for carrier in self.carriers})

@@ -17,6 +17,7 @@ from crowdbot.core import Pose, SpatialPose
 from crowdbot.metrics import AgentStates, NavigationMetrics
 from crowdbot.trials import Trial
 
+from .failure import RunFailure
 from .simulation import StepRecord
 
 __all__ = ["EpisodeDigest", "EpisodeStatistics", "RunSummary", "present", "robot_metrics"]
@@ -32,6 +33,7 @@ class RunSummary:
         begin, end: times of the first and the last recorded instant [s].
         agents: how many people and robots there ever were.
         path: the recording, if there is one.
+        failure: the exception that ended the run, for the outcome ``error``.
     """
 
     trial: Trial
@@ -44,6 +46,7 @@ class RunSummary:
     metrics: Mapping[str, float]
     digest: str
     path: Path | None = None
+    failure: RunFailure | None = None
 
 
 class EpisodeDigest:
@@ -68,7 +71,7 @@ class EpisodeDigest:
         for collision in frame.collisions:
             self._sum.update(f"collision {dataclasses.astuple(collision)!r}\n".encode())
 
-    def ended(self, outcome: str) -> str:
+    def hexdigest(self, outcome: str) -> str:
         """Return the hash of everything so far and the outcome."""
         whole = self._sum.copy()
         whole.update(f"outcome {outcome}\n".encode())
@@ -117,7 +120,9 @@ class EpisodeStatistics:
         """Return the metrics of every robot."""
         return robot_metrics(self.travels, [robot.name for robot in self.trial.robots], outcome)
 
-    def summary(self, outcome: str, steps: int, path: Path | None = None) -> RunSummary:
+    def summary(
+        self, outcome: str, steps: int, path: Path | None = None, failure: RunFailure | None = None
+    ) -> RunSummary:
         """Return how the run went."""
         return RunSummary(
             self.trial,
@@ -128,8 +133,9 @@ class EpisodeStatistics:
             self.end,
             self.agents,
             self.metrics(outcome),
-            self.digest.ended(outcome),
+            self.digest.hexdigest(outcome),
             path,
+            failure,
         )
 
 

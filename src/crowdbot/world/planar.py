@@ -225,7 +225,7 @@ class PlanarWorld(World):
         """Return the pose of a sensor of a robot in its posture; see :class:`World`."""
         x, y, z, roll, pitch, yaw = mount.placed
         base = self.pose(robot)
-        return base.to_spatial(0.0).mounted(x, y, z, roll, pitch, yaw) if spatial else base.mounted(x, y, yaw)
+        return base.to_spatial(0.0).offset(x, y, z, roll, pitch, yaw) if spatial else base.offset(x, y, yaw)
 
     def wall_clearance(self, robot: int) -> Floats:
         """Return the clearance ``[E]`` [m] to walls on the straight path of the last step; see :class:`World`."""

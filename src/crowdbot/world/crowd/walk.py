@@ -35,11 +35,16 @@ StepGenerator = Generator[CrowdStepRequest, Scene, T]
 
 
 def run_step(step_requests: StepGenerator[T]) -> T:
-    """Go a step, each question answered on its own."""
+    """Go a step; each request is computed on its own. An exception of the model is raised in the generator."""
     try:
         walk = next(step_requests)
         while True:
-            walk = step_requests.send(walk.compute())
+            try:
+                answer = walk.compute()
+            except Exception as error:
+                walk = step_requests.throw(error)
+            else:
+                walk = step_requests.send(answer)
     except StopIteration as done:
         found: T = done.value
         return found

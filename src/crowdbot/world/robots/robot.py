@@ -175,7 +175,7 @@ class Robot:
         return np.asarray(self.model.poses({**self.posture, **(positions or {})})[mount.link] @ mount.origin)
 
     def planar_mount(self, name: str) -> tuple[float, float, float]:
-        """Return where a sensor sits, seen from above: x, y [m], heading [rad], as :meth:`Pose.mounted` takes it.
+        """Return where a sensor sits, seen from above: x, y [m], heading [rad], as :meth:`Pose.offset` takes it.
 
         >>> Robot.load("qolo").planar_mount("lidar_rear")
         (-0.516, 0.0, 3.141592654)

@@ -1,0 +1,68 @@
+"""RunFailure: an exception that ended a run, as data."""
+
+from __future__ import annotations
+
+import sysconfig
+import traceback
+from dataclasses import dataclass, field
+from pathlib import Path
+
+__all__ = ["RunFailure", "RunFailureWarning"]
+
+PACKAGE = Path(__file__).resolve().parents[1]
+INSTALLED = [Path(sysconfig.get_path(name)).resolve() for name in ("stdlib", "platstdlib", "purelib", "platlib")]
+
+
+class RunFailureWarning(UserWarning):
+    """An exception ended a run; its episode has the outcome ``error``."""
+
+
+@dataclass(frozen=True)
+class RunFailure:
+    """An exception in a navigator, sensor, crowd model or bridge that ended a run.
+
+    Fields:
+        message: type and text of the exception, in one line.
+        place: file and line of the exception, in the user's code if the trace has any: ``my_navigator.py:12``.
+        time: simulated time [s].
+        trace: the Python traceback, empty for an episode from a file.
+
+    >>> try:
+    ...     1 / 0
+    ... except ZeroDivisionError as error:
+    ...     failure = RunFailure.of(error, 1.25)
+    >>> failure.message, failure.time
+    ('ZeroDivisionError: division by zero', 1.25)
+    """
+
+    message: str
+    place: str
+    time: float
+    trace: str = field(default="", compare=False, repr=False)
+
+    @classmethod
+    def of(cls, error: Exception, time: float, folder: Path | None = None) -> RunFailure:
+        """Describe an exception; a place in ``folder`` is relative to it, of another only the file name is given."""
+        message = " ".join(f"{type(error).__name__}: {error}".split()).removesuffix(":")
+        return cls(message, _place(error, folder), time, "".join(traceback.format_exception(error)))
+
+    def __str__(self) -> str:
+        """Return one sentence without its full stop."""
+        return f"{self.message} ({self.place}) at {self.time:g} s"
+
+
+def _place(error: Exception, folder: Path | None) -> str:
+    frames = traceback.extract_tb(error.__traceback__)
+    if not frames:
+        return "unknown"
+    own = [frame for frame in frames if not _is_library(Path(frame.filename))]
+    frame = (own or frames)[-1]
+    path = Path(frame.filename)
+    if folder is not None and path.is_relative_to(folder.resolve()):
+        return f"{path.relative_to(folder.resolve()).as_posix()}:{frame.lineno}"
+    return f"{path.name}:{frame.lineno}"
+
+
+def _is_library(path: Path) -> bool:
+    """Return whether a file belongs to crowdbot, Python or an installed package."""
+    return path.name.startswith("<frozen") or any(path.is_relative_to(place) for place in (PACKAGE, *INSTALLED))
