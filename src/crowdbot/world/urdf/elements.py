@@ -69,7 +69,7 @@ class UrdfReader:
     def new(self, element: Element, name: str, known: Iterable[str]) -> bool:
         """Return whether a name is new; say so when it is not."""
         if name in known:
-            self.say(element, "has a name that another one has already; names must differ")
+            self.say(element, "has a name that is already in use; names must be unique")
             return False
         return True
 
@@ -77,7 +77,7 @@ class UrdfReader:
         """Return the child of this name, None when there is none; say so when there are more."""
         found = element.each(tag)
         if len(found) > 1:
-            self.say(found[1], f"stands in <{element.tag}> twice; one is allowed")
+            self.say(found[1], f"occurs more than once in <{element.tag}>; at most one is allowed")
         return found[0] if found else None
 
     def value(self, element: Element, key: str, default: float | None = None, least: float = -np.inf) -> float | None:

@@ -86,7 +86,7 @@ def _limits(reader: UrdfReader, element: Element, name: str, kind: str) -> tuple
     if lower > upper:
         reader.say(inner, f"lower = {lower:g} lies above upper = {upper:g}")
     elif lower == upper:
-        reader.remark("noted", element, f"has the limits {lower:g} to {upper:g}, which leave it no way to move")
+        reader.remark("noted", element, f"has the limits {lower:g} to {upper:g}, which allow no motion")
     return lower, upper, motor
 
 
