@@ -124,7 +124,7 @@ def test_wrong_positions_are_explained(positions, message):
 
 def test_limits_that_leave_no_way_are_noted_and_hold():
     model = two("revolute", "<limit lower='0' upper='0' effort='0' velocity='0'/>")
-    assert "has the limits 0 to 0, which leave it no way to move" in model.warnings[-1]
+    assert "has the limits 0 to 0, which allow no motion" in model.warnings[-1]
     assert mjcf(model, base="fixed").load().nv == 0
 
 

@@ -17,11 +17,11 @@ ZERO = "<limit lower='0' upper='1' effort='1' velocity='1'/>"
     [
         ("<robot name='r'>\n<link name='a'>\n</robot>", "urdf:3: this is not well-formed XML: mismatched tag"),
         ("<robot", "urdf:1: this is not well-formed XML: unclosed token"),
-        ("<model/>", "urdf:1: the root element is <model>, it must be <robot>"),
+        ("<model/>", "urdf:1: the root element is <model>, expected <robot>"),
         ("<robot name='r'/>", "urdf:1: <robot> contains no <link>; a robot has at least one"),
         (robot("<link/>"), "urdf:2: <link> needs the attribute 'name'"),
-        (robot(A, A), "urdf:3: <link> 'a' has a name that another one has already"),
-        (robot(A, B), "<robot> the links 'a' and 'b' are both the root: no joint has them as its child"),
+        (robot(A, A), "urdf:3: <link> 'a' has a name that is already in use"),
+        (robot(A, B), "<robot> the links 'a' and 'b' are both the root: no joint has them as a child"),
         (robot(A, B, C), "<robot> 3 links, 'a' and 'b' among them, are each the root"),
         (robot(A, joint("j", "fixed", "a", "z")), "urdf:3: <joint> 'j' has the child 'z', which is no link"),
         (
@@ -42,7 +42,7 @@ ZERO = "<limit lower='0' upper='1' effort='1' velocity='1'/>"
         (robot(A, joint("j", "fixed", "a", "a")), "joins the link 'a' to itself"),
         (
             robot(A, B, joint("j", "fixed", "a", "b"), joint("k", "fixed", "a", "b")),
-            "urdf:5: <joint> 'k' moves the link 'b', which 'j' moves already: the links form a loop",
+            "urdf:5: <joint> 'k' moves the link 'b', which 'j' already moves: the links form a loop",
         ),
         (
             robot(A, B, C, joint("j", "fixed", "b", "c"), joint("k", "fixed", "c", "b")),
@@ -71,7 +71,7 @@ ZERO = "<limit lower='0' upper='1' effort='1' velocity='1'/>"
             robot(A, B, joint("j", "continuous", "a", "b", "<mimic joint='k'/>")),
             "'j' mimics 'k', which is no joint",
         ),
-        (robot(A, B, joint("j", "continuous", "a", "b", "<mimic joint='j'/>")), "'j' mimics itself by way of 'j'"),
+        (robot(A, B, joint("j", "continuous", "a", "b", "<mimic joint='j'/>")), "'j' mimics itself through 'j'"),
         (
             robot(A, B, C, joint("j", "floating", "a", "b"), joint("k", "continuous", "b", "c", "<mimic joint='j'/>")),
             "'k' mimics 'j', but only revolute, continuous and prismatic joints can",
@@ -89,7 +89,7 @@ ZERO = "<limit lower='0' upper='1' effort='1' velocity='1'/>"
         (robot(link("a", mesh("a.stl", scale="1 0 1"))), '<mesh> scale="1 0 1" must not be 0'),
         (
             robot(link("a", "<visual><geometry><sphere radius='1'/></geometry><geometry/></visual>")),
-            "twice; one is allowed",
+            "at most one is allowed",
         ),
     ],
 )

@@ -1,4 +1,4 @@
-"""A world in the plane: a crowd model moves the people, drives move the robots."""
+"""Planar world: a crowd model moves people, drives move robots."""
 
 from __future__ import annotations
 
@@ -47,47 +47,47 @@ Floats = NDArray[np.float64]
 class PlanarWorld(World):
     """People and robots as discs in the plane, E environments at once.
 
-    In a step the crowd and the robots move from the same old scene: people see where robots are, not where they will
-    be, and the reverse. People see robots as agents that are moved from outside. Without a ``contact`` there are no
-    forces between bodies: overlaps are reported in :attr:`contacts`, never resolved. A robot that is driven into a wall
-    passes through it. The crowd draws from its own stream of randomness, so that sensors and navigators do not change
-    it. All that follows ``robot_margin`` is off unless asked for.
+    People and robots move simultaneously: each reacts to the positions of the others at the start of the step. To the
+    crowd model, robots are external agents. Without ``contact`` there are no forces between bodies: overlaps are
+    reported in :attr:`contacts`, but not resolved. A robot driven into a wall passes through it. The crowd has its own
+    random stream, which sensors and navigators do not affect. Arguments after ``robot_margin`` are off by default.
 
     Args:
-        scene: at the beginning; robots are agents with ``external=True``.
-        model: how people walk.
-        drives: the drive of each robot by its agent index.
+        scene: initial scene; robots are agents with ``external=True``.
+        model: crowd model.
+        drives: drive of each robot by agent index.
         dt: time step [s].
-        seed: of the crowd's randomness. Journeys, sources and the symmetry breaker of environment e draw as those of a
-            world with this environment alone and the seed ``seed + e``.
-        leave_radius: people nearer to their goal than this [m] leave (``active=False``); None: they stay. Robots
+        seed: seed of the crowd. Journeys, sources and heading offsets of environment e equal those of a world with
+            only this environment and the seed ``seed + e``.
+        leave_radius: distance to the goal [m] below which people leave (``active=False``); None: they stay. Robots
             never leave.
         robot_margin: margin that people add to the radius of a robot [m]. Crowd models pass discs at zero clearance:
             without a margin, ORCA people touch a robot that stands still.
-        router: leads people around walls to their goals.
-        contact: what happens to people whose bodies overlap after a step.
-        limits: of speed and acceleration, after the model.
-        journeys: goals one after the other; they replace those of the scene.
-        sources: where people come in; they take the places of absent agents.
-        exits: zones in which everybody leaves, robots apart.
-        portals: zones whose people come out elsewhere, as new people.
-        script: agents that are moved as they were recorded; to the crowd model they are external.
+        router: guides people around walls to their goals.
+        contact: resolution of overlaps between people after a step.
+        limits: limits of speed and acceleration, applied after the model.
+        journeys: sequences of goals; they replace the goals of the scene.
+        sources: sources of new people, who take the slots of absent agents.
+        exits: zones in which people leave; robots stay.
+        portals: zones that transfer people to another zone, as new people.
+        script: agents that follow recorded tracks; to the crowd model they are external.
         heading_jitter: largest offset of the preferred direction of a person [rad], constant for each person. It
             resolves deadlocks of people who meet exactly head-on; 1e-3 is enough.
-        substeps: the crowd takes so many steps in one step of the world, robots meanwhile go on straight.
-        ids: ``[A]`` or ``[E, A]`` int, who people are; chance follows them. None: 0 to A - 1.
+        substeps: crowd steps per step of the world; robots move straight during them.
+        ids: identities ``[A]`` or ``[E, A]`` (int), which determine the random numbers of each person
+            (default: 0 to A - 1).
         latency: delay of the commands of a robot [s], by agent, see :class:`CommandDelay`; 0 for robots left out.
 
     Attributes:
-        clock: who counts the time.
-        twists: how each robot moves now.
-        contacts: robot and other pairs whose clearance fell below 0 during the last step, on straight ways between
-            the two scenes.
-        ids: ``[E, A]`` who is who now; people who come in have new identities.
+        clock: simulation clock.
+        twists: current twist of each robot.
+        contacts: pairs of a robot and another agent whose clearance was negative during the last step, assuming
+            straight motion.
+        ids: current identities ``[E, A]``; new people have new identities.
 
     Raises:
-        InputError: a drive belongs to no agent, or to one that is not external; a goal cannot be reached; a value is
-            not allowed.
+        InputError: a drive has no agent or its agent is not external, a goal is unreachable, or a value is not
+            allowed.
 
     >>> from crowdbot.models import ORCA
     >>> from crowdbot.world import DifferentialDrive
@@ -214,11 +214,11 @@ class PlanarWorld(World):
 
     @property
     def waiting_count(self) -> NDArray[np.int64]:
-        """How many people wait to come in, ``[E]``."""
+        """Number of people waiting to enter, ``[E]``."""
         return self._traffic.waiting_count
 
     def pose(self, robot: int) -> Pose:
-        """Return where a robot is in every environment."""
+        """Return the pose of a robot in every environment."""
         return Pose(self.scene.position[:, robot].copy(), self.scene.heading[:, robot].copy())
 
     def sensor_pose(self, robot: int, mount: MountPlacement, spatial: bool) -> Pose | SpatialPose:
@@ -289,7 +289,7 @@ class PlanarWorld(World):
         return self._bodies
 
     def _with_replayed_external(self, scene: Scene) -> Scene:
-        """Return the scene in which who follows a script is external."""
+        """Return the scene with replayed people as external agents."""
         return (
             scene if self.script is None else scene.replace(external=scene.external | self.script.follower_mask(scene))
         )

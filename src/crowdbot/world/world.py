@@ -1,4 +1,4 @@
-"""The contract of worlds: people and robots move together, one time step at a time."""
+"""World: contract of the planar and the physics world, which move people and robots in time steps."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Contact(NamedTuple):
 
 
 class World(ABC):
-    """Moves people and robots. The worlds differ in what a body is; code that uses a world need not know which it is.
+    """Moves people and robots in time steps. Code that uses a world does not depend on its kind.
 
     Attributes:
         people_shape: shape of people for sensors, unless a trial sets another: ``discs`` or ``limbs``.
@@ -85,7 +85,7 @@ class World(ABC):
 
     @property
     def contact_events(self) -> tuple[BodyContactEvent, ...]:
-        """All contact events so far, ordered by first touch; empty in a world without forces."""
+        """All contact events so far, ordered by start time; empty in a world without forces."""
         return ()
 
     @abstractmethod
@@ -143,13 +143,13 @@ class World(ABC):
         """Add bodies for sensors and cameras. A world that has bodies only starts the activities of people.
 
         Args:
-            robots: by agent.
+            robots: robots by agent index.
             stage: wall height, props and lights.
             people: bodies of all agents that are not robots, then of riders.
             riders: agents of the robots that carry a rider.
             activity: activity of each person; empty: all walk.
             walls: walls without the outlines of props; None: the walls of the scene.
-            seed: of the gaits.
+            seed: seed of the gaits.
         """
 
     @abstractmethod
@@ -162,4 +162,4 @@ class World(ABC):
 
     @abstractmethod
     def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: int | None = None, **how: Any) -> None:
-        """Change parameters of a running world; see :meth:`PlanarWorld.turn_to`."""
+        """Change parameters of a running world; see :meth:`PlanarWorld.reconfigure`."""

@@ -26,9 +26,9 @@ VARIANTS = ("position", "force")
 MOST = 24
 """So many neighbours can push at a time, the nearest."""
 SPARE = 0.25
-"""Neighbours are looked for this many radii farther than they touch, because pushes move them."""
+"""Margin of the neighbour search in radii, since pushes move people."""
 TOUCH = 1.0 - 1e-4
-"""Bodies, and walls, that come as near as this share of touching are left alone."""
+"""Share of the contact distance at which bodies and walls count as separated."""
 PASSES = 4
 """So many walls can push one after the other."""
 REACH = 0.5

@@ -48,7 +48,7 @@ class CrowdLimits:
                 raise InputError(f"CrowdLimits: {name} = {wrong.flat[0]} {unit} must be finite and above 0, or None")
 
     def apply(self, before: Scene, after: Scene, dt: float) -> Scene:
-        """Return the scene ``after`` a step of ``dt`` [s] from ``before``, with people slowed to the limits."""
+        """Return the scene ``after`` a step of ``dt`` [s] from ``before``, with velocities clipped to the limits."""
         velocity, walking = after.velocity, after.active & ~after.external
         old = np.where(walking[..., None], before.velocity, 0.0)
         if self.max_acceleration is not None:

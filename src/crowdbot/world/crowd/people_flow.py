@@ -92,11 +92,11 @@ class PeopleFlow:
 
     @property
     def waiting_count(self) -> Numbers:
-        """How many wait to come in, ``[E]``."""
+        """Number of people waiting to enter, ``[E]``."""
         return np.zeros(len(self.seeds), dtype=np.int64) if self.arrivals is None else self.arrivals.waiting_count
 
     def start(self, scene: Scene) -> Scene:
-        """Return the scene at the beginning, with everybody's first goal and way."""
+        """Return the initial scene with the first goal and path of each person."""
         if self.mixture is not None:
             scene = scene.replace(memory={**scene.memory, MODEL: self.mixture.of(scene).astype(np.float64)})
         if self.journeys is not None:

@@ -90,18 +90,18 @@ class ReplayedPeople:
         object.__setattr__(self, "_rows", _Rows.of(tracks))
 
     def follower_mask(self, scene: Scene) -> Bools:
-        """Return ``[E, A]`` who follows a track now."""
+        """Return ``[E, A]``, whether an agent follows a recorded track."""
         state = scene.memory.get(SCRIPT)
         return np.zeros(scene.shape, dtype=np.bool_) if state is None else np.asarray(state == FOLLOWS)
 
     def start(self, scene: Scene, time: float = 0.0) -> Scene:
-        """Return the scene at a time [s] of the recording, with everybody on the own track."""
+        """Return the scene at a time [s] of the recording, with each person on the recorded track."""
         state = np.zeros(scene.shape)
         state[:, self._rows.agent] = FOLLOWS
         return self.place(scene.replace(memory={**scene.memory, SCRIPT: state}), time)
 
     def place(self, scene: Scene, time: float) -> Scene:
-        """Return the scene in which who follows a track is where it is at a time [s], and who is free has a goal."""
+        """Return the scene with replayed people at their positions at a time [s], and released people with a goal."""
         rows, agent = self._rows, self._rows.agent
         if len(agent) == 0:
             return scene

@@ -277,11 +277,11 @@ class Router:
         return Ways(subgoal, np.where(asks, length.reshape(E, A), 0.0), new)
 
     def guide(self, scene: Scene, asking: NDArray[np.bool_] | None = None) -> Scene:
-        """Return the scene in which goals lie straight ahead on people's ways, as far away as the ways are long.
+        """Return the scene with each goal on the next straight section of the path, at the distance of the path length.
 
         Args:
-            scene: with the ways of the step before in its memory.
-            asking: ``[E, A]`` whom it leads; None: all who walk.
+            scene: its memory contains the paths of the previous step.
+            asking: ``[E, A]``, whom to guide (default: everybody who walks).
 
         Raises:
             InputError: a goal cannot be reached.

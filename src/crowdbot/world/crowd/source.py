@@ -1,4 +1,4 @@
-"""Flow: people who come in while the world runs, and the places where they go out."""
+"""Sources: people who enter while the simulation runs."""
 
 from __future__ import annotations
 
@@ -24,39 +24,38 @@ Numbers = NDArray[np.int64]
 
 TIMINGS = ("poisson", "regular")
 TRIES = 20
-"""So many places are tried in a step for one person, then the source waits for the next step."""
+"""Positions tried per person and step."""
 GAP = 0.01
-"""Bodies begin at least this far apart [m]."""
+"""Smallest distance [m] between bodies at entry."""
 TOP = 1.3
 """Maximum speed, as a multiple of the preferred one (Helbing & Molnar 1995)."""
 MOST_RATE = 1e4
 
 
 class Sampler(Protocol):
-    """A distribution that numbers can be drawn from."""
+    """A distribution."""
 
     def draw(self, rng: np.random.Generator, count: int) -> Floats:
-        """Return ``[count]`` numbers."""
+        """Return ``count`` samples, ``[count]``."""
 
 
 @dataclass(frozen=True)
 class PeopleSource:
-    """People come in at a rate, at random places of a zone, as soon as there is room.
+    """A source of people: they arrive at a rate and enter at random positions of a zone.
 
-    Whoever finds no room, or no free place among the agents of the scene, waits outside; the first to come is the first
-    to enter. The number of agents A does not change: who comes takes the place in the arrays of somebody who has left,
-    with a new identity.
+    People wait outside in a queue (first in, first out) if there is no room or no free slot among the agents of the
+    scene. The number of agents A is constant: a person takes the slot of an absent agent, with a new identity.
 
     Fields:
-        zone: where people stand when they come in.
-        journey: where they go.
-        rate: people per second.
-        timing: ``poisson`` (at random) or ``regular`` (evenly, the first at ``begin``).
-        begin, end: when people come [s].
-        most: no more people than this; None: no limit.
-        speed: preferred [m/s], a number or something to draw from.
-        radius: of bodies [m], likewise.
-        model: the index of the model of a mixture that they walk by.
+        zone: zone of entry.
+        journey: sequence of waypoints.
+        rate: arrival rate [people/s].
+        timing: ``poisson`` (random) or ``regular`` (equal intervals, first arrival at ``begin``).
+        begin, end: time of the first and last possible arrival [s].
+        most: maximum number of people (default: no limit).
+        speed: preferred speed [m/s], a number or a distribution.
+        radius: radius [m], a number or a distribution.
+        model: index of the crowd model in a mixture.
 
     Raises:
         InputError: a value is not allowed.
@@ -94,7 +93,7 @@ class PeopleSource:
                 raise InputError(f"PeopleSource: {name} = {value} must be finite and above 0")
 
     def come_by(self, time: float, seed: int, number: int = 0) -> int:
-        """Return how many people come by a time [s] as the source ``number`` of a world with this seed.
+        """Return the number of arrivals until a time [s] for source ``number`` of a world with this seed.
 
         >>> from crowdbot.world import PointWaypoint
         >>> door = PolygonZone(((0, 0), (1, 0), (1, 2), (0, 2)))
@@ -229,11 +228,11 @@ class Arrivals:
 
     @property
     def waiting_count(self) -> Numbers:
-        """How many wait outside, ``[E]``."""
+        """Number of people waiting to enter, ``[E]``."""
         return np.array([sum(queue.waiting for queue in queues) for queues in self._queues], dtype=np.int64)
 
     def reconfigure(self, sources: Sequence[PeopleSource], seeds: Sequence[int] | None = None) -> None:
-        """Go on with other sources in the places of these; who is due or waits stays so.
+        """Replace the sources; people who are due or wait are kept.
 
         Args:
             sources: as many as before, with the same journeys.

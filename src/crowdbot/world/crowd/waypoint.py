@@ -1,4 +1,4 @@
-"""Stops: what people go to, and when they are there."""
+"""Waypoints: goals of people and the conditions of arrival."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ Numbers = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 AHEAD = 1000.0
-"""Who walks in a direction has a goal this far ahead [m]."""
+"""Distance [m] of the goal of a heading waypoint."""
 TRIES = 5000
-"""A zone of which so many points of its bounding box hit nothing is too thin to stand in."""
+"""Points of the bounding box to try; a zone that none of them hits is too thin."""
 AIMS = ("nearest", "random")
 
 
 @dataclass(frozen=True)
 class PersonRandom:
-    """Who draws, and what for.
+    """Random numbers of each person, reproducible by seed, identity and purpose.
 
     Fields:
-        seed, person: ``[N]`` of the environment, and who it is.
-        path: what is drawn.
-        holds: whether a body has room at points ``[N, 2]``; None: everywhere.
+        seed, person: seed of the environment and identity of the person, ``[N]``.
+        path: purpose of the number.
+        holds: returns whether points ``[N, 2]`` have room for a body (default: all have).
     """
 
     seed: Numbers
@@ -44,20 +44,20 @@ class PersonRandom:
     holds: Callable[[Floats], Bools] | None = None
 
     def draw(self, *more: str | int) -> Floats:
-        """Return a number in [0, 1) for everyone."""
+        """Return a number in [0, 1) for each person."""
         return uniform(self.seed, self.person, *self.path, *more)
 
 
 @dataclass(frozen=True)
 class Waypoint(ABC):
-    """Something to go to."""
+    """A goal of people with a condition of arrival."""
 
     uses_routing: ClassVar[bool] = True
-    """Whether a router leads there."""
+    """Whether routing applies to it."""
 
     @property
     def moves(self) -> bool:
-        """Whether the goal depends on where one is."""
+        """Whether the goal depends on the position of the person."""
         return False
 
     @abstractmethod
@@ -66,12 +66,12 @@ class Waypoint(ABC):
 
     @abstractmethod
     def is_reached(self, place: Floats, goal: Floats) -> Bools:
-        """Return ``[N]`` who is there."""
+        """Return ``[N]``, whether each person is there."""
 
 
 @dataclass(frozen=True)
 class PointWaypoint(Waypoint):
-    """A point, reached when one is nearer than the tolerance [m].
+    """A point, reached within the tolerance [m].
 
     >>> goal = np.array([[1.0, 2.0], [1.0, 2.0]])
     >>> PointWaypoint(1.0, 2.0).is_reached(np.array([[1.0, 1.8], [1.0, 1.0]]), goal).tolist()
@@ -87,7 +87,7 @@ class PointWaypoint(Waypoint):
         _check_tolerance("PointWaypoint", self.tolerance)
 
     def goal(self, place: Floats, luck: PersonRandom) -> Floats:
-        """Return the point for everyone."""
+        """Return the point for each person."""
         return np.tile([float(self.x), float(self.y)], (len(place), 1))
 
     def is_reached(self, place: Floats, goal: Floats) -> Bools:
@@ -111,7 +111,7 @@ class HeadingWaypoint(Waypoint):
 
     @property
     def moves(self) -> bool:
-        """Whether the goal depends on where one is."""
+        """Whether the goal depends on the position of the person."""
         return True
 
     def goal(self, place: Floats, luck: PersonRandom) -> Floats:
@@ -119,13 +119,13 @@ class HeadingWaypoint(Waypoint):
         return place + AHEAD * np.array([math.cos(self.heading), math.sin(self.heading)])
 
     def is_reached(self, place: Floats, goal: Floats) -> Bools:
-        """Return that nobody is there."""
+        """Return False for everybody."""
         return np.zeros(len(place), dtype=np.bool_)
 
 
 @dataclass(frozen=True)
 class PolygonZone(Waypoint):
-    """A polygon, reached when one is in it, or nearer to the own goal in it than the tolerance [m].
+    """A polygon, reached inside it or within the tolerance [m] of the goal of the person in it.
 
     Fields:
         corners: ``x, y`` [m], three or more, either way round.
@@ -162,7 +162,7 @@ class PolygonZone(Waypoint):
 
     @property
     def moves(self) -> bool:
-        """Whether the goal depends on where one is."""
+        """Whether the goal depends on the position of the person."""
         return self.aim == "nearest"
 
     def goal(self, place: Floats, luck: PersonRandom) -> Floats:
@@ -185,7 +185,7 @@ class PolygonZone(Waypoint):
         return inside
 
     def sample(self, luck: PersonRandom) -> Floats:
-        """Return a random point of the zone ``[N, 2]`` for everyone, where a body has room.
+        """Return a random free point of the zone for each person, ``[N, 2]`` [m].
 
         Raises:
             InputError: there is none.

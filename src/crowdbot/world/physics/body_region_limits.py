@@ -1,8 +1,8 @@
-"""How soft and heavy the regions of a body are, and how hard a touch is: the two-body model of ISO/TS 15066.
+"""Stiffness, mass and force limits of body regions, and the two-body impact model of ISO/TS 15066.
 
-A body that is modelled as rigid and immovable would give forces that nobody ever feels. So the peak force of an impact
-follows from its speed: a spring with the stiffness of the region between the moving mass of the robot and the effective
-mass of the region, ``F = v sqrt(k mu)``. What a solver says during the impact is never reported as such.
+Contact with a rigid, immovable body would give unrealistic forces. The peak force of an impact is therefore computed
+from its speed, with a spring of the stiffness of the region between the moving mass of the robot and the effective mass
+of the region: ``F = v sqrt(k mu)``. Solver forces during an impact are not reported as injury forces.
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ class BodyRegionLimits(NamedTuple):
     """A region of the body.
 
     Fields:
-        stiffness: [N/m].
-        mass: effective, of the region when it is hit [kg].
+        stiffness: stiffness [N/m].
+        mass: effective mass of the region in an impact [kg].
         limit: quasi-static force at the onset of pain of adults [N].
-        transient: how many times the limit a short impact may have; 0: none is allowed.
+        transient: factor on the limit for short impacts; 0: no impact is allowed.
     """
 
     stiffness: float
@@ -65,9 +65,9 @@ BODY_REGION_LIMITS: dict[str, BodyRegionLimits] = {
 """Regions of :data:`SOURCE`; for certification buy the standard. Limits are for adults; those of children are lower."""
 
 DAMPING = 0.3
-"""Share of critical damping of a touch: bodies part with 37 % of the speed at which they met (assumed)."""
+"""Damping ratio of a contact: bodies separate at 37 % of the impact speed (assumed)."""
 SHORTEST = 6.0
-"""A touch lasts at least so many steps, otherwise the solver could not follow it."""
+"""Minimum duration of a contact in engine steps, for a stable solution."""
 
 LIMB_REGIONS = {
     "pelvis": "pelvis",

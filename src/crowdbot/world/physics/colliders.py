@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import STAGE, Bodies, Element, InputError, Scene, Skins
 from crowdbot.world.robots.robot import Robot
 from crowdbot.world.urdf import Box, Capsule, Cylinder, Mesh, Sphere
-from crowdbot.world.urdf.transforms import frame, quaternion, turning
+from crowdbot.world.urdf.transforms import axis_rotation, frame, quaternion
 
 from .people_motion import PeopleMotion
 from .stage import PhysicsStage, PropBody
@@ -158,7 +158,7 @@ class _Found:
 def _standing(scene: Scene, agent: int, robot: Robot, joints: Mapping[str, ArrayLike]) -> Frames:
     """Return the frames of the links of a robot that stands on the floor."""
     x, y = scene.position[0, agent].tolist()
-    base = frame((x, y, robot.lift), turning((0.0, 0.0, 1.0), float(scene.heading[0, agent])))
+    base = frame((x, y, robot.lift), axis_rotation((0.0, 0.0, 1.0), float(scene.heading[0, agent])))
     poses = _posture(robot) if not joints else robot.model.poses({**robot.posture, **joints})
     return {link: base @ pose for link, pose in poses.items()}
 
@@ -199,7 +199,7 @@ def _of_prop(prop: PropBody, moved: Floats | None) -> list[tuple[str, Floats, Fl
     body = prop.body("prop")
     place = moved
     if place is None:
-        place = frame(_numbers(body, "pos"), turning((0.0, 0.0, 1.0), prop.heading))
+        place = frame(_numbers(body, "pos"), axis_rotation((0.0, 0.0, 1.0), prop.heading))
     found = []
     for geom in body.each("geom"):
         size = _numbers(geom, "size")

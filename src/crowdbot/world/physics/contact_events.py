@@ -1,4 +1,4 @@
-"""Collisions: touches that belong together, from the first to the last, with who hit whom and how hard."""
+"""Contact events in the physics world: start, end, cause, impact speed and forces."""
 
 from __future__ import annotations
 
@@ -22,25 +22,26 @@ __all__ = ["BodyContactEvent", "BodyContactTracker", "ContactForce"]
 
 Floats = NDArray[np.float64]
 CLAMPED = 0.5
-"""A limb that is pressed for so long [s] is clamped: from then on its force counts as quasi-static (ISO/TS 15066)."""
+"""Time under pressure [s] after which the force on a limb is quasi-static (ISO/TS 15066)."""
 WINDOW = 0.1
-"""Quasi-static forces are means over this time [s]; a limb that is free for longer is let go."""
+"""Averaging window of quasi-static forces [s]; a limb without contact for longer is released."""
 ANEW = 0.05
-"""A limb that was free for so long [s] is hit anew."""
+"""Time without contact [s] after which the next contact of a limb is a new impact."""
 PARTS = {limb.name: limb.region for limb in LIMBS}
 
 
 class ContactForce(NamedTuple):
-    """What two did to each other during one step of the world.
+    """Force between two bodies, averaged over one step of the world.
 
     Fields:
-        first, second: who; a robot comes before a prop, a prop before a person, a person before a wall.
-        first_part: the link of a robot.
-        limb, part: of the person: one of :data:`crowdbot.humans.LIMBS`, and ``head``, ``torso``, ``arm`` or ``leg``.
-        force: size of the mean over the step [N].
-        vector: ``[3]`` that mean [N], from the first on the second.
-        depth: largest overlap [m].
-        point: ``[3]`` where [m], the last.
+        first, second: the bodies, ordered robot, prop, person, wall.
+        first_part: link of the robot.
+        limb, part: limb of the person (:data:`crowdbot.humans.LIMBS`) and its part: ``head``, ``torso``, ``arm`` or
+            ``leg``.
+        force: magnitude of the mean force [N].
+        vector: mean force ``[3]`` of the first body on the second [N].
+        depth: maximum penetration [m].
+        point: last contact point ``[3]`` [m].
     """
 
     first: ContactBody
@@ -56,25 +57,27 @@ class ContactForce(NamedTuple):
 
 @dataclass(frozen=True)
 class BodyContactEvent:
-    """From the first touch of two until they have been apart for half a second.
+    """Contact of two bodies, from the first contact until they are separated for 0.5 s.
 
     Fields:
-        first, second: who.
-        begin, end: first and last touch [s].
-        cause: ``first``, ``second`` or ``mutual``: who closed in, see :func:`crowdbot.metrics.contacts.cause_of`.
-        impact_speed: closing speed along the normal at the first touch [m/s], of the surfaces there: a foot in its
-            stride comes at three to four times the speed of the person.
-        depth: deepest overlap [m].
+        first, second: the bodies.
+        begin, end: times of the first and last contact [s].
+        cause: the body that closed the distance: ``first``, ``second`` or ``mutual``; see
+            :func:`crowdbot.metrics.contacts.cause_of`.
+        impact_speed: closing speed of the surfaces along the normal at the first contact [m/s]. A swinging foot moves
+            at three to four times the speed of the person.
+        depth: maximum penetration [m].
         impulse: integral of the force [N s].
-        limb, part, region: of the person, what was hit hardest: the limb, one of ``head``, ``torso``, ``arm``, ``leg``,
-            and the region of ISO/TS 15066; empty without a person.
-        peak_force: of the hardest impact by the two-body model [N]; NaN without a person. What bears a limb from below
-            (somebody treads on it) is left out of this force and the next: people here cannot be lifted.
-        steady_force: largest mean over 0.1 s on one limb that has been pressed for 0.5 s without being free for 0.1 s
-            [N]; 0 when none was: repeated impacts are no clamping. Without a person over all that touches.
-        steady_region: where that was; empty without a person.
-        simulated_peak: largest force on one limb that the engine found in one of its steps [N]; it is there to be
-            compared and not an injury force.
+        limb, part, region: location of the hardest impact on the person: limb, part (``head``, ``torso``, ``arm`` or
+            ``leg``) and region of ISO/TS 15066; empty without a person.
+        peak_force: force of the hardest impact by the two-body model [N]; NaN without a person. This force and
+            ``steady_force`` exclude support from below (a person stepping on something), because bodies of people
+            cannot be lifted.
+        steady_force: largest mean force over 0.1 s on a limb that is under pressure for 0.5 s with no gap of 0.1 s [N];
+            0 without clamping. Without a person: on all parts together.
+        steady_region: region of ``steady_force``; empty without a person.
+        simulated_peak: largest force on one limb in one engine step [N], for comparison only. It is not an injury
+            force.
     """
 
     first: ContactBody
@@ -95,14 +98,14 @@ class BodyContactEvent:
 
     @property
     def duration(self) -> float:
-        """From the first to the last touch [s]."""
+        """Time from the first to the last contact [s]."""
         return self.end - self.begin
 
     @property
     def severity(self) -> float:
-        """Force over the limit of its region (ISO/TS 15066), the worse of impact and steady; NaN without a person.
+        """Ratio of force to limit of the region (ISO/TS 15066), maximum of impact and clamping; NaN without a person.
 
-        Infinite for an impact on skull or face, where none is allowed.
+        Infinite for an impact on skull or face, which the standard does not allow.
         """
         if not self.region:
             return math.nan
@@ -140,13 +143,13 @@ class _Running:
 
 
 class BodyContactTracker:
-    """Keeps collisions from touches.
+    """Groups the contacts of engine steps into contact events.
 
     Args:
-        step: of the engine [s].
-        mass_of: mass [kg] of a party, infinite for what stands fast.
-        limb_mass_of: mass [kg] of a limb of a person, with what hangs on it.
-        heading_of: heading [rad] of a person.
+        step: time step of the engine [s].
+        mass_of: returns the mass of a body [kg], infinite for a fixed one.
+        limb_mass_of: returns the mass of a limb of a person [kg], including the limbs attached to it.
+        heading_of: returns the heading of a person [rad].
     """
 
     def __init__(
@@ -161,12 +164,12 @@ class BodyContactTracker:
 
     @property
     def contact_events(self) -> tuple[BodyContactEvent, ...]:
-        """All so far, by first touch; those that are not over end with their last contact."""
+        """All contact events so far, by start time; open events end with their last contact."""
         now = [_closed(pair, running) for pair, running in self._running.items()]
         return tuple(sorted([*self._over, *now], key=lambda one: (one.begin, one.first, one.second)))
 
     def add(self, time: float, contacts: tuple[EngineContact, ...]) -> None:
-        """Take the touches of one step of the engine that ends at ``time`` [s]."""
+        """Add the contacts of the engine step that ends at ``time`` [s]."""
         if not contacts and not self._running:
             return
         pairs: dict[tuple[ContactBody, ContactBody], list[EngineContact]] = {}

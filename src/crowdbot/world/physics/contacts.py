@@ -1,4 +1,4 @@
-"""ContactReader: who presses on whom in one step of the engine, with which part, how hard and how deep."""
+"""Contacts of one engine step: bodies, parts, forces and penetration."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ WORDS = {ROBOT: "robot", PROP: "prop", PERSON: "person", WALL: "wall"}
 
 
 class ContactBody(NamedTuple):
-    """One side of a touch.
+    """One of the two bodies in a contact.
 
     Fields:
         kind: ``robot``, ``person``, ``prop`` or ``wall``.
-        number: of the agent, of the prop on the stage, or of the ring of the wall.
+        number: index of the agent, of the prop on the stage, or of the wall ring.
     """
 
     kind: str
@@ -32,17 +32,17 @@ class ContactBody(NamedTuple):
 
 
 class EngineContact(NamedTuple):
-    """Two that touch in one step of the engine; the first is a robot if one is, then a prop, then a person.
+    """Contact of two bodies in one engine step, ordered robot, prop, person, wall.
 
     Fields:
-        first, second: who.
-        first_part, second_part: link of a robot, limb of a person, otherwise empty.
-        force: ``[3]`` of the first on the second, along the normals of the surfaces [N].
-        depth: how far they overlap [m].
-        normal: ``[3]`` from the first to the second, mean of the points.
-        point: ``[3]`` where they touch [m].
-        first_velocity, second_velocity: ``[3]`` of the surfaces there, before this step [m/s].
-        swing: ``[3]`` what of the person's velocity is the limb's against the body; 0 without a person.
+        first, second: the bodies.
+        first_part, second_part: link of a robot or limb of a person, otherwise empty.
+        force: normal force ``[3]`` of the first body on the second [N].
+        depth: penetration [m].
+        normal: mean contact normal ``[3]`` from the first body to the second.
+        point: contact point ``[3]`` [m].
+        first_velocity, second_velocity: velocities ``[3]`` of the surfaces at the point before this step [m/s].
+        swing: velocity ``[3]`` of the limb relative to its person [m/s]; 0 without a person.
     """
 
     first: ContactBody

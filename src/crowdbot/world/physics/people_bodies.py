@@ -1,8 +1,8 @@
-"""People with bodies: who comes near something that moves takes a body in the engine, can be pushed, and yields.
+"""Bodies of people near robots and movable props.
 
-Of a crowd of hundreds only a few can touch anything in the next step, so the engine knows a fixed number of bodies.
-A body follows the way that the crowd model gives, exactly as long as nothing touches it. A push changes its velocity
-by its mass; the person then steps back into the own way with no more force than people brace themselves with.
+Only a few people of a crowd can come into contact in the next step, therefore the engine has a fixed number of bodies.
+A body follows the crowd model exactly until contact. A push changes its velocity according to its mass; the person then
+returns to the path of the crowd model with limited force.
 """
 
 from __future__ import annotations
@@ -24,38 +24,38 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 BRACE = 100.0
-"""Force [N] with which people hold against a push at most (assumed: an eighth of the weight of an adult)."""
+"""Largest force [N] with which a person resists a push (assumed: one eighth of the weight of an adult)."""
 REACTION = 0.1
-"""So long [s] after the first touch people begin to hold against it, and they make up for a changed velocity in about
-this time, as far as the force allows (assumed)."""
+"""Delay [s] between the first contact and resistance, and time constant of the velocity correction, which
+:data:`BRACE` limits (assumed)."""
 HOLD = 0.05
-"""So long [s] after a touch the limbs stay as they are, against the body."""
+"""Time [s] after a contact for which limbs keep their pose relative to the body."""
 RETURN = 1.5
-"""Then they go back into the walk at this speed [m/s]."""
+"""Speed [m/s] at which they then return to the gait."""
 QUICK = 5.0
-"""No limb moves faster [m/s] against the body (assumed: feet in their stride reach 4 to 5 m/s over the floor). A walk
-whose direction jumps, as models of crowds let it, would swing a foot at twice that."""
+"""Largest speed [m/s] of a limb relative to the body (assumed: swinging feet reach 4 to 5 m/s over the floor). Without
+it, a sudden change of direction by the crowd model would swing a foot at twice that speed."""
 TREAD, LIFTED = 0.5, 0.5
-"""An arm or leg that something presses upwards, by at least this share of the force, is lifted by it at once, by up to
-so much [m]: these bodies glide, and would otherwise press it down as if held from above."""
+"""An arm or leg is raised immediately, by up to ``LIFTED`` [m], if at least the share ``TREAD`` of the contact force
+points upwards. Bodies cannot rise and would otherwise press the limb down."""
 GIVE, GIVEN = 1.0, 0.3
-"""An arm or leg that is pressed by more than :data:`BRACE`, in the mean over about the reaction, gives way against the
-body: at most so fast [m/s] and so far [m]. Single knocks do not move it, or a robot would knock its way through."""
+"""Largest speed [m/s] and distance [m] by which an arm or leg yields relative to the body when the mean force over
+about :data:`REACTION` exceeds :data:`BRACE`. Single impacts do not move it."""
 CHAINS = {name: chain for chain in (("thigh", "shank", "foot"), ("upperarm", "forearm", "hand")) for name in chain}
 REGIONS = {ahead: tuple(region_of(name, ahead) for name in LIMB_NAMES) for ahead in (True, False)}
 
 
 class PeopleBodies:
-    """The bodies of the engine and who has them.
+    """Pool of bodies in the engine, assigned to nearby people.
 
     Args:
-        model, data: of the engine.
-        slots: how many bodies there are.
-        step: of the engine [s].
+        model, data: model and data of the engine.
+        slots: number of bodies S.
+        step: time step of the engine [s].
 
     Attributes:
-        agent: ``[S]`` who has each body, -1 for nobody.
-        pushed: ``[S]`` whether something has moved it off its way during this step of the world.
+        agent: ``[S]`` agent of each body, -1 for a free one.
+        pushed: ``[S]`` whether a contact displaced the body during this step of the world.
     """
 
     def __init__(self, model: Any, data: Any, slots: int, step: float) -> None:

@@ -1,4 +1,4 @@
-"""The body of a robot in the engine: commands go to its motors, its pose and twist are read."""
+"""Body of a robot in the engine: motor commands, pose and twist."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ STILL = Twist()
 
 
 class RobotBody:
-    """One robot in the engine.
+    """A robot in the engine.
 
     Args:
-        model, data: of the engine.
-        robot: what it is.
-        prefix: of its names.
-        step: of the engine [s].
+        model, data: model and data of the engine.
+        robot: description of the robot.
+        prefix: prefix of its names in the engine.
+        step: time step of the engine [s].
 
     Attributes:
-        robot: what it is.
-        body: index of its root.
+        robot: description of the robot.
+        body: index of the root link in the engine.
     """
 
     def __init__(self, model: Any, data: Any, robot: Robot, prefix: str, step: float) -> None:
@@ -99,12 +99,12 @@ class RobotBody:
         data.qvel[joint.dofadr[0] : joint.dofadr[0] + 6] = 0.0
 
     def ask(self, command: Twist | Twists) -> None:
-        """Take the command of a step of the world."""
+        """Set the command for the next step of the world."""
         self._asked = command
         self._forced = None
 
     def drive(self) -> None:
-        """Send to the motors what holds for the next step of the engine: delayed, within the limits, ramped."""
+        """Send the command for the next engine step to the motors, after delay, limits and ramps."""
         now = self._asked
         if self.robot.latency > 0.0:
             self._pending, now = self._delay.step(self._pending, self._current, self._asked, self.step)
@@ -178,10 +178,10 @@ class RobotBody:
         return dict(zip(self.robot.model.links, found, strict=True))
 
     def sensor_pose(self, sensor: str) -> SpatialPose:
-        """Return where a sensor of the robot is now, with its joints as they are, E = 1.
+        """Return the current pose of a sensor, including joint positions and tilt, E = 1.
 
         Raises:
-            InputError: it has no sensor of this name.
+            InputError: the robot has no sensor of this name.
         """
         mount = self.robot.mount(sensor)
         return spatial(self.frame(mount.link) @ mount.origin)

@@ -1,4 +1,4 @@
-"""A world with bodies: robots on their wheels, people who can be pushed, and forces between them."""
+"""World with rigid bodies and contact forces, simulated by MuJoCo."""
 
 from __future__ import annotations
 
@@ -41,44 +41,45 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 NEAR = 0.8
-"""Who comes so near [m] to a robot or to something that can be pushed, clear of its outline, takes a body."""
+"""A person within this clearance [m] of a robot or a movable prop gets a body in the engine."""
 FAST = 3.0
-"""Nobody comes nearer than by this speed [m/s] in a step."""
+"""Largest assumed closing speed [m/s] within one step."""
 SETTLING = 1.0
-"""Robots stand so long [s] on the floor before the beginning."""
+"""Time [s] for which robots settle on the floor before the start."""
 
 
 class PhysicsWorld(PlanarWorld):
-    """Robots, people, walls and props with bodies, in the engine MuJoCo; E = 1.
+    """Planar crowd with rigid bodies for robots, nearby people, walls and props (MuJoCo); E = 1.
 
-    The crowd is that of :class:`PlanarWorld`, all its options included, and without a touch it walks the same way to
-    the last bit. Robots are driven: commands pass latency, limits and ramps of their drive to motors that turn wheels
-    on a floor, or pull the base. People near a robot, or near something that can be pushed, have bodies of 17 limbs
-    that walk; a push moves them off their way, and their crowd model goes on from where they are then.
+    The crowd supports all options of :class:`PlanarWorld` and is bit-identical to it until the first contact. Commands
+    of a robot pass its latency and the limits and ramps of its drive; motors then turn its wheels or pull its base.
+    People near a robot or a movable prop have walking bodies of 17 limbs. A push displaces them, and the crowd model
+    continues from the new position.
 
     Args:
-        scene: at the beginning; robots are agents with ``external=True``.
-        model: how people walk.
-        robots: by agent index.
+        scene: initial scene; robots are agents with ``external=True``.
+        model: crowd model.
+        robots: robots by agent index.
         dt: time step [s], a whole number of ``physics_dt``.
-        seed: of the crowd's randomness, of bodies and of ways to walk.
-        stage: height of walls, floor, props and lights. The crowd walks around props that stand fast.
-        people: bodies of all agents that are no robots, then of riders; None draws adults.
-        riders: agents that are robots ``wheelchair`` in which somebody sits. Riders are seen; they weigh nothing, and
-            nothing touches them.
-        physics_dt: step of the engine [s].
-        slots: how many people can have a body at a time; None: 24, or as many as there are people.
-        motors: how joints of robots are commanded, by agent and joint: ``position``, ``velocity``, ``effort``.
-        planar: every other argument of :class:`PlanarWorld`, by name.
+        seed: seed of the crowd, of body shapes and of gaits.
+        stage: wall height, floor, props and lights. The crowd avoids fixed props.
+        people: bodies of all agents except robots, followed by riders; None samples adults.
+        riders: agents of type ``wheelchair`` with a rider. Riders are visible to sensors, but have neither mass nor
+            contacts.
+        physics_dt: time step of the engine [s].
+        slots: number of people that can have a body at the same time (default: 24, or the number of people if smaller).
+        motors: command type of robot joints by agent and joint: ``position``, ``velocity`` or ``effort``.
+        planar: other arguments of :class:`PlanarWorld`.
 
     Attributes:
-        chassis: the robots by agent: ``pose``, ``twist``, ``tilt``, ``joints()``, ``frame(link)``, ``command(joints)``.
-        forces: of the last step, see :class:`ContactForce`.
-        contacts: robots and other agents whose bodies touched during the last step; the clearance is how deep, below 0.
-        left_out: how many people were near something in the last step but got no body, because all were taken.
+        robot_bodies: :class:`RobotBody` by agent, with ``pose``, ``twist``, ``tilt``, ``joints()``, ``frame(link)`` and
+            ``command(joints)``.
+        forces: contact forces of the last step, see :class:`ContactForce`.
+        contacts: pairs of a robot and another agent in contact during the last step; their clearance is negative.
+        skipped_people: people who needed a body in the last step when all slots were in use.
 
     Raises:
-        InputError: a robot is no external agent or is absent; steps do not fit; there is more than one environment.
+        InputError: a robot is absent or not external, ``dt`` is not a multiple of ``physics_dt``, or E > 1.
         MissingExtra: mujoco is not installed.
 
     >>> from crowdbot.core import Twist
@@ -252,7 +253,7 @@ class PhysicsWorld(PlanarWorld):
         return party.kind == "wall" or (party.kind == "prop" and not self.stage.props[party.number].movable)
 
     def _after_latency(self, robot: int, command: Twists) -> Twists:
-        return command  # the body of the robot delays it, by steps of the engine
+        return command  # RobotBody applies the delay, in engine steps
 
     def _compose(self, robots: Mapping[int, Robot], slots: int, motors: Any) -> None:
         self._mj = engine()
@@ -336,7 +337,7 @@ class PhysicsWorld(PlanarWorld):
         return gait, ends
 
     def _embody(self, scene: Scene) -> None:
-        """Give bodies to those who may touch something in this step, the nearest first."""
+        """Assign bodies to people who may come into contact in this step, nearest first."""
         persons = self.people.afoot
         persons = persons[scene.active[0, persons]]
         near, mass, ahead = people_near(scene, persons, self._movers(), NEAR + FAST * self.dt)

@@ -1,4 +1,4 @@
-"""Robot: a folder with a URDF and one small file: how it drives, what it senses with and what room it takes."""
+"""Robot: URDF model with drive, sensors and footprint, loaded from a folder."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import InputError, Pose, RobotError, SpatialPose, Twist, did_you_mean
 from crowdbot.world.urdf import Cylinder, Link, LinkInertia, LinkShape, RobotModel
-from crowdbot.world.urdf.transforms import frame, quaternion, turning
+from crowdbot.world.urdf.transforms import axis_rotation, frame, quaternion
 
 from .drive import Drive
 from .mount import SensorMount
@@ -26,27 +26,27 @@ __all__ = ["Robot", "builtin_robots", "spatial"]
 
 Floats = NDArray[np.float64]
 SUNK = 2e-3
-"""Robots that reach deeper [m] below their root than this do not have it on the ground."""
+"""Depth [m] of colliders below the root above which the root is not on the ground."""
 CLEAR = 0.01
-"""Height [m] above the floor of a robot of which only the size is known: it does not rub."""
+"""Ground clearance [m] of a robot made by :meth:`Robot.disc`, which avoids friction."""
 
 
 @dataclass(frozen=True, eq=False)
 class Robot:
-    """A robot that can be put into a world.
+    """A robot for a world.
 
     Fields:
-        name: of the robot.
-        model: its links and joints; the root is on the ground below its centre, x forward.
-        drive: how its base follows commands, with its limits of speed and acceleration.
-        latency: between a command and the wheels [s], see :class:`CommandDelay`.
-        base: what physics moves: ``wheels`` (motors turn them) or ``planar`` (the base itself is pulled, for wheels
-            that roll in all directions).
-        footprint: corners ``[N, 2]`` [m] of the room it takes on the ground, counter-clockwise.
-        mounts: its sensors.
-        wheels: that motors turn or steer.
-        posture: positions of joints [rad, m] while it drives; those left out are at 0.
-        about: one line for people.
+        name: name of the robot.
+        model: links and joints; the root is on the ground below the centre, x forward.
+        drive: motion model of the base with limits of speed and acceleration.
+        latency: delay between a command and the wheels [s], see :class:`CommandDelay`.
+        base: actuation in the physics world: ``wheels`` (motors turn the wheels) or ``planar`` (the base is pulled, for
+            omnidirectional wheels).
+        footprint: corners of the outline on the ground ``[N, 2]`` [m], counter-clockwise.
+        mounts: sensors.
+        wheels: driven and steered wheels.
+        posture: joint positions while driving [rad, m]; 0 for joints left out.
+        about: description, one line.
 
     >>> robot = Robot.load("turtlebot2")
     >>> robot.drive.max_speed, round(robot.radius, 3), [mount.name for mount in robot.mounts][:3]
@@ -97,12 +97,12 @@ class Robot:
         """Read a robot.
 
         Args:
-            source: a built-in name, the folder of a robot, or its ``robot.xml``; a folder of that name in the working
-                folder comes first.
-            trust: whether code from outside the folder may be loaded, when the file names sensors or drives by address.
+            source: a built-in name, the folder of a robot, or its ``robot.xml``; a folder in the working directory
+                takes precedence over a built-in name.
+            trust: whether sensors and drives named by address may be loaded from outside the folder.
 
         Raises:
-            RobotError: there is no such robot, or with everything that is wrong with it, a sentence each.
+            RobotError: the robot does not exist or has errors; one sentence per error.
         """
         folder = _folder(source)
         values = read_robot_file(folder, trust=trust)
@@ -113,13 +113,13 @@ class Robot:
 
     @classmethod
     def disc(cls, name: str, drive: Drive, radius: float, *, height: float = 1.0, mass: float = 50.0) -> Robot:
-        """Return a robot of which only the size is known: an upright cylinder that is pulled along the floor.
+        """Return a robot with the shape of an upright cylinder, whose base is pulled along the floor.
 
         Args:
-            name: of the robot.
-            drive: how it follows commands.
-            radius, height: [m].
-            mass: [kg].
+            name: name of the robot.
+            drive: motion model of the base.
+            radius, height: size of the cylinder [m].
+            mass: mass [kg].
 
         Raises:
             InputError: a size or the mass is not finite and above 0.
@@ -170,7 +170,7 @@ class Robot:
         )
 
     def sensor_frame(self, name: str, positions: Mapping[str, float] | None = None) -> Floats:
-        """Return the frame ``[4, 4]`` of a sensor in the robot's frame: in its posture, or with joints elsewhere."""
+        """Return the frame ``[4, 4]`` of a sensor in the robot frame, in its posture or at other joint positions."""
         mount = self.mount(name)
         return np.asarray(self.model.poses({**self.posture, **(positions or {})})[mount.link] @ mount.origin)
 
@@ -191,7 +191,7 @@ class Robot:
         [[0.484, 0.0, 0.364]]
         """
         seat = self.sensor_frame(name, positions)
-        found = [spatial(frame((x, y, self.lift), turning((0.0, 0.0, 1.0), a)) @ seat) for (x, y), a in zip(
+        found = [spatial(frame((x, y, self.lift), axis_rotation((0.0, 0.0, 1.0), a)) @ seat) for (x, y), a in zip(
             pose.position.tolist(), pose.heading.tolist(), strict=True)]  # fmt: skip
         return SpatialPose(
             np.concatenate([one.position for one in found]), np.concatenate([one.rotation for one in found])

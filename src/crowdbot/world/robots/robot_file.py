@@ -57,7 +57,7 @@ def read_robot_file(folder: Path, *, trust: bool = False) -> dict[str, Any]:
     root = parse_xml(read_bytes(path, "robot", RobotError), str(path), what="robot", root="robot", refusal=RobotError)
     reader = _Reader(str(path), folder, trust)
     if root.tag != "robot":
-        raise RobotError(f"{path}:{root.line}: the root element is <{root.tag[:40]}>, it must be <robot>")
+        raise RobotError(f"{path}:{root.line}: the root element is <{root.tag[:40]}>, expected <robot>")
     values = reader.robot(root)
     reader.finish()
     return values
@@ -88,7 +88,7 @@ class _Reader:
             self.tag(inner, ("drive", "footprint", *parts))
             if inner.tag in ("drive", "footprint"):
                 if inner.tag in once:
-                    self.say(inner, "stands in <robot> twice; one is allowed")
+                    self.say(inner, "occurs more than once in <robot>; at most one is allowed")
                 once.add(inner.tag)
                 values |= self.drive(inner) if inner.tag == "drive" else self.footprint(inner)
             elif inner.tag in parts:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Element, InputError, RobotError, did_you_mean, parse_number
+from crowdbot.core import Element, InputError, RobotError, parse_number
 
 from .folders import Folders
 from .meshes import read_mesh, with_pieces
@@ -66,15 +66,10 @@ class UrdfReader:
         if sentences:
             raise RobotError(*sentences)
 
-    @staticmethod
-    def meant(word: str, known: Iterable[str]) -> str:
-        """Return ``, did you mean 'x'?`` when a name is near."""
-        return did_you_mean(word, known)
-
     def new(self, element: Element, name: str, known: Iterable[str]) -> bool:
         """Return whether a name is new; say so when it is not."""
         if name in known:
-            self.say(element, "has a name that another one has already; names must differ")
+            self.say(element, "has a name that is already in use; names must be unique")
             return False
         return True
 
@@ -82,7 +77,7 @@ class UrdfReader:
         """Return the child of this name, None when there is none; say so when there are more."""
         found = element.each(tag)
         if len(found) > 1:
-            self.say(found[1], f"stands in <{element.tag}> twice; one is allowed")
+            self.say(found[1], f"occurs more than once in <{element.tag}>; at most one is allowed")
         return found[0] if found else None
 
     def value(self, element: Element, key: str, default: float | None = None, least: float = -np.inf) -> float | None:
@@ -100,7 +95,7 @@ class UrdfReader:
             return default
         return found
 
-    def needed(self, element: Element, key: str, least: float = -np.inf) -> float | None:
+    def required_value(self, element: Element, key: str, least: float = -np.inf) -> float | None:
         """Return a number that must be there, None when it is wrong or missing."""
         if key not in element.attributes:
             self.say(element, f"needs the attribute {key!r}, a number")

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from .model import LinkInertia, LinkShape
 from .shapes import Box, Solid, Sphere, together
-from .transforms import frame, turned
+from .transforms import frame, transform_points
 
 __all__ = ["DENSITY", "default_inertia", "find_inertia_problems", "repair_inertia", "solid_of", "unphysical"]
 
@@ -104,7 +104,7 @@ def find_inertia_problems(inertial: LinkInertia, shapes: Sequence[LinkShape]) ->
     """Return the end of a sentence when an inertia belongs to a body several times the size of the shapes."""
     if not shapes:
         return ""
-    points = np.concatenate([turned(part.origin, part.shape.points()) for part in shapes])
+    points = np.concatenate([transform_points(part.origin, part.shape.points()) for part in shapes])
     there = float(np.linalg.norm(np.ptp(points, axis=0)))
     needed = float(np.linalg.norm(_sides(inertial.mass, np.asarray(np.linalg.eigvalsh(inertial.tensor)))))
     if needed <= TOO_LARGE * there:

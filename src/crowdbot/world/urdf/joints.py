@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from crowdbot.core import Element
+from crowdbot.core import Element, did_you_mean
 
 from .elements import UrdfReader
 from .model import JOINT_KINDS, Joint, Mimic, Motor
@@ -21,7 +21,7 @@ def read_joint(reader: UrdfReader, element: Element) -> Joint | None:
     if not name:
         reader.say(element, "needs the attribute 'name'")
     if kind not in JOINT_KINDS:
-        reader.say(element, f"type={kind[:40]!r} must be {', '.join(JOINT_KINDS)}{reader.meant(kind, JOINT_KINDS)}")
+        reader.say(element, f"type={kind[:40]!r} must be {', '.join(JOINT_KINDS)}{did_you_mean(kind, JOINT_KINDS)}")
         return None
     parent, child = _link(reader, element, "parent"), _link(reader, element, "child")
     if parent and parent == child:
@@ -86,7 +86,7 @@ def _limits(reader: UrdfReader, element: Element, name: str, kind: str) -> tuple
     if lower > upper:
         reader.say(inner, f"lower = {lower:g} lies above upper = {upper:g}")
     elif lower == upper:
-        reader.remark("noted", element, f"has the limits {lower:g} to {upper:g}, which leave it no way to move")
+        reader.remark("noted", element, f"has the limits {lower:g} to {upper:g}, which allow no motion")
     return lower, upper, motor
 
 

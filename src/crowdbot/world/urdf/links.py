@@ -90,7 +90,7 @@ def _shape(reader: UrdfReader, geometry: Element, touching: bool) -> Shape | str
 
 
 def _length(reader: UrdfReader, element: Element, key: str) -> float | None:
-    found = reader.needed(element, key)
+    found = reader.required_value(element, key)
     if found is not None and found <= 0.0:
         reader.say(element, f'{key}="{element.attributes[key][:40]}" must be above 0')
         return None
@@ -104,7 +104,7 @@ def _inertial(reader: UrdfReader, element: Element) -> tuple[float | None, Float
         return None, None, None
     origin = reader.origin(inner)
     weight = reader.one(inner, "mass")
-    mass = reader.needed(weight, "value", 0.0) if weight is not None else 0.0
+    mass = reader.required_value(weight, "value", 0.0) if weight is not None else 0.0
     moments = reader.one(inner, "inertia")
     if moments is None:
         return mass, origin[:3, 3], None

@@ -20,7 +20,7 @@ from crowdbot.core import Element, InputError, did_you_mean, format_xml, import_
 from .geoms import Geoms, row
 from .inertia import unphysical
 from .model import Joint, RobotModel
-from .transforms import across, frame, quaternion, turning
+from .transforms import across, axis_rotation, frame, quaternion
 
 __all__ = ["BASES", "BaseServo", "Mjcf", "mjcf"]
 
@@ -125,7 +125,7 @@ def mjcf(
         raise InputError(f"base = {base!r} must be {', '.join(BASES)}{did_you_mean(base, BASES)}")
     kinds = _motor_kinds(model, motors or {})
     build = _Build(model, base, prefix, Geoms(model, prefix, contact), [])
-    body = _body(build, model.root, frame(place, turning((0.0, 0.0, 1.0), heading)))
+    body = _body(build, model.root, frame(place, axis_rotation((0.0, 0.0, 1.0), heading)))
     root = Element("mujoco", {"model": f"{prefix}{model.name}"})
     root.children.append(
         Element(

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import InputError, did_you_mean
 
 from .shapes import Shape
-from .transforms import across, frame, from_quaternion, turned, turning
+from .transforms import across, axis_rotation, frame, from_quaternion, transform_points
 
 __all__ = ["JOINT_KINDS", "Joint", "Link", "LinkInertia", "LinkShape", "Mimic", "Motor", "Remark", "RobotModel"]
 
@@ -133,10 +133,10 @@ class Joint:
         if self.kind == "prismatic":
             return frame(values[0] * self.axis)
         if self.kind == "planar":
-            return frame(across(self.axis)[:, :2] @ values[:2], turning(self.axis, float(values[2])))
+            return frame(across(self.axis)[:, :2] @ values[:2], axis_rotation(self.axis, float(values[2])))
         if self.kind == "floating":
             return frame(values[:3], from_quaternion(values[3:]))
-        return np.eye(4) if self.kind == "fixed" else frame(rotation=turning(self.axis, float(values[0])))
+        return np.eye(4) if self.kind == "fixed" else frame(rotation=axis_rotation(self.axis, float(values[0])))
 
     def rest_position(self) -> Floats:
         """Return the position ``[size]`` in which the child's frame lies on the joint's frame."""
@@ -246,7 +246,7 @@ class RobotModel:
         """Return points ``[N, 3]`` [m] in the root's frame whose hull holds all colliders; ``[0, 3]`` without any."""
         poses = self.poses(positions)
         rows = [
-            turned(poses[name] @ part.origin, part.shape.points())
+            transform_points(poses[name] @ part.origin, part.shape.points())
             for name, link in self.links.items()
             for part in link.collisions
         ]
@@ -267,7 +267,7 @@ def _joined(bodies: list[tuple[LinkInertia, Floats]]) -> LinkInertia:
     mass = sum(inertial.mass for inertial, _ in bodies)
     if mass <= 0.0:
         return LinkInertia(0.0, np.zeros(3), np.zeros((3, 3)))
-    places = [turned(matrix, inertial.center[None])[0] for inertial, matrix in bodies]
+    places = [transform_points(matrix, inertial.center[None])[0] for inertial, matrix in bodies]
     center = sum((b.mass * place for (b, _), place in zip(bodies, places, strict=True)), np.zeros(3)) / mass
     tensor = np.zeros((3, 3))
     for (inertial, matrix), place in zip(bodies, places, strict=True):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from crowdbot.core import Element, InputError, RobotError, parse_xml, read_bytes
+from crowdbot.core import Element, InputError, RobotError, did_you_mean, parse_xml, read_bytes
 
 from .elements import UrdfReader
 from .folders import Folders, robot_folder
@@ -50,8 +50,8 @@ def read_urdf(
 
     >>> read_urdf("<robot name='r'><link name='a'/><link name='b'/></robot>")
     Traceback (most recent call last):
-    crowdbot.core.errors.RobotError: urdf:1: <robot> the links 'a' and 'b' are both the root: no joint has them as its \
-child; exactly one link must be
+    crowdbot.core.errors.RobotError: urdf:1: <robot> the links 'a' and 'b' are both the root: no joint has them as a \
+child; exactly one link must be the root
     """
     if colliders not in ("auto", "hull", "pieces"):
         raise InputError(f"colliders = {colliders!r} must be auto, hull or pieces")
@@ -75,7 +75,7 @@ def _check_kind(reader: UrdfReader, root: Element) -> None:
             f" xacro {Path(reader.place).name} > robot.urdf"
         )
     if root.tag != "robot":
-        raise RobotError(f"{reader.place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <robot>")
+        raise RobotError(f"{reader.place}:{root.line}: the root element is <{root.tag[:40]}>, expected <robot>")
 
 
 def _xacro_line(root: Element) -> int | None:
@@ -97,7 +97,9 @@ def _robot(reader: UrdfReader, root: Element) -> RobotModel:
     joints: dict[str, Joint] = {}
     lines: dict[str, int] = {}
     if len(root.each("link")) > MOST_LINKS:
-        raise RobotError(f"{reader.place}:{root.line}: more than {MOST_LINKS} links, which no robot needs")
+        raise RobotError(
+            f"{reader.place}:{root.line}: more than {MOST_LINKS} links, the maximum"
+        )
     for element in root.each("link"):
         link = read_link(reader, element)
         if link is not None and reader.new(element, link.name, links):
@@ -128,10 +130,10 @@ def _check_tree(
         at = Element("joint", {"name": joint.name}, line=lines[joint.name])
         for role, name in (("parent", joint.parent), ("child", joint.child)):
             if name not in links:
-                reader.say(at, f"has the {role} {name!r}, which is no link{reader.meant(name, links)}")
+                reader.say(at, f"has the {role} {name!r}, which is no link{did_you_mean(name, links)}")
         if joint.child in above:
             other = above[joint.child].name
-            reader.say(at, f"moves the link {joint.child!r}, which {other!r} moves already: the links form a loop")
+            reader.say(at, f"moves the link {joint.child!r}, which {other!r} already moves: the links form a loop")
         above[joint.child] = joint
     if reader.found:
         return
@@ -139,7 +141,7 @@ def _check_tree(
     if len(roots) > 1:
         both = " and ".join(repr(name) for name in roots[:2])
         which = f"the links {both} are both" if len(roots) == 2 else f"{len(roots)} links, {both} among them, are each"
-        reader.say(root, f"{which} the root: no joint has them as its child; exactly one link must be")
+        reader.say(root, f"{which} the root: no joint has them as a child; exactly one link must be the root")
     reached: set[str] = set(roots)
     for name in links:
         chain: dict[str, None] = {}
@@ -161,10 +163,10 @@ def _check_mimics(reader: UrdfReader, joints: dict[str, Joint], lines: dict[str,
         while leader.mimic:
             name = leader.mimic.joint
             if name not in joints:
-                reader.say(at, f"mimics {name!r}, which is no joint{reader.meant(name, joints)}")
+                reader.say(at, f"mimics {name!r}, which is no joint{did_you_mean(name, joints)}")
                 break
             if name in seen:
-                reader.say(at, f"mimics itself by way of {name!r}")
+                reader.say(at, f"mimics itself through {name!r}")
                 break
             leader = joints[name]
             seen.add(name)

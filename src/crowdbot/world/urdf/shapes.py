@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .transforms import turned
+from .transforms import transform_points
 
 __all__ = ["Box", "Capsule", "ConvexPiece", "Cylinder", "Mesh", "Shape", "Solid", "Sphere", "together"]
 
@@ -42,7 +42,7 @@ def together(parts: Sequence[tuple[Solid, Floats]]) -> Solid | None:
     volume = sum(solid.volume for solid, _ in parts)
     if volume <= 0.0:
         return None
-    centers = [turned(matrix, solid.center[None])[0] for solid, matrix in parts]
+    centers = [transform_points(matrix, solid.center[None])[0] for solid, matrix in parts]
     center = sum((s.volume * c for (s, _), c in zip(parts, centers, strict=True)), np.zeros(3)) / volume
     moments = np.zeros((3, 3))
     for (solid, matrix), place in zip(parts, centers, strict=True):

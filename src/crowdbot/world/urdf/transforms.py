@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["across", "frame", "from_quaternion", "quaternion", "roll_pitch_yaw", "turned", "turning"]
+__all__ = ["across", "axis_rotation", "frame", "from_quaternion", "quaternion", "roll_pitch_yaw", "transform_points"]
 
 Floats = NDArray[np.float64]
 
@@ -41,10 +41,10 @@ def frame(place: ArrayLike = (0.0, 0.0, 0.0), rotation: Floats | None = None) ->
     return matrix
 
 
-def turning(axis: ArrayLike, angle: float) -> Floats:
+def axis_rotation(axis: ArrayLike, angle: float) -> Floats:
     """Return the rotation ``[3, 3]`` by ``angle`` [rad] about a unit ``axis`` ``[3]`` (Rodrigues).
 
-    >>> turning((0.0, 0.0, 1.0), math.pi).round(3).tolist()
+    >>> axis_rotation((0.0, 0.0, 1.0), math.pi).round(3).tolist()
     [[-1.0, -0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]]
     """
     x, y, z = np.asarray(axis, dtype=np.float64)
@@ -52,7 +52,7 @@ def turning(axis: ArrayLike, angle: float) -> Floats:
     return np.asarray(np.eye(3) + math.sin(angle) * skew + (1.0 - math.cos(angle)) * (skew @ skew))
 
 
-def turned(matrix: Floats, points: Floats) -> Floats:
+def transform_points(matrix: Floats, points: Floats) -> Floats:
     """Return points ``[N, 3]`` of a frame ``[4, 4]`` in its parent."""
     return np.asarray(points @ matrix[:3, :3].T + matrix[:3, 3])
 
@@ -69,7 +69,7 @@ def across(axis: ArrayLike) -> Floats:
     length = float(np.linalg.norm(side))
     if length < 1e-12:
         return np.diag([1.0, 1.0, 1.0] if target[2] > 0.0 else [1.0, -1.0, -1.0])
-    return turning(side / length, math.atan2(length, float(target[2])))
+    return axis_rotation(side / length, math.atan2(length, float(target[2])))
 
 
 def quaternion(rotation: Floats) -> Floats:
