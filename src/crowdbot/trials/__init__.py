@@ -8,7 +8,7 @@ from .distribution import Distribution
 from .fields import UNWRITABLE, attribute, check, children, element_word, outline, quote_value
 from .files.code_references import code_references, is_code
 from .files.stage_maps import is_area_file, map_files
-from .files.trial_files import resolve_file
+from .files.trial_files import relative_name, resolve_file
 from .importers.original import Imported, import_original, plan_of, trials_of
 from .importers.original_order import Plan
 from .importers.recording import recorded_trial
@@ -120,6 +120,7 @@ __all__ = [
     "read_trial_bytes",
     "readable",
     "recorded_trial",
+    "relative_name",
     "resolve_file",
     "schema",
     "told",

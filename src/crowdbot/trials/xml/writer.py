@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-import os
 import sys
 from pathlib import Path
 from typing import Any
 
 from crowdbot.core import Element, InputError, builtin_classes, builtin_name, format_xml
 from crowdbot.trials.fields import FieldSpec, outline
+from crowdbot.trials.files.trial_files import relative_name
 from crowdbot.trials.notation import plain
 from crowdbot.trials.randomized_model import RandomizedModel
 
@@ -92,8 +92,7 @@ def _type(part: FieldSpec, value: Any, folder: Path | None) -> str:
     module = sys.modules[cls.__module__]
     if cls.__module__.startswith("crowdbot_plug_") and module.__file__:
         file = Path(module.__file__)
-        place = file.name if folder is None else Path(os.path.relpath(file, folder.resolve())).as_posix()
-        return f"{place}:{cls.__qualname__}"
+        return f"{relative_name(file, folder)}:{cls.__qualname__}"
     if "<locals>" in cls.__qualname__ or cls.__module__ == "__main__":
         raise InputError(f"{cls.__name__} cannot be named in a trial file: move it to a module or a file of its own")
     return f"{cls.__module__}:{cls.__qualname__}"
