@@ -68,7 +68,7 @@ def _people(
     skin, faces, worn, colors = (
         gait.skin(state, level),
         people.faces(level),
-        people.worn(level),
+        people.clothing_mask(level),
         people.face_colors(level),
     )
     each = [

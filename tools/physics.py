@@ -80,14 +80,14 @@ def rays(folder: Path) -> None:
     """Draw what a laser of a robot meets among limbs, from above, and where one LiDAR meets the world, in space."""
     world = crowd(Robot.load("qolo"), 28)
     robot = max(world.robot_bodies)
-    robot_bodies, seen = world.robot_body(robot), world.body_scene()
+    robot_body, seen = world.robot_body(robot), world.body_scene()
     figure = Figure(figsize=(12, 5.2), layout="constrained")
     left, right = figure.subplots(1, 2)
-    scan = robot_bodies.robot.mount("lidar_front").sensor.read(
-        seen.without(robot), robot_bodies.mounted("lidar_front"), stream(0, "scan")
+    scan = robot_body.robot.mount("lidar_front").sensor.read(
+        seen.without(robot), robot_body.sensor_pose("lidar_front"), stream(0, "scan")
     )
     ends, hit = scan.points()[0], scan.hit[0]
-    start = robot_bodies.mounted("lidar_front").position[0]
+    start = robot_body.sensor_pose("lidar_front").position[0]
     for end in ends[np.isfinite(ends[:, 0]) & (np.hypot(*(ends - start).T[:2]) < 9.0)]:
         left.plot([start[0], end[0]], [start[1], end[1]], color="0.85", linewidth=0.6, zorder=1)
     limbs = world.limbs()
@@ -103,8 +103,8 @@ def rays(folder: Path) -> None:
     left.set(xlim=(-6, 6), ylim=(-5, 7.5), aspect="equal", xlabel="x [m]", ylabel="y [m]")
     left.set_title("lidar_front of Qolo, 160 degrees")
     left.legend(loc="lower left")
-    cloud = robot_bodies.robot.mount("velodyne_front").sensor.read(
-        seen.without(robot), robot_bodies.mounted("velodyne_front")
+    cloud = robot_body.robot.mount("velodyne_front").sensor.read(
+        seen.without(robot), robot_body.sensor_pose("velodyne_front")
     )
     points, who = cloud.points(in_world=True)[0].reshape(-1, 3), cloud.hit[0].ravel()
     near = np.isfinite(points[:, 0]) & (np.abs(points[:, 0]) < 8.0) & (np.abs(points[:, 1]) < 8.0)

@@ -63,7 +63,7 @@ SPHERE, RASTRIGIN, ROSENBROCK = (
 )
 TURNED = Case(rastrigin, 5.12, 20, 3, turned=True)
 CASES = [*SPHERE, *RASTRIGIN, *ROSENBROCK, TURNED]
-SOME = [SPHERE[1], RASTRIGIN[1]]
+SOME = [RASTRIGIN[1]]
 
 
 @functools.cache
@@ -206,7 +206,7 @@ def test_annealing_holds_against_the_annealing_of_scipy(case: Case) -> None:
     assert ours("annealing", case) <= allowed * theirs("scipy dual_annealing, no local search", case)
 
 
-@pytest.mark.parametrize("case", [*SPHERE, *RASTRIGIN], ids=str)
+@pytest.mark.parametrize("case", sample([*SPHERE, *RASTRIGIN], SOME), ids=str)
 def test_greedy_is_good_where_one_parameter_at_a_time_is_enough(case: Case) -> None:
     assert ours("greedy", case) <= theirs("pymoo GA", case)
 
@@ -225,7 +225,7 @@ def test_genetic_and_annealing_leave_the_valleys_in_which_greedy_is_caught() -> 
 
 
 @pytest.mark.parametrize("name", [name for name in OURS if name != "random-search"])
-@pytest.mark.parametrize("case", [SPHERE[1], RASTRIGIN[1], ROSENBROCK[1]], ids=str)
+@pytest.mark.parametrize("case", sample([SPHERE[1], RASTRIGIN[1], ROSENBROCK[1]], SOME), ids=str)
 def test_every_search_is_better_than_chance(name: str, case: Case) -> None:
     assert ours(name, case) < 0.3 * ours("random-search", case)
 

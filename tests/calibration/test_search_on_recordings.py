@@ -17,7 +17,6 @@ from crowdbot.calibration import Annealing, Calibrator, Genetic, Greedy, RandomS
 from crowdbot.calibration.calibrator import _Task
 from crowdbot.core import stream
 from crowdbot.data import Windows, load
-from samples import sample
 
 BUDGET = 500
 OURS: dict[str, Search] = {
@@ -91,7 +90,8 @@ def test_annealing_and_genetic_are_ahead_of_pymoo(recordings: Path, place: str) 
     assert ours(recordings, place, "greedy") < 1.1 * library
 
 
-@pytest.mark.parametrize("place", sample(PLACES, 1), ids=["eth", "students"])
+@pytest.mark.sweep
+@pytest.mark.parametrize("place", PLACES, ids=["eth", "students"])
 def test_genetic_and_annealing_are_ahead_of_chance(recordings: Path, place: str) -> None:
     chance = ours(recordings, place, "random-search")
     assert ours(recordings, place, "genetic") < chance

@@ -39,11 +39,11 @@ def test_ends_are_inside_or_not(bounds, inside, outside):
     ],
 )
 def test_the_text_tells_both_ends(bounds, text):
-    assert bounds.allowed() == text
+    assert bounds.describe() == text
 
 
 def test_the_upper_end_comes_first_if_asked_for():
-    assert Bounds("s", min=0.0, max=1.0).allowed(high_first=True) == "at most 1 s and at least 0 s"
+    assert Bounds("s", min=0.0, max=1.0).describe(high_first=True) == "at most 1 s and at least 0 s"
 
 
 def test_a_wrong_number_is_shown_with_its_owner_and_unit():

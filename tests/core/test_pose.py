@@ -43,10 +43,10 @@ def test_a_product_turns_by_the_second_then_by_the_first(a, b, c, d, e, f):
 @given(ANGLE, TILT, ANGLE, ANGLE, TILT, ANGLE)
 def test_a_mounted_part_moves_and_turns_with_what_carries_it(a, b, c, d, e, f):
     carrier = SpatialPose.of((1.0, -2.0, 0.5), a, b, c)
-    part = carrier.mounted(0.3, -0.2, 0.1, d, e, f)
+    part = carrier.offset(0.3, -0.2, 0.1, d, e, f)
     np.testing.assert_allclose(part.position[0], [1.0, -2.0, 0.5] + rotation(a, b, c) @ [0.3, -0.2, 0.1], atol=1e-12)
     np.testing.assert_allclose(part.matrix[0], rotation(a, b, c) @ rotation(d, e, f), atol=1e-12)
-    plain = carrier.mounted(0.3, -0.2)
+    plain = carrier.offset(0.3, -0.2)
     np.testing.assert_allclose(plain.position[0], [1.0, -2.0, 0.5] + rotation(a, b, c) @ [0.3, -0.2, 0.0], atol=1e-12)
     np.testing.assert_allclose(plain.matrix, carrier.matrix, atol=1e-12)
 
@@ -58,7 +58,7 @@ def test_planar_and_spatial_poses_agree(heading):
     np.testing.assert_array_equal(space.position[:, 2], MOUNT_HEIGHT)
     np.testing.assert_allclose(space.matrix, [rotation(0.0, 0.0, heading)] * 2, atol=1e-12)
     np.testing.assert_allclose(
-        planar.mounted(0.5, -0.25, 0.1).position, space.mounted(0.5, -0.25).position[:, :2], atol=1e-12
+        planar.offset(0.5, -0.25, 0.1).position, space.offset(0.5, -0.25).position[:, :2], atol=1e-12
     )
-    assert planar.mounted(0.5, -0.25, 0.1).heading == pytest.approx(planar.heading + 0.1)
+    assert planar.offset(0.5, -0.25, 0.1).heading == pytest.approx(planar.heading + 0.1)
     assert MOUNT_HEIGHT == 0.4

@@ -60,7 +60,7 @@ def test_after_a_step_only_the_stage_keeps_its_bodies():
     assert later.bodies.owner.tolist() == [STAGE]
     assert later.bodies.post_foot.shape == (1, 0, 3)
     assert later.bodies.skins.faces.tolist() == [[2, 1, 0]]
-    assert Bodies.of(**LIMBS, skins=Skins.of(np.eye(3), [[0, 1, 2]], owner=0)).staged().skins is None
+    assert Bodies.of(**LIMBS, skins=Skins.of(np.eye(3), [[0, 1, 2]], owner=0)).stage_bodies().skins is None
     assert Scene.of([[0.0, 0.0]]).advance(np.zeros((1, 1, 2)), 0.1).bodies is None
 
 
@@ -84,7 +84,7 @@ def test_wrong_bodies_are_explained(values, message):
     ("values", "message"),
     [
         (([[0, 0]], [[0, 0, 0]], 0), "vertices have shape \\[1, 2\\]"),
-        ((np.zeros((3, 3)), [[0, 1, 3]], 0), "faces name vertex 3, there are 3"),
+        ((np.zeros((3, 3)), [[0, 1, 3]], 0), "a face refers to vertex 3, but there are 3 vertices"),
         ((np.zeros((3, 3)), [[0, 1, 2]], [0, 1]), "skins: owner has shape \\[2\\]"),
     ],
 )

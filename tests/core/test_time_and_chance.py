@@ -110,7 +110,7 @@ def test_wrap_keeps_the_direction(angle):
 
 
 def test_mounted_pose():
-    part = Pose.of((1.0, 1.0), math.pi / 2).mounted(2.0, 0.5, 0.1)
+    part = Pose.of((1.0, 1.0), math.pi / 2).offset(2.0, 0.5, 0.1)
     np.testing.assert_allclose(part.position, [[0.5, 3.0]])
     assert part.heading[0] == pytest.approx(math.pi / 2 + 0.1)
 
@@ -191,7 +191,7 @@ def test_a_parameter_is_bounded_by_itself_or_by_the_largest_number():
         tight: float = parameter(1.0, unit="m", low=0.5, high=2.0, source="here", min=-1.0, max=3.0)
 
     free, tight = parameters(Model)
-    assert free.bounds().allowed() == "finite and at least 0, without an upper limit"
-    assert free.bounds(9.0).allowed() == "at least 0 and at most 9"
-    assert tight.bounds(9.0).allowed() == tight.bounds().allowed() == "at least -1 m and at most 3 m"
+    assert free.bounds().describe() == "finite and at least 0, without an upper limit"
+    assert free.bounds(9.0).describe() == "at least 0 and at most 9"
+    assert tight.bounds(9.0).describe() == tight.bounds().describe() == "at least -1 m and at most 3 m"
     assert (free.min, free.max) == (Parameter("a", "m", 1.0, 0.0, 2.0, "here").min, None) == (0.0, None)

@@ -52,6 +52,38 @@ def test_around_a_walkable_area():
     assert _area(Walls.around([(0, 0), (10, 0), (10, 5), (0, 5)])) == pytest.approx(-50.0)
 
 
+def test_edges_are_linked_ring_by_ring():
+    walls = Walls.of([[(0, 0), (2, 0), (2, 1)], [(5, 5), (6, 5)]])
+    assert walls.start.tolist() == [[0, 0], [2, 0], [2, 1], [5, 5], [6, 5]]
+    assert walls.end.tolist() == [[2, 0], [2, 1], [0, 0], [6, 5], [5, 5]]
+    assert walls.previous.tolist() == [2, 0, 1, 4, 3]
+    assert walls.next.tolist() == [1, 2, 0, 4, 3]
+    assert walls.segments().tolist() == [[0, 0, 2, 0], [2, 0, 2, 1], [2, 1, 0, 0], [5, 5, 6, 5]]
+    assert Walls.of(walls) is walls
+
+
+def test_only_corners_to_the_right_are_concave():
+    step = [(0, 0), (4, 0), (4, 4), (2, 4), (2, 2), (0, 2)]  # an L with one concave corner, at (2, 2)
+    assert Walls.of([step]).convex.tolist() == [True, True, True, True, False, True]
+    assert Walls.of([[(0, 0), (1, 0), (2, 0), (2, 2)]]).convex.all()  # a straight corner is convex
+
+
+def test_repeated_points_are_dropped():
+    assert Walls.of([[(0, 0), (0, 0), (2, 0), (2, 1), (2, 1)]]).start.tolist() == [[0, 0], [2, 0], [2, 1]]
+
+
+def test_a_walkable_ring_is_clockwise_whatever_its_direction():
+    ring = [(0, 0), (2, 0), (2, 1)]
+    assert _area(Walls.around(ring)) == _area(Walls.around(ring[::-1])) == -1.0
+    holes = Polygon(box(0, 0, 9, 9).exterior, [list(box(1, 1, 2, 2).exterior.coords)[::-1]])
+    assert _area(Walls.around(holes)) == pytest.approx(1.0 - 81.0)
+
+
+def test_the_number_of_a_wrong_ring_is_named():
+    with pytest.raises(InputError, match="wall 1 has a coordinate"):
+        Walls.of([[(0, 0), (1, 0)], [(0, 0), (np.nan, 1)]])
+
+
 @pytest.mark.parametrize(
     ("ring", "words"),
     [

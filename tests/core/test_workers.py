@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from pathlib import Path
 
 import pytest
 
-from crowdbot.core import CrowdbotError, InputError, each
+from crowdbot.core import CrowdbotError, InputError, MissingExtra, each, run_saved_jobs, workers
 
 
 def square(number: int) -> int:
@@ -52,11 +53,97 @@ def test_a_job_that_always_kills_is_given_up() -> None:
 
 
 def test_errors_of_jobs_arrive() -> None:
-    for workers in (1, 2):
+    for count in (1, 2):
         with pytest.raises(InputError, match="is refused"):
-            list(each(refuses, [1, 2], workers=workers))
+            list(each(refuses, [1, 2], workers=count))
 
 
 def test_no_worker_is_refused() -> None:
     with pytest.raises(InputError, match="workers = 0 must be at least 1"):
         each(square, [1], workers=0)
+
+
+def test_processes_share_the_processor(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "cpu_count", lambda: 8)
+    monkeypatch.delenv("NUMBA_NUM_THREADS", raising=False)
+    for count, threads in ((2, "4"), (3, "2"), (16, "1")):
+        with workers._share_threads(count):
+            assert os.environ["NUMBA_NUM_THREADS"] == threads
+        assert "NUMBA_NUM_THREADS" not in os.environ
+    monkeypatch.setenv("NUMBA_NUM_THREADS", "5")
+    with workers._share_threads(2):
+        assert os.environ["NUMBA_NUM_THREADS"] == "4"
+    assert os.environ["NUMBA_NUM_THREADS"] == "5"
+
+
+def save(result: int, file: Path) -> None:
+    file.write_text(str(result))
+
+
+def load(file: Path) -> int:
+    return int(file.read_text()) + 1000
+
+
+def test_saved_jobs_are_loaded_and_the_others_run(tmp_path: Path) -> None:
+    files = [tmp_path / "results" / f"{number}.txt" for number in range(4)]
+    assert list(run_saved_jobs(square, [1, 2, 3, 4], files, save, load)) == [(0, 1), (1, 4), (2, 9), (3, 16)]
+    assert [file.read_text() for file in files] == ["1", "4", "9", "16"]
+    assert sorted(file.name for file in files[0].parent.iterdir()) == [file.name for file in files]
+    files[1].unlink()
+    assert list(run_saved_jobs(square, [1, 2, 3, 4], files, save, load)) == [(0, 1001), (2, 1009), (3, 1016), (1, 4)]
+
+
+def test_without_files_nothing_is_saved(tmp_path: Path) -> None:
+    assert list(run_saved_jobs(square, [5, 6], [], save, load)) == [(0, 25), (1, 36)]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_interrupted_run_keeps_its_results(tmp_path: Path) -> None:
+    files = [tmp_path / f"{number}.txt" for number in range(3)]
+    results = run_saved_jobs(square, [1, 2, 3], files, save, load)
+    assert next(results) == (0, 1)
+    results.close()
+    assert [file.exists() for file in files] == [True, False, False]
+
+
+class FakeRay:
+    """A cluster in this process that finishes the newest job first."""
+
+    def __init__(self) -> None:
+        self.address, self.retries, self.most = "", 0, 0
+
+    def init(self, address: str, **options: object) -> None:
+        self.address = address
+
+    def remote(self, max_retries: int):
+        self.retries = max_retries
+
+        def decorate(function):
+            class Remote:
+                @staticmethod
+                def remote(job):
+                    return (job, function(job))
+
+            return Remote
+
+        return decorate
+
+    def wait(self, running):
+        self.most = max(self.most, len(running))
+        return running[-1:], running[:-1]
+
+    def get(self, ready):
+        return ready[1]
+
+
+def test_a_cluster_runs_as_many_jobs_as_workers(monkeypatch: pytest.MonkeyPatch) -> None:
+    ray = FakeRay()
+    monkeypatch.setattr(workers, "import_optional", lambda *words: ray)
+    assert sorted(each(square, [1, 2, 3, 4], workers=2, cluster="auto")) == [(0, 1), (1, 4), (2, 9), (3, 16)]
+    assert (ray.address, ray.retries, ray.most) == ("auto", 2, 2)
+
+
+def test_a_cluster_needs_ray(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "ray", None)
+    with pytest.raises(MissingExtra, match=r"a cluster needs the extra \[cluster\]"):
+        list(each(square, [1], cluster="auto"))

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import doctest
+import re
 import shlex
 import sys
 from pathlib import Path
 
 import pytest
-from pages import DOCS, Block, blocks
+from pages import DOCS, ROOT, Block, blocks
 
-from crowdbot.cli import main
+from crowdbot.cli import COMMANDS, main
+from samples import sample
 
 OWN_TEST = {"tutorials/first-trial.md", "tutorials/first-experiment.md"}
 """Pages that tests of their own follow, since a reader types or edits in between."""
@@ -20,9 +22,31 @@ RUN = [
     for page in PAGES
     if page not in OWN_TEST and any(b.language == "python" or b.commands for b in blocks(DOCS / page))
 ]
+SAMPLE = ["how-to/crowd-model.md", "tutorials/first-prediction.md"]
+"""Pages that `make test` runs; the others are sweeps."""
+LINK = re.compile(r"\]\(([^)#\s]+)")
+CODE = re.compile(r"```.*?```|`[^`]*`", flags=re.S)
+GENERATED = re.compile(r"reference/(?P<kind>api|cli)/(?P<name>[a-z._]+)\.md")
 
 
-@pytest.mark.parametrize("page", RUN)
+@pytest.mark.parametrize("page", PAGES)
+def test_every_link_of_a_page_leads_to_a_file(page: str) -> None:
+    links = LINK.findall(CODE.sub("", (DOCS / page).read_text(encoding="utf-8")))
+    targets = [((DOCS / page).parent / link).resolve() for link in links if "://" not in link]
+    assert [str(target) for target in targets if not target.exists() and not generated(target)] == []
+
+
+def generated(target: Path) -> bool:
+    """Return whether the build of the site makes this page."""
+    found = GENERATED.fullmatch(target.relative_to(DOCS).as_posix()) if target.is_relative_to(DOCS) else None
+    if found is None:
+        return False
+    if found["kind"] == "cli":
+        return found["name"] in {*COMMANDS, "index"}
+    return found["name"] == "index" or (ROOT / "src" / "crowdbot" / found["name"].replace(".", "/")).is_dir()
+
+
+@pytest.mark.parametrize("page", sample(RUN, SAMPLE))
 def test_a_page_runs_from_top_to_bottom(
     page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

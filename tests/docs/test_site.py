@@ -1,4 +1,4 @@
-"""The site is built without a warning, loads nothing from outside, and every link leads somewhere."""
+"""The site is built without a warning, loads nothing from outside, and every link leads somewhere (a sweep)."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from urllib.parse import unquote, urlsplit
 import pytest
 from pages import ROOT
 
+pytestmark = pytest.mark.sweep
 LOADED = {"audio", "embed", "iframe", "img", "link", "object", "script", "source", "track", "video"}
 """Elements whose address is fetched when the page is read."""
 OWNER = {"author", "canonical", "license", "next", "prev"}

@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -53,6 +54,29 @@ def test_the_navigator_of_the_guide_steers_a_robot(tmp_path):
     episode = run(load_trial(file))
     assert episode.outcome in ("success", "timeout", "collision")
     assert type(episode.trial.robots[0].navigator).__name__ == "Shy"
+
+
+WALKS = [block for block in _blocks(ROOT / "CONTRIBUTING.md", "") if ".py " in block]
+STATION = re.compile(r"^[ |+-]*(?P<room>[a-z]+ )? *(?P<file>[a-z_/0-9]+\.py) (?P<name>\w+)", flags=re.M)
+
+
+@pytest.mark.parametrize("walk", WALKS, ids=["person", "row", "beam"])
+def test_a_walk_names_what_exists_and_enters_a_room_once(walk):
+    stations = list(STATION.finditer(walk))
+    assert len(stations) == walk.count(".py ") >= 4
+    for station in stations:
+        text = (ROOT / "src" / "crowdbot" / station["file"]).read_text(encoding="utf-8")
+        assert re.search(rf"^(?:def|class) {station['name']}\b", text, flags=re.M), station[0]
+    rooms = [station["file"].split("/")[0] for station in stations]
+    entered = [station["room"].strip() for station in stations if station["room"]]
+    assert entered == list(dict.fromkeys(rooms))
+
+
+def test_the_floors_are_those_of_the_linter():
+    (floors,) = [block for block in _blocks(ROOT / "CONTRIBUTING.md", "") if "12  cli" in block]
+    listed = [" | ".join(re.findall(r"\w+", line[4:41].strip())) for line in floors.splitlines()]
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    assert listed == project["tool"]["importlinter"]["contracts"][0]["layers"]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)

@@ -20,7 +20,7 @@ from crowdbot.humans import (
     posing_and_skinning,
 )
 from crowdbot.humans.asset import LEVELS, shapes
-from crowdbot.humans.skin import skinned
+from crowdbot.humans.skin import skin_vertices
 
 
 def test_there_are_forty_adults_four_children_and_a_mannequin():
@@ -51,7 +51,7 @@ def test_everyone_has_at_least_ten_variations():
 @pytest.mark.parametrize("level", range(LEVELS))
 def test_meshes_are_sound(level):
     people = People.of(names(), variation=np.arange(45))
-    faces, worn = people.faces(level), people.worn(level)
+    faces, worn = people.faces(level), people.clothing_mask(level)
     vertices = shapes().levels[level].rest
     assert faces.min() >= 0
     assert faces.max() < vertices.shape[1]
@@ -133,7 +133,7 @@ def test_the_kernel_skins_as_numpy_does():
         * (np.einsum("nvij,nvj->nvi", now.rotation[:, level.bones[:, k]], rest) + shift[:, level.bones[:, k]])
         for k in range(4)
     )
-    found = skinned(level, people.body, people.scale, head, now.rotation, now.position)
+    found = skin_vertices(level, people.body, people.scale, head, now.rotation, now.position)
     np.testing.assert_allclose(found, expected, atol=1e-12)
 
 
@@ -189,7 +189,7 @@ def test_limbs_have_regions_and_masses():
         (lambda: People.of(["man-20"], variation=-1), "variation -1.0 is not a whole number from 0"),
         (lambda: People.of("man-20"), "takes a list of names"),
         (lambda: People.of(["man-20"]).faces(3), "level of detail 3 is not 0 to 2"),
-        (lambda: People.drawn(2, np.random.default_rng(0), kinds=["cat"]), "nobody is of the kinds cat"),
+        (lambda: People.sample(2, np.random.default_rng(0), kinds=["cat"]), "nobody is of the kinds cat"),
     ],
 )
 def test_wrong_input_is_named(call, message):
@@ -208,6 +208,6 @@ def test_nobody_and_drawn_people_work():
     state = nobody.step(state, np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0), 0.1)
     assert nobody.skin(state).shape == (0, 447, 3)
     assert nobody.limbs(state).radius.shape == (0, 17)
-    drawn = People.drawn(30, np.random.default_rng(4), kinds=("man", "girl"))
+    drawn = People.sample(30, np.random.default_rng(4), kinds=("man", "girl"))
     assert {p.sex for p in drawn.persons} == {"m", "f"}
     assert posing_and_skinning(5, 1)().shape == (5, 1243, 3)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from crowdbot.core import InputError
 from crowdbot.data import Forecast, Windows
-from crowdbot.metrics import accompanied, collided, collision_share, collisions
+from crowdbot.metrics import collision_mask, collision_share, collisions, neighbor_mask
 
 BOTH = pytest.mark.parametrize("neighbors", ["predicted", "true"])
 
@@ -38,17 +38,17 @@ def test_collided_equals_its_slow_twin(seed: int, neighbors: str, monkeypatch: p
     forecast, future = case(seed)
     forecast = weighted(forecast, seed)
     slow = slow_collided(forecast, future, 0.4, neighbors)
-    assert np.array_equal(collided(forecast, future, 0.4, neighbors), slow)
+    assert np.array_equal(collision_mask(forecast, future, 0.4, neighbors), slow)
     assert 0 < slow.sum() < slow.size
     monkeypatch.setattr(collisions, "PAIRS_AT_ONCE", 1)  # one sample at a time
-    assert np.array_equal(collided(forecast, future, 0.4, neighbors), slow)
+    assert np.array_equal(collision_mask(forecast, future, 0.4, neighbors), slow)
 
 
 @BOTH
 @pytest.mark.parametrize("seed", range(4))
 def test_who_has_company_equals_its_slow_twin(seed: int, neighbors: str) -> None:
     _, future = case(seed)
-    found = accompanied(future, neighbors)
+    found = neighbor_mask(future, neighbors)
     for w, a in np.ndindex(found.shape):
         others = [b for b in range(found.shape[1]) if b != a]
         if neighbors == "predicted":
@@ -70,10 +70,10 @@ def test_true_neighbors_are_where_they_walked_scored_or_not_and_robots_too() -> 
     truth = [[[0.0, 0.0], [5.0, 0.0], [1.0, 0.0]]]
     guess = [[[1.1, 0.0], [1.25, 0.0], [0.0, 0.0]]]  # two meet as predicted; the first also where the third truly is
     forecast, future = scene(truth, [guess])
-    assert collided(forecast, future).tolist() == [[[True, True, False]]]
-    assert collided(forecast, future, neighbors="true").tolist() == [[[True, False, True]]]
+    assert collision_mask(forecast, future).tolist() == [[[True, True, False]]]
+    assert collision_mask(forecast, future, neighbors="true").tolist() == [[[True, False, True]]]
     robot = dataclasses.replace(future, robot=np.array([[False, False, True]]), scored=np.array([[True, True, False]]))
-    assert collided(forecast, robot, neighbors="true").tolist() == [[[True, False, False]]]
+    assert collision_mask(forecast, robot, neighbors="true").tolist() == [[[True, False, False]]]
     assert collision_share(forecast, robot, neighbors="true") == 0.5
     gone = dataclasses.replace(robot, present=np.array([[[True, True, False]]]))
     assert collision_share(forecast, gone, neighbors="true") == 0.0
@@ -83,8 +83,8 @@ def test_the_truth_against_itself_is_the_same_with_both_kinds_of_neighbors() -> 
     _, future = case(2)
     everyone = dataclasses.replace(future, scored=future.present.any(axis=1))
     exact = Forecast.of(future.position[:, None], np.ones(future.id.shape, dtype=bool), 0.4, "truth")
-    one = collided(exact, everyone, 0.8)
-    assert np.array_equal(one, collided(exact, everyone, 0.8, "true"))
+    one = collision_mask(exact, everyone, 0.8)
+    assert np.array_equal(one, collision_mask(exact, everyone, 0.8, "true"))
     assert one.any()
 
 
@@ -105,4 +105,4 @@ def test_turning_shifting_and_reordering_changes_no_share(
 
 def test_an_unknown_kind_of_neighbors_is_refused() -> None:
     with pytest.raises(InputError, match="collisions with neighbors 'ture', did you mean 'true'.: it is predicted or"):
-        collided(*case(0), neighbors="ture")
+        collision_mask(*case(0), neighbors="ture")

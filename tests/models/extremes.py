@@ -13,7 +13,7 @@ from crowdbot.core import parameters
 def extreme(kind, rng: np.random.Generator, **more):
     """Return a model whose parameters are each at the end of its box, the smallest allowed, or huge."""
     values = {
-        row.name: float(rng.choice([row.default, row.low, row.high, row.minimum, 1e9]))
+        row.name: float(rng.choice([row.default, row.low, row.high, row.min, 1e9]))
         for row in parameters(kind)
         if row.name != "max_neighbors"
     }

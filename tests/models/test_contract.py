@@ -50,7 +50,7 @@ def test_parameters_are_a_table(kind):
     for row in table:
         assert row.unit, row.name
         assert row.source, row.name
-        assert row.minimum <= row.low < row.high, row.name
+        assert row.min <= row.low < row.high, row.name
         assert row.low <= row.default <= row.high, row.name
         assert f"{row.name}:" in text, f"{kind.__name__} does not explain {row.name}"
 
@@ -66,7 +66,7 @@ def test_parameters_come_from_text(kind):
 @every_model
 def test_a_bad_parameter_is_named(kind):
     for row in parameters(kind):
-        for value in (np.nan, np.inf, row.minimum - 1.0, 1e300, np.array([row.default, np.nan])):
+        for value in (np.nan, np.inf, row.min - 1.0, 1e300, np.array([row.default, np.nan])):
             with pytest.raises(InputError, match=row.name):
                 kind(**{row.name: value})
         with pytest.raises(InputError, match=row.name):

@@ -10,7 +10,7 @@ import pytest
 
 from crowdbot.core import InputError, Scene, stream
 from crowdbot.models import VBM
-from crowdbot.models.vision.vbm import _slopes
+from crowdbot.models.vision.vbm_slopes import slopes as kernel_slopes
 
 BARRIER = [[(-6.0, 2.0), (6.0, 2.4)], [(3.0, -4.0), (4.0, -4.0), (4.0, -1.0), (3.0, -1.0)]]
 
@@ -225,7 +225,7 @@ def test_slopes_are_those_of_the_cost():
         def cost(angle, speed, x=x, other=other):
             h = (math.cos(angle), math.sin(angle))
             w = (other[0] - speed * h[0], other[1] - speed * h[1])
-            return _slopes(*x, *w, *h, speed, 1.8, 0.3, 0.0)
+            return kernel_slopes(*x, *w, *h, speed, 1.8, 0.3, 0.0)
 
         c, turn, change = cost(angle, speed)
         if c < 1e-3 or math.hypot(turn, change) < 1e-2:

@@ -182,7 +182,7 @@ def test_the_plan_of_a_robot_is_kept_and_moves_people(windows: Maker) -> None:
     found = {}
     for name, plan in (("coming", coming), ("staying", staying)):
         for samples in (1, 20):
-            joint = AnchorNet().predict(past.planned({1: plan}), 12, samples).position[0]
+            joint = AnchorNet().predict(past.with_plans({1: plan}), 12, samples).position[0]
             assert np.allclose(joint[:, :, 1], plan)
             found[name, samples] = joint[:, :, 0]
     assert not np.array_equal(found["coming", 1], found["staying", 1])

@@ -122,7 +122,7 @@ def test_a_query_with_a_plan_changes_no_later_forecast() -> None:
 def test_a_plan_that_ends_leaves_the_robot_standing(windows: Maker) -> None:
     time = np.arange(-7.0, 1.0) * 0.4
     past = windows(np.stack([time, 0.0 * time], axis=-1)[None, :, None], robot=True)
-    planned = past.planned({0: [[0.2, 0.0], [0.3, 0.1]]})
+    planned = past.with_plans({0: [[0.2, 0.0], [0.3, 0.1]]})
     for predictor in (ConstantVelocity(), Simulated()):
         found = predictor.predict(planned, 4).position[0, 0, :, 0]
         np.testing.assert_allclose(found, [[0.2, 0.0], [0.3, 0.1], [0.3, 0.1], [0.3, 0.1]], atol=1e-12)
@@ -153,4 +153,4 @@ def test_wrong_use_is_said_in_a_sentence(windows: Maker) -> None:
     with pytest.raises(InputError, match=r"the plan of robot 1 has shape \[0, 2\]"):
         live.predict(3, plans={1: np.zeros((0, 2))})
     with pytest.raises(InputError, match=r"all must have as many rows; they have \[1, 2\]"):
-        windows(np.zeros((1, 2, 2, 2))).planned({0: np.zeros((1, 2)), 1: np.zeros((2, 2))})
+        windows(np.zeros((1, 2, 2, 2))).with_plans({0: np.zeros((1, 2)), 1: np.zeros((2, 2))})

@@ -365,7 +365,7 @@ def test_forecasts_shift_and_turn_with_the_world(social: SocialWays, crowd: Make
 def test_a_robot_with_a_plan_walks_it(social: SocialWays, crowd: Maker) -> None:
     past = crowd(1)
     plan = np.stack([np.linspace(0.0, 3.0, 6), np.zeros(6)], axis=1)
-    ahead = social.predict(past.planned({1: plan}), 6, 2).position
+    ahead = social.predict(past.with_plans({1: plan}), 6, 2).position
     np.testing.assert_allclose(ahead[0, :, :, 1], np.broadcast_to(plan, (2, 6, 2)))
 
 

@@ -31,7 +31,7 @@ def predicted(social: SocialWays, past: Windows, samples: int = 3) -> np.ndarray
 def test_people_see_a_robot_where_its_plan_leads(windows: Maker) -> None:
     past = walking(windows, (0.0, 0.0, 1.0, 0.0), (3.0, 0.5, 0.0, 0.0), robot=np.array([[False, True]]))
     away, near = np.tile([30.0, 0.5], (12, 1)), np.linspace([2.5, 0.4], [0.5, 0.0], 12)
-    one, other = (predicted(ETH, past.planned({1: plan})) for plan in (away, near))
+    one, other = (predicted(ETH, past.with_plans({1: plan})) for plan in (away, near))
     assert np.array_equal(one[0, :, :, 1], np.broadcast_to(away, (3, 12, 2)))
     assert np.abs(one[0, :, :, 0] - other[0, :, :, 0]).max() > 1e-3
 

@@ -47,7 +47,7 @@ def measured(sensor, scene, pose, rng=None):
     """One reading; of sensors with state the third, after two moves."""
     state = sensor.begin()
     for step in range(3 if type(sensor) in (sensors.IMU, sensors.WheelOdometry) else 1):
-        there = pose.mounted(0.1 * step, 0.02 * step * step, 0.0, 0.0, 0.0, 0.05 * step)
+        there = pose.offset(0.1 * step, 0.02 * step * step, 0.0, 0.0, 0.0, 0.05 * step)
         view = sensors.SensorView(scene.replace(time=scene.time + 0.1 * step), there if step else pose)
         reading, state = sensor.measure(view, state, rng)
     return reading
@@ -224,7 +224,7 @@ def test_the_state_is_a_value_and_continues_the_sequence(kind):
     """The same view and state give the same reading and state again: nothing is kept in the sensor."""
     sensor, scene, pose = small(kind), crowd(7, environments=2), somewhere(7, 2)
     first, state = sensor.measure(sensors.SensorView(scene, pose), sensor.begin())
-    later = sensors.SensorView(scene.replace(time=scene.time + 0.1), pose.mounted(0.1, 0.0, 0.0, 0.0, 0.0, 0.2))
+    later = sensors.SensorView(scene.replace(time=scene.time + 0.1), pose.offset(0.1, 0.0, 0.0, 0.0, 0.0, 0.2))
     one, after = sensor.measure(later, state)
     two, again = sensor.measure(later, state)
     assert_same_bytes(one, two)

@@ -103,7 +103,7 @@ def test_laws_and_simulators_are_carried_over(tmp_path: Path) -> None:
 
 
 def test_what_is_left_out_is_told(tmp_path: Path) -> None:
-    said = "\n".join(import_original(written(tmp_path, TRIAL)).skipped_people)
+    said = "\n".join(import_original(written(tmp_path, TRIAL)).left_out)
     for words in ("stage 'Kerlann'", "TrialCamPlayer", "screenRecorder", "recordingFile", "LawFileData",
                   "mesh, height, variation", "robots were steered from outside"):  # fmt: skip
         assert words in said
@@ -118,7 +118,7 @@ def test_an_experiment_gives_its_trials_in_order(tmp_path: Path) -> None:
     written(tmp_path / "Scenario", TRIAL.replace('value="45"', 'value="9"'), "b3.xml")
     done = import_original(written(tmp_path, config, "config.xml"))
     assert [(name, trial.duration) for name, trial in done.trials] == [("b3", 9.0), ("a", 45.0)]
-    assert any("gone.xml" in sentence for sentence in done.skipped_people)
+    assert any("gone.xml" in sentence for sentence in done.left_out)
     with pytest.raises(TrialError, match="the order file './Scenario/Order0.csv' cannot be read: there is no file"):
         import_original(tmp_path / "config.xml", participant=2)
     away = written(tmp_path, config.replace("./Scenario/Order{TWO}.csv", "../../etc/passwd"), "away.xml")
@@ -147,4 +147,4 @@ def test_hostile_files_are_refused(tmp_path: Path, text: str, sentence: str) -> 
 def test_an_empty_trial_is_one(tmp_path: Path) -> None:
     done = import_original(written(tmp_path, "<Trial/>"))
     assert done.trials[0][1].duration == 600.0
-    assert done.skipped_people == ("no end by time was set: the trial now ends after 600 s",)
+    assert done.left_out == ("no end by time was set: the trial now ends after 600 s",)

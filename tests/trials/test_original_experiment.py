@@ -42,7 +42,7 @@ def test_two_orders_become_a_latin_square(tmp_path: Path) -> None:
     )  # fmt: skip
     assert [orders(done.experiment, block, who) for who in (1, 2, 3)] == [[[0, 1]], [[1, 0]], [[0, 1]]]
     assert [trial.duration for _, trial in done.trials] == [5.0, 6.0]
-    said = "\n".join(done.skipped_people)
+    said = "\n".join(done.left_out)
     for words in ("<Recording>", "<log>", "userHeight", "screens", "seeds"):
         assert words in said
 
@@ -52,7 +52,7 @@ def test_orders_that_differ_otherwise_are_told(tmp_path: Path) -> None:
     config = study(tmp_path, "O{USER}", O1=one, O2=two, O3=three)
     done = import_experiment(config)
     assert done.experiment.blocks[0].order == "fixed"
-    assert any("the one of participant 1 is taken; those of 2 differ" in sentence for sentence in done.skipped_people)
+    assert any("the one of participant 1 is taken; those of 2 differ" in sentence for sentence in done.left_out)
     assert [entry.name for entry in import_experiment(config, participant=2).experiment.blocks[0].trials] == [*"acb"]
 
 
@@ -101,3 +101,57 @@ def test_the_command_writes_a_folder_that_loads(tmp_path: Path, capsys: pytest.C
     assert "is there already" in capsys.readouterr().err
     assert main(["experiment", "new", str(tmp_path / "gone"), "--import", str(tmp_path / "none.xml")]) == 2
     assert not (tmp_path / "gone").exists()
+
+
+def project(folder: Path) -> Path:
+    """Write a project of the original simulator: its paths begin at the root, and its files lie deeper."""
+    written(folder / "CrowdMP" / "Scenario" / "Demo", TRIAL.format(seconds=5), "a.xml")
+    written(folder / "CrowdMP" / "Scenario" / "Demo", TRIAL.format(seconds=6), "b.xml")
+    written(folder / "CrowdMP" / "Scenario" / "Other", TRIAL.format(seconds=9), "a.xml")
+    rows = "./StreamingAssets/Scenario/Demo/a.xml\n.\\StreamingAssets\\Scenario\\Demo\\b.xml\n"
+    written(folder / "CrowdMP" / "Scenario" / "Demo", rows, "FileOrder1.csv")
+    config = """<Config><experience currentUser="1">
+      <sourceFileExperiment>./StreamingAssets/Scenario/Demo/FileOrder{USER}.csv</sourceFileExperiment>
+      </experience></Config>"""
+    return written(folder / "Configs" / "deep" / "deeper" / "deepest" / "still", config, "Config.xml")
+
+
+def test_paths_from_the_project_root_are_found_by_their_ends(tmp_path: Path) -> None:
+    config = project(tmp_path)
+    with pytest.raises(TrialError, match="the order file './StreamingAssets/Scenario/Demo/FileOrder1.csv' cannot be"):
+        import_experiment(config)
+    done = import_experiment(config, root=tmp_path)
+    assert [(name, trial.duration) for name, trial in done.trials] == [("a.xml", 5.0), ("b.xml", 6.0)]
+    order = tmp_path / "CrowdMP" / "Scenario" / "Demo" / "FileOrder1.csv"
+    for root in (None, tmp_path):
+        trials = import_original(order, root=root).trials
+        assert [(name, trial.duration) for name, trial in trials] == [("a", 5.0), ("b", 6.0)]
+
+
+def test_two_files_that_fit_equally_well_are_an_error(tmp_path: Path) -> None:
+    config = project(tmp_path)
+    written(tmp_path / "CrowdMP" / "Scenario" / "Demo", "./Elsewhere/a.xml\n", "FileOrder1.csv")
+    with pytest.raises(TrialError, match="2 files in .* end with 'a.xml': /CrowdMP/Scenario/Demo/a.xml, /CrowdMP/"):
+        import_experiment(config, root=tmp_path)
+    with pytest.raises(TrialError, match="there is no folder .*nowhere"):
+        import_experiment(config, root=tmp_path / "nowhere")
+
+
+def test_a_root_does_not_open_files_outside_it(tmp_path: Path) -> None:
+    config = project(tmp_path)
+    written(tmp_path.parent, TRIAL.format(seconds=5), f"{tmp_path.name}-secret.xml")
+    demo = tmp_path / "CrowdMP" / "Scenario" / "Demo"
+    written(demo, f"../../../../{tmp_path.name}-secret.xml\n", "FileOrder1.csv")
+    (demo / f"{tmp_path.name}-secret.xml").symlink_to(tmp_path.parent / f"{tmp_path.name}-secret.xml")
+    with pytest.raises(TrialError, match="lies outside"):
+        import_experiment(config, root=tmp_path)
+
+
+def test_the_commands_take_the_root(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    config = str(project(tmp_path))
+    assert main(["experiment", "new", str(tmp_path / "mine"), "--import", config, "--root", str(tmp_path)]) == 0
+    assert sorted(path.name for path in (tmp_path / "mine").iterdir()) == ["a.xml", "b.xml", "experiment.xml"]
+    assert main(["new", "trial", str(tmp_path / "t.xml"), "--import", config, "--root", str(tmp_path)]) == 0
+    assert "t-01-a.xml" in capsys.readouterr().out
+    assert main(["new", "trial", str(tmp_path / "u.xml"), "--import", config]) == 2
+    assert "StreamingAssets" in capsys.readouterr().err

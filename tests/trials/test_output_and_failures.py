@@ -16,14 +16,14 @@ import pytest
 from trial_texts import GOOD
 
 from crowdbot.cli import main
-from crowdbot.core import InputError, Scene, Twist, lock_output
+from crowdbot.core import InputError, Scene, Twist, lock_output, relative_name
 from crowdbot.models import CrowdModel
 from crowdbot.navigation import Navigator, Observation
 from crowdbot.recording import branch, export, open_run, read_episode, record, repair, replay
 from crowdbot.rendering import ImageWriter, RenderedImage
 from crowdbot.sensors import Scan, Sensor, SensorView
 from crowdbot.simulation import RunFailureWarning, Simulation, run_batch, simulate
-from crowdbot.trials import Mount, Trial, parse_trial, relative_name
+from crowdbot.trials import Mount, Trial, parse_trial
 
 TRIAL = parse_trial(GOOD)
 NAVIGATOR = """from crowdbot.core import Twist

@@ -120,7 +120,7 @@ def test_parameters_differ_from_person_to_person() -> None:
     one = trial(crowd=crowd, spawners=[spawner])
     model = one.crowd
     assert isinstance(model, RandomizedModel)
-    drawn = np.asarray(model.resolved(3, 0, 1000).time_horizon)
+    drawn = np.asarray(model.resolve(3, 0, 1000).time_horizon)
     assert drawn.mean() == pytest.approx(2.0, abs=0.05)
     assert drawn.std() == pytest.approx(0.5, abs=0.05)
     assert 'time-horizon="normal(2, 0.5)"' in trial_xml(one)

@@ -24,18 +24,3 @@ def mesh(filename, tag="visual", scale=""):
     """Return a shape from a mesh file."""
     size = f" scale='{scale}'" if scale else ""
     return f"<{tag}><geometry><mesh filename='{filename}'{size}/></geometry></{tag}>"
-
-
-REAL = (
-    "urdf_tutorial/01-myfirst.urdf",
-    "urdf_tutorial/05-visual.urdf",
-    "urdf_tutorial/06-flexible.urdf",
-    "urdf_tutorial/07-physics.urdf",
-    "pepper/pepper.urdf",
-    "simple_humanoid/urdf/simple_humanoid.urdf",
-    "simple_humanoid/urdf/simple_humanoid_classical.urdf",
-    "double_pendulum/urdf/double_pendulum.urdf",
-    "double_pendulum/urdf/double_pendulum_continuous.urdf",
-    "double_pendulum/urdf/double_pendulum_simple.urdf",
-)
-"""Robots of other makers that every reader must take."""

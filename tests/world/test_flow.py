@@ -104,11 +104,11 @@ def test_nobody_comes_in_where_there_is_no_room_and_all_wait_in_order():
     blocked = Scene.of(np.zeros((10, 2)) + 0.3, active=np.arange(10) == 0, external=np.arange(10) == 0)
     world = world_of(PeopleSource(narrow, ACROSS, rate=1.0, timing="regular"), scene=blocked)
     assert entries(world, 5.0) == []
-    assert world.waiting.tolist() == [6]
+    assert world.waiting_count.tolist() == [6]
     world.scene = world.scene.replace(active=np.zeros((1, 10), dtype=bool))
     found = entries(world, 12.0)
     assert len(found) > 3
-    assert world.waiting[0] < 6
+    assert world.waiting_count[0] < 6
     assert all(a > 0 for _, _, a, _ in found), "the place of a robot is not used"
 
 
@@ -137,7 +137,7 @@ def test_a_full_scene_lets_nobody_in():
     stay = WaypointSequence((FAR,), then="stay")
     world = world_of(PeopleSource(DOOR, stay, rate=2.0), scene=empty(3))
     assert len(entries(world, 20.0)) == 3
-    assert world.waiting[0] > 20
+    assert world.waiting_count[0] > 20
 
 
 def test_memories_of_who_left_are_forgotten():

@@ -34,7 +34,7 @@ def by_hand(before, after, dt, speed, acceleration):
 @given(st.integers(0, 999), st.floats(0.1, 5.0), st.floats(0.1, 50.0))
 def test_limits_are_what_the_slow_twin_says(seed, speed, acceleration):
     before, after = steps(seed)
-    kept = CrowdLimits(speed, acceleration).kept(before, after, 0.1)
+    kept = CrowdLimits(speed, acceleration).apply(before, after, 0.1)
     expected = by_hand(before, after, 0.1, speed, acceleration)
     np.testing.assert_allclose(kept.velocity, expected, atol=1e-12)
     np.testing.assert_allclose(kept.position, before.position + 0.1 * expected, atol=1e-12)
@@ -43,7 +43,7 @@ def test_limits_are_what_the_slow_twin_says(seed, speed, acceleration):
 def test_headings_follow_and_those_of_a_model_stay():
     before, after = steps(1)
     after = after.replace(heading=np.where(np.arange(12) == 5, 0.123, after.heading))
-    kept = CrowdLimits(max_acceleration=1.0).kept(before, after, 0.1)
+    kept = CrowdLimits(max_acceleration=1.0).apply(before, after, 0.1)
     walks = (np.arange(12) != 3) & (np.arange(12) != 5)
     assert np.all(kept.heading[:, 5] == 0.123)
     assert np.array_equal(kept.heading[:, walks], np.arctan2(kept.velocity[..., 1], kept.velocity[..., 0])[:, walks])
@@ -51,19 +51,19 @@ def test_headings_follow_and_those_of_a_model_stay():
 
 def test_who_is_within_the_limits_keeps_every_byte():
     before, after = steps(2)
-    assert CrowdLimits(1e3, 1e6).kept(before, after, 0.1).digest() == after.digest()
-    assert CrowdLimits().kept(before, after, 0.1).digest() == after.digest()
+    assert CrowdLimits(1e3, 1e6).apply(before, after, 0.1).digest() == after.digest()
+    assert CrowdLimits().apply(before, after, 0.1).digest() == after.digest()
 
 
 def test_limits_may_differ_per_agent():
     before, after = steps(3)
     most = np.linspace(0.1, 1.2, 12)
-    kept = CrowdLimits(max_speed=most).kept(before, after, 0.1)
+    kept = CrowdLimits(max_speed=most).apply(before, after, 0.1)
     speed = np.hypot(kept.velocity[..., 0], kept.velocity[..., 1])
     others = np.arange(12) != 3
     assert np.all(speed[:, others] <= most[others] * (1.0 + 1e-12))
     with pytest.raises(InputError, match="max_speed has shape"):
-        CrowdLimits(max_speed=np.ones(5)).kept(before, after, 0.1)
+        CrowdLimits(max_speed=np.ones(5)).apply(before, after, 0.1)
 
 
 def test_a_crowd_in_a_world_accelerates_no_faster():

@@ -5,19 +5,16 @@ import math
 import numpy as np
 import pytest
 from physics_worlds import alone
-from robot_texts import REAL, joint, link, robot
+from real_robots import ROBOTS
+from robot_texts import joint, link, robot
 
-from crowdbot.core import InputError, RobotError, Twist
+from crowdbot.core import InputError, Twist
 from crowdbot.world import AckermannDrive, DifferentialDrive, Omnidirectional, Robot, Wheel, read_urdf
 
 ROUND = 0.4 * np.stack([np.cos(np.arange(8) * math.pi / 4), np.sin(np.arange(8) * math.pi / 4)], axis=1)
 
 
-def test_every_urdf_that_is_there_is_tried(urdf):
-    assert {str(path.relative_to(urdf)) for path in urdf.rglob("*.urdf")} == set(REAL)
-
-
-@pytest.mark.parametrize("name", REAL)
+@pytest.mark.parametrize("name", ROBOTS)
 def test_real_robots_drive_in_the_physics_world(urdf, name):
     """Pulled along the floor, with motors that hold their joints; roots above the ground are no hindrance."""
     model = read_urdf(urdf / name, colliders="hull")
@@ -35,13 +32,6 @@ def test_real_robots_drive_in_the_physics_world(urdf, name):
     assert world.robot_body(0).tilt < 1e-3
     seen = world.bodies()
     assert np.all(seen.box_centre[0, :, 2] > 0.0)  # nothing lies below the floor
-
-
-@pytest.mark.parametrize("name", ["kobuki.urdf.xacro", "kobuki_standalone.urdf.xacro", "common_properties.urdf.xacro"])
-def test_a_xacro_is_refused_in_one_sentence(urdf, name):
-    with pytest.raises(RobotError, match="this is a xacro file; expand it first") as caught:
-        read_urdf(urdf / "kobuki" / name)
-    assert len(caught.value.problems) == 1
 
 
 def car(drive=None, wheels=None):

@@ -48,7 +48,7 @@ def test_everything_in_the_file_is_read(tmp_path):
     assert mine.posture == {"neck": 0.5}
     eye = mine.mount("eye")
     assert eye == SensorMount("eye", Lidar2D(rays=90, noise=Gaussian(0.02)), "head", x=0.1, z=0.2, yaw=1.0)
-    np.testing.assert_allclose(mine.mounted("eye")[:3, 3], [0.1 + 0.1 * np.cos(0.5), 0.1 * np.sin(0.5), 1.2])
+    np.testing.assert_allclose(mine.sensor_frame("eye")[:3, 3], [0.1 + 0.1 * np.cos(0.5), 0.1 * np.sin(0.5), 1.2])
     assert mine.planar_mount("eye")[2] == pytest.approx(1.5)
     assert mine.planar_mount("foot") == (0.0, 0.0, 0.0)
     assert Robot.load(tmp_path / "robot.xml").drive == mine.drive

@@ -55,11 +55,11 @@ def test_they_stand_on_the_ground_and_see_from_inside_their_height(name):
     assert abs(points[:, 2].min()) < 1e-3
     assert robot.mounts
     for mount in robot.mounts:
-        matrix = robot.mounted(mount.name)
+        matrix = robot.sensor_frame(mount.name)
         assert 0.0 <= matrix[2, 3] <= robot.height + 0.05
         x, y, heading = robot.planar_mount(mount.name)
         pose = Pose.of((1.0, 2.0), 0.5)
-        flat, deep = pose.mounted(x, y, heading), robot.sensor_pose(mount.name, pose)
+        flat, deep = pose.offset(x, y, heading), robot.sensor_pose(mount.name, pose)
         assert deep.position[:, :2] == pytest.approx(flat.position)
         scene = Scene.of([[9.0, 9.0]])
         for place in (flat, deep):
@@ -110,7 +110,7 @@ def test_every_robot_has_its_own_sensors_and_says_where_they_are_from(name):
 def test_colour_cameras_look_where_their_frames_look():
     """Pepper's upper one ahead, the lower one 40 degrees down; as wide as high in pixels of one size."""
     pepper = load("pepper")
-    ahead = {name: pepper.mounted(name)[:3, 0] for name in ("camera_top", "camera_bottom")}
+    ahead = {name: pepper.sensor_frame(name)[:3, 0] for name in ("camera_top", "camera_bottom")}
     assert ahead["camera_top"] == pytest.approx([1.0, 0.0, 0.0], abs=1e-6)
     assert np.degrees(np.arcsin(-ahead["camera_bottom"][2])) == pytest.approx(40.0, abs=0.01)
     lens = pepper.mount("camera_top").sensor.lens
@@ -120,7 +120,7 @@ def test_colour_cameras_look_where_their_frames_look():
     assert np.degrees(2.0 * np.arctan(0.5 * lens.height / lens.fy)) == pytest.approx(42.5, abs=0.2)
     for name, camera, depth in (("turtlebot2", "kinect_rgb", "kinect_depth"), ("cuybot", "camera", "depth")):
         robot = load(name)
-        assert robot.mounted(camera) == pytest.approx(robot.mounted(depth))
+        assert robot.sensor_frame(camera) == pytest.approx(robot.sensor_frame(depth))
         assert robot.mount(camera).sensor.field_of_view == robot.mount(depth).sensor.field_of_view
 
 
@@ -146,7 +146,7 @@ def test_wheels_measure_what_was_driven_and_lasers_see_bodies_in_the_physics_wor
         last = wheels.measure(world.scene, world.pose(0), last=last)
     assert last.estimate.position[0] == pytest.approx(world.pose(0).position[0], abs=0.01)
     laser = world.robot_bodies[0].robot.mount("laser").sensor
-    scan = laser.measure(world.body_scene().without(0), world.robot_bodies[0].mounted("laser"))
+    scan = laser.measure(world.body_scene().without(0), world.robot_bodies[0].sensor_pose("laser"))
     met = scan.hit[0] == 1
     assert 2 <= met.sum() < 60
     away = world.scene.position[0, 1, 0] - world.scene.position[0, 0, 0]

@@ -258,7 +258,7 @@ def test_goals_led_lie_ahead_as_far_as_the_way_is_long():
     router = Router.of(MAZE, RADIUS)
     scene = Scene.of(places(20, seed=8), goal=places(20, seed=9), external=np.arange(20) == 4)
     ways = router.follow(scene.position, scene.goal)
-    led = router.led(scene)
+    led = router.guide(scene)
     away = led.goal - scene.position
     others = np.arange(20) != 4
     assert np.array_equal(led.goal[:, 4], scene.goal[:, 4])

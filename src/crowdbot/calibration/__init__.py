@@ -4,6 +4,7 @@ from .absolute import Absolute
 from .annealing import Annealing
 from .calibrator import Calibrator
 from .cma_es import CMAES
+from .contract import check_cost
 from .cooling import Cooling, Geometric
 from .cost import Cost
 from .fit import Fit
@@ -46,6 +47,7 @@ __all__ = [
     "Search",
     "SearchResult",
     "WeightedSum",
+    "check_cost",
     "futures",
     "goal_class",
     "goal_for",

@@ -73,15 +73,15 @@ class Annealing(Search):
 
     def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
         """Walk all chains, see :meth:`Search.search`."""
-        first = state.sample_uniform(min(self.chains, state.left))
+        first = state.sample_uniform(min(self.chains, state.remaining))
         population, cost = np.concatenate([population, first]), np.concatenate([cost, state.evaluate(first)])
         population = np.clip(population, state.low, state.high)
         here, energy = _cheapest(population, cost, len(cost), self.chains)
-        here, energy, best, spread = state.drop_finished(here, energy, here[:1], _spread(cost))
+        here, energy, best, spread = state.prune(here, energy, here[:1], _spread(cost))
         step = 0
-        while state.left > 1:
+        while state.remaining > 1:
             there, moved = self._moved(state, here)
-            crowds = np.concatenate([best, there])[: state.left - 1]
+            crowds = np.concatenate([best, there])[: state.remaining - 1]
             measured = state.evaluate(crowds)
             best, _ = own_best(crowds, measured)
             if len(crowds) > self.chains:
@@ -92,10 +92,10 @@ class Annealing(Search):
                 energy = np.where(accepted, measured[1:], energy)
                 if self.exchange and step % self.exchange == 0:
                     here, energy = _cheapest(here, energy, (self.chains + 1) // 2, self.chains)
-            here, energy, best, spread = state.drop_finished(here, energy, best, spread)
-        if state.left:
+            here, energy, best, spread = state.prune(here, energy, best, spread)
+        if state.remaining:
             state.evaluate(best)
-            state.drop_finished()
+            state.prune()
 
     def _moved(self, state: SearchState, here: Floats) -> tuple[Floats, NDArray[np.bool_]]:
         """Return where the chains might go, and whose parameters ``[chains, L, N]`` change."""

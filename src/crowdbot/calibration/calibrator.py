@@ -30,12 +30,14 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Progress = Callable[[float], None]
 Report = Callable[[int], None]
-"""Receives the number of finished evaluations (candidates times windows) of a part."""
+"""Called with the number of finished evaluations (candidates times windows)."""
 
 AGENTS_AT_ONCE = 200_000
-"""About so many agents (candidates x windows x people) are simulated in one batch."""
+"""Approximate number of agents (candidates x windows x people) in one batch."""
+AGENTS_PER_CALL = 20_000
+"""About this many agents (candidates x windows x people x rows) are simulated per call; Ctrl-C waits for one call."""
 CANDIDATES = 100
-"""Searches are expected to try about so many candidates at once."""
+"""Expected number of candidates that a search evaluates at once."""
 
 
 @dataclass(frozen=True)
@@ -81,12 +83,12 @@ class Calibrator:
         if self.budget < 1:
             raise InputError(f"calibration: budget = {self.budget} evaluations must be at least 1")
         if self.shared and self.prior is not None:
-            raise InputError("calibration: a population prior is about each person's own parameters, not shared ones")
+            raise InputError("calibration: a population prior requires individual parameters (shared=False)")
         _ = self.space, self.rollout  # says what is wrong with a name or a number
 
     @property
     def space(self) -> ParameterSpace:
-        """What is calibrated."""
+        """The calibrated parameters."""
         return ParameterSpace(cast(CrowdModel, self.model), tuple(self.free), self.shared)
 
     @property
@@ -107,7 +109,7 @@ class Calibrator:
         progress: Progress | None = None,
         start: Fit | None = None,
     ) -> Fit:
-        """Search the parameters under which the crowd, simulated over the observed rows, is nearest to the recording.
+        """Search the parameters with which the simulated crowd is closest to the observed rows.
 
         Args:
             past: windows of at least two rows; their future is not looked at, unless the goal does. A shared fit may
@@ -123,7 +125,7 @@ class Calibrator:
         if len(pasts) != 1 and not self.shared:
             raise InputError(
                 f"calibration: {len(pasts)} recordings can only be fitted together with shared parameters; "
-                "fit each alone, or say shared=True"
+                "fit each alone, or pass shared=True"
             )
         if self.shared:
             fit = self._fit_all(pasts, stream(seed, "calibrate"), progress)
@@ -134,7 +136,7 @@ class Calibrator:
             where = f"{fit.windows} windows of {', '.join(one.source for one in pasts) or 'no recording'}"
             raise InputError(
                 f"calibration: nobody in {where} can be compared by {kebab_case(type(self.cost).__name__)};"
-                " people must be seen at enough rows, and with others where distances between them count"
+                " people must be observed at enough rows, and with others if the cost compares distances"
             )
         return fit
 
@@ -207,7 +209,7 @@ class Calibrator:
         )
 
     def _starts(self, past: Windows, given: Floats, start: Fit | None) -> Floats:
-        """Return what is tried first ``[S, W, A, D]``: the given values, those of the frame before, typical ones."""
+        """Return the start candidates ``[S, W, A, D]``: given values, those of the previous frame, typical ones."""
         starts = [given]
         if start is not None:
             starts.append(start.values_of(past))
@@ -233,10 +235,19 @@ class _Task:
         self.done = 0
 
     def __call__(self, values: Floats, which: Integers) -> Floats:
-        people = max(1, values.shape[2] * len(which))
-        size = max(1, AGENTS_AT_ONCE // people)
-        chunks = [self._measure(values[first : first + size], which) for first in range(0, len(values), size)]
-        cost = np.concatenate(chunks)
+        T, A = self.resimulation.past.position.shape[1:3]
+        each = np.broadcast_to(values, (len(values), len(which), *values.shape[2:]))
+        largest = max(1, AGENTS_PER_CALL // max(1, A * (T - 1)))
+        length = min(max(1, len(which)), largest)
+        size = max(1, largest // length)
+        chunks = [
+            [
+                self._measure(each[first : first + size, begin : begin + length], which[begin : begin + length])
+                for begin in range(0, max(1, len(which)), length)
+            ]
+            for first in range(0, len(values), size)
+        ]
+        cost = np.concatenate([np.concatenate(row, axis=1) for row in chunks])
         if self.calibrator.prior is not None:
             cost = cost + self.calibrator.prior.penalty(self.space, values, self.given[which])
         self.counted[which] |= np.any(~np.isnan(cost), axis=0)

@@ -62,7 +62,7 @@ class CMAES(Search):
             for row, problem in enumerate(state.live.tolist())
             for person in np.flatnonzero(state.counts[row]).tolist()
         }
-        while state.left:
+        while state.remaining:
             rows = {problem: row for row, problem in enumerate(state.live.tolist())}
             place = np.zeros((self.population + 1, len(rows), *state.best.shape[1:]))
             ours = [(key, (slice(1, None), rows[key[0]], key[1])) for key in optimisers if key[0] in rows]
@@ -71,14 +71,14 @@ class CMAES(Search):
                 place[0][where[1:]] = np.clip(optimiser.mean, 0.0, 1.0)
                 place[where] = [optimiser.ask() for _ in range(self.population)]
             measured = state.evaluate(state.scale_to_box(place))
-            if not state.left:
+            if not state.remaining:
                 break
             for key, where in ours:
                 optimisers[key].tell(list(zip(place[where], measured[where].tolist(), strict=True)))
                 if optimisers[key].should_stop():
                     rng = state.rngs[key[0]]
                     optimisers[key] = self._optimiser(rng.random(len(side)), rng)
-            state.drop_finished()
+            state.prune()
 
     def _optimiser(self, mean: Floats, rng: np.random.Generator) -> Any:
         """Return an optimiser in the unit box that begins at ``mean``."""

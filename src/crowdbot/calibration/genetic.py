@@ -80,19 +80,19 @@ class Genetic(Search):
         population, cost = np.concatenate([population, first]), np.concatenate([cost, state.evaluate(first)])
         population = np.clip(population, state.low, state.high)
         population, cost, age = self._fittest(population, cost, np.zeros_like(cost))
-        population, cost, age = state.drop_finished(population, cost, age)
-        while state.left:
+        population, cost, age = state.prune(population, cost, age)
+        while state.remaining:
             children = self._children(state, population)
             children[0] = population[0]
             measured = state.evaluate(children)
             population, cost = np.concatenate([children, population]), np.concatenate([measured, cost])
             age = np.concatenate([np.zeros_like(measured), age + 1.0])
             population, cost, age = self._fittest(population, cost, age)
-            population, cost, age = state.drop_finished(population, cost, age)
+            population, cost, age = state.prune(population, cost, age)
 
     def _first(self, state: SearchState, start: Floats) -> Floats:
         """Return a first pool: half around the starts, half anywhere."""
-        first = state.sample_uniform(min(self.population, state.left))
+        first = state.sample_uniform(min(self.population, state.remaining))
         near = len(first) // 2
         shape = (near, *first.shape[2:])
         away = state.draw(lambda rng: rng.standard_normal(shape))
@@ -108,7 +108,7 @@ class Genetic(Search):
 
     def _children(self, state: SearchState, population: Floats) -> Floats:
         # The last evaluation is one child, everyone's own best; so the one before leaves it.
-        count = max(1, min(self.population, state.left - 1))
+        count = max(1, min(self.population, state.remaining - 1))
         M, _, N, D = population.shape
         chance = state.draw(lambda rng: rng.random((count, N, 4)))
         rank = (M * chance[..., 0:2] ** PRESSURE).astype(np.int64)

@@ -60,7 +60,7 @@ class Greedy(Search):
         """Visit parameter after parameter, see :meth:`Search.search`."""
         order = self._order(state)
         visit = 0
-        while state.left:
+        while state.remaining:
             present = state.incumbent()
             _, L, _, D = present.shape
             length = state.counts.sum(axis=1) * D
@@ -70,7 +70,7 @@ class Greedy(Search):
             value = present[0, np.arange(L), person, parameter]
             crowds[:, np.arange(L), person, parameter] = self._values(state, value, parameter)
             state.evaluate(crowds)
-            (order,) = state.drop_finished(order)
+            (order,) = state.prune(order)
             visit += 1
 
     def _order(self, state: SearchState) -> Floats:

@@ -82,7 +82,7 @@ class ParameterSpace:
         return np.array([row.high for row in self.table])
 
     def initial_values(self, past: Windows, rollout: Rollout) -> Floats:
-        """Return what people have before a calibration: ``[W, A, D]``; speeds are the observed ones.
+        """Return the values before a calibration, ``[W, A, D]``; speeds are the observed ones.
 
         Raises:
             InputError: a free parameter of the model has one value for each agent already.
@@ -95,7 +95,9 @@ class ParameterSpace:
             if value is None:
                 value = getattr(self.model, row.name)
                 if np.ndim(value) > 0:
-                    raise InputError(f"calibration: {row.name} must be one number before it, not one for each agent")
+                    raise InputError(
+                        f"calibration: {row.name} must be one number before a calibration, not one for each agent"
+                    )
             values[..., column] = value
         return values
 

@@ -40,11 +40,11 @@ class RandomSearch(Search):
     def search(self, state: SearchState, population: Floats, cost: Floats) -> None:
         """Draw and evaluate until one evaluation is left, see :meth:`Search.search`."""
         best, least = own_best(population, cost)
-        while state.left > 1:
-            drawn = state.sample_uniform(min(self.batch, state.left - 1))
+        while state.remaining > 1:
+            drawn = state.sample_uniform(min(self.batch, state.remaining - 1))
             cost = state.evaluate(drawn)
             best, least = own_best(np.concatenate([best, drawn]), np.concatenate([least, cost]))
-            best, least = state.drop_finished(best, least)
-        if state.left:
+            best, least = state.prune(best, least)
+        if state.remaining:
             state.evaluate(best)
-            state.drop_finished()
+            state.prune()

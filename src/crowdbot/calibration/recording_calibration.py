@@ -23,9 +23,9 @@ from .scheme_parts import goal_for
 __all__ = ["CalibrationChunk", "RecordingCalibration"]
 
 PIECES = 8
-"""A recording is cut into at least so many pieces ..."""
+"""Minimum number of chunks of a recording."""
 AGENTS = 2_000
-"""... and into pieces of about so many people of all windows together, so that an interrupted run loses little."""
+"""Approximate number of people in a chunk, summed over its windows; an interrupted run loses at most a chunk."""
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ class Resimulation:
         self.whole = fill_gaps(past)
 
     def resimulate(self, candidate: Candidate, copies: int, which: Integers) -> ResimulatedTracks:
-        """Return what ``copies`` candidates make of the windows ``which``."""
+        """Return the tracks of ``copies`` candidates in the windows ``which``."""
         return ResimulatedTracks(
             self.past[which],
             lambda: self._from_first_row(candidate, copies, which),
@@ -117,7 +117,7 @@ class _Recorded:
     changes: bool
 
     def with_recorded(self, scene: Scene, row: int, index: Integers) -> Scene:
-        """Return the scene with external agents as recorded at ``row``, and without those who have gone for good."""
+        """Return the scene with external agents as recorded at ``row``, and without people who have left."""
         if not self.changes:
             return scene
         here, stays = self.present[index, row], self.last[index] >= row

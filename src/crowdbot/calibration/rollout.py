@@ -17,14 +17,14 @@ __all__ = ["Rollout"]
 Floats = NDArray[np.float64]
 
 HASTE = 1.3
-"""How much faster than they walk people can go (Helbing & Molnár 1995)."""
+"""Maximum speed relative to the walking speed (Helbing & Molnár 1995)."""
 STANDING_HASTE = 2.0
-"""Maximum speed [m/s] of people who stand or stroll: they can still step aside."""
+"""Lower limit of the maximum speed [m/s]: standing people can step aside."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Rollout:
-    """How observed people are simulated; W windows are the environments of one scene.
+    """Simulates observed people; the W windows are the environments of one scene.
 
     Fields:
         model: how they walk; its parameters are numbers or ``[W, A]``.
@@ -51,7 +51,7 @@ class Rollout:
             raise InputError(f"simulation: radius = {radius.min()} m must be finite and above 0")
 
     def scene(self, past: Windows, row: int) -> Scene:
-        """Return everyone at a row of the windows, E = W; who is not simulated from there on is external.
+        """Return the scene at a row of the windows, E = W; people who are not simulated afterwards are external.
 
         The velocity is the one on which the goal is based, at row 0 that towards the next row. Holes in the observed
         tracks are bridged.
@@ -61,7 +61,7 @@ class Rollout:
         """
         if past.units != "m":
             raise InputError(
-                f"{past.source} is in {past.units}: crowd models walk in metres, give the recording a scale"
+                f"{past.source} is in {past.units}: crowd models need metres; pass a scale for the recording"
             )
         whole = fill_gaps(past)
         known = slice_rows(whole, 0, max(row, 1) + 1)
@@ -111,5 +111,5 @@ class Rollout:
 
 
 def set_preferred_speed(scene: Scene, speed: Floats) -> Scene:
-    """Return the scene in which people prefer ``speed`` [E, A] and can go somewhat faster than that."""
+    """Return the scene with the preferred speed ``speed`` [E, A] and a maximum speed above it."""
     return scene.replace(preferred_speed=speed, max_speed=np.maximum(HASTE * speed, STANDING_HASTE))

@@ -42,7 +42,7 @@ def goal_for(name: str, recording: Recording) -> Goal:
     if issubclass(kind, GroundTruth):
         return GroundTruth(*recording.windows)
     if kind.learns:
-        return kind.learn(recording.known)
+        return kind.learn(recording.learning_part)
     return resolve_goal(name)
 
 

@@ -1,4 +1,4 @@
-"""Searches: minimise the cost of a crowd over the parameters of all people, within bounds and a budget of evaluations.
+"""Searches: minimise the cost of a crowd over the parameters of all people, within bounds and an evaluation budget.
 
 A problem is one window of N people with D parameters each. Many problems are searched in lock-step and their
 candidates are simulated as one batch. The result of a problem does not depend on the others.
@@ -23,8 +23,8 @@ __all__ = ["Floats", "Function", "Integers", "Search", "SearchResult", "check_bo
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Function = Callable[[Floats, Integers], Floats]
-"""From candidates ``[P, L, N, D]`` of the problems ``which [L]`` (numbers below W) to what everyone costs,
-``[P, L, N]``, all as one batch; NaN: this person does not count."""
+"""From candidates ``[P, L, N, D]`` of the problems ``which [L]`` (numbers below W) to the cost of each person,
+``[P, L, N]``, as one batch; NaN if a person does not count."""
 
 
 @dataclass(frozen=True)
@@ -92,10 +92,10 @@ class Search(ABC):
         check_box(low, high, budget)
         check_start(start, len(low), len(rngs))
         state = SearchState(function, low, high, rngs, budget, start[0], self.tolerance, self.patience)
-        if state.left:
+        if state.remaining:
             cost = state.evaluate(start)
-            population, cost = state.drop_finished(start[: len(cost)], cost)
-        if state.left:
+            population, cost = state.prune(start[: len(cost)], cost)
+        if state.remaining:
             self.search(state, population, cost)
         return SearchResult(state.best, state.cost, state.evaluations, state.history)
 
@@ -115,11 +115,11 @@ def check_box(low: Floats, high: Floats, budget: int) -> None:
     if budget < 1:
         raise InputError(f"search: budget = {budget} evaluations must be at least 1")
     if low.shape != high.shape or low.ndim != 1 or not np.all(np.isfinite([low, high])):
-        raise InputError(f"search: the box from {low} to {high} must be two lists of as many finite numbers")
+        raise InputError(f"search: the box from {low} to {high} must be two lists of finite numbers of equal length")
     if not len(low):
-        raise InputError("search: the box has no sides; there must be at least one parameter to search")
+        raise InputError("search: the box has no dimensions; at least one parameter must be free")
     if np.any(low > high):
-        raise InputError(f"search: the box is empty, its lower end {low} lies above its upper end {high}")
+        raise InputError(f"search: the box is empty: its lower end {low} is above its upper end {high}")
 
 
 def check_start(start: Floats, dimensions: int, problems: int) -> None:
@@ -130,4 +130,4 @@ def check_start(start: Floats, dimensions: int, problems: int) -> None:
             f" of randomness and D = {dimensions} sides of the box"
         )
     if not np.all(np.isfinite(start)):
-        raise InputError("search: start must be finite, it holds NaN or an infinity")
+        raise InputError("search: start must be finite, but has NaN or infinity")

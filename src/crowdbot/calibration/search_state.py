@@ -52,8 +52,8 @@ class SearchState:
         self._counts: NDArray[np.bool_] = np.ones((W, N), dtype=bool)
 
     @property
-    def left(self) -> int:
-        """How many evaluations each problem that is not done still has; 0 when all are done."""
+    def remaining(self) -> int:
+        """Remaining evaluations of each unfinished problem; 0 if all are finished."""
         return self.budget - self._spent if len(self.live) else 0
 
     def evaluate(self, candidates: Floats) -> Floats:
@@ -67,7 +67,7 @@ class SearchState:
         Raises:
             InputError: the function returns another shape.
         """
-        candidates = candidates[: self.left]
+        candidates = candidates[: self.remaining]
         P, L, N, _ = candidates.shape
         counts = self.counts
         if not counts.all():
@@ -95,8 +95,8 @@ class SearchState:
         self._spent += P
         self.evaluations[live] = self._spent
 
-    def drop_finished(self, *arrays: Floats) -> tuple[Floats, ...]:
-        """Return the arrays ``[_, L, ...]`` with only those problems that are not done, and forget the others."""
+    def prune(self, *arrays: Floats) -> tuple[Floats, ...]:
+        """Remove finished problems, and return the arrays ``[_, L, ...]`` without them."""
         live = self.live
         nobody = ~self.counts.any(axis=1)
         self.cost[live[nobody]] = np.nan
@@ -111,22 +111,22 @@ class SearchState:
 
     @property
     def history(self) -> Floats:
-        """The smallest cost after each evaluation, ``[W, budget]``; the last one goes on."""
+        """Lowest cost after each evaluation, ``[W, budget]``; finished problems repeat the last one."""
         after = np.arange(self.budget) >= self.evaluations[:, None]
         return np.where(after, self.cost[:, None], self._history)
 
     def draw(self, how: Callable[[np.random.Generator], NDArray[Any]]) -> NDArray[Any]:
-        """Return what ``how`` draws for every problem that is not done, ``[P, ...]`` each, along axis 1."""
+        """Return the draws ``[P, ...]`` of ``how`` for every unfinished problem, stacked along axis 1."""
         return np.stack([how(self.rngs[number]) for number in self.live], axis=1)
 
     @property
     def counts(self) -> NDArray[np.bool_]:
-        """Who counts in the problems that are not done, ``[L, N]``."""
+        """Whether each person counts in the unfinished problems, ``[L, N]``."""
         return self._counts[self.live]
 
     @property
     def progress(self) -> float:
-        """The share of the budget that is spent, 0 to 1."""
+        """Share of the budget that is spent, 0 to 1."""
         return self._spent / self.budget
 
     def incumbent(self) -> Floats:
@@ -138,18 +138,18 @@ class SearchState:
         return np.clip(self.low + self.span * place, self.low, self.high)
 
     def fold(self, values: Floats) -> Floats:
-        """Return values mirrored at the sides of the box, and into it."""
+        """Return values reflected at the bounds into the box."""
         side = np.clip(values, self.low, self.high)
         return np.clip(2.0 * side - values, self.low, self.high)
 
     def sample_uniform(self, count: int) -> Floats:
-        """Return ``count`` candidates ``[count, L, N, D]`` that lie uniformly at random in the box."""
+        """Return ``count`` candidates ``[count, L, N, D]`` uniformly at random in the box."""
         shape = (count, *self.best.shape[1:])
         return self.scale_to_box(self.draw(lambda rng: rng.random(shape)))
 
 
 def own_best(population: Floats, cost: Floats) -> tuple[Floats, Floats]:
-    """Return everyone's own best parameters in a pool, together as one candidate ``[1, L, N, D]``.
+    """Return the best parameters of each person in a population, as one candidate ``[1, L, N, D]``.
 
     Nobody's cost is his own alone: what the candidate costs is known when it has been evaluated. Also returned are the
     costs ``[1, L, N]`` that everyone had in his own best candidate.

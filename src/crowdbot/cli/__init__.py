@@ -6,6 +6,7 @@ import argparse
 import contextlib
 import importlib
 import io
+import logging
 import os
 import shlex
 import sys
@@ -50,6 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         options = _parser(words).parse_args(words)
         debug |= options.debug
+        _show_loaded_code()
         status: int = options.main(options)
         sys.stdout.flush()
         return status
@@ -82,6 +84,22 @@ def _open_standard_streams() -> None:
         sys.stderr = sys.stderr or open(2, "w", encoding="utf-8", closefd=False)  # noqa: SIM115
     if isinstance(sys.stdout, io.TextIOWrapper) and sys.stdout.errors == "strict":
         sys.stdout.reconfigure(errors="replace")
+
+
+class _CodeNotices(logging.Handler):
+    """Prints which files code is loaded from, on stderr."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print one line."""
+        print(f"crowdbot: {record.getMessage()}", file=sys.stderr)
+
+
+def _show_loaded_code() -> None:
+    """Let the log of crowdbot appear on stderr."""
+    logger = logging.getLogger("crowdbot")
+    if not any(isinstance(handler, _CodeNotices) for handler in logger.handlers):
+        logger.addHandler(_CodeNotices())
+        logger.setLevel(logging.INFO)
 
 
 def _discard_output() -> None:

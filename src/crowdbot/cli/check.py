@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from crowdbot.core import without_running_code
 from crowdbot.trials import expand_sweeps, trial_remarks
 
 from .output import add_json, print_json
@@ -34,9 +35,10 @@ def main(options: argparse.Namespace) -> int:
     """Check each; status 2 when one is wrong."""
     packages = _packages(options.package)
     found: dict[str, dict[str, Any]] = {}
-    for name in options.names:
-        row = _robot(name, options.trust, packages) if _is_robot(name) else _trial(name, options)
-        found[name] = {"right": not row["problems"], **row}
+    with without_running_code():
+        for name in options.names:
+            row = _robot(name, options.trust, packages) if _is_robot(name) else _trial(name, options)
+            found[name] = {"right": not row["problems"], **row}
     if options.json:
         print_json(found)
     else:

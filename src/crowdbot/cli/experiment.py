@@ -43,6 +43,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="a configuration or an order file of the CrowdBot simulator of 2021",
     )
     new.add_argument("--participant", type=int, metavar="N", help="whose order is imported (default: as configured)")
+    new.add_argument(
+        "--root",
+        type=Path,
+        metavar="DIR",
+        help="project folder of that simulator, searched for files that an imported file names (default: its folder)",
+    )
     for command in (order, summary, new):
         add_json(command)
 
@@ -234,7 +240,7 @@ def _imported(options: argparse.Namespace) -> tuple[str, ...]:
     from crowdbot.core import TrialError
     from crowdbot.experiments import FILE, import_experiment
 
-    done = import_experiment(options.original, participant=options.participant)
+    done = import_experiment(options.original, participant=options.participant, root=options.root)
     texts = {name: trial_xml(trial) for name, trial in done.trials} | {FILE: experiment_xml(done.experiment)}
     options.folder.mkdir(parents=True)
     for name, text in texts.items():

@@ -29,6 +29,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     begin.add_argument("--from", dest="source", metavar="TRIAL", help="a built-in name or a file (default: frontal)")
     begin.add_argument("--import", dest="original", type=Path, metavar="FILE", help="of the CrowdBot simulator of 2021")
     begin.add_argument("--recorded", type=Path, metavar="DATA", help="a recording whose people are the crowd")
+    group.add_argument(
+        "--root",
+        type=Path,
+        metavar="DIR",
+        help="project folder of that simulator, searched for files that an imported file names (default: its folder)",
+    )
     add_settings(group)
     group.add_argument("--explicit", action="store_true", help="write everybody at the beginning as an agent to edit")
     group.add_argument("--seed", type=int, help="seed by which people are placed (default: the trial's own)")
@@ -99,7 +105,7 @@ def _imported(options: argparse.Namespace) -> None:
     from crowdbot.core import TrialError
     from crowdbot.trials import import_original
 
-    done = import_original(options.original)
+    done = import_original(options.original, root=options.root)
     problems: list[str] = []
     for k, (name, trial) in enumerate(done.trials):
         single = len(done.trials) == 1

@@ -8,6 +8,7 @@ from crowdbot.lazy import lazy_exports
 
 from .bodies import STAGE, Bodies, Skins
 from .bounds import Bounds, check_number
+from .class_source import UnreadableValue, reads_only, unread_fields, without_running_code
 from .clock import Clock, ExternalClock, FreeClock, PacedClock
 from .errors import (
     CrowdbotError,
@@ -35,6 +36,7 @@ from .plugin import (
     kebab_case,
     required_fields,
 )
+from .plugin_module import plugin_address, plugin_sources, relative_name, sources_of
 from .pose import MOUNT_HEIGHT, Pose, SpatialPose, Twist, product, wrap_angle
 from .random import stream
 from .scene import PERSON_HEIGHT, Scene
@@ -94,6 +96,7 @@ __all__ = [
     "TrialError",
     "Twist",
     "UnknownName",
+    "UnreadableValue",
     "Walls",
     "attribute_names",
     "attribute_problems",
@@ -120,13 +123,20 @@ __all__ = [
     "parse_number",
     "parse_xml",
     "per_agent",
+    "plugin_address",
+    "plugin_sources",
     "product",
     "read_bytes",
+    "reads_only",
     "reject_entities",
+    "relative_name",
     "release_stale_lock",
     "required_fields",
     "run_saved_jobs",
     "source_digest",
+    "sources_of",
     "stream",
+    "unread_fields",
+    "without_running_code",
     "wrap_angle",
 ]

@@ -1,4 +1,4 @@
-"""Bodies: the shapes that agents and props have in space, beside their discs on the floor."""
+"""Bodies: three-dimensional shapes of agents and props, in addition to their discs in the plane."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 STAGE = -1
-"""Owner of what belongs to the stage and to no agent."""
+"""Owner of shapes that belong to the stage and not to an agent."""
 
 
 @dataclass(frozen=True)
 class Skins:
-    """Triangle skins of posed people and robots, for rays that want them true to the mesh.
+    """Triangle meshes of posed people and robots, for ray casting at mesh accuracy.
 
     Fields:
         vertices: ``[E, V, 3]`` [m]; NaN where a skin is absent.
@@ -38,10 +38,10 @@ class Skins:
 
     @classmethod
     def of(cls, vertices: ArrayLike, faces: ArrayLike, owner: ArrayLike, part: ArrayLike = -1) -> Skins:
-        """Make skins from ``[V, 3]`` or ``[E, V, 3]`` vertices; owner and part may be one for all faces.
+        """Make skins from ``[V, 3]`` or ``[E, V, 3]`` vertices; ``owner`` and ``part`` may be scalars.
 
         Raises:
-            InputError: a shape does not fit or a face names a vertex that is not there.
+            InputError: a shape does not fit, or a face refers to a missing vertex.
 
         >>> Skins.of([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], owner=3).vertices.shape
         (1, 3, 3)
@@ -52,7 +52,9 @@ class Skins:
         if points.ndim != 3 or points.shape[2] != 3:
             raise InputError(f"skins: vertices have shape {list(np.shape(vertices))}, it must be [V, 3] or [E, V, 3]")
         if len(corners) and not 0 <= corners.min() <= corners.max() < points.shape[1]:
-            raise InputError(f"skins: faces name vertex {corners.max()}, there are {points.shape[1]}")
+            raise InputError(
+                f"skins: a face refers to vertex {corners.max()}, but there are {points.shape[1]} vertices"
+            )
         labels = [_labels(name, value, len(corners), "skins") for name, value in (("owner", owner), ("part", part))]
         return cls(points, corners, *labels)
 
@@ -61,7 +63,7 @@ class Skins:
 class Bodies:
     """Limbs, props and skins in E environments: capsules, boxes and upright cylinders, each with its owner.
 
-    What is absent in an environment has radius 0 or a NaN. Owners and parts are shared by all environments.
+    A shape that is absent in an environment has radius 0 or NaN. Owners and parts are shared by all environments.
 
     Fields:
         start, end: ``[E, B, 3]`` [m], ends of the axes of the capsules.
@@ -101,9 +103,9 @@ class Bodies:
 
     @classmethod
     def of(cls, *, parts: tuple[str, ...] = (), skins: Skins | None = None, **arrays: ArrayLike) -> Bodies:
-        """Make bodies from the fields that are there; those of one environment may lack the axis E.
+        """Make bodies from the given fields; the axis E may be left out for one environment.
 
-        Owners are :data:`STAGE` and parts -1 unless given; boxes stand unturned unless ``box_turn`` is given.
+        Defaults: owner :data:`STAGE`, part -1, boxes not rotated.
 
         Raises:
             InputError: a field is unknown or its shape does not fit the others.
@@ -115,7 +117,7 @@ class Bodies:
         count = {_batches(name, value) for name, value in arrays.items() if name in AXES}
         count |= {len(skins.vertices)} if skins is not None else set()
         if len(count - {1}) > 1:
-            raise InputError(f"bodies: the fields are for {sorted(count - {1})} environments, all must be for as many")
+            raise InputError(f"bodies: the fields have {sorted(count - {1})} environments; they must agree")
         environments = max(count, default=1)
         values: dict[str, Any] = {}
         for size, labels, shapes in GROUPS:
@@ -131,20 +133,20 @@ class Bodies:
 
     @property
     def batch(self) -> int:
-        """E."""
+        """Number of environments E."""
         return len(self.start)
 
     def environments(self, index: Ints) -> Bodies:
-        """Return the environments of these indices, one after the other along E."""
+        """Return the environments with these indices along E."""
         arrays: dict[str, Any] = {name: getattr(self, name)[index] for name in AXES}
         skins = None if self.skins is None else dataclasses.replace(self.skins, vertices=self.skins.vertices[index])
         return dataclasses.replace(self, **arrays, skins=skins)
 
-    def staged(self) -> Bodies:
-        """Return only what belongs to the stage.
+    def stage_bodies(self) -> Bodies:
+        """Return only the bodies of the stage.
 
         >>> both = Bodies.of(start=[[0, 0, 0], [1, 0, 0]], end=[[0, 0, 1], [1, 0, 1]], radius=[0.1, 0.1], owner=[4, -1])
-        >>> both.staged().start[0].tolist()
+        >>> both.stage_bodies().start[0].tolist()
         [[1.0, 0.0, 0.0]]
         """
         values: dict[str, Any] = {}
@@ -159,7 +161,7 @@ class Bodies:
         return dataclasses.replace(self, **values, skins=skins)
 
     def digest_bytes(self, active: NDArray[np.bool_]) -> bytes:
-        """Return the bytes of what is there: limbs of agents that are not ``active`` ``[E, A]`` count as zero."""
+        """Return the bytes of all arrays; limbs of agents that are not ``active`` ``[E, A]`` are zeros."""
         found = []
         for _, labels, shapes in GROUPS:
             here = _present(getattr(self, labels[0]), active)
@@ -173,7 +175,7 @@ class Bodies:
 
 
 def _present(owner: Ints, active: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """``[E, B]``, whether the owner is there; the stage always is."""
+    """Return ``[E, B]``, whether the owner is active; the stage always is."""
     agents = active.shape[1]
     inside = (owner >= 0) & (owner < agents)
     if agents == 0:
@@ -194,7 +196,7 @@ GROUPS: tuple[tuple[dict[str, tuple[int, ...]], tuple[str, ...], dict[str, int]]
         {"post_foot": 1, "post_radius": 0, "post_height": 0},
     ),
 )
-"""Of each kind of shape: lengths of the last axes, the labels, and how many axes come after the shapes."""
+"""For each kind of shape: lengths of the last axes, names of the labels, number of axes after the shapes."""
 AXES = {name: vector for _, _, shapes in GROUPS for name, vector in shapes.items()}
 
 

@@ -23,9 +23,9 @@ class Bounds:
         max, exclusive_max: upper end, allowed itself or not.
         whole: whether the number must be whole.
 
-    >>> Bounds("s", exclusive_min=0.0, max=60.0).allowed(), Bounds("m", min=0.0).allowed()
+    >>> Bounds("s", exclusive_min=0.0, max=60.0).describe(), Bounds("m", min=0.0).describe()
     ('above 0 s and at most 60 s', 'finite and at least 0 m, without an upper limit')
-    >>> Bounds(min=1, max=9, whole=True).allowed(), Bounds().allowed()
+    >>> Bounds(min=1, max=9, whole=True).describe(), Bounds().describe()
     ('a whole number of at least 1 and at most 9', 'finite')
     """
 
@@ -46,7 +46,7 @@ class Bounds:
             return False
         return bool(np.all(self._contains(numbers)))
 
-    def allowed(self, high_first: bool = False) -> str:
+    def describe(self, high_first: bool = False) -> str:
         """Return the text that follows ``must be`` in a message, with the upper end first if ``high_first``."""
         low = [f"{word} {self._amount(end)}" for word, end in (("above", self.exclusive_min), ("at least", self.min))
                if end is not None]  # fmt: skip
@@ -99,7 +99,7 @@ def check_number(
     bounds = Bounds(unit, min, exclusive_min, max, exclusive_max, whole)
     if not bounds.holds(value):
         shown = f"{value} {unit}".rstrip()
-        raise InputError(f"{owner}: {name} = {shown} must be {bounds.allowed()}")
+        raise InputError(f"{owner}: {name} = {shown} must be {bounds.describe()}")
 
 
 def _default(value: float | None, other: float) -> float:

@@ -1,6 +1,6 @@
-"""Time has one owner: an integer tick times an exact step in nanoseconds.
+"""Clocks: simulated time is an integer tick times an exact step in nanoseconds.
 
-Nothing else in crowdbot reads the wall clock to decide what happens; :class:`PacedClock` reads it only to wait.
+The wall clock never affects the result of a simulation; :class:`PacedClock` reads it only to wait.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class Clock:
     """Simulated time [s] as ``tick`` times an exact step.
 
     Args:
-        dt: length of one tick [s], positive; rounded to whole nanoseconds.
+        dt: length of one tick [s], 1e-9 to 3600; rounded to whole nanoseconds.
 
     >>> clock = FreeClock(0.1)
     >>> for _ in range(3):
@@ -49,24 +49,24 @@ class Clock:
         return self.nanoseconds / SECOND
 
     def every(self, period: float) -> int:
-        """Return how many ticks make up ``period`` [s]; it must be a whole number of at least 1."""
+        """Return the number of ticks in ``period`` [s]; the period must be a positive multiple of ``dt``."""
         ticks = round(period * SECOND / self.step_ns)
         if ticks < 1 or abs(ticks * self.step_ns - round(period * SECOND)) > 1000:
             raise InputError(f"period {period} s is not a whole number of time steps of {self.dt} s")
         return ticks
 
     def advance(self) -> None:
-        """Go one tick on."""
+        """Advance by one tick."""
         self.tick += 1
 
 
 class FreeClock(Clock):
-    """Runs as fast as the work allows."""
+    """Runs as fast as possible."""
 
 
 @dataclass
 class PacedClock(Clock):
-    """Waits, so that simulated time does not run ahead of ``rate`` times the real time."""
+    """Limits simulated time to ``rate`` times real time by waiting."""
 
     rate: float = 1.0
     _begin: float | None = field(default=None, init=False, repr=False)
@@ -77,7 +77,7 @@ class PacedClock(Clock):
             raise InputError(f"rate {self.rate} of a paced clock must be above 0")
 
     def advance(self) -> None:
-        """Go one tick on, then sleep until it is due."""
+        """Advance by one tick and sleep until it is due."""
         now = time.monotonic()
         if self._begin is None:
             self._begin = now - self.time / self.rate
@@ -88,10 +88,10 @@ class PacedClock(Clock):
 
 
 class ExternalClock(Clock):
-    """Is told the time from outside (ROS, a headset) and says how many whole ticks became due."""
+    """Follows an external time (ROS, a headset) in whole ticks."""
 
     def due(self, nanoseconds: int) -> int:
-        """Return how many ticks lie between now and ``nanoseconds``; time must not run backwards."""
+        """Return the number of ticks until ``nanoseconds``; time must not go backwards."""
         if nanoseconds < self.nanoseconds:
             raise InputError(f"external time went back from {self.nanoseconds} ns to {nanoseconds} ns")
         return nanoseconds // self.step_ns - self.tick

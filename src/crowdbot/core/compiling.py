@@ -1,4 +1,4 @@
-"""Compiling, told: who waits for kernels that have not been compiled yet may hear of it."""
+"""Notification of kernel compilation, which takes time in a first run."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ __all__ = ["notify_compiling"]
 
 
 class _Once(event.Listener):
-    def __init__(self, tell: Callable[[], None]) -> None:
-        self.tell, self.told = tell, False
+    def __init__(self, notify: Callable[[], None]) -> None:
+        self.notify, self.is_done = notify, False
 
     def on_start(self, event: Any) -> None:
-        """Tell of the first function of crowdbot that is compiled; one that the cache holds is not."""
+        """Notify at the first function of crowdbot that is compiled and not loaded from the cache."""
         function = event.data["dispatcher"].py_func
-        if not self.told and str(function.__module__).startswith("crowdbot."):
-            self.told = True
-            self.tell()
+        if not self.is_done and str(function.__module__).startswith("crowdbot."):
+            self.is_done = True
+            self.notify()
 
     def on_end(self, event: Any) -> None:
-        """Say nothing more."""
+        """Do nothing."""
 
 
 @contextlib.contextmanager
-def notify_compiling(tell: Callable[[], None]) -> Iterator[None]:
-    """Call ``tell`` as soon as a kernel has to be compiled, once for as long as the context lasts.
+def notify_compiling(notify: Callable[[], None]) -> Iterator[None]:
+    """Call ``notify`` once, when the first kernel is compiled within the context.
 
     >>> with notify_compiling(lambda: print("one moment")):
     ...     pass
     """
-    with event.install_listener("numba:compile", _Once(tell)):
+    with event.install_listener("numba:compile", _Once(notify)):
         yield

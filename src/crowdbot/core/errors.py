@@ -1,16 +1,16 @@
-"""The errors of crowdbot, as one tree.
+"""Exceptions of crowdbot.
 
     CrowdbotError
-    ├── InputError (ValueError)        something given by the user is wrong
-    │   ├── DataError                  a recording of tracks cannot be read, or holds nothing usable
-    │   ├── TrialError                 a trial file is wrong; carries every problem found
-    │   ├── EpisodeError               a recorded episode cannot be read or does not replay
-    │   ├── RobotError                 a robot (URDF or robot file) is wrong; carries every problem found
-    │   └── UnknownName (LookupError)  a name that no room knows, with what may have been meant
-    └── MissingExtra (ImportError)     an optional part is not installed, with the pip command
+    ├── InputError (ValueError)        invalid input
+    │   ├── DataError                  a recording of tracks cannot be read or has no usable data
+    │   ├── TrialError                 invalid trial file, with all problems
+    │   ├── EpisodeError               a recorded episode cannot be read, or its replay differs
+    │   ├── RobotError                 invalid robot (URDF or robot file), with all problems
+    │   └── UnknownName (LookupError)  unknown name, with a suggestion
+    └── MissingExtra (ImportError)     an optional dependency is not installed, with the pip command
 
-A message is one sentence: what is wrong, its value, where, what is allowed, what to do. The command line prints it
-after ``crowdbot: `` and leaves with status 2.
+A message is one sentence: what is wrong, the value, where, what is allowed. The command line prints it after
+``crowdbot: `` and exits with status 2.
 """
 
 from __future__ import annotations
@@ -33,19 +33,19 @@ __all__ = [
 
 
 class CrowdbotError(Exception):
-    """The root of every error that crowdbot raises on purpose."""
+    """Base class of the exceptions of crowdbot."""
 
 
 class InputError(CrowdbotError, ValueError):
-    """Something given by the user is wrong."""
+    """Invalid input."""
 
 
 class DataError(InputError):
-    """A recording of tracks cannot be read, or holds nothing that can be used."""
+    """A recording of tracks cannot be read or has no usable data."""
 
 
 class TrialError(InputError):
-    """A trial file is wrong. ``problems`` holds every sentence found, in file order."""
+    """Invalid trial file; ``problems`` are all messages in file order."""
 
     def __init__(self, *problems: str) -> None:
         self.problems = problems
@@ -53,7 +53,7 @@ class TrialError(InputError):
 
 
 class RobotError(InputError):
-    """A robot is wrong: its URDF or its robot file. ``problems`` holds every sentence found, in file order."""
+    """Invalid robot (URDF or robot file); ``problems`` are all messages in file order."""
 
     def __init__(self, *problems: str) -> None:
         self.problems = problems
@@ -65,7 +65,7 @@ class EpisodeError(InputError):
 
 
 class UnknownName(InputError, LookupError):
-    """A name that no room knows; ``address`` says whether the address of a class would do as well."""
+    """Unknown name; with ``address`` the message says that the address of a class is accepted too."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str], address: bool = False) -> None:
         known = sorted(known)
@@ -74,14 +74,14 @@ class UnknownName(InputError, LookupError):
 
 
 class MissingExtra(CrowdbotError, ImportError):
-    """An optional part is not installed."""
+    """An optional dependency is not installed."""
 
     def __init__(self, what: str, extra: str) -> None:
         super().__init__(f"{what} needs the extra [{extra}]: pip install 'crowdbot[{extra}]'")
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return ``, did you mean 'x'?`` when a known word is near, otherwise an empty string.
+    """Return ``, did you mean 'x'?`` if a known word is similar, otherwise an empty string.
 
     >>> did_you_mean("kalmann", ["kalman", "orca"])
     ", did you mean 'kalman'?"
@@ -91,7 +91,7 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
 
 def nearest_name(word: str, known: Iterable[str]) -> str:
-    """Return the known word that is near, empty when none is.
+    """Return the most similar known word, or an empty string.
 
     >>> nearest_name("Kalmann", ["kalman", "orca"]), nearest_name("x", ["kalman"])
     ('kalman', '')

@@ -36,7 +36,7 @@ class Parameter:
     max: float | None = None
 
     def bounds(self, largest: float | None = None) -> Bounds:
-        """Return the allowed range; ``largest`` is its upper end if the parameter has none of its own."""
+        """Return the allowed range; ``largest`` is the upper limit if ``max`` is None."""
         highest = largest if self.max is None else self.max
         return Bounds("" if self.unit == "1" else self.unit, min=self.min, max=highest)
 
@@ -75,18 +75,18 @@ def parameters(model: Any) -> tuple[Parameter, ...]:
 
 
 def check_parameters(model: Any, largest: float | None = None) -> None:
-    """Raise :class:`InputError` unless every parameter is allowed.
+    """Raise :class:`InputError` if a parameter is outside its range.
 
     Args:
-        model: with parameters.
-        largest: highest number of a parameter that has none of its own; None: there is no limit.
+        model: an instance with parameters.
+        largest: upper limit of parameters without ``max``; None for no limit.
     """
     for row in parameters(model):
         value, bounds = getattr(model, row.name), row.bounds(largest)
         if not bounds.holds(value):
             raise InputError(
                 f"{type(model).__name__}: {row.name} = {bounds.worst(value)} [{row.unit}] is not allowed,"
-                f" it must be {bounds.allowed()}"
+                f" it must be {bounds.describe()}"
             )
 
 

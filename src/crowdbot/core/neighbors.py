@@ -1,9 +1,8 @@
-"""Neighbours: who is near whom, found once a step and shared by the models.
+"""Neighbour search: the nearest agents of every agent.
 
-The answer does not depend on the way of searching: neighbours come sorted by distance, equal distances by agent index.
-Small crowds are searched by brute force, large ones in a uniform grid that is filled by a counting sort. The grid wraps
-around, so that a few agents far away from all others cost no memory: whoever lands in the same cell by wrapping is
-rejected by distance.
+Neighbours are sorted by distance, then by agent index; the result does not depend on the method. Small crowds are
+searched by brute force, large crowds in a uniform grid that is filled by a counting sort. The grid wraps around: agents
+far away from all others cost no memory, and agents in the same cell by wrapping are rejected by distance.
 """
 
 from __future__ import annotations
@@ -25,19 +24,19 @@ Rows = NDArray[np.int32]
 
 METHODS = ("auto", "brute", "grid")
 CHUNK = 64
-"""Agents that one thread takes at a time."""
+"""Agents in one work item of a thread."""
 SMALL = 512
-"""Up to this many agents one thread does it all: waking the others would take longer than the work (measured)."""
+"""Up to this number of agents one thread is faster than several (measured)."""
 CROWD = 120
-"""From this number of agents on the grid is faster than brute force (measured, both in a batch and alone)."""
+"""From this number of agents the grid is faster than brute force (measured for single crowds and batches)."""
 PER_CELL = 2.0
-"""Agents in one cell, on average."""
+"""Average number of agents in a cell."""
 SPARE = 32
-"""Room for candidates, next to twice those wanted."""
+"""Size of the candidate buffer beyond twice the number of neighbours."""
 GUESS = 0.25
-"""Where the search begins: squared radius per neighbour wanted, in squared widths of a cell."""
+"""Initial squared search radius per neighbour, in squared cell widths."""
 SLACK = 1e-12
-"""Relative width added where rounding could hide a neighbour behind the border of a cell."""
+"""Relative margin against rounding at cell borders."""
 
 
 class _Grid(NamedTuple):
@@ -52,11 +51,11 @@ class _Grid(NamedTuple):
     order: Rows
     """``[E * A]`` rows of the agents, sorted."""
     place: Array
-    """``[E * A, 2]`` their positions [m], NaN for those whom nobody sees."""
+    """``[E * A, 2]`` their positions [m], NaN for invisible agents."""
 
 
 class _Seekers(NamedTuple):
-    """Who looks for neighbours, by row ``e * A + a``."""
+    """Agents that search for neighbours, by row ``e * A + a``."""
 
     place: Array
     reach: Array
@@ -69,8 +68,8 @@ class Neighbors(NamedTuple):
 
     Fields:
         agent: ``[E, A, K]`` int32, agents sorted by distance, then by index; -1 past the end.
-        number: ``[E, A]`` int32, how many of them there are.
-        order: ``[E * A]`` int32, every row ``e * A + a`` once, near ones together, for loops that like warm memory.
+        number: ``[E, A]`` int32, number of neighbours.
+        order: ``[E * A]`` int32, all rows ``e * A + a`` ordered by place, for loops with good memory locality.
     """
 
     agent: Rows
@@ -92,10 +91,10 @@ def nearest(
     Args:
         position: ``[E, A, 2]`` [m].
         reach: neighbours are strictly nearer than this [m]; broadcasts to ``[E, A]``.
-        most: no more than this many, the nearest; broadcasts to ``[E, A]``.
-        seen: who can be a neighbour (active and visible); broadcasts to ``[E, A]``.
-        asking: who needs neighbours; the others get none; broadcasts to ``[E, A]``.
-        method: ``auto``, ``brute`` or ``grid``; the answers are the same.
+        most: maximum number of neighbours; broadcasts to ``[E, A]``.
+        seen: whether an agent can be a neighbour (active and visible); broadcasts to ``[E, A]``.
+        asking: whether an agent needs neighbours; the others get none; broadcasts to ``[E, A]``.
+        method: ``auto``, ``brute`` or ``grid``; the results are equal.
 
     Raises:
         InputError: the method is unknown.
@@ -106,7 +105,7 @@ def nearest(
     """
     if method not in METHODS:
         near = did_you_mean(method, METHODS)
-        raise InputError(f"neighbours cannot be searched by {method!r}{near}; choose {', '.join(METHODS)}")
+        raise InputError(f"unknown neighbour search {method!r}{near}; choose {', '.join(METHODS)}")
     E, A = position.shape[:2]
     seekers = _Seekers(
         np.require(position, np.float64, ["C", "W"]).reshape(E * A, 2),
@@ -131,7 +130,7 @@ def _rows(value: ArrayLike, shape: tuple[int, int], kind: Any) -> NDArray[Any]:
 
 
 def _sorted(seekers: _Seekers, seen: NDArray[np.bool_], E: int, in_cells: bool) -> _Grid:
-    """Sort all agents into cells, or leave them as they are in one large cell per environment."""
+    """Sort all agents into cells, or keep their order in one large cell per environment."""
     rows = len(seen)
     shape, size = np.ones((E, 2), dtype=np.int64), np.full(E, 1e100)
     order = np.arange(rows, dtype=np.int32)
@@ -156,7 +155,7 @@ def _sort(
     first: Rows,
     order: Rows,
 ) -> None:
-    """Sort the agents of every environment by cell (counting sort); the last cell holds all who are not there."""
+    """Sort the agents of every environment by cell (counting sort); the last cell holds the absent agents."""
     E = len(sizes)
     A = len(place) // E
     rest = first.shape[1] - 1
@@ -184,7 +183,7 @@ def _sort(
 
 @kernel
 def _cells(place: Array, there: NDArray[np.bool_], longest: float, cells: int) -> tuple[float, int, int]:
-    """Choose the width of the cells of one environment, and how many there are before the grid wraps around."""
+    """Return cell width [m], columns and rows of the grid of one environment."""
     low_x, high_x, low_y, high_y = math.inf, -math.inf, math.inf, -math.inf
     n = 0
     for i in range(len(place)):
@@ -211,7 +210,7 @@ def _cells(place: Array, there: NDArray[np.bool_], longest: float, cells: int) -
 
 @kernel
 def _wrapped(cell: int, count: int) -> int:
-    """Return ``cell`` modulo ``count``, without a division where it is not needed."""
+    """Return ``cell`` modulo ``count``, without a division if possible."""
     return cell if 0 <= cell < count else cell % count
 
 
@@ -259,7 +258,7 @@ def _look_around(
     first: Rows, e: int, size: float, columns: int, rows: int, order: Rows, points: Array, x: float, y: float,
     own: int, limit2: float, reach2: float, most: int, near: Rows, near2: Array, sorted_: Rows,
 ) -> int:  # fmt: skip
-    """Look at the rows of the grid from the own one outwards, until the next is too far; return how many are held."""
+    """Collect candidates row by row, from the own row outwards until the next is too far; return their number."""
     held = int(np.int64(0))
     inverse = 1.0 / size
     line = math.floor(y * inverse)
@@ -296,7 +295,7 @@ def _look_around(
 
 @kernel
 def _shortened(near: Rows, near2: Array, held: int, most: int, sorted_: Rows) -> tuple[int, float]:
-    """Keep only the nearest of those held; return how many, and the squared distance of the last."""
+    """Keep only the nearest candidates; return their number and the squared distance of the last."""
     _sort_by_distance(near, near2, held, sorted_)
     limit2 = near2[sorted_[most - 1]]
     for n in range(most, held):
@@ -311,9 +310,9 @@ def _shortened(near: Rows, near2: Array, held: int, most: int, sorted_: Rows) ->
 
 @kernel(inline=True)
 def _sort_by_distance(near: Rows, near2: Array, held: int, sorted_: Rows) -> None:
-    """Write where the nearest, the second and so on are held; the smaller agent first where distances are equal.
+    """Write the candidate indices in order of distance, then of agent index.
 
-    Everybody's rank is the number of those nearer, counted with no branch and many at a time.
+    The rank of a candidate is the number of nearer candidates, counted without branches.
     """
     near2[held] = math.inf
     sorted_[: held + 1] = -1
@@ -328,7 +327,7 @@ def _sort_by_distance(near: Rows, near2: Array, held: int, sorted_: Rows) -> Non
 
 @kernel(inline=True)
 def _put(near: Rows, sorted_: Rows, rank: int, i: int) -> None:
-    """Put i at a rank, or behind those of the same distance."""
+    """Insert i at its rank, ordered by agent index among equal distances."""
     while sorted_[rank] >= 0:
         if near[i] < near[sorted_[rank]]:
             i, sorted_[rank] = sorted_[rank], i

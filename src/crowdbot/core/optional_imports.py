@@ -1,4 +1,4 @@
-"""Optional: a library that crowdbot works without until somebody asks for what needs it."""
+"""Imports of optional dependencies."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ __all__ = ["import_optional"]
 
 
 def import_optional(module: str, what: str, extra: str) -> Any:
-    """Return a library of an optional part.
+    """Import an optional dependency.
 
     Args:
-        module: its name.
-        what: cannot be done without it.
-        extra: the part of crowdbot that it is installed with.
+        module: name of the module.
+        what: the feature that needs it, for the message.
+        extra: the extra of crowdbot that installs it.
 
     Raises:
-        MissingExtra: it is not installed.
+        MissingExtra: the module is not installed.
 
     >>> import_optional("nothing_of_this_name", "a dream", "sim")
     Traceback (most recent call last):

@@ -1,18 +1,16 @@
-"""Plugs: from a name or an address to a class, from text attributes to its fields.
+"""Plugins: from a name or an address to a class, from text attributes to its fields.
 
 Built-in names are the classes in a room's ``__all__``, written in kebab-case. Anything else is an address:
-``package.module:Name`` or ``file.py:Name``. The same words work in Python, XML and on the command line.
+``file.py:Name``, ``folder/:Name`` or ``package.module:Name``. The same words work in Python, XML and on the command
+line.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import functools
-import importlib
-import importlib.util
 import inspect
 import re
-import sys
 import types
 import typing
 from collections.abc import Iterable, Mapping
@@ -21,7 +19,12 @@ from typing import Any
 
 import numpy as np
 
+from .class_source import describe_class, reads_only
 from .errors import InputError, UnknownName, did_you_mean
+from .plugin_module import load_plugin_module, plugin_source
+
+SHORTENED = ("Navigator",)
+"""Contracts whose names are left out at the end of a built-in name, since a crowd model may have the same name."""
 
 __all__ = [
     "attribute_names",
@@ -35,8 +38,12 @@ __all__ = [
 ]
 
 
+SHORTENED = ("Navigator",)
+"""Contracts whose names are left out at the end of a built-in name, since a crowd model may have the same name."""
+
+
 def kebab_case(name: str) -> str:
-    """Return a class name as it is written on the command line and in XML.
+    """Return the kebab-case form of a class name, as used on the command line and in XML.
 
     >>> kebab_case("ConstantVelocity"), kebab_case("ORCA"), kebab_case("Lidar2D"), kebab_case("PLEdestrians")
     ('constant-velocity', 'orca', 'lidar2d', 'pledestrians')
@@ -45,14 +52,21 @@ def kebab_case(name: str) -> str:
 
 
 def builtin_name(cls: type, contract: type) -> str:
-    """Return the name of a built-in class: kebab-case, without the name of its contract at the end.
+    """Return the name of a built-in class in kebab-case, of a navigator without ``Navigator`` at its end.
+
+    A class attribute ``builtin_name`` overrides it.
 
     >>> class Navigator: pass
     >>> class ORCANavigator(Navigator): pass
     >>> builtin_name(ORCANavigator, Navigator)
     'orca'
+    >>> class Drive: pass
+    >>> class DifferentialDrive(Drive): pass
+    >>> builtin_name(DifferentialDrive, Drive)
+    'differential-drive'
     """
-    return kebab_case(cls.__name__.removesuffix(contract.__name__) or cls.__name__)
+    short = cls.__name__.removesuffix(contract.__name__) if contract.__name__ in SHORTENED else ""
+    return kebab_case(short or cls.__name__)
 
 
 def builtin_classes(room: types.ModuleType, contract: type) -> dict[str, type]:
@@ -72,40 +86,45 @@ def builtin_classes(room: types.ModuleType, contract: type) -> dict[str, type]:
 def find_class(
     name: str, room: types.ModuleType, contract: type, *, folder: Path | None = None, trust: bool = True
 ) -> type:
-    """Return the class that ``name`` means: a built-in name or an address.
+    """Return the class with a built-in name or an address.
 
     Args:
-        name: ``social-force``, ``SocialForce``, ``package.module:Name`` or ``file.py:Name``.
-        room: the package of the built-in ones.
-        contract: what the class must be.
-        folder: where relative files are looked up (default: the working folder).
-        trust: when False, only files inside ``folder`` are loaded; that is how trials from elsewhere are read.
+        name: ``social-force``, ``SocialForce``, ``file.py:Name``, ``folder/:Name``, ``folder.file:Name`` or
+            ``package.module:Name``.
+        room: package of the built-in classes.
+        contract: base class of the class.
+        folder: folder of relative files and folders (default: the working folder).
+        trust: if False, only code inside ``folder`` is loaded.
 
     Raises:
-        UnknownName: no built-in has this name.
-        InputError: the address cannot be loaded, is not of the contract, or is not trusted.
+        UnknownName: no built-in class has this name.
+        InputError: the address cannot be loaded, is no concrete subclass of ``contract``, or is not trusted.
     """
     known = builtin_classes(room, contract)
-    plain = {key.replace("-", ""): value for key, value in known.items()}
+    plain = {value.__name__.lower(): value for value in known.values()}
+    plain |= {key.replace("-", ""): value for key, value in known.items()}
     short = name.strip().replace("-", "").replace("_", "").lower()
     if short in plain:
         return plain[short]
     if ":" not in name:
-        raise UnknownName(_spoken(contract), name, known, address=True)
+        raise UnknownName(_plain_name(contract), name, known, address=True)
     place, _, attribute = name.rpartition(":")
-    module = _load_file(place, folder or Path.cwd(), trust) if place.endswith(".py") else _load(place, trust)
+    if reads_only():
+        file, attribute = plugin_source(place, attribute, folder or Path.cwd(), trust)
+        return describe_class(file, attribute, contract, name)
+    module, attribute = load_plugin_module(place, attribute, folder or Path.cwd(), trust)
     value = getattr(module, attribute, None)
     if not (inspect.isclass(value) and issubclass(value, contract)) or inspect.isabstract(value):
         here = [n for n, v in vars(module).items() if inspect.isclass(v) and issubclass(v, contract)]
-        raise InputError(f"{name} is not a concrete {contract.__name__}; {place} holds {', '.join(here) or 'none'}")
+        raise InputError(f"{name} is not a concrete {contract.__name__}; {place} defines {', '.join(here) or 'none'}")
     return value
 
 
 def from_attributes(cls: type, attributes: Mapping[str, str], where: str = "") -> Any:
-    """Make an instance of a dataclass from text attributes (kebab-case names allowed).
+    """Return an instance of a dataclass from text attributes; names may be in kebab-case.
 
     Raises:
-        InputError: an attribute is unknown, missing or has a value that its field cannot take.
+        InputError: an attribute is unknown, missing or has an invalid value.
     """
     prefix = f"{where}: " if where else ""
     hints = _hints(cls)
@@ -130,12 +149,12 @@ def from_attributes(cls: type, attributes: Mapping[str, str], where: str = "") -
 
 
 def attribute_problems(cls: type, attributes: Mapping[str, str], also: Iterable[str] = ()) -> dict[str, str]:
-    """Return a sentence for every attribute that is unknown, missing or cannot be converted, not only the first.
+    """Return a message for every attribute that is unknown, missing or invalid.
 
     Args:
         cls: a dataclass.
-        attributes: as :func:`from_attributes` takes them.
-        also: attributes that belong to somebody else and may be what was meant.
+        attributes: the attributes, as for :func:`from_attributes`.
+        also: further attributes of the element, for suggestions.
 
     >>> from crowdbot.core import Paper
     >>> attribute_problems(Paper, {"yeer": "1995", "year": "x", "authors": "a", "title": "t", "venue": "v"})["yeer"]
@@ -161,7 +180,7 @@ def attribute_problems(cls: type, attributes: Mapping[str, str], also: Iterable[
 
 
 def attribute_names(cls: Any) -> list[str]:
-    """Return the attributes that a dataclass takes.
+    """Return the attribute names of a dataclass.
 
     >>> from crowdbot.core import Paper
     >>> attribute_names(Paper)
@@ -219,36 +238,5 @@ def _number(text: str, what: str) -> float:
     return value
 
 
-def _spoken(contract: type) -> str:
+def _plain_name(contract: type) -> str:
     return kebab_case(contract.__name__).replace("-", " ")
-
-
-def _load(place: str, trust: bool) -> types.ModuleType:
-    if not trust:
-        raise InputError(f"the module {place!r} is not loaded from here; pass --trust to allow it")
-    try:
-        return importlib.import_module(place)
-    except ImportError as error:
-        raise InputError(f"the module {place!r} cannot be imported: {error}") from None
-
-
-def _load_file(place: str, folder: Path, trust: bool) -> types.ModuleType:
-    path = (folder / place).resolve()
-    if not trust and not path.is_relative_to(folder.resolve()):
-        raise InputError(f"the file {place!r} lies outside {folder}; pass --trust to allow it")
-    if not path.is_file():
-        raise InputError(f"there is no file {path}")
-    name = f"crowdbot_plug_{path.stem}_{abs(hash(str(path)))}"
-    if name in sys.modules:
-        return sys.modules[name]
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    try:
-        spec.loader.exec_module(module)
-    except Exception as error:
-        del sys.modules[name]
-        raise InputError(f"{path} cannot be loaded: {type(error).__name__}: {error}") from error
-    return module

@@ -1,4 +1,4 @@
-"""Where something is and how it is asked to move: poses in the plane and in space, and twists."""
+"""Poses in the plane and in space, and velocity commands."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["MOUNT_HEIGHT", "Pose", "SpatialPose", "Twist", "wrap_angle"]
 Floats = NDArray[np.float64]
 
 MOUNT_HEIGHT = 0.4
-"""Height [m] above the floor of a sensor whose pose is planar, about that of the scanners of indoor robots."""
+"""Default height [m] of a sensor with a planar pose, typical for laser scanners of indoor robots."""
 
 
 def wrap_angle(angle: float) -> float:
@@ -39,7 +39,7 @@ class Twist(NamedTuple):
 
 @dataclass(frozen=True)
 class Pose:
-    """Positions ``[E, 2]`` [m] and headings ``[E]`` [rad] of one thing in every environment.
+    """Planar pose of one object in every environment: positions ``[E, 2]`` [m] and headings ``[E]`` [rad].
 
     >>> Pose.of((1.0, 2.0), 0.5).position.tolist()
     [[1.0, 2.0]]
@@ -55,14 +55,14 @@ class Pose:
         angle = np.broadcast_to(np.asarray(heading, dtype=np.float64), point.shape[:1]).copy()
         return cls(point, angle)
 
-    def mounted(self, x: float, y: float, heading: float) -> Pose:
-        """Return the pose of a part that sits at ``x``, ``y`` [m] and ``heading`` [rad] in this frame."""
+    def offset(self, x: float, y: float, heading: float) -> Pose:
+        """Return the pose of a part at ``x``, ``y`` [m] and ``heading`` [rad] in this frame."""
         cos, sin = np.cos(self.heading), np.sin(self.heading)
         shift = np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
         return Pose(self.position + shift, self.heading + heading)
 
     def to_spatial(self, z: ArrayLike = MOUNT_HEIGHT, roll: ArrayLike = 0.0, pitch: ArrayLike = 0.0) -> SpatialPose:
-        """Return the pose in space at height ``z`` [m] with ``roll`` and ``pitch`` [rad].
+        """Return the spatial pose at height ``z`` [m] with ``roll`` and ``pitch`` [rad].
 
         >>> Pose.of((1.0, 2.0), 0.5).to_spatial(0.3).position.tolist()
         [[1.0, 2.0, 0.3]]
@@ -73,11 +73,12 @@ class Pose:
 
 @dataclass(frozen=True)
 class SpatialPose:
-    """Positions ``[E, 3]`` [m] and rotations ``[E, 4]`` (unit quaternions w, x, y, z) of one thing in space.
+    """Spatial pose of one object in every environment.
 
-    The frame is that of REP-103: x forward, y left, z up; rotations turn the thing's own frame into the world's.
+    Positions ``[E, 3]`` [m] and rotations ``[E, 4]`` (unit quaternions w, x, y, z) from the frame of the object to the
+    world frame. Axes follow REP-103: x forward, y left, z up.
 
-    >>> ahead = SpatialPose.of((0.0, 0.0, 1.0), yaw=math.pi / 2).mounted(0.2, 0.0, 0.1)
+    >>> ahead = SpatialPose.of((0.0, 0.0, 1.0), yaw=math.pi / 2).offset(0.2, 0.0, 0.1)
     >>> ahead.position.round(12).tolist(), ahead.heading.round(6).tolist()
     ([[0.0, 0.2, 1.1]], [1.570796])
     """
@@ -89,9 +90,9 @@ class SpatialPose:
     def of(
         cls, position: ArrayLike, roll: ArrayLike = 0.0, pitch: ArrayLike = 0.0, yaw: ArrayLike = 0.0
     ) -> SpatialPose:
-        """Make a pose from ``[3]`` or ``[E, 3]`` and angles [rad] about x, then y, then z of the world.
+        """Make a pose from ``[3]`` or ``[E, 3]`` and rotations [rad] about the world axes x, then y, then z.
 
-        Positive ``pitch`` turns the nose down, as in URDF and ROS.
+        Positive ``pitch`` points down, as in URDF and ROS.
         """
         point = np.atleast_2d(np.asarray(position, dtype=np.float64))
         angles = [np.broadcast_to(np.asarray(a, dtype=np.float64), point.shape[:1]) * 0.5 for a in (roll, pitch, yaw)]
@@ -106,7 +107,7 @@ class SpatialPose:
 
     @property
     def matrix(self) -> Floats:
-        """Rotation matrices ``[E, 3, 3]``; the columns are the thing's own axes in the world."""
+        """Rotation matrices ``[E, 3, 3]``; the columns are the axes of the object in the world frame."""
         turn = self.rotation / np.sqrt((self.rotation**2).sum(axis=-1, keepdims=True))
         w, x, y, z = turn.T
         found = np.empty((len(turn), 3, 3))
@@ -117,19 +118,19 @@ class SpatialPose:
 
     @property
     def heading(self) -> Floats:
-        """Where the thing's own x axis points in the plane, ``[E]`` [rad]."""
+        """Direction of the object's x axis in the plane, ``[E]`` [rad]."""
         forward = self.matrix[:, :, 0]
         return np.asarray(np.arctan2(forward[:, 1], forward[:, 0]))
 
     @property
     def planar(self) -> Pose:
-        """The pose seen from above."""
+        """The pose projected to the plane."""
         return Pose(self.position[:, :2].copy(), self.heading)
 
-    def mounted(
+    def offset(
         self, x: float, y: float, z: float = 0.0, roll: float = 0.0, pitch: float = 0.0, yaw: float = 0.0
     ) -> SpatialPose:
-        """Return the pose of a part that sits at ``x``, ``y``, ``z`` [m] in this frame, turned by the angles [rad]."""
+        """Return the pose of a part at ``x``, ``y``, ``z`` [m] in this frame, rotated by the angles [rad]."""
         place = self.position + self.matrix @ np.array([x, y, z])
         part = SpatialPose.of((0.0, 0.0, 0.0), roll, pitch, yaw).rotation
         return SpatialPose(place, product(self.rotation, part))

@@ -1,4 +1,4 @@
-"""Scene: what exists at one instant, as arrays. Models walk in it, sensors look at it, recorders write it."""
+"""Scene: the state of all agents and walls at one instant, as arrays. Models, sensors and recorders read it."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 PERSON_HEIGHT = 1.7
-"""Height [m] of an agent whose height is not given."""
+"""Default height [m] of an agent."""
 WALL_HEIGHT = 3.0
-"""Height [m] of the walls unless given."""
+"""Default height [m] of walls."""
 TURNING_SPEED = 0.05
 """Below this speed [m/s] an agent keeps its heading."""
 
@@ -38,20 +38,19 @@ class Scene:
         heading: ``[E, A]`` [rad], counter-clockwise from +x.
         radius: ``[E, A]`` [m].
         goal: ``[E, A, 2]`` [m].
-        preferred_speed: ``[E, A]`` [m/s], the speed of undisturbed walking.
+        preferred_speed: ``[E, A]`` [m/s], speed of undisturbed walking.
         max_speed: ``[E, A]`` [m/s].
-        active: ``[E, A]``; an absent agent is not active.
-        visible: ``[E, A]``; whether the others react to it.
-        external: ``[E, A]``; moved from outside (a robot, a replayed person): models leave it alone but see it.
-        group: ``[E, A]`` int, people with the same number walk together; -1 walks alone.
+        active: ``[E, A]`` bool, False for an absent agent.
+        visible: ``[E, A]`` bool, whether other agents react to this one.
+        external: ``[E, A]`` bool, True for agents that models see but do not move (a robot, a replayed person).
+        group: ``[E, A]`` int, equal for people who walk together; -1 for none.
         walls: shared by all environments.
-        preferred_velocity: ``[E, A, 2]`` [m/s], or None when it follows from goal and preferred speed.
+        preferred_velocity: ``[E, A, 2]`` [m/s]; None derives it from goal and preferred speed.
         time: [s].
-        memory: what a model keeps from step to step, by name, each ``[E, A, ...]``; most keep nothing.
-        bodies: limbs, props and skins in space as they are at this instant, or None. An agent without limbs is an
-            upright cylinder of its radius.
-        height: ``[E, A]`` [m] of these cylinders, or None for 1.7 m.
-        wall_height: of all walls [m]; rays pass above.
+        memory: state of a model between steps, by name, each ``[E, A, ...]``.
+        bodies: limbs, props and skins at this instant, or None. An agent without limbs is an upright cylinder.
+        height: ``[E, A]`` [m], height of these cylinders; None for 1.7 m.
+        wall_height: height of all walls [m]; rays pass above.
 
     >>> scene = Scene.of([[0.0, 0.0], [4.0, 0.0]], [[1.0, 0.0], [-1.0, 0.0]], goal=[[9.0, 0.0], [-9.0, 0.0]])
     >>> scene.position.shape, float(scene.advance(scene.velocity, 0.5).position[0, 0, 0])
@@ -99,13 +98,13 @@ class Scene:
         height: ArrayLike | None = None,
         wall_height: float = WALL_HEIGHT,
     ) -> Scene:
-        """Make a scene from ``[A, ...]`` or ``[E, A, ...]`` arrays; what is not given takes a default.
+        """Make a scene from ``[A, ...]`` or ``[E, A, ...]`` arrays.
 
-        Defaults: standing; heading along the velocity; the goal is where one stands; ``max_speed`` is 1.3 times the
-        preferred speed (Helbing & Molnar 1995).
+        Defaults: velocity 0; heading along the velocity; goal at the position; ``max_speed`` 1.3 times the preferred
+        speed (Helbing & Molnar 1995).
 
         Raises:
-            InputError: a shape does not fit, a value of an active agent is not finite, a radius is not positive.
+            InputError: a shape does not fit, a value of an active agent is not finite, or a radius is not positive.
         """
         place = _vectors("position", position, None)
         shape = place.shape[:2]
@@ -142,7 +141,7 @@ class Scene:
         return self.position.shape[0], self.position.shape[1]
 
     def check(self) -> None:
-        """Raise :class:`InputError` when a value of an active agent is not finite or has the wrong sign."""
+        """Raise :class:`InputError` if a value of an active agent is not finite or has the wrong sign."""
         for name in ("position", "velocity", "heading", "radius", "goal", "preferred_speed", "max_speed"):
             value = getattr(self, name)[self.active]
             if not np.all(np.isfinite(value)):
@@ -162,7 +161,7 @@ class Scene:
     def desired_velocity(self, dt: float) -> Floats:
         """Return ``[E, A, 2]`` [m/s]: the given preferred velocity, or the preferred speed towards the goal.
 
-        Near the goal the speed is shortened so that a step of ``dt`` [s] does not overshoot.
+        Near the goal the speed is reduced: a step of ``dt`` [s] does not overshoot.
         """
         if self.preferred_velocity is not None:
             return self.preferred_velocity
@@ -174,15 +173,15 @@ class Scene:
     def advance(self, velocity: Floats, dt: float) -> Scene:
         """Return the scene ``dt`` [s] later: velocity first, then position (symplectic Euler).
 
-        External and absent agents do not take the new velocity; external ones drift with their own. Of the bodies
-        only what belongs to the stage stays: who poses people poses them anew.
+        External and absent agents ignore the new velocity; external agents continue with their own. Bodies of agents
+        are dropped, bodies of the stage stay; limbs must be posed again.
         """
         own = self.active & ~self.external
         moved = np.where(own[..., None], velocity, self.velocity)
         speed = np.sqrt(moved[..., 0] ** 2 + moved[..., 1] ** 2)
         turned = np.where(own & (speed > TURNING_SPEED), np.arctan2(moved[..., 1], moved[..., 0]), self.heading)
         place = np.where(self.active[..., None], self.position + moved * dt, self.position)
-        bodies = None if self.bodies is None else self.bodies.staged()
+        bodies = None if self.bodies is None else self.bodies.stage_bodies()
         return dataclasses.replace(
             self, position=place, velocity=moved, heading=turned, time=self.time + dt, bodies=bodies
         )
@@ -192,13 +191,13 @@ class Scene:
         return dataclasses.replace(self, **changes)
 
     def without(self, agent: int) -> Scene:
-        """Return the scene in which ``agent`` is absent, as that agent's own sensors see it."""
+        """Return the scene without ``agent``, as its own sensors see it."""
         active = self.active.copy()
         active[:, agent] = False
         return dataclasses.replace(self, active=active)
 
     def environments(self, chosen: ArrayLike) -> Scene:
-        """Return the environments of the indices ``chosen``, one after the other along E; one may come many times.
+        """Return the environments with the indices ``chosen`` along E; an index may be repeated.
 
         >>> pair = Scene.of(np.zeros((2, 3, 2)))
         >>> pair.environments([1, 0, 1, 1]).shape
@@ -215,7 +214,7 @@ class Scene:
         return dataclasses.replace(self, **arrays, memory=memory, bodies=bodies)
 
     def digest(self) -> str:
-        """Return a hash of every moving array, equal exactly when the bytes are equal."""
+        """Return a hash of position, velocity, heading, activity and bodies; equal bytes give equal hashes."""
         sum_ = hashlib.blake2b(digest_size=16)
         here = self.active[..., None]
         for value in (np.where(here, self.position, 0.0), np.where(here, self.velocity, 0.0)):

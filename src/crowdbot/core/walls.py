@@ -1,4 +1,4 @@
-"""Walls: polygons and lines that people and rays cannot pass, as arrays of edges."""
+"""Walls: polygons and lines that block people and rays, as arrays of edges."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ __all__ = ["Walls"]
 
 @dataclass(frozen=True)
 class Walls:
-    """Directed edges with their neighbours along each ring; solid is on the left of an edge.
+    """Directed edges and their neighbours along each ring; the solid side is on the left of an edge.
 
-    A ring listed counter-clockwise is solid inside; listed clockwise it is a room that people are in; two points
-    make a thin wall with two sides.
+    A counter-clockwise ring is a solid obstacle; a clockwise ring encloses free space; two points are a thin wall with
+    two sides.
 
     Fields:
         start, end: ``[M, 2]`` [m].
-        previous, next: ``[M]`` index of the edge before and after on the same ring.
-        convex: ``[M]`` whether the corner at ``start`` is convex seen from outside the solid.
+        previous, next: ``[M]`` index of the previous and the next edge of the ring.
+        convex: ``[M]`` bool, whether the corner of the solid at ``start`` is convex.
 
     >>> Walls.of([[(0, 0), (2, 0), (2, 1), (0, 1)]]).start.shape
     (4, 2)
@@ -68,7 +68,7 @@ class Walls:
 
     @classmethod
     def around(cls, walkable: Any) -> Walls:
-        """Make walls around a walkable area: a shapely polygon (holes are obstacles) or one ring ``[N, 2]``."""
+        """Make the walls of a walkable area: a shapely polygon (holes are obstacles) or one ring ``[N, 2]``."""
         if hasattr(walkable, "exterior"):
             inside = [_turned(np.asarray(r.coords)[:, :2], clockwise=False) for r in walkable.interiors]
             return cls.of([_turned(np.asarray(walkable.exterior.coords)[:, :2], clockwise=True), *inside])
@@ -79,7 +79,7 @@ class Walls:
         return len(self.start)
 
     def segments(self) -> NDArray[np.float64]:
-        """Return every edge once as ``[N, 4]`` x, y, x, y [m]; a thin wall is one segment."""
+        """Return the edges ``[N, 4]`` as x, y, x, y [m]; a thin wall is one segment."""
         both = np.concatenate([self.start, self.end], axis=1)
         thin = self.previous == self.next
         return np.asarray(both[~thin | (np.arange(len(both)) < self.next)])
@@ -91,7 +91,7 @@ def _rings(polygon: Any) -> list[Any]:
     if hasattr(polygon, "exterior"):
         outer = _turned(np.asarray(polygon.exterior.coords)[:, :2], clockwise=False)
         return [outer, *(_turned(np.asarray(r.coords)[:, :2], clockwise=True) for r in polygon.interiors)]
-    if hasattr(polygon, "coords"):  # an open shapely line: one thin wall a piece
+    if hasattr(polygon, "coords"):  # an open shapely line: one thin wall per piece
         line = np.asarray(polygon.coords)[:, :2]
         return [line[k : k + 2] for k in range(len(line) - 1)]
     return [polygon]

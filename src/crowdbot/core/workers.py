@@ -1,4 +1,4 @@
-"""Independent jobs on several processes of this machine, or on the machines of a Ray cluster."""
+"""Independent jobs on several processes or on a Ray cluster."""
 
 from __future__ import annotations
 
@@ -20,28 +20,27 @@ Job = TypeVar("Job")
 Result = TypeVar("Result")
 
 ATTEMPTS = 3
-"""A job whose process dies is tried so often."""
+"""Attempts at a job whose process dies."""
 
 
 def each(
     function: Callable[[Job], Result], jobs: Sequence[Job], workers: int = 1, cluster: str | None = None
 ) -> Iterator[tuple[int, Result]]:
-    """Yield the number of each job and its result, as they are done.
+    """Yield the index and the result of each job in order of completion.
 
-    A process that is killed loses its own job only, which is tried again. Function, jobs and results must be picklable
-    unless there is one worker.
+    If a process dies, only its job is repeated. Function, jobs and results must be picklable if ``workers`` is above 1.
 
     Args:
-        function: what is done; defined at the top of a module.
+        function: the job; defined at the top level of a module.
         jobs: its arguments.
-        workers: processes; 1 works here, one job after the other.
-        cluster: address of a Ray cluster (``auto`` for the one of this machine's environment); then ``workers`` is how
-            many jobs run at once. It needs ``pip install crowdbot[cluster]``.
+        workers: number of processes; 1 runs the jobs in this process.
+        cluster: address of a Ray cluster (``auto`` for the cluster of this environment); ``workers`` is then the number
+            of simultaneous jobs. Requires ``pip install crowdbot[cluster]``.
 
     Raises:
-        InputError: there is no worker.
+        InputError: ``workers`` is below 1.
         MissingExtra: Ray is not installed.
-        CrowdbotError: a job killed its process again and again.
+        CrowdbotError: the process of a job died in every attempt.
 
     >>> sorted(each(abs, [-3, 4]))
     [(0, 3), (1, 4)]
@@ -64,13 +63,13 @@ def run_saved_jobs(
     workers: int = 1,
     cluster: str | None = None,
 ) -> Iterator[tuple[int, Result]]:
-    """Yield what :func:`each` yields, but what a file keeps is loaded, and what is done is kept in a file.
+    """Yield the same as :func:`each`, and save each result to a file.
 
-    An interrupted run goes on where it was. A file is written whole or not at all.
+    An interrupted run continues: results of existing files are loaded. Files are written atomically.
 
     Args:
-        function, jobs, workers, cluster: as of :func:`each`.
-        files: one for each job, or none to keep nothing.
+        function, jobs, workers, cluster: see :func:`each`.
+        files: one file for each job; empty to save nothing.
         save, load: write and read a result.
     """
     left = [number for number in range(len(jobs)) if not files or not files[number].exists()]
@@ -88,7 +87,7 @@ def run_saved_jobs(
 def _in_processes(function: Callable[[Job], Result], jobs: Sequence[Job], workers: int) -> Iterator[tuple[int, Result]]:
     left = dict(enumerate(jobs))
     for _ in range(ATTEMPTS):
-        with _threads_shared(workers):
+        with _share_threads(workers):
             pool = concurrent.futures.ProcessPoolExecutor(
                 workers, multiprocessing.get_context("spawn"), initializer=_ignore_interrupts
             )
@@ -99,7 +98,7 @@ def _in_processes(function: Callable[[Job], Result], jobs: Sequence[Job], worker
                     result = done.result()
                     del left[running[done]]
                     yield running[done], result
-        except BaseException:  # an interruption, or the caller stops early: do not wait for running jobs
+        except BaseException:  # interrupted, or the caller stops early: do not wait for running jobs
             for process in list((pool._processes or {}).values()):
                 process.terminate()
             raise
@@ -114,13 +113,13 @@ def _in_processes(function: Callable[[Job], Result], jobs: Sequence[Job], worker
 
 
 def _ignore_interrupts() -> None:
-    """Leave Ctrl-C to the main process, which ends this one."""
+    """Ignore Ctrl-C; the main process terminates this one."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 @contextlib.contextmanager
-def _threads_shared(workers: int) -> Iterator[None]:
-    """Let each process that is started here use its share of the processor for compiled kernels."""
+def _share_threads(workers: int) -> Iterator[None]:
+    """Divide the processor cores for compiled kernels among the processes started here."""
     name, before = "NUMBA_NUM_THREADS", os.environ.get("NUMBA_NUM_THREADS")
     os.environ[name] = str(max(1, (os.cpu_count() or 1) // workers))
     try:

@@ -1,7 +1,7 @@
-"""XML from anywhere: a small tree with line numbers, and nothing that a hostile file could use.
+"""Safe XML: a small element tree with line numbers.
 
-Only elements, attributes and short texts are kept. A DOCTYPE is refused where it begins, so that no entity is ever
-declared, expanded or fetched; size, depth and number of elements have limits.
+The tree has elements, attributes and short texts. A DOCTYPE is rejected at its start: no entity is declared, expanded
+or fetched. Size, depth and number of elements are limited.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
-from xml.parsers import expat  # expat alone expands nothing from outside; entities are refused below
+from xml.parsers import expat  # expat loads no external entity; entities are rejected below
 from xml.sax.saxutils import escape, quoteattr
 
 from .errors import InputError
@@ -24,7 +24,7 @@ MOST_DEPTH = 20
 MOST_ELEMENTS = 50_000
 MOST_ATTRIBUTES = 100
 MOST_TEXT = 200
-"""Longest text between tags that is kept; nothing that crowdbot reads is longer."""
+"""Maximum length of the text between tags; longer text is cut."""
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
 Refusal = Callable[[str], InputError]
@@ -32,7 +32,7 @@ Refusal = Callable[[str], InputError]
 
 @dataclass
 class Element:
-    """One element with the line on which it begins; ``stray`` is the text between its tags, cut when long."""
+    """One element with the line of its start tag; ``stray`` is the text between its tags, cut if long."""
 
     tag: str
     attributes: dict[str, str] = field(default_factory=dict)
@@ -41,7 +41,7 @@ class Element:
     stray: str = ""
 
     def each(self, tag: str) -> list[Element]:
-        """Return the child elements of this name.
+        """Return the child elements with this tag.
 
         >>> [inner.line for inner in parse_xml(b"<a><b/><c/>\\n<b/></a>", "t.xml").each("b")]
         [1, 2]
@@ -50,20 +50,20 @@ class Element:
 
 
 def read_bytes(path: Path, what: str = "file", refusal: Refusal = InputError) -> bytes:
-    """Return what a small file holds, one byte more than :func:`parse_xml` takes at the most.
+    """Return the content of a file, at most one byte more than the limit of :func:`parse_xml`.
 
     Args:
         path: the file.
-        what: it is meant to hold, for messages, such as ``trial``.
-        refusal: the error to raise.
+        what: kind of file for messages, such as ``trial``.
+        refusal: class of the error.
 
     Raises:
-        InputError: the file is missing, no file, or unreadable.
+        InputError: the file is missing, is not a regular file, or cannot be read.
     """
     if not path.exists():
         raise refusal(f"there is no {what} file {path}")
     if not path.is_file():
-        raise refusal(f"{path} is not a file; give the {what} file itself")
+        raise refusal(f"{path} is not a file; pass a {what} file")
     try:
         with path.open("rb") as stream:
             return stream.read(MOST_BYTES + 1)
@@ -85,39 +85,38 @@ def parse_xml(
     Args:
         data: the bytes of the file.
         place: name for messages.
-        encoding: of the bytes; None takes what they say themselves.
-        what: the file is meant to be, for messages, such as ``trial``.
-        root: name of the element that it should begin with, for messages.
-        refusal: the error to raise.
+        encoding: of the bytes; None reads it from the XML declaration.
+        what: kind of file for messages, such as ``trial``.
+        root: expected root element, for messages.
+        refusal: class of the error.
 
     Raises:
-        InputError: the text is not XML, or uses what no such file has a need of (DOCTYPE, entities, great depth or
-            size).
+        InputError: the text is not well-formed XML, has a DOCTYPE or entities, or exceeds a limit.
 
     >>> parse_xml(b"<trial><robot name='r'/></trial>", "t.xml").children[0].attributes
     {'name': 'r'}
     """
     if len(data) > MOST_BYTES:
-        raise refusal(f"{place} is larger than {MOST_BYTES} bytes, which no {what} needs to be")
+        raise refusal(f"{place} is larger than {MOST_BYTES} bytes, the limit of a {what}")
     if not data.strip():
         begins = f" with the root element <{root}>" if root else ""
         raise refusal(f"{place} is empty; a {what} is an XML file{begins}")
-    growth = _Growth(place, encoding, what, refusal)
-    _fed(growth.parser, data, place, refusal)
-    return growth.root
+    builder = _TreeBuilder(place, encoding, what, refusal)
+    _feed(builder.parser, data, place, refusal)
+    return builder.root
 
 
 def reject_entities(data: bytes, place: str, refusal: Refusal = InputError) -> None:
-    """Raise unless the bytes are well-formed XML without DOCTYPE and entities, of any size.
+    """Raise an error unless the bytes are well-formed XML, of any size, without DOCTYPE and entities.
 
-    For files that a library will read afterwards, such as COLLADA meshes.
+    For files that another library reads afterwards, such as COLLADA meshes.
     """
-    growth = _Growth(place, None, "mesh", refusal)
-    growth.parser.StartElementHandler = growth.parser.EndElementHandler = growth.parser.CharacterDataHandler = None
-    _fed(growth.parser, data, place, refusal)
+    builder = _TreeBuilder(place, None, "mesh", refusal)
+    builder.parser.StartElementHandler = builder.parser.EndElementHandler = builder.parser.CharacterDataHandler = None
+    _feed(builder.parser, data, place, refusal)
 
 
-def _fed(parser: Any, data: bytes, place: str, refusal: Refusal) -> None:
+def _feed(parser: Any, data: bytes, place: str, refusal: Refusal) -> None:
     try:
         parser.Parse(data, True)
     except expat.ExpatError as error:
@@ -129,8 +128,8 @@ def _fed(parser: Any, data: bytes, place: str, refusal: Refusal) -> None:
         raise refusal(f"{place}: this is not well-formed XML: {error}") from None
 
 
-class _Growth:
-    """The tree while expat reads it."""
+class _TreeBuilder:
+    """Builds the tree from the events of expat."""
 
     def __init__(self, place: str, encoding: str | None, what: str, refusal: Refusal) -> None:
         self.place, self.what, self.refusal = place, what, refusal
@@ -178,10 +177,10 @@ class _Growth:
 
 
 def parse_number(text: str, otherwise: str = "is not a number") -> float:
-    """Return the finite number that a text is, in the plain notation ``-1.5e-3``.
+    """Return the finite number in a text, in plain notation such as ``-1.5e-3``.
 
     Raises:
-        InputError: it is none.
+        InputError: the text is not a finite number.
 
     >>> parse_number(" -1.5e-3 ")
     -0.0015
@@ -198,7 +197,7 @@ def parse_number(text: str, otherwise: str = "is not a number") -> float:
 
 
 def format_xml(root: Element) -> str:
-    """Return the tree as an XML text, one element a line.
+    """Return the tree as XML text with one element per line.
 
     >>> print(format_xml(Element("trial", {"name": "a & b"}, [Element("stage")])), end="")
     <?xml version="1.0" encoding="UTF-8"?>

@@ -1,5 +1,6 @@
 """Floor 1: recordings of people, read, cut into windows and written; and forecasts of where they go."""
 
+from .example import example_windows
 from .file_formats import FORMATS, load
 from .forecast import Forecast
 from .mcap_reader import MCAP_MAGIC, McapError, McapOpcode, McapReader, has_summary, read_attachment
@@ -26,6 +27,7 @@ __all__ = [
     "RowRateError",
     "Trajectories",
     "Windows",
+    "example_windows",
     "fill_gaps",
     "has_summary",
     "load",

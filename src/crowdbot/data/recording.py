@@ -60,7 +60,7 @@ class Recording:
         return _tracks(self)
 
     @property
-    def known(self) -> Trajectories:
+    def learning_part(self) -> Trajectories:
         """The part for learning."""
         if self.learn == 0.0:
             raise InputError(

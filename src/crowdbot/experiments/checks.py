@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core import InputError, TrialError
-from crowdbot.trials import readable, told
+from crowdbot.trials import readable, skip_unreadable
 
 from .experiment import Block, Experiment, Screen, TrialEntry
 from .page import page_of
@@ -42,8 +42,8 @@ def problems_of(things: Iterable[Any], folder: Path | None, trust: bool) -> list
         trust: whether trials may lie, and load code from, elsewhere.
     """
     things = list(things)
-    found = [*told(*(check for thing in things for check in _problems(thing)))]
-    found += told(*(_shown(thing, folder) for thing in things if isinstance(thing, Screen)))
+    found = [*skip_unreadable(*(check for thing in things for check in _problems(thing)))]
+    found += skip_unreadable(*(_shown(thing, folder) for thing in things if isinstance(thing, Screen)))
     entries = [thing for thing in things if isinstance(thing, TrialEntry)]
     sources = readable(entries, "source")
     read = {source: _trial(source, folder, trust) for source in dict.fromkeys(source for _, source in sources)}

@@ -31,7 +31,9 @@ class ImportedExperiment:
     left_out: tuple[str, ...]
 
 
-def import_experiment(path: str | Path, *, participant: int | None = None) -> ImportedExperiment:
+def import_experiment(
+    path: str | Path, *, participant: int | None = None, root: str | Path | None = None
+) -> ImportedExperiment:
     """Read an experiment of the original simulator.
 
     Two orders for odd and even participants (``{TWO}``), or any that make the rows of a Williams square, become a Latin
@@ -41,11 +43,12 @@ def import_experiment(path: str | Path, *, participant: int | None = None) -> Im
     Args:
         path: of a configuration (root element ``Config``) or of an order file.
         participant: whose order is taken; None takes the one that the configuration names.
+        root: folder of the simulator's project, as in :func:`crowdbot.trials.import_original`.
 
     Raises:
         TrialError: the file is missing, hostile, neither of these, or not one of its trials can be read.
     """
-    plan = plan_of(path)
+    plan = plan_of(path, root)
     user = plan.user if participant is None else participant
     rows, notes = trials_of(plan, user)
     names = _names([entry for entry, _ in rows])

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from crowdbot.core import kernel
 
 from .feet import Gaits
-from .turns import about, cross, framed, unit
+from .turns import about, align_frame, cross, unit
 
 __all__ = ["pose_arm"]
 
@@ -136,13 +136,13 @@ def pose_arm(
         unit(hinge)
         elbow += share * (bend - elbow)
         twist += share * ((0.3 if phone >= resting else 1.3) - twist)
-    framed(frame[4 + side], axis, hinge, R[first])
+    align_frame(frame[4 + side], axis, hinge, R[first])
     about(hinge, elbow, axis, lower)
-    framed(frame[6 + side], lower, hinge, R[first + 1])
+    align_frame(frame[6 + side], lower, hinge, R[first + 1])
     about(lower, sign * 0.5 * twist, hinge, hinge2)
-    framed(frame[6 + side], lower, hinge2, R[first + 1])
+    align_frame(frame[6 + side], lower, hinge2, R[first + 1])
     about(lower, sign * twist, hinge, hinge2)
-    framed(frame[6 + side], lower, hinge2, R[first + 2])
+    align_frame(frame[6 + side], lower, hinge2, R[first + 2])
     cross(lower, hinge2, axis)
     unit(axis)
     busy = g.blend[i, 4] + (g.blend[i, 2] + g.blend[i, 3] if side == RIGHT else 0.0)
@@ -151,4 +151,4 @@ def pose_arm(
     for joint in range(2):
         about(axis, curl, lower, lower)
         about(axis, curl, hinge2, hinge2)
-        framed(frame[6 + side], lower, hinge2, R[first + 3 + joint])
+        align_frame(frame[6 + side], lower, hinge2, R[first + 3 + joint])

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 
-from .stride import LANDED, STRIKE, TIPPING, ankle_over, cycle, foot_pose, smooth, wrapped
+from .stride import LANDED, STRIKE, TIPPING, ankle_over, cycle, foot_pose, smooth, wrap_angle
 
 __all__ = ["Gaits", "advance", "foot_now"]
 
@@ -103,7 +103,7 @@ def _wrong(g: Gaits, i: int, f: int, style: Floats, leg: float) -> float:
     home = np.empty(3)
     _home(g, i, f, g.position[i, 0], g.position[i, 1], g.yaw[i], style, leg, home)
     away = math.sqrt((g.foot[i, f, 0] - home[0]) ** 2 + (g.foot[i, f, 1] - home[1]) ** 2)
-    return float(max(away / 0.12, abs(wrapped(g.foot[i, f, 2] - home[2])) / 0.61))
+    return float(max(away / 0.12, abs(wrap_angle(g.foot[i, f, 2] - home[2])) / 0.61))
 
 
 @kernel
@@ -198,12 +198,12 @@ def _begin(g: Gaits, i: int, support: float, style: Floats, leg: float) -> None:
 def _pivot(g: Gaits, i: int, f: int, at: float) -> None:
     """Turn a planted foot when the trunk has turned further than a leg twists, about the point ``at`` [m] ahead."""
     foot = g.foot[i, f]
-    wrong = wrapped(g.yaw[i] - foot[2])
+    wrong = wrap_angle(g.yaw[i] - foot[2])
     turn = wrong - TWIST if wrong > TWIST else min(wrong + TWIST, 0.0)
     if turn == 0.0:
         return
     x, y = foot[0] + at * math.cos(foot[2]), foot[1] + at * math.sin(foot[2])
-    foot[2] = wrapped(foot[2] + turn)
+    foot[2] = wrap_angle(foot[2] + turn)
     foot[0], foot[1] = x - at * math.cos(foot[2]), y - at * math.sin(foot[2])
 
 
@@ -215,7 +215,7 @@ def _haste(g: Gaits, i: int, leg: float) -> float:
         if g.planted[i, f] > 0.0:
             away = math.sqrt((g.foot[i, f, 0] - g.position[i, 0]) ** 2 + (g.foot[i, f, 1] - g.position[i, 1]) ** 2)
             most, sum_ = max(most, away / leg), sum_ + away / leg
-            twist = max(twist, abs(wrapped(g.foot[i, f, 2] - g.yaw[i])))
+            twist = max(twist, abs(wrap_angle(g.foot[i, f, 2] - g.yaw[i])))
     stretch = max(most, 0.72 * sum_)  # stays below 0.75 in a steady walk
     if stretch > LOST:
         return -1.0
@@ -298,10 +298,10 @@ def _follow(g: Gaits, i: int, velocity: Floats, heading: float, h: float) -> Non
     g.drift[i, 0] = velocity[0] + keep * (g.drift[i, 0] - velocity[0])
     g.drift[i, 1] = velocity[1] + keep * (g.drift[i, 1] - velocity[1])
     free = 1.0 - smooth(g.blend[i, SITTING])  # who sits turns as the seat does
-    rate = wrapped(heading - g.yaw[i]) * (1.0 - free * math.exp(-h / TURN_LAG)) / h
+    rate = wrap_angle(heading - g.yaw[i]) * (1.0 - free * math.exp(-h / TURN_LAG)) / h
     limit = TURN_LIMIT / max(free, 1e-6)
     rate = min(max(rate, -limit), limit)
-    g.yaw[i] = wrapped(g.yaw[i] + rate * h)
+    g.yaw[i] = wrap_angle(g.yaw[i] + rate * h)
     g.turn[i] = rate + keep * (g.turn[i] - rate)
     g.clock[i] += h
     sum_ = 0.0

@@ -198,7 +198,7 @@ def posing_and_skinning(count: int = 100, level: int = 2) -> Callable[[], Floats
     (3, 447, 3)
     """
     draw = stream(0, "posing and skinning", count)
-    gait = Gait(People.drawn(count, draw))
+    gait = Gait(People.sample(count, draw))
     heading = draw.uniform(-np.pi, np.pi, count)
     velocity = 1.3 * np.stack([np.cos(heading), np.sin(heading)], axis=1)
     state = gait.start(draw.uniform(0.0, 30.0, (count, 2)), heading, velocity)

@@ -1,4 +1,4 @@
-"""Limbs: 17 capsules fitted to every body, with masses and body regions."""
+"""Limbs: 17 capsules rest_capsules to every body, with masses and body regions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from crowdbot.core import Paper
 from .asset import Shapes, shapes
 from .person import persons
 
-__all__ = ["LIMBS", "REGIONS", "Limb", "fitted", "mass_shares"]
+__all__ = ["LIMBS", "REGIONS", "Limb", "mass_shares", "rest_capsules"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -101,7 +101,7 @@ def mass_shares(sex: str) -> Floats:
 
 
 @functools.cache
-def fitted() -> Floats:
+def rest_capsules() -> Floats:
     """Return the capsules of every body at rest, ``[P, L, 7]``: start, end, radius [m].
 
     Every capsule has the least squared distance of its surface to the skin that it stands for (finest level of detail,

@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 from crowdbot.core import InputError
 
 from .asset import LEVELS, shapes
-from .limbs import LIMBS, fitted, mass_shares
+from .limbs import LIMBS, mass_shares, rest_capsules
 from .measures import Measures, measures
 from .person import Person, drawable, person
 from .posture import Posture
-from .skin import skinned
+from .skin import skin_vertices
 from .wardrobe import Outfit, outfit, region_colors, worn_parts
 
 __all__ = ["Capsules", "People"]
@@ -80,7 +80,7 @@ class People:
         return cls(found, number.astype(np.int64), tall.copy())
 
     @classmethod
-    def drawn(cls, count: int, rng: np.random.Generator, kinds: Sequence[str] = ("man", "woman")) -> People:
+    def sample(cls, count: int, rng: np.random.Generator, kinds: Sequence[str] = ("man", "woman")) -> People:
         """Return ``count`` persons, drawn by ``rng`` with their outfits.
 
         Args:
@@ -135,7 +135,7 @@ class People:
     def limbs(self, posture: Posture) -> Capsules:
         """Return the capsules of everyone in the world."""
         bones = [shapes().bone(limb.bone) for limb in LIMBS]
-        rest = fitted()[self.body] * self.scale[:, None, None]
+        rest = rest_capsules()[self.body] * self.scale[:, None, None]
         turn, place = posture.rotation[:, bones], posture.position[:, bones]
         head = self.measures.head[:, bones]
 
@@ -151,7 +151,7 @@ class People:
             posture: of the same people.
             level: of detail, 0 (4198 vertices) to 2 (447 vertices).
         """
-        return skinned(
+        return skin_vertices(
             shapes().levels[_level(level)],
             self.body,
             self.scale,
@@ -164,7 +164,7 @@ class People:
         """Return the triangles ``[F, 3]`` as indices of vertices, counter-clockwise seen from outside."""
         return shapes().levels[_level(level)].faces
 
-    def worn(self, level: int = 2) -> NDArray[np.bool_]:
+    def clothing_mask(self, level: int = 2) -> NDArray[np.bool_]:
         """Return ``[N, F]``, whether the triangle belongs to what the person wears."""
         part = shapes().levels[_level(level)].face_part
         return np.array([np.isin(part, worn_parts(o)) for o in self.outfits]).reshape(len(self), len(part))

@@ -15,7 +15,7 @@ from .asset import shapes
 from .feet import Gaits, foot_now
 from .measures import Measures
 from .stride import STRIKE, ankle_over, cycle, smooth
-from .turns import about, cross, framed, turn_zxy, unit
+from .turns import about, align_frame, cross, turn_zxy, unit
 
 __all__ = ["Posture", "posture"]
 
@@ -155,9 +155,9 @@ def _leg(
     at_hip = math.acos(min(max((thigh**2 + reach**2 - shank**2) / (2.0 * thigh * reach), -1.0), 1.0))
     at_ankle = math.acos(min(max((shank**2 + reach**2 - thigh**2) / (2.0 * shank * reach), -1.0), 1.0))
     about(hinge, -at_hip, axis, turned)
-    framed(frame[f], turned, hinge, R[bone])
+    align_frame(frame[f], turned, hinge, R[bone])
     about(hinge, at_ankle, axis, turned)
-    framed(frame[2 + f], turned, hinge, R[bone + 1])
+    align_frame(frame[2 + f], turned, hinge, R[bone + 1])
     turn_zxy(foot[3], 0.0, foot[4], R[bone + 2])
     turn_zxy(foot[3], 0.0, foot[5], R[bone + 3])
 

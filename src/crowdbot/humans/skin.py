@@ -9,7 +9,7 @@ from crowdbot.core import kernel
 
 from .asset import Level
 
-__all__ = ["skinned"]
+__all__ = ["skin_vertices"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -38,7 +38,7 @@ def _skin(
             out[i, v, 0], out[i, v, 1], out[i, v, 2] = sx, sy, sz
 
 
-def skinned(level: Level, body: Ints, scale: Floats, head: Floats, rotation: Floats, position: Floats) -> Floats:
+def skin_vertices(level: Level, body: Ints, scale: Floats, head: Floats, rotation: Floats, position: Floats) -> Floats:
     """Return the vertices ``[N, V, 3]`` [m] of posed people.
 
     Args:

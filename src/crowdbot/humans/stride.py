@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 
-__all__ = ["LANDED", "STRIKE", "ankle_over", "cycle", "foot_pose", "lowest", "smooth", "wrapped"]
+__all__ = ["LANDED", "STRIKE", "ankle_over", "cycle", "foot_pose", "lowest", "smooth", "wrap_angle"]
 
 Floats = NDArray[np.float64]
 RESTING_CYCLE = 1.15
@@ -49,7 +49,7 @@ def smooth(x: float) -> float:
 
 
 @kernel
-def wrapped(angle: float) -> float:
+def wrap_angle(angle: float) -> float:
     """Return the angle [rad] in -pi to pi."""
     return angle - 2.0 * math.pi * math.floor((angle + math.pi) / (2.0 * math.pi))
 
@@ -142,7 +142,7 @@ def foot_pose(
     pushed = start - 0.7 * s * s * (1.0 - s)
     out[0] = lift[0] + over * (goal[0] + ahead * math.cos(goal[2]) - lift[0]) + pushed * push_x
     out[1] = lift[1] + over * (goal[1] + ahead * math.sin(goal[2]) - lift[1]) + pushed * push_y
-    out[3] = lift[3] + over * wrapped(goal[2] - lift[3])
+    out[3] = lift[3] + over * wrap_angle(goal[2] - lift[3])
     pitch = lift[4] * (1.0 - smooth(s / 0.75)) - next_strike * smooth((s - 0.45) / 0.5)
     out[4] = pitch
     out[5] = lift[5] + (pitch - lift[5]) * smooth(s / 0.4)

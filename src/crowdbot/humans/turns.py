@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import kernel
 
-__all__ = ["about", "cross", "framed", "turn_zxy", "unit"]
+__all__ = ["about", "align_frame", "cross", "turn_zxy", "unit"]
 
 Floats = NDArray[np.float64]
 
@@ -53,7 +53,7 @@ def about(axis: Floats, angle: float, a: Floats, out: Floats) -> None:
 
 
 @kernel
-def framed(frame: Floats, axis: Floats, hinge: Floats, out: Floats) -> None:
+def align_frame(frame: Floats, axis: Floats, hinge: Floats, out: Floats) -> None:
     """Write the rotation that brings the rest frame (rows axis, hinge, their product) onto ``axis`` and ``hinge``."""
     for r in range(3):
         third = axis[(r + 1) % 3] * hinge[(r + 2) % 3] - axis[(r + 2) % 3] * hinge[(r + 1) % 3]

@@ -1,7 +1,7 @@
 """Metrics: errors, likelihood and collisions of forecasts, and navigation metrics of robots among people."""
 
 from .agent_states import AgentStates
-from .collisions import accompanied, collided, collision_share
+from .collisions import collision_mask, collision_share, neighbor_mask
 from .contact_tracker import ContactTracker
 from .contacts import ContactEvent, cause_of, contact_events
 from .displacement import ade, best_of, distances, fde, miss_rate
@@ -38,13 +38,12 @@ __all__ = [
     "NavigationOutcome",
     "PersonErrors",
     "Score",
-    "accompanied",
     "ade",
     "best_of",
     "bootstrap_interval",
     "cause_of",
     "clearance",
-    "collided",
+    "collision_mask",
     "collision_share",
     "contact_events",
     "distances",
@@ -64,6 +63,7 @@ __all__ = [
     "mode_shares",
     "navigation_metrics",
     "nearest_neighbor_accuracy",
+    "neighbor_mask",
     "outcome",
     "path_efficiency",
     "path_length",

@@ -10,7 +10,7 @@ from crowdbot.data import Forecast, Windows
 
 from .displacement import check
 
-__all__ = ["CONTACT", "accompanied", "collided", "collision_share"]
+__all__ = ["CONTACT", "collision_mask", "collision_share", "neighbor_mask"]
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -22,7 +22,7 @@ PAIRS_AT_ONCE = 500_000
 """So many distances of pairs are held at once, however many samples there are."""
 
 
-def collided(forecast: Forecast, future: Windows, limit: float = CONTACT, neighbors: str = "predicted") -> Bools:
+def collision_mask(forecast: Forecast, future: Windows, limit: float = CONTACT, neighbors: str = "predicted") -> Bools:
     """Return ``[W, K, A]``: scored people who come closer than ``limit`` [m], centre to centre, to another at any step.
 
     A step counts while both are truly still there; between steps nothing is looked at. Samples that weigh nothing
@@ -44,7 +44,7 @@ def collided(forecast: Forecast, future: Windows, limit: float = CONTACT, neighb
     W, K, _, A, _ = forecast.position.shape
     hit = np.zeros((W, K, A), dtype=np.bool_)
     for window in np.flatnonzero(
-        accompanied(future, neighbors).any(axis=1)
+        neighbor_mask(future, neighbors).any(axis=1)
     ):  # one by one: most padded pairs are nobody
         here = future.present[window]
         who = np.flatnonzero(future.scored[window])
@@ -66,14 +66,14 @@ def collision_share(forecast: Forecast, future: Windows, limit: float = CONTACT,
     It is a mean over the people of :func:`accompanied` and, by their weight, over the samples; NaN when nobody has
     company. What counts as a neighbour is said at :func:`collided`.
     """
-    together = accompanied(future, neighbors)
-    hit = collided(forecast, future, limit, neighbors)
+    together = neighbor_mask(future, neighbors)
+    hit = collision_mask(forecast, future, limit, neighbors)
     if not np.any(together):
         return float("nan")
     return float(mean_over_samples(forecast, hit)[together].mean())
 
 
-def accompanied(future: Windows, neighbors: str = "predicted") -> Bools:
+def neighbor_mask(future: Windows, neighbors: str = "predicted") -> Bools:
     """Return ``[W, A]``: scored people who have somebody to collide with.
 
     With ``predicted`` neighbours these are the people of windows with at least two scored ones, with ``true``

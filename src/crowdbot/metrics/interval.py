@@ -71,7 +71,7 @@ class PersonValues:
         return cls(known, np.stack(total, axis=1), np.stack(count, axis=1))
 
     @classmethod
-    def joined(cls, parts: Sequence[PersonValues]) -> PersonValues:
+    def concatenate(cls, parts: Sequence[PersonValues]) -> PersonValues:
         """Return the people of several recordings together: nobody is in two of them."""
         arrays = ([getattr(part, name) for part in parts] for name in ("id", "total", "count"))
         return cls(*map(np.concatenate, arrays))

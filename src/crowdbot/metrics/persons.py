@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from crowdbot.data import Forecast, Windows
 
-from .collisions import accompanied, collided, mean_over_samples
+from .collisions import collision_mask, mean_over_samples, neighbor_mask
 from .displacement import best_of, chosen_sample, distances, mean_and_final
 from .energy import energy_score
 from .likelihood import kde_nll
@@ -59,7 +59,7 @@ class PersonErrors:
         return np.where(count > 0, total / np.maximum(count, 1), np.nan)
 
     @classmethod
-    def joined(cls, parts: list[PersonErrors]) -> PersonErrors:
+    def concatenate(cls, parts: list[PersonErrors]) -> PersonErrors:
         """Return the people of several parts of one recording, in order."""
         return cls(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(cls)))
 
@@ -71,7 +71,9 @@ def person_errors(forecast: Forecast, future: Windows, rule: str = "person") -> 
     best = best_of(ade, fde, rule)
     who = future.scored
     kept = np.swapaxes(_followed(distance, ade, rule), 1, 2)
-    hit = [mean_over_samples(forecast, collided(forecast, future, neighbors=word)) for word in ("predicted", "true")]
+    hit = [
+        mean_over_samples(forecast, collision_mask(forecast, future, neighbors=word)) for word in ("predicted", "true")
+    ]
     few = forecast.samples <= MOST_FOR_ENERGY
     return PersonErrors(
         person=future.id[who],
@@ -80,9 +82,9 @@ def person_errors(forecast: Forecast, future: Windows, rule: str = "person") -> 
         distance=kept[who],
         exists=np.swapaxes(counted, 1, 2)[who],
         collided=hit[0][who],
-        together=accompanied(future)[who],
+        together=neighbor_mask(future)[who],
         true_collided=hit[1][who],
-        accompanied=accompanied(future, "true")[who],
+        accompanied=neighbor_mask(future, "true")[who],
         nll=kde_nll(forecast, future)[who],
         energy=energy_score(forecast, future)[who] if few else np.full(int(who.sum()), np.nan),
     )

@@ -144,7 +144,7 @@ class Score:
         windows = [one.windows for one in scores]
         there = [tuple(one.there) for one in scores]
         known = [one.people for one in scores if one.people is not None]
-        people = PersonValues.joined(known) if len(known) == len(scores) else None
+        people = PersonValues.concatenate(known) if len(known) == len(scores) else None
 
         def mean(name: str, counts: Sequence[int]) -> float:
             return _mean([getattr(one, name) for one in scores], counts)

@@ -1,6 +1,7 @@
 """Models of walking people: how each agent of a scene chooses its next velocity, and where it wants to go."""
 
 from . import costs
+from .contract import check_goal, check_model
 from .costs.cost_model import CostModel
 from .forces.boids import Boids
 from .forces.escape_panic import EscapePanic
@@ -39,5 +40,7 @@ __all__ = [
     "PowerLaw",
     "SocialForce",
     "Tangent",
+    "check_goal",
+    "check_model",
     "costs",
 ]

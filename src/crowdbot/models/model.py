@@ -113,7 +113,7 @@ def check_limit(model: CrowdModel, max_speed: PerAgent | None) -> None:
     if not bounds.holds(max_speed):
         raise InputError(
             f"{type(model).__name__}: max_speed = {bounds.worst(max_speed)} [m/s] is not allowed, it must be"
-            f" {bounds.allowed()}, or left out to take the maximum speed of the scene"
+            f" {bounds.describe()}, or left out to take the maximum speed of the scene"
         )
 
 

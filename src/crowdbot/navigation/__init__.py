@@ -1,6 +1,7 @@
 """Navigators steer a robot. Contract: :class:`Navigator`; input: :class:`Observation`; output: :class:`Action`."""
 
 from .action import Action
+from .contract import check_navigator
 from .dynamic_window import WindowCosts, dynamic_window_twist
 from .navigator import Navigator
 from .observation import DriveLimits, Observation, VisiblePeople
@@ -16,5 +17,6 @@ __all__ = [
     "Straight",
     "VisiblePeople",
     "WindowCosts",
+    "check_navigator",
     "dynamic_window_twist",
 ]

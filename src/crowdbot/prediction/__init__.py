@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from .anchor_net import AnchorNet, Anchors, Modes
 from .constant import ConstantAcceleration, ConstantVelocity, LeastSquares, SampledConstantVelocity
+from .contract import check_predictor
 from .degraded import DegradedWindows, degraded_windows
 from .kalman import Kalman, KalmanAcceleration
 from .learned_predictor import LearnedPredictor
@@ -70,6 +71,7 @@ __all__ = [
     "Trainable",
     "TrainingResult",
     "TrainingSchedule",
+    "check_predictor",
     "degraded_windows",
     "leave_out",
     "load_checkpoint",

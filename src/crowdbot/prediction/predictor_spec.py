@@ -132,7 +132,7 @@ def _prepared(spec: PredictorSpec, recording: Recording) -> Predictor:
 
 
 def _known(recording: Recording) -> Windows:
-    past, _ = recording.known.windows(recording.observe, 1, "all", None, recording.late)
+    past, _ = recording.learning_part.windows(recording.observe, 1, "all", None, recording.late)
     chosen = np.unique(np.linspace(0, len(past) - 1, LEARNING_WINDOWS).astype(np.int64))
     return past[chosen]
 

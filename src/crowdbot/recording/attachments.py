@@ -13,14 +13,13 @@ import hashlib
 import json
 import os
 import shutil
-import sys
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
-from crowdbot.core import EpisodeError
+from crowdbot.core import EpisodeError, relative_name, sources_of
 from crowdbot.data import McapError, McapOpcode, McapReader, read_attachment
 from crowdbot.trials import (
     RandomizedModel,
@@ -30,7 +29,6 @@ from crowdbot.trials import (
     is_code,
     map_files,
     outline,
-    relative_name,
     resolve_file,
 )
 
@@ -123,9 +121,7 @@ def named_files(trial: Trial) -> dict[str, tuple[str, Path]]:
             for path in thing.files():
                 if "__pycache__" not in path.parts:  # made by Python from what is kept anyway
                     found[relative_name(path, trial.folder)] = CODE if is_code(path.name) else DATA, path
-        module = sys.modules.get(type(thing).__module__)
-        if type(thing).__module__.startswith("crowdbot_plug_") and module is not None and module.__file__:
-            path = Path(module.__file__)
+        for path in sources_of(type(thing)):
             found[relative_name(path, trial.folder)] = CODE, path
     return dict(sorted(found.items()))
 

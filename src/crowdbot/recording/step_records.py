@@ -212,7 +212,7 @@ def _scan(poses: dict[str, tuple[str, float, float, float]], topic: str, time: f
     parent, *place = poses[carrier]
     if parent != MAP:
         raise ValueError(f"frame {carrier!r} is not in {MAP!r}")
-    pose = Pose.of(place[:2], place[2]).mounted(*mount)
+    pose = Pose.of(place[:2], place[2]).offset(*mount)
     return ScanRow(
         time,
         (float(pose.position[0, 0]), float(pose.position[0, 1]), float(pose.heading[0])),

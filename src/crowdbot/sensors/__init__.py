@@ -1,6 +1,7 @@
 """Sensors of robots. Contract: :class:`Sensor`; input: :class:`SensorView`; output: a :class:`Reading`."""
 
 from .bumper import Bumper, BumperReading
+from .contract import check_sensor
 from .depth_camera import DepthCamera, DepthImage
 from .ground_truth_people import GroundTruthPeople, TrackedPeople
 from .imu import IMU, ImuReading, ImuState
@@ -60,6 +61,7 @@ __all__ = [
     "Ultrasound",
     "WheelOdometry",
     "apply_noise",
+    "check_sensor",
     "distort_image",
     "planar_pose",
     "preset",

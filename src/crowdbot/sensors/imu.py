@@ -111,7 +111,7 @@ class IMU(Sensor):
             dt, velocity = 1.0 / self.rate, np.full(shape, np.nan)
             change, turn = np.zeros(shape), np.zeros(shape)
         else:
-            dt, before = elapsed(self, view, state), spatial_pose(state.pose)
+            dt, before = elapsed_time(self, view, state), spatial_pose(state.pose)
             velocity = (here.position - before.position) / dt
             change = np.where(np.isfinite(state.velocity), (velocity - state.velocity) / dt, 0.0)
             turn = rotation_vector(before.rotation, here.rotation) / dt
@@ -171,7 +171,7 @@ class TimedState(Protocol):
     def pose(self) -> Pose | SpatialPose: ...
 
 
-def elapsed(sensor: Sensor, view: SensorView, state: TimedState) -> float:
+def elapsed_time(sensor: Sensor, view: SensorView, state: TimedState) -> float:
     """Return the time since the previous measurement [s].
 
     Raises:

@@ -80,7 +80,7 @@ class Gaussian(Noise):
 
     def draw(self, shape: tuple[int, ...], rng: np.random.Generator) -> Floats:
         """Return independent normal draws."""
-        return rng.normal(0.0, self.sd, shape)
+        return rng.normal(0.0, abs(self.sd), shape)  # NumPy rejects -0.0
 
 
 @dataclass(frozen=True)

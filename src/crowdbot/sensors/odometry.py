@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crowdbot.core import Pose, SpatialPose, check_number
 
-from .imu import elapsed
+from .imu import elapsed_time
 from .noise import Randomness, apply_noise, normals
 from .sensor import Reading, Sensor, finite_or_nan, planar_pose
 from .view import SensorView
@@ -120,7 +120,7 @@ class WheelOdometry(Sensor):
             still = np.zeros((count, 3))
             shown = finite_or_nan(apply_noise(still, self.noises, rng))
             return _with_state(Odometry(view.time, view.pose, here, shown, still, still.astype(np.int64)))
-        dt = elapsed(self, view, state)
+        dt = elapsed_time(self, view, state)
         forward, left, turn = arc_between(planar_pose(state.pose), here)
         half = 0.5 * self.track * self.track_scale * turn
         way = np.stack([(forward - half) / self.left_scale, (forward + half) / self.right_scale, left], axis=1)

@@ -39,7 +39,7 @@ class SensorPreset:
     sources: Mapping[str, str]
 
     @property
-    def assumed(self) -> tuple[str, ...]:
+    def assumed_fields(self) -> tuple[str, ...]:
         """Fields whose values are assumed."""
         return tuple(name for name, source in self.sources.items() if source.startswith(ASSUMED))
 

@@ -84,7 +84,7 @@ class MountedSensor:
 
 def spatial(robot: RobotSpec, mount: Mount, bodies: str) -> bool:
     """Return whether a sensor looks through space."""
-    _, _, _, roll, pitch, _ = robot.placed(mount)
+    _, _, _, roll, pitch, _ = robot.sensor_pose(mount)
     tilted = max(abs(roll), abs(pitch)) > LEVEL
     return bodies != "discs" or tilted or mount.sensor.spatial or mount.sensor.sees_skins
 
@@ -99,7 +99,7 @@ def mounted_sensors(
         sensor = mount.sensor
         probe = MountedSensor(
             dataclasses.replace(mount, sensor=sensor.with_skins()) if bodies == "skins" else mount,
-            robot.placed(mount),
+            robot.sensor_pose(mount),
             robot.schedule(mount, world.clock),
             stream(seed, "sensor", robot.name, mount.name),
             spatial(robot, mount, bodies),

@@ -45,7 +45,7 @@ def apply_overrides(simulation: Simulation, trial: Trial, seed: int | None = Non
         },
         robot_margin=trial.robot_margin,
         contact=None if trial.contact is None else trial.contact.bodies(),
-        limits=None if trial.limits is None else trial.limits.kept(),
+        limits=None if trial.limits is None else trial.limits.limits(),
         exits=[way.out() for way in trial.exits],
         heading_jitter=trial.heading_jitter,
         substeps=trial.substeps,

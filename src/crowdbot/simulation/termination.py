@@ -56,8 +56,8 @@ def _expects_people(trial: Trial, world: PlanarWorld, people: InitialPeople) -> 
     """Return whether anybody may still come in."""
     time = world.clock.time
     walks = any(walk.time[0] > time for walk in people.walks)
-    come = (source.expected(trial.duration) > source.expected(time) for source in trial.sources)
-    return walks or any(come) or bool(world.waiting[0] > 0)
+    come = (source.arrival_count(trial.duration) > source.arrival_count(time) for source in trial.sources)
+    return walks or any(come) or bool(world.waiting_count[0] > 0)
 
 
 def _value(condition: EndCondition, world: PlanarWorld, robots: Mapping[str, int]) -> float | None:

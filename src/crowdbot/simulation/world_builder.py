@@ -55,7 +55,7 @@ def build_world(trial: Trial, people: InitialPeople, seed: int) -> tuple[PlanarW
         "robot_margin": trial.robot_margin,
         "router": router,
         "contact": None if trial.contact is None else trial.contact.bodies(),
-        "limits": None if trial.limits is None else trial.limits.kept(),
+        "limits": None if trial.limits is None else trial.limits.limits(),
         "journeys": journeys,
         "sources": sources,
         "exits": [way.out() for way in trial.exits],

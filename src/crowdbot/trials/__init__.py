@@ -8,14 +8,14 @@ from .distribution import Distribution
 from .fields import UNWRITABLE, attribute, check, children, element_word, outline, quote_value
 from .files.code_references import code_references, is_code
 from .files.stage_maps import is_area_file, map_files
-from .files.trial_files import relative_name, resolve_file
+from .files.trial_files import resolve_file
 from .importers.original import Imported, import_original, plan_of, trials_of
 from .importers.original_order import Plan
 from .importers.recording import recorded_trial
 from .journey import Direction, Exit, Journey, Point, Portal, Zone
 from .notation import Points, plain
 from .parser import check_trial, parse_trial
-from .partial import readable, told
+from .partial import readable, skip_unreadable
 from .people import Group, SourceSpec, Spawner
 from .placement.appearance import PeopleAppearance, people_appearance
 from .placement.expansion import expand_spawners
@@ -29,6 +29,7 @@ from .scenarios import PRESETS
 from .scenarios.challenge import FLOWS, SIZES
 from .scenarios.crowds import DENSITIES
 from .stage import Obstacle, Stage, Wall, area
+from .stage_contract import check_stage
 from .sweep import Sweep
 from .trial import End, EndCondition, RecordingSpec, Trial
 from .validation.rates import trial_remarks
@@ -94,6 +95,7 @@ __all__ = [
     "attribute",
     "builtin_trials",
     "check",
+    "check_stage",
     "check_trial",
     "children",
     "code_references",
@@ -120,10 +122,9 @@ __all__ = [
     "read_trial_bytes",
     "readable",
     "recorded_trial",
-    "relative_name",
     "resolve_file",
     "schema",
-    "told",
+    "skip_unreadable",
     "trial_remarks",
     "trial_xml",
     "trials_of",

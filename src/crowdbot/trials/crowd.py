@@ -60,7 +60,7 @@ class Crowds(Mixture):
             raise InputError(f"Crowds: crowd {k + 1} {sentence}")
 
     @staticmethod
-    def gathered(crowds: Sequence[Crowd]) -> CrowdModel:
+    def gather(crowds: Sequence[Crowd]) -> CrowdModel:
         """Return the crowds of a trial as one model: the only one itself when it has no name."""
         if len(crowds) == 1 and not crowds[0].name:
             return crowds[0].model
@@ -68,7 +68,7 @@ class Crowds(Mixture):
 
     @staticmethod
     def spread(model: CrowdModel) -> tuple[Crowd, ...]:
-        """Return the crowds that :meth:`gathered` made a model of."""
+        """Return the crowds that :meth:`gather` made a model of."""
         if not isinstance(model, Crowds):
             return (Crowd(model=model),)
         return tuple(Crowd(name=name, model=one) for name, one in zip(model.names, model.models, strict=True))
@@ -136,6 +136,6 @@ class Limits:
     def __post_init__(self) -> None:
         check(self)
 
-    def kept(self) -> world.CrowdLimits:
+    def limits(self) -> world.CrowdLimits:
         """Return the limits of a world."""
         return world.CrowdLimits(self.max_speed, self.max_acceleration)

@@ -19,7 +19,7 @@ from typing import Any
 
 from crowdbot.core import Bounds, InputError, did_you_mean
 
-from .partial import is_torn
+from .partial import is_partial
 
 __all__ = [
     "Constraint",
@@ -78,7 +78,7 @@ class Constraint:
         if self.bounds.holds(low) and self.bounds.holds(high):
             return ""
         too_high = dataclasses.replace(self.bounds, max=None).holds(low)
-        return f"must be {self.bounds.allowed(too_high)}{self._reach(low, high)}"
+        return f"must be {self.bounds.describe(too_high)}{self._reach(low, high)}"
 
     @functools.cached_property
     def bounds(self) -> Bounds:
@@ -202,7 +202,7 @@ def children(words: str | Mapping[str, type], *, about: str, min: int = 0, max: 
         about: one line for people.
         min: whether there must be one.
         max: how many there may be.
-        into: makes one value of them: ``into.gathered(children)`` is the value, ``into.spread(value)`` the children,
+        into: makes one value of them: ``into.gather(children)`` is the value, ``into.spread(value)`` the children,
             ``into.problems(children)`` yields the index of every child that does not fit to the others, and why.
     """
     row = {"role": "children", "words": words, "about": about, "max": max, "into": into}
@@ -260,11 +260,11 @@ def _without_none(hint: Any) -> Any:
 def check(element: Any) -> None:
     """Bring the fields of an element to their types and raise :class:`InputError` when a value is not allowed.
 
-    To be called in ``__post_init__``. Lists become tuples, and a number becomes a distribution where one is due. Of a
-    torn element everything that could be read was judged already.
+    To be called in ``__post_init__``. Lists become tuples, and a number becomes a distribution where one is due. The
+    reader has checked the fields of a partial element already.
     """
     cls: type = type(element)
-    if is_torn(element):
+    if is_partial(element):
         return
     for part in outline(cls):
         value = getattr(element, part.name)

@@ -61,7 +61,7 @@ class Points(tuple[tuple[float, float], ...]):
             raise InputError("must be points x, y")
         return cls((pair[0], pair[1]) for pair in pairs)
 
-    def shifted(self, dx: float, dy: float) -> Points:
+    def shift(self, dx: float, dy: float) -> Points:
         """Return the points moved by dx, dy."""
         return Points((x + dx, y + dy) for x, y in self)
 

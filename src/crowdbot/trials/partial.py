@@ -1,8 +1,8 @@
-"""What could be read of an element with a mistake: it stands in for the element, so that others can still be judged.
+"""Partial elements: the readable fields of an element with a problem, so that the other elements can be checked.
 
-A torn element is of the class of its element and has every field that could be read. Whoever looks at another one gets
-:class:`UnreadableValue`, and a check that does ends there (:func:`told`): what is wrong was said already, and what
-depends on it has to wait until it is mended.
+A partial element has the class of its element and every field that could be read. Access to another field raises
+:class:`UnreadableValue`, which ends the check that needs it (:func:`skip_unreadable`): the reader has reported the
+problem already.
 """
 
 from __future__ import annotations
@@ -12,28 +12,24 @@ import functools
 from collections.abc import Container, Iterable, Iterator, Mapping
 from typing import Any, TypeVar
 
-from crowdbot.core import InputError
+from crowdbot.core import InputError, UnreadableValue
 
 __all__ = [
     "EVERYTHING",
     "UnreadableValue",
-    "begun",
-    "is_torn",
+    "begin_partial",
+    "is_partial",
     "kind_of",
+    "make_partial",
     "origin",
     "readable",
     "rest",
-    "told",
-    "torn",
+    "skip_unreadable",
     "whole",
 ]
 
 T = TypeVar("T")
 LOST, ORIGIN, WHOLE = "_lost_of_it", "_origin_of_it", "_whole_of_it"
-
-
-class UnreadableValue(Exception):
-    """What is looked at could not be read, and that was said already."""
 
 
 class _Everything:
@@ -47,7 +43,7 @@ EVERYTHING = _Everything()
 
 
 @functools.cache
-def _torn_class(cls: type) -> type:
+def _partial_class(cls: type) -> type:
     def look(self: Any, name: str) -> Any:
         if name in object.__getattribute__(self, "__dict__").get(LOST, ()):
             raise UnreadableValue(name)
@@ -60,8 +56,10 @@ def _torn_class(cls: type) -> type:
     return type(cls)(cls.__name__, (cls,), methods | {"__getattribute__": look, "__module__": cls.__module__})
 
 
-def torn(cls: type, values: Mapping[str, Any], lost: Container[str], *, origin: Any = None, whole: Any = None) -> Any:
-    """Return an element of which only some fields could be read.
+def make_partial(
+    cls: type, values: Mapping[str, Any], lost: Container[str], *, origin: Any = None, whole: Any = None
+) -> Any:
+    """Return an element with only the fields that could be read.
 
     Args:
         cls: class of the element.
@@ -71,19 +69,21 @@ def torn(cls: type, values: Mapping[str, Any], lost: Container[str], *, origin: 
         whole: the element as it would be with defaults for what is lost, if that can be made.
 
     >>> from crowdbot.trials import Spawner
-    >>> spawner = torn(Spawner, {"name": "hall"}, {"zone", "count"})
-    >>> spawner.name, isinstance(spawner, Spawner), list(told(iter([1]), (spawner.count for _ in [0]), iter([2])))
-    ('hall', True, [1, 2])
+    >>> spawner = make_partial(Spawner, {"name": "hall"}, {"zone", "count"})
+    >>> spawner.name, isinstance(spawner, Spawner)
+    ('hall', True)
+    >>> list(skip_unreadable(iter([1]), (spawner.count for _ in [0]), iter([2])))
+    [1, 2]
     """
-    made: Any = object.__new__(_torn_class(cls))
+    made: Any = object.__new__(_partial_class(cls))
     own = object.__getattribute__(made, "__dict__")
     own.update(values)
     own.update({LOST: lost, ORIGIN: origin, WHOLE: whole})
     return made
 
 
-def begun(made: Any) -> str:
-    """Begin a torn element as others do, as far as that goes, and return what is wrong with its fields together."""
+def begin_partial(made: Any) -> str:
+    """Run ``__post_init__`` of a partial element as far as possible, and return the problem that it reports."""
     try:
         made.__post_init__()
     except UnreadableValue:
@@ -93,14 +93,14 @@ def begun(made: Any) -> str:
     return ""
 
 
-def is_torn(thing: Any) -> bool:
-    """Whether something of an element could not be read."""
+def is_partial(thing: Any) -> bool:
+    """Return whether a field of an element could not be read."""
     return LOST in _own(thing)
 
 
 def kind_of(thing: Any) -> type:
-    """Return the class of an element, also when it is torn."""
-    return type(thing).__mro__[1] if is_torn(thing) else type(thing)
+    """Return the class of an element, partial or not."""
+    return type(thing).__mro__[1] if is_partial(thing) else type(thing)
 
 
 def origin(thing: Any) -> Any:
@@ -113,9 +113,9 @@ def whole(thing: Any) -> Any:
     """Return a part as it would be with defaults for what could not be read.
 
     Raises:
-        Unread: nobody knows what it would be.
+        UnreadableValue: nobody knows what it would be.
     """
-    if not is_torn(thing):
+    if not is_partial(thing):
         return thing
     if (found := _own(thing)[WHOLE]) is None:
         raise UnreadableValue
@@ -126,14 +126,14 @@ def rest(thing: T, *needs: str, **instead: Any) -> T:
     """Return an element with defaults for what could not be read of it.
 
     Args:
-        thing: the element, torn or not.
+        thing: the element, partial or not.
         needs: fields without which it is of no use.
         instead: fields that are something else when anything in them could not be read.
 
     Raises:
-        Unread: something that is needed, or has no default, could not be read.
+        UnreadableValue: something that is needed, or has no default, could not be read.
     """
-    if not is_torn(thing):
+    if not is_partial(thing):
         return thing
     values = {}
     for field in dataclasses.fields(thing):  # type: ignore[arg-type]
@@ -145,7 +145,7 @@ def rest(thing: T, *needs: str, **instead: Any) -> T:
                 raise
             value = field.default
         values[field.name] = value
-    values |= {name: other for name, other in instead.items() if any(is_torn(one) for one in values[name])}
+    values |= {name: other for name, other in instead.items() if any(is_partial(one) for one in values[name])}
     made: Any = object.__new__(kind_of(thing))
     _own(made).update(values | {ORIGIN: thing})
     return made  # type: ignore[no-any-return]
@@ -162,8 +162,8 @@ def readable(things: Iterable[Any], name: str) -> list[tuple[int, Any]]:
     return found
 
 
-def told(*checks: Iterator[T]) -> Iterator[T]:
-    """Go through checks one after the other; each ends where it looks at something that could not be read."""
+def skip_unreadable(*checks: Iterator[T]) -> Iterator[T]:
+    """Yield the results of several checks; a check ends where it needs a field that could not be read."""
     for check in checks:
         try:
             yield from check

@@ -85,7 +85,7 @@ class SourceSpec:
     Raises:
         InputError: a value is not allowed.
 
-    >>> SourceSpec(zone=[(0, 0), (2, 0), (2, 2)], goal="8,0 9,0 9,2", rate=0.5, begin=10).expected(60.0)
+    >>> SourceSpec(zone=[(0, 0), (2, 0), (2, 2)], goal="8,0 9,0 9,2", rate=0.5, begin=10).arrival_count(60.0)
     26.0
     """
 
@@ -115,7 +115,7 @@ class SourceSpec:
         found = word_problems(values.get("body", ""), values.get("activity", ""))
         return [((), sentence) for sentence in found]
 
-    def expected(self, duration: float) -> float:
+    def arrival_count(self, duration: float) -> float:
         """Return how many people come within a duration [s]: evenly the most, at random the mean."""
         come = self.rate * max(0.0, min(self.end, duration) - self.begin) + 1.0
         return come if self.max_count is None else min(come, float(self.max_count))

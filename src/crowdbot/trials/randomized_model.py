@@ -37,7 +37,7 @@ class RandomizedModel(CrowdModel):
 
     >>> from crowdbot.models import ORCA
     >>> crowd = RandomizedModel(ORCA(), {"time_horizon": "uniform(1, 3)"})
-    >>> crowd.resolved(seed=0, crowd=0, agents=3).time_horizon.round(2).shape
+    >>> crowd.resolve(seed=0, crowd=0, agents=3).time_horizon.round(2).shape
     (3,)
     """
 
@@ -78,9 +78,9 @@ class RandomizedModel(CrowdModel):
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities of the model with the parameters of seed 0."""
-        return self.resolved(0, 0, scene.shape[1]).velocity(scene, dt, rng)
+        return self.resolve(0, 0, scene.shape[1]).velocity(scene, dt, rng)
 
-    def resolved(self, seed: int, crowd: int, agents: int) -> CrowdModel:
+    def resolve(self, seed: int, crowd: int, agents: int) -> CrowdModel:
         """Return the model with an own value for each of ``agents``, as crowd number ``crowd`` of a trial."""
         drawn = {
             name: dist.draw(stream(seed, "crowd", crowd, name), agents)
@@ -96,7 +96,7 @@ def is_drawn(text: str) -> bool:
 
 def own(model: CrowdModel, seed: int, crowd: int, agents: int, values: Values) -> CrowdModel:
     """Return a model in which parameters are drawn, and given people have the values given for them by name."""
-    whole = model.resolved(seed, crowd, agents) if isinstance(model, RandomizedModel) else model
+    whole = model.resolve(seed, crowd, agents) if isinstance(model, RandomizedModel) else model
     if not values:
         return whole
     changed: dict[str, Floats] = {}

@@ -78,16 +78,16 @@ class RecordedPeople:
 
     def __post_init__(self) -> None:
         check(self)
-        self.left_out()
+        self.excluded_ids()
 
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
         """Return what is wrong with the name of the file and with ids, whatever else is wrong in its element."""
         found: list[FieldProblem] = []
         try:
-            _ids(values.get("without", ""))
+            _ids(values.get("exclude", ""))
         except InputError as error:
-            found.append((("without",), str(error)))
+            found.append((("exclude",), str(error)))
         try:
             if "data" in values:
                 resolve_file(values["data"], values["folder"], values["trust"])
@@ -95,7 +95,7 @@ class RecordedPeople:
             found.append((("data",), f"data={quote_value(values['data'])} {error}"))
         return found
 
-    def left_out(self) -> frozenset[int]:
+    def excluded_ids(self) -> frozenset[int]:
         """Return the ids that are left out."""
         return _ids(self.exclude)
 
@@ -119,9 +119,9 @@ class RecordedPeople:
         """
         tracks = self.tracks()
         known = set(tracks.ids.tolist())
-        for person in sorted(self.left_out() - known):
-            raise InputError(f"without names person {person}, who is not in {self.data}")
-        away = self.left_out() | tracks.robots
+        for person in sorted(self.excluded_ids() - known):
+            raise InputError(f"exclude names person {person}, who is not in {self.data}")
+        away = self.excluded_ids() | tracks.robots
         order = np.lexsort((tracks.frame, tracks.id))
         ids, time = tracks.id[order], np.round(tracks.time[order] - self.begin, 9)
         position = tracks.position[order]

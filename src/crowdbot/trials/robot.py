@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crowdbot import world
-from crowdbot.core import MOUNT_HEIGHT, Clock, InputError, RobotError, did_you_mean
+from crowdbot.core import MOUNT_HEIGHT, Clock, InputError, RobotError, did_you_mean, reads_only
 from crowdbot.navigation import Navigator
 from crowdbot.sensors import Sensor, SensorSchedule
 from crowdbot.world import Drive, builtin_robots, frame, roll_pitch_yaw
@@ -144,13 +144,13 @@ class RobotSpec:
         if self.drive is None:
             raise InputError(f"needs the element <drive>: how it moves; or a type, such as {builtin_robots()[0]}")
         if isinstance(self.sensors, list | tuple):
-            object.__setattr__(self, "sensors", _merged(self.carried, self.sensors))
+            object.__setattr__(self, "sensors", _merged(self.type_sensors, self.sensors))
         check(self)
         if self.type and (self.height, self.mass) != (usual["height"], usual["mass"]):
             raise InputError(
                 f"has height or mass beside type={quote_value(self.type)}, which has its own; leave them out"
             )
-        if self.cameras and not any(_drawn(mount) for mount in self.carried):
+        if self.cameras and not any(_drawn(mount) for mount in self.type_sensors):
             raise InputError(
                 'has cameras="true" but none would come: it needs a type with colour cameras, such as pepper, and its'
                 " sensors; leave it out"
@@ -188,11 +188,11 @@ class RobotSpec:
             "mass": round(kind.model.mass, 9),
             "latency": kind.latency,
             "drive": kind.drive,
-            "sensors": self.carried,
+            "sensors": self.type_sensors,
         }
 
     @property
-    def carried(self) -> tuple[Mount, ...]:
+    def type_sensors(self) -> tuple[Mount, ...]:
         """The sensors of its type that it carries."""
         if not (self.type and self.default_sensors):
             return ()
@@ -207,8 +207,10 @@ class RobotSpec:
     def body(self) -> world.Robot:
         """The robot of a world, with the drive and the latency that count here."""
         if not self.type:
-            return world.Robot.disc(self.name, self.drive, self.radius, height=self.height, mass=self.mass)
-        return dataclasses.replace(self._kind, drive=self.drive, latency=self.latency)
+            made = world.Robot.disc(self.name, self.drive, self.radius, height=self.height, mass=self.mass)
+        else:
+            made = dataclasses.replace(self._kind, drive=self.drive)
+        return dataclasses.replace(made, latency=self.latency)
 
     def frame_of(self, mount: Mount) -> Floats:
         """Return the frame ``[4, 4]`` of a sensor in that of the robot, which is on the floor, in its posture."""
@@ -216,12 +218,12 @@ class RobotSpec:
             return mount.origin
         return np.asarray(self.body.model.poses(self.body.posture)[mount.link] @ mount.origin)
 
-    def placed(self, mount: Mount) -> tuple[float, float, float, float, float, float]:
+    def sensor_pose(self, mount: Mount) -> tuple[float, float, float, float, float, float]:
         """Return x, y, z [m], roll, pitch and yaw [rad] of a sensor in the frame of the robot.
 
         >>> from crowdbot.navigation import Straight
         >>> robot = RobotSpec(type="qolo", x=0, y=0, goal=RobotGoal(5, 0), navigator=Straight())
-        >>> [round(value, 3) for value in robot.placed(robot.sensors[0])][:2]
+        >>> [round(value, 3) for value in robot.sensor_pose(robot.sensors[0])][:2]
         [0.035, 0.0]
         """
         if not mount.link:
@@ -238,7 +240,7 @@ class RobotSpec:
         Raises:
             InputError: its period or its delay is not a whole number of time steps.
         """
-        if self.sensor_rates == "exact" or mount not in self.carried:
+        if self.sensor_rates == "exact" or mount not in self.type_sensors:
             return SensorSchedule.of(mount.sensor, clock)
         period, delay = 1.0 / mount.sensor.rate, mount.sensor.delay
         return SensorSchedule(max(1, round(period / clock.dt)), round(delay / clock.dt))
@@ -303,7 +305,7 @@ def _kind(name: str, folder: Path | None, trust: bool) -> world.Robot:
     place = _folder(name, folder, trust)
     if place is None:
         return _built_in(name)
-    return _loaded(place, trust, (place / "robot.xml").stat().st_mtime_ns)
+    return _loaded(place, trust, (place / "robot.xml").stat().st_mtime_ns, reads_only())
 
 
 @functools.cache
@@ -318,7 +320,7 @@ def _assets(name: str) -> Path:
 
 
 @functools.lru_cache(maxsize=16)
-def _loaded(place: Path, trust: bool, stamp: int) -> world.Robot:
+def _loaded(place: Path, trust: bool, stamp: int, described: bool) -> world.Robot:
     try:
         return world.Robot.load(place, trust=trust)
     except RobotError as error:

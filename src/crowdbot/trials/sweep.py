@@ -85,7 +85,7 @@ def sweep_problems(
     Args:
         root: the trial as its file has it.
         kind: class of the trial.
-        sweeps: torn where something of them could not be read.
+        sweeps: partial if something in them could not be read.
         others: says of a variant what is wrong with it and not with the trial.
     """
     found: list[tuple[Sweep, str]] = []
@@ -101,12 +101,12 @@ def sweep_problems(
     count = math.prod(len(sweep.each) for sweep in there)
     if count > MOST_VARIANTS:
         return [*found, (there[-1], f"makes {count} variants together with other sweeps, at most {MOST_VARIANTS}")]
-    told: dict[str, None] = {}
+    known: dict[str, None] = {}
     for row in itertools.islice(itertools.product(*(sweep.each for sweep in there)), CHECKED if there else 0):
         pairs = [*zip(there, row, strict=True)]
         for sentence in others(_with(root, kind, pairs))[:3]:
-            if sentence not in told:
-                told[sentence] = None
+            if sentence not in known:
+                known[sentence] = None
                 found.append(_blamed(root, kind, pairs, sentence, others))
     return found
 

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from .planar import PlanarWorld
     from .rendering.camera import CameraImages, SceneCamera
     from .rendering.renderer import Renderer
+    from .robot_contract import check_robot
     from .robots.ackermann import AckermannDrive, SteeredTwists
     from .robots.drive import DifferentialDrive, Drive, Omnidirectional, Twists, integrate_twist
     from .robots.mount import MountPlacement, SensorMount
@@ -98,6 +99,7 @@ _LAZY = {
     "Wheel": "robots.wheel",
     "World": "world",
     "builtin_robots": "robots.robot",
+    "check_robot": "robot_contract",
     "compute_together": "crowd.walk",
     "describe": "urdf",
     "frame": "urdf.transforms",
@@ -164,6 +166,7 @@ __all__ = [
     "Wheel",
     "World",
     "builtin_robots",
+    "check_robot",
     "compute_together",
     "describe",
     "frame",

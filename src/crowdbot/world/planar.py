@@ -136,8 +136,8 @@ class PlanarWorld(World):
         self.ids = self._traffic.ids
         external = self.scene.external
         if self.script is not None:
-            self.scene = self.script.begun(self.scene)
-        self.scene = self._traffic.begun(self._with_replayed_external(self.scene)).replace(external=external)
+            self.scene = self.script.start(self.scene)
+        self.scene = self._traffic.start(self._with_replayed_external(self.scene)).replace(external=external)
         self._surfaces: ContactSurfaces | None = None
         self._bodies: KinematicBodies | None = None
         self._previous = self.scene
@@ -155,7 +155,7 @@ class PlanarWorld(World):
         after = self._resolve_overlaps(earlier, after).replace(external=self.scene.external)
         after = after.replace(time=self._begin + self.clock.time)
         if self.script is not None:
-            after = self.script.placed(after, self.clock.time)
+            after = self.script.place(after, self.clock.time)
         after.check()
         self.contacts = self._find_contacts(before, after)
         if self.leave_radius is not None:
@@ -213,9 +213,9 @@ class PlanarWorld(World):
             self.seed, self._rng = seed, stream(seed, "crowd")
 
     @property
-    def waiting(self) -> NDArray[np.int64]:
+    def waiting_count(self) -> NDArray[np.int64]:
         """How many people wait to come in, ``[E]``."""
-        return self._traffic.waiting
+        return self._traffic.waiting_count
 
     def pose(self, robot: int) -> Pose:
         """Return where a robot is in every environment."""
@@ -225,7 +225,7 @@ class PlanarWorld(World):
         """Return the pose of a sensor of a robot in its posture; see :class:`World`."""
         x, y, z, roll, pitch, yaw = mount.placed
         base = self.pose(robot)
-        return base.to_spatial(0.0).mounted(x, y, z, roll, pitch, yaw) if spatial else base.mounted(x, y, yaw)
+        return base.to_spatial(0.0).offset(x, y, z, roll, pitch, yaw) if spatial else base.offset(x, y, yaw)
 
     def wall_clearance(self, robot: int) -> Floats:
         """Return the clearance ``[E]`` [m] to walls on the straight path of the last step; see :class:`World`."""
@@ -290,7 +290,9 @@ class PlanarWorld(World):
 
     def _with_replayed_external(self, scene: Scene) -> Scene:
         """Return the scene in which who follows a script is external."""
-        return scene if self.script is None else scene.replace(external=scene.external | self.script.held(scene))
+        return (
+            scene if self.script is None else scene.replace(external=scene.external | self.script.follower_mask(scene))
+        )
 
     def _step_crowd(self, before: Scene) -> StepGenerator[tuple[Scene, Scene]]:
         """Return the scene before the last substep of the crowd, and after it."""
@@ -304,7 +306,7 @@ class PlanarWorld(World):
             earlier = crowd
             crowd = yield CrowdStepRequest(self.model, earlier, h, self._rng)
             if self.limits is not None:
-                crowd = self.limits.kept(earlier, crowd, h)
+                crowd = self.limits.apply(earlier, crowd, h)
         own = {"radius": before.radius, "goal": before.goal, "preferred_velocity": before.preferred_velocity}
         return earlier, crowd.replace(**own, memory={**earlier.memory, **crowd.memory})
 

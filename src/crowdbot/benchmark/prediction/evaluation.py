@@ -222,7 +222,7 @@ class Evaluation:
                 mine = [(job.first, part) for job, part in own if job.spec.name == spec.name]
                 parts = [part for _, part in sorted(mine, key=lambda pair: pair[0])]
                 frames = FrameResults.concatenate([part.frames for part in parts])
-                errors = PersonErrors.joined([part.errors for part in parts])
+                errors = PersonErrors.concatenate([part.errors for part in parts])
                 score = Score.of(errors, spec.name, max(part.samples for part in parts), future, self.best_of)
                 score = dataclasses.replace(score, seconds_per_window=float(frames.seconds.mean()))
                 found.append(PredictorResult(recording, spec, labels[spec.name], score, frames))
@@ -259,7 +259,7 @@ def run_job(job: EvaluationJob) -> JobResult:
         errors.append(person_errors(forecast, future[part], job.best_of))
         frames.append(_frames(job, part, errors[-1], memory, seconds))
         samples = max(samples, forecast.samples)
-    return JobResult(PersonErrors.joined(errors), FrameResults.concatenate(frames), samples)
+    return JobResult(PersonErrors.concatenate(errors), FrameResults.concatenate(frames), samples)
 
 
 def _frames(job: EvaluationJob, part: slice, errors: PersonErrors, fit: object, seconds: float) -> FrameResults:

@@ -66,5 +66,5 @@ def evaluate(
             progress(min(1.0, (first + size) / len(past)))
     if last is None:
         raise InputError(f"{past.source} has no windows")
-    total = Score.of(PersonErrors.joined(errors), last.predictor, drawn, future, best_of)
+    total = Score.of(PersonErrors.concatenate(errors), last.predictor, drawn, future, best_of)
     return dataclasses.replace(total, seconds_per_window=seconds / len(past))

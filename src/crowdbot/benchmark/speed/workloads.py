@@ -211,8 +211,8 @@ def _physics(people: int) -> Measurement:
     from crowdbot.sensors import Lidar2D, SensorView
 
     world, robot = _bodies(people)
-    laser, chassis = Lidar2D(rays=1080), world.robot_body(robot)
-    wheels = chassis.robot.mount("odometry").sensor
+    laser, body = Lidar2D(rays=1080), world.robot_body(robot)
+    wheels = body.robot.mount("odometry").sensor
     _, state = wheels.measure(SensorView(world.scene, world.pose(robot)), wheels.begin())
 
     def work() -> None:
@@ -220,7 +220,7 @@ def _physics(people: int) -> Measurement:
         for _ in range(20):
             world.step({robot: Twist(0.5, 0.3)})
             _, state = wheels.measure(SensorView(world.scene, world.pose(robot)), state)
-            laser.read(world.body_scene().without(robot), chassis.mounted("laser"))
+            laser.read(world.body_scene().without(robot), body.sensor_pose("laser"))
 
     return Measurement("simulated s/s", 20 * DT, work, "real time", 1.0)
 

@@ -1,8 +1,8 @@
-"""ETH and UCY recordings as their authors' ``obsmat.txt``, and the two time bases of the ETH one.
+"""ETH and UCY recordings in the original format ``obsmat.txt``, and the two time bases of the ETH recording.
 
-Eight columns: frame, id, x, z, y and the three velocities; the ground plane is columns 3 and 5. In the ETH file 6
-frames are 0.4 s (a camera of 15 frames a second). The much used text of the same recording, ``biwi_eth.txt``, holds
-every tenth frame, 0.667 s apart, and is published as if that were 0.4 s: people in it seem to walk 1.67 times too fast.
+The eight columns are frame, id, x, z, y and three velocities; columns 3 and 5 are the ground plane. In the ETH file 6
+frames are 0.4 s (15 frames/s). The common text version ``biwi_eth.txt`` has every tenth frame, which is 0.667 s, but is
+published with a step of 0.4 s: its speeds are 1.67 times too high.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ __all__ = ["READER", "eth_time_base"]
 
 ETH_VIDEO_FPS = 15.0
 ROOM = 50.0
-"""No recording of the two families is so wide [m]."""
+"""Coordinates [m] beyond this are pixels; no recording of ETH and UCY is wider."""
 
 BEGINS = ((780, 1, 8.46, 3.59), (10240, 238, 12.5, 4.35))
 """First row of biwi_eth.txt and of its training part; first row of its validation part."""
 
 
 def sniff(source: Source) -> bool:
-    """Return whether the first rows are eight numbers with zeros where the height stands."""
+    """Return whether the first rows have eight numbers and a height of 0."""
     return source.numeric(8) and all(float(row[3]) == 0.0 for row in source.rows)
 
 
 def read(source: Source, options: ReadOptions) -> Trajectories:
-    """Read an obsmat; when half of the numbers are above 50 they are taken as pixels."""
+    """Read an obsmat; coordinates with a median above 50 are pixels."""
     values, line = source.table(8)
     if len(values) == 0:
         raise DataError(f"{source.name} has no rows")
@@ -53,9 +53,9 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
 
 
 def eth_time_base(values: NDArray[np.float64], options: ReadOptions) -> tuple[float | None, str]:
-    """Return frames a second and a label when ``values`` (frame, id, x, y) are the text of the ETH recording.
+    """Return the frame rate [Hz] and a note if ``values`` (frame, id, x, y) are the text version of the ETH recording.
 
-    The true base says 15 frames a second, so that its rows are 0.667 s apart; the published one says 25, so 0.4 s.
+    The true time base is 15 frames/s, 0.667 s between rows; the published one is 25 frames/s, 0.4 s between rows.
     """
     order = np.lexsort((values[:, 1], values[:, 0]))
     first = tuple(values[order[0]])

@@ -1,4 +1,4 @@
-"""Two formats of Jülich: the HDF5 files of the pedestrian data archive, and the sqlite output of JuPedSim."""
+"""Formats of Forschungszentrum Jülich: HDF5 of the pedestrian data archive, and SQLite output of JuPedSim."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def _number(value: Any, what: str, name: str) -> float:
 
 
 def _walls(wkt: str | None, name: str) -> tuple[NDArray[np.float64], ...]:
-    """Return the rings around a walkable area: the outside clockwise, holes counter-clockwise."""
+    """Return the rings of a walkable area: the border clockwise, holes counter-clockwise."""
     if not wkt:
         return ()
     import shapely

@@ -1,7 +1,7 @@
-"""PeTrack text: id frame x y z, in metres or centimetres, with or without a "#" header (Boltes & Seyfried 2013).
+"""PeTrack text: id, frame, x, y, z in metres or centimetres, with or without a "#" header (Boltes & Seyfried 2013).
 
-The header tells frame rate and unit. The HERMES files have none: they are centimetres at 16 frames a second, which is
-assumed for files without a header, and said in the note.
+The header has frame rate and unit. Files without a header, such as those of HERMES, are read with 16 frames/s; large
+coordinates are centimetres. A note reports both assumptions.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ __all__ = ["READER"]
 
 HERMES_FPS = 16.0
 ROOM = 50.0
-"""No indoor experiment is larger [m]: coordinates beyond it, without a unit, are centimetres."""
+"""Coordinates beyond this [m] without a unit are centimetres; no indoor experiment is larger."""
 
 FPS = re.compile(r"frame\s*rate\s*:?\s*([0-9.]+)", re.IGNORECASE)
 UNIT = re.compile(r"\bx\s*[/\[(]\s*(?:in\s+)?(mm|cm|m)\b", re.IGNORECASE)
@@ -30,14 +30,14 @@ COLUMNS = re.compile(r"^#\s*id\s+frame\b", re.IGNORECASE)
 
 
 def sniff(source: Source) -> bool:
-    """Return whether a header names PeTrack or its columns, or the rows are id frame x y z without a header."""
+    """Return whether the header is one of PeTrack, or rows without a header have five numbers."""
     header = _header(source)
     is_petrack = any("petrack" in line.lower() or COLUMNS.match(line) or FPS.search(line) for line in header)
     return source.numeric(5) or (is_petrack and source.numeric(4))
 
 
 def read(source: Source, options: ReadOptions) -> Trajectories:
-    """Read id frame x y and leave out z."""
+    """Read id, frame, x, y; z is ignored."""
     header = "\n".join(_header(source))
     if not source.rows:
         raise DataError(f"{source.name} holds a header but no row of any track")

@@ -1,4 +1,4 @@
-"""Text of four columns, frame id x y, parted by white space: SGAN's leave-one-out files, TrajNet, and many others."""
+"""Text with the columns frame, id, x, y: leave-one-out files of SGAN, TrajNet and others."""
 
 from __future__ import annotations
 
@@ -16,18 +16,19 @@ __all__ = ["READER"]
 
 HIDDEN = "?"
 ENOUGH = 100
-"""Steps of tracks from which the order of the columns is looked at."""
+"""Minimum number of track steps to check the order of the columns."""
 SMOOTHER = 5.0
+"""The columns are suspected to be swapped if steps are this much shorter in the other order."""
 
 
 def sniff(source: Source) -> bool:
-    """Return whether the first rows have four columns of numbers; x and y may be hidden by "?"."""
+    """Return whether the first rows have four columns of numbers; x and y may both be "?"."""
     rows = [row for row in source.rows if row[2:] != [HIDDEN, HIDDEN]]
     return bool(rows) and all(len(row) == 4 and all(map(_number, row)) for row in rows)
 
 
 def read(source: Source, options: ReadOptions) -> Trajectories:
-    """Read frame id x y; rows with "?" (the hidden future of TrajNet's test files) are left out and counted."""
+    """Read frame, id, x, y; rows with "?" (hidden futures in test files of TrajNet) are skipped and counted."""
     text, note, left_out = source.text(), "", 0
     if HIDDEN in text:
         lines = text.splitlines()
@@ -51,7 +52,7 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
 
 
 def _exchange_warning(values: NDArray[np.float64]) -> str:
-    """Return a warning when people would walk far more smoothly if the first column were the id."""
+    """Return a warning if tracks are much smoother with id and frame swapped."""
     given_order, swapped_order = _jump(values[:, 1], values[:, 0], values), _jump(values[:, 0], values[:, 1], values)
     if given_order is None or swapped_order is None or not given_order > SMOOTHER * swapped_order:
         return ""
@@ -59,7 +60,7 @@ def _exchange_warning(values: NDArray[np.float64]) -> str:
 
 
 def _jump(id: NDArray[np.float64], frame: NDArray[np.float64], values: NDArray[np.float64]) -> float | None:
-    """Return the median way from one row of a track to the next; None when there are too few to tell."""
+    """Return the median distance between consecutive rows of a track; None with too few rows."""
     order = np.lexsort((frame, id))
     same = np.diff(id[order]) == 0
     if np.sum(same) < ENOUGH:

@@ -1,4 +1,4 @@
-"""Costs over velocities: the terms of a cost model, which add up to new models."""
+"""Cost terms over velocities, to compose crowd models."""
 
 from .cost_terms import (
     Effort,

@@ -1,4 +1,4 @@
-"""CostModel: a new model from costs over velocities, in a few lines (van Toll et al. 2020)."""
+"""CostModel: a crowd model composed of costs over velocities (van Toll et al. 2020)."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ Floats = NDArray[np.float64]
 OPTIMISERS = ("natural", "gradient", "sampling", "closed-form")
 SAMPLES = ("polar", "umans", "random")
 EQUAL = 1e-9
-"""Costs that differ by no more than this share are equal, so that rounding does not choose between velocities."""
+"""Relative tolerance within which costs are equal: rounding does not decide between velocities."""
 BUDGET = 1_000_000
-"""So many numbers make up the largest array at a time: walkers are weighed in parts."""
+"""Maximum number of elements of an array; walkers are processed in parts."""
 GIVEN = 3
-"""Velocities that are tried besides the samples: none, the desired one and the present one."""
+"""Candidates in addition to the samples: zero, the desired and the current velocity."""
 STEEPEST = 1e9
-"""No slope [m/s^2] counts as more."""
+"""Limit of slopes [m/s^2]."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class CostModel(CrowdModel):
         refinements: number of local searches around the best sample, each half as wide as the one before.
         seed: of ``random`` samples when the step has no stream; then they are the same for all and in every step.
 
-    Costs are evaluated with NumPy, without a compiled kernel: easy to extend, and slower than the other models.
+    Costs are evaluated in NumPy: easy to extend, but slower than the compiled models.
 
     The default cost is :class:`~crowdbot.models.costs.HalfPlanes` in closed form, which reproduces ``orca`` in NumPy.
     The original is the UMANS library; its sampling pattern is ``samples="umans"``.
@@ -73,7 +73,7 @@ class CostModel(CrowdModel):
     doi:10.1145/3384382.3384532.
 
     Raises:
-        InputError: a parameter is not finite or below its minimum, a word is unknown, or the costs have no closed form.
+        InputError: a parameter is not finite or below its minimum, an option is unknown, or there is no closed form.
 
     >>> from crowdbot.models.costs import PowerLawEnergy, PreferredVelocity
     >>> careful = CostModel(PreferredVelocity() + 2.0 * PowerLawEnergy(), refinements=6)
@@ -109,7 +109,7 @@ class CostModel(CrowdModel):
         super().__post_init__()
         check_limit(self, self.max_speed)
         if not isinstance(self.costs, VelocityCost):
-            raise InputError(f"CostModel: costs are {self.costs!r}, they must be a VelocityCost or a sum of some")
+            raise InputError(f"CostModel: costs = {self.costs!r} must be a VelocityCost or a sum of them")
         for name, known in (("optimiser", OPTIMISERS), ("samples", SAMPLES)):
             word = getattr(self, name)
             if word not in known:
@@ -129,7 +129,7 @@ class CostModel(CrowdModel):
             )
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` serves costs and samples."""
+        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is used by costs and samples."""
         wish, walking = desired_velocity(scene, dt), movable(scene)
 
         def value(name: str) -> Floats:
@@ -172,7 +172,7 @@ class CostModel(CrowdModel):
             way = 2.0 * math.pi * random.random(self.speeds * self.angles)
             return np.stack([size * np.cos(way), size * np.sin(way)], axis=-1)
         turns = np.arange(self.angles)
-        if self.samples == "polar":  # right in front, then more and more to the one and the other side
+        if self.samples == "polar":  # straight ahead first, then alternately to both sides
             turns = np.where(turns % 2 == 1, -(turns + 1) // 2, turns // 2)
         angle = turns * (2.0 * math.pi / self.angles) + (math.pi if self.samples == "umans" else 0.0)
         speed = (1.0 + np.arange(self.speeds))[:, None] / self.speeds
@@ -197,7 +197,7 @@ class CostModel(CrowdModel):
 
 
 def _least(costs: VelocityCost, world: NeighborView, candidates: Floats) -> Floats:
-    """Return the candidate of least cost ``[N, 2]``, of equal ones the first."""
+    """Return the candidate with the lowest cost ``[N, 2]``; the first of equal ones."""
     cost = costs.value(world, candidates)
     cost = np.where(np.isnan(cost), np.inf, cost)
     least = np.min(cost, axis=1, keepdims=True)
@@ -207,6 +207,6 @@ def _least(costs: VelocityCost, world: NeighborView, candidates: Floats) -> Floa
 
 
 def _limit_length(vectors: Floats, longest: Floats) -> Floats:
-    """Return vectors ``[N, 2]``, none longer than ``longest`` [N]."""
+    """Return vectors ``[N, 2]`` limited to the lengths ``longest`` [N]."""
     size = length(vectors)
     return np.asarray(vectors * np.minimum(1.0, longest / np.maximum(size, 1e-300))[:, None])

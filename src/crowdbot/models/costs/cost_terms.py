@@ -1,4 +1,4 @@
-"""Costs of velocities: small values that say how much agents would dislike a velocity, to be added to new models."""
+"""Cost terms: the cost of each candidate velocity of an agent."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ __all__ = [
 Floats = NDArray[np.float64]
 
 EDGE = 1e-9
-"""Velocities that are not farther than this [m/s] outside of a half plane are on its edge."""
+"""Tolerance [m/s] within which a velocity is on the edge of a half plane."""
 FAR = 1e3
-"""A desired velocity in place of a goal is a goal so many planning times away."""
+"""Distance of the goal, in planning times, if only a desired velocity is given."""
 
 
 @dataclass(frozen=True)
 class PreferredVelocity(VelocityCost):
-    """Distance to the desired velocity: attraction by the goal.
+    """Distance to the desired velocity: attraction to the goal.
 
     Args:
-        exponent: of the distance; 1 holds on to the desired velocity, 2 gives in to small reasons.
+        exponent: of the distance; 1 keeps the desired velocity, 2 allows small deviations.
     """
 
     natural: ClassVar[str] = "closed-form"
@@ -62,10 +62,10 @@ class PreferredVelocity(VelocityCost):
 
 @dataclass(frozen=True)
 class Inertia(VelocityCost):
-    """Distance to the present velocity.
+    """Distance to the current velocity.
 
     Args:
-        exponent: of the distance; 1 holds on to the present velocity, 2 gives in to small reasons.
+        exponent: of the distance; 1 keeps the current velocity, 2 allows small deviations.
     """
 
     natural: ClassVar[str] = "closed-form"
@@ -78,13 +78,13 @@ class Inertia(VelocityCost):
         return np.asarray(distance ** world.each(self.exponent, "exponent")[:, None])
 
     def best(self, world: NeighborView) -> Floats:
-        """Return the present velocities."""
+        """Return the current velocities."""
         return world.velocity
 
 
 @dataclass(frozen=True)
 class NoiseTerm(VelocityCost):
-    """A cost at random for every velocity, from the stream of the step; 0 without one.
+    """A random cost for every velocity, from the generator of the step; 0 without one.
 
     Args:
         deviation: standard deviation of the cost.
@@ -101,7 +101,7 @@ class NoiseTerm(VelocityCost):
 
 @dataclass(frozen=True)
 class GoalForce(Force):
-    """The pull of the desired velocity, ``(p - v) / relaxation_time``.
+    """The driving force, ``(p - v) / relaxation_time``.
 
     Args:
         relaxation_time: [s]; no less than the time step counts.
@@ -117,7 +117,7 @@ class GoalForce(Force):
 
 @dataclass(frozen=True)
 class ModelForce(Force):
-    """Any model as a cost: the force that leads to the velocity it would choose.
+    """A crowd model as a cost: the force towards its velocity.
 
     Args:
         model: a :class:`CrowdModel`, such as ``SocialForce()``.
@@ -135,9 +135,9 @@ class ModelForce(Force):
 
 @dataclass(frozen=True)
 class PowerLawForce(Force):
-    """The push down the slope of ``strength t^-exponent exp(-t / time_horizon)``, t the time to a collision.
+    """The negative gradient of ``strength t^-exponent exp(-t / time_horizon)``, t the time to collision.
 
-    The first wall to be touched pushes too. Discs that overlap, and collisions later than ``time_horizon``, do not.
+    The wall of the earliest contact counts too. Overlapping discs and collisions after ``time_horizon`` do not count.
 
     Args:
         strength: of the energy, per mass [m^2 s^(exponent - 2)].
@@ -173,7 +173,7 @@ class PowerLawForce(Force):
         return np.asarray((self._steepness(world, time)[:, 0] / np.where(soon, closing, 1.0))[:, None] * away)
 
     def _steepness(self, world: NeighborView, time: Floats) -> Floats:
-        """Return minus the derivative of the energy over time ``[N, K]``; 0 where there is no collision soon."""
+        """Return the negative time derivative of the energy ``[N, K]``; 0 without a collision in time."""
         k, m, horizon = (world.each(getattr(self, name), name)[:, None] for name in _ENERGY)
         soon = (time > 0.0) & (time <= horizon)
         t = np.where(soon, time, 1.0)
@@ -185,9 +185,9 @@ _ENERGY = ("strength", "exponent", "time_horizon")
 
 @dataclass(frozen=True)
 class PowerLawEnergy(VelocityCost):
-    """The energy ``strength t^-exponent exp(-t / time_horizon)`` that a velocity leads to, t its time to a collision.
+    """The energy ``strength t^-exponent exp(-t / time_horizon)`` of a velocity, t its time to collision.
 
-    What pushes in :class:`PowerLawForce`: the same collisions count.
+    The same collisions count as in :class:`PowerLawForce`.
 
     Args:
         strength: of the energy, per mass [m^2 s^(exponent - 2)].
@@ -233,13 +233,13 @@ class ReciprocalObstacles(VelocityCost):
 
 @dataclass(frozen=True)
 class HalfPlanes(VelocityCost):
-    """ORCA as a cost: the distance to the desired velocity where all half planes allow it, else far more.
+    """ORCA as a cost: the distance to the desired velocity inside all half planes, a penalty outside.
 
     Args:
         time_horizon: agents keep clear of each other for this long [s].
         time_horizon_walls: and of walls for this long [s].
 
-    Outside of a half plane the cost is the deepest violation and twice the maximum speed, so that worse stays worse.
+    Outside of a half plane the cost is the deepest violation plus twice the maximum speed.
 
     Source: van den Berg, Guy, Lin, Manocha 2011, doi:10.1007/978-3-642-19457-3_1, as a cost by van Toll et al. 2020.
     """
@@ -272,7 +272,7 @@ class HalfPlanes(VelocityCost):
         return out
 
     def _lines(self, world: NeighborView) -> tuple[Floats, NDArray[np.int64], NDArray[np.int64]]:
-        """Return the lines ``[N, L, 4]``, how many of them belong to walls ``[N]``, and how many there are."""
+        """Return the lines ``[N, L, 4]``, the number of wall lines ``[N]`` and the number of lines."""
         edges = edges_of(world.scene.walls)
         corner, following = edges.corner, edges.next
         found, gap2 = np.empty(len(corner), dtype=np.int64), np.empty(len(corner))
@@ -300,7 +300,7 @@ class HalfPlanes(VelocityCost):
 
 @dataclass(frozen=True)
 class Effort(VelocityCost):
-    """Energy per mass to the goal [J/kg]; inf where a contact comes too early.
+    """Energy per mass to the goal [J/kg]; inf if a contact is too early.
 
     Args:
         rest_power: of who stands [J/(kg s)].
@@ -330,7 +330,7 @@ class Effort(VelocityCost):
 
 @dataclass(frozen=True)
 class FreeWay(VelocityCost):
-    """How far the free way in a direction ends from the goal at sight distance, and how far from its best speed one is.
+    """Distance between the end of the free path and the goal at sight distance, and deviation from the best speed.
 
     Args:
         sight_distance: farther than this nothing matters [m].
@@ -343,7 +343,7 @@ class FreeWay(VelocityCost):
     relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="Moussaid et al. 2011", min=1e-3)
 
     def value(self, world: NeighborView, candidates: Floats) -> Floats:
-        """Return ``(1 + D^2) (1 + (1 - |v'| / S)^2)``, D to the end of the free way f, S = min(|p|, f / tau)."""
+        """Return ``(1 + D^2) (1 + (1 - |v'| / S)^2)``, D to the end of the free path f, S = min(|p|, f / tau)."""
         sight = world.each(self.sight_distance, "sight_distance")[:, None]
         speed, wanted = length(candidates), length(world.wish)[:, None]
         ahead = candidates / np.maximum(speed, 1e-300)[..., None]

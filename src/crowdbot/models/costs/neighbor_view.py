@@ -1,4 +1,4 @@
-"""NeighborView: what agents know when they weigh velocities, one row per walker, and when each velocity meets what."""
+"""NeighborView: surroundings of the walkers for cost terms, and times to contact of candidate velocities."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class NeighborView:
-    """What N walkers of all environments know; neighbours that are not there fill up their K places.
+    """Surroundings of N walkers of all environments, with K neighbour slots; empty slots are padded.
 
     Fields:
         row: ``[N]`` row ``e * A + a`` of each walker in the scene.
@@ -68,7 +68,7 @@ class NeighborView:
         dt: float,
         random: np.random.Generator | None = None,
     ) -> NeighborView:
-        """Look at ``scene`` with the eyes of those who are ``walking`` [E, A], who have these neighbours."""
+        """Return the view of the agents ``walking`` [E, A] in a scene with these neighbours."""
         row = np.flatnonzero(walking)
         A = max(1, scene.shape[1])
         agent = rows(near.agent)[row]
@@ -102,26 +102,26 @@ class NeighborView:
         return len(self.row)
 
     def part(self, begin: int, end: int) -> NeighborView:
-        """Return the surroundings of the walkers from ``begin`` to before ``end`` only."""
+        """Return the view of the walkers ``begin`` to ``end`` (exclusive)."""
         shared = ("segments", "dt", "scene", "random", "cache")
         names = [field.name for field in dataclasses.fields(self) if field.name not in shared]
         cut: dict[str, Any] = {name: getattr(self, name)[begin:end] for name in names}
         return dataclasses.replace(self, **cut)
 
     def each(self, value: PerAgent, name: str) -> Floats:
-        """Return a parameter of each walker ``[N]`` from a number, or from an array that broadcasts to ``[E, A]``."""
+        """Return a parameter of each walker ``[N]`` from a number or an array that broadcasts to ``[E, A]``."""
         if np.ndim(value) == 0:
             return np.full(len(self), value, dtype=np.float64)
         return rows(per_agent(value, self.scene.shape, name))[self.row]
 
     def compute_once(self, key: Hashable, answer: Callable[[], Any]) -> Any:
-        """Return ``answer()``, asked once for all parts of these surroundings."""
+        """Return ``answer()``, computed once for all parts of this view."""
         if key not in self.cache:
             self.cache[key] = answer()
         return self.cache[key]
 
     def direction(self) -> Floats:
-        """Return the unit directions ``[N, 2]`` of the wishes; of velocity or heading where nothing is wished."""
+        """Return unit directions ``[N, 2]`` of the desired velocity, otherwise of velocity or heading."""
         heading = rows(self.scene.heading)[self.row]
         ahead = np.stack([np.cos(heading), np.sin(heading)], axis=-1)
         for way in (self.velocity, self.wish):
@@ -130,9 +130,9 @@ class NeighborView:
         return ahead
 
     def contact_times(self, candidates: Floats) -> Floats:
-        """Return when each velocity ``[N, C, 2]`` leads to contact with each neighbour: ``[N, C, K]`` [s], or inf.
+        """Return the time to contact of each velocity ``[N, C, 2]`` with each neighbour, ``[N, C, K]`` [s], or inf.
 
-        Neighbours keep their velocities. Those in contact already do not count: separating is another matter.
+        Neighbours keep their velocities. Existing contacts do not count.
         """
         x, y = self.offset[:, None, :, 0], self.offset[:, None, :, 1]
         vx = candidates[:, :, None, 0] - self.motion[:, None, :, 0]
@@ -142,9 +142,9 @@ class NeighborView:
         return _time(x, y, vx, vy, apart, meets)
 
     def wall_times(self, candidates: Floats) -> Floats:
-        """Return when each velocity ``[N, C, 2]`` leads to contact with a wall: ``[N, C]`` [s], or inf.
+        """Return the time to contact of each velocity ``[N, C, 2]`` with a wall, ``[N, C]`` [s], or inf.
 
-        Walls that are touched already do not count.
+        Existing contacts do not count.
         """
         best = np.full(candidates.shape[:2], np.inf)
         vx, vy = candidates[..., 0], candidates[..., 1]
@@ -167,11 +167,11 @@ class NeighborView:
         return best
 
     def sum_overlaps(self) -> Floats:
-        """Return how far bodies and walls reach into each walker, summed as vectors ``[N, 2]`` [m] away from them."""
+        """Return the overlap of bodies and walls with each walker, as the sum of vectors ``[N, 2]`` [m] outwards."""
         distance = np.sqrt(self.offset[..., 0] ** 2 + self.offset[..., 1] ** 2)
         deep = np.where(self.there, np.maximum(self.reach - distance, 0.0), 0.0)
         away = self.offset / np.maximum(distance, 1e-300)[..., None]
-        same = np.where(self.first, -1.0, 1.0)  # at the same place one goes to the left and one to the right
+        same = np.where(self.first, -1.0, 1.0)  # at the same position one moves left and one right
         away[..., 0] = np.where(distance > 0.0, away[..., 0], same)
         total = np.sum(deep[..., None] * away, axis=1)
         for segment in self.segments:
@@ -183,7 +183,7 @@ class NeighborView:
         return np.asarray(total)
 
     def nearest_on_walls(self, points: Floats) -> Floats:
-        """Return the nearest point ``[N, 2]`` of all walls to each of ``points`` [N, 2]; inf when there are none."""
+        """Return the nearest wall point ``[N, 2]`` of each of ``points`` [N, 2]; inf without walls."""
         best, least = np.full(points.shape, np.inf), np.full(len(points), np.inf)
         for segment in self.segments:
             start, along = segment[:2], segment[2:] - segment[:2]
@@ -195,7 +195,7 @@ class NeighborView:
         return best
 
     def first_contact(self, candidates: Floats) -> Floats:
-        """Return when each velocity ``[N, C, 2]`` leads to the first contact with anything: ``[N, C]`` [s], or inf."""
+        """Return the time to the first contact of each velocity ``[N, C, 2]``, ``[N, C]`` [s], or inf."""
         return np.asarray(
             np.minimum(np.min(self.contact_times(candidates), -1, initial=np.inf), self.wall_times(candidates))
         )

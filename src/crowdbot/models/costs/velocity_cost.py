@@ -1,4 +1,4 @@
-"""VelocityCost: the contract of costs over velocities, how they add up, and how forces are costs.
+"""VelocityCost: contract of costs over velocities, their sums, and forces as costs.
 
 Most microscopic models are a cost over velocities and a way to make it small (van Toll et al. 2020,
 doi:10.1145/3384382.3384532). A force is a cost too: the squared distance to the velocity that it leads to.
@@ -23,12 +23,12 @@ __all__ = ["Force", "Sum", "VelocityCost", "length", "suitable_optimiser"]
 Floats = NDArray[np.float64]
 
 STEP = 1e-4
-"""Half of the difference of velocities [m/s] from which a slope is taken where a cost does not know its own."""
+"""Half of the velocity difference [m/s] for numerical gradients."""
 
 
 @dataclass(frozen=True)
 class VelocityCost(abc.ABC):
-    """How much agents dislike velocities. Costs add, and numbers weigh them: ``PreferredVelocity() + 0.5 * Inertia()``.
+    """Contract: the cost of velocities. Costs can be added and scaled: ``PreferredVelocity() + 0.5 * Inertia()``.
 
     A cost is a frozen dataclass with one method, :meth:`value`. It may also know its :meth:`gradient`, and where it is
     least (:meth:`best`); ``natural`` names the optimiser that suits it.
@@ -52,17 +52,17 @@ class VelocityCost(abc.ABC):
 
     @abc.abstractmethod
     def value(self, world: NeighborView, candidates: Floats) -> Floats:
-        """Return the cost ``[N, C]`` of each velocity ``[N, C, 2]`` [m/s]; inf is never chosen."""
+        """Return the cost ``[N, C]`` of each velocity ``[N, C, 2]`` [m/s]; inf excludes a velocity."""
 
     def gradient(self, world: NeighborView, velocity: Floats) -> Floats:
-        """Return the slope ``[N, 2]`` of the cost at ``velocity`` [N, 2] [m/s]; here by differences."""
+        """Return the gradient ``[N, 2]`` of the cost at ``velocity`` [N, 2] [m/s]; by default numerical."""
         steps = STEP * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
         cost = self.value(world, velocity[:, None] + steps)
         with np.errstate(invalid="ignore"):  # inf - inf: the model takes no step there
             return np.stack([cost[:, 0] - cost[:, 1], cost[:, 2] - cost[:, 3]], axis=-1) / (2.0 * STEP)
 
     def best(self, world: NeighborView) -> Floats:
-        """Return the velocities ``[N, 2]`` [m/s] where the cost is least.
+        """Return the velocities ``[N, 2]`` [m/s] with the lowest cost.
 
         Raises:
             InputError: this cost has no closed form.
@@ -81,7 +81,7 @@ class VelocityCost(abc.ABC):
 
 @dataclass(frozen=True)
 class Sum(VelocityCost):
-    """A weighted sum of costs; made by ``+`` and ``*``.
+    """Weighted sum of costs, the result of ``+`` and ``*``.
 
     Raises:
         InputError: a weight is not finite.
@@ -103,7 +103,7 @@ class Sum(VelocityCost):
         return total
 
     def gradient(self, world: NeighborView, velocity: Floats) -> Floats:
-        """Return the weighted sum of the slopes ``[N, 2]``."""
+        """Return the weighted sum of the gradients ``[N, 2]``."""
         total = np.zeros_like(velocity)
         for weight, cost in self.terms:
             if weight != 0.0:
@@ -111,7 +111,7 @@ class Sum(VelocityCost):
         return total
 
     def best(self, world: NeighborView) -> Floats:
-        """Return what is best for the only term."""
+        """Return the best velocities of a single term."""
         if len(self.terms) != 1 or not self.terms[0][0] > 0.0:
             return super().best(world)
         return self.terms[0][1].best(world)
@@ -121,7 +121,7 @@ class Sum(VelocityCost):
 
 
 def suitable_optimiser(cost: VelocityCost) -> str:
-    """Return the optimiser that suits a cost: for a sum of several, gradient when all are forces, else sampling.
+    """Return the default optimiser of a cost: gradient for a sum of forces, sampling for other sums.
 
     >>> from crowdbot.models.costs import GoalForce, PowerLawForce, PreferredVelocity
     >>> suitable_optimiser(GoalForce() + PowerLawForce()), suitable_optimiser(GoalForce() + PreferredVelocity())

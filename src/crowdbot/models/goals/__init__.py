@@ -1,4 +1,4 @@
-"""Goals: where the people of an observed window are taken to be walking."""
+"""Goals: estimated destinations of people in observed windows."""
 
 from .current_direction import CurrentDirection
 from .environment_layout import EnvironmentLayout

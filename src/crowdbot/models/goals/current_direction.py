@@ -1,4 +1,4 @@
-"""The goal that needs nothing but the eyes: straight on."""
+"""CurrentDirection: people continue in their current direction."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ class CurrentDirection(Goal):
         adaptive: average as much as the noise of the tracks asks for, see
             :func:`crowdbot.data.motion.steady_velocity`; then ``steps`` stays 1.
 
-    Whoever was seen at the last step only stays there.
+    The goal of people observed only at the last step is their position.
 
     Raises:
-        InputError: ``steps`` is below 1 or given beside ``adaptive``, or ``horizon`` is not positive.
+        InputError: ``steps`` is below 1 or given together with ``adaptive``, or ``horizon`` is not positive.
     """
 
     steps: int = 1
@@ -43,7 +43,7 @@ class CurrentDirection(Goal):
         if self.steps < 1:
             raise InputError(f"current-direction: steps {self.steps} is not allowed, it must be at least 1")
         if self.adaptive and self.steps != 1:
-            raise InputError(f"current-direction: steps {self.steps} and adaptive exclude each other, leave one out")
+            raise InputError(f"current-direction: steps {self.steps} and adaptive exclude each other; pass only one")
 
     def resolve(self, past: Windows) -> Floats:
         """Return the goals ``[W, A, 2]`` [m]; 0 for people who are not present at the last observed step."""

@@ -1,4 +1,4 @@
-"""Destinations estimated from the layout of a place."""
+"""EnvironmentLayout: destinations estimated from the layout of a place."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ ZIEBART = Paper(
 
 @dataclass(frozen=True, eq=False)
 class EnvironmentLayout(Goal):
-    """The exits of a place, weighed by how people came nearer to each of them.
+    """The exits of a place, weighted by the progress of each person towards them.
 
     The posterior of an exit is its prior times exp(``certainty`` x progress); progress [m] is by how much the way to
     it has become shorter, averaged over the whole observed part and its later half. That is the probability of the
@@ -114,13 +114,13 @@ class EnvironmentLayout(Goal):
         if not (width > 0.0 and np.isfinite(width)):
             raise InputError(f"environment-layout: width = {width} m must be finite and above 0")
         if area is None and len(solid) < 2:
-            raise InputError("environment-layout: without walls and area nothing is known of the place, give exits")
+            raise InputError("environment-layout: the place has no walls and no area; pass exits")
         border = hull(solid.start) if area is None else _ring(area)
         return cls(openings(border, solid, width), solid, **values)
 
     @classmethod
     def learn(cls, *recordings: Trajectories, walls: Any = None, width: float = 2.0, **values: Any) -> Self:
-        """Return the layout of a place that was recorded.
+        """Return the layout of a recorded place.
 
         The walkable area is the convex hull of where people were, its openings are the exits, and how many people
         left nearest to each is the prior, one added. The velocity is learned, too.
@@ -151,7 +151,7 @@ class EnvironmentLayout(Goal):
         return steady_velocity(past) if self.pace is None else self.pace.velocity(past)
 
     def resolve(self, past: Windows) -> Floats:
-        """Return one goal each ``[W, A, 2]`` [m], in the median direction; 0 for who is absent at the last row."""
+        """Return the goal of each person ``[W, A, 2]`` [m] in the median direction; 0 for absent people."""
         velocity, turn, weight, here = self._candidates(past)
         return extrapolate(past.position[:, -1], here, rotate(velocity, median(turn, weight)), self.horizon)
 
@@ -163,11 +163,11 @@ class EnvironmentLayout(Goal):
         return Choices(place[:, :, None] + self.horizon * way, weight)
 
     def posterior(self, past: Windows) -> Floats:
-        """Return how probable straight on and each exit are, ``[W, A, G + 1]``; 0 for who is absent."""
+        """Return the probabilities of straight on and of each exit, ``[W, A, G + 1]``; 0 for absent people."""
         return self._candidates(past)[2]
 
     def _candidates(self, past: Windows) -> tuple[Floats, Floats, Floats, NDArray[np.bool_]]:
-        """Return velocity ``[W, A, 2]``, turn [rad] and weight ``[W, A, G + 1]`` of candidates, and who is here."""
+        """Return velocity ``[W, A, 2]``, turn [rad] and weight ``[W, A, G + 1]`` of candidates, and presence."""
         if past.units != "m":
             raise InputError(f"environment-layout: {past.source} is in {past.units}; turn it into metres first")
         velocity, here = self.velocity(past), past.present[:, -1]
@@ -180,7 +180,7 @@ class EnvironmentLayout(Goal):
         return velocity, turn, weight, here
 
     def _weigh(self, known: Windows, velocity: Floats, moving: NDArray[np.bool_]) -> tuple[Floats, Floats]:
-        """Return turn [rad] and posterior ``[P, G + 1]`` of those who move."""
+        """Return turn [rad] and posterior ``[P, G + 1]`` of moving people."""
         place = known.position[:, -1][moving]
         aim, way = self.routes.next(place)
         heading = unit(velocity)
@@ -201,7 +201,7 @@ class EnvironmentLayout(Goal):
         weight /= np.sum(weight, axis=1, keepdims=True)
         off = aim - place[:, None]
         soon = self.lookahead * length(velocity)[:, None] / np.maximum(length(off), 1e-9)
-        part = np.where(length(off) > 0.5, np.clip(soon, self.pull, 1.0), 0.0)  # nearer, a heading says nothing
+        part = np.where(length(off) > 0.5, np.clip(soon, self.pull, 1.0), 0.0)  # nearer, a heading is meaningless
         turn = np.zeros_like(weight)
         turn[:, 1:] = part * angle_between(heading[:, None], off)
         return turn, weight

@@ -18,19 +18,19 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 MOST_ENDS = 3000
-"""So many end points are grouped; with more, every k-th of them."""
+"""Maximum number of end points to group; of more points every k-th is used."""
 STEP = 0.1
-"""The border is looked at in steps of about so much [m]."""
+"""Sampling distance along the border [m]."""
 NEAR_WALL = 0.3
-"""A border nearer than this to a wall [m] is covered by it."""
+"""A wall nearer than this [m] closes the border."""
 NARROWEST = 0.5
-"""An opening is at least so wide [m]: a person fits through."""
+"""Minimum width of an opening [m]: a person fits through."""
 
 
 def track_ends(tracks: Trajectories) -> tuple[Integers, Floats, NDArray[np.bool_]]:
-    """Return the ids of people ``[P]``, where their tracks end ``[P, 2]``, and who was gone before the recording ended.
+    """Return the ids of people ``[P]``, where their tracks end ``[P, 2]``, and whether they end before the recording.
 
-    Who is still there at its last row was cut off, and says nothing about where people go.
+    Tracks that reach the last row are cut off and do not show a destination.
     """
     order = np.lexsort((tracks.frame, tracks.id))
     last = np.append(tracks.id[order][1:] != tracks.id[order][:-1], True)
@@ -43,7 +43,7 @@ def track_ends(tracks: Trajectories) -> tuple[Integers, Floats, NDArray[np.bool_
 def clusters(points: Floats, width: float, fewest: int) -> Floats:
     """Return the centres ``[G, 2]`` [m] of groups of points no wider than ``width`` [m], with at least ``fewest``.
 
-    Complete linkage: it knows no axes, so a turned place has turned groups.
+    Complete linkage does not depend on the axes: a rotated place has rotated groups.
     """
     from scipy.cluster.hierarchy import fcluster, linkage
 
@@ -66,7 +66,7 @@ def hull(points: Floats) -> Floats:
 
 
 def openings(border: Floats, walls: Walls, width: float) -> Floats:
-    """Return where the ring ``border [N, 2]`` has no walls, in pieces ``[G, 2, 2]`` about ``width`` wide [m]."""
+    """Return parts of the ring ``border [N, 2]`` without walls, in segments ``[G, 2, 2]`` of about ``width`` [m]."""
     place = _along(border)
     open_ = ~_covered(place, walls)
     if not np.any(open_):
@@ -90,7 +90,7 @@ def openings(border: Floats, walls: Walls, width: float) -> Floats:
 
 
 def _along(border: Floats) -> Floats:
-    """Return points along a ring, not much more than a step apart."""
+    """Return points along a ring at distances of about one step."""
     parts = []
     for start, end in zip(border, np.roll(border, -1, axis=0), strict=True):
         count = max(1, round(float(length(end - start)) / STEP))
@@ -99,7 +99,7 @@ def _along(border: Floats) -> Floats:
 
 
 def _covered(place: Floats, walls: Walls) -> NDArray[np.bool_]:
-    """Return which points are near a wall or inside what is solid."""
+    """Return which points are near a wall or inside a solid."""
     if len(walls) == 0:
         return np.zeros(len(place), np.bool_)
     along = walls.end - walls.start
@@ -109,7 +109,7 @@ def _covered(place: Floats, walls: Walls) -> NDArray[np.bool_]:
 
 
 def _inside(place: Floats, walls: Walls) -> NDArray[np.bool_]:
-    """Return which points lie inside a solid ring: those around which its edges turn once to the left."""
+    """Return which points lie inside a solid ring (winding number 1)."""
     start, end = walls.start - place[:, None], walls.end - place[:, None]
     cross = start[..., 0] * end[..., 1] - start[..., 1] * end[..., 0]
     up = (start[..., 1] <= 0.0) & (end[..., 1] > 0.0) & (cross > 0.0)

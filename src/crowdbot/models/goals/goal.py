@@ -1,4 +1,4 @@
-"""Goal: the contract of everything that guesses where people are walking."""
+"""Goal: contract of methods that estimate the destinations of people."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Choices:
-    """Destinations that people may have: G slots for each person, in an order of the goal's own.
+    """Possible destinations: G slots for each person, in an order defined by the goal.
 
     Fields:
         position: ``[W, A, G, 2]`` [m], what to walk towards.
@@ -41,7 +41,7 @@ class Choices:
             )
 
     def likeliest(self, count: int) -> Choices:
-        """Return ``count`` slots by falling weight, their weights scaled to sum to 1; padded when there are fewer.
+        """Return the ``count`` slots of the largest weights, scaled to sum to 1; padded if there are fewer.
 
         >>> import numpy as np
         >>> choices = Choices(np.arange(6.0).reshape(1, 1, 3, 2), np.array([[[0.25, 0.5, 0.25]]]))
@@ -61,40 +61,40 @@ class Choices:
 
 @dataclass(frozen=True)
 class Goal(abc.ABC):
-    """How the goals of people are guessed from what was observed of them.
+    """Contract: estimate the goals of people from observed windows.
 
     A new goal is one class with :meth:`resolve`; it may look at ``past`` only, everyone's goal may use everyone's past
     of the same window, and absent people get 0.
     """
 
     knows_future: ClassVar[bool] = False
-    """Whether it looks at what is to be predicted: then it is for evaluation only."""
+    """Whether the goal uses the future, for evaluation only."""
     learns: ClassVar[bool] = False
-    """Whether it is made for a place, by :meth:`learned` or with values of its own, and not by its name alone."""
+    """Whether the goal belongs to a place and must be made with :meth:`learn` or with values, not by its name."""
 
     @abc.abstractmethod
     def resolve(self, past: Windows) -> Floats:
-        """Return one goal each ``[W, A, 2]`` [m], the best single guess; 0 for who is absent at the last row."""
+        """Return the most probable goal of each person ``[W, A, 2]`` [m]; 0 for people absent at the last row."""
 
     def choices(self, past: Windows) -> Choices:
-        """Return the destinations that people may have and how probable each is; by default the one of resolve."""
+        """Return possible destinations and their probabilities; by default the goal of :meth:`resolve`."""
         here = past.present[:, -1]
         return Choices(self.resolve(past)[:, :, None], here[:, :, None].astype(np.float64))
 
     def velocity(self, past: Windows) -> Floats:
-        """Return the velocity ``[W, A, 2]`` [m/s] on which the goals are based, 0 for who is absent.
+        """Return the velocity ``[W, A, 2]`` [m/s] on which the goals are based; 0 for absent people.
 
-        Its length is the speed at which people may be taken to walk on.
+        Its length is an estimate of the future speed.
         """
         return steady_velocity(past)
 
     @classmethod
     def learn(cls, *recordings: Trajectories, **values: Any) -> Self:
-        """Return the goal as it is learned from recordings of one place; ``values`` are fields.
+        """Return the goal learned from recordings of one place; ``values`` are fields.
 
         Raises:
-            InputError: this goal does not learn, or the recordings do not suit it.
+            InputError: this goal does not learn, or the recordings do not fit.
             DataError: a recording is too short to learn from.
         """
         name = kebab_case(cls.__name__)
-        raise InputError(f"{name} does not learn from recordings: make it by {cls.__name__}(...)")
+        raise InputError(f"{name} does not learn from recordings; use {cls.__name__}(...)")

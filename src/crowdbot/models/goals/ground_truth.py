@@ -1,4 +1,4 @@
-"""The goal that people will be at: for evaluation only."""
+"""GroundTruth: the recorded destinations, for evaluation only."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class GroundTruth(Goal):
-    """The last place where each person is seen in the future; for evaluation only.
+    """The last recorded position of each person in the future, for evaluation only.
 
-    It tells how much of an error comes from not knowing the goals. Whoever is not seen in the future stays.
+    It measures the share of an error that comes from unknown goals. People without a future keep their position.
 
     Args:
         past, future: windows cut with one call; any of them, or their first observed rows, may then be resolved.
 
     Raises:
-        InputError: past and future do not hold the same people; on resolving, a window is none of them.
+        InputError: past and future have different people; on resolving, a window is unknown.
     """
 
     knows_future: ClassVar[bool] = True
@@ -40,7 +40,7 @@ class GroundTruth(Goal):
         if not np.array_equal(self.past.id, self.future.id):
             raise InputError(
                 f"ground-truth: the past has people {list(self.past.id.shape)} and the future"
-                f" {list(self.future.id.shape)}; both must be cut with one call"
+                f" {list(self.future.id.shape)}; both must come from one call"
             )
 
     def resolve(self, past: Windows) -> Floats:
@@ -53,11 +53,11 @@ class GroundTruth(Goal):
         return goal
 
     def velocity(self, past: Windows) -> Floats:
-        """Return the velocity of the last displacement ``[W, A, 2]`` [m/s]: the goal says nothing about the speed."""
+        """Return the velocity of the last displacement ``[W, A, 2]`` [m/s]; the goal does not define a speed."""
         return observed_velocity(past)
 
     def _places(self, past: Windows) -> NDArray[np.int64]:
-        """Return which windows these are: known by their first frame and people."""
+        """Return the indices of the windows, identified by first frame and people."""
         if past.id.shape == self.past.id.shape and np.array_equal(past.id, self.past.id):
             return np.arange(len(past))
         names = [(int(frame), id.tobytes()) for frame, id in zip(past.frame[:, 0], past.id, strict=True)]

@@ -10,11 +10,11 @@ __all__ = ["MOVING", "angle_between", "extrapolate", "length", "median", "rotate
 Floats = NDArray[np.float64]
 
 MOVING = 0.2
-"""Below this speed [m/s] a heading says nothing: people who stand sway."""
+"""Minimum speed [m/s] of a meaningful heading; standing people sway."""
 
 
 def length(vector: Floats) -> Floats:
-    """Return the length ``[...]`` of vectors ``[..., 2]``."""
+    """Return the lengths ``[...]`` of vectors ``[..., 2]``."""
     return np.asarray(np.sqrt(vector[..., 0] ** 2 + vector[..., 1] ** 2))
 
 
@@ -25,7 +25,7 @@ def unit(vector: Floats) -> Floats:
 
 
 def angle_between(start: Floats, end: Floats) -> Floats:
-    """Return the turn [rad] from ``start`` to ``end`` ``[..., 2]``, to the left positive, in (-pi, pi].
+    """Return the angle [rad] from ``start`` to ``end`` ``[..., 2]``, positive to the left, in (-pi, pi].
 
     >>> import numpy as np
     >>> round(float(angle_between(np.array([1.0, 0.0]), np.array([0.0, 2.0]))), 4)
@@ -37,21 +37,21 @@ def angle_between(start: Floats, end: Floats) -> Floats:
 
 
 def rotate(vector: Floats, angle: Floats) -> Floats:
-    """Return vectors ``[..., 2]`` turned to the left by ``angle`` ``[...]`` [rad]."""
+    """Return vectors ``[..., 2]`` rotated to the left by ``angle`` ``[...]`` [rad]."""
     cos, sin = np.cos(angle), np.sin(angle)
     x, y = vector[..., 0], vector[..., 1]
     return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
 
 
 def extrapolate(place: Floats, here: NDArray[np.bool_], velocity: Floats, seconds: float) -> Floats:
-    """Return where people would be after ``seconds``, ``[W, A, 2]`` [m]; 0 for who is not here."""
+    """Return the extrapolated positions after ``seconds``, ``[W, A, 2]`` [m]; 0 for absent people."""
     return np.where(here[..., None], place + seconds * velocity, 0.0)
 
 
 def median(value: Floats, weight: Floats) -> Floats:
-    """Return the weighted median ``[...]`` of values ``[..., N]``, between two of them in proportion; 0 without weight.
+    """Return the interpolated weighted median ``[...]`` of values ``[..., N]``; 0 without weight.
 
-    Values count at the middle of their share of the weight, so that the median moves evenly with the weights.
+    A value lies at the middle of its share of the weight: the median is continuous in the weights.
 
     >>> import numpy as np
     >>> float(median(np.array([0.0, 4.0, 2.0]), np.array([1.0, 1.0, 2.0])))

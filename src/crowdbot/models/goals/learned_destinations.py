@@ -1,4 +1,4 @@
-"""Destinations learned from recordings of the place."""
+"""LearnedDestinations: destinations learned from recordings of the place."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ BENNEWITZ = Paper(
     "International Journal of Robotics Research 24(1)",
 )
 STRAIGHT = np.radians(15.0)
-"""A turn of less counts as straight on, in part."""
+"""Smaller turns count partly as straight on."""
 RAREST = 0.02
-"""An exit needs this share of all ends, and at least two."""
+"""Minimum share of all track ends at an exit, and at least two."""
 MOST_VOTERS = 20_000
-"""So many rows of the recordings are kept; with more, every k-th of them."""
+"""Maximum number of stored rows; of more rows every k-th is stored."""
 CHUNK_PEOPLE = 512
-"""People whose votes are held at once."""
+"""People processed at the same time."""
 
 
 @dataclass(frozen=True, eq=False)
 class LearnedDestinations(Goal):
-    """Where people went who were here before, walking the same way.
+    """Destinations of earlier people at the same position with the same heading.
 
     Made by :meth:`learned` from recordings of the same place. The ends of their tracks are grouped into exits. Every
     row of the recordings is a voter: it knows where somebody was, the heading, by how much they had turned
@@ -90,7 +90,7 @@ class LearnedDestinations(Goal):
         width: float = 3.0,
         **values: Any,
     ) -> Self:
-        """Return the goal as it is learned from recordings of one place.
+        """Return the goal learned from recordings of one place.
 
         Args:
             recordings: of the place, in metres, with one time step; not what is to be predicted.
@@ -102,7 +102,7 @@ class LearnedDestinations(Goal):
 
         Raises:
             InputError: no recording is given, they are in pixels or differ in time step, or a value is not allowed.
-            DataError: a recording has no window that is long enough.
+            DataError: a recording has no window of sufficient length.
         """
         if not 0.0 < width < np.inf:
             raise InputError(f"learned-destinations: width = {width} m must be finite and above 0")
@@ -126,7 +126,7 @@ class LearnedDestinations(Goal):
         return self.pace.velocity(past)
 
     def resolve(self, past: Windows) -> Floats:
-        """Return one goal each ``[W, A, 2]`` [m], in the median direction; 0 for who is absent at the last row."""
+        """Return the goal of each person ``[W, A, 2]`` [m] in the median direction; 0 for absent people."""
         velocity, here = self.velocity(past), past.present[:, -1]
         asked = here & (length(velocity) > MOVING)
         turn = np.zeros(here.shape)

@@ -1,4 +1,4 @@
-"""Velocities as a place teaches them: how much each of the last displacements tells of the next seconds."""
+"""LearnedVelocity: weights of the last displacements in the velocity of the next seconds."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ __all__ = ["LearnedVelocity", "mean_velocity", "pairs_of"]
 Floats = NDArray[np.float64]
 
 RIDGE = 0.01
-"""Pull of the weights towards 0, as a share of the mean square of what they weigh."""
+"""Regularisation of the weights, as a share of the mean square of their inputs."""
 ROUNDS = 15
-"""Rounds of re-weighting; the weights settle in less."""
+"""Iterations of re-weighting; the weights converge earlier."""
 SMALLEST = 0.05
-"""Residuals count as at least this share of the median one, else a perfect fit would count without bound."""
+"""Lower limit of residuals as a share of their median, against unbounded weights."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,7 @@ class LearnedVelocity:
 
     @classmethod
     def learn(cls, recordings: tuple[Trajectories, ...], observe: int = 8, lookahead: float = 1.6) -> Self:
-        """Return what recordings of one place teach.
+        """Return the weights learned from recordings of one place.
 
         Args:
             recordings: in metres, with one time step.
@@ -50,13 +50,13 @@ class LearnedVelocity:
 
         Raises:
             InputError: no recording is given, they are in pixels or differ in time step, or a value is not allowed.
-            DataError: a recording has no window that is long enough.
+            DataError: a recording has no window of sufficient length.
         """
         return cls.fit(pairs_of(recordings, observe, lookahead))
 
     @classmethod
     def fit(cls, pairs: list[tuple[Windows, Windows]]) -> Self:
-        """Return the weights that suit the people who are scored in pairs of past and future."""
+        """Return the weights fitted to the scored people in pairs of past and future."""
         most = pairs[0][0].position.shape[1] - 1
         weight = np.zeros((most, most))
         for count in range(1, most + 1):
@@ -65,7 +65,7 @@ class LearnedVelocity:
         return cls(weight, pairs[0][0].dt)
 
     def velocity(self, past: Windows) -> Floats:
-        """Return ``[W, A, 2]`` [m/s]; 0 for who was seen at the last row only, or is absent there.
+        """Return ``[W, A, 2]`` [m/s]; 0 for people observed only at the last row or absent there.
 
         Raises:
             InputError: the windows are in pixels, or have another time step.
@@ -93,9 +93,9 @@ class LearnedVelocity:
 
 
 def pairs_of(recordings: tuple[Trajectories, ...], observe: int, lookahead: float) -> list[tuple[Windows, Windows]]:
-    """Return past and future windows of recordings to learn from; futures that end early are in, from two rows on."""
+    """Return past and future windows of recordings to learn from; futures need at least two rows."""
     if not recordings:
-        raise InputError("goals: there is no recording to learn from, give at least one of the place")
+        raise InputError("goals: there is no recording to learn from; pass at least one of the place")
     if not 0.0 < lookahead < np.inf:
         raise InputError(f"goals: lookahead = {lookahead} s must be finite and above 0")
     dt = recordings[0].dt
@@ -152,7 +152,7 @@ def _least_distance(off: Floats, miss: Floats) -> Floats:
         right = np.array([np.sum(scaled[:, i] * y) for i in range(count)])
         scale = np.trace(gram) / count
         if not scale > 1e-12 * len(y):
-            return weight  # everyone walked evenly: nothing to weigh
+            return weight  # everyone walked at constant velocity: nothing to fit
         weight = np.linalg.solve(gram + RIDGE * scale * np.eye(count), right)
         left = y - np.sum(x * weight[:, None], axis=1)
         worth = 1.0 / np.maximum(np.sqrt(np.sum(left * left, axis=-1)), floor)

@@ -1,4 +1,4 @@
-"""Routes around walls: what can be seen from where, and the way to exits past the corners between."""
+"""Routes around walls: lines of sight and shortest paths to exits past corners."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 CLEARANCE = 0.4
-"""People pass corners at this distance [m]."""
+"""Distance at which people pass corners [m]."""
 
 
 @kernel
@@ -48,7 +48,7 @@ def mark_visible(place: Floats, target: Floats, segments: Floats, seen: Bools) -
 
 @dataclass(frozen=True, eq=False)
 class Routes:
-    """Shortest ways to exits along lines of sight.
+    """Shortest paths to exits along lines of sight.
 
     Fields:
         exits: ``[G, 2, 2]`` [m] start and end of each.
@@ -74,14 +74,14 @@ class Routes:
         rest = np.where(_visible(corners, to_exit, segments), length(to_exit - corners[:, None]), np.inf)
         every = np.broadcast_to(corners, (count, count, 2))
         between = np.where(_visible(corners, every, segments), length(every - corners[:, None]), np.inf)
-        for middle in range(count):  # Floyd and Warshall
+        for middle in range(count):  # Floyd-Warshall
             between = np.minimum(between, between[:, middle, None] + between[None, middle])
         return cls(exits, segments, corners, np.min(between[:, :, None] + rest[None], axis=1))
 
     def next(self, place: Floats) -> tuple[Floats, Floats]:
-        """Return what to walk towards for each exit ``[P, G, 2]`` [m] and how long the way is ``[P, G]`` [m].
+        """Return the next waypoint for each exit ``[P, G, 2]`` [m] and the path length ``[P, G]`` [m].
 
-        That is the exit itself where it is seen, else the corner on the shortest way; inf when there is none.
+        The waypoint is the exit if it is visible, otherwise the next corner; the length is inf without a path.
         """
         aim = _on_exits(place, self.exits)
         way = np.where(_visible(place, aim, self.segments), length(aim - place[:, None]), np.inf)
@@ -113,7 +113,7 @@ def _on_exits(place: Floats, exits: Floats) -> Floats:
 
 
 def _corners(walls: Walls, segments: Floats) -> Floats:
-    """Return points ``[N, 2]`` [m] a step away from convex corners, without those that touch another wall."""
+    """Return points ``[N, 2]`` [m] near convex corners, except those that touch another wall."""
     here = walls.start[walls.convex]
     arriving = unit(here - walls.start[walls.previous[walls.convex]])
     leaving = unit(walls.end[walls.convex] - here)

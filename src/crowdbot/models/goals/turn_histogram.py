@@ -1,4 +1,4 @@
-"""Votes: how people who were here before, walking the same way, went on."""
+"""TurnHistogram: turns of earlier people at the same position with the same heading."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 WIDEST = math.pi / 2
-"""Turns are counted up to here [rad]."""
+"""Largest turn in the histogram [rad]."""
 BINS = 61
-"""Turns at which votes are counted, 3 degrees apart; a vote is shared between the two nearest."""
+"""Nodes of the histogram, 3 degrees apart; a vote is split between the two nearest nodes."""
 
 
 class TurnSamples(NamedTuple):
-    """What voters bring: M rows of recordings.
+    """M rows of recordings as samples of the histogram.
 
     Fields:
         place: ``[M, 2]`` [m] where somebody was.
@@ -77,7 +77,7 @@ def accumulate(
 
 
 def median_turn(histogram: Floats, doubt: float = 0.0) -> Floats:
-    """Return the median turn [rad] of votes ``[..., NODES]``, with ``doubt`` votes more for no turn; 0 without votes.
+    """Return the median turn [rad] of votes ``[..., NODES]``, plus ``doubt`` votes for no turn; 0 without votes.
 
     >>> import numpy as np
     >>> histogram = np.zeros(BINS)
@@ -88,7 +88,7 @@ def median_turn(histogram: Floats, doubt: float = 0.0) -> Floats:
     counted = histogram.copy()
     counted[..., BINS // 2] += doubt
     total = np.cumsum(counted, axis=-1)
-    # votes at a node are spread evenly around it, so that the median moves evenly with the votes
+    # votes at a node are spread uniformly around it: the median is continuous in the votes
     middle = total - 0.5 * counted
     half = 0.5 * total[..., -1:]
     above = np.clip(np.sum(middle < half, axis=-1, keepdims=True), 1, BINS - 1)

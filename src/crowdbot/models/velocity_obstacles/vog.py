@@ -24,6 +24,8 @@ from crowdbot.models.model import (
 )
 
 from .vog_cost import CONE, FELLOW, collision, companion, cone, fellowship, own_way, walls_near
+from .vog_fellows import MOST_FELLOWS, pick_fellows, unit, walking_direction
+from .vog_samples import SAMPLES, SLOW, keep_best, sample_around, sample_first
 
 __all__ = ["VOG"]
 
@@ -36,33 +38,10 @@ CALM = 1.0
 """What it is at first."""
 CHANGED2 = 0.01
 """From this squared change of velocity [m2/s2] on an agent has changed its mind."""
-SLOW = 0.1
-"""Below this speed [m/s] a choice is to stand, and an agent looks around for samples."""
 BRIEF = 0.02
 """Weight of the desired velocity in the choice of where to sample more closely."""
-ALIKE = 0.7
-"""Fellows whose desired directions have a lower cosine than this walk elsewhere; both speeds above:"""
-PURPOSE = 0.5
-"""[m/s]"""
-POINTED = 0.1
-"""A desired speed [m/s] above this tells the direction of walking."""
-DIRECTED = 1e-5
-"""Below this length [m/s] a velocity has no direction."""
 SHORTEST = 1e-3
 """Shortest horizon [s]."""
-MOST_FELLOWS = 16
-SAMPLES = 48
-"""Room for the samples of one level."""
-
-
-def _turns(count: int, shift: float, round_: float) -> Floats:
-    """Return sines and cosines in single precision, whose rounding tells which samples at right angles go backwards."""
-    angle = (np.arange(count, dtype=np.float32) + np.float32(shift)) * np.float32(np.pi) * np.float32(2.0)
-    angle = angle / np.float32(round_)
-    return np.stack([np.sin(angle), np.cos(angle)]).astype(np.float64)
-
-
-EIGHT, SIX, SIXTEEN = _turns(8, 0.0, 8.0), _turns(6, 0.5, 6.0), _turns(16, 0.0, 16.0)
 
 
 class _Crowd(NamedTuple):
@@ -96,103 +75,6 @@ class _Groups(NamedTuple):
     last: Rows
 
 
-@kernel
-def _sample_first(samples: Floats, vx: float, vy: float, px: float, py: float, radius: float) -> int:
-    """Write the first samples x, y, size; return how many."""
-    speed = math.sqrt(vx * vx + vy * vy)
-    scale = max(math.sqrt(px * px + py * py), speed)
-    scale = 4.0 * radius if scale <= radius else scale
-    _put(samples, 0, px, py, 0.3 * scale)
-    _put(samples, 1, vx, vy, 0.3 * scale)
-    for k in range(8):  # on the circle from 0 to v
-        along, across = 0.5 * (1.0 + EIGHT[1, k]), 0.5 * EIGHT[0, k]
-        size = (1.0 - abs(k - 4.0) / 8.0) * 0.5 * scale
-        _put(samples, 2 + k, vx * along + vy * across, vy * along - vx * across, size)
-    for k in range(6):
-        along, across = 0.5 + 0.3 * SIX[0, k], 0.3 * SIX[1, k]
-        _put(samples, 10 + k, vx * along + vy * across, vy * along - vx * across, 0.3 * scale)
-        _put(samples, 16 + k, vx + 0.2 * scale * SIX[1, k], vy + 0.2 * scale * SIX[0, k], 0.4 * scale)
-    _put(samples, 22, 0.5 * vx, 0.5 * vy, 0.4 * scale)
-    if speed >= SLOW:
-        return 23
-    for k in range(16):
-        _put(samples, 23 + k, scale * SIXTEEN[0, k], scale * SIXTEEN[1, k], 0.5 * scale)
-    for k in range(8):
-        _put(samples, 39 + k, 0.5 * scale * SIXTEEN[0, k], 0.5 * scale * SIXTEEN[1, k], 0.25 * scale)
-    return 47
-
-
-@kernel
-def _put(samples: Floats, at: int, x: float, y: float, size: float) -> None:
-    samples[at, 0], samples[at, 1], samples[at, 2] = x, y, size
-
-
-@kernel
-def _sample_around(samples: Floats, best: Floats) -> int:
-    """Write four samples around each of the two best; return how many."""
-    for k in range(2):
-        x, y, size = best[k, 0], best[k, 1], best[k, 2]
-        step, finer = 0.3 * size, 0.6 * size * size
-        _put(samples, 4 * k, x + step, y + step, finer)
-        _put(samples, 4 * k + 1, x - step, y + step, finer)
-        _put(samples, 4 * k + 2, x - step, y - step, finer)
-        _put(samples, 4 * k + 3, x + step, y - step, finer)
-    return 8
-
-
-@kernel
-def _keep(best: Floats, samples: Floats, k: int, score: float) -> None:
-    """Keep sample k among the two best, as the original does: a new first does not make the old first second."""
-    if score > best[0, 3]:
-        return
-    at = 0 if score > best[1, 3] else 1
-    best[at, 0], best[at, 1], best[at, 2], best[at, 3] = samples[k, 0], samples[k, 1], samples[k, 2], score
-
-
-@kernel
-def _pick_fellows(
-    row: int,
-    mates: Rows,
-    place: Floats,
-    velocity: Floats,
-    desired: Floats,
-    reach: float,
-    most: int,
-    found: Rows,
-    key: Floats,
-) -> int:
-    """Find the fellows to keep with: near, ahead and going the same way; return how many."""
-    held = 0
-    px, py = desired[row, 0], desired[row, 1]
-    own = math.sqrt(px * px + py * py)
-    lx, ly = (px, py) if own > PURPOSE else (velocity[row, 0], velocity[row, 1])
-    look = math.sqrt(lx * lx + ly * ly)
-    for other in mates:
-        x, y = place[other, 0] - place[row, 0], place[other, 1] - place[row, 1]
-        d2 = x * x + y * y
-        if other == row or not d2 < reach * reach:
-            continue
-        qx, qy = desired[other, 0], desired[other, 1]
-        its = math.sqrt(qx * qx + qy * qy)
-        value = 1.5 * d2
-        if look > DIRECTED and d2 > 0.0:
-            value -= 0.5 * math.sqrt(d2) * (x * lx + y * ly) / look
-        if own > PURPOSE and its > PURPOSE:
-            cosine = (px * qx + py * qy) / (own * its)
-            if cosine <= ALIKE:
-                continue
-            value *= 2.0 - cosine
-        if held == most and not (most > 0 and value < key[held - 1]):
-            continue
-        n = min(held, most - 1)
-        held = n + 1
-        while n > 0 and value < key[n - 1]:
-            key[n], found[n] = key[n - 1], found[n - 1]
-            n -= 1
-        key[n], found[n] = value, other
-    return held
-
-
 @kernel(parallel=True)
 def _choose(crowd: _Crowd, near: Neighbors, groups: _Groups, walls: Floats, out: Floats) -> None:
     """Choose the next velocity of every agent, row by row."""
@@ -206,25 +88,9 @@ def _choose_part(
 ) -> None:
     # fields are taken out of the tuples here: inside the loop each access would count references
     (
-        place,
-        velocity,
-        desired,
-        radius,
-        top,
-        calm,
-        external,
-        walking,
-        horizon,
-        wall_horizon,
-        preference,
-        weight,
-        most,
-        keep,
-        reach,
-        group_horizon,
-        formation,
-        closeness,
-    ) = crowd
+        place, velocity, desired, radius, top, calm, external, walking, horizon, wall_horizon, preference, weight, most,
+        keep, reach, group_horizon, formation, closeness,
+    ) = crowd  # fmt: skip
     agent, number, order = near
     member, first, last = groups
     A = agent.shape[1]
@@ -238,78 +104,56 @@ def _choose_part(
         e, a = row // A, row % A
         x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
         px, py, r = desired[row, 0], desired[row, 1], radius[row]
-        for n in range(number[e, a]):
+        cone_count = number[e, a]
+        for n in range(cone_count):
             other = row - a + agent[e, a, n]
             cone(
-                cones,
-                n,
-                place[other, 0] - x,
-                place[other, 1] - y,
-                vx,
-                vy,
-                velocity[other, 0],
-                velocity[other, 1],
-                r + radius[other],
-                horizon[row],
-                not external[other],
-                1.0 if row < other else -1.0,
-            )
+                cones, n, place[other, 0] - x, place[other, 1] - y, vx, vy, velocity[other, 0], velocity[other, 1],
+                r + radius[other], horizon[row], not external[other], 1.0 if row < other else -1.0,
+            )  # fmt: skip
         wall_count = walls_near(walls, x, y, top[row] * wall_horizon[row] + r, close)
         mates = member[first[row] : last[row]]
-        fellow_count = _pick_fellows(row, mates, place, velocity, desired, reach[row], most[row], found, key)
+        fellow_count = pick_fellows(row, mates, place, velocity, desired, reach[row], most[row], found, key)
         for n in range(fellow_count):
             other = found[n]
-            wx, wy = _walking_direction(px, py, desired[other, 0], desired[other, 1], vx, vy)
+            wx, wy = walking_direction(px, py, desired[other, 0], desired[other, 1], vx, vy)
             companion(
-                fellows,
-                n,
-                place[other, 0] - x,
-                place[other, 1] - y,
-                velocity[other, 0],
-                velocity[other, 1],
-                wx,
-                wy,
-                keep[row],
-                group_horizon[row],
-            )
-        wish, now = (px, py, *_unit(px, py)), _unit(vx, vy)
-        count = _sample_first(samples, vx, vy, px, py, r)
-        best[:, :3] = 0.0
-        lowest, bx, by = math.inf, vx, vy
-        for _ in range(3):
-            best[:, 3] = math.inf
-            for n in range(count):
-                sx, sy = samples[n, 0], samples[n, 1]
-                score = collision(sx, sy, cones, number[e, a], close, wall_count, r, wall_horizon[row])
-                score += weight[row] * fellowship(
-                    sx, sy, fellows, fellow_count, keep[row], formation[row], closeness[row]
-                )
-                off, penalty = own_way(sx, sy, wish, now, calm[row])
-                _keep(best, samples, n, score + BRIEF * off)
-                score += preference[row] * off + penalty
-                if score < lowest:
-                    lowest, bx, by = score, sx, sy
-            if lowest == 0.0:
-                break
-            count = _sample_around(samples, best)
+                fellows, n, place[other, 0] - x, place[other, 1] - y, velocity[other, 0], velocity[other, 1], wx, wy,
+                keep[row], group_horizon[row],
+            )  # fmt: skip
+        bx, by = _search(
+            samples, best, vx, vy, px, py, r, cones[:cone_count], close[:wall_count], wall_horizon[row],
+            fellows[:fellow_count], weight[row], keep[row], formation[row], closeness[row], preference[row], calm[row],
+        )  # fmt: skip
         out[row, 0], out[row, 1], out[row, 2] = _slow_down(bx, by, vx, vy, top[row], calm[row])
 
 
 @kernel
-def _unit(x: float, y: float) -> tuple[float, float]:
-    """Return the direction of a velocity, 0 when it has none."""
-    length = math.sqrt(x * x + y * y)
-    return (x / length, y / length) if length > DIRECTED else (0.0, 0.0)
-
-
-@kernel
-def _walking_direction(px: float, py: float, qx: float, qy: float, vx: float, vy: float) -> tuple[float, float]:
-    """Return the direction in which two fellows walk: as one wants to, or the other, or as one walks."""
-    if px * px + py * py > POINTED * POINTED:
-        return _unit(px, py)
-    if qx * qx + qy * qy > POINTED * POINTED:
-        return _unit(qx, qy)
-    return _unit(vx, vy)
+def _search(
+    samples: Floats, best: Floats, vx: float, vy: float, px: float, py: float, radius: float, cones: Floats,
+    walls: Floats, wall_horizon: float, fellows: Floats, weight: float, keep: float, formation: float,
+    closeness: float, preference: float, calm: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the sampled velocity of the lowest cost; ``samples`` and ``best`` are working memory."""
+    wish, now = (px, py, *unit(px, py)), unit(vx, vy)
+    count = sample_first(samples, vx, vy, px, py, radius)
+    best[:, :3] = 0.0
+    lowest, bx, by = math.inf, vx, vy
+    for _ in range(3):
+        best[:, 3] = math.inf
+        for n in range(count):
+            sx, sy = samples[n, 0], samples[n, 1]
+            score = collision(sx, sy, cones, len(cones), walls, len(walls), radius, wall_horizon)
+            score += weight * fellowship(sx, sy, fellows, len(fellows), keep, formation, closeness)
+            off, penalty = own_way(sx, sy, wish, now, calm)
+            keep_best(best, samples, n, score + BRIEF * off)
+            score += preference * off + penalty
+            if score < lowest:
+                lowest, bx, by = score, sx, sy
+        if lowest == 0.0:
+            break
+        count = sample_around(samples, best)
+    return bx, by
 
 
 @kernel

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from crowdbot.core import kernel
 from crowdbot.core.geometry import nearest_on_segment, time_to_segment
 
-__all__ = ["CONE", "FELLOW", "collision", "companion", "cone", "fellowship", "own_way", "walls_near"]
+__all__ = ["CONE", "DIRECTED", "FELLOW", "collision", "companion", "cone", "fellowship", "own_way", "walls_near"]
 
 Floats = NDArray[np.float64]
 

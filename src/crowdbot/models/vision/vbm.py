@@ -22,7 +22,6 @@ from crowdbot.core import (
     parameter,
     per_agent,
 )
-from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest
 from crowdbot.models.model import (
     CrowdModel,
@@ -34,30 +33,16 @@ from crowdbot.models.model import (
     speed_limit,
 )
 
+from .vbm_slopes import FAN, FIELD, STEEP, STILL, desire_slopes, look_at_walls, mean_slopes, sum_slopes
+
 __all__ = ["VBM"]
 
 Floats = NDArray[np.float64]
 
 VARIANTS = ("agents", "crowdbot")
-FIELD = math.radians(150.0)
-"""Width of the field of view [rad]."""
-FAN = 15
-"""Rays along which the variant ``agents`` sees walls."""
 MOST_RAYS = 4096
-STILL = 1e-3
-"""Below this speed [m/s] an agent looks along its heading; a relative velocity is nothing below its square root."""
-FORESIGHT = 10.0
-"""What comes closest later than this [s] does not count."""
-FAINT = 1e-3
-"""A ray counts only when both slopes are steeper; a term of the variant ``agents``, when its cost is higher."""
-SQUEEZED = 0.05
-"""Bodies that touch are this share of the distance of their centres apart, so that the direction stays known."""
-EXACT = 1e-9
-"""A closest approach nearer than this [m] has no side."""
 FAST = 1e6
 """No step turns by more [rad]."""
-STEEP = 0.1
-"""The field of view adds a slope of about this where left and right are equally bad."""
 
 
 class _Crowd(NamedTuple):
@@ -81,183 +66,6 @@ class _Crowd(NamedTuple):
     gain: Floats
 
 
-@kernel
-def _slopes(
-    x: float,
-    y: float,
-    wx: float,
-    wy: float,
-    hx: float,
-    hy: float,
-    speed: float,
-    late: float,
-    near: float,
-    ridge: float,
-) -> tuple[float, float, float]:
-    """Return the cost of something at x, y with relative velocity w, and its slopes over own angle and own speed.
-
-    ``h`` is the own direction, ``late`` and ``near`` the scales of time and distance. 0 when it goes away or comes
-    closest too late. Nearer to a hit than ``ridge`` the slope is as steep as there.
-    """
-    w2 = wx * wx + wy * wy
-    if w2 < STILL:
-        return 0.0, 0.0, 0.0
-    t = -(x * wx + y * wy) / w2
-    if t < 0.0 or t > FORESIGHT:
-        return 0.0, 0.0, 0.0
-    cx, cy = x + t * wx, y + t * wy
-    cost = math.exp(-0.5 * ((t / late) ** 2 + (cx * cx + cy * cy) / (near * near)))
-    miss = math.sqrt(cx * cx + cy * cy)
-    if miss < ridge:
-        if miss > EXACT:
-            cx, cy = cx * ridge / miss, cy * ridge / miss
-        else:  # no side is better: keep right
-            right = math.copysign(ridge / math.sqrt(w2), -(wx * hx + wy * hy))
-            cx, cy = right * wy, -right * wx
-    px, py = speed * hy, -speed * hx  # how w changes when the agent turns
-    qx, qy = (x + 2.0 * t * wx) / w2, (y + 2.0 * t * wy) / w2
-    # c is at right angles to w, so that a change of t leaves its length alone
-    of_angle = -(qx * px + qy * py) * t / (late * late) + t * (cx * px + cy * py) / (near * near)
-    of_speed = (qx * hx + qy * hy) * t / (late * late) - t * (cx * hx + cy * hy) / (near * near)
-    return cost, -cost * of_angle, -cost * of_speed
-
-
-@kernel
-def _first_ray(sines: Floats, value: float) -> int:
-    """Return the first ray whose sine is not below ``value``."""
-    low, high = 0, len(sines)
-    while low < high:
-        middle = (low + high) // 2
-        if sines[middle] < value:
-            low = middle + 1
-        else:
-            high = middle
-    return low
-
-
-@kernel
-def _look_at_walls(
-    walls: Floats, x: float, y: float, hx: float, hy: float, reach: float, rays: Floats, depth: Floats
-) -> None:
-    """Write the distance to the nearest wall along every ray to ``depth``, inf when there is none in reach."""
-    for k in range(len(depth)):
-        depth[k] = math.inf
-    sines = rays[0]
-    for m in range(len(walls)):
-        ax, ay, bx, by = walls[m, 0] - x, walls[m, 1] - y, walls[m, 2] - x, walls[m, 3] - y
-        nx, ny = nearest_on_segment(0.0, 0.0, ax, ay, bx, by)
-        before, after = hx * ax + hy * ay, hx * bx + hy * by
-        if nx * nx + ny * ny >= reach * reach or (before <= 0.0 and after <= 0.0):
-            continue
-        turn = ax * by - ay * bx  # above 0: seen from here, b is on the left of a
-        if turn == 0.0:
-            continue
-        left = math.copysign(1.0, turn)  # an end behind the back lies beyond the border of the field
-        sine_a = -left if before < 0.0 else (hx * ay - hy * ax) / math.sqrt(ax * ax + ay * ay)
-        sine_b = left if after < 0.0 else (hx * by - hy * bx) / math.sqrt(bx * bx + by * by)
-        for k in range(_first_ray(sines, min(sine_a, sine_b)), _first_ray(sines, max(sine_a, sine_b))):
-            ux, uy = hx * rays[1, k] - hy * sines[k], hy * rays[1, k] + hx * sines[k]
-            along = ux * (by - ay) - uy * (bx - ax)
-            if along != 0.0 and turn / along > 0.0:
-                depth[k] = min(depth[k], turn / along)
-
-
-@kernel
-def _see(
-    row: int,
-    others: NDArray[np.int32],
-    place: Floats,
-    velocity: Floats,
-    radius: Floats,
-    hx: float,
-    hy: float,
-    speed: float,
-    late: float,
-    near: float,
-    rays: Floats,
-    depth: Floats,
-    taken: NDArray[np.bool_],
-    field: bool,
-    ridge: float,
-    sums: Floats,
-) -> None:
-    """Add up the slopes of all that is seen: over angle, over speed, rising ones over angle or costs, weights.
-
-    In the ``field`` of view every ray counts, and the nearest thing hides the others; else every agent counts as much
-    as the angle it fills, and distances run from body to body.
-    """
-    sums[:] = 0.0
-    taken[:] = False
-    x0, y0, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
-    widest = rays[0, len(depth) - 1]
-    for n in range(len(others)):  # sorted by distance
-        other = others[n]
-        x, y = place[other, 0] - x0, place[other, 1] - y0
-        distance = math.sqrt(x * x + y * y)
-        ahead, across = hx * x + hy * y, hx * y - hy * x
-        if distance == 0.0 or ahead < 0.0 or not distance < math.inf:
-            continue
-        side = radius[other] / distance
-        if field:
-            edge = math.sqrt(1.0 + side * side) * distance
-            weight = 0.0
-            last = _first_ray(rays[0], (across + side * ahead) / edge)
-            for k in range(_first_ray(rays[0], (across - side * ahead) / edge), last):
-                if not taken[k] and distance < depth[k]:
-                    taken[k] = True
-                    weight += 1.0
-        else:
-            weight = 2.0 * math.atan(side) if abs(across) <= widest * distance else 0.0
-            shorter = max(1.0 - (radius[row] + radius[other]) / distance, SQUEEZED)
-            x, y = shorter * x, shorter * y
-        if weight > 0.0:
-            wx, wy = velocity[other, 0] - vx, velocity[other, 1] - vy
-            cost, turn, change = _slopes(x, y, wx, wy, hx, hy, speed, late, near, 0.0 if field else ridge)
-            _add(sums, cost, turn, change, weight, field)
-    for k in range(len(depth)):
-        if not taken[k] and depth[k] < math.inf:
-            gap = depth[k] if field else depth[k] * max(1.0 - radius[row] / depth[k], SQUEEZED)
-            x, y = gap * (hx * rays[1, k] - hy * rays[0, k]), gap * (hy * rays[1, k] + hx * rays[0, k])
-            cost, turn, change = _slopes(x, y, -vx, -vy, hx, hy, speed, late, near, 0.0)
-            _add(sums, cost, turn, change, 1.0 if field else FIELD / FAN, field)
-
-
-@kernel
-def _add(sums: Floats, cost: float, turn: float, change: float, weight: float, field: bool) -> None:
-    if (field and abs(turn) > FAINT and abs(change) > FAINT) or (not field and cost > FAINT):
-        sums[0] += weight * turn
-        sums[1] += weight * change
-        sums[2] += weight * max(0.0, turn)
-        sums[3] += weight
-
-
-@kernel
-def _mean(sums: Floats, push: float) -> tuple[float, float]:
-    """Return the mean slopes over angle and speed, with a ``push`` to one side where no side is better."""
-    turn, change, rising, weight = sums[0], sums[1], sums[2], sums[3]
-    if weight == 0.0:
-        return 0.0, 0.0
-    if abs(turn) < STEEP and rising > 0.1 * STEEP:
-        turn += math.copysign(push, turn)
-    return turn / weight, change / weight
-
-
-@kernel
-def _wanted(
-    hx: float, hy: float, speed: float, px: float, py: float, slow: float, wide: float, most: float
-) -> tuple[float, float]:
-    """Return the slopes over angle and speed of the cost of not walking as desired.
-
-    They are steeper for slow walkers, but not so steep that a step with gain ``1 / most`` overshoots.
-    """
-    desired = math.sqrt(px * px + py * py)
-    steeper = max(1.0, 1.0 / max(STILL, speed))
-    off = speed - desired
-    change = off * min(steeper / (2.0 * slow * slow), most) * math.exp(-off * off / (2.0 * slow * slow))
-    angle = math.atan2(hx * py - hy * px, hx * px + hy * py) if desired > 0.0 else 0.0
-    return -angle * min(steeper / (2.0 * wide * wide), most) * math.exp(-angle * angle / (2.0 * wide * wide)), change
-
-
 @kernel(parallel=True)
 def _choose(
     crowd: _Crowd, seen: Neighbors, walls: Floats, rays: Floats, field: bool, luck: Floats, dt: float, out: Floats
@@ -270,17 +78,9 @@ def _choose(
 
 @kernel
 def _choose_part(
-    begin: int,
-    end: int,
-    crowd: _Crowd,
-    seen: Neighbors,
-    walls: Floats,
-    rays: Floats,
-    field: bool,
-    luck: Floats,
-    dt: float,
-    out: Floats,
-) -> None:
+    begin: int, end: int, crowd: _Crowd, seen: Neighbors, walls: Floats, rays: Floats, field: bool, luck: Floats,
+    dt: float, out: Floats,
+) -> None:  # fmt: skip
     # fields are taken out of the tuples here: inside the loop each access would count references
     place, velocity, heading, desired, radius, top, walking, late, near, slow, wide, far, most, sharp, ridge, gain = (
         crowd
@@ -304,37 +104,17 @@ def _choose_part(
         if speed > STILL:
             hx, hy = vx / speed, vy / speed
         chance = 0.75 + 0.5 * luck[row]
-        _look_at_walls(walls, place[row, 0], place[row, 1], hx, hy, far[row], rays, depth)
-        _see(
-            row,
-            others[: number[e, a]],
-            place,
-            velocity,
-            radius,
-            hx,
-            hy,
-            speed,
-            late[row],
-            near[row],
-            rays,
-            depth,
-            taken,
-            field,
-            chance * ridge[row],
-            sums,
-        )
-        turn, change = _mean(sums, STEEP * chance if field else 0.0)
+        look_at_walls(walls, place[row, 0], place[row, 1], hx, hy, far[row], rays, depth)
+        sum_slopes(
+            row, others[: number[e, a]], place, velocity, radius, hx, hy, speed, late[row], near[row], rays, depth,
+            taken, field, chance * ridge[row], sums,
+        )  # fmt: skip
+        turn, change = mean_slopes(sums, STEEP * chance if field else 0.0)
         pull = gain[row] * dt
-        turn0, change0 = _wanted(
-            hx,
-            hy,
-            speed,
-            desired[row, 0],
-            desired[row, 1],
-            slow[row],
-            wide[row],
-            math.inf if field or pull == 0.0 else 1.0 / pull,
-        )
+        steepest = math.inf if field or pull == 0.0 else 1.0 / pull
+        turn0, change0 = desire_slopes(
+            hx, hy, speed, desired[row, 0], desired[row, 1], slow[row], wide[row], steepest
+        )  # fmt: skip
         sharpest = min(sharp[row] * dt / max(STILL, speed), FAST)
         angle = -min(sharpest, max(-sharpest, pull * (turn + turn0)))
         speed = min(top[row], max(0.0, speed - max(pull * (change + change0), -most[row] * dt)))

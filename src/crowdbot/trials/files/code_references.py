@@ -7,13 +7,13 @@ import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
-from crowdbot.core import Element, InputError, parse_xml, read_bytes
+from crowdbot.core import Element, InputError, parse_xml, plugin_sources, read_bytes
 from crowdbot.trials.xml.trial_text import parse_trial_xml
 
 __all__ = ["code_references", "is_code"]
 
 ENDINGS = (".py", ".pyc", ".pyo", ".pyw", ".pyd", ".so")
-ADDRESS = re.compile(r"([^\s,;|\"']+\.py):")
+ADDRESS = re.compile(r"([^\s,;|\"':=]+):[A-Za-z_]")
 
 
 def is_code(name: str) -> bool:
@@ -38,11 +38,13 @@ def code_references(known: Mapping[str, str], folder: Path) -> list[str]:
         try:
             root = parse_trial_xml(text.encode("utf-8", "replace"), "trial", "utf-8")
             for element in _all(root):
-                found += _files(element)
+                found += _files(element, folder)
                 robot = folder / element.attributes.get("type", "") / "robot.xml"
                 if element.tag == "robot" and robot.is_file():
                     parts = _all(parse_xml(read_bytes(robot), str(robot)))
-                    found += [f"{element.attributes['type']}/{name}" for part in parts for name in _files(part)]
+                    found += [
+                        f"{element.attributes['type']}/{name}" for part in parts for name in _files(part, robot.parent)
+                    ]
         except (InputError, OSError, ValueError):
             continue  # so nothing of it runs, and who reads it next says why
     return sorted(set(found))
@@ -62,9 +64,10 @@ def _all(element: Element) -> Iterator[Element]:
         yield from _all(child)
 
 
-def _files(element: Element) -> list[str]:
-    """Return the Python files that stand in addresses of an element, or among the values of a sweep."""
+def _files(element: Element, folder: Path) -> list[str]:
+    """Return the Python files of the addresses of an element, or of the values of a sweep."""
     if element.tag == "sweep":
-        return [name for text in element.attributes.values() for name in ADDRESS.findall(text)]
-    place = element.attributes.get("type", "").rpartition(":")[0]
-    return [place] if place.endswith(".py") else []
+        places = [name for text in element.attributes.values() for name in ADDRESS.findall(text)]
+    else:
+        places = [element.attributes.get("type", "").rpartition(":")[0]]
+    return [name for place in places if place for name in plugin_sources(place, folder)]

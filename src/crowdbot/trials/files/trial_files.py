@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 from crowdbot.core import InputError
 
-__all__ = ["read_beside", "relative_name", "resolve_file"]
+__all__ = ["read_beside", "resolve_file"]
 
 
 def resolve_file(name: str, folder: Path | None, trust: bool) -> Path:
@@ -32,22 +31,6 @@ def resolve_file(name: str, folder: Path | None, trust: bool) -> Path:
     if not there:
         raise InputError(f"there is no file {name[:80]!r} in {root}")
     return path
-
-
-def relative_name(path: Path, folder: Path | None) -> str:
-    """Return the name of a file relative to the folder of a trial.
-
-    It is the absolute path for a file on another drive of Windows, and the file name alone without a folder.
-
-    >>> relative_name(Path("/data/maps/hall.png"), Path("/data/trials"))
-    '../maps/hall.png'
-    """
-    if folder is None:
-        return path.name
-    try:
-        return Path(os.path.relpath(path, folder.resolve())).as_posix()
-    except ValueError:  # another drive
-        return path.as_posix()
 
 
 def read_beside(path: Path, most: int) -> bytes:

@@ -44,13 +44,14 @@ class Imported:
     left_out: tuple[str, ...]
 
 
-def import_original(path: str | Path, *, participant: int | None = None) -> Imported:
+def import_original(path: str | Path, *, participant: int | None = None, root: str | Path | None = None) -> Imported:
     """Read a trial, a configuration or an order of the original simulator.
 
     Args:
-        path: of a file with the root element ``Trial`` or ``Config``, or of an order file (a trial a line); files that
-            these name lie in their folder or below, or below one of the three folders around it.
-        participant: who, for a configuration; None takes the one it names.
+        path: file with the root element ``Trial`` or ``Config``, or an order file (one trial per line).
+        participant: participant whose order is read (default: the one that the configuration names).
+        root: folder of the simulator's project, which the paths in the file begin at; it is searched for their ends
+            (default: the folder of the file and the three folders above it).
 
     Raises:
         TrialError: the file is missing, hostile, or none of these.
@@ -58,33 +59,40 @@ def import_original(path: str | Path, *, participant: int | None = None) -> Impo
     path = Path(path)
     data = read_trial_bytes(path)
     if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"<":
-        root = parse_trial_xml(data, str(path))
-        if root.tag == "Trial":
-            return _one(root, path)
-    plan = plan_of(path)
+        tree = parse_trial_xml(data, str(path))
+        if tree.tag == "Trial":
+            return _one(tree, path)
+    plan = plan_of(path, root)
     rows, notes = trials_of(plan, plan.user if participant is None else participant)
     return Imported(tuple((Path(entry).stem, trial) for entry, trial in rows), notes)
 
 
-def plan_of(path: str | Path) -> Plan:
-    """Read which trials a configuration or an order file names.
+def plan_of(path: str | Path, root: str | Path | None = None) -> Plan:
+    """Read the order of trials from a configuration or an order file.
+
+    Args:
+        path: configuration or order file.
+        root: as in :func:`import_original`.
 
     Raises:
-        TrialError: the file is missing, hostile, or neither.
+        TrialError: the file is missing, malformed or of another kind, or the root is no folder.
     """
     path = Path(path)
+    base = None if root is None else Path(root)
+    if base is not None and not base.is_dir():
+        raise TrialError(f"there is no folder {base}")
     data = read_trial_bytes(path)
     if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] != b"<":
-        return Plan(path, path.parent, pattern=path.name.replace("{", "").replace("}", ""))
-    root = parse_trial_xml(data, str(path))
-    if root.tag != "Config":
+        return Plan(path, path.parent, pattern=path.name.replace("{", "").replace("}", ""), root=base)
+    tree = parse_trial_xml(data, str(path))
+    if tree.tag != "Config":
         raise TrialError(
-            f"{path}:{root.line}: the root element is <{root.tag[:40]}>, an original file has {' or '.join(ROOTS)}"
+            f"{path}:{tree.line}: the root element is <{tree.tag[:40]}>, an original file has {' or '.join(ROOTS)}"
         )
-    experience = _find(root, "experience") or Element("experience")
+    experience = _find(tree, "experience") or Element("experience")
     notes = {
         f"<{element.tag}> of the configuration: recording and plug-ins are chosen anew": None
-        for element in root.children
+        for element in tree.children
         if element.tag in ("log", "Recording", "AddOns")
     }
     if _text(experience, "userHeight"):
@@ -96,6 +104,7 @@ def plan_of(path: str | Path) -> Plan:
         int(_number(experience, "currentUser", 0.0)),
         max(0, int(_number(experience, "startingTrial", 0.0))),
         tuple(notes),
+        base,
     )
 
 
@@ -109,7 +118,7 @@ def trials_of(plan: Plan, user: int) -> tuple[list[tuple[str, Trial]], tuple[str
     notes = dict.fromkeys(plan.notes)
     for entry in plan.entries(user):
         try:
-            place = plan.place(entry)
+            place = plan.find(entry)
             inner = _one(parse_trial_xml(read_trial_bytes(place), str(place)), place)
         except (InputError, TrialError) as error:
             notes[f"trial {entry[:80]!r} and all after it: {error}"] = None
@@ -118,7 +127,9 @@ def trials_of(plan: Plan, user: int) -> tuple[list[tuple[str, Trial]], tuple[str
         notes |= dict.fromkeys(inner.left_out)
     if not rows:
         said = "; ".join(notes)
-        raise TrialError(f"{plan.path}: no trial of the order {plan.named(plan.pattern, user)[:80]!r} is read: {said}")
+        raise TrialError(
+            f"{plan.path}: no trial of the order {plan.fill_in(plan.pattern, user)[:80]!r} is read: {said}"
+        )
     return rows, tuple(notes)
 
 

@@ -26,8 +26,8 @@ TICK = 0.05
 """Steps of a world are no longer than this [s], and a whole number of them lies between two rows of a recording."""
 SHORTEST = 0.01
 """No step is made shorter than this [s] to hit frames of a counter that is finer."""
-LATER = 30.0
-"""A robot has twice as long as the person it replaces, and this much more [s]."""
+SLOWER = 2.0
+"""A robot has at least this many times as long as the person whom it replaces."""
 AHEAD = 1.0
 
 
@@ -44,16 +44,20 @@ def recorded_trial(
 ) -> Trial:
     """Return a trial whose crowd are the people of a recording.
 
+    The trial lasts as long as the recording. With ``replace`` it begins when that person appears, and lasts to the end
+    of the recording, or twice as long as the person walked if that is longer: a robot may be slower than a person.
+
     Args:
-        path: of the recording; the trial names it without its folder, so it must lie beside the trial file.
+        path: recording. The trial refers to it by its file name, so it must lie in the folder of the trial file.
         fps, format, units: of the file, as in :func:`crowdbot.load` (default: from the file).
-        mode: ``scripted``, or ``reactive``: people nearer to the robot than ``near`` walk by a model.
-        near: [m].
-        replace: id of the person in whose place, from whose start to whose goal and at whose time a robot goes.
-        name: of the trial, by default that of the file.
+        mode: ``scripted`` (people follow the recording) or ``reactive`` (people nearer to the robot than ``near``
+            follow a model).
+        near: distance to the robot below which people react [m].
+        replace: id of the person that a robot replaces; it has the person's start, goal and starting time.
+        name: of the trial (default: the name of the file).
 
     Raises:
-        InputError: nobody has this id, or he or she stands still.
+        InputError: no person has this id, or the person stands still.
         DataError: the file cannot be read.
     """
     path = Path(path)
@@ -73,7 +77,7 @@ def recorded_trial(
             begin=float(walk.time[0]), exclude=str(replace),
         )  # fmt: skip
         robots = (_robot(walk, step),)
-        whole = 2.0 * float(walk.time[-1] - walk.time[0]) + LATER
+        whole = max(whole - float(walk.time[0]), SLOWER * float(walk.time[-1] - walk.time[0]))
     return Trial(
         name=(name or path.stem)[:80] or "recorded",
         about=f"The people of {path.name[:60]}, {mode}.",

@@ -79,7 +79,7 @@ def people_appearance(trial: Trial, people: InitialPeople, agents: int, seed: in
     what several sources say of bodies and activities is mixed.
     """
     count = agents - len(trial.robots)
-    default = humans.People.drawn(count, stream(seed, "people"))
+    default = humans.People.sample(count, stream(seed, "people"))
     said = draw_appearances(people, seed)
     bodies = " ".join(source.body for source in trial.sources)
     busy = " ".join(source.activity or "walk" for source in trial.sources) if any(

@@ -92,7 +92,7 @@ def _with_own(trial: Trial, agent: Agent, a: int, seed: int) -> Agent:
     if not isinstance(model, RandomizedModel):
         return agent
     given = {one.name.replace("-", "_") for one in agent.parameters}
-    whole = model.resolved(seed, k, a + 1)
+    whole = model.resolve(seed, k, a + 1)
     new = [
         AgentParameter(name.replace("_", "-"), float(getattr(whole, name)[a]))
         for name, _ in model.draws

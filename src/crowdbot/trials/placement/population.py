@@ -63,7 +63,7 @@ def place(
     walks = tuple(walk for _, walks in recorded for walk in walks)
     owners = (*agents, *spawners[: len(groups) - 1], *(one for one, _ in recorded))
     sizes = [len(agents), *(1 for _ in groups[1:]), *(1 for _ in replayed)]
-    return InitialPeople.joined([*groups, *replayed], sizes, owners, walks), problems
+    return InitialPeople.concatenate([*groups, *replayed], sizes, owners, walks), problems
 
 
 def _standing(stage: Stage, agents: Sequence[Agent], taken: OccupiedDiscs) -> Iterator[tuple[Agent, str]]:

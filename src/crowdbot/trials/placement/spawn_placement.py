@@ -71,7 +71,7 @@ class InitialPeople:
         return np.where(self.owner < last, self.owner - first, -1)
 
     @classmethod
-    def joined(
+    def concatenate(
         cls, groups: Sequence[InitialPeople], owners_of: Sequence[int], owners: tuple[Any, ...], walks: tuple[Walk, ...]
     ) -> InitialPeople:
         """Return the people of all groups, of which each has so many owners."""

@@ -88,7 +88,7 @@ def intersection(angle: float, delay: float, width: float, density: float, speed
 def blind_corner(width: float, speed: float, distance: float) -> Trial:
     """An L of corridors hides a person until the last moment."""
     w = width
-    ground = Points.of([(-9, 0), (w, 0), (w, -9), (0, -9), (0, -w), (-9, -w)]).shifted(-w / 2.0, w / 2.0)
+    ground = Points.of([(-9, 0), (w, 0), (w, -9), (0, -9), (0, -w), (-9, -w)]).shift(-w / 2.0, w / 2.0)
     return scenario(
         "blind-corner",
         60.0,

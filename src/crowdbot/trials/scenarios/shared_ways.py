@@ -25,7 +25,7 @@ BACK = math.pi
 """The heading of who looks to where the robot comes from [rad]."""
 
 
-def leading(gap: float, speed: float, robot_speed: float) -> Trial:
+def robot_ahead(gap: float, speed: float, robot_speed: float) -> Trial:
     """A robot goes ahead of a person to where the person wants to go."""
     return scenario(
         "leading",
@@ -104,7 +104,7 @@ SHARED_WAYS = (
     Preset(
         "leading",
         "A robot goes ahead of a person who walks behind it at the own pace, and waits for nobody.",
-        leading,
+        robot_ahead,
         {
             "gap": PresetOption(1.75, "distance between their centres at the beginning", "m", 0.6, 8.0),
             "speed": PresetOption(1.0, "speed of the person", "m/s", 0.1, 2.5),

@@ -12,7 +12,7 @@ from crowdbot.core import InputError, nearest_name
 from crowdbot.trials.agent import Agent
 from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import outline
-from crowdbot.trials.partial import UnreadableValue, kind_of, readable, rest, torn
+from crowdbot.trials.partial import UnreadableValue, kind_of, make_partial, readable, rest
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
@@ -55,7 +55,7 @@ class DeclaredNames(NamedTuple):
 
 @dataclass(frozen=True)
 class ValidationContext:
-    """A trial, torn where something of it could not be read, and its crowds as they stand in its file."""
+    """A trial, partial if something in it could not be read, and its crowds as they stand in its file."""
 
     trial: Trial
     crowds: Sequence[Crowd]
@@ -117,7 +117,7 @@ class ValidationContext:
 
 
 def _without(thing: Any, wrong: Mapping[int, set[str]]) -> Any:
-    """Return an element, or a torn copy of it when something in it is wrong."""
+    """Return an element, or a partial copy of it if something in it is wrong."""
     if isinstance(thing, tuple):
         new = tuple(_without(one, wrong) for one in thing)
         return thing if all(a is b for a, b in zip(thing, new, strict=True)) else new
@@ -130,4 +130,4 @@ def _without(thing: Any, wrong: Mapping[int, set[str]]) -> Any:
     if not lost and all(values[name] is value for name, value in inner.items()):
         return thing
     kept = {name: value for name, value in (values | inner).items() if name not in lost}
-    return torn(cls, kept, {field.name for field in dataclasses.fields(cls)} - {*kept}, origin=thing)
+    return make_partial(cls, kept, {field.name for field in dataclasses.fields(cls)} - {*kept}, origin=thing)

@@ -25,7 +25,7 @@ from crowdbot.world import Router
 
 from .context import DeclaredNames, Problems, ValidationContext
 
-__all__ = ["astray", "expected", "flows", "names", "taken"]
+__all__ = ["arrival_count", "astray", "duplicate_names", "flows", "names"]
 
 Floats = NDArray[np.float64]
 
@@ -37,15 +37,15 @@ OVERLAP = 1e-9
 """Zones that share less than this [m2] touch only."""
 
 
-def expected(trial: Trial) -> int:
+def arrival_count(trial: Trial) -> int:
     """Return about how many people come in."""
-    return round(sum(source.expected(trial.duration) for source in trial.sources))
+    return round(sum(source.arrival_count(trial.duration) for source in trial.sources))
 
 
 def names(checked: ValidationContext) -> Iterator[Problems]:
     """Yield checks of names that are taken or that nothing has, and of people who have no way to go or two."""
     trial = checked.trial
-    yield taken(trial.journeys, "journey")
+    yield duplicate_names(trial.journeys, "journey")
     yield from (_endless(stops) for _, stops in readable(trial.journeys, "stops"))
     yield _more_than_fit(trial)
     for one in checked.people:
@@ -60,7 +60,7 @@ def names(checked: ValidationContext) -> Iterator[Problems]:
     yield from (_named(one, "crowd", checked.crowd_names) for one in trial.recorded)
 
 
-def taken(things: Sequence[Any], others: str) -> Problems:
+def duplicate_names(things: Sequence[Any], others: str) -> Problems:
     """Yield everything whose name an earlier one has."""
     known: set[str] = set()
     for k, name in readable(things, "name"):

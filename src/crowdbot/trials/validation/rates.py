@@ -29,7 +29,7 @@ def fitting(periods: Sequence[float]) -> float:
 def misfits(robot: RobotSpec, step: float) -> list[Mount]:
     """Return the sensors of a robot's type whose period or delay is not a whole number of time steps [s]."""
     clock, found = FreeClock(step), []
-    carried = robot.carried
+    carried = robot.type_sensors
     for mount in robot.sensors:
         if mount in carried:
             try:

@@ -14,7 +14,7 @@ from crowdbot.trials.camera import Camera
 from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import quote_value
 from crowdbot.trials.notation import Points
-from crowdbot.trials.partial import UnreadableValue, origin, readable, rest, told
+from crowdbot.trials.partial import UnreadableValue, origin, readable, rest, skip_unreadable
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.placement.population import place
 from crowdbot.trials.recorded_people import RecordedPeople
@@ -23,7 +23,7 @@ from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
 
 from .context import DeclaredNames, Problems, ValidationContext
-from .flow_checks import astray, expected, flows, names, taken
+from .flow_checks import arrival_count, astray, duplicate_names, flows, names
 from .rates import fitting, misfits
 from .zones import areas, crooked
 
@@ -42,27 +42,31 @@ def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) ->
     """Return every problem: the element that has it, and the end of a sentence about it.
 
     Args:
-        trial: torn where something of it could not be read.
+        trial: partial if something in it could not be read.
         crowds: as they stand in its file.
         seed: places people with it; None is the trial's own.
     """
     checked = ValidationContext(trial, crowds, seed)
-    too_large = [*told(*_size(checked))]
+    too_large = [*skip_unreadable(*_size(checked))]
     found = [
-        *told(_periods(checked), *(_exact(trial, robot) for robot in trial.robots), *_names(checked), *names(checked)),
+        *skip_unreadable(
+            _periods(checked), *(_exact(trial, robot) for robot in trial.robots), *_names(checked), *names(checked)
+        ),
         *too_large,
     ]
     shapes = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.crooked())]
     shapes += _stage_shapes(trial.stage)
     checked = checked.without(_by_thing(shapes))
-    lost = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.misplaced(checked.stage))]
+    lost = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.place_problem(checked.stage))]
     lost += [
-        row for _, stops in readable(trial.journeys, "stops") for row in told(*(astray(checked, s) for s in stops))
+        row
+        for _, stops in readable(trial.journeys, "stops")
+        for row in skip_unreadable(*(astray(checked, s) for s in stops))
     ]
     checked = checked.without(_by_thing(lost))
     found += [(thing, sentence) for thing, _, sentence in (*shapes, *lost)]
-    found += [*told(*_robots(checked.stage, checked.trial.robots), *flows(checked))]
-    found += [*told(*(_recording(checked, one) for one in trial.recorded))]
+    found += [*skip_unreadable(*_robots(checked.stage, checked.trial.robots), *flows(checked))]
+    found += [*skip_unreadable(*(_recording(checked, one) for one in trial.recorded))]
     if not too_large:
         found += _places(checked)
     return [(origin(thing), sentence) for thing, sentence in found]
@@ -113,7 +117,7 @@ def _recording(checked: ValidationContext, one: RecordedPeople) -> Problems:
 def _periods(checked: ValidationContext) -> Problems:
     trial = checked.trial
     clock = FreeClock(trial.step)
-    periods = [*told(*_due(trial))]
+    periods = [*skip_unreadable(*_due(trial))]
     step = fitting([period for _, _, period in periods])
     fits = f'; with step="{step:g}" all are' if step else ""
     for thing, name, period in periods:
@@ -137,7 +141,7 @@ def _period(thing: Any, name: str, called: str) -> Iterator[tuple[Any, str, floa
 
 
 def _measuring(robot: RobotSpec, mount: Mount) -> Iterator[tuple[Any, str, float]]:
-    if mount in robot.carried:
+    if mount in robot.type_sensors:
         return
     yield mount, f"rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate
     if mount.sensor.delay > 0.0:
@@ -158,10 +162,10 @@ def _exact(trial: Trial, robot: RobotSpec) -> Problems:
 
 
 def _names(checked: ValidationContext) -> Iterator[Problems]:
-    yield taken(checked.trial.robots, "robot")
+    yield duplicate_names(checked.trial.robots, "robot")
     for _, mounts in readable(checked.trial.robots, "sensors"):
-        yield taken(mounts, "sensor of this robot")
-    yield taken(checked.trial.cameras, "camera")
+        yield duplicate_names(mounts, "sensor of this robot")
+    yield duplicate_names(checked.trial.cameras, "camera")
     yield from (_camera(checked.trial.robots, camera) for camera in checked.trial.cameras)
 
 
@@ -197,7 +201,7 @@ def _too_long(trial: Trial) -> Problems:
 
 
 def _too_many(checked: ValidationContext) -> Problems:
-    coming = expected(checked.trial)
+    coming = arrival_count(checked.trial)
     if coming > MOST_ARRIVALS:
         yield (
             checked.trial.sources[0],
@@ -209,7 +213,7 @@ def _too_many(checked: ValidationContext) -> Problems:
 def _too_large(checked: ValidationContext) -> Problems:
     trial = checked.trial
     first = len(trial.agents) + sum(spawner.count for spawner in trial.spawners)
-    coming = expected(trial)
+    coming = arrival_count(trial)
     agents = first + coming + len(trial.robots) + _through(trial, first + coming)
     scenes = trial.duration / trial.recording.period
     if scenes * agents > MOST_VALUES:

@@ -44,7 +44,7 @@ class Area:
         wrong = crooked(self.points, self.smallest)
         return wrong and f"{self.name.replace('_', '-')} {wrong}"
 
-    def misplaced(self, stage: Stage) -> str:
+    def place_problem(self, stage: Stage) -> str:
         """Return why nobody can be there as the end of a sentence, empty when somebody can."""
         zone = area(self.points)
         if not (stage.meets(zone) if self.border else stage.holds(zone)):

@@ -24,10 +24,11 @@ from crowdbot.core import (
     nearest_name,
     parse_number,
     required_fields,
+    unread_fields,
 )
 from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.fields import FieldSpec, PluginSpec, outline, quote_value
-from crowdbot.trials.partial import EVERYTHING, begun, is_torn, readable, torn
+from crowdbot.trials.partial import EVERYTHING, begin_partial, is_partial, make_partial, readable
 from crowdbot.trials.randomized_model import RandomizedModel, is_drawn
 
 __all__ = ["ROOT", "XmlReader"]
@@ -39,8 +40,8 @@ ROOT = "trial"
 class XmlReader:
     """Makes a tree of frozen dataclasses of XML elements, and collects every problem meanwhile.
 
-    What is misspelt is read as what it means most likely, and an element with a mistake becomes a torn one: so nothing
-    that is wrong elsewhere is hidden, and nobody misses what is there.
+    A misspelt name is read as the nearest known name, and an element with a problem becomes a partial one, so that one
+    problem hides no other.
 
     Args:
         place: name of the file for messages.
@@ -49,7 +50,7 @@ class XmlReader:
         seed: places people with it; None is that of the trial.
 
     Attributes:
-        made: everything that could be made, torn elements among it.
+        made: everything that was made, partial elements included.
         lines, words: line and tag of it, by its ``id``.
     """
 
@@ -75,7 +76,7 @@ class XmlReader:
             raise TrialError(*sentences)
 
     def element(self, cls: type, element: Element) -> Any:
-        """Return what the element means, torn when it has a problem or one in it has."""
+        """Return the object of an element, a partial one if the element or one in it has a problem."""
         before = len(self.found)
         parts = outline(cls)
         kind = self._names(element, parts)
@@ -111,8 +112,8 @@ class XmlReader:
             except InputError as error:
                 self.say(element.line, element.tag, str(error))
         if made is None:
-            made = torn(cls, values, lost)
-            sentence = begun(made)
+            made = make_partial(cls, values, lost)
+            sentence = begin_partial(made)
             if said and sentence and all(sentence != known for _, _, known in said):
                 self.say(element.line, element.tag, sentence)
             lost |= {p.name for p in outline(cls) if not p.optional and (0, None) in readable([made], p.name)}
@@ -198,7 +199,7 @@ class XmlReader:
                 self.say(inner.line, inner.tag, f"stands in <{element.tag}> {often}")
                 continue
             found[part.name].append(self._child(part, inner))
-        gathered = {part.name: self._gathered(part, found[part.name]) for part in known.values()}
+        gathered = {part.name: self._gather(part, found[part.name]) for part in known.values()}
         return {name: value for name, value in gathered.items() if value is not None}
 
     def _stray(self, element: Element) -> None:
@@ -207,7 +208,7 @@ class XmlReader:
                 element.line, element.tag, f"holds the text {element.stray[:40]!r}; values are written as attributes"
             )
 
-    def _gathered(self, part: FieldSpec, made: list[Any]) -> Any:
+    def _gather(self, part: FieldSpec, made: list[Any]) -> Any:
         """Return the value of a field of which these are the child elements, None when there is none."""
         if part.role != "children":
             return made[0] if made else None
@@ -216,8 +217,8 @@ class XmlReader:
         problems = list(part.into.problems(made))
         for k, sentence in problems:
             self.say(self.lines[id(made[k])], self.words[id(made[k])], sentence)
-        right = made and not problems and not any(is_torn(one) for one in made)
-        return part.into.gathered(made) if right else None
+        right = made and not problems and not any(is_partial(one) for one in made)
+        return part.into.gather(made) if right else None
 
     def _child(self, part: FieldSpec, inner: Element) -> Any:
         if part.plug is None:
@@ -245,9 +246,9 @@ class XmlReader:
             return known.get(nearest_name(name, known))
 
     def _plug(self, what: PluginSpec, cls: type | None, element: Element, attributes: dict[str, str]) -> Any:
-        """Return the part of this class that the attributes make; a torn one where that is impossible."""
+        """Return the plugin that the attributes make, a partial one if they make none."""
         if cls is None:
-            return torn(what.places()[1], {}, EVERYTHING)
+            return make_partial(what.places()[1], {}, EVERYTHING)
         texts = {key: text for key, text in attributes.items() if key != "type"}
         draws = {key: text for key, text in texts.items() if what.drawn and is_drawn(text)}
         fixed = {key: text for key, text in texts.items() if key not in draws}
@@ -261,11 +262,12 @@ class XmlReader:
         for sentence in wrong.values():
             self.say(element.line, element.tag, sentence)
         if not wrong and made is not None:
-            return made
+            unread = {name for name in unread_fields(cls) if name.replace("_", "-") not in texts and name not in texts}
+            return made if not unread else make_partial(cls, vars(made), unread)
         lost = {key.replace("-", "_") for key in wrong}
         values = {} if made is None else {field.name: getattr(made, field.name) for field in dataclasses.fields(cls)}
         lost |= {field.name for field in dataclasses.fields(cls) if field.name not in values}
-        return torn(cls, values, lost, whole=made)
+        return make_partial(cls, values, lost, whole=made)
 
 
 def _made(cls: type, attributes: dict[str, str]) -> tuple[Any, dict[str, str]]:

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-import sys
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import Element, InputError, builtin_classes, builtin_name, format_xml
+from crowdbot.core import Element, InputError, builtin_classes, builtin_name, format_xml, plugin_address
 from crowdbot.trials.fields import FieldSpec, outline
-from crowdbot.trials.files.trial_files import relative_name
 from crowdbot.trials.notation import plain
 from crowdbot.trials.randomized_model import RandomizedModel
 
@@ -89,10 +87,8 @@ def _type(part: FieldSpec, value: Any, folder: Path | None) -> str:
     room, contract = part.plug.places()
     if builtin_classes(room, contract).get(builtin_name(cls, contract)) is cls:
         return builtin_name(cls, contract)
-    module = sys.modules[cls.__module__]
-    if cls.__module__.startswith("crowdbot_plug_") and module.__file__:
-        file = Path(module.__file__)
-        return f"{relative_name(file, folder)}:{cls.__qualname__}"
+    if address := plugin_address(cls, folder):
+        return address
     if "<locals>" in cls.__qualname__ or cls.__module__ == "__main__":
         raise InputError(f"{cls.__name__} cannot be named in a trial file: move it to a module or a file of its own")
     return f"{cls.__module__}:{cls.__qualname__}"

@@ -93,18 +93,18 @@ def _pressed(
     px, py, count = 0.0, 0.0, 0
     for n in range(len(near)):
         other = begin + near[n]
-        touch = radius[row] + radius[other]
+        reach = radius[row] + radius[other]
         dx, dy = place[row, 0] - place[other, 0], place[row, 1] - place[other, 1]
         d2 = dx * dx + dy * dy
-        if d2 >= (touch * TOUCH) ** 2:
+        if d2 >= (reach * TOUCH) ** 2:
             continue
         distance = math.sqrt(d2)
         if d2 == 0.0:
             dx, dy = _apart(before, row, other)
         length = math.sqrt(dx * dx + dy * dy)
         share = 0.5 if pushed[other] or gain > 0.0 else 1.0
-        px += share * (touch - distance) * dx / length
-        py += share * (touch - distance) * dy / length
+        px += share * (reach - distance) * dx / length
+        py += share * (reach - distance) * dy / length
         count += 1
     return px, py, count
 

@@ -74,7 +74,7 @@ class JourneyAssignment:
     >>> from crowdbot.world import PointWaypoint
     >>> paths = [WaypointSequence((PointWaypoint(x, 5.0),)) for x in (0.0, 9.0)]
     >>> both = JourneyAssignment(tuple(paths), which=[0, 1, -1])
-    >>> both.begun(Scene.of([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), np.array([0]), np.array([[0, 1, 2]])).goal.tolist()
+    >>> both.start(Scene.of([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), np.array([0]), np.array([[0, 1, 2]])).goal.tolist()
     [[[0.0, 5.0], [9.0, 5.0], [2.0, 0.0]]]
     """
 
@@ -90,7 +90,7 @@ class JourneyAssignment:
                 " or -1 for none"
             )
 
-    def begun(
+    def start(
         self, scene: Scene, seeds: Numbers, ids: Numbers, holds: Callable[[Floats], Bools] | None = None
     ) -> Scene:
         """Return the scene in which everybody is on the way to the first stop.
@@ -119,7 +119,7 @@ class JourneyAssignment:
         for number, k, at, rows in self._parties(scene):
             journey = self.journeys[number]
             there = np.zeros(scene.shape, dtype=np.bool_)
-            there[rows] = at.reached(scene.position[rows], scene.goal[rows])
+            there[rows] = at.is_reached(scene.position[rows], scene.goal[rows])
             stop[there] = k + 1
             if journey.stop(k + 1) is not None:
                 renewed |= there

@@ -30,7 +30,7 @@ class CrowdLimits:
 
     >>> start = Scene.of([[0.0, 0.0]], goal=[[9.0, 0.0]])
     >>> fast = start.advance(start.desired_velocity(0.1), 0.1)
-    >>> CrowdLimits(max_acceleration=2.0).kept(start, fast, dt=0.1).velocity.round(9).tolist()
+    >>> CrowdLimits(max_acceleration=2.0).apply(start, fast, dt=0.1).velocity.round(9).tolist()
     [[[0.2, 0.0]]]
     """
 
@@ -47,7 +47,7 @@ class CrowdLimits:
             if wrong.size:
                 raise InputError(f"CrowdLimits: {name} = {wrong.flat[0]} {unit} must be finite and above 0, or None")
 
-    def kept(self, before: Scene, after: Scene, dt: float) -> Scene:
+    def apply(self, before: Scene, after: Scene, dt: float) -> Scene:
         """Return the scene ``after`` a step of ``dt`` [s] from ``before``, with people slowed to the limits."""
         velocity, walking = after.velocity, after.active & ~after.external
         old = np.where(walking[..., None], before.velocity, 0.0)

@@ -91,24 +91,24 @@ class PeopleFlow:
             raise InputError("sources cannot be added while a world runs")
 
     @property
-    def waiting(self) -> Numbers:
+    def waiting_count(self) -> Numbers:
         """How many wait to come in, ``[E]``."""
-        return np.zeros(len(self.seeds), dtype=np.int64) if self.arrivals is None else self.arrivals.waiting
+        return np.zeros(len(self.seeds), dtype=np.int64) if self.arrivals is None else self.arrivals.waiting_count
 
-    def begun(self, scene: Scene) -> Scene:
+    def start(self, scene: Scene) -> Scene:
         """Return the scene at the beginning, with everybody's first goal and way."""
         if self.mixture is not None:
             scene = scene.replace(memory={**scene.memory, MODEL: self.mixture.of(scene).astype(np.float64)})
         if self.journeys is not None:
-            scene = self.journeys.begun(scene, self.seeds, self.ids, self._holds)
+            scene = self.journeys.start(scene, self.seeds, self.ids, self._holds)
         if self.router is not None:
-            scene = scene.replace(memory=self.router.led(scene, self._routed(scene)).memory)
+            scene = scene.replace(memory=self.router.guide(scene, self._routed(scene)).memory)
         return scene
 
     def desired_motion(self, scene: Scene, heading_jitter: float) -> Scene:
         """Return the scene with goals as people walk to them: straight ahead on their ways, a little to one side."""
         if self.router is not None:
-            scene = self.router.led(scene, self._routed(scene))
+            scene = self.router.guide(scene, self._routed(scene))
         return _turned(scene, heading_jitter * (2.0 * self._luck() - 1.0)) if heading_jitter > 0.0 else scene
 
     def advance(self, scene: Scene, time: float) -> Scene:

@@ -59,8 +59,8 @@ class ReplayedPeople:
         InputError: times of a track do not rise, or something is not finite.
 
     >>> script = ReplayedPeople([ReplayedTrack(0, np.array([0.0, 2.0]), np.array([[0.0, 0.0], [2.0, 1.0]]))])
-    >>> start = script.begun(Scene.of([[9.0, 9.0]]), 1.0)
-    >>> start.position[0].tolist(), script.held(start).tolist()
+    >>> start = script.start(Scene.of([[9.0, 9.0]]), 1.0)
+    >>> start.position[0].tolist(), script.follower_mask(start).tolist()
     ([[1.0, 0.5]], [[True]])
     """
 
@@ -89,18 +89,18 @@ class ReplayedPeople:
                 )
         object.__setattr__(self, "_rows", _Rows.of(tracks))
 
-    def held(self, scene: Scene) -> Bools:
+    def follower_mask(self, scene: Scene) -> Bools:
         """Return ``[E, A]`` who follows a track now."""
         state = scene.memory.get(SCRIPT)
         return np.zeros(scene.shape, dtype=np.bool_) if state is None else np.asarray(state == FOLLOWS)
 
-    def begun(self, scene: Scene, time: float = 0.0) -> Scene:
+    def start(self, scene: Scene, time: float = 0.0) -> Scene:
         """Return the scene at a time [s] of the recording, with everybody on the own track."""
         state = np.zeros(scene.shape)
         state[:, self._rows.agent] = FOLLOWS
-        return self.placed(scene.replace(memory={**scene.memory, SCRIPT: state}), time)
+        return self.place(scene.replace(memory={**scene.memory, SCRIPT: state}), time)
 
-    def placed(self, scene: Scene, time: float) -> Scene:
+    def place(self, scene: Scene, time: float) -> Scene:
         """Return the scene in which who follows a track is where it is at a time [s], and who is free has a goal."""
         rows, agent = self._rows, self._rows.agent
         if len(agent) == 0:

@@ -276,7 +276,7 @@ class Router:
         subgoal = np.where(asks[..., None], next_.reshape(E, A, 2), position)
         return Ways(subgoal, np.where(asks, length.reshape(E, A), 0.0), new)
 
-    def led(self, scene: Scene, asking: NDArray[np.bool_] | None = None) -> Scene:
+    def guide(self, scene: Scene, asking: NDArray[np.bool_] | None = None) -> Scene:
         """Return the scene in which goals lie straight ahead on people's ways, as far away as the ways are long.
 
         Args:

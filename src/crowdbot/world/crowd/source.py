@@ -228,7 +228,7 @@ class Arrivals:
         self._fresh = fresh
 
     @property
-    def waiting(self) -> Numbers:
+    def waiting_count(self) -> Numbers:
         """How many wait outside, ``[E]``."""
         return np.array([sum(queue.waiting for queue in queues) for queues in self._queues], dtype=np.int64)
 

@@ -65,7 +65,7 @@ class Waypoint(ABC):
         """Return the goals ``[N, 2]`` [m] of people at ``place`` ``[N, 2]`` [m]."""
 
     @abstractmethod
-    def reached(self, place: Floats, goal: Floats) -> Bools:
+    def is_reached(self, place: Floats, goal: Floats) -> Bools:
         """Return ``[N]`` who is there."""
 
 
@@ -73,7 +73,8 @@ class Waypoint(ABC):
 class PointWaypoint(Waypoint):
     """A point, reached when one is nearer than the tolerance [m].
 
-    >>> PointWaypoint(1.0, 2.0).reached(np.array([[1.0, 1.8], [1.0, 1.0]]), np.array([[1.0, 2.0], [1.0, 2.0]])).tolist()
+    >>> goal = np.array([[1.0, 2.0], [1.0, 2.0]])
+    >>> PointWaypoint(1.0, 2.0).is_reached(np.array([[1.0, 1.8], [1.0, 1.0]]), goal).tolist()
     [True, False]
     """
 
@@ -89,7 +90,7 @@ class PointWaypoint(Waypoint):
         """Return the point for everyone."""
         return np.tile([float(self.x), float(self.y)], (len(place), 1))
 
-    def reached(self, place: Floats, goal: Floats) -> Bools:
+    def is_reached(self, place: Floats, goal: Floats) -> Bools:
         """Return ``[N]`` who is nearer than the tolerance."""
         return _within(place, goal, self.tolerance)
 
@@ -98,7 +99,7 @@ class PointWaypoint(Waypoint):
 class HeadingWaypoint(Waypoint):
     """A direction [rad] to walk in for ever, counter-clockwise from +x; no router leads there.
 
-    >>> HeadingWaypoint(0.0).reached(np.zeros((1, 2)), np.ones((1, 2))).tolist()
+    >>> HeadingWaypoint(0.0).is_reached(np.zeros((1, 2)), np.ones((1, 2))).tolist()
     [False]
     """
 
@@ -117,7 +118,7 @@ class HeadingWaypoint(Waypoint):
         """Return a point far ahead of everyone."""
         return place + AHEAD * np.array([math.cos(self.heading), math.sin(self.heading)])
 
-    def reached(self, place: Floats, goal: Floats) -> Bools:
+    def is_reached(self, place: Floats, goal: Floats) -> Bools:
         """Return that nobody is there."""
         return np.zeros(len(place), dtype=np.bool_)
 
@@ -167,10 +168,10 @@ class PolygonZone(Waypoint):
     def goal(self, place: Floats, luck: PersonRandom) -> Floats:
         """Return the nearest points of the zone, or random ones."""
         if self.aim == "random":
-            return self.drawn(luck)
+            return self.sample(luck)
         return np.where(self.contains(place)[:, None], place, _on_border(self._ring, place))
 
-    def reached(self, place: Floats, goal: Floats) -> Bools:
+    def is_reached(self, place: Floats, goal: Floats) -> Bools:
         """Return ``[N]`` who is in the zone, or near the own goal."""
         return self.contains(place) | _within(place, goal, self.tolerance)
 
@@ -183,7 +184,7 @@ class PolygonZone(Waypoint):
                 inside ^= ((ay > y) != (by > y)) & (x < ax + (bx - ax) * ((y - ay) / (by - ay)))
         return inside
 
-    def drawn(self, luck: PersonRandom) -> Floats:
+    def sample(self, luck: PersonRandom) -> Floats:
         """Return a random point of the zone ``[N, 2]`` for everyone, where a body has room.
 
         Raises:

@@ -220,7 +220,7 @@ def _skins(scene: Scene, motion: PeopleMotion, level: int) -> Skins:
     """Return the skins of everyone who is there, what they do not wear left out."""
     points = motion.gait.skin(motion.state, level)
     points[~scene.active[0, motion.agents]] = np.nan
-    worn, faces = motion.people.worn(level), motion.people.faces(level)
+    worn, faces = motion.people.clothing_mask(level), motion.people.faces(level)
     count = points.shape[1]
     rows = [faces[own] + k * count for k, own in enumerate(worn)]
     owner = np.repeat(motion.agents, worn.sum(axis=1))

@@ -161,18 +161,18 @@ class BodyContactTracker:
 
     @property
     def contact_events(self) -> tuple[BodyContactEvent, ...]:
-        """All so far, by first touch; those that are not over end with their last touch."""
+        """All so far, by first touch; those that are not over end with their last contact."""
         now = [_closed(pair, running) for pair, running in self._running.items()]
         return tuple(sorted([*self._over, *now], key=lambda one: (one.begin, one.first, one.second)))
 
-    def add(self, time: float, touches: tuple[EngineContact, ...]) -> None:
+    def add(self, time: float, contacts: tuple[EngineContact, ...]) -> None:
         """Take the touches of one step of the engine that ends at ``time`` [s]."""
-        if not touches and not self._running:
+        if not contacts and not self._running:
             return
         pairs: dict[tuple[ContactBody, ContactBody], list[EngineContact]] = {}
-        for touch in touches:
-            pairs.setdefault((touch.first, touch.second), []).append(touch)
-            self._sum(touch)
+        for contact in contacts:
+            pairs.setdefault((contact.first, contact.second), []).append(contact)
+            self._sum(contact)
         for pair, rows in pairs.items():
             self._touched(pair, rows, time)
         for pair, running in list(self._running.items()):
@@ -192,13 +192,13 @@ class BodyContactTracker:
         self._sums = {}
         return tuple(sorted(found))
 
-    def _sum(self, touch: EngineContact) -> None:
-        limb = touch.second_part if touch.second.kind == "person" else ""
-        limb = touch.first_part if touch.first.kind == "person" else limb
-        link = touch.first_part if touch.first.kind == "robot" else ""
-        key = (touch.first, touch.second, link, limb)
-        force, depth, _ = self._sums.get(key, (np.zeros(3), 0.0, touch.point))
-        self._sums[key] = (force + touch.force, max(depth, touch.depth), touch.point)
+    def _sum(self, contact: EngineContact) -> None:
+        limb = contact.second_part if contact.second.kind == "person" else ""
+        limb = contact.first_part if contact.first.kind == "person" else limb
+        link = contact.first_part if contact.first.kind == "robot" else ""
+        key = (contact.first, contact.second, link, limb)
+        force, depth, _ = self._sums.get(key, (np.zeros(3), 0.0, contact.point))
+        self._sums[key] = (force + contact.force, max(depth, contact.depth), contact.point)
 
     def _touched(self, pair: tuple[ContactBody, ContactBody], rows: list[EngineContact], time: float) -> None:
         running = self._running.get(pair)
@@ -209,26 +209,26 @@ class BodyContactTracker:
             running = _Running(time - self._step, words[cause], _closing(fastest))
             self._running[pair] = running
         running.end = time
-        for touch in rows:
-            running.depth = max(running.depth, touch.depth)
-            if "person" in (touch.first.kind, touch.second.kind):
-                self._hit(running, touch, time)
+        for contact in rows:
+            running.depth = max(running.depth, contact.depth)
+            if "person" in (contact.first.kind, contact.second.kind):
+                self._hit(running, contact, time)
 
-    def _hit(self, running: _Running, touch: EngineContact, time: float) -> None:
+    def _hit(self, running: _Running, contact: EngineContact, time: float) -> None:
         """Judge an impact on a limb by the two-body model."""
-        first = touch.first.kind == "person"
-        person, limb = (touch.first, touch.first_part) if first else (touch.second, touch.second_part)
+        first = contact.first.kind == "person"
+        person, limb = (contact.first, contact.first_part) if first else (contact.second, contact.second_part)
         known = running.pressed.get(limb)
         if known is not None and time - known.last < ANEW:
             return
-        towards = touch.normal if first else -touch.normal
+        towards = contact.normal if first else -contact.normal
         heading = self._heading_of(person.number)
         ahead = float(towards[0] * math.cos(heading) + towards[1] * math.sin(heading)) >= 0.0
         region = region_of(limb, ahead)
         running.region[limb] = region
-        mass = self._mass_of(touch.second if first else touch.first)
-        swing = float(touch.swing @ touch.normal) * (1.0 if first else -1.0)
-        surface = _closing(touch)
+        mass = self._mass_of(contact.second if first else contact.first)
+        swing = float(contact.swing @ contact.normal) * (1.0 if first else -1.0)
+        surface = _closing(contact)
         body = min(surface, max(0.0, surface - swing))  # what swings carries its own mass, not that of the body
         force = max(
             two_body_force(body, mass, region, self._mass_of(person)),
@@ -241,10 +241,10 @@ class BodyContactTracker:
     def _pressed(self, running: _Running, rows: list[EngineContact], time: float) -> None:
         """Follow the force on each limb."""
         sums: dict[str, Floats] = {}
-        for touch in rows:
-            limb = touch.first_part if touch.first.kind == "person" else touch.second_part
+        for contact in rows:
+            limb = contact.first_part if contact.first.kind == "person" else contact.second_part
             where = limb if limb in PARTS else ""
-            on_limb = -touch.force if touch.first.kind == "person" else touch.force
+            on_limb = -contact.force if contact.first.kind == "person" else contact.force
             sums[where] = sums.get(where, np.zeros(3)) + on_limb
         borne = {where: _size(_borne(force) if where else force) for where, force in sums.items()}
         for where in sums.keys() - running.pressed.keys():
@@ -279,8 +279,8 @@ def _three(vector: Floats) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _closing(touch: EngineContact) -> float:
-    return max(0.0, float((touch.first_velocity - touch.second_velocity) @ touch.normal))
+def _closing(contact: EngineContact) -> float:
+    return max(0.0, float((contact.first_velocity - contact.second_velocity) @ contact.normal))
 
 
 def _closed(pair: tuple[ContactBody, ContactBody], running: _Running) -> BodyContactEvent:

@@ -181,8 +181,8 @@ def _person(slot: int) -> Element:
         layer = TRUNK if limb.region == "torso" else LIMB
         values = {"name": f"{name}/{limb.name}", "type": "capsule", "size": "0.05 0.1", "pos": f"0 0 {PARKED}"}
         values["quat"] = "0.5 0.5 0.5 0.5"  # were they upright now, the engine would keep them so for good
-        touch = {"priority": "2", "friction": row((0.4, 0.005, 0.0001)), "solimp": SPRING}
-        body.children.append(Element("geom", {**values, **touch, **layer, "group": "4", "rgba": SKIN}))
+        soft = {"priority": "2", "friction": row((0.4, 0.005, 0.0001)), "solimp": SPRING}
+        body.children.append(Element("geom", {**values, **soft, **layer, "group": "4", "rgba": SKIN}))
     return body
 
 

@@ -139,19 +139,22 @@ class PeopleBodies:
         for axis in (0, 1):
             self._data.qfrc_applied[self._speed[here] + axis] = force[:, axis]
 
-    def register_contacts(self, touches: Iterable[EngineContact]) -> None:
+    def register_contacts(self, contacts: Iterable[EngineContact]) -> None:
         """Notice who was pushed during the last step of the engine, and let limbs give way that are pressed."""
         self._touched = np.maximum(self._touched - 1, 0)
         fresh = self.step / REACTION
         self._load *= 1.0 - fresh
-        for touch in touches:
-            for party, limb, sign in ((touch.first, touch.first_part, -1.0), (touch.second, touch.second_part, 1.0)):
+        for contact in contacts:
+            for party, limb, sign in (
+                (contact.first, contact.first_part, -1.0),
+                (contact.second, contact.second_part, 1.0),
+            ):
                 if party.kind == "person":
                     slot = int(np.flatnonzero(self.agent == party.number)[0])
                     self._touched[slot] = self._hold
                     row = LIMB_NAMES.index(limb)
-                    self._load[slot, row] += fresh * sign * touch.force
-                    self._lift(slot, limb, sign * float(touch.normal[2]), touch.depth)
+                    self._load[slot, row] += fresh * sign * contact.force
+                    self._lift(slot, limb, sign * float(contact.normal[2]), contact.depth)
                     if self._since[slot] >= REACTION / self.step:
                         self._give_way(slot, limb, self._load[slot, row])
         here = self._here

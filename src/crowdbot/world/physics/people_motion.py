@@ -67,7 +67,7 @@ class PeopleMotion:
     ) -> None:
         self.afoot = agents
         self.agents = agents = np.concatenate([agents, np.array(riders, dtype=np.int64)])
-        self.people = People.drawn(len(agents), stream(seed, "people")) if people is None else people
+        self.people = People.sample(len(agents), stream(seed, "people")) if people is None else people
         if len(self.people) != len(agents):
             raise InputError(
                 f"people: {len(self.people)} bodies are given for {len(agents)} agents that are no robots;"

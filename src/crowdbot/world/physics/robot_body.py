@@ -55,7 +55,7 @@ class RobotBody:
             model.body_invweight0[self.body, 0] = 1.0 / robot.model.mass
         self._delay = CommandDelay(robot.latency)
         self._pending: tuple[Pending, ...] = ()
-        self._with_replayed_external: Twist | Twists = STILL
+        self._current: Twist | Twists = STILL
         self._asked: Twist | Twists = STILL
         self._forced: Twist | Twists | None = None
         self._aim = Twists.of(STILL, 1)
@@ -107,8 +107,8 @@ class RobotBody:
         """Send to the motors what holds for the next step of the engine: delayed, within the limits, ramped."""
         now = self._asked
         if self.robot.latency > 0.0:
-            self._pending, now = self._delay.step(self._pending, self._with_replayed_external, self._asked, self.step)
-            self._with_replayed_external = now
+            self._pending, now = self._delay.step(self._pending, self._current, self._asked, self.step)
+            self._current = now
         if now is self._forced:  # nothing has changed since the aim was reached
             return
         old = self._aim
@@ -177,7 +177,7 @@ class RobotBody:
         found[:, :3, 3], found[:, 3, 3] = self._data.site_xpos[self._sites], 1.0
         return dict(zip(self.robot.model.links, found, strict=True))
 
-    def mounted(self, sensor: str) -> SpatialPose:
+    def sensor_pose(self, sensor: str) -> SpatialPose:
         """Return where a sensor of the robot is now, with its joints as they are, E = 1.
 
         Raises:

@@ -13,7 +13,7 @@ from crowdbot.world.urdf.geoms import row
 from .layers import GROUND, STANDING
 from .stage import PhysicsStage
 
-__all__ = ["joined", "outline_props", "scenery"]
+__all__ = ["add_rings", "outline_props", "scenery"]
 
 Floats = NDArray[np.float64]
 THIN, THICK = 0.01, 0.025
@@ -47,10 +47,10 @@ def scenery(walls: Walls, stage: PhysicsStage) -> tuple[list[Element], list[Elem
     return assets, world
 
 
-def joined(walls: Walls, rings: tuple[Floats, ...]) -> Walls:
+def add_rings(walls: Walls, rings: tuple[Floats, ...]) -> Walls:
     """Return walls with more rings.
 
-    >>> len(joined(Walls.of([[(0, 0), (1, 0)]]), (np.array([[2.0, 0.0], [3.0, 0.0], [3.0, 1.0]]),)))
+    >>> len(add_rings(Walls.of([[(0, 0), (1, 0)]]), (np.array([[2.0, 0.0], [3.0, 0.0], [3.0, 1.0]]),)))
     5
     """
     more = Walls.of(rings)
@@ -76,7 +76,7 @@ def outline_props(walls: Walls, stage: PhysicsStage, frames: Mapping[int, Floats
             cos, sin = np.cos(turn), np.sin(turn)
             ring = corners @ np.array([[cos, sin], [-sin, cos]]) + matrix[:2, 3]
         rings.append(ring)
-    return joined(walls, tuple(rings))
+    return add_rings(walls, tuple(rings))
 
 
 def _ground(stage: PhysicsStage) -> tuple[list[Element], list[Element]]:

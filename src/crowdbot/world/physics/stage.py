@@ -107,10 +107,10 @@ class CubeBody(PropBody):
                 Element("freejoint", {"name": name}),
                 Element("inertial", {"pos": "0 0 0", "mass": row((self.mass,)), "diaginertia": row([inertia] * 3)}),
             ]
-        touch = DYNAMIC if not self.fixed else STANDING
+        layer = DYNAMIC if not self.fixed else STANDING
         values = {"type": "box", "size": row([half] * 3), "rgba": row((*self.color, 1.0)), "group": "0"}
         rub = {"friction": row((self.friction, 0.005, 0.0001)), "priority": "1"}  # its own friction, not the floor's
-        found.children.append(Element("geom", {"name": f"{name}/0", **values, **rub, **touch}))
+        found.children.append(Element("geom", {"name": f"{name}/0", **values, **rub, **layer}))
         return found
 
     def outline(self) -> Floats | None:

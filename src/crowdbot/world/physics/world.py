@@ -31,7 +31,7 @@ from .nearby_people import people_near
 from .people_bodies import PeopleBodies
 from .people_motion import LimbCapsules, PeopleMotion
 from .robot_body import RobotBody
-from .scenery import joined, outline_props
+from .scenery import add_rings, outline_props
 from .stage import PhysicsStage
 from .world_checks import check_arguments
 
@@ -114,7 +114,7 @@ class PhysicsWorld(PlanarWorld):
         stage = stage or PhysicsStage()
         check_arguments(scene, robots, dt, physics_dt, slots)
         self._steps = round(dt / physics_dt)
-        self._outlined = joined(scene.walls, stage.outlines())
+        self._outlined = add_rings(scene.walls, stage.outlines())
         super().__init__(scene, model, {agent: robot.drive for agent, robot in robots.items()}, dt, seed, **planar)
         persons = np.array([a for a in range(scene.shape[1]) if a not in robots], dtype=np.int64)
         self.stage, self.physics_dt = stage, physics_dt
@@ -128,7 +128,7 @@ class PhysicsWorld(PlanarWorld):
 
     @property
     def contact_events(self) -> tuple[BodyContactEvent, ...]:
-        """Every collision so far, by first touch."""
+        """Every collision so far, by first contact."""
         return self._contact_tracker.contact_events
 
     def command(self, robot: int, joints: Mapping[str, float]) -> None:
@@ -364,13 +364,13 @@ class PhysicsWorld(PlanarWorld):
         self._mj.mj_step1(self.engine_model, self.data)
         self._contact_reader.look()
         self._mj.mj_step2(self.engine_model, self.data)
-        touches = self._contact_reader.read()
-        self._people_bodies.register_contacts(touches)
-        self._contact_tracker.add(time, touches)
-        for touch in touches:
-            if touch.first.kind == "robot" and touch.second.kind in ("robot", "person"):
-                pair = (touch.first.number, touch.second.number)
-                self._touched[pair] = max(self._touched.get(pair, 0.0), touch.depth)
+        contacts = self._contact_reader.read()
+        self._people_bodies.register_contacts(contacts)
+        self._contact_tracker.add(time, contacts)
+        for contact in contacts:
+            if contact.first.kind == "robot" and contact.second.kind in ("robot", "person"):
+                pair = (contact.first.number, contact.second.number)
+                self._touched[pair] = max(self._touched.get(pair, 0.0), contact.depth)
 
     def _read(self, before: Scene, after: Scene) -> tuple[Scene, bool]:
         """Return the scene with robots as they are and people where they were pushed, and whether anyone was."""

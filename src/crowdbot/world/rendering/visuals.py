@@ -45,7 +45,7 @@ class Visuals:
     def __init__(self, built: MjcfModel, motion: PeopleMotion, stage: PhysicsStage, detail: int) -> None:
         self._mj, self.detail = engine(), detail
         self._walkers, self._sunny = motion, not stage.lights
-        self._faces, self._part = motion.people.faces(detail), motion.people.worn(detail)
+        self._faces, self._part = motion.people.faces(detail), motion.people.clothing_mask(detail)
         self.model = self._painted(built)
         self.data = self._mj.MjData(self.model)
         self.joints = {self.model.joint(k).name: int(self.model.jnt_qposadr[k]) for k in range(self.model.njnt)}

@@ -169,18 +169,18 @@ class Robot:
             f"{self.name} has no sensor {name!r}{did_you_mean(name, names)}; it has {', '.join(names) or 'none'}"
         )
 
-    def mounted(self, name: str, positions: Mapping[str, float] | None = None) -> Floats:
+    def sensor_frame(self, name: str, positions: Mapping[str, float] | None = None) -> Floats:
         """Return the frame ``[4, 4]`` of a sensor in the robot's frame: in its posture, or with joints elsewhere."""
         mount = self.mount(name)
         return np.asarray(self.model.poses({**self.posture, **(positions or {})})[mount.link] @ mount.origin)
 
     def planar_mount(self, name: str) -> tuple[float, float, float]:
-        """Return where a sensor sits, seen from above: x, y [m], heading [rad], as :meth:`Pose.mounted` takes it.
+        """Return where a sensor sits, seen from above: x, y [m], heading [rad], as :meth:`Pose.offset` takes it.
 
         >>> Robot.load("qolo").planar_mount("lidar_rear")
         (-0.516, 0.0, 3.141592654)
         """
-        matrix = self.mounted(name)
+        matrix = self.sensor_frame(name)
         heading = math.atan2(matrix[1, 0], matrix[0, 0])
         return round(float(matrix[0, 3]), 12), round(float(matrix[1, 3]), 12), round(heading, 9)
 
@@ -190,7 +190,7 @@ class Robot:
         >>> Robot.load("qolo").sensor_pose("lidar_rear", Pose.of((1.0, 0.0), 0.0)).position.round(3).tolist()
         [[0.484, 0.0, 0.364]]
         """
-        seat = self.mounted(name, positions)
+        seat = self.sensor_frame(name, positions)
         found = [spatial(frame((x, y, self.lift), turning((0.0, 0.0, 1.0), a)) @ seat) for (x, y), a in zip(
             pose.position.tolist(), pose.heading.tolist(), strict=True)]  # fmt: skip
         return SpatialPose(

@@ -98,7 +98,7 @@ class _Reader:
             self.say(root, "needs the element <drive type=...>: how it moves")
         model = self.model(root, row.get("urdf", ""))
         if model is not None:
-            self.joined(root, model)
+            self.check_names(root, model)
         posture = dict(parts["posture"])
         if len(posture) < len(parts["posture"]):
             self.say(root, "gives the posture of a joint twice")
@@ -117,7 +117,7 @@ class _Reader:
             self.say(element, f"is no element of <robot>{meant}; it takes {', '.join(known)}")
             element.tag = nearest_name(element.tag, known) or element.tag
 
-    def joined(self, root: Element, model: RobotModel) -> None:
+    def check_names(self, root: Element, model: RobotModel) -> None:
         """Say which names of links and joints the model does not have, and which names of sensors come twice."""
         turning = [joint.name for joint in model.movable if joint.size == 1]
         names = [inner.attributes.get("name", "") for inner in root.each("sensor")]

@@ -68,14 +68,25 @@ child; exactly one link must be
 
 
 def _check_kind(reader: UrdfReader, root: Element) -> None:
-    if any(inner.tag.startswith("xacro:") for inner in root.children):
-        line = next(inner.line for inner in root.children if inner.tag.startswith("xacro:"))
+    line = _xacro_line(root)
+    if line is not None:
         raise RobotError(
             f"{reader.place}:{line}: this is a xacro file; expand it first:"
             f" xacro {Path(reader.place).name} > robot.urdf"
         )
     if root.tag != "robot":
         raise RobotError(f"{reader.place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <robot>")
+
+
+def _xacro_line(root: Element) -> int | None:
+    """Return the line of the first xacro element or expression, None in a file without one."""
+    waiting = [root]
+    while waiting:
+        element = waiting.pop()
+        if element.tag.startswith("xacro:") or any("${" in value for value in element.attributes.values()):
+            return element.line
+        waiting.extend(reversed(element.children))
+    return None
 
 
 def _robot(reader: UrdfReader, root: Element) -> RobotModel:
@@ -96,7 +107,7 @@ def _robot(reader: UrdfReader, root: Element) -> RobotModel:
         if joint is not None and reader.new(element, joint.name, joints):
             joints[joint.name], lines[joint.name] = joint, element.line
     if not root.each("link"):
-        reader.say(root, "holds no <link>")
+        reader.say(root, "contains no <link>; a robot has at least one")
     if not reader.found:
         _check_tree(reader, root, links, joints, lines)
         _check_mimics(reader, joints, lines)

@@ -318,7 +318,7 @@ def test_skins_equal_mujocos_meshes():
 def test_poses_in_space_compose():
     rng = stream(0, "poses")
     pose = SpatialPose.of(rng.normal(size=(3, 3)), *rng.uniform(-3.0, 3.0, (3, 3)))
-    part = pose.mounted(0.3, -0.2, 0.5, 0.1, 0.7, -1.0)
+    part = pose.offset(0.3, -0.2, 0.5, 0.1, 0.7, -1.0)
     inner = SpatialPose.of((0.3, -0.2, 0.5), 0.1, 0.7, -1.0)
     np.testing.assert_allclose(part.matrix, pose.matrix @ inner.matrix, atol=1e-14)
     np.testing.assert_allclose(part.position, pose.position + pose.matrix @ np.array([0.3, -0.2, 0.5]), atol=1e-14)

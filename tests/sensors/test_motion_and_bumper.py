@@ -26,10 +26,10 @@ def test_bumper_sectors_are_pressed_where_things_touch():
     bumper = Bumper(radius=0.5, sectors=4, first=-math.pi / 4)
     here = Pose.of((1.0, 1.0), math.pi / 2)
     for x, y, sector in ((1.0, 1.75, 0), (0.25, 1.0, 1), (1.0, 0.25, 2), (1.75, 1.0, 3)):
-        touch = bumper.read(Scene.of([[x, y]], radius=0.3), here)
-        assert np.flatnonzero(touch.pressed[0]).tolist() == [sector]
-        assert touch.depth[0, sector] == pytest.approx(0.05)
-        assert touch.hit[0, sector] == 0
+        pressure = bumper.read(Scene.of([[x, y]], radius=0.3), here)
+        assert np.flatnonzero(pressure.pressed[0]).tolist() == [sector]
+        assert pressure.depth[0, sector] == pytest.approx(0.05)
+        assert pressure.hit[0, sector] == 0
     assert bumper.read(Scene.of([[1.0, 1.8]], radius=0.3), here).pressed.any()  # touching is enough
     assert not bumper.read(Scene.of([[1.0, 1.8 + 1e-9]], radius=0.3), here).pressed.any()
     assert bumper.read(Scene.of([[1.0, 1.0]], radius=0.6), here).pressed.all()  # inside a body
@@ -37,21 +37,21 @@ def test_bumper_sectors_are_pressed_where_things_touch():
 
 
 def test_a_wide_contact_presses_all_sectors_that_it_covers():
-    touch = Bumper(radius=0.5, sectors=12, first=0.0).read(Scene.of([[0.6, 0.0]], radius=0.4), Pose.of((0, 0), 0.0))
+    pressure = Bumper(radius=0.5, sectors=12, first=0.0).read(Scene.of([[0.6, 0.0]], radius=0.4), Pose.of((0, 0), 0.0))
     half = math.acos((0.36 + 0.25 - 0.16) / (2 * 0.6 * 0.5))
     covered = [k for k in range(12) if min(k, 12 - k - 1) * math.tau / 12 <= half]
-    assert np.flatnonzero(touch.pressed[0]).tolist() == covered
+    assert np.flatnonzero(pressure.pressed[0]).tolist() == covered
 
 
 def test_walls_press_by_how_deep_they_reach():
     scene = Scene.of([[50.0, 0.0]], walls=[[(0.4, -5.0), (0.4, 5.0)]])
-    touch = Bumper(radius=0.5, sectors=8, first=-math.pi / 8).read(scene, Pose.of((0.0, 0.0), 0.0))
-    assert touch.depth[0, 0] == pytest.approx(0.1, abs=1e-4)
-    assert touch.hit[0].tolist() == [-2, -2, -1, -1, -1, -1, -1, -2]
+    pressure = Bumper(radius=0.5, sectors=8, first=-math.pi / 8).read(scene, Pose.of((0.0, 0.0), 0.0))
+    assert pressure.depth[0, 0] == pytest.approx(0.1, abs=1e-4)
+    assert pressure.hit[0].tolist() == [-2, -2, -1, -1, -1, -1, -1, -2]
     corner = Scene.of([[50.0, 0.0]], walls=[[(0.45, 0.0), (5.0, 0.0)]])
-    touch = Bumper(radius=0.5, sectors=8, first=-math.pi / 8).read(corner, Pose.of((0.0, 0.0), 0.0))
-    assert np.flatnonzero(touch.pressed[0]).tolist() == [0]
-    assert touch.depth[0, 0] == pytest.approx(0.05)
+    pressure = Bumper(radius=0.5, sectors=8, first=-math.pi / 8).read(corner, Pose.of((0.0, 0.0), 0.0))
+    assert np.flatnonzero(pressure.pressed[0]).tolist() == [0]
+    assert pressure.depth[0, 0] == pytest.approx(0.05)
 
 
 def test_limbs_press_only_at_the_height_of_the_ring():

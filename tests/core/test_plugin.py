@@ -3,10 +3,22 @@
 import types
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import ClassVar
 
 import pytest
 
-from crowdbot.core import InputError, UnknownName, builtin_classes, find_class, from_attributes, kebab_case
+from crowdbot.core import (
+    InputError,
+    Scene,
+    UnknownName,
+    attribute_names,
+    attribute_problems,
+    builtin_classes,
+    find_class,
+    from_attributes,
+    kebab_case,
+    required_fields,
+)
 
 
 class Walker(ABC):
@@ -28,6 +40,7 @@ class FastWalker(Walker):
 
 @dataclass(frozen=True)
 class SlowWalker(Walker):
+    builtin_name: ClassVar[str] = "slow-pace"
     pause: float
 
     def __post_init__(self):
@@ -58,26 +71,29 @@ def test_kebab(name, spoken):
 
 
 def test_built_in_lists_concrete_classes_only():
-    assert builtin_classes(room, Walker) == {"fast-walker": FastWalker, "slow-walker": SlowWalker}
+    assert builtin_classes(room, Walker) == {"fast": FastWalker, "slow-pace": SlowWalker}
 
 
-@pytest.mark.parametrize("name", ["fast-walker", "FastWalker", "fast_walker", "FASTWALKER", " fast-walker "])
+@pytest.mark.parametrize("name", ["fast", "fast-walker", "FastWalker", "fast_walker", "FASTWALKER", " fast-walker "])
 def test_find_takes_every_spelling(name):
     assert find_class(name, room, Walker) is FastWalker
 
 
-def test_unknown_name_says_what_may_be_meant():
-    with pytest.raises(UnknownName, match="unknown walker 'fast-walkr', did you mean 'fast-walker'"):
-        find_class("fast-walkr", room, Walker)
+@pytest.mark.parametrize("name", ["slow-pace", "SlowPace", "SlowWalker", "slow-walker"])
+def test_a_class_can_state_its_name(name):
+    assert find_class(name, room, Walker) is SlowWalker
+
+
+def test_unknown_name_suggests_a_known_one():
+    with pytest.raises(UnknownName, match="unknown walker 'slow-pase', did you mean 'slow-pace'"):
+        find_class("slow-pase", room, Walker)
 
 
 def test_find_by_file_and_trust(tmp_path):
     (tmp_path / "mine.py").write_text("from crowdbot.core import Scene\nclass Mine(Scene): pass\nOther = 3\n")
-    from crowdbot.core import Scene
-
     assert find_class("mine.py:Mine", room, Scene, folder=tmp_path).__name__ == "Mine"
     assert find_class("mine.py:Mine", room, Scene, folder=tmp_path, trust=False).__name__ == "Mine"
-    with pytest.raises(InputError, match="mine.py:Other is not a concrete Scene; mine.py holds"):
+    with pytest.raises(InputError, match="mine.py:Other is not a concrete Scene; mine.py defines"):
         find_class("mine.py:Other", room, Scene, folder=tmp_path)
     with pytest.raises(InputError, match="lies outside"):
         find_class("../mine.py:Mine", room, Scene, folder=tmp_path / "inner", trust=False)
@@ -113,3 +129,49 @@ def test_read_converts_by_field():
 def test_read_names_what_is_wrong(kind, attributes, words):
     with pytest.raises(InputError, match=words):
         from_attributes(kind, attributes, "trial.xml:7")
+
+
+def test_all_problems_of_attributes_are_reported():
+    found = attribute_problems(SlowWalker, {"paus": "1", "pause": "x"}, also=["name"])
+    assert found == {
+        "paus": "has no attribute 'paus', did you mean 'pause'?; it takes pause, name",
+        "pause": "pause: 'x' is not a number",
+    }
+    assert attribute_problems(SlowWalker, {"nam": "1"}, also=["name"]) == {
+        "nam": "has no attribute 'nam', did you mean 'name'?; it takes pause, name",
+        "pause": "needs the attribute 'pause'",
+    }
+    assert attribute_problems(SlowWalker, {"pause": "-1"}) == {}  # only the types are checked
+    long = attribute_problems(FastWalker, {"x" * 50: "1"})["x" * 50]
+    assert long.startswith(f"has no attribute {'x' * 40!r};")
+
+
+def test_fields_and_their_names():
+    assert required_fields(SlowWalker) == ["pause"]
+    assert required_fields(FastWalker) == []
+    assert attribute_names(FastWalker) == ["speed", "count", "label", "brave", "box"]
+
+
+@pytest.mark.parametrize(
+    ("text", "number"), [("+3", 3), (" -4 ", -4), ("9" * 18, 10**18 - 1), ("9" * 19, None), ("", None)]
+)
+def test_whole_numbers_have_at_most_18_digits(text, number):
+    if number is None:
+        with pytest.raises(InputError, match="is not a int"):
+            from_attributes(FastWalker, {"count": text})
+    else:
+        assert from_attributes(FastWalker, {"count": text}).count == number
+
+
+def test_untrusted_files_of_the_folder_are_loaded_once(tmp_path):
+    (tmp_path / "once.py").write_text("from crowdbot.core import Scene\nclass Once(Scene): pass\n")
+    first = find_class("once.py:Once", room, Scene, folder=tmp_path, trust=False)
+    assert find_class("once.py:Once", room, Scene, folder=tmp_path) is first
+
+
+def test_a_module_is_an_address():
+    assert find_class("crowdbot.core.scene:Scene", room, Scene) is Scene
+    with pytest.raises(InputError, match="the module 'no.such' cannot be imported"):
+        find_class("no.such:Scene", room, Scene)
+    with pytest.raises(InputError, match="crowdbot.core.scene:Walls is not a concrete Scene; .* defines Scene"):
+        find_class("crowdbot.core.scene:Walls", room, Scene)

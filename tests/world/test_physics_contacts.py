@@ -20,7 +20,7 @@ def book() -> BodyContactTracker:
     return BodyContactTracker(STEP, {ROBOT: 50.0, PERSON: 70.0}.get, lambda agent, limb: 4.0, lambda agent: np.pi)
 
 
-def touch(force, normal=(1.0, 0.0, 0.0), limb="shank_l", robot=(0.0, 0.0, 0.0), person=(0.0, 0.0, 0.0), swing=None):
+def contact(force, normal=(1.0, 0.0, 0.0), limb="shank_l", robot=(0.0, 0.0, 0.0), person=(0.0, 0.0, 0.0), swing=None):
     """Return a touch of the robot with the person, by what the robot does to the person."""
     rows = [np.array(row, dtype=float) for row in (normal, (0.0, 0.0, 0.2), robot, person, swing or person)]
     return EngineContact(ROBOT, PERSON, "base", limb, np.array(force, dtype=float), 0.002, *rows)
@@ -54,7 +54,7 @@ class Watched:
         self.world, self.rows, self._last = world, [], None
         look, add = world._contact_reader.look, world._contact_tracker.add
         world._contact_reader.look = lambda: (look(), self._seen())
-        world._contact_tracker.add = lambda time, touches: (add(time, touches), self._touched(time, touches))
+        world._contact_tracker.add = lambda time, contacts: (add(time, contacts), self._record(time, contacts))
 
     def _seen(self) -> None:
         model, data, geoms = self.world.engine_model, self.world.data, self.world._people_bodies.geoms[0]
@@ -63,8 +63,8 @@ class Watched:
         self.speed = np.zeros_like(now) if self._last is None else (now - self._last) / STEP
         self._last = now
 
-    def _touched(self, time, touches) -> None:
-        for one in touches:
+    def _record(self, time, contacts) -> None:
+        for one in contacts:
             ends = self.speed[LIMB_NAMES.index(one.second_part)] @ one.normal
             self.rows.append((time, ends.min(), ends.max(), one))
 
@@ -114,7 +114,9 @@ def test_what_swings_is_known_at_every_touch_and_never_faster_than_legs_are():
 def test_an_impact_of_known_values():
     """A foot at 3 m/s, its person at 1.2 m/s, on a robot at 1 m/s: the leg hits at 4 m/s, the body at 2.2 m/s."""
     known = book()
-    known.add(1.0, (touch((500.0, 0.0, 0.0), robot=(1.0, 0.0, 0.0), person=(-3.0, 0.0, 0.0), swing=(-1.8, 0.0, 0.0)),))
+    known.add(
+        1.0, (contact((500.0, 0.0, 0.0), robot=(1.0, 0.0, 0.0), person=(-3.0, 0.0, 0.0), swing=(-1.8, 0.0, 0.0)),)
+    )
     (event,) = known.contact_events
     assert event.impact_speed == 4.0
     assert event.cause == "second"
@@ -129,7 +131,7 @@ def test_what_bears_a_person_is_no_injury():
     for normal, share in (((0.0, 0.0, 1.0), 0.0), ((0.6, 0.0, 0.8), 0.6), ((0.6, 0.0, -0.8), 1.0)):
         known = book()
         for k in range(200):
-            known.add(k * STEP, (touch(1000.0 * np.array(normal), normal, robot=np.array(normal)),))
+            known.add(k * STEP, (contact(1000.0 * np.array(normal), normal, robot=np.array(normal)),))
         (event,) = known.contact_events
         assert event.steady_force == pytest.approx(1000.0 * share)
         assert event.peak_force == pytest.approx(share * two_body_force(1.0, 50.0, "lower leg", 70.0))
@@ -140,7 +142,7 @@ def test_what_bears_a_person_is_no_injury():
 def test_repeated_knocks_are_no_clamping():
     known = book()
     for k in range(400):
-        known.add(k * STEP, (touch((900.0, 0.0, 0.0)),) if k % 50 < 10 else ())
+        known.add(k * STEP, (contact((900.0, 0.0, 0.0)),) if k % 50 < 10 else ())
     (event,) = known.contact_events
     assert event.duration > 1.0
     assert event.steady_force == 0.0

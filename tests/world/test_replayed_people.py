@@ -31,7 +31,7 @@ def test_somebody_is_on_the_track_from_its_beginning_to_its_end():
 
 def test_velocity_and_heading_are_those_of_the_way_ahead():
     script = ReplayedPeople([ReplayedTrack(0, TIME, PLACE)])
-    now = script.begun(scene(), 1.0)
+    now = script.start(scene(), 1.0)
     assert now.velocity[0, 0].tolist() == [0.0, 3.0]
     assert now.heading[0, 0] == pytest.approx(np.pi / 2)
 
@@ -83,10 +83,10 @@ def test_people_are_released_within_the_distance_of_a_visible_robot(distance, vi
     tracks = [ReplayedTrack(0, np.array([0.0, 9.0]), np.array([[0.0, 0.0], [9.0, 0.0]]))]
     start = Scene.of([[0.0, 0.0], [0.0, distance]], external=[False, True], visible=[True, visible])
     script = ReplayedPeople(tracks, 2.0)
-    now = script.begun(start)
+    now = script.start(start)
     assert now.memory["script"][0].tolist() == [state, 0.0]
-    assert script.held(now)[0].tolist() == [state == 1.0, False]
-    later = script.placed(now, 1.0)
+    assert script.follower_mask(now)[0].tolist() == [state == 1.0, False]
+    later = script.place(now, 1.0)
     if state == 2.0:
         assert later.position[0, 0].tolist() == [0.0, 0.0]
         assert later.goal[0, 0].tolist() == [2.5, 0.0]
@@ -100,9 +100,9 @@ def test_released_people_leave_at_the_end_of_their_track():
     tracks = [ReplayedTrack(0, np.array([0.0, 3.0]), np.array([[0.0, 0.0], [3.0, 0.0]]))]
     start = Scene.of([[0.0, 0.0], [0.0, 1.0]], external=[False, True])
     script = ReplayedPeople(tracks, 2.0)
-    free = script.begun(start)
+    free = script.start(start)
     near = free.replace(position=np.array([[[2.75, 0.0], [0.0, 1.0]]]))
-    assert script.placed(near, 1.4).active[0].tolist() == [True, True]
-    gone = script.placed(near, 1.5)
+    assert script.place(near, 1.4).active[0].tolist() == [True, True]
+    gone = script.place(near, 1.5)
     assert gone.active[0].tolist() == [False, True]
     assert gone.memory["script"][0, 0] == 3.0

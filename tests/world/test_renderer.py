@@ -131,7 +131,7 @@ def test_the_pose_of_a_sensor_in_both_worlds():
     robot = world.robot_bodies[0].robot
     for mount in robot.mounts:
         flat = robot.sensor_pose(mount.name, world.pose(0))
-        deep = world.robot_bodies[0].mounted(mount.name)
+        deep = world.robot_bodies[0].sensor_pose(mount.name)
         assert flat.position == pytest.approx(deep.position, abs=2e-3)
         assert flat.matrix == pytest.approx(deep.matrix, abs=2e-3)
     assert robot.sensor_pose(robot.mounts[0].name, Pose(np.zeros((3, 2)), np.arange(3.0))).position.shape == (3, 3)

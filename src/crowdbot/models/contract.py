@@ -1,0 +1,126 @@
+"""The contract of crowd models and goals, as checks for your own ones."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from crowdbot.core import InputError, Paper, Scene, stream
+from crowdbot.data import Windows, example_windows
+
+from .goals import Goal
+from .model import CrowdModel, Floats
+
+__all__ = ["check_goal", "check_model"]
+
+DT = 0.1
+
+
+def check_model(model: CrowdModel) -> None:
+    """Check that a crowd model keeps its contract on small crowds.
+
+    Raises:
+        InputError: the first rule that it breaks.
+
+    >>> from crowdbot.models import ORCA
+    >>> check_model(ORCA())
+    """
+    name = type(model).__name__
+    if not isinstance(model, CrowdModel):
+        raise InputError(f"{name} is not a CrowdModel")
+    _check_frozen(model)
+    if not isinstance(getattr(model, "paper", None), Paper):
+        raise InputError(f"{name}.paper is missing; it must be a crowdbot.Paper")
+    scene = _crowd()
+    velocity = _velocity(model, scene)
+    if not np.array_equal(_velocity(model, scene), velocity):
+        raise InputError(f"{name}.velocity is not deterministic: the same scene and generator gave other velocities")
+    moved = scene.external & scene.active
+    if not np.array_equal(velocity[moved], scene.velocity[moved]):
+        raise InputError(f"{name}.velocity changes external agents; they must keep their velocity")
+    if np.any(velocity[~scene.active] != 0.0):
+        raise InputError(f"{name}.velocity moves absent agents (active=False); their velocity must be 0")
+    if not np.array_equal(scene.position, _crowd().position) or not np.array_equal(scene.velocity, _crowd().velocity):
+        raise InputError(f"{name}.velocity changes the scene; it must only read it")
+    whole = model.velocity(scene, DT)
+    for e in range(scene.shape[0]):
+        if not np.array_equal(model.velocity(scene.environments([e]), DT)[0], whole[e]):
+            raise InputError(f"{name}.velocity of environment {e} differs when it is computed alone")
+    single = Scene.of([[0.0, 0.0]], goal=[[9.0, 0.0]])
+    for _ in range(20):
+        single = model.step(single, DT)
+    if not np.all(np.isfinite(single.position)):
+        raise InputError(f"{name}: the position of a single person is not finite after 20 steps")
+
+
+def check_goal(goal: Goal) -> None:
+    """Check that a goal keeps its contract on small windows.
+
+    Raises:
+        InputError: the first rule that it breaks.
+
+    >>> from crowdbot.models import CurrentDirection
+    >>> check_goal(CurrentDirection())
+    """
+    name = type(goal).__name__
+    if not isinstance(goal, Goal):
+        raise InputError(f"{name} is not a Goal")
+    _check_frozen(goal)
+    for rows in (1, 8):
+        past = example_windows(rows)
+        place = _places(goal, past)
+        if not np.array_equal(place, goal.resolve(dataclasses.replace(past, scored=~past.scored))):
+            raise InputError(f"{name}.resolve uses past.scored; it must not")
+        for window in range(len(past)):
+            if not np.array_equal(goal.resolve(past[window : window + 1])[0], place[window]):
+                raise InputError(f"{name}.resolve of window {window} differs when it is computed alone")
+        weight = goal.choices(past).weight
+        if np.any(weight < 0.0) or not np.allclose(weight.sum(axis=-1), past.present[:, -1]):
+            raise InputError(f"{name}.choices: the weights of a person who is present must sum to 1, of others to 0")
+
+
+def _check_frozen(value: object) -> None:
+    parameters = getattr(value, "__dataclass_params__", None)
+    if parameters is None or not parameters.frozen:
+        raise InputError(f"{type(value).__name__} is not frozen; decorate the class with @dataclass(frozen=True)")
+
+
+def _places(goal: Goal, past: Windows) -> Floats:
+    name, before, here = type(goal).__name__, past.position.copy(), past.present[:, -1]
+    place, wanted = np.asarray(goal.resolve(past)), [*here.shape, 2]
+    if list(place.shape) != wanted:
+        raise InputError(f"{name}.resolve returned shape {list(place.shape)}, it must be [W, A, 2] = {wanted}")
+    if not np.all(np.isfinite(place)) or np.any(place[~here] != 0.0):
+        raise InputError(f"{name}.resolve must be finite, and 0 for people who are absent at the last row")
+    if not np.array_equal(past.position, before):
+        raise InputError(f"{name}.resolve changes past.position; it must only read it")
+    return place
+
+
+def _velocity(model: CrowdModel, scene: Scene) -> Floats:
+    velocity = np.asarray(model.velocity(scene, DT, stream(1, "contract")))
+    name, wanted = type(model).__name__, [*scene.shape, 2]
+    if list(velocity.shape) != wanted:
+        raise InputError(f"{name}.velocity returned shape {list(velocity.shape)}, it must be [E, A, 2] = {wanted}")
+    if not np.all(np.isfinite(velocity)):
+        raise InputError(f"{name}.velocity returned values that are not finite")
+    return velocity
+
+
+def _crowd() -> Scene:
+    """Return 2 environments with 12 agents: walls, an external agent, and one who is absent."""
+    rng = stream(0, "contract")
+    grid = np.stack(np.meshgrid(np.arange(4.0), np.arange(3.0)), axis=-1).reshape(1, 12, 2)
+    position = np.concatenate([grid, grid]) + rng.uniform(-0.2, 0.2, (2, 12, 2))
+    active, external = np.ones((2, 12), dtype=bool), np.zeros((2, 12), dtype=bool)
+    active[:, 11] = False
+    external[:, 0] = True
+    return Scene.of(
+        position,
+        rng.uniform(-1.0, 1.0, (2, 12, 2)),
+        goal=position + rng.uniform(-6.0, 6.0, (2, 12, 2)),
+        active=active,
+        external=external,
+        walls=[[(-2.0, -1.0), (6.0, -1.0)]],
+    )
