@@ -22,9 +22,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, help="seed of everything random (default: the trial's own)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
     parser.add_argument("--force", action="store_true", help="overwrite an existing file")
-    parser.add_argument(
-        "--pace", type=float, metavar="X", help="speed in multiples of real time (default: unlimited)"
-    )
+    parser.add_argument("--pace", type=float, metavar="X", help="speed in multiples of real time (default: unlimited)")
     parser.add_argument("--trust", action="store_true", help="let the trial load code from outside its own folder")
     add_world(parser)
     add_settings(parser)
