@@ -16,7 +16,7 @@ import pytest
 from trial_texts import GOOD
 
 from crowdbot.cli import main
-from crowdbot.core import InputError, Scene, Twist, lock_output
+from crowdbot.core import InputError, Scene, Twist, lock_output, relative_name
 from crowdbot.models import CrowdModel
 from crowdbot.navigation import Navigator, Observation
 from crowdbot.recording import branch, export, open_run, read_episode, record, repair, replay
@@ -261,3 +261,14 @@ def test_an_episode_of_an_empty_folder_needs_no_force(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="already exists"):
         record(trial, out=tmp_path)
     assert record(trial, out=tmp_path, force=True).outcome == "finished"
+
+
+def test_a_file_on_another_drive_has_its_absolute_name(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    path = tmp_path / "my.py"
+    assert relative_name(path, tmp_path / "trial") == "../my.py"
+
+    def refuse(path: object, start: object) -> str:
+        raise ValueError("path is on mount 'D:', start on mount 'C:'")
+
+    monkeypatch.setattr("os.path.relpath", refuse)
+    assert relative_name(path, tmp_path / "trial") == path.as_posix()

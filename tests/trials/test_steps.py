@@ -107,13 +107,13 @@ OLD, NEW = 0.0, 0.05
 
 def test_the_order_of_a_step(monkeypatch: pytest.MonkeyPatch) -> None:
     simulation = watched(monkeypatch, "planar")
-    physics = simulation.world._settled
+    physics = simulation.world._resolve_overlaps
 
-    def settled(earlier: Scene, after: Scene) -> Scene:
+    def resolve(earlier: Scene, after: Scene) -> Scene:
         EVENTS.append(("physics", earlier.time))
         return physics(earlier, after)
 
-    monkeypatch.setattr(simulation.world, "_settled", settled)
+    monkeypatch.setattr(simulation.world, "_resolve_overlaps", resolve)
     running = SimulationRun(simulation, [Book()], [Wire()])
     assert BEGIN == EVENTS
     EVENTS.clear()

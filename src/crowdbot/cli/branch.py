@@ -1,4 +1,4 @@
-"""``crowdbot branch EPISODE.mcap --at T``: go on from an instant of a recorded episode, with other values."""
+"""``crowdbot branch EPISODE.mcap --at T``: continue a recorded episode from a given time with other values."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     add = parser.add_argument
     add("episode", metavar="EPISODE.mcap", type=Path)
-    add("--at", type=float, required=True, metavar="T", help="recorded instant to go on from [s]")
+    add("--at", type=float, required=True, metavar="T", help="recorded time to continue from [s]")
     add(
         "--set",
         nargs="+",
         default=[],
         metavar="PATH=VALUE",
-        help="as in the XML of the trial: duration=60, robot/navigator/type=orca, robot[NAME]/goal/x=3",
+        help="values by path in the XML of the trial: duration=60, robot/navigator/type=orca, robot[NAME]/goal/x=3",
     )
-    add("--seed", type=int, help="seed of new chance from then on (default: chance goes on)")
+    add("--seed", type=int, help="seed of new random streams from then on (default: continue the old ones)")
     add("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
     add("--force", action="store_true", help="overwrite an existing file")
     add_places(parser)

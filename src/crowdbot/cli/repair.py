@@ -1,4 +1,4 @@
-"""``crowdbot repair EPISODE.mcap``: give the file of a run that was killed its end and its index."""
+"""``crowdbot repair EPISODE.mcap``: complete the episode file of a run that was killed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(options: argparse.Namespace) -> int:
-    """Repair each file in its place."""
+    """Repair each file in place."""
     from crowdbot.recording import repair
 
     found = {str(path): repair(path) for path in options.episodes}

@@ -18,12 +18,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def add_places(parser: argparse.ArgumentParser) -> None:
     """Add the options of where files of the trial may come from."""
     parser.add_argument(
-        "--folder", type=Path, metavar="DIR", help="where files of the trial lie (default: the folder of the episode)"
+        "--folder",
+        type=Path,
+        metavar="DIR",
+        help="folder of the trial files (default: the folder of the episode)",
     )
     parser.add_argument(
         "--trust",
         action="store_true",
-        help="run code that the episode brings or that is not the recorded one; use files outside the folder",
+        help="run code from the episode or that differs from the recorded code; use files outside the folder",
     )
 
 

@@ -22,11 +22,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, help="seed of everything random (default: the trial's own)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
     parser.add_argument("--force", action="store_true", help="overwrite an existing file")
-    parser.add_argument("--pace", type=float, metavar="X", help="X times real time (default: as fast as it can)")
+    parser.add_argument("--pace", type=float, metavar="X", help="speed in multiples of real time (default: unlimited)")
     parser.add_argument("--trust", action="store_true", help="let the trial load code from outside its own folder")
     add_world(parser)
     add_settings(parser)
-    parser.add_argument("--variant", type=int, metavar="N", help="of a trial with sweeps: which one, from 1")
+    parser.add_argument("--variant", type=int, metavar="N", help="number of the variant of a trial with sweeps, from 1")
     add_json(parser)
 
 

@@ -36,7 +36,7 @@ from .plugin import (
     kebab_case,
     required_fields,
 )
-from .plugin_module import plugin_address, plugin_sources, sources_of
+from .plugin_module import plugin_address, plugin_sources, relative_name, sources_of
 from .pose import MOUNT_HEIGHT, Pose, SpatialPose, Twist, product, wrap_angle
 from .random import stream
 from .scene import PERSON_HEIGHT, Scene
@@ -129,6 +129,7 @@ __all__ = [
     "read_bytes",
     "reads_only",
     "reject_entities",
+    "relative_name",
     "release_stale_lock",
     "required_fields",
     "run_saved_jobs",

@@ -12,15 +12,15 @@ __all__ = ["notify_compiling"]
 
 
 class _Once(event.Listener):
-    def __init__(self, notify: Callable[[], None]) -> None:
-        self.notify, self.is_done = notify, False
+    def __init__(self, callback: Callable[[], None]) -> None:
+        self.callback, self.is_done = callback, False
 
     def on_start(self, event: Any) -> None:
         """Notify at the first function of crowdbot that is compiled and not loaded from the cache."""
         function = event.data["dispatcher"].py_func
         if not self.is_done and str(function.__module__).startswith("crowdbot."):
             self.is_done = True
-            self.notify()
+            self.callback()
 
     def on_end(self, event: Any) -> None:
         """Do nothing."""

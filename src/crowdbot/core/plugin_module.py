@@ -16,7 +16,7 @@ from typing import Any
 from .class_source import class_file
 from .errors import InputError
 
-__all__ = ["load_plugin_module", "plugin_address", "plugin_source", "plugin_sources", "sources_of"]
+__all__ = ["load_plugin_module", "plugin_address", "plugin_source", "plugin_sources", "relative_name", "sources_of"]
 
 PREFIX = "crowdbot_plug_"
 logger = logging.getLogger("crowdbot")
@@ -107,8 +107,23 @@ def plugin_address(cls: type, folder: Path | None) -> str:
         path = files[0]
     else:
         return ""
-    place = path.name if folder is None else Path(os.path.relpath(path, folder.resolve())).as_posix()
-    return f"{place}{'' if package is None else '/'}:{name}"
+    return f"{relative_name(path, folder)}{'' if package is None else '/'}:{name}"
+
+
+def relative_name(path: Path, folder: Path | None) -> str:
+    """Return the name of a file relative to a folder.
+
+    It is the absolute path for a file on another drive of Windows, and the file name alone without a folder.
+
+    >>> relative_name(Path("/data/maps/hall.png"), Path("/data/trials"))
+    '../maps/hall.png'
+    """
+    if folder is None:
+        return path.name
+    try:
+        return Path(os.path.relpath(path, folder.resolve())).as_posix()
+    except ValueError:  # another drive
+        return path.as_posix()
 
 
 def _package_of(cls: type) -> types.ModuleType | None:

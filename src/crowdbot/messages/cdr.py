@@ -1,4 +1,4 @@
-"""CDR bytes of the two large messages, people and shapes, packed at once; the same bytes as the message library gives.
+"""CDR bytes of the two large messages, people and shapes, packed directly, byte-identical to the message library.
 
 A message of a thousand people is several times faster so, and a recorder writes ten of them for each simulated second.
 """

@@ -26,7 +26,7 @@ class MeasuredReading(NamedTuple):
 
     Fields:
         reading: E is 1.
-        sensor: who measured it.
+        sensor: the sensor that measured it.
         robot: name of its robot.
         topic: ``robot/sensor``, which is the name of its frame too.
     """

@@ -1,4 +1,4 @@
-"""Contacts with forces, as the physics world knows them: who pushed whom where and how hard, and whole collisions."""
+"""Contacts with forces, of the physics world: bodies, body parts, forces and complete collisions."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ def markers(nanoseconds: int, scene: Scene, ids: NDArray[np.int64], goals: Seque
     Args:
         nanoseconds: simulated time [ns].
         scene: E is 1; agents that are moved from outside are robots.
-        ids: ``[A]`` who is who.
+        ids: ``[A]`` ids of the agents.
         goals: x, y and tolerance [m] of each robot.
     """
     return marker_bytes(nanoseconds, _shapes(scene, ids, goals))

@@ -1,4 +1,4 @@
-"""Carried: the files that a trial names, kept in its recording, so that it replays on another machine.
+"""Attachments: files that a trial refers to, stored in its episode for replay on another machine.
 
 Maps, areas and recorded people lie in the folder of a trial, and so may code of navigators, sensors and models. An
 episode holds them as MCAP attachments; those that are too large, or lie outside the folder, are only named. It knows
@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
-from crowdbot.core import EpisodeError, sources_of
+from crowdbot.core import EpisodeError, relative_name, sources_of
 from crowdbot.data import McapError, McapOpcode, McapReader, read_attachment
 from crowdbot.trials import (
     RandomizedModel,
@@ -43,7 +43,7 @@ __all__ = [
 ]
 
 MOST = 64 << 20
-"""An episode keeps files of at most so many bytes together."""
+"""Maximum total size of the files in an episode [bytes]."""
 DATA, CODE = "data", "code"
 
 
@@ -102,7 +102,7 @@ class UnpackedFiles(NamedTuple):
 def named_files(trial: Trial) -> dict[str, tuple[str, Path]]:
     """Return kind and place of every file that a trial names, by its name as seen from the folder of the trial.
 
-    An element that names other files tells of them by a method ``files() -> tuple[Path, ...]``.
+    An element that refers to other files lists them in a method ``files() -> tuple[Path, ...]``.
 
     Raises:
         InputError: one is missing.
@@ -120,15 +120,10 @@ def named_files(trial: Trial) -> dict[str, tuple[str, Path]]:
         if hasattr(thing, "files"):
             for path in thing.files():
                 if "__pycache__" not in path.parts:  # made by Python from what is kept anyway
-                    found[_name(path, trial.folder)] = CODE if is_code(path.name) else DATA, path
+                    found[relative_name(path, trial.folder)] = CODE if is_code(path.name) else DATA, path
         for path in sources_of(type(thing)):
-            found[_name(path, trial.folder)] = CODE, path
+            found[relative_name(path, trial.folder)] = CODE, path
     return dict(sorted(found.items()))
-
-
-def _name(path: Path, folder: Path | None) -> str:
-    """Return how a trial names a file; see :mod:`crowdbot.trials.xml.writer`."""
-    return path.name if folder is None else Path(os.path.relpath(path, folder.resolve())).as_posix()
 
 
 def _parts(thing: Any) -> Iterator[Any]:

@@ -1,4 +1,4 @@
-"""Export: an episode file as a table, Parquet or CSV, instant by instant, so that files of any length fit."""
+"""Export: an episode file as a Parquet or CSV table, written instant by instant in constant memory."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["TABLES", "export"]
 
 Columns = dict[str, Any]
 ROWS = 100_000
-"""So many rows are written at once."""
+"""Number of rows per write."""
 
 
 def export(path: Path | str, to: Path | str, table: str = "people", force: bool = False) -> int:
@@ -36,12 +36,12 @@ def export(path: Path | str, to: Path | str, table: str = "people", force: bool 
     * ``scans``: each beam: the sensor, x, y, heading of it in the world, angle [rad], range [m], and hit: the id of who
       was hit, -1 nothing, -2 a wall;
     * ``contacts``: each contact in each time step: robot, other, clearance [m];
-    * ``forces`` and ``collisions``, of the physics world: who with whom, where on the body, force [N], ...;
+    * ``forces`` and ``collisions``, of the physics world: the two bodies, the body part, force [N], ...;
     * what other sensors measured, with the sensor and its x, y, z [m] and heading [rad] in the world: ``points`` of
       clouds (where each beam ended in the world, range, intensity, ring, hit), ``ranges`` of ultrasound and infrared,
-      ``inertial``, ``odometry``, ``bumpers`` (each pressed sector), ``tracked`` (each person told of);
-    * ``pictures`` of colour cameras: size, fx, fy, cx, cy of the lens [pixels], the ids that are seen when the camera
-      tells, and the file of the image, a PNG in the folder ``NAME-images`` next to the table ``NAME``;
+      ``inertial``, ``odometry``, ``bumpers`` (each pressed sector), ``tracked`` (each tracked person);
+    * ``pictures`` of colour cameras: size, fx, fy, cx, cy of the lens [pixels], the ids that are seen if the camera
+      reports them, and the file of the image, a PNG in the folder ``NAME-images`` next to the table ``NAME``;
     * ``images`` of depth cameras: size, the nearest depth [m] and the ids that are seen; the pixels of depth and of
       labels are in the episode file itself.
 

@@ -38,7 +38,7 @@ class RecordedEpisode:
         metadata: the records ``crowdbot`` and ``crowdbot.end`` as text: trial (XML), seed, versions, digest, ...
         complete: whether the run came to its end; otherwise it was killed, and the outcome is ``interrupted``.
         times: ``[T]`` [s].
-        position, velocity: ``[T, A, 2]`` [m], [m/s]; 0 for who is not there.
+        position, velocity: ``[T, A, 2]`` [m], [m/s]; 0 for absent agents.
         heading: ``[T, A]`` [rad].
         radius: ``[A]`` [m].
         active: ``[T, A]``.
@@ -51,7 +51,7 @@ class RecordedEpisode:
         walls: rings ``[N, 2]`` [m].
         metrics: by name.
         contacts: of robots, in every time step.
-        forces, collisions: of the physics world, with whom, where on the body, and how hard.
+        forces, collisions: of the physics world, with partner, body part and force.
         digests: ``[T]`` of the episode up to each instant, as if it had been interrupted there.
     """
 
@@ -159,7 +159,7 @@ def read_metadata(path: Path | str) -> dict[str, str]:
 
 
 def iterate_steps(path: Path | str) -> Iterator[RecordedStep]:
-    """Yield what is recorded instant by instant, so that a file of any length fits into memory.
+    """Yield what is recorded instant by instant, in constant memory.
 
     Raises:
         EpisodeError: as of :func:`read_episode`.

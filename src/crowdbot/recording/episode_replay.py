@@ -109,7 +109,7 @@ def replay(
             it has the recorded bytes. Data are those that were recorded, which the episode holds.
         trust: whether other code may run, that which the episode holds included, and whether files may lie outside
             that folder, where they must have the recorded bytes.
-        progress: called with the share that is done, 0 to 1.
+        progress: called with the completed share, 0 to 1.
 
     Raises:
         EpisodeError: the file cannot be read, or a file of its trial is missing, other than recorded, or not trusted.

@@ -39,13 +39,13 @@ LATCHED = (
     f"  deadline: {FOREVER}\n  lifespan: {FOREVER}\n"
     f"  liveliness: 1\n  liveliness_lease_duration: {FOREVER}\n  avoid_ros_namespace_conventions: false\n"
 )
-"""Quality of service of fixed frames, so that ROS hands them to who listens later, too (rosbag2 reads this)."""
+"""Quality of service of fixed frames, for late subscribers in ROS (read by rosbag2)."""
 APART = 500_000_000
-"""The file grows every so many nanoseconds of simulated time: its bytes do not depend on the wall clock."""
+"""Simulated time between two writes [ns]; the bytes of the file do not depend on wall time."""
 
 
 class Recorder:
-    """Writes what a run tells it to a file that can be read at any moment, also after the run was killed.
+    """Writes the step records of a run to a file that can be read at any time, also after the run was killed.
 
     Topics: ``/clock``, ``/tf`` (``map`` to each robot), ``/tf_static`` (each robot to its sensors), ``/people``,
     ``/crowd/markers``, ``/crowdbot/digest``, for each robot ``/<robot>/odom``, ``/<robot>/cmd_vel`` and
@@ -59,7 +59,7 @@ class Recorder:
 
     Args:
         path: of the file.
-        tally: of the run; it is told each instant before the recorder.
+        tally: of the run; it receives each instant before the recorder.
         origin: what the run branched from, as the metadata keeps it.
         begin: tick of the first instant.
         earlier: the trials that it branched from, whose files it keeps too.
@@ -71,7 +71,7 @@ class Recorder:
             writing it.
 
     Warns:
-        LeftOut: files that the trial names are not kept.
+        SkippedAttachmentWarning: files that the trial refers to are not stored.
     """
 
     def __init__(
@@ -195,7 +195,7 @@ class Recorder:
             self._put("/crowd/markers", MARKERS, markers(now, scene, frame.ids, self._goals), now)
 
     def _fixed(self, frame: StepRecord) -> None:
-        """Write where sensors sit, at every instant, so that each tells by itself where everything was."""
+        """Write where sensors sit, at every instant, so each instant is self-contained."""
         rows = list(self._mounts)
         for robot, mount, reading in frame.readings:
             topic = f"{robot.name}/{mount.name}"

@@ -1,4 +1,4 @@
-"""TapeWriter: an MCAP file that is whole after every write, so that a run may be killed at any moment.
+"""McapWriter: writes an MCAP file that is valid after every write, also if the process is killed.
 
 Messages are gathered in a chunk. Each write appends the chunk, its index and a short end without a summary over the end
 of the write before. So the file always opens; only the chunk that is being gathered can be lost. A file that is
@@ -84,7 +84,7 @@ class McapWriter:
         return self._channels
 
     def attachment(self, name: str, data: bytes) -> None:
-        """Add a file; its times are 0, so that the same run writes the same bytes."""
+        """Add a file; its times are 0 to keep the bytes reproducible."""
         self._before += _bytes(Attachment(0, 0, name, "application/octet-stream", data))
 
     def metadata(self, name: str, values: Mapping[str, str]) -> None:

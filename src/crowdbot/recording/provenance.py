@@ -1,4 +1,4 @@
-"""Course: how an episode came about, so that it can be run again: a trial and a seed, and where it branched off."""
+"""Provenance: trials, seeds and branch times from which an episode can be simulated again."""
 
 from __future__ import annotations
 
@@ -93,10 +93,10 @@ class Provenance:
         """Run everything before the last part, without recording, and return the simulation as the last part begins.
 
         Args:
-            sink: is told what is recorded of it.
-            stop: asked from outside.
-            progress: called with the share of the ticks that is done.
-            until: go on by the last part up to this tick.
+            sink: receives the step records.
+            stop: interrupts the run when set.
+            progress: called with the completed share, 0 to 1.
+            until: continue with the last part up to this tick.
 
         Raises:
             EpisodeError: the run ends before.

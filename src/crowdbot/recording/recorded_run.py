@@ -54,7 +54,7 @@ def run(
         trial: what to run.
         seed: of everything random; None is the trial's own.
         out: file to record to, or a folder for ``episode.mcap``; it can be read while the run goes on.
-        progress: called with the share of the duration that is done, 0 to 1.
+        progress: called with the completed share, 0 to 1.
         clock: :class:`~crowdbot.core.PacedClock` for real time; None runs as fast as possible.
         force: whether an existing episode file may be overwritten.
 

@@ -37,7 +37,7 @@ Floats = NDArray[np.float64]
 
 
 class RecordedContact(NamedTuple):
-    """A contact: when [s], the robot, whom it touched (an id, a robot or ``wall``), the smallest clearance [m]."""
+    """A contact: when [s], the robot, the touched body (an id, a robot or ``wall``), the smallest clearance [m]."""
 
     time: float
     robot: str
@@ -62,7 +62,7 @@ class RecordedStep:
 
     Fields:
         nanoseconds: simulated time.
-        people: who is there, without robots; None when only readings or contacts were due.
+        people: the people present, without robots; None when only readings or contacts were due.
         robots: by name.
         commands: by name of the robot: forward [m/s], turn [rad/s], left [m/s].
         readings: by ``robot/sensor``; none in files of crowdbot 0.4 and before.

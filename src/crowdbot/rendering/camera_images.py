@@ -1,4 +1,4 @@
-"""Shots: what a camera sees while a trial runs, as images."""
+"""Images of a camera while a trial runs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from crowdbot.trials import OVERVIEW, Camera, Mount, Trial, check_trial, overvie
 __all__ = ["RenderRequest", "RenderedImage", "camera_names", "render_images"]
 
 SMOOTH = 0.04
-"""Films have an image about as often [s] unless told otherwise."""
+"""Default time between two images of a film [s], rounded to time steps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,7 @@ def render_images(
         take: when.
         seed: of everything random; None is the trial's own.
         depth, segmentation: whether these are made too.
-        progress: called with the share that is done.
+        progress: called with the completed share, 0 to 1.
 
     Raises:
         InputError: there is no such camera or no way to draw, the run is over before the first image, or ends with an
@@ -148,7 +148,7 @@ def _ticks(simulation: Simulation, take: RenderRequest) -> tuple[int, int, int]:
 
 
 def _check_drawing() -> None:
-    """Say at once, and not after the run, that nothing can be drawn."""
+    """Fail before the run if nothing can be drawn."""
     import_optional("mujoco", "an image of a trial", "sim")
 
 

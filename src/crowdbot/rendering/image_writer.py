@@ -1,4 +1,4 @@
-"""Album: images and films as files: PNG, GIF, WebP, MP4, or a folder of numbered PNGs."""
+"""Images and videos as files: PNG, GIF, WebP, MP4, or a folder of numbered PNGs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LABELS = {-1: 0, -2: 1, -3: 2, -4: 3}
 
 
 class ImageWriter:
-    """Writes shots to files; what is written appears whole or not at all.
+    """Writes images to files; a file appears complete or not at all.
 
     Args:
         path: a file with one of the endings :data:`IMAGES` (one shot) or :data:`FILMS`, or a folder.

@@ -1,4 +1,4 @@
-"""Reels: films as MP4, GIF and animated WebP that are written image by image, so that a film of any length fits.
+"""Videos as MP4, GIF and animated WebP, written image by image in constant memory.
 
 Pillow writes the GIF or WebP of one image; what makes a film of them (GIF89a; the container of WebP, chunks VP8X, ANIM
 and ANMF) is put around it here. An image is cut to the part that has changed, and one that is the same lasts longer.

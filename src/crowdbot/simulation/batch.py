@@ -1,4 +1,4 @@
-"""Batch: one trial with many seeds at once; every run is that of its seed alone, to the last bit."""
+"""Batch runs: one trial with many seeds in lockstep; each episode is bit-identical to a run of its seed alone."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ __all__ = ["run_batch"]
 def run_batch(
     trial: Trial, seeds: Sequence[int], progress: Callable[[float], None] | None = None
 ) -> tuple[Episode, ...]:
-    """Run a trial with several seeds in step with each other, and return their episodes in the order of the seeds.
+    """Run a trial with several seeds and return the episodes in the order of the seeds.
 
-    In each step of time the crowd model is asked once for all runs that go on: their scenes are the environments of one
-    scene. Everything else of a run (robots, contacts, sensors, bodies) is its own. A model that is not built in is
-    asked for each run alone. The first Ctrl-C ends all runs at their next recorded instant.
+    In each time step the crowd model is called once for all active runs: their scenes are the environments of one
+    scene. Robots, contacts, sensors and bodies are computed per run. A model that is not built in is called once per
+    run. The first Ctrl-C ends all runs at their next recorded instant.
 
     Args:
         trial: without sweeps.
         seeds: of the runs.
-        progress: called with the share that is done, 0 to 1.
+        progress: called with the completed share, 0 to 1.
 
     Raises:
         InputError: there is no seed.
@@ -62,7 +62,7 @@ def run_batch(
 
 
 def _step(steps: Sequence[StepGenerator[str | None]]) -> None:
-    """Let all go one step, their questions answered together."""
+    """Advance all runs by one step; their crowd requests are computed together."""
     asking = [(one, request) for one in steps if (request := _next(one, None)) is not None]
     while asking:
         answers = _compute([request for _, request in asking])

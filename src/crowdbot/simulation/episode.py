@@ -44,10 +44,10 @@ class ScanRow:
 
 @dataclass(frozen=True, eq=False)
 class Episode:
-    """What happened in one run: T recorded instants, A agents, R robots.
+    """One run as arrays: T recorded instants, A agents, R robots.
 
-    Agents are everybody who was ever there: people at the beginning first, then robots, then people in the order in
-    which they came in. Each has a column of the arrays and the own id.
+    Agents are the initial people, then the robots, then the people who enter, in order of entry. Each agent has one
+    column in the arrays and one id.
 
     Fields:
         trial, seed: what was run.
@@ -55,10 +55,10 @@ class Episode:
             it was stopped from outside, ``error`` when an exception in user code ended it.
         steps: number of time steps done.
         times: ``[T]`` [s].
-        position, velocity: ``[T, A, 2]`` [m], [m/s]; 0 for who is not there.
+        position, velocity: ``[T, A, 2]`` [m], [m/s]; 0 for absent agents.
         heading: ``[T, A]`` [rad].
-        radius: ``[A]`` [m]; 0 for who was there between two recorded instants only.
-        active: ``[T, A]`` who is there.
+        radius: ``[A]`` [m]; 0 for agents present only between two recorded instants.
+        active: ``[T, A]`` whether the agent is present.
         ids: ``[A]`` identity in recordings and tracks.
         robots: indices of the robots, in the order of the trial.
         twists, commands: ``[T, R, 3]`` forward [m/s], turn [rad/s], left [m/s]: how each robot moves, and what it is
@@ -140,7 +140,7 @@ def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
 
 
 class EpisodeLog(EpisodeStatistics):
-    """Keeps what an episode is made of while it runs.
+    """Collects the arrays of an episode while it runs.
 
     Args:
         trial, seed, digest: as of :class:`EpisodeStatistics`.
@@ -154,7 +154,7 @@ class EpisodeLog(EpisodeStatistics):
         self.readings: dict[str, list[Reading]] = {}
 
     def keep(self, frame: StepRecord) -> None:
-        """Keep an instant that the digest has already."""
+        """Add an instant that the digest already contains."""
         super().keep(frame)
         for robot, mount, reading in frame.readings:
             self.readings.setdefault(f"{robot.name}/{mount.name}", []).append(reading)

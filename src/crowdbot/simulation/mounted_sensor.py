@@ -24,7 +24,7 @@ LEVEL = 1e-9
 
 
 class DeliveredReading(NamedTuple):
-    """A reading that names people by their ids, and the ids of those whom it shows; None: it shows nobody."""
+    """A reading with person ids, and the ids of the visible people; None for readings that cannot show people."""
 
     reading: Reading
     seen: Ints | None
@@ -116,7 +116,7 @@ def mounted_sensors(
 
 
 def name_by_id(reading: Reading, ids: Ints) -> Reading:
-    """Return a reading in which people are named by who they are, not by their places among the agents."""
+    """Return a reading with person ids in place of agent indices."""
     if np.array_equal(ids, np.arange(len(ids))):
         return reading
     if isinstance(reading, TrackedPeople):
@@ -128,7 +128,7 @@ def name_by_id(reading: Reading, ids: Ints) -> Reading:
 
 
 def _tracked(reading: TrackedPeople, ids: Ints) -> TrackedPeople:
-    """Return the rows by ids: row k is that of person k."""
+    """Return the rows ordered by id: row k belongs to person k."""
     there = np.flatnonzero(ids >= 0)
     count = int(ids.max(initial=-1)) + 1
     rows: dict[str, Any] = {}
@@ -141,7 +141,7 @@ def _tracked(reading: TrackedPeople, ids: Ints) -> TrackedPeople:
 
 
 def visible_ids(reading: Reading) -> Ints | None:
-    """Return the ids of those whom a reading shows; None for readings that cannot show anybody."""
+    """Return the ids of the visible people; None for readings that cannot show people."""
     if isinstance(reading, TrackedPeople):
         return np.flatnonzero(reading.present[0])
     hit = getattr(reading, "hit", None)

@@ -1,4 +1,4 @@
-"""Run: from a trial and a seed to an episode, in memory and as a file; free, or stepped from outside."""
+"""Runs: simulate a trial with a seed, to its end or step by step."""
 
 from __future__ import annotations
 
@@ -38,38 +38,37 @@ T = TypeVar("T", bound=EpisodeStatistics)
 
 
 class Sink(Protocol):
-    """Something that is told what is recorded, as it happens."""
+    """A consumer of step records."""
 
     def take(self, frame: StepRecord) -> None:
-        """Take an instant."""
+        """Process a step record."""
 
 
 class Bridge(Protocol):
-    """Something that passes on what happens, and may steer robots: ROS, a headset, a program of yours."""
+    """A connection to another program (ROS, a headset) that reads the simulation and may command robots."""
 
     def exchange(self, simulation: Simulation, readings: Measured) -> None:
-        """Pass on a step, with what was measured now; commands go to :meth:`Simulation.ask`."""
+        """Process a step and its new readings; send commands with :meth:`Simulation.ask`."""
 
 
 class StopRequest:
-    """Whether somebody asked the run to stop."""
+    """A request to stop the run, set from outside."""
 
     asked: bool = False
 
 
 @dataclass
 class SimulationRun:
-    """A run that is stepped from outside.
+    """A run that the caller advances step by step.
 
     Args:
-        simulation: at tick 0 with nothing sensed yet, or later, where another run has left it.
-        sinks: who is told what is recorded.
-        bridges: who is told every step.
-        ticks: it is interrupted after so many steps; None: it is not.
+        simulation: a new simulation, or one that another run has advanced.
+        sinks: receive every step record.
+        bridges: called in every step.
+        ticks: interrupt the run after this number of steps; None does not.
 
     Attributes:
-        outcome: how it ended, None while it goes on; ``error`` after an exception in the code of a model, sensor,
-            navigator or bridge.
+        outcome: None while the run continues; ``error`` after an exception in a model, sensor, navigator or bridge.
         failure: that exception.
 
     >>> from crowdbot.models import ORCA
@@ -98,15 +97,15 @@ class SimulationRun:
             self.outcome = _outcome(self.simulation)
 
     def step(self) -> str | None:
-        """Go one step on, parts 1 to 8 of the order, and return the outcome when this was the last.
+        """Advance one step (parts 1 to 8) and return the outcome, None if the run continues.
 
         Raises:
-            InputError: it has ended before.
+            InputError: the run has ended.
         """
         return run_step(self.step_requests())
 
     def step_requests(self) -> StepGenerator[str | None]:
-        """Go one step on as :meth:`step` does, and ask somebody else how the crowd walks."""
+        """Advance one step as :meth:`step`, and yield the requests to the crowd model."""
         if self.outcome is not None:
             raise InputError(f"the run has ended ({self.outcome}) at {self.simulation.world.clock.time:g} s")
         try:
@@ -120,10 +119,10 @@ class SimulationRun:
         return self.outcome
 
     def until(self, nanoseconds: int) -> int:
-        """Do every step that an external time [ns] makes due, and return how many; none once it has ended.
+        """Advance to an external time [ns] and return the number of steps.
 
         Raises:
-            InputError: time ran backwards.
+            InputError: the time is earlier than the previous one.
         """
         clock = self.simulation.world.clock
         due = clock.due(nanoseconds) if isinstance(clock, ExternalClock) else nanoseconds // clock.step_ns - clock.tick
@@ -134,7 +133,7 @@ class SimulationRun:
         return max(0, due)
 
     def _observe(self) -> None:
-        """Do what follows a step: sense, decide, pass on, record; this may be the last recorded instant."""
+        """Sense, decide, call bridges and record (parts 6 to 8)."""
         simulation = self.simulation
         readings: Measured = ()
         try:
@@ -205,14 +204,14 @@ def run_to_end(
     progress: Progress | None = None,
     ticks: int | None = None,
 ) -> str:
-    """Run a simulation to its end, tell the sinks, and return the outcome.
+    """Run a simulation to its end and return the outcome.
 
     Args:
-        simulation: at tick 0, or later where somebody else left it.
-        sinks: who is told.
-        stop: asked from outside.
-        progress: called with the share that is done.
-        ticks: stop after as many steps, as an interrupted run did; None runs on.
+        simulation: a new simulation, or one that another run has advanced.
+        sinks: receive every step record.
+        stop: ends the run at the next recorded instant when set.
+        progress: called with the completed share, 0 to 1.
+        ticks: interrupt the run after this number of steps; None does not.
     """
     total = simulation.trial.ticks
     running = SimulationRun(simulation, sinks, ticks=ticks, stop=stop)
@@ -229,7 +228,7 @@ def run_to_end(
 
 
 def _outcome(simulation: Simulation) -> str | None:
-    """Return how the run has ended, None while it goes on."""
+    """Return the outcome, None while the run continues."""
     end, event = simulation.trial.end, simulation.event
     if (event == "collision" and end.collision) or (event == "success" and end.goal):
         return event
@@ -242,9 +241,9 @@ def _outcome(simulation: Simulation) -> str | None:
 
 @contextlib.contextmanager
 def catch_interrupt() -> Iterator[StopRequest]:
-    """Turn the first Ctrl-C into ``stop.asked``, so that no step and no file is torn; a second one interrupts.
+    """Turn the first Ctrl-C into ``stop.asked``, which ends the run cleanly; a second one interrupts at once.
 
-    Outside the main thread, where Python delivers no signals, it changes nothing.
+    It has no effect outside the main thread, where Python delivers no signals.
     """
     stop = StopRequest()
     if threading.current_thread() is not threading.main_thread():

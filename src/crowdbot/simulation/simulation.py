@@ -1,12 +1,12 @@
 """Simulation: a trial that is running, one step of time at a time.
 
-The order of a step, from tick k to tick k + 1 (docs/concepts/steps.md tells why):
+The order of a step, from tick k to tick k + 1 (docs/concepts/steps.md gives the reasons):
 
-1. **time**: the clock allows the step: at once (free), when it is due (paced), or when it is told (external);
-2. **crowd**: people walk, from the scene of tick k;
+1. **time**: the clock allows the step: immediately (free), when due (paced), or on request (external);
+2. **crowd**: people move, from the scene of tick k;
 3. **robots**: drives follow the commands the robots hold, from the same scene of tick k;
 4. **physics**: bodies that overlap are pushed apart; contacts are found, swept over the step; the scene is at k + 1;
-5. **people's bodies**: who has arrived or is in an exit leaves, others come in; contacts and arrivals are judged;
+5. **flow**: people who have arrived or are in an exit leave, others enter; contacts and arrivals are judged;
 6. **sensors** that are due measure the new scene, then navigators that are due decide; commands are held meanwhile;
 7. **bridges** pass on what was measured and may give robots other commands;
 8. **recorders** write what is due: scene, readings, contacts and commands.
@@ -48,7 +48,7 @@ ARRIVED = 0.3
 
 
 WALL = -2
-"""A wall, where otherwise the id of somebody who was touched stands; as in scans."""
+"""Code for a wall in place of the id of a touched agent; as in scans."""
 
 
 class RobotContact(NamedTuple):
@@ -61,15 +61,15 @@ class RobotContact(NamedTuple):
 
 @dataclass(frozen=True)
 class StepRecord:
-    """What is recorded at one instant.
+    """The record of one instant.
 
     Fields:
-        tick: number of steps since the beginning.
+        tick: number of steps since the start.
         nanoseconds: simulated time [ns].
-        scene: people who were there at the beginning, robots, and who came in or left; E is 1.
-        ids: ``[A]`` who is who in the scene; a place may be taken by one person after the other.
-        twists, commands: ``[R, 3]`` forward [m/s], turn [rad/s], left [m/s] of each robot: as it moves, as it is asked.
-        readings: what was measured at this instant, with who measured it; scans hit people by their ids.
+        scene: all agents, absent ones included; E is 1.
+        ids: ``[A]`` ids of the agents; several people may use one index in turn.
+        twists, commands: ``[R, 3]`` forward [m/s], turn [rad/s], left [m/s] of each robot: actual and commanded.
+        readings: the readings of this instant with robot and mount; hits are person ids.
         due: whether the scene is to be recorded; otherwise only the readings and contacts are.
         touches: the contacts of the step that ended now.
         forces: in the physics world what bodies did to each other in that step.
@@ -91,7 +91,7 @@ class StepRecord:
 
 @dataclass
 class RobotRuntime:
-    """A robot that is running: its place among the agents, what its sensors said last and what it is asked to do."""
+    """The state of a robot in a simulation: its agent index, latest readings and current command."""
 
     robot: RobotSpec
     agent: int
@@ -100,7 +100,7 @@ class RobotRuntime:
     probes: tuple[MountedSensor, ...]
     readings: dict[str, Reading] = field(default_factory=dict)
     seen: dict[str, NDArray[np.int64]] = field(default_factory=dict)
-    """Ids of those whom each sensor showed last."""
+    """Ids of the people in the latest reading of each sensor."""
     command: Twist = field(default_factory=Twist)
     memory: Any = None
     """Memory of the navigator, once it has begun."""
@@ -109,16 +109,16 @@ class RobotRuntime:
 
 
 class Simulation:
-    """A trial that is running.
+    """A running simulation of a trial.
 
     Args:
-        trial, seed: what runs.
-        clock: who allows the steps, at tick 0 and with the time step of the trial; None: a free clock.
-        posed: whether people have bodies although no sensor looks at them, for who draws them.
+        trial, seed: what to simulate.
+        clock: a clock at tick 0 with the time step of the trial; None is a free clock.
+        posed: compute body poses for rendering even if no sensor needs them.
 
     Attributes:
         around: the world as sensors and cameras see it.
-        world: who moves people and robots, and counts the time.
+        world: moves people and robots, and holds the clock.
         carriers: the robots.
         event: ``success`` or ``collision`` once that has happened, whichever came first.
         touches: contacts of the latest step.
@@ -163,11 +163,11 @@ class Simulation:
         self._told = 0
 
     def step(self) -> None:
-        """Go one step on: parts 1 to 5 of the order."""
+        """Advance one step: parts 1 to 5."""
         run_step(self.step_requests())
 
     def step_requests(self) -> StepGenerator[None]:
-        """Go one step on, and ask somebody else how the crowd walks: see :func:`crowdbot.simulation.run_batch`."""
+        """Advance one step and yield the requests to the crowd model; see :func:`crowdbot.simulation.run_batch`."""
         before, ids = self.world.scene, self.ids.copy()
         yield from self.world.step_requests({carrier.agent: carrier.command for carrier in self.carriers})
         self._let_leave()
@@ -175,7 +175,7 @@ class Simulation:
         self._judge(before, ids)
 
     def sense(self) -> tuple[tuple[RobotSpec, Mount, Reading], ...]:
-        """Let the sensors that are due measure, and return what arrives now: the first half of part 6."""
+        """Let due sensors measure and return the readings that arrive now: the first half of part 6."""
         new = []
         for carrier in self.carriers:
             for probe in carrier.probes:
@@ -188,7 +188,7 @@ class Simulation:
         return tuple(new)
 
     def decide(self) -> None:
-        """Ask the navigators that are due: the second half of part 6."""
+        """Let due navigators decide: the second half of part 6."""
         for carrier in self.carriers:
             if self.tick % carrier.control_every == 0:
                 self._decide(carrier)
@@ -201,9 +201,9 @@ class Simulation:
         carrier.command = action.twist
 
     def observation(self, carrier: RobotRuntime) -> Observation:
-        """Return what a robot knows: of the people, those whom its sensors showed last, as by one beam of a scan.
+        """Return what a robot observes: the people in the latest readings of its sensors.
 
-        These it knows by their true positions and velocities, as from a perfect tracker.
+        Their true positions and velocities are given, as from a perfect tracker.
         """
         scene = self.around.flat
         seen = np.zeros(scene.shape[1], dtype=np.bool_)
@@ -258,7 +258,7 @@ class Simulation:
         return tuple(new)
 
     def turn_to(self, trial: Trial, seed: int) -> None:
-        """Go on by another trial; see :func:`crowdbot.simulation.overrides.turn_to`, which changes the world first."""
+        """Go on by another trial; see :func:`crowdbot.simulation.apply_overrides`, which changes the world first."""
         self.trial, self.seed = trial, seed
         self.around.change(trial)
 
@@ -282,7 +282,7 @@ class Simulation:
 
     @property
     def ids(self) -> NDArray[np.int64]:
-        """Who is who ``[A]``."""
+        """Ids of the agents ``[A]``."""
         return np.asarray(self.world.ids[0])
 
     def _carrier(self, robot: RobotSpec, agent: int) -> RobotRuntime:
@@ -319,7 +319,7 @@ class Simulation:
             self.world.scene = scene.replace(active=scene.active & ~gone)
 
     def _judge(self, before: Scene, ids: NDArray[np.int64]) -> None:
-        """Find contacts and arrivals; ``ids`` are from before the step, since the place of who left may be taken."""
+        """Find contacts and arrivals; ``ids`` are from before the step, since an index may be reused."""
         now = self.world.scene
         touches = [RobotContact(int(ids[one.robot]), int(ids[one.other]), one.clearance) for one in self.world.contacts]
         for carrier in self.carriers:

@@ -1,4 +1,4 @@
-"""Tally: what is known of an episode without keeping it: its digest, who was there, the metrics of its robots."""
+"""Statistics of a run without its arrays: digest, number of agents, navigation metrics."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class EpisodeStatistics:
 
     Args:
         trial, seed: what runs.
-        digest: that of the time before the first instant, None when there is none.
+        digest: digest of the time before the first instant, None for a run from the start.
     """
 
     def __init__(self, trial: Trial, seed: int, digest: EpisodeDigest | None = None) -> None:
@@ -140,7 +140,7 @@ class EpisodeStatistics:
 
 
 def robot_metrics(travels: Sequence[NavigationMetrics], names: Iterable[str], outcome: str) -> dict[str, float]:
-    """Return the metrics of every robot; the outcome of a single one is that of the run, judged in every time step."""
+    """Return the metrics of all robots; a single robot has the outcome of the run, judged in every time step."""
     found: dict[str, float] = {}
     for number, (travel, name) in enumerate(zip(travels, names, strict=True)):
         values = travel.result(outcome if len(travels) == 1 else None)
@@ -149,7 +149,7 @@ def robot_metrics(travels: Sequence[NavigationMetrics], names: Iterable[str], ou
 
 
 def present(frame: StepRecord) -> tuple[NDArray[Any], ...]:
-    """Return position, velocity, heading and active of E = 1, 0 for who is not there."""
+    """Return position, velocity, heading and active of E = 1, 0 for absent agents."""
     scene = frame.scene
     here = scene.active[0]
     return (

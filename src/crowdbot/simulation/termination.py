@@ -15,7 +15,7 @@ __all__ = ["end_outcome", "goal_zones"]
 
 
 def goal_zones(people: InitialPeople) -> list[tuple[NDArray[np.int64], Any]]:
-    """Return those who leave in a goal zone of theirs, and that zone, prepared; an empty one for a goal alone."""
+    """Return the people who leave at their goal and the prepared goal zone, empty for a point goal."""
     import shapely
 
     members: dict[Any, list[int]] = {}
