@@ -93,7 +93,7 @@ def test_the_way_through() -> None:
         ("screen", "bye"), ("done", "bye"),
     ]  # fmt: skip
     assert seen[-1].over
-    assert seen[-1].allowed == ()
+    assert seen[-1].possible_events == ()
     assert seen[-1].answers[2] == {"liked": ("speed", "distance")}
     assert [result.folder for result in seen[-1].results.values()] == ["001-x", "002-y"]
     assert seen[0] == Session.of(EXPERIMENT, 1)
@@ -173,8 +173,8 @@ def _any(session: Session, draw: random.Random) -> Event:
         "finish": lambda: Finish("timeout", "aa", {"m": None, "n": 2.0, "o": "inf"}),
         "answered": lambda: Answered(name, value),
     }  # fmt: skip
-    weights = [{"abort": 0.02, "repeat": 0.3, "pause": 0.3, "fail": 0.2}.get(word, 1.0) for word in session.allowed]
-    return made[draw.choices(session.allowed, weights)[0]]()
+    weights = [{"abort": 0.02, "repeat": 0.3, "pause": 0.3, "fail": 0.2}.get(word, 1.0) for word in session.possible_events]
+    return made[draw.choices(session.possible_events, weights)[0]]()
 
 
 @pytest.mark.parametrize("seed", sample(range(40), 8))
@@ -196,7 +196,7 @@ def test_any_way_is_brought_back_by_its_records(seed: int) -> None:
         records.append(json.dumps(record_of(event)))
         assert session.phase in ("screen", "trial", "running", "pause", "done", "aborted")
         assert set(session.results) <= set(session.attempts)
-        assert (session.phase == "running") == ("finish" in session.allowed)
+        assert (session.phase == "running") == ("finish" in session.possible_events)
     assert session.over
     again = Session.of(EXPERIMENT, 1 + seed).through(event_of(json.loads(line)) for line in records)
     assert again == session

@@ -44,7 +44,7 @@ def test_each_step_does_what_it_says(
             assert main(words[1:]) == 0, (number, command)
             said.append(capsys.readouterr().out)
     check, run, replay, straight, many, sixth, new, people = said
-    assert check == "hall.xml: right\n"
+    assert check == "hall.xml: OK\n"
     assert "outcome" in run
     assert "replays to the same bytes" in replay
     assert "hall, seed 5" in straight

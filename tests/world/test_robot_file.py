@@ -208,7 +208,7 @@ def test_check_tells_of_robots(capsys, tmp_path, urdf):
     said = capsys.readouterr().out
     assert "mass    28.68 kg" in said
     assert "sensor  laser_front: Lidar2D(" in said
-    assert "crossing-flows: right" in said
+    assert "crossing-flows: OK" in said
     assert "replaced" in said
     assert "--json lists all" in said
     assert main(["check", str(folder(tmp_path, "<drive/>"))]) == 2

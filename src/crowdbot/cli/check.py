@@ -1,4 +1,4 @@
-"""``crowdbot check TRIAL|ROBOT``: read a trial or a robot and say everything that is wrong with it."""
+"""``crowdbot check TRIAL|ROBOT``: report all errors in trials, experiments and robots."""
 
 from __future__ import annotations
 
@@ -23,16 +23,20 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         help="trials, experiments, URDF files, folders of robots, or built-in names",
     )
-    parser.add_argument("--trust", action="store_true", help="let files load code from outside their own folder")
+    parser.add_argument("--trust", action="store_true", help="allow code and files outside the folder of each file")
     parser.add_argument(
-        "--package", metavar="NAME=FOLDER", action="append", default=[], help="where package://NAME/ of a URDF lies"
+        "--package",
+        metavar="NAME=FOLDER",
+        action="append",
+        default=[],
+        help="folder of package://NAME/ of a URDF",
     )
     add_settings(parser)
     add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:
-    """Check each; status 2 when one is wrong."""
+    """Check each file; return 2 if one has errors."""
     packages = _packages(options.package)
     found: dict[str, dict[str, Any]] = {}
     with without_running_code():
@@ -115,7 +119,8 @@ def _print(name: str, row: dict[str, Any]) -> None:
         print(problem)
     if "robot" in row:
         _print_robot(row["robot"])
-    verdict = "right" if row["right"] else f"{len(row['problems'])} to mend"
+    count = len(row["problems"])
+    verdict = f"{count} error{'s' if count != 1 else ''}" if count else "OK"
     print(f"{Path(name).name}: {verdict}")
     for remark in row.get("remarks", ()):
         print(f"  note: {remark}")

@@ -1,4 +1,4 @@
-"""``crowdbot demo``: the main job on built-in input, then a report."""
+"""``crowdbot demo``: a demonstration on built-in data, with a report."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from .output import add_json, print_json, print_metrics, print_table, progress
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument(
-        "--out", type=Path, default=Path("demo"), metavar="DIR", help="folder of the results (default demo)"
+        "--out", type=Path, default=Path("demo"), metavar="DIR", help="folder of the results (default: demo)"
     )
-    parser.add_argument("--seed", type=int, help="seed of everything random (default: the trial's own)")
+    parser.add_argument("--seed", type=int, help="random seed (default: from the trial)")
     add_json(parser)
 
 

@@ -1,34 +1,43 @@
-"""``crowdbot new KIND FILE``: write a file to begin with: a trial, or the schema of trials."""
+"""``crowdbot new KIND FILE``: write a file that is ready to run, and its contract test."""
 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from crowdbot.core import InputError, TrialError
 from crowdbot.trials import check_trial, expand_spawners, trial_xml
 
 from .output import note
 from .settings import add_settings, settings
+from .templates import CLASSES, FOLLOW_UP, class_files, robot_files, stage_files, trial_test
 
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
-KINDS = ("trial", "schema")
+KINDS = (*CLASSES, "robot", "stage", "trial", "schema")
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("kind", metavar="KIND", choices=KINDS, help="trial, or schema (XSD) of trials")
-    parser.add_argument("file", metavar="FILE", type=Path, help="file to write")
-    parser.add_argument("--force", action="store_true", help="write over a file that exists")
-    parser.add_argument("--trust", action="store_true", help="let the trial use code and files outside its folder")
+    parser.add_argument("kind", metavar="KIND", choices=KINDS, help=f"one of {', '.join(KINDS)}")
+    parser.add_argument(
+        "file", metavar="FILE", type=Path, help="file to write: .py, .geojson (stage), .xml (trial), or folder (robot)"
+    )
+    parser.add_argument("--force", action="store_true", help="replace existing files")
+    parser.add_argument("--trust", action="store_true", help="allow code and files outside the folder of the trial")
     group = parser.add_argument_group("a trial")
     begin = group.add_mutually_exclusive_group()
-    begin.add_argument("--from", dest="source", metavar="TRIAL", help="a built-in name or a file (default: frontal)")
-    begin.add_argument("--import", dest="original", type=Path, metavar="FILE", help="of the CrowdBot simulator of 2021")
-    begin.add_argument("--recorded", type=Path, metavar="DATA", help="a recording whose people are the crowd")
+    begin.add_argument(
+        "--from", dest="source", metavar="TRIAL", help="built-in name or file to start from (default: frontal)"
+    )
+    begin.add_argument(
+        "--import", dest="original", type=Path, metavar="FILE", help="file of the CrowdBot simulator of 2021"
+    )
+    begin.add_argument("--recorded", type=Path, metavar="DATA", help="recording whose people are the crowd")
     group.add_argument(
         "--root",
         type=Path,
@@ -36,50 +45,75 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="project folder of that simulator, searched for files that an imported file names (default: its folder)",
     )
     add_settings(group)
-    group.add_argument("--explicit", action="store_true", help="write everybody at the beginning as an agent to edit")
-    group.add_argument("--seed", type=int, help="seed by which people are placed (default: the trial's own)")
+    group.add_argument("--explicit", action="store_true", help="each person at the start as an agent to edit")
+    group.add_argument("--seed", type=int, help="seed of the trial (default: from --from)")
     group = parser.add_argument_group("a trial of recorded people")
     group.add_argument("--fps", type=float, help="frames per second of the recording (default: from the file)")
-    group.add_argument("--reactive", action="store_true", help="people near the robot walk by a model")
-    group.add_argument("--replace", type=int, metavar="ID", help="the robot goes in the place of this person")
+    group.add_argument("--reactive", action="store_true", help="crowd model for people near the robot")
+    group.add_argument("--replace", type=int, metavar="ID", help="person whose place the robot takes")
 
 
 def main(options: argparse.Namespace) -> int:
-    """Write the file."""
-    from crowdbot.core import InputError
-
-    if options.file.exists() and not options.force:
-        raise InputError(f"{options.file} exists already; give another name, or --force to write over it")
+    """Write the files."""
+    files = _files(options)
+    for file in (options.file, *files):
+        if file.exists() and not options.force:
+            raise InputError(f"{file} exists already; give another name, or --force to replace it")
     if not options.file.parent.is_dir():
         raise InputError(f"there is no folder {options.file.parent} to write {options.file.name} in")
     if options.kind == "schema":
         from crowdbot.trials import schema
 
-        _write(options.file, schema())
+        files = {options.file: schema()}
     elif options.original is not None:
-        _imported(options)
-    else:
-        trial = _recorded(options) if options.recorded is not None else _taken(options)
-        if options.seed is not None or options.explicit:
-            trial = _placed(trial, options)
-        _write(options.file, trial_xml(trial))
+        _import_trials(options)
+        return 0
+    elif options.kind == "trial":
+        files = {options.file: trial_xml(_trial(options)), **files}
+    for file, text in files.items():
+        _write(file, text)
+    if options.kind in FOLLOW_UP:
+        test = next(file for file in files if file.name.startswith("test_"))
+        address = f"{options.file.name}:{_class_name(files[options.file])}" if options.kind in CLASSES else ""
+        print(f"test it   pytest {test}")
+        print(f"use it    {FOLLOW_UP[options.kind].format(address=address or options.file.name)}")
     return 0
 
 
-def _taken(options: argparse.Namespace) -> Trial:
+def _files(options: argparse.Namespace) -> dict[Path, str]:
+    """Return the texts of the files that do not depend on the other options."""
+    if options.kind in CLASSES:
+        return class_files(options.kind, options.file)
+    if options.kind == "robot":
+        return robot_files(options.file)
+    if options.kind == "stage":
+        return stage_files(options.file)
+    return trial_test(options.file) if options.kind == "trial" and options.original is None else {}
+
+
+def _class_name(text: str) -> str:
+    return text.partition("\nclass ")[2].partition("(")[0]
+
+
+def _trial(options: argparse.Namespace) -> Trial:
+    trial = _recorded_trial(options) if options.recorded is not None else _copied_trial(options)
+    return _place(trial, options) if options.seed is not None or options.explicit else trial
+
+
+def _copied_trial(options: argparse.Namespace) -> Trial:
     from crowdbot.trials import load_trial
 
     return load_trial(options.source or "frontal", trust=options.trust, **settings(options))
 
 
-def _placed(trial: Trial, options: argparse.Namespace) -> Trial:
+def _place(trial: Trial, options: argparse.Namespace) -> Trial:
     import dataclasses
 
     seed = trial.seed if options.seed is None else options.seed
     return expand_spawners(trial, seed) if options.explicit else dataclasses.replace(trial, seed=seed)
 
 
-def _recorded(options: argparse.Namespace) -> Trial:
+def _recorded_trial(options: argparse.Namespace) -> Trial:
     from crowdbot.trials import recorded_trial
 
     trial = recorded_trial(
@@ -93,16 +127,13 @@ def _recorded(options: argparse.Namespace) -> Trial:
     if beside.resolve() != options.recorded.resolve():
         if not beside.exists():
             shutil.copyfile(options.recorded, beside)
-            note(f"copied {options.recorded.name} beside it, for a trial reads files of its own folder only")
+            note(f"copied {options.recorded.name} beside it: a trial reads only files in its own folder")
         elif beside.read_bytes() != options.recorded.read_bytes():
-            from crowdbot.core import InputError
-
             raise InputError(f"{beside} exists and is another file; write the trial into another folder")
     return trial
 
 
-def _imported(options: argparse.Namespace) -> None:
-    from crowdbot.core import TrialError
+def _import_trials(options: argparse.Namespace) -> None:
     from crowdbot.trials import import_original
 
     done = import_original(options.original, root=options.root)
@@ -115,7 +146,7 @@ def _imported(options: argparse.Namespace) -> None:
             check_trial(trial)
         except TrialError as error:
             problems += [f"{file.name}: {sentence}" for sentence in error.problems]
-    for title, rows in (("not carried over", done.left_out), ("to mend", problems)):
+    for title, rows in (("not carried over", done.left_out), ("errors", problems)):
         if rows:
             print(f"{title}:")
             for sentence in rows:
@@ -123,8 +154,14 @@ def _imported(options: argparse.Namespace) -> None:
 
 
 def _write(file: Path, text: str) -> None:
-    """Write a file whole, or not at all."""
+    """Write a whole file or none."""
     part = file.with_name(file.name + ".part")
-    part.write_text(text, encoding="utf-8")
-    part.replace(file)
+    try:
+        file.parent.mkdir(exist_ok=True)
+        part.write_text(text, encoding="utf-8")
+        part.replace(file)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            part.unlink(missing_ok=True)
+        raise InputError(f"{file} cannot be written: {error.strerror or error}") from None
     print(f"wrote {file}")

@@ -1,4 +1,4 @@
-"""A trial that runs beside its front end, so that it can be held, let go on, or given up."""
+"""A trial that runs in a thread, and can be paused, continued or aborted."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ __all__ = ["Aborted", "BackgroundRun"]
 
 
 class Aborted(Exception):
-    """The trial was given up on purpose."""
+    """The trial was aborted on request."""
 
 
 class BackgroundRun:
-    """Runs a trial in a thread of its own; the file of its episode appears when it is complete.
+    """Runs a trial in a thread; the episode file appears when the trial has ended.
 
-    It can be held whenever it tells its progress, 100 times in its duration; what comes out is the same.
+    The run can be paused at each report of progress, 100 times in its duration. A pause does not change the result.
 
     >>> from crowdbot.models import ORCA
     >>> running = BackgroundRun(Trial(name="empty", duration=1.0, crowd=ORCA()), seed=0)
@@ -31,7 +31,7 @@ class BackgroundRun:
 
     def __init__(self, trial: Trial, seed: int, out: Path | None = None) -> None:
         self.share = 0.0
-        """How much of the duration is done, 0 to 1."""
+        """Completed share of the duration, 0 to 1."""
         self._go = threading.Event()
         self._go.set()
         self._given_up = False
@@ -41,28 +41,28 @@ class BackgroundRun:
         threading.Thread(target=self._run, args=(trial, seed, out), daemon=True).start()
 
     def hold(self) -> None:
-        """Let it wait."""
+        """Pause the run."""
         self._go.clear()
 
     def go(self) -> None:
-        """Let it go on."""
+        """Continue the run."""
         self._go.set()
 
     def give_up(self) -> None:
-        """Let it end without an episode, where it is held or next tells its progress; :meth:`wait` for that."""
+        """Abort the run at its next report of progress, without an episode; :meth:`wait` for the end."""
         self._given_up = True
         self._go.set()
 
     def wait(self, seconds: float) -> bool:
-        """Wait as long at most; return whether it has ended."""
+        """Wait at most ``seconds``; return whether the run has ended."""
         return self._ended.wait(seconds)
 
     def result(self) -> Episode:
         """Return the episode.
 
         Raises:
-            GivenUp: there is none.
-            Exception: whatever the trial has raised.
+            Aborted: the trial was aborted.
+            Exception: the error of the trial.
         """
         self._ended.wait()
         if self._error is not None:
@@ -72,13 +72,13 @@ class BackgroundRun:
 
     def _run(self, trial: Trial, seed: int, out: Path | None) -> None:
         try:
-            self._episode = run(trial, seed=seed, out=out, progress=self._told)
+            self._episode = run(trial, seed=seed, out=out, progress=self._report)
         except Exception as error:  # raised again by result(), where somebody can be told
             self._error = error
         finally:
             self._ended.set()
 
-    def _told(self, share: float) -> None:
+    def _report(self, share: float) -> None:
         self.share = share
         self._go.wait()
         if self._given_up:

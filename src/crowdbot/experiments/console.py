@@ -62,7 +62,7 @@ class Console:
         """Go through the session.
 
         Raises:
-            Left: it was left before its end.
+            ConsoleClosed: the session was left before its end.
             InputError: answers that cannot be given anew are missing or wrong; the session waits.
         """
         with self._interrupt:
@@ -89,21 +89,21 @@ class Console:
         text = "\n".join(_wrapped(line) for line in page.text.splitlines())
         self.write(f"\n{'-' * WIDTH}\n{text}\n" if text else f"\n{'-' * WIDTH}\n")
         if text:
-            self.sitting.shown(text)
+            self.sitting.log_screen(text)
         for question in self.sitting.session.open:
             self._ask(step.name, question)
         self.write("\n[Enter] ")
-        with self._interrupt.allowed():
+        with self._interrupt.interruptible():
             self.person.go_on()
         self.sitting.do(Next())
 
     def _ask(self, screen: str, question: Question) -> None:
         text = _asked(question)
         self.write(text)
-        self.sitting.shown(text.strip())
+        self.sitting.log_screen(text.strip())
         while True:
             self.write("> ")
-            with self._interrupt.allowed():
+            with self._interrupt.interruptible():
                 given = self.person.answer(screen, question)
             try:
                 self.sitting.do(Answered(question.name, question.read(given)))
@@ -121,7 +121,7 @@ class Console:
         self.tell(what, 0.0)
         while self.sitting.session.phase == "running":
             try:
-                with self._interrupt.allowed():
+                with self._interrupt.interruptible():
                     while not running.wait(0.2):
                         self.tell(what, running.share)
             except KeyboardInterrupt:
@@ -150,7 +150,7 @@ class Console:
         """Wait until a trial has given up, so that no other one begins beside it."""
         running.give_up()
         try:
-            with self._interrupt.allowed():
+            with self._interrupt.interruptible():
                 while not running.wait(0.2):
                     pass
         except KeyboardInterrupt:
@@ -163,8 +163,15 @@ class Console:
             self.sitting.do(Fail(str(error)))
         except Exception as error:  # code that a trial names may raise anything; the session must outlive it
             report = folder / "error.txt"
-            report.write_text("".join(traceback.format_exception(error)), encoding="utf-8")
-            self.sitting.do(Fail(f"{type(error).__name__}: {error}; more in {report.name}"))
+            trace = "".join(traceback.format_exception(error))
+            try:
+                report.write_text(trace, encoding="utf-8", errors="backslashreplace")
+                where = f"the trace is in {report.name}"
+            except OSError as failure:
+                where = f"{report.name} cannot be written: {failure.strerror}"
+            frame = traceback.extract_tb(error.__traceback__)[-1]
+            place = f"{Path(frame.filename).name}, line {frame.lineno}"
+            self.sitting.do(Fail(f"{type(error).__name__}: {error} ({place}); {where}"))
         else:
             if episode.failure is None:
                 self.sitting.finish(episode)
@@ -175,12 +182,12 @@ class Console:
 
     def _menu(self) -> None:
         session = self.sitting.session
-        words = (*session.allowed, "leave")
+        words = (*session.possible_events, "leave")
         rows = "\n".join(f"  {word:<8}{MENU[word]}" for word in words)
         reason = CONTROL.sub("", session.reason)
         self.write(f"\n{'=' * WIDTH}\nPAUSE{f' ({reason})' if reason else ''}\n{rows}\n> ")
         try:
-            with self._interrupt.allowed():
+            with self._interrupt.interruptible():
                 word = self.person.choose(words)
         except KeyboardInterrupt:
             word = "leave"
@@ -209,7 +216,7 @@ class Interrupt:
             signal.signal(signal.SIGINT, self._before)  # type: ignore[arg-type]
 
     @contextlib.contextmanager
-    def allowed(self) -> Iterator[None]:
+    def interruptible(self) -> Iterator[None]:
         """Let Ctrl-C interrupt here."""
         self._open = True
         try:

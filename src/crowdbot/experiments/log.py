@@ -1,4 +1,4 @@
-"""The log of a session: a file of JSON lines that only grows. The session is what its events make of it."""
+"""The log of a session: an append-only file of JSON lines, from which the session is restored."""
 
 from __future__ import annotations
 
@@ -13,12 +13,14 @@ from crowdbot.core import EpisodeError
 __all__ = ["SessionLog", "read_log"]
 
 FORMAT = 1
+LOCKED_BYTE = 1 << 30
+"""Position of the byte that is locked on Windows."""
 
 
 class SessionLog:
-    """A log that is being written.
+    """A log open for writing.
 
-    Every record is on the disk before :meth:`append` returns. A record that was cut by a crash is dropped.
+    Every record is on the disk before :meth:`append` returns. An incomplete last record, after a crash, is dropped.
     """
 
     def __init__(self, path: Path, stream: BinaryIO) -> None:
@@ -27,30 +29,30 @@ class SessionLog:
 
     @classmethod
     def create(cls, path: Path, head: dict[str, Any]) -> SessionLog:
-        """Begin a log; its first record says what it is about.
+        """Create a log; its first record describes the session.
 
         Raises:
-            EpisodeError: there is one, or it cannot be written.
+            EpisodeError: the file exists or cannot be written.
         """
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            log = cls(path, _locked(path, "xb"))
+            log = cls(path, _open_locked(path, "xb"))
         except FileExistsError:
-            raise EpisodeError(f"{path} is there already; a session is never written over") from None
+            raise EpisodeError(f"{path} exists already; a session is never overwritten") from None
         except OSError as error:
-            raise EpisodeError(f"{path} cannot be written: {error.strerror}; give another place") from None
+            raise EpisodeError(f"{path} cannot be written: {error.strerror}; use another folder") from None
         log.append({"format": FORMAT, **head})
         return log
 
     @classmethod
     def open(cls, path: Path) -> tuple[SessionLog, list[dict[str, Any]]]:
-        """Go on with a log; return also its records.
+        """Open a log to continue it, and return its records.
 
         Raises:
-            EpisodeError: it is missing, cannot be written or is no log.
+            EpisodeError: the file is missing, cannot be written or is no log.
         """
         try:
-            stream = _locked(path, "r+b")
+            stream = _open_locked(path, "r+b")
         except OSError as error:
             raise EpisodeError(f"{path} cannot be written: {error.strerror}") from None
         try:
@@ -66,7 +68,7 @@ class SessionLog:
         """Write a record.
 
         Raises:
-            EpisodeError: the disk does not take it.
+            EpisodeError: the disk is full or failed.
         """
         line = json.dumps(record, ensure_ascii=False, allow_nan=False) + "\n"
         try:
@@ -81,18 +83,36 @@ class SessionLog:
         self._stream.close()
 
 
-def _locked(path: Path, mode: Literal["xb", "r+b"]) -> BinaryIO:
-    """Open a file that nobody else is writing, where the system can tell."""
-    stream: BinaryIO = path.open(mode)
-    if sys.platform != "win32":
-        import fcntl
+def _open_locked(path: Path, mode: Literal["xb", "r+b"]) -> BinaryIO:
+    """Open a file for writing and lock it until it is closed.
 
-        try:
-            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            stream.close()
-            raise EpisodeError(f"{path} is being written by another program; end that one first") from None
+    Raises:
+        EpisodeError: another program has locked it.
+        OSError: it cannot be opened.
+    """
+    stream: BinaryIO = path.open(mode)
+    try:
+        _lock(stream)
+    except OSError:
+        stream.close()
+        raise EpisodeError(f"{path} is being written by another program; end that one first") from None
     return stream
+
+
+if sys.platform == "win32":
+    import msvcrt
+
+    def _lock(stream: BinaryIO) -> None:
+        """Lock one byte beyond any content, since locked bytes cannot be read by others on Windows."""
+        stream.seek(LOCKED_BYTE)
+        msvcrt.locking(stream.fileno(), msvcrt.LK_NBLCK, 1)
+        stream.seek(0)
+
+else:
+    import fcntl
+
+    def _lock(stream: BinaryIO) -> None:
+        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def read_log(path: Path) -> list[dict[str, Any]]:

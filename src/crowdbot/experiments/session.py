@@ -101,7 +101,7 @@ class Session:
         return self.phase in ("done", "aborted")
 
     @property
-    def allowed(self) -> tuple[str, ...]:
+    def possible_events(self) -> tuple[str, ...]:
         """The words of the events that are possible now; what a front end offers."""
         again = ("repeat",) if self._latest() is not None else ()
         return {
@@ -119,8 +119,8 @@ class Session:
             InputError: the event is not possible now, or the answer is not allowed; what is, is said.
         """
         word = kebab_case(type(event).__name__)
-        if word not in self.allowed:
-            known = ", ".join(self.allowed) or "nothing"
+        if word not in self.possible_events:
+            known = ", ".join(self.possible_events) or "nothing"
             raise InputError(f"{word!r} is not possible {self._where()}; possible is {known}")
         match event:
             case Start():

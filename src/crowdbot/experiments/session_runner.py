@@ -1,4 +1,4 @@
-"""Sitting: a session with its folder, its log and its clock. A front end tells it what happens."""
+"""SessionRunner: a session with its folder, log and clock, driven by a front end."""
 
 from __future__ import annotations
 
@@ -104,8 +104,8 @@ class SessionRunner:
             self._write_answers(self.session.steps[index].number)
         return after
 
-    def shown(self, text: str) -> None:
-        """Write down what a screen has shown, in the words that the participant saw."""
+    def log_screen(self, text: str) -> None:
+        """Log the text of a screen as the participant saw it."""
         step = self.session.step
         source = self.pages[step.screen].digest if step.screen else ""
         self.log.append({"at": self.clock(), "shown": step.name, "role": step.role, "source": source, "text": text})
