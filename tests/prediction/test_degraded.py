@@ -34,7 +34,7 @@ def _line(ids=(1, 2), rows=8, gap=2.0, **more):
 def _without(tracks, *gone):
     """The recording without the rows (frame, id)."""
     keep = [(f, i) not in gone for f, i in zip(tracks.frame.tolist(), tracks.id.tolist(), strict=True)]
-    return DegradedTracks.of(tracks).kept(np.array(keep))
+    return DegradedTracks.of(tracks).keep_rows(np.array(keep))
 
 
 @pytest.mark.parametrize("protocol", ["all", "sgan", "partial", "timesplit"])
