@@ -13,8 +13,8 @@ from crowdbot.core import (
     parse_xml,
     read_bytes,
     reject_entities,
-    xml_tree,
 )
+from crowdbot.core.markup import xml_tree
 
 DOCTYPE = b'<!DOCTYPE a [<!ENTITY e SYSTEM "file:///etc/passwd">]>\n<a>&e;</a>'
 

@@ -173,7 +173,9 @@ def _any(session: Session, draw: random.Random) -> Event:
         "finish": lambda: Finish("timeout", "aa", {"m": None, "n": 2.0, "o": "inf"}),
         "answered": lambda: Answered(name, value),
     }  # fmt: skip
-    weights = [{"abort": 0.02, "repeat": 0.3, "pause": 0.3, "fail": 0.2}.get(word, 1.0) for word in session.possible_events]
+    weights = [
+        {"abort": 0.02, "repeat": 0.3, "pause": 0.3, "fail": 0.2}.get(word, 1.0) for word in session.possible_events
+    ]
     return made[draw.choices(session.possible_events, weights)[0]]()
 
 

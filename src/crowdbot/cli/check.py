@@ -6,9 +6,6 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from crowdbot.core import without_running_code
-from crowdbot.trials import expand_sweeps, trial_remarks
-
 from .output import add_json, print_json
 from .settings import add_settings, settings
 
@@ -37,6 +34,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Check each file; return 2 if one has errors."""
+    from crowdbot.core import without_running_code
+
     packages = _packages(options.package)
     found: dict[str, dict[str, Any]] = {}
     with without_running_code():
@@ -78,7 +77,7 @@ def _is_robot(name: str) -> bool:
 def _trial(name: str, options: argparse.Namespace) -> dict[str, Any]:
     from crowdbot.core import InputError, TrialError
     from crowdbot.experiments import is_experiment, load_experiment
-    from crowdbot.trials import load_trial
+    from crowdbot.trials import expand_sweeps, load_trial, trial_remarks
 
     try:
         if is_experiment(name):

@@ -10,9 +10,6 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from crowdbot.experiments import experiment_xml
-from crowdbot.trials import check_trial, trial_xml
-
 from .output import add_json, note, number, print_json, print_table, spoken_warnings
 
 if TYPE_CHECKING:
@@ -238,7 +235,8 @@ def _new(options: argparse.Namespace) -> int:
 def _imported(options: argparse.Namespace) -> tuple[str, ...]:
     """Write an experiment of the original simulator with its trials, and return what is left out and to mend."""
     from crowdbot.core import TrialError
-    from crowdbot.experiments import FILE, import_experiment
+    from crowdbot.experiments import FILE, experiment_xml, import_experiment
+    from crowdbot.trials import check_trial, trial_xml
 
     done = import_experiment(options.original, participant=options.participant, root=options.root)
     texts = {name: trial_xml(trial) for name, trial in done.trials} | {FILE: experiment_xml(done.experiment)}

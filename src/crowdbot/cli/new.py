@@ -8,9 +8,6 @@ import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from crowdbot.core import InputError, TrialError
-from crowdbot.trials import check_trial, expand_spawners, trial_xml
-
 from .output import note
 from .settings import add_settings, settings
 from .templates import CLASSES, FOLLOW_UP, class_files, robot_files, stage_files, trial_test
@@ -55,6 +52,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Write the files."""
+    from crowdbot.core import InputError
+    from crowdbot.trials import trial_xml
+
     files = _files(options)
     for file in (options.file, *files):
         if file.exists() and not options.force:
@@ -109,11 +109,14 @@ def _copied_trial(options: argparse.Namespace) -> Trial:
 def _place(trial: Trial, options: argparse.Namespace) -> Trial:
     import dataclasses
 
+    from crowdbot.trials import expand_spawners
+
     seed = trial.seed if options.seed is None else options.seed
     return expand_spawners(trial, seed) if options.explicit else dataclasses.replace(trial, seed=seed)
 
 
 def _recorded_trial(options: argparse.Namespace) -> Trial:
+    from crowdbot.core import InputError
     from crowdbot.trials import recorded_trial
 
     trial = recorded_trial(
@@ -134,7 +137,8 @@ def _recorded_trial(options: argparse.Namespace) -> Trial:
 
 
 def _import_trials(options: argparse.Namespace) -> None:
-    from crowdbot.trials import import_original
+    from crowdbot.core import TrialError
+    from crowdbot.trials import check_trial, import_original, trial_xml
 
     done = import_original(options.original, root=options.root)
     problems: list[str] = []
@@ -155,6 +159,8 @@ def _import_trials(options: argparse.Namespace) -> None:
 
 def _write(file: Path, text: str) -> None:
     """Write a whole file or none."""
+    from crowdbot.core import InputError
+
     part = file.with_name(file.name + ".part")
     try:
         file.parent.mkdir(exist_ok=True)

@@ -7,8 +7,6 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from crowdbot.trials import trial_remarks
-
 from .output import add_json, note, number, print_json, print_metrics, print_table, progress, spoken_warnings
 from .settings import add_settings, add_world, select_variant, settings
 
@@ -54,6 +52,8 @@ def main(options: argparse.Namespace) -> int:
 
 def print_run(done: RunSummary, options: argparse.Namespace, wall: float) -> int:
     """Print the summary of a run and return the exit status: 1 after an exception in the code of the trial."""
+    from crowdbot.trials import trial_remarks
+
     summary = {
         "trial": done.trial.name,
         "seed": done.seed,

@@ -5,8 +5,6 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from crowdbot.trials import expand_sweeps
-
 if TYPE_CHECKING:
     from crowdbot.trials import Trial
 
@@ -71,6 +69,7 @@ def select_variant(trial: Trial, variant: int | None) -> Trial:
         InputError: it has none of this number, or none was asked for.
     """
     from crowdbot.core import InputError
+    from crowdbot.trials import expand_sweeps
 
     if variant is None and not trial.sweeps:
         return trial

@@ -8,7 +8,6 @@ from crowdbot.lazy import lazy_exports
 
 from .bodies import STAGE, Bodies, Skins
 from .bounds import Bounds, check_number
-from .class_source import UnreadableValue, reads_only, unread_fields, without_running_code
 from .clock import Clock, ExternalClock, FreeClock, PacedClock
 from .errors import (
     CrowdbotError,
@@ -22,11 +21,13 @@ from .errors import (
     did_you_mean,
     nearest_name,
 )
+from .markup.xml_tree import Element, format_xml, parse_number, parse_xml, read_bytes, reject_entities
 from .model_parameter import Parameter, PerAgent, check_parameters, parameter, parameters, per_agent
 from .optional_imports import import_optional
 from .output_lock import lock_output, release_stale_lock
 from .paper import Paper
-from .plugin import (
+from .plugins.class_source import UnreadableValue, reads_only, unread_fields, without_running_code
+from .plugins.plugin import (
     attribute_names,
     attribute_problems,
     builtin_classes,
@@ -36,20 +37,19 @@ from .plugin import (
     kebab_case,
     required_fields,
 )
-from .plugin_module import plugin_address, plugin_sources, relative_name, sources_of
+from .plugins.plugin_module import plugin_address, plugin_sources, relative_name, sources_of
 from .pose import MOUNT_HEIGHT, Pose, SpatialPose, Twist, product, wrap_angle
 from .random import stream
 from .scene import PERSON_HEIGHT, Scene
 from .version import source_digest
 from .walls import Walls
 from .workers import each, run_saved_jobs
-from .xml_tree import Element, format_xml, parse_number, parse_xml, read_bytes, reject_entities
 
 if TYPE_CHECKING:
     from .compiling import notify_compiling
     from .kernels import cache_folder, is_cold, kernel
+    from .markup.svg import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, draw_svg
     from .neighbors import CHUNK, SMALL, Neighbors
-    from .svg import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, draw_svg
 
 __getattr__, __dir__ = lazy_exports(
     __name__,
@@ -57,7 +57,7 @@ __getattr__, __dir__ = lazy_exports(
         "compiling": ["notify_compiling"],
         "kernels": ["cache_folder", "is_cold", "kernel"],
         "neighbors": ["CHUNK", "SMALL", "Neighbors"],
-        "svg": ["PERSON_COLOR", "ROBOT_COLOR", "WALL_COLOR", "Disc", "Path2D", "draw_svg"],
+        "markup.svg": ["PERSON_COLOR", "ROBOT_COLOR", "WALL_COLOR", "Disc", "Path2D", "draw_svg"],
     },
 )
 

@@ -23,7 +23,7 @@ def check_robot(robot: Robot) -> None:
 
     >>> check_robot(Robot.load("turtlebot2"))
     """
-    speed = 0.5 * robot.drive.max_speed
+    speed = 0.5 * float(getattr(robot.drive, "max_speed", 1.0))
     scene = Scene.of([[0.0, 0.0]], external=[True], heading=[0.0], radius=robot.radius)
     world = PlanarWorld(scene, ORCA(), {0: robot.drive}, DT, latency={0: robot.latency})
     for _ in range(50):

@@ -8,11 +8,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from crowdbot.core import InputError, nearest_name
+from crowdbot.core import InputError, UnreadableValue, nearest_name
 from crowdbot.trials.agent import Agent
 from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import outline
-from crowdbot.trials.partial import UnreadableValue, kind_of, make_partial, readable, rest
+from crowdbot.trials.partial import kind_of, make_partial, readable, rest
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial

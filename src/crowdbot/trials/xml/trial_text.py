@@ -1,4 +1,4 @@
-"""The XML of trials: :mod:`crowdbot.core.xml_tree` with the words and the error of trials."""
+"""The XML of trials: :mod:`crowdbot.core.markup.xml_tree` with the words and the error of trials."""
 
 from __future__ import annotations
 

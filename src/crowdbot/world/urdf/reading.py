@@ -97,9 +97,7 @@ def _robot(reader: UrdfReader, root: Element) -> RobotModel:
     joints: dict[str, Joint] = {}
     lines: dict[str, int] = {}
     if len(root.each("link")) > MOST_LINKS:
-        raise RobotError(
-            f"{reader.place}:{root.line}: more than {MOST_LINKS} links, the maximum"
-        )
+        raise RobotError(f"{reader.place}:{root.line}: more than {MOST_LINKS} links, the maximum")
     for element in root.each("link"):
         link = read_link(reader, element)
         if link is not None and reader.new(element, link.name, links):

@@ -19,8 +19,9 @@ from typing import Any
 
 import numpy as np
 
+from crowdbot.core.errors import InputError, UnknownName, did_you_mean
+
 from .class_source import describe_class, reads_only
-from .errors import InputError, UnknownName, did_you_mean
 from .plugin_module import load_plugin_module, plugin_source
 
 __all__ = [

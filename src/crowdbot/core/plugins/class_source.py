@@ -18,7 +18,7 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import Any, NoReturn
 
-from .errors import InputError
+from crowdbot.core.errors import InputError
 
 __all__ = ["UnreadableValue", "class_file", "describe_class", "reads_only", "unread_fields", "without_running_code"]
 

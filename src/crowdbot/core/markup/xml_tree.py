@@ -15,7 +15,7 @@ from typing import Any
 from xml.parsers import expat  # expat loads no external entity; entities are rejected below
 from xml.sax.saxutils import escape, quoteattr
 
-from .errors import InputError
+from crowdbot.core.errors import InputError
 
 __all__ = ["Element", "format_xml", "parse_number", "parse_xml", "read_bytes", "reject_entities"]
 

@@ -13,8 +13,9 @@ import types
 from pathlib import Path
 from typing import Any
 
+from crowdbot.core.errors import InputError
+
 from .class_source import class_file
-from .errors import InputError
 
 __all__ = ["load_plugin_module", "plugin_address", "plugin_source", "plugin_sources", "relative_name", "sources_of"]
 

@@ -1,0 +1,1 @@
+"""Text formats: XML trees and SVG drawings."""

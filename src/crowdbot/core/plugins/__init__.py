@@ -1,0 +1,1 @@
+"""Plugins: classes by name or address, and their fields from text."""
