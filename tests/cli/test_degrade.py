@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from crowdbot import prediction
+from crowdbot import benchmark
 from crowdbot.cli import main
 from crowdbot.cli.degrade import read_degradations
 from crowdbot.core import stream
@@ -41,7 +41,7 @@ def test_predictors_over_levels_with_table_json_and_plot(capsys, tmp_path, zara)
     assert "0.427 / 0.952" in text
     assert "0.443 / 0.972" in text
     assert "100.0 %" in text
-    assert "2356 persons" in text
+    assert "2356 persons" in " ".join(text.split())
     assert "sd [m]" in text
     assert sorted(path.name for path in out.iterdir()) == ["degraded.json", "degraded.png", "degraded.svg"]
     page = json.loads((out / "degraded.json").read_text())
@@ -113,7 +113,7 @@ def test_parameters_find_their_degradation():
 
 
 def test_an_interrupt_keeps_what_is_done(capsys, tmp_path, monkeypatch, small):
-    whole = prediction.sweep
+    whole = benchmark.sweep_degradations
 
     def interrupted(*parts):
         levels = whole(*parts)
@@ -121,7 +121,7 @@ def test_an_interrupt_keeps_what_is_done(capsys, tmp_path, monkeypatch, small):
         yield next(levels)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(prediction, "sweep", interrupted)
+    monkeypatch.setattr(benchmark, "sweep_degradations", interrupted)
     words = ["degrade", "--data", small, "--by", "gaussian-noise", "--predictor", "constant-velocity"]
     assert main([*words, "--out", str(tmp_path / "out")]) == 130
     said = capsys.readouterr()

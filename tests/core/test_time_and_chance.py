@@ -58,15 +58,6 @@ def test_external_time_never_goes_back():
         clock.due(1)
 
 
-def test_paced_time_does_not_run_ahead():
-    clock = PacedClock(0.01, rate=2.0)
-    begin = time.monotonic()
-    for _ in range(6):
-        clock.advance()
-    assert time.monotonic() - begin >= 0.06 / 2.0 * 0.99
-    assert clock.time == 0.06
-
-
 @given(st.integers(-(2**70), 2**70), st.text(max_size=5), st.integers())
 def test_streams_repeat_and_differ(seed, name, number):
     draws = {

@@ -129,7 +129,7 @@ def test_exits_come_from_text():
     [
         (lambda: EnvironmentLayout([]), "the layout has no exit; give exits as points"),
         (lambda: EnvironmentLayout.of([ROOM], area=ROOM), "the layout has no exit"),
-        (EnvironmentLayout.of, "without walls and area nothing is known"),
+        (EnvironmentLayout.of, "the place has no walls and no area"),
         (lambda: EnvironmentLayout.of(area=ROOM, width=0.0), "width = 0.0 m must be finite and above 0"),
         (lambda: EnvironmentLayout.of(area=ROOM[:2]), "one ring of at least three finite points"),
         (lambda: EnvironmentLayout([(1.0, 2.0, 3.0)]), r"exits have shape \[1, 3\]"),

@@ -165,10 +165,12 @@ class TimedState(Protocol):
     """A state with the time [s] and the pose of the previous measurement."""
 
     @property
-    def time(self) -> float: ...
+    def time(self) -> float:
+        """Time of the previous measurement [s]."""
 
     @property
-    def pose(self) -> Pose | SpatialPose: ...
+    def pose(self) -> Pose | SpatialPose:
+        """Pose of the sensor at the previous measurement."""
 
 
 def elapsed_time(sensor: Sensor, view: SensorView, state: TimedState) -> float:
