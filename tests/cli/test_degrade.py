@@ -127,7 +127,7 @@ def test_an_interrupt_keeps_what_is_done(capsys, tmp_path, monkeypatch, small):
     said = capsys.readouterr()
     assert "0.02" in said.out
     assert "0.05" not in said.out
-    assert said.err.endswith(f"are shown and kept in {tmp_path / 'out'}\ncrowdbot: interrupted\n")
+    assert said.err.endswith(f"are shown and stored in {tmp_path / 'out'}\ncrowdbot: interrupted\n")
     page = json.loads((tmp_path / "out" / "degraded.json").read_text())
     assert page["complete"] is False
     assert [row["level"] for row in page["degradations"]["gaussian-noise"]["rows"]] == [0.0, 0.02]

@@ -93,7 +93,7 @@ def test_ground_truth_goals_belong_to_their_windows(crowd: Maker) -> None:
 
 def several_goals(recorded: Callable[[str], Trajectories]) -> tuple[Goal, Windows]:
     known, rest = recorded("crowds_zara02").split(0.5)
-    return LearnedDestinations.learned(known), rest.windows()[0][:12]
+    return LearnedDestinations.learn(known), rest.windows()[0][:12]
 
 
 def test_several_destinations_give_several_futures_with_weights(recorded: Callable[[str], Trajectories]) -> None:

@@ -103,7 +103,7 @@ def test_what_does_not_fit_is_said_and_a_baseline_answers(windows: Maker) -> Non
     with pytest.warns(UserWarning, match="not in metres; sampled-constant-velocity is used instead"):
         assert social.predict(pixels, 12, 3).samples == 3
     with pytest.warns(
-        UserWarning, match="the weights require 0.4 s: resample with --step 0.4; constant-velocity answers"
+        UserWarning, match="the weights require 0.4 s: resample with --step 0.4; constant-velocity is used instead"
     ):
         assert social.predict(fast, 12).samples == 1
     with pytest.raises(

@@ -257,7 +257,7 @@ def test_seen_counts_who_returned_a_beam():
         ({"resolution": -0.01}, "resolution = -0.01 m"),
         ({"rate": 0.0}, "rate = 0.0 Hz must be finite and at least 1e-06"),
         ({"rate": math.nan}, "rate = nan"),
-        ({"noise": (0.01,)}, "noise holds 0.01, which is not a Noise"),
+        ({"noise": (0.01,)}, "noise = 0.01 is not a Noise"),
     ],
 )
 def test_wrong_values_are_explained(values, message):
@@ -266,7 +266,7 @@ def test_wrong_values_are_explained(values, message):
 
 
 def test_a_pose_for_other_environments_is_refused():
-    with pytest.raises(InputError, match="the pose has 1 places for 3 environments"):
+    with pytest.raises(InputError, match="the pose has 1 rows for 3 environments"):
         Lidar2D().read(crowd(0, environments=3), Pose.of((0.0, 0.0), 0.0))
 
 

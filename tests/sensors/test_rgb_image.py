@@ -70,7 +70,7 @@ def test_noise_acts_on_the_values_and_stays_in_their_range():
     [
         ({"near": 2.0, "far": 1.0}, r"near = 2.0 m must be above 0 and below far = 1.0 m"),
         ({"width": 1 << 31}, r"width = 2147483648 must be a whole number of at least 1 and at most 16777216"),
-        ({"width": 1 << 23}, r"8388608 x 240 pixels must be at most 16777216 together"),
+        ({"width": 1 << 23}, r"8388608 x 240 pixels exceed the limit of 16777216 pixels"),
         ({"width": 0}, r"width = 0 must be a whole number of at least 1"),
         ({"field_of_view": 4.0}, r"field_of_view = 4.0 rad must be above 0 and below pi"),
         ({"distortion": (1.0, 2.0)}, r"distortion = \(1.0, 2.0\) must be five finite numbers"),

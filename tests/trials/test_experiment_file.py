@@ -178,7 +178,7 @@ def test_what_is_wrong_with_the_whole_is_said_too(tmp_path: Path) -> None:
     [
         (lambda: Screen(name="1st"), "Screen: name="),
         (lambda: Block(name="b", trials=[]), "trials is empty"),
-        (lambda: Choice(name="c", text="?", options=["left"]), "options holds a str, it takes Option"),
+        (lambda: Choice(name="c", text="?", options=["left"]), "options holds a str, it takes ChoiceOption"),
         (lambda: Experiment(name="e", blocks=[Screen(name="s")]), "blocks holds a Screen"),
         (lambda: Scale(name="s", text="\x1b[2J"), "a character that XML cannot hold"),
     ],

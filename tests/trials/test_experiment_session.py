@@ -456,7 +456,7 @@ def test_code_that_fails_pauses_the_session(tmp_path: Path) -> None:
     assert "a wheel fell off" in (sitting.folder / "001-t-attempt-2" / "error.txt").read_text()
     (row,) = summary(tmp_path / "out")
     assert (row["outcome"], row["attempt"], row["session"]) == ("failed", 2, "done")
-    assert not list(sitting.folder.rglob("*.mcap"))
+    assert [read_episode(path).outcome for path in sorted(sitting.folder.rglob("*.mcap"))] == ["error", "error"]
 
 
 def test_summaries_are_saved(whole: Path, tmp_path: Path) -> None:

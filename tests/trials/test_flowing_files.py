@@ -49,8 +49,8 @@ def test_a_file_with_flows_is_the_tree() -> None:
     assert [journey.then for journey in trial.journeys] == ["leave", "stay"]
     assert [spawner.journey for spawner in trial.spawners] == ["through", ""]
     west, north = trial.sources
-    assert (west.rate, west.most, west.end, west.crowd) == (0.9, 90, float("inf"), "hurried")
-    assert (north.timing, north.begin, north.end, north.most) == ("regular", 2.0, 15.0, None)
+    assert (west.rate, west.max_count, west.end, west.crowd) == (0.9, 90, float("inf"), "hurried")
+    assert (north.timing, north.begin, north.end, north.max_count) == ("regular", 2.0, 15.0, None)
     assert trial.exits == (Exit(name="east", zone=[(6.5, -4), (8, -4), (8, 4), (6.5, 4)]),)
 
 
@@ -327,7 +327,7 @@ def test_flows_made_in_python_are_checked_too() -> None:
         Journey(name="wrong", stops=[Exit(zone=ZONE)])  # type: ignore[list-item]
     with pytest.raises(InputError, match="Trial: contact is a Limits, it must be a Contact"):
         Trial(name="t", duration=1, crowd=ORCA(), contact=Limits())  # type: ignore[arg-type]
-    with pytest.raises(InputError, match="Trial: sources is a Source, it must be a list"):
+    with pytest.raises(InputError, match="Trial: sources is a SourceSpec, it must be a list"):
         Trial(name="t", duration=1, crowd=ORCA(), sources=SourceSpec(zone=ZONE, goal=FAR, rate=1))  # type: ignore[arg-type]
     with pytest.raises(InputError, match="Trial: crowd is a tuple, it must be a CrowdModel"):
         Trial(name="t", duration=1, crowd=(ORCA(),))  # type: ignore[arg-type]

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import threading
+import warnings
 from pathlib import Path
 
 from crowdbot.recording import run
-from crowdbot.simulation import Episode
+from crowdbot.simulation import Episode, RunFailureWarning
 from crowdbot.trials import Trial
 
 __all__ = ["Aborted", "BackgroundRun"]
@@ -72,7 +73,9 @@ class BackgroundRun:
 
     def _run(self, trial: Trial, seed: int, out: Path | None) -> None:
         try:
-            self._episode = run(trial, seed=seed, out=out, progress=self._report)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", RunFailureWarning)  # the episode says so itself
+                self._episode = run(trial, seed=seed, out=out, progress=self._report)
         except Exception as error:  # raised again by result(), where somebody can be told
             self._error = error
         finally:

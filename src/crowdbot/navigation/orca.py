@@ -73,10 +73,10 @@ class ORCANavigator(Navigator):
 
     def __post_init__(self) -> None:
         for name, unit in UNITS.items():
-            check_number("navigator ORCA", name, getattr(self, name), unit, exclusive_min=0.0)
-        check_number("navigator ORCA", "safety", self.safety, "m", min=0.0)
+            check_number("ORCANavigator", name, getattr(self, name), unit, exclusive_min=0.0)
+        check_number("ORCANavigator", "safety", self.safety, "m", min=0.0)
         if self.share not in (0.5, 1.0):
-            raise InputError(f"navigator ORCA: share = {self.share} must be 0.5 or 1")
+            raise InputError(f"ORCANavigator: share = {self.share} must be 0.5 or 1")
 
     def act(self, observation: Observation) -> Twist:
         """Return the reachable twist that fits the chosen velocity best."""

@@ -327,7 +327,7 @@ class Router:
         import shapely
 
         goal = way[ASKED : ASKED + 2].copy()
-        part = int(np.argmin(shapely.distance(self._parts, shapely.PointWaypoint(place))))
+        part = int(np.argmin(shapely.distance(self._parts, shapely.Point(place))))
         if not self._reaches(part, goal):
             if self.unreachable == "error":
                 raise InputError(
@@ -347,7 +347,7 @@ class Router:
         """Return whether a goal is in this part of free space, or between it and a wall."""
         import shapely
 
-        away = shapely.distance(self._parts, shapely.PointWaypoint(goal))
+        away = shapely.distance(self._parts, shapely.Point(goal))
         end = self._nearest(part, goal)
         cells = self._map[:4]
         return bool(away[part] <= away.min() and sees(*cells, end[0], end[1], goal[0], goal[1], 1.0))
@@ -355,7 +355,7 @@ class Router:
     def _nearest(self, part: int, place: Floats) -> Floats:
         import shapely
 
-        line = shapely.shortest_line(self._parts[part], shapely.PointWaypoint(place))
+        line = shapely.shortest_line(self._parts[part], shapely.Point(place))
         return np.asarray(shapely.get_coordinates(line)[0])
 
 
