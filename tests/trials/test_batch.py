@@ -93,7 +93,7 @@ def test_parameters_of_each_and_mixtures_stay_with_their_people(agents: list[int
         questions = walks(3, models, agents)
         found = compute_together(questions)
         for walk, scene in zip(questions, found, strict=True):
-            assert scene.digest() == walk.answered().digest()
+            assert scene.digest() == walk.compute().digest()
             assert scene.shape == walk.scene.shape
 
 

@@ -331,7 +331,7 @@ def test_flows_made_in_python_are_checked_too() -> None:
         Trial(name="t", duration=1, crowd=ORCA(), sources=SourceSpec(zone=ZONE, goal=FAR, rate=1))  # type: ignore[arg-type]
     with pytest.raises(InputError, match="Trial: crowd is a tuple, it must be a CrowdModel"):
         Trial(name="t", duration=1, crowd=(ORCA(),))  # type: ignore[arg-type]
-    with pytest.raises(InputError, match=r'Source: max_count="1.5" is not a int'):
+    with pytest.raises(InputError, match=r'SourceSpec: max_count="1.5" is not a int'):
         SourceSpec(zone=ZONE, goal=FAR, rate=1, max_count=1.5)  # type: ignore[arg-type]
     unnamed = Trial(name="t", duration=1, crowd=ORCA(), sources=[SourceSpec(zone=ZONE, goal=FAR, rate=1, crowd="calm")])
     with pytest.raises(TrialError, match=r"trial 't': source crowd=\"calm\" is not the name of a crowd; no crowd has"):

@@ -113,7 +113,10 @@ def test_a_flow_replays_to_the_same_bytes(recorded: tuple[Path, Episode]) -> Non
 
 
 def test_a_flow_is_the_same_in_another_process_with_one_thread(recorded: tuple[Path, Episode]) -> None:
-    code = "import sys; from crowdbot.trials import Trial; print(Trial.parse(sys.stdin.read()).run().digest)"
+    code = (
+        "import sys; from crowdbot.recording import run; from crowdbot.trials import parse_trial;"
+        " print(run(parse_trial(sys.stdin.read())).digest)"
+    )
     env = {**os.environ, "NUMBA_NUM_THREADS": "1", "PYTHONHASHSEED": "1"}
     done = subprocess.run([sys.executable, "-c", code], input=FLOW, capture_output=True, text=True, check=True, env=env)
     assert done.stdout.strip() == recorded[1].digest

@@ -167,7 +167,7 @@ def test_a_new_run_takes_the_place_of_an_old_file_only_when_it_has_something(tmp
     def look(share: float) -> None:
         seen.append(len(read_episode(tmp_path / "episode.mcap").times))
 
-    run(parse_trial(GOOD), out=tmp_path, progress=look)
+    run(parse_trial(GOOD), out=tmp_path, progress=look, force=True)
     assert seen[0] == 1
     assert seen == sorted(seen)
     assert seen[-2] > 30

@@ -197,7 +197,9 @@ def test_an_exception_of_a_navigator_by_the_command(tmp_path: Path, capsys: pyte
     assert (summary["outcome"], summary["error"]) == ("error", "ValueError: no way out")
     assert summary["error_place"] == "shy.py:8"
     sentence = "ValueError: no way out (shy.py:8) at 1.1 s"
-    assert said.err == f"crowdbot: trial 'small' ended with an error: {sentence}; --debug prints the trace\n"
+    code, told = said.err.splitlines(keepends=True)
+    assert code == "crowdbot: loads code from shy.py\n"
+    assert told == f"crowdbot: trial 'small' ended with an error: {sentence}; --debug prints the trace\n"
     read = read_episode(tmp_path / "episode.mcap")
     assert (read.complete, read.outcome, read.digest) == (True, "error", summary["digest"])
     assert str(read.failure) == sentence

@@ -195,7 +195,7 @@ def test_sweeps_make_variants() -> None:
     [
         ("spawner[3]/count", "1", "leads nowhere: there are 2 <spawner>"),
         ("spawner[est]/count", "1", "no <spawner> has the name 'est', did you mean 'west'?"),
-        ("spawner/count", "1", "is not clear: there are 2 <spawner>; say which, as in spawner[1]"),
+        ("spawner/count", "1", "is not clear: <trial> has 2 <spawner>; choose one: spawner[east], spawner[west]"),
         ("spawnr[1]/count", "1", "has no element 'spawnr[1]'"),
         ("spawner[1]/cont", "1", "has no 'cont', did you mean 'count'?"),
         ("spawner[1]/count", "1 -4", 'with spawner[1]/count=-4: <spawner> count="-4" must be at least 0'),

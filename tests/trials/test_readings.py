@@ -283,7 +283,7 @@ def test_mounts_in_space_are_fixed_frames() -> None:
     from crowdbot.messages import mount_pose
 
     mount = types.SimpleNamespace(x=0.1, y=0.0, z=1.2, roll=0.0, pitch=0.4, heading=0.5)
-    robot = types.SimpleNamespace(placed=lambda one: (one.x, one.y, one.z, one.roll, one.pitch, one.heading))
+    robot = types.SimpleNamespace(sensor_pose=lambda one: (one.x, one.y, one.z, one.roll, one.pitch, one.heading))
     (row,) = Messages().fixed(0, [("robot/base_link", "robot/eye", mount_pose(robot, mount))]).transforms
     turn = row.transform.rotation
     assert row.transform.translation.z == 1.2

@@ -244,7 +244,7 @@ WRONG = {
     "ending": (["--out", "a.tiff"], r"a.tiff must end in .png, .jpg, .webp for an image, or be a folder"),
     "world": (
         ["--world", "physics", "--set", "world=planar"],
-        r"--world physics and --set world=planar are both",
+        r"--world physics and --set world=planar conflict",
     ),
 }
 

@@ -54,7 +54,7 @@ def test_a_builtin_trial_is_right_and_survives_the_way_through_xml(name: str) ->
     assert (trial.name, bool(trial.about)) == (name, True)
     assert parse_trial(trial_xml(trial)) == trial
     assert len(trial.robots) == 1
-    assert type(trial.robots[0].navigator).__name__ in ("ORCA", "Straight")
+    assert type(trial.robots[0].navigator).__name__ in ("ORCANavigator", "Straight")
 
 
 @pytest.mark.parametrize("name", sample(QUICK, 6))
@@ -180,7 +180,7 @@ def test_nobody_begins_in_the_robot_of_the_challenge() -> None:
 
 
 def test_the_long_trial_of_the_documents_has_a_thousand_people_for_ten_minutes() -> None:
-    trial = load_trial(Path(__file__).parents[2] / "docs" / "trials" / "thousand.xml")
+    trial = load_trial(Path(__file__).parents[2] / "docs" / "gallery" / "trials" / "thousand.xml")
     assert (trial.people, trial.duration, len(trial.robots), trial.world) == (1000, 600.0, 1, "planar")
     episode = run(dataclasses.replace(trial, duration=0.8))
     assert episode.active[-1].sum() == 1001

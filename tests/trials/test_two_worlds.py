@@ -313,10 +313,10 @@ def test_a_robot_of_a_folder_beside_the_trial(tmp_path: Path) -> None:
 def test_a_branch_of_the_physics_world_keeps_its_stage(tmp_path: Path) -> None:
     trial = parse_trial(room("physics", LEAN))
     episode = run(trial)
-    slow = episode.branch(at=0.52, **{"robot[puck].drive.max-speed": 0.1})
+    slow = branch(episode, 0.52, changes={"robot[puck].drive.max-speed": 0.1})
     assert slow.digest != episode.digest
     assert slow.position[-1, 5, 0] < episode.position[-1, 5, 0]
     with pytest.raises(InputError, match="the stage cannot change in a branch of the physics world"):
-        episode.branch(at=0.52, **{"stage.wall-height": 3})
+        branch(episode, 0.52, changes={"stage.wall-height": 3})
     with pytest.raises(InputError, match="world cannot change in a branch"):
-        episode.branch(at=0.52, world="planar")
+        branch(episode, 0.52, changes={"world": "planar"})

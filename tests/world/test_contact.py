@@ -137,14 +137,14 @@ def test_velocities_follow_the_push_up_to_the_maximum_speed(contact):
 
 def test_who_walks_into_a_wall_slides_along_it():
     before = Scene.of([[4.0, 0.5]], [[1.0, -1.0]], radius=0.3, max_speed=2.0, walls=[ROOM])
-    after = ContactModel().resolve_overlaps(before, before.advanced(before.velocity, 0.3), 0.3)
+    after = ContactModel().resolve_overlaps(before, before.advance(before.velocity, 0.3), 0.3)
     np.testing.assert_allclose(after.position[0, 0], [4.3, 0.3], atol=1e-9)
     np.testing.assert_allclose(after.velocity[0, 0], [1.0, -2.0 / 3.0], atol=1e-9)
 
 
 def test_a_corner_holds():
     before = Scene.of([[0.5, 0.5]], [[-1.0, -1.2]], radius=0.3, walls=[ROOM])
-    after = ContactModel().resolve_overlaps(before, before.advanced(before.velocity, 1.0), 1.0)
+    after = ContactModel().resolve_overlaps(before, before.advance(before.velocity, 1.0), 1.0)
     np.testing.assert_allclose(after.position[0, 0], [0.3, 0.3], atol=1e-9)
 
 

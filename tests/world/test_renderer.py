@@ -122,7 +122,7 @@ def test_a_lens_puts_points_where_it_should(cx):
     front = seen["depth"][0][seen["hit"][0] == -4]
     assert front.min() == pytest.approx(x.min(), abs=0.02)
     own = RGBCamera(width=80, height=60)
-    np.testing.assert_array_equal(own.measure(scene, pose, source=renderer).rgb, renderer.render(own, pose)["rgb"])
+    np.testing.assert_array_equal(own.read(scene, pose, renderer=renderer).rgb, renderer.render(own, pose)["rgb"])
 
 
 @pytest.mark.usefixtures("drawing")

@@ -10,7 +10,7 @@ from physics_worlds import facing
 
 from crowdbot.core import Pose, Scene, Twist, stream
 from crowdbot.models import ORCA
-from crowdbot.sensors import WheelOdometry
+from crowdbot.sensors import SensorView, WheelOdometry
 from crowdbot.world import DifferentialDrive, Omnidirectional, PlanarWorld, Robot, builtin_robots
 from crowdbot.world.urdf import BaseServo, mjcf
 
@@ -63,7 +63,7 @@ def test_they_stand_on_the_ground_and_see_from_inside_their_height(name):
         assert deep.position[:, :2] == pytest.approx(flat.position)
         scene = Scene.of([[9.0, 9.0]])
         for place in (flat, deep):
-            assert mount.sensor.measure(scene, place, stream(0, "scan")).pose is place
+            assert mount.sensor.read(scene, place, stream(0, "scan")).pose is place
 
 
 OWN = {  # what every robot senses with: names of its mounts by kind
@@ -129,24 +129,24 @@ def test_cliff_sensors_see_the_floor_and_bumpers_what_touches():
     pose = Pose.of((0.0, 0.0), 0.0)
     free, near = Scene.of([[9.0, 9.0]]), Scene.of([[0.42, 0.0]], radius=0.25)
     for side in ("left", "centre", "right"):
-        reading = robot.mount(f"cliff_{side}").sensor.measure(free, robot.sensor_pose(f"cliff_{side}", pose))
+        reading = robot.mount(f"cliff_{side}").sensor.read(free, robot.sensor_pose(f"cliff_{side}", pose))
         assert reading.ranges[0] == pytest.approx(0.0316)
     bumper, place = robot.mount("bumper").sensor, robot.sensor_pose("bumper", pose)
-    assert not bumper.measure(free, place).pressed.any()
-    assert bumper.measure(near, place).pressed.tolist() == [[True, False, False, False, False, False]]
+    assert not bumper.read(free, place).pressed.any()
+    assert bumper.read(near, place).pressed.tolist() == [[True, False, False, False, False, False]]
 
 
 def test_wheels_measure_what_was_driven_and_lasers_see_bodies_in_the_physics_world():
     """Sensors of a robot in the physics world: odometry within 1 %, the laser meets a leg where it is."""
     world = facing(load("turtlebot2"), gap=2.0, dt=0.1)
     wheels = world.robot_bodies[0].robot.mount("odometry").sensor
-    last = wheels.measure(world.scene, world.pose(0))
+    last, state = wheels.measure(SensorView(world.scene, world.pose(0)), wheels.begin())
     for _ in range(20):
         world.step({0: Twist(0.4, 0.0)})
-        last = wheels.measure(world.scene, world.pose(0), last=last)
+        last, state = wheels.measure(SensorView(world.scene, world.pose(0)), state)
     assert last.estimate.position[0] == pytest.approx(world.pose(0).position[0], abs=0.01)
     laser = world.robot_bodies[0].robot.mount("laser").sensor
-    scan = laser.measure(world.body_scene().without(0), world.robot_bodies[0].sensor_pose("laser"))
+    scan = laser.read(world.body_scene().without(0), world.robot_bodies[0].sensor_pose("laser"))
     met = scan.hit[0] == 1
     assert 2 <= met.sum() < 60
     away = world.scene.position[0, 1, 0] - world.scene.position[0, 0, 0]

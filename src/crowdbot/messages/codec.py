@@ -119,7 +119,7 @@ def unpack_arrays(fields: Iterable[Any]) -> dict[str, Any]:
 
 def mount_pose(robot: Any, mount: Any) -> SpatialPose:
     """Return where a sensor sits on its robot, which may know that from its own links."""
-    if hasattr(robot, "placed"):
+    if hasattr(robot, "sensor_pose"):
         x, y, z, roll, pitch, yaw = robot.sensor_pose(mount)
         return SpatialPose.of((x, y, z), roll, pitch, yaw)
     return SpatialPose.of((mount.x, mount.y, 0.0), yaw=mount.heading)
