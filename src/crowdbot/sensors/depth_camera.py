@@ -79,6 +79,7 @@ class DepthCamera(Sensor):
     Raises:
         InputError: a value is not allowed.
 
+    >>> from crowdbot.core import Pose, Scene
     >>> scene = Scene.of([[50.0, 0.0]], walls=[[(3.0, -9.0), (3.0, 9.0)]])
     >>> image = DepthCamera(width=5, height=3).read(scene, Pose.of((0.0, 0.0), 0.0).to_spatial(1.5))
     >>> image.depth[0, 0].round(9).tolist()

@@ -61,6 +61,7 @@ class GroundTruthPeople(Sensor):
     Raises:
         InputError: a value is not allowed.
 
+    >>> from crowdbot.core import Pose, Scene
     >>> scene = Scene.of([[1.0, 2.0], [1.0, 4.0]], [[0.0, 1.0], [0.0, 0.0]])
     >>> told = GroundTruthPeople().read(scene, Pose.of((1.0, 0.0), math.pi / 2))
     >>> told.ids(), told.position[0, 0].round(6).tolist(), told.velocity[0, 0].round(6).tolist()

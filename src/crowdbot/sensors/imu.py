@@ -77,6 +77,7 @@ class IMU(Sensor):
     Raises:
         InputError: a value is not allowed.
 
+    >>> from crowdbot.core import Pose, Scene
     >>> still, unit = Scene.of([[9.0, 9.0]]), IMU(rate=100.0)
     >>> unit.read(still, Pose.of((0.0, 0.0), 0.0)).acceleration.tolist()
     [[0.0, 0.0, 9.80665]]

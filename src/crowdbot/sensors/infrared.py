@@ -40,6 +40,7 @@ class Infrared(Ranging):
     Raises:
         InputError: a value is not allowed.
 
+    >>> from crowdbot.core import Pose, Scene
     >>> scene = Scene.of([[1.0, 0.0]], radius=0.3)
     >>> Infrared().read(scene, Pose.of((0.0, 0.0), 0.0)).ranges.tolist()
     [0.7]

@@ -82,6 +82,7 @@ class Lidar3D(Ranging):
     Raises:
         InputError: a value is not allowed.
 
+    >>> from crowdbot.core import Pose, Scene
     >>> cloud = Lidar3D(columns=4).read(Scene.of([[3.0, 0.0]], radius=0.5), Pose.of((0.0, 0.0), 0.0).to_spatial(1.0))
     >>> cloud.ranges.shape, cloud.hit[0, 7].tolist()
     ((1, 16, 4), [-1, -1, 0, -1])

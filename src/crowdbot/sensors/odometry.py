@@ -75,6 +75,7 @@ class WheelOdometry(Sensor):
     Raises:
         InputError: a value is not allowed.
 
+    >>> from crowdbot.core import Pose, Scene
     >>> scene, wheels = Scene.of([[9.0, 9.0]]), WheelOdometry()
     >>> first, state = wheels.measure(SensorView(scene, Pose.of((0.0, 0.0), 0.0)), wheels.begin())
     >>> view = SensorView(scene.replace(time=1.0), Pose.of((0.5, 0.0), 0.0))

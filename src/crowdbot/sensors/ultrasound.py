@@ -56,6 +56,7 @@ class Ultrasound(Ranging):
     Raises:
         InputError: a value is not allowed.
 
+    >>> from crowdbot.core import Pose, Scene
     >>> scene = Scene.of([[2.0, 0.0]], radius=0.3)
     >>> Ultrasound().read(scene, Pose.of((0.0, 0.0), 0.0).to_spatial(0.5)).ranges.tolist()
     [1.7]

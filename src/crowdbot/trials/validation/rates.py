@@ -45,8 +45,8 @@ def trial_remarks(trial: Trial) -> list[str]:
 
     >>> from crowdbot.models import ORCA
     >>> from crowdbot.navigation import Straight
-    >>> from crowdbot.trials import Goal
-    >>> pepper = RobotSpec(type="pepper", x=0, y=0, goal=Goal(5, 0), navigator=Straight())
+    >>> from crowdbot.trials import RobotGoal
+    >>> pepper = RobotSpec(type="pepper", x=0, y=0, goal=RobotGoal(5, 0), navigator=Straight())
     >>> [sentence[-36:] for sentence in trial_remarks(Trial(name="t", duration=1, crowd=ORCA(), robots=[pepper]))]
     ['step="0.01" all would be as they are']
     """

@@ -270,7 +270,7 @@ class ContactModel:
         InputError: a value is not allowed.
 
     >>> near = Scene.of([[0.0, 0.0], [0.4, 0.0]], radius=0.25)
-    >>> ContactModel().settled(near, near, dt=0.1).position.round(9).tolist()
+    >>> ContactModel().resolve_overlaps(near, near, dt=0.1).position.round(9).tolist()
     [[[-0.05, 0.0], [0.45, 0.0]]]
     """
 

@@ -60,7 +60,7 @@ def compute_together(walks: Sequence[CrowdStepRequest]) -> list[Scene]:
     >>> rng = np.random.default_rng(0)
     >>> scenes = [Scene.of(np.zeros((k + 1, 2)), goal=np.full((k + 1, 2), 5.0)) for k in range(2)]
     >>> walks = [CrowdStepRequest(ORCA(), scene, 0.1, rng) for scene in scenes]
-    >>> [scene.digest() for scene in compute_together(walks)] == [walk.answered().digest() for walk in walks]
+    >>> [scene.digest() for scene in compute_together(walks)] == [walk.compute().digest() for walk in walks]
     True
     """
     if len(walks) < 2 or not all(_fits(walks[0], walk) for walk in walks):

@@ -231,7 +231,7 @@ class PhysicsWorld(PlanarWorld):
         >>> from crowdbot.models import ORCA
         >>> from crowdbot.sensors import Lidar2D
         >>> world = PhysicsWorld(start, ORCA(), {0: Robot.load("turtlebot2")}, dt=0.1)
-        >>> scan = Lidar2D(rays=1).measure(world.body_scene().without(0), world.pose(0).to_spatial(1.2))
+        >>> scan = Lidar2D(rays=1).read(world.body_scene().without(0), world.pose(0).to_spatial(1.2))
         >>> scan.hit.tolist(), bool(1.7 < scan.ranges[0, 0] < 2.0)
         ([[1]], True)
         """

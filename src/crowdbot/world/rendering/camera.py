@@ -62,7 +62,7 @@ class CameraView(NamedTuple):
         Raises:
             InputError: the image is larger than can be drawn, or there are several poses.
 
-        >>> View.through(Lens.of(4, 2, math.pi / 2.0), SpatialPose.of((0.0, 0.0, 1.0)), 0.1, 9.0)[3:7]
+        >>> CameraView.through(Lens.of(4, 2, math.pi / 2.0), SpatialPose.of((0.0, 0.0, 1.0)), 0.1, 9.0)[3:7]
         (-1.0, 1.0, -0.5, 0.5)
         """
         if len(pose.position) != 1:

@@ -84,7 +84,7 @@ def default_inertia(inertial: LinkInertia) -> tuple[LinkShape, str]:
     It is the homogeneous box that has this inertial; but a cube at the density of water when that box would be lighter
     than a tenth of it, because its inertia is no more than a placeholder then.
 
-    >>> stand_in(LinkInertia(6000.0, np.zeros(3), 1000.0 * np.eye(3)))[0].shape
+    >>> default_inertia(LinkInertia(6000.0, np.zeros(3), 1000.0 * np.eye(3)))[0].shape
     Box(size=(1.0, 1.0, 1.0))
     """
     moments, axes = np.linalg.eigh(inertial.tensor)
