@@ -12,7 +12,7 @@ import shlex
 import sys
 import tempfile
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 __all__ = ["main"]
 
@@ -51,8 +51,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         options = _parser(words).parse_args(words)
         debug |= options.debug
-        _show_loaded_code()
-        status: int = options.main(options)
+        with _code_notices():
+            status: int = options.main(options)
         sys.stdout.flush()
         return status
     except SystemExit as end:  # of --help, --version and wrong options
@@ -94,12 +94,18 @@ class _CodeNotices(logging.Handler):
         print(f"crowdbot: {record.getMessage()}", file=sys.stderr)
 
 
-def _show_loaded_code() -> None:
-    """Let the log of crowdbot appear on stderr."""
-    logger = logging.getLogger("crowdbot")
-    if not any(isinstance(handler, _CodeNotices) for handler in logger.handlers):
-        logger.addHandler(_CodeNotices())
-        logger.setLevel(logging.INFO)
+@contextlib.contextmanager
+def _code_notices() -> Iterator[None]:
+    """Print the log of crowdbot on stderr inside the block."""
+    logger, handler = logging.getLogger("crowdbot"), _CodeNotices()
+    level = logger.level
+    logger.addHandler(handler)
+    logger.setLevel(logging.INFO)
+    try:
+        yield
+    finally:
+        logger.removeHandler(handler)
+        logger.setLevel(level)
 
 
 def _discard_output() -> None:
