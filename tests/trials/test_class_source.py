@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from trial_texts import SHY, changed, written
 
 from crowdbot import navigation
 from crowdbot.cli import main
 from crowdbot.core import InputError, TrialError, find_class, without_running_code
 from crowdbot.trials import load_trial
+from trial_texts import SHY, changed, written
 
 TRAP = 'from pathlib import Path\nPath(__file__).with_name("ran").write_text("yes")\n'
 

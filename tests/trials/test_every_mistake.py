@@ -8,12 +8,12 @@ import re
 
 import pytest
 from planted import KINDS, RICH, Kind, planted, told_apart
-from trial_texts import FLOW, GOOD
 
 from crowdbot.core import TrialError
 from crowdbot.experiments import parse_experiment
 from crowdbot.trials import load_trial, parse_trial, trial_xml
 from samples import sample
+from trial_texts import FLOW, GOOD
 
 
 def problems(text: str) -> list[str]:

@@ -8,7 +8,6 @@ import re
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from trial_texts import FLOW, GOOD
 
 from crowdbot.core import InputError, TrialError
 from crowdbot.models import ORCA, Mixture, SocialForce
@@ -31,6 +30,7 @@ from crowdbot.trials import (
     parse_trial,
     trial_xml,
 )
+from trial_texts import FLOW, GOOD
 
 ZONE = [(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0)]
 FAR = [(6.0, 0.0), (8.0, 0.0), (8.0, 3.0)]

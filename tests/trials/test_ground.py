@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from trial_texts import written
 
 from crowdbot.core import InputError, TrialError
 from crowdbot.recording import run
 from crowdbot.trials import Stage, load_trial, parse_trial, trial_xml
+from trial_texts import written
 
 HOUSE = "POLYGON ((0 0, 10 0, 10 6, 0 6, 0 0), (4 2, 6 2, 6 4, 4 4, 4 2))"
 TEXT = """<trial name="t" duration="2">

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from space_trials import LEAN
-from trial_texts import FLOW, GOOD, changed, written
 
 from crowdbot.core import TrialError
 from crowdbot.trials import Trial, load_trial, parse_trial
 from samples import sizes
+from space_trials import LEAN
+from trial_texts import FLOW, GOOD, changed, written
 
 BOMB = (
     '<?xml version="1.0"?>\n<!DOCTYPE trial [\n<!ENTITY a "'

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from trial_texts import written
 
 from crowdbot.core import TrialError
 from crowdbot.models import ORCA, VBM, VOG
 from crowdbot.recording import run
 from crowdbot.trials import Crowds, check_trial, import_original, parse_trial, trial_xml
+from trial_texts import written
 
 AGENT = """<agent><TrialRegularAgent mesh="m002" radius="{radius}" heightOffset="0.02">
   <Position x="{x}" y="{y}" z="0"/><Rotation x="0" y="0" z="{turn}"/>

@@ -7,7 +7,6 @@ import math
 
 import numpy as np
 import pytest
-from trial_texts import FLOW, GOOD, changed
 
 from crowdbot.core import InputError, TrialError
 from crowdbot.models import ORCA, SocialForce
@@ -32,6 +31,7 @@ from crowdbot.trials import (
     place,
     trial_xml,
 )
+from trial_texts import FLOW, GOOD, changed
 
 HALL = [(0, 0), (12, 0), (12, 10), (0, 10)]
 FAR = [(20, 0), (22, 0), (22, 10), (20, 10)]

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from trial_texts import GOOD, SHY, changed, written
 
 from crowdbot.core import InputError, TrialError
 from crowdbot.models import ORCA
@@ -39,6 +38,7 @@ from crowdbot.trials import (
     trial_xml,
 )
 from crowdbot.world import DifferentialDrive
+from trial_texts import GOOD, SHY, changed, written
 
 
 def test_a_good_file_is_the_tree() -> None:

@@ -8,16 +8,11 @@ import pytest
 from hypothesis import given, settings
 from lxml import etree
 from test_reading import MISTAKES, trials
-from trial_texts import FLOW, GOOD
 
 from crowdbot.core import TrialError
 from crowdbot.trials import Trial, builtin_trials, expand_spawners, load_trial, parse_trial, schema, trial_xml
-
-SCHEMA = etree.XMLSchema(etree.fromstring(schema().encode()))
-
-
-def valid(text: str) -> bool:
-    return bool(SCHEMA.validate(etree.fromstring(text.encode())))
+from trial_schema import SCHEMA, valid
+from trial_texts import FLOW, GOOD
 
 
 def test_the_schema_that_is_shipped_is_up_to_date() -> None:

@@ -12,7 +12,6 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 from mcap.writer import Writer
-from trial_texts import GOOD, SHY
 
 from crowdbot.cli import main
 from crowdbot.core import EpisodeError
@@ -30,6 +29,7 @@ from crowdbot.recording import (
     replay,
 )
 from crowdbot.trials import Trial, load_trial, parse_trial
+from trial_texts import GOOD, SHY
 
 HALL = """<trial name="hall" duration="3" seed="1">
   <stage map="maps/hall.yaml" unknown="occupied"/>

@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
-from trial_texts import FLOW, GOOD, changed, written
 
 from crowdbot import data
 from crowdbot.core import EpisodeError
 from crowdbot.recording import iterate_steps, read_episode, repair, replay, run
 from crowdbot.trials import parse_trial
+from trial_texts import FLOW, GOOD, changed, written
 
 LONG = changed('duration="4"', 'duration="4000"').replace("<end ", '<end goal="false" ')
 RUN = """import sys

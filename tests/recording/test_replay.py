@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 from mcap.writer import Writer
-from trial_texts import GOOD, SHY, changed, written
 
 import crowdbot
 from crowdbot import data
 from crowdbot.core import EpisodeError, TrialError
 from crowdbot.recording import read_episode, replay, run
 from crowdbot.trials import load_trial, parse_trial
+from trial_texts import GOOD, SHY, changed, written
 
 
 def rewritten(source: Path, target: Path, **changes: str) -> Path:

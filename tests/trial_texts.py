@@ -1,4 +1,4 @@
-"""Small trials that the tests of this room share."""
+"""Small trials that tests share."""
 
 from __future__ import annotations
 

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from space_trials import LEAN, room
-from trial_texts import FLOW, GOOD
 
 from crowdbot.core import EpisodeError, InputError, TrialError
 from crowdbot.data import McapReader
 from crowdbot.recording import branch, read_episode, record, replay, run
 from crowdbot.trials import apply_values, parse_trial
+from space_trials import LEAN, room
+from trial_texts import FLOW, GOOD
 
 SMALL, FLOWING = parse_trial(GOOD), parse_trial(FLOW)
 

@@ -16,7 +16,6 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
-from trial_texts import GOOD, changed
 
 import crowdbot
 from crowdbot import data
@@ -25,6 +24,7 @@ from crowdbot.recording import RecordedEpisode, read_episode, run
 from crowdbot.sensors import Reading, Sensor, SensorView
 from crowdbot.simulation import Episode
 from crowdbot.trials import Mount, parse_trial
+from trial_texts import GOOD, changed
 
 TRIAL = parse_trial(GOOD)
 

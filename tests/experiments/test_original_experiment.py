@@ -6,12 +6,12 @@ import json
 from pathlib import Path
 
 import pytest
-from trial_texts import written
 
 from crowdbot.cli import main
 from crowdbot.core import TrialError
 from crowdbot.experiments import Experiment, import_experiment, load_experiment, orders, plan
 from crowdbot.trials import import_original
+from trial_texts import written
 
 TRIAL = """<Trial><scene><endingConditions><condition parameter="time" test="greater" value="{seconds}"/>
   </endingConditions></scene></Trial>"""

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from trial_texts import FLOW
 
 from crowdbot import data, world
 from crowdbot.core import Scene, Twist
@@ -41,6 +40,7 @@ from crowdbot.trials import (
     parse_trial,
 )
 from crowdbot.world import DifferentialDrive, PlanarWorld
+from trial_texts import FLOW
 
 WHOLE = parse_trial(FLOW)
 DOOR = Stage(walls=[Wall([(0, -50), (0, 3)]), Wall([(0, 4.5), (0, 5)])])

@@ -12,7 +12,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from trial_texts import GOOD
 
 from crowdbot.core import InputError, Scene, TrialError, Twist
 from crowdbot.metrics import NAVIGATION_METRICS
@@ -23,6 +22,7 @@ from crowdbot.sensors import Gaussian, Lidar2D
 from crowdbot.simulation import Episode, EpisodeLog, RunFailureWarning, Simulation, StopRequest, run_to_end, start_scene
 from crowdbot.trials import Mount, RobotGoal, RobotSpec, Spawner, Stage, Trial, Wall, load_trial, parse_trial, place
 from crowdbot.world import DifferentialDrive
+from trial_texts import GOOD
 
 TINY = parse_trial(GOOD)
 

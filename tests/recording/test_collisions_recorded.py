@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 import pandas as pd
 import pytest
 from rosbags.highlevel import AnyReader
-from trial_texts import GOOD
 
 from crowdbot.recording import Recorder, export, read_episode
 from crowdbot.simulation import EpisodeDigest, EpisodeStatistics, Simulation, StepRecord
 from crowdbot.trials import parse_trial
+from trial_texts import GOOD
 
 
 class Party(NamedTuple):

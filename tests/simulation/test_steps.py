@@ -12,7 +12,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from trial_texts import FLOW, GOOD
 
 from crowdbot.core import Clock, ExternalClock, FreeClock, InputError, PacedClock, Pose, Scene, Twist
 from crowdbot.models import ORCA
@@ -22,6 +21,7 @@ from crowdbot.sensors import Lidar2D, SensorView
 from crowdbot.simulation import EpisodeStatistics, Simulation, SimulationRun, StepRecord
 from crowdbot.trials import Trial, parse_trial
 from crowdbot.world import DifferentialDrive
+from trial_texts import FLOW, GOOD
 
 TRIAL = parse_trial(GOOD)
 EVENTS: list[tuple[str, float]] = []

@@ -1,4 +1,4 @@
-"""A trial with everything that only bodies, links, props and cameras bring, for the tests of this room."""
+"""A trial with everything that only bodies, links, props and cameras bring."""
 
 from __future__ import annotations
 

@@ -8,8 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from space_trials import LEAN, ROOM, WORLDS, room
-from test_schema import valid
 
 from crowdbot.core import ExternalClock, InputError, MissingExtra, TrialError
 from crowdbot.recording import branch, open_run, read_episode, record, replay, run
@@ -26,6 +24,8 @@ from crowdbot.trials import (
     trial_xml,
 )
 from samples import sample
+from space_trials import LEAN, ROOM, WORLDS, room
+from trial_schema import valid
 
 STEPS = {"planar": 40, "physics": 20}
 

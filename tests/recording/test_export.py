@@ -9,14 +9,14 @@ import numpy as np
 import pandas as pd
 import pytest
 from PIL import Image
-from space_trials import ROOM, room
-from trial_texts import FLOW
 
 from crowdbot.cli import main
 from crowdbot.core import EpisodeError, InputError
 from crowdbot.recording import RecordedEpisode, export, read_episode, record
 from crowdbot.sensors import RgbImage
 from crowdbot.trials import parse_trial
+from space_trials import ROOM, room
+from trial_texts import FLOW
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from test_schema import valid
 
 from crowdbot.core import Scene, TrialError
 from crowdbot.humans import LIMBS
@@ -12,6 +11,7 @@ from crowdbot.rendering import RenderRequest, render_images
 from crowdbot.simulation import Simulation, SimulationRun
 from crowdbot.trials import parse_trial, trial_xml
 from crowdbot.world import PeopleMotion
+from trial_schema import valid
 
 ROOM = """<trial name="ride" duration="4" seed="3" step="0.05">
   <stage walkable="-6,-4 6,-4 6,4 -6,4"/>

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from trial_texts import written
 
 from crowdbot.core import InputError, TrialError
 from crowdbot.recording import run
@@ -23,6 +22,7 @@ from crowdbot.trials import (
     recorded_trial,
     trial_xml,
 )
+from trial_texts import written
 
 RECORDINGS = {
     "eth": ("eth_biwi/seq_eth/obsmat.txt", None, 60.0),

@@ -6,8 +6,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-from space_trials import LEAN, room
-from trial_texts import FLOW
 
 from crowdbot.core import InputError, Scene
 from crowdbot.models import ORCA, CrowdModel, Mixture, SocialForce
@@ -15,6 +13,8 @@ from crowdbot.recording import run
 from crowdbot.simulation import run_batch
 from crowdbot.trials import Trial, expand_sweeps, load_trial, parse_trial
 from crowdbot.world import CrowdStepRequest, compute_together, run_step
+from space_trials import LEAN, room
+from trial_texts import FLOW
 
 SEEDS = range(8)
 

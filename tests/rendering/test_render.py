@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from space_trials import LEAN, ROOM, room
 
 from crowdbot.cli import main
 from crowdbot.core import InputError, MissingExtra
@@ -26,6 +25,7 @@ from crowdbot.rendering import (
 from crowdbot.trials import load_trial, overview, parse_trial
 from crowdbot.world.rendering import gl_context
 from samples import sample
+from space_trials import LEAN, ROOM, room
 
 
 def test_cameras_have_names() -> None:

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from trial_texts import GOOD
 
 from crowdbot.cli import main
 from crowdbot.core import InputError, Scene, Twist, lock_output, relative_name
@@ -24,6 +23,7 @@ from crowdbot.rendering import ImageWriter, RenderedImage
 from crowdbot.sensors import Scan, Sensor, SensorView
 from crowdbot.simulation import RunFailureWarning, Simulation, run_batch, simulate
 from crowdbot.trials import Mount, Trial, parse_trial
+from trial_texts import GOOD
 
 TRIAL = parse_trial(GOOD)
 NAVIGATOR = """from crowdbot.core import Twist
