@@ -5,8 +5,9 @@
 
 A mutant is one change of one place: a comparison, an arithmetic operator, a constant, a condition, ``min`` for ``max``,
 ``True`` for ``False``, or a statement left out. The sample depends only on the seed and the sources. Every mutant is
-tested in a copy of the tree, with a time limit. Kernels are tested without the compiler, as far as their tests pass
-that way. With ``--json`` finished mutants are kept, and the same command continues after an interruption.
+tested in a copy of the tree, by the tests that call the changed function (``call_recorder.py`` finds them), within a
+time limit. Kernels are tested without the compiler, as far as their tests pass that way. With ``--json`` finished
+mutants are kept, and the same command continues after an interruption; ``--survivors`` tests the survivors again.
 """
 
 from __future__ import annotations
@@ -14,13 +15,14 @@ from __future__ import annotations
 import argparse
 import ast
 import concurrent.futures
+import contextlib
 import hashlib
+import importlib.util
 import itertools
 import json
 import os
 import random
-import re
-import resource
+import select
 import shutil
 import signal
 import subprocess
@@ -31,11 +33,15 @@ import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = "src/crowdbot"
 MEMORY = 8 * 2**30
 """Most memory [byte] that the tests of a mutant may take."""
+PATIENCE = 5
+"""Most real time of a process, per time of the processor that it may take; other processes slow it down."""
+OPTIONS = ["-q", "--assert=plain", "--tb=line", "-p", "no:cacheprovider", "-p", "call_recorder"]
 
 SWAPS: dict[type[ast.AST], type[ast.AST]] = {
     ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq,
@@ -154,86 +160,171 @@ def _statements(node: ast.stmt) -> Iterator[str]:
 
 
 class Tree:
-    """A copy of the repository in which one mutant at a time is tested."""
+    """A copy of the repository in which one mutant at a time is tested.
 
-    def __init__(self, tests: list[str], limit: float) -> None:
-        self.tests, self.limit = tests, limit
-        self.folder = Path(tempfile.mkdtemp(prefix="mutate-"))
-        self.left_out: dict[bool, list[str]] = {}
-        self.process: subprocess.Popen[str] | None = None
+    The copy stays where it is between runs, since compiled kernels belong to a place.
+    """
+
+    def __init__(self, room: str, tests: list[str], limit: float, number: int = 0) -> None:
+        self.room, self.tests, self.limit = room, tests, limit
+        self.records: dict[bool, dict[str, dict[str, Any]]] = {}
+        self.servers: dict[bool, subprocess.Popen[str]] = {}
+        place = hashlib.blake2b(str(ROOT).encode(), digest_size=4).hexdigest()
+        self.folder = Path(tempfile.gettempdir()) / f"mutate-{place}-{number}"
         listed = subprocess.run(
             ["git", "ls-files", "-co", "--exclude-standard", "-z"],
             cwd=ROOT, capture_output=True, text=True, check=True,
         )  # fmt: skip
-        for name in filter(None, listed.stdout.split("\0")):
-            if (ROOT / name).is_file():
-                (self.folder / name).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy2(ROOT / name, self.folder / name)
+        names = {name for name in listed.stdout.split("\0") if name and (ROOT / name).is_file()}
+        for path in [path for path in self.folder.rglob("*") if path.is_file()]:
+            if path.relative_to(self.folder).as_posix() not in names:
+                path.unlink()
+        for name in names:
+            old, new = ROOT / name, self.folder / name
+            if not new.exists() or (new.stat().st_mtime, new.read_bytes()) != (old.stat().st_mtime, old.read_bytes()):
+                new.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy2(old, new)
 
-    def measure(self, compiled: bool) -> float:
-        """Run the unchanged tests; leave out those that fail, and return how long the others take [s]."""
-        self.left_out[compiled] = []
-        _, printed, _ = self._pytest(["--tb=no", "-rfE"], self.tests, compiled, self.limit * 20)
-        failed = re.findall(r"^(?:FAILED|ERROR) (\S+(?: \S+)*?)(?: - .*)?$", printed, re.MULTILINE)
-        broken = [name for name in failed if "::" not in name]
-        if broken:
-            raise SystemExit(f"mutate: these tests cannot be loaded: {', '.join(broken)}")
-        self.left_out[compiled] = [f"--deselect={name}" for name in failed]
-        status, printed, seconds = self._pytest(["--tb=no"], self.tests, compiled, self.limit * 20)
-        if status != 0:
-            raise SystemExit(f"mutate: the unchanged tests do not pass:\n{printed[-2000:]}")
-        return seconds
+    def measure(self, compiled: bool, known: dict[str, Any], stems: set[str]) -> None:
+        """Record what each unchanged test calls; ``known`` are the records of test files that have not changed.
+
+        Test files that name one of the modules ``stems`` are first; there is a limit to the time of all.
+        """
+        text = b"".join(path.read_bytes() for path in _sources(self.room))
+        sources = hashlib.blake2b(text, digest_size=6).hexdigest()
+        self.records[compiled], missing = {}, {}
+        for file in sorted(file for name in self.tests for file in _test_files(self.folder / name)):
+            name = file.relative_to(self.folder).as_posix()
+            key = f"{name}:{hashlib.blake2b(file.read_bytes(), digest_size=6).hexdigest()}:{sources}:{compiled}"
+            if key in known:
+                self.records[compiled] |= known[key]
+            else:
+                missing[name] = key
+        if not missing:
+            return
+        texts = {name: (self.folder / name).read_text(encoding="utf-8") for name in missing}
+        missing = dict(sorted(missing.items(), key=lambda item: not any(stem in texts[item[0]] for stem in stems)))
+        with tempfile.NamedTemporaryFile(suffix=".json") as out:
+            folder = f"{self.folder}/{PACKAGE}/"
+            seconds, total = (self.limit / 4, 4.0 * self.limit) if compiled else (self.limit / 12, self.limit)
+            plan = {"sources": folder, "out": out.name, "seconds": seconds, "total": total}
+            status, printed = self._pytest([], list(missing), compiled, plan, 60.0 * self.limit)
+            recorded = Path(out.name).read_text(encoding="utf-8")
+        if status not in (0, 1) or not recorded:
+            raise SystemExit(f"mutate: the unchanged tests cannot be run:\n{printed[-2000:]}")
+        fresh = json.loads(recorded)
+        for name, key in missing.items():
+            known[key] = {test: record for test, record in fresh.items() if test.split("::")[0] == name}
+            self.records[compiled] |= known[key]
+
+    def tests_for(self, mutant: Mutant, compiled: bool) -> list[str]:
+        """Return the tests that call the changed function, as many as fit into the time limit.
+
+        Of a change outside of functions, these are the tests that call any function of the module. Tests that start
+        other processes count as callers, since their calls are not seen.
+        """
+        name = mutant.path.removeprefix(f"{PACKAGE}/")
+        calls = f"{name}:{_function_line(self.folder / mutant.path, mutant)}"
+        passing = {test: record for test, record in self.records[compiled].items() if record["passed"]}
+        tests = {test: record for test, record in passing.items() if calls in record["calls"]}
+        if calls.endswith(":0"):
+            begin = f"{name}:"
+            tests = {t: record for t, record in passing.items() if any(c.startswith(begin) for c in record["calls"])}
+            tests = tests or passing
+        tests |= {test: record for test, record in passing.items() if record["starts"]}
+        stem = Path(mutant.path).stem
+
+        def rank(test: str) -> tuple[bool, bool, float, str]:
+            seconds, file = tests[test]["seconds"], Path(test.split("::", maxsplit=1)[0]).stem
+            return tests[test]["starts"], seconds > self.limit / 100.0, stem not in file, file
+
+        chosen, total = [], 0.0
+        for test in sorted(tests, key=rank):
+            total += tests[test]["seconds"]
+            if not chosen or total <= self.limit:
+                chosen.append(test)
+        return chosen
 
     def survives(self, mutant: Mutant, compiled: bool) -> bool:
-        """Return whether all tests pass with a mutant."""
+        """Return whether the tests pass with a mutant."""
+        tests = self.tests_for(mutant, compiled)
+        if not tests:
+            return True
         path = self.folder / mutant.path
-        before = path.read_bytes()
+        before, times = path.read_bytes(), path.stat()
+        compiled_file = Path(importlib.util.cache_from_source(str(path)))
+        compiled_file.unlink(missing_ok=True)
         path.write_bytes(before[: mutant.begin] + mutant.new.encode() + before[mutant.end :])
-        stem = Path(mutant.path).stem
-        files = sorted(file for name in self.tests for file in _test_files(self.folder / name))
-        files.sort(key=lambda file: (stem not in file.stem, file.stem.removeprefix("test_") not in stem))
+        files = list(dict.fromkeys(test.split("::")[0] for test in tests))
+        seconds = sum(self.records[compiled][test]["seconds"] for test in tests)
         try:
-            names = [file.relative_to(self.folder).as_posix() for file in files]
-            return self._pytest(["-x", "--tb=no"], names, compiled, self.limit)[0] == 0
+            return self._pytest(["-x"], files, compiled, {"tests": tests}, 30.0 + 4.0 * seconds)[0] == 0
         finally:
+            compiled_file.unlink(missing_ok=True)
             path.write_bytes(before)
+            os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
 
-    def _pytest(self, options: list[str], tests: list[str], compiled: bool, limit: float) -> tuple[int, str, float]:
-        begin, left_out = time.monotonic(), self.left_out.get(compiled, [])
+    def _pytest(
+        self, options: list[str], tests: list[str], compiled: bool, plan: dict[str, Any], limit: float
+    ) -> tuple[int, str]:
+        server = self.servers.get(compiled) or self._start(compiled)
+        with tempfile.TemporaryDirectory() as place:
+            planned, printed = Path(place, "plan.json"), Path(place, "printed")
+            planned.write_text(json.dumps(plan), encoding="utf-8")
+            order = {"arguments": [*OPTIONS, *options, *tests], "plan": str(planned), "printed": str(printed),
+                     "cpu": int(limit), "memory": MEMORY}  # fmt: skip
+            assert server.stdin is not None
+            assert server.stdout is not None
+            print(json.dumps(order), file=server.stdin, flush=True)
+            child = int(server.stdout.readline())
+            if not select.select([server.stdout], [], [], PATIENCE * limit)[0]:
+                _kill_group(child)
+            status = int(server.stdout.readline())
+            _kill_group(child)
+            return status, printed.read_text(encoding="utf-8", errors="replace")
+
+    def _start(self, compiled: bool) -> subprocess.Popen[str]:
         shared = next((p for p in (ROOT / "shared", ROOT.parent / "shared") if p.is_dir()), ROOT / "shared")
-        environment = {"CROWDBOT_SHARED": str(shared), **os.environ, "PYTHONPATH": str(self.folder / "src"),
-                       "PYTHONDONTWRITEBYTECODE": "1"}  # fmt: skip
+        paths = os.pathsep.join(str(self.folder / name) for name in ("src", "tools"))
+        environment = {"CROWDBOT_SHARED": str(shared), "OPENBLAS_NUM_THREADS": "1", **os.environ, "PYTHONPATH": paths}
         environment |= {} if compiled else {"NUMBA_DISABLE_JIT": "1"}
-        command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *options, *left_out, *tests]
-        with tempfile.TemporaryFile("w+") as printed:
-            self.process = subprocess.Popen(
-                command, cwd=self.folder, env=environment, stdout=printed, stderr=subprocess.STDOUT, text=True,
-                start_new_session=True,
-            )  # fmt: skip
-            if sys.platform == "linux":
-                resource.prlimit(self.process.pid, resource.RLIMIT_DATA, (MEMORY, MEMORY))
-            try:
-                status = self.process.wait(limit)
-            except subprocess.TimeoutExpired:
-                self.stop()
-                status = -1
-            printed.seek(0)
-            return status, printed.read(), time.monotonic() - begin
+        self.servers[compiled] = subprocess.Popen(
+            [sys.executable, "-u", "tools/pytest_server.py"], cwd=self.folder, env=environment, text=True,
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True,
+        )  # fmt: skip
+        return self.servers[compiled]
 
     def stop(self) -> None:
-        """End the tests that run."""
-        if self.process is not None and self.process.poll() is None:
-            os.killpg(self.process.pid, signal.SIGKILL)
-            self.process.wait()
+        """End the servers of tests."""
+        for server in self.servers.values():
+            _kill_group(server.pid)
+            server.wait()
+        self.servers.clear()
 
-    def remove(self) -> None:
-        """Remove the copy."""
-        self.stop()
-        shutil.rmtree(self.folder, ignore_errors=True)
+
+def _kill_group(group: int) -> None:
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(group, signal.SIGKILL)
+
+
+def _function_line(file: Path, mutant: Mutant) -> int:
+    """Return the first line of the innermost function around a mutant, its decorators included; 0 outside of one."""
+    line = 0
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            first = min([node.lineno, *(decorator.lineno for decorator in node.decorator_list)])
+            if node.body[0].lineno <= mutant.line <= (node.end_lineno or 0):
+                line = max(line, first)
+    return line
 
 
 def _test_files(path: Path) -> list[Path]:
     return [path] if path.is_file() else sorted(path.rglob("test_*.py"))
+
+
+def _sources(room: str) -> list[Path]:
+    place = ROOT / PACKAGE / room
+    return [place.with_suffix(".py")] if place.with_suffix(".py").is_file() else sorted(place.rglob("*.py"))
 
 
 def _tests_of(room: str) -> list[str]:
@@ -249,46 +340,61 @@ def _has_kernels(mutant: Mutant) -> bool:
 
 
 class Results:
-    """What became of each mutant, kept in a file if there is one."""
+    """What became of each mutant, and the calls of each test file, kept in files if there is one."""
 
     def __init__(self, file: Path | None) -> None:
         self.file, self.lock = file, threading.Lock()
         self.rooms: dict[str, dict[str, dict[str, object]]] = {}
+        self.calls: dict[str, Any] = {}
         if file is not None and file.exists():
             self.rooms = json.loads(file.read_text(encoding="utf-8"))
+        if file is not None and file.with_suffix(".calls").exists():
+            self.calls = json.loads(file.with_suffix(".calls").read_text(encoding="utf-8"))
 
     def add(self, room: str, mutant: Mutant, survived: bool) -> None:
         """Add one result and write the file anew, whole or not at all."""
         with self.lock:
             self.rooms.setdefault(room, {})[mutant.key] = {**asdict(mutant), "survived": survived}
             if self.file is not None:
-                fresh = self.file.with_suffix(".part")
-                fresh.write_text(json.dumps(self.rooms, indent=1), encoding="utf-8")
-                fresh.replace(self.file)
+                _write(self.file, json.dumps(self.rooms, indent=1))
+
+    def save_calls(self) -> None:
+        """Write the calls of the tests beside the results."""
+        if self.file is not None:
+            _write(self.file.with_suffix(".calls"), json.dumps(self.calls))
+
+
+def _write(file: Path, text: str) -> None:
+    fresh = file.with_suffix(".part")
+    fresh.write_text(text, encoding="utf-8")
+    fresh.replace(file)
 
 
 def test_room(room: str, options: argparse.Namespace, results: Results) -> list[Mutant]:
     """Test the sample of a room, and return it."""
-    place = ROOT / PACKAGE / room
-    files = [place.with_suffix(".py")] if place.with_suffix(".py").is_file() else sorted(place.rglob("*.py"))
-    every = [mutant for file in files for mutant in mutants_of(file)]
+    every = [mutant for file in _sources(room) for mutant in mutants_of(file)]
     if not every:
         raise SystemExit(f"mutate: {PACKAGE}/{room} has nothing to change")
     chooser = random.Random(f"{options.seed}:{room}")  # noqa: S311
     sample = chooser.sample(every, min(options.sample, len(every)))
-    left = [mutant for mutant in sample if mutant.key not in results.rooms.get(room, {})]
+    known = results.rooms.get(room, {})
+    left = [m for m in sample if m.key not in known or (options.survivors and known[m.key]["survived"])]
     if not left:
         return sample
-    trees = [Tree(options.tests or _tests_of(room), options.limit) for _ in range(options.jobs)]
+    trees = [Tree(room, options.tests or _tests_of(room), options.limit, k) for k in range(options.jobs)]
     free, begin = list(trees), time.monotonic()
     try:
         for compiled in sorted({not _has_kernels(mutant) for mutant in left}):
-            seconds = trees[0].measure(compiled)
+            stems = {Path(mutant.path).stem for mutant in left if _has_kernels(mutant) != compiled}
+            trees[0].measure(compiled, results.calls, stems)
+            results.save_calls()
+            records = trees[0].records[compiled].values()
+            bad = sum(not record["passed"] for record in records)
             kind = "with the compiler" if compiled else "without the compiler"
-            print(f"{room}: tests {kind} take {seconds:.0f} s, {len(trees[0].left_out[compiled])} left out", flush=True)
+            print(f"{room}: {len(records)} tests {kind}, {bad} left out, {sum(r['seconds'] for r in records):.0f} s",
+                  flush=True)  # fmt: skip
             for tree in trees:
-                tree.left_out[compiled] = trees[0].left_out[compiled]
-                tree.limit = max(tree.limit, 4.0 * seconds)
+                tree.records[compiled] = trees[0].records[compiled]
 
         def test(mutant: Mutant) -> None:
             tree = free.pop()
@@ -305,7 +411,7 @@ def test_room(room: str, options: argparse.Namespace, results: Results) -> list[
             pool.shutdown(wait=False, cancel_futures=True)
     finally:
         for tree in trees:
-            tree.remove()
+            tree.stop()
     return sample
 
 
@@ -330,7 +436,8 @@ def main() -> int:
     parser.add_argument("--sample", type=int, default=40, help="mutants of each room (default: 40)")
     parser.add_argument("--seed", type=int, default=0, help="seed of the sample (default: 0)")
     parser.add_argument("--tests", nargs="+", help="tests to run (default: tests/ROOM)")
-    parser.add_argument("--limit", type=float, default=60.0, help="least time limit of a mutant in s (default: 60)")
+    parser.add_argument("--limit", type=float, default=60.0, help="time of the tests of a mutant in s (default: 60)")
+    parser.add_argument("--survivors", action="store_true", help="test the survivors in --json again")
     parser.add_argument("--jobs", type=int, default=1, help="mutants tested at the same time (default: 1)")
     parser.add_argument("--json", type=Path, help="file of results, read and continued if it exists")
     options = parser.parse_args()
