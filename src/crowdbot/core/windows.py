@@ -66,9 +66,13 @@ def rod_width(ax: float, ay: float, bx: float, by: float, radius: float) -> tupl
     if a <= radius or b <= radius or a == 0.0 or b == 0.0:
         return -math.pi, TURN
     dot, cross = ax * bx + ay * by, ax * by - ay * bx
-    off = cross / dot if abs(cross) < 0.3 * dot else math.atan2(cross, dot)
     one, two = _half(radius, a), _half(radius, b)
-    least, most = min(-one, off - two), max(one, off + two)
+    if abs(cross) < 0.3 * dot:  # t - t^3 / 3 <= atan(t) <= t for t >= 0
+        off = cross / dot
+        inner = off - off * off * off / 3.0
+    else:
+        off = inner = math.atan2(cross, dot)
+    least, most = min(-one, min(off, inner) - two), max(one, max(off, inner) + two)
     if most - least >= math.pi - 1e-6:
         return -math.pi, TURN
     return math.atan2(ay, ax) + least, most - least
