@@ -353,6 +353,17 @@ def test_time_to_collision_shares():
     assert (near["ttc_below_3s"], near["ttc_below_1s"]) == (1.0, 0.0)
 
 
+def test_a_time_to_collision_of_exactly_the_bound_is_not_below_it():
+    # one sample each at 4, 3, 2, 1 and 0.5 s: radii of 0.25 m, 1 m/s, all numbers exact in binary
+    place = np.zeros((5, 2, 2))
+    place[:, 1, 0] = 0.5 + np.array([4.0, 3.0, 2.0, 1.0, 0.5])
+    velocity = np.zeros((5, 2, 2))
+    velocity[:, 0, 0] = 1.0
+    radius, here = np.full(2, 0.25), np.ones((5, 2), bool)
+    found = navigation_metrics(np.arange(5.0), place, velocity, radius, here, 0, np.array([9.0, 9.0]), 0.1)
+    assert (found["min_ttc"], found["ttc_below_1s"], found["ttc_below_3s"]) == (0.5, 0.2, 0.6)
+
+
 def test_without_people_nothing_is_near():
     found = measured(walk((0, 0), (1, 0), 30))
     assert found["min_clearance"] == found["mean_nearest_distance"] == found["min_ttc"] == math.inf
