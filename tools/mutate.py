@@ -206,8 +206,8 @@ class Tree:
         missing = dict(sorted(missing.items(), key=lambda item: not any(stem in texts[item[0]] for stem in stems)))
         with tempfile.NamedTemporaryFile(suffix=".json") as out:
             folder = f"{self.folder}/{PACKAGE}/"
-            seconds, total = (self.limit / 4, 4.0 * self.limit) if compiled else (self.limit / 12, self.limit)
-            plan = {"sources": folder, "out": out.name, "seconds": seconds, "total": total}
+            total = self.limit * (2.0 if compiled else 1.0)
+            plan = {"sources": folder, "out": out.name, "seconds": self.limit / 12.0, "total": total}
             status, printed = self._pytest([], list(missing), compiled, plan, 60.0 * self.limit)
             recorded = Path(out.name).read_text(encoding="utf-8")
         if status not in (0, 1) or not recorded:
