@@ -102,11 +102,9 @@ def prediction() -> dict[str, Any]:
         name: kind
         for module in (training, training_data, config)
         for name, kind in vars(module).items()
-        if isinstance(kind, type)
-        and dataclasses.is_dataclass(kind)
-        and kind.__module__ == module.__name__
-        and not name.startswith("_")
+        if isinstance(kind, type) and kind.__module__ == module.__name__ and not name.startswith("_")
     }
+    classes = {name: kind for name, kind in classes.items() if dataclasses.is_dataclass(kind)}
     return {
         "predictors": made(builtin_classes(prediction, prediction.Predictor)),
         "training": made(classes),
