@@ -252,6 +252,22 @@ def test_a_shared_fit_tells_its_numbers() -> None:
         _ = fit_of(VALUES).shared_rollout
 
 
+def test_a_fit_predicts_with_the_parameters_that_it_found() -> None:
+    past = straight(W=2, A=3)
+    near = past.position.copy()
+    near[..., 1] /= 4.0  # 0.75 m beside each other: they are pushed
+    past = dataclasses.replace(past, position=near)
+    fit = fit_of(np.array([[[2.0, 0.3]]]), shared=True)
+    same = Rollout(Shy(strength=2.0), CurrentDirection(), 0.3).predict_positions(past, 3)
+    np.testing.assert_array_equal(fit.predict(past, 3).position[:, 0], same)
+    own = fit_of(VALUES)
+    model, speed = Shy(strength=VALUES[..., 0]), VALUES[..., 1]
+    each = Rollout(model, CurrentDirection(), preferred_speed=speed).predict_positions(past, 3)
+    np.testing.assert_array_equal(own.predict(past, 3).position[:, 0], each)
+    assert not np.array_equal(each, same)
+    assert own.predict(past, 3).predictor == "calibrated shy"
+
+
 def test_people_keep_their_latest_values_and_strangers_take_the_median() -> None:
     counted = np.array([[True, True, True], [True, False, True]])
     fit = fit_of(VALUES, counted=counted)
