@@ -364,6 +364,16 @@ def test_a_time_to_collision_of_exactly_the_bound_is_not_below_it():
     assert (found["min_ttc"], found["ttc_below_1s"], found["ttc_below_3s"]) == (0.5, 0.2, 0.6)
 
 
+def test_someone_who_passes_through_the_robot_between_two_samples_is_a_contact():
+    # 4 m in one step of 1 s: at both samples the person is 1.5 m clear, in the middle of the step 0.4 m deep
+    place = np.zeros((3, 2, 2))
+    place[:, 1] = [[-2.0, 0.1], [2.0, 0.1], [6.0, 0.1]]
+    still, radius, here = np.zeros((3, 2, 2)), np.full(2, 0.25), np.ones((3, 2), bool)
+    found = navigation_metrics(np.arange(3.0), place, still, radius, here, 0, np.array([9.0, 9.0]), 0.1)
+    assert (found["contacts"], found["person_caused_contacts"], found["collision"]) == (1.0, 1.0, 1.0)
+    assert found["max_penetration"] == pytest.approx(0.4)
+
+
 def test_without_people_nothing_is_near():
     found = measured(walk((0, 0), (1, 0), 30))
     assert found["min_clearance"] == found["mean_nearest_distance"] == found["min_ttc"] == math.inf
