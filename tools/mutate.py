@@ -206,7 +206,7 @@ class Tree:
         missing = dict(sorted(missing.items(), key=lambda item: not any(stem in texts[item[0]] for stem in stems)))
         with tempfile.NamedTemporaryFile(suffix=".json") as out:
             folder = f"{self.folder}/{PACKAGE}/"
-            total = self.limit * (2.0 if compiled else 1.0)
+            total = self.limit * (3.0 if compiled else 1.0)
             plan = {"sources": folder, "out": out.name, "seconds": self.limit / 12.0, "total": total}
             status, printed = self._pytest([], list(missing), compiled, plan, 60.0 * self.limit)
             recorded = Path(out.name).read_text(encoding="utf-8")
