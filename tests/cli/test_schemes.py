@@ -87,6 +87,7 @@ def test_workers_and_a_second_run_give_the_same_numbers(capsys, street, tmp_path
             assert found["results"][0]["total"][key] == one["results"][0]["total"][key]
 
 
+@pytest.mark.sweep
 def test_a_ray_cluster_gives_the_same_numbers(capsys, street):
     words = ["predict", "--data", street, "--predict", "3", "--predictor", "simulated", *SCHEME]
     one = _json(capsys, *words)
