@@ -39,7 +39,7 @@ python tools/measured.py SHARED > docs/results/measured.md
 ```
 
 SHARED holds public recordings and reference steps of other engines, which are not part of crowdbot (see CONTRIBUTING.md
-in the repository). [Known weaknesses](../about/weaknesses.md) says what the numbers do not show.
+in the repository). [Known weaknesses](weaknesses.md) says what the numbers do not show.
 
 | question | section |
 |---|---|
