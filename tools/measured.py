@@ -38,8 +38,8 @@ This page holds the numbers that crowdbot claims, each with its protocol and the
 python tools/measured.py SHARED > docs/results/measured.md
 ```
 
-SHARED holds public recordings and reference steps of other engines, which are not part of crowdbot (see CONTRIBUTING.md
-in the repository). [Known weaknesses](weaknesses.md) says what the numbers do not show.
+SHARED holds public recordings and reference steps of other engines, which are not part of crowdbot (see
+`tests/RECORDINGS.md` in the repository). [Known weaknesses](weaknesses.md) says what the numbers do not show.
 
 | question | section |
 |---|---|
