@@ -1,6 +1,7 @@
 """Write the reference of the site while it is built (a hook of mkdocs, used by mkdocs.yml).
 
-One page for each room with every name of its face, from the docstrings, and one page for each command, from argparse.
+One page for each room with every name of its face, from the docstrings, one page for each command, from argparse, and
+one page of all elements of a trial file, from its schema.
 """
 
 from __future__ import annotations
@@ -23,11 +24,14 @@ from mkdocs.structure.files import File, Files
 
 import crowdbot
 from crowdbot.cli import COMMANDS
+from crowdbot.trials import schema
 
 sys.path.insert(0, str(Path(__file__).parent))
 from griffe_fields import ROLE, google
+from trial_elements import elements_page
 
 API, CLI = "reference/api", "reference/cli"
+ELEMENTS = "reference/trial-elements.md"
 
 
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
@@ -36,6 +40,7 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
     reference = next(section["Reference"] for section in config.nav if "Reference" in section)
     rooms = [{_title(room): f"{API}/{_title(room)}.md"} for room in faces()]
     commands = [{name: f"{CLI}/{name}.md"} for name in COMMANDS]
+    reference.insert(2, {"Trial elements": ELEMENTS})
     reference += [
         {"Command line": [f"{CLI}/index.md", *commands]},
         {"Python": [f"{API}/index.md", *rooms]},
@@ -45,7 +50,7 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the generated files."""
-    pages = {f"{API}/index.md": front_door(), f"{CLI}/index.md": all_commands()}
+    pages = {f"{API}/index.md": front_door(), f"{CLI}/index.md": all_commands(), ELEMENTS: elements_page(schema())}
     pages |= {f"{API}/{_title(room)}.md": face(room) for room in faces()}
     pages |= {f"{CLI}/{name}.md": command(name) for name in COMMANDS}
     for path, text in pages.items():

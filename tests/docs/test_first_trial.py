@@ -62,3 +62,14 @@ def test_every_element_of_the_pages_exists() -> None:
     known = set(re.findall(r'<xs:element name="([a-z-]+)"', schema()))
     for page in (PAGE, ELEMENTS):
         assert set(re.findall(r"`?<([a-z-]+)[ >`/]", page)) <= known
+
+
+def test_every_attribute_of_the_reference_exists() -> None:
+    from crowdbot.trials import schema
+
+    known = set(re.findall(r'<xs:attribute name="([a-z-]+)"', schema()))
+    elements = re.findall(r"`<[a-z-]+ ([^<>`]*)/?>`", ELEMENTS)
+    named = {word for text in elements for word in re.findall(r"[a-z-]+", re.sub(r'"[^"]*"', "", text))}
+    named |= set(re.findall(r'`([a-z-]+)="', ELEMENTS))
+    assert len(named) > 30
+    assert named <= known
