@@ -17,18 +17,18 @@ def elements_page(schema: str) -> str:
     """Return the page: one section for each element, in the order of the schema."""
     root = ET.fromstring(schema)  # noqa: S314
     kinds = {kind.get("name", ""): kind for kind in root.findall(f"{XS}complexType")}
-    parents: dict[str, list[str]] = {}
-    names: dict[str, str] = {}
+    names, parents = {"Trial": "trial"}, {"trial": list[str]()}
+    sections = {"trial": kinds["Trial"]}
     for kind in kinds.values():
         for child in kind.iter(f"{XS}element"):
-            names[child.get("type", "")] = child.get("name", "")
-    names["Trial"] = "trial"
-    for kind in kinds.values():
-        for child in kind.iter(f"{XS}element"):
-            parents.setdefault(child.get("type", ""), []).append(names[kind.get("name", "")])
-    lines = [HEAD]
+            name = names[child.get("type", "")] = child.get("name", "")
+            sections[name] = kinds[child.get("type", "")] if "type" in child.attrib else child[-1]
     for key, kind in kinds.items():
-        lines += ["", f"## {names[key]} {{ #{names[key]} }}", "", *_section(kind, parents.get(key, []))]
+        for child in kind.iter(f"{XS}element"):
+            parents.setdefault(child.get("name", ""), []).append(names[key])
+    lines = [HEAD]
+    for name, kind in sections.items():
+        lines += ["", f"## {name} {{ #{name} }}", "", *_section(kind, parents[name])]
     return "\n".join(lines) + "\n"
 
 
