@@ -121,6 +121,10 @@ def people(axes: Any, episode: Episode) -> None:
 def page(file: Path) -> None:
     """Write the page that lists all."""
     lines = [
+        "---",
+        "hide: [toc]",
+        "---",
+        "",
         "# Built-in trials",
         "",
         "Each picture shows people (blue) and the robot (red) at the start, the paths of the first 20 s, and the goal",
