@@ -14,7 +14,7 @@ from crowdbot.trials import load_trial
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = (DOCS / "tutorials" / "first-trial.md").read_text(encoding="utf-8")
 ELEMENTS = (DOCS / "reference" / "trial-file.md").read_text(encoding="utf-8")
-STEPS = re.split(r"^\*\*\d+\. ", PAGE.split("\n## ")[0], flags=re.M)[1:]
+STEPS = re.split(r"^## \d+\. ", PAGE.split("\n## More")[0], flags=re.M)[1:]
 
 
 def blocks(step: str, language: str) -> list[str]:
