@@ -69,7 +69,10 @@ def write(file: Path = FILE) -> None:
         if key in found["runs"]:
             continue
         begin = time.monotonic()
-        found["runs"][key] = entry(key)
+        row = entry(key)
+        if row["outcome"] == "interrupted":
+            raise KeyboardInterrupt
+        found["runs"][key] = row
         print(f"{key} {found['runs'][key]['digest']} {time.monotonic() - begin:.1f} s", flush=True)
         rows = ",\n".join(f"  {json.dumps(name)}: {json.dumps(row)}" for name, row in sorted(found["runs"].items()))
         head = f' "machine": {json.dumps(found["machine"])},\n "runs": '
