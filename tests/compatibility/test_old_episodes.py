@@ -49,7 +49,7 @@ def test_there_are_episodes_of_every_kind() -> None:
 @pytest.mark.parametrize("name", EPISODES)
 def test_an_old_episode_has_the_same_content(name: str) -> None:
     old, episode = EPISODES[name], read_episode(episode_file(name))
-    assert episode.made_with == "crowdbot 0.1.0"
+    assert episode.software == "crowdbot 0.1.0"
     assert (episode.outcome, len(episode.times), episode.complete) == (old["outcome"], old["instants"], old["complete"])
     assert episode.digest == old["digest"]
     assert {key: len(readings) for key, readings in episode.readings.items()} == old["readings"]
@@ -70,7 +70,7 @@ def test_an_old_episode_is_exported_to_the_same_table(name: str, table: str, tmp
 def test_an_old_episode_replays(name: str) -> None:
     found, old = replay(episode_file(name), folder=FILES / "trials", trust=True), EPISODES[name]
     assert found.recorded_versions == old["versions"]
-    assert (found.made_with, found.complete) == ("crowdbot 0.1.0", old["complete"])
+    assert (found.software, found.complete) == ("crowdbot 0.1.0", old["complete"])
     assert f"(made with crowdbot 0.1.0{'' if found.complete else ', killed before its end'})" in str(found)
     assert found.outcomes == (old["outcome"], old["outcome"])
     if name == CHANGED:
@@ -98,7 +98,7 @@ def test_replay_prints_the_version_that_made_the_episode(capsys: pytest.CaptureF
     assert "with seed 1 (made with crowdbot 0.1.0)" in " ".join(capsys.readouterr().out.split())
     assert main(["replay", path, "--folder", str(FILES / "trials"), "--json"]) == status
     printed = json.loads(capsys.readouterr().out)
-    assert printed["made_with"] == "crowdbot 0.1.0"
+    assert printed["software"] == "crowdbot 0.1.0"
     assert printed["recorded_versions"] == EPISODES["own-code"]["versions"]
 
 

@@ -51,7 +51,7 @@ def test_a_replay_gives_the_same_digest(tmp_path: Path) -> None:
         f"small with seed 11 (made with {made}) replays to the same bytes, digest {episode.digest}"
     )
     assert done.as_dict()["equal"] is True
-    assert done.as_dict()["made_with"] == read_episode(tmp_path / "episode.mcap").made_with == made
+    assert done.as_dict()["software"] == read_episode(tmp_path / "episode.mcap").software == made
     assert shares[-1] == 1.0
 
 
@@ -81,7 +81,7 @@ def test_a_difference_is_said_with_the_versions(tmp_path: Path) -> None:
     new = replay(rewritten(tmp_path / "episode.mcap", tmp_path / "new.mcap", version="0.0.9"))
     assert new.equal
     assert "(made with crowdbot 0.0.9) replays to the same bytes" in str(new)
-    assert read_episode(tmp_path / "new.mcap").made_with == new.made_with == "crowdbot 0.0.9"
+    assert read_episode(tmp_path / "new.mcap").software == new.software == "crowdbot 0.0.9"
 
 
 def test_a_trial_of_another_version_that_cannot_be_read_is_said(tmp_path: Path) -> None:

@@ -117,7 +117,7 @@ class RecordedEpisode:
         return self.metadata["version"]
 
     @property
-    def made_with(self) -> str:
+    def software(self) -> str:
         """Software that made the episode, such as ``crowdbot 0.1.0``."""
         return f"crowdbot {self.version}"
 

@@ -48,7 +48,7 @@ class Replay:
     failures: tuple[RunFailure | None, RunFailure | None] = (None, None)
 
     @property
-    def made_with(self) -> str:
+    def software(self) -> str:
         """Software that made the episode, such as ``crowdbot 0.1.0``."""
         return f"crowdbot {self.recorded_versions['version']}"
 
@@ -66,7 +66,7 @@ class Replay:
             "equal": self.equal,
             "recorded": self.recorded,
             "replayed": self.replayed,
-            "made_with": self.made_with,
+            "software": self.software,
             "outcome": self.outcomes[0],
             "replayed_outcome": self.outcomes[1],
             "recorded_versions": self.recorded_versions,
@@ -81,7 +81,7 @@ class Replay:
     def __str__(self) -> str:
         """Return one or two sentences for people."""
         killed = "" if self.complete else ", killed before its end"
-        what = f"{self.path}: {self.trial} with seed {self.seed} (made with {self.made_with}{killed})"
+        what = f"{self.path}: {self.trial} with seed {self.seed} (made with {self.software}{killed})"
         told = f"; {', '.join(self.changed)} has other bytes than the recorded code" if self.changed else ""
         recorded, replayed = self.failures
         if recorded is not None:
