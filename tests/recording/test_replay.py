@@ -46,8 +46,12 @@ def test_a_replay_gives_the_same_digest(tmp_path: Path) -> None:
     assert done.equal
     assert done.recorded == done.replayed == episode.digest
     assert (done.seed, done.outcomes) == (11, (episode.outcome, episode.outcome))
-    assert str(done).endswith(f"small with seed 11 replays to the same bytes, digest {episode.digest}")
+    made = f"crowdbot {crowdbot.__version__}"
+    assert str(done).endswith(
+        f"small with seed 11 (made with {made}) replays to the same bytes, digest {episode.digest}"
+    )
     assert done.as_dict()["equal"] is True
+    assert done.as_dict()["software"] == read_episode(tmp_path / "episode.mcap").software == made
     assert shares[-1] == 1.0
 
 
@@ -74,7 +78,10 @@ def test_a_difference_is_said_with_the_versions(tmp_path: Path) -> None:
     old = replay(rewritten(tmp_path / "episode.mcap", tmp_path / "old.mcap", digest="0" * 32, version="0.0.9"))
     assert not old.equal
     assert f"it was written with other versions: version 0.0.9 then, {crowdbot.__version__} now" in str(old)
-    assert replay(rewritten(tmp_path / "episode.mcap", tmp_path / "new.mcap", version="0.0.9")).equal
+    new = replay(rewritten(tmp_path / "episode.mcap", tmp_path / "new.mcap", version="0.0.9"))
+    assert new.equal
+    assert "(made with crowdbot 0.0.9) replays to the same bytes" in str(new)
+    assert read_episode(tmp_path / "new.mcap").software == new.software == "crowdbot 0.0.9"
 
 
 def test_a_trial_of_another_version_that_cannot_be_read_is_said(tmp_path: Path) -> None:
@@ -103,7 +110,7 @@ def test_a_truncated_file_replays_as_far_as_it_goes(tmp_path: Path) -> None:
         done = replay(path)
         assert done.equal
         assert not done.complete
-        assert "killed before its end, replays to the same bytes" in str(done)
+        assert "killed before its end) replays to the same bytes" in str(done)
     path.write_bytes(whole[:3000])
     with pytest.raises(EpisodeError, match="holds no recorded instant: the run was killed before it began"):
         replay(path)

@@ -117,6 +117,11 @@ class RecordedEpisode:
         return self.metadata["version"]
 
     @property
+    def software(self) -> str:
+        """Software that made the episode, such as ``crowdbot 0.1.0``."""
+        return f"crowdbot {self.version}"
+
+    @property
     def scans(self) -> tuple[ScanRow, ...]:
         """What the first laser scanner of the first robot measured."""
         return next(iter(self.scans_by_topic.values()), ())

@@ -48,6 +48,11 @@ class Replay:
     failures: tuple[RunFailure | None, RunFailure | None] = (None, None)
 
     @property
+    def software(self) -> str:
+        """Software that made the episode, such as ``crowdbot 0.1.0``."""
+        return f"crowdbot {self.recorded_versions['version']}"
+
+    @property
     def equal(self) -> bool:
         """Whether both digests are equal: every recorded array, reading, command and the outcome."""
         return self.recorded == self.replayed
@@ -61,6 +66,7 @@ class Replay:
             "equal": self.equal,
             "recorded": self.recorded,
             "replayed": self.replayed,
+            "software": self.software,
             "outcome": self.outcomes[0],
             "replayed_outcome": self.outcomes[1],
             "recorded_versions": self.recorded_versions,
@@ -74,9 +80,8 @@ class Replay:
 
     def __str__(self) -> str:
         """Return one or two sentences for people."""
-        what = f"{self.path}: {self.trial} with seed {self.seed}"
-        if not self.complete:
-            what += ", killed before its end,"
+        killed = "" if self.complete else ", killed before its end"
+        what = f"{self.path}: {self.trial} with seed {self.seed} (made with {self.software}{killed})"
         told = f"; {', '.join(self.changed)} has other bytes than the recorded code" if self.changed else ""
         recorded, replayed = self.failures
         if recorded is not None:

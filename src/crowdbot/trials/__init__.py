@@ -34,7 +34,7 @@ from .sweep import Sweep
 from .trial import End, EndCondition, RecordingSpec, Trial
 from .validation.rates import trial_remarks
 from .variants import apply_values, expand_sweeps
-from .xml.old_names import OldNameWarning, update_names
+from .xml.old_names import OldNameWarning, restore_old_names, update_names
 from .xml.reader import XmlReader
 from .xml.trial_text import parse_trial_xml, read_trial_bytes
 from .xml.writer import element_from, trial_xml
@@ -123,6 +123,7 @@ __all__ = [
     "readable",
     "recorded_trial",
     "resolve_file",
+    "restore_old_names",
     "schema",
     "skip_unreadable",
     "trial_remarks",
