@@ -15,7 +15,7 @@ from .importers.recording import recorded_trial
 from .journey import Direction, Exit, Journey, Point, Portal, Zone
 from .notation import Points, plain
 from .parser import check_trial, parse_trial
-from .partial import readable, skip_unreadable
+from .partial_element import readable, skip_unreadable
 from .people import Group, SourceSpec, Spawner
 from .placement.appearance import PeopleAppearance, people_appearance
 from .placement.expansion import expand_spawners

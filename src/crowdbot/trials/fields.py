@@ -19,7 +19,7 @@ from typing import Any
 
 from crowdbot.core import Bounds, InputError, did_you_mean
 
-from .partial import is_partial
+from .partial_element import is_partial
 
 __all__ = [
     "Constraint",

@@ -11,7 +11,7 @@ from crowdbot.core import Element, TrialError
 
 from .crowd import Crowd, Crowds
 from .fields import element_word
-from .partial import kind_of
+from .partial_element import kind_of
 from .stage import Obstacle
 from .sweep import sweep_problems
 from .trial import Trial

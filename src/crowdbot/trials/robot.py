@@ -22,7 +22,7 @@ from crowdbot.world import Drive, builtin_robots, frame, roll_pitch_yaw
 from .fields import FieldProblem, attribute, check, child, children, mounted_field, plugin_field, quote_value
 from .human_kinds import ABOUT_RIDER, rider_problems
 from .notation import NAME
-from .partial import readable
+from .partial_element import readable
 
 __all__ = ["Mount", "RobotGoal", "RobotSpec"]
 

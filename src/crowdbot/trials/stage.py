@@ -17,7 +17,7 @@ from crowdbot.core import InputError, Walls
 from .fields import FieldProblem, attribute, check, children, quote_value
 from .files.stage_maps import area_of, map_of
 from .notation import Points
-from .partial import readable
+from .partial_element import readable
 from .props import Cube, Light, Prop, Table, Tree
 
 if TYPE_CHECKING:

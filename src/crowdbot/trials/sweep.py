@@ -13,7 +13,7 @@ from typing import Any
 from crowdbot.core import Element, InputError
 
 from .fields import FieldProblem, attribute, check, quote_value
-from .partial import readable
+from .partial_element import readable
 from .value_path import set_value, set_values
 
 __all__ = ["MOST_VARIANTS", "Sweep", "sweep_problems"]

@@ -12,7 +12,7 @@ from crowdbot.core import InputError, UnreadableValue, nearest_name
 from crowdbot.trials.agent import Agent
 from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import outline
-from crowdbot.trials.partial import kind_of, make_partial, readable, rest
+from crowdbot.trials.partial_element import kind_of, make_partial, readable, rest
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial

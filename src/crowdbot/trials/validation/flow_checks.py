@@ -15,7 +15,7 @@ from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.fields import quote_value
 from crowdbot.trials.journey import Direction, Exit, Point, Zone
 from crowdbot.trials.notation import Points
-from crowdbot.trials.partial import readable, whole
+from crowdbot.trials.partial_element import readable, whole
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.placement.spawn_placement import points_in
 from crowdbot.trials.randomized_model import RandomizedModel

@@ -8,7 +8,7 @@ from typing import Any
 
 from crowdbot.trials.journey import Zone
 from crowdbot.trials.notation import Points
-from crowdbot.trials.partial import readable
+from crowdbot.trials.partial_element import readable
 from crowdbot.trials.stage import Stage, area
 
 from .context import ValidationContext

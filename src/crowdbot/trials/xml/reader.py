@@ -28,7 +28,7 @@ from crowdbot.core import (
 )
 from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.fields import FieldSpec, PluginSpec, outline, quote_value
-from crowdbot.trials.partial import EVERYTHING, begin_partial, is_partial, make_partial, readable
+from crowdbot.trials.partial_element import EVERYTHING, begin_partial, is_partial, make_partial, readable
 from crowdbot.trials.randomized_model import RandomizedModel, is_drawn
 
 __all__ = ["ROOT", "XmlReader"]
