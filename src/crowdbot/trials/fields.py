@@ -19,7 +19,7 @@ from typing import Any
 
 from crowdbot.core import Bounds, InputError, did_you_mean
 
-from .partial_element import is_partial
+from .partial_element import PartialElement
 
 __all__ = [
     "Constraint",
@@ -264,7 +264,7 @@ def check(element: Any) -> None:
     reader has checked the fields of a partial element already.
     """
     cls: type = type(element)
-    if is_partial(element):
+    if isinstance(element, PartialElement):
         return
     for part in outline(cls):
         value = getattr(element, part.name)

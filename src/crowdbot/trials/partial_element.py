@@ -1,91 +1,96 @@
-"""Partial elements: the readable fields of an element with a problem, so that the other elements can be checked.
-
-A partial element has the class of its element and every field that could be read. Access to another field raises
-:class:`UnreadableValue`, which ends the check that needs it (:func:`skip_unreadable`): the reader has reported the
-problem already.
-"""
+"""Partial elements: the readable fields of an element with a problem, for the checks of the other elements."""
 
 from __future__ import annotations
 
 import dataclasses
-import functools
-from collections.abc import Container, Iterable, Iterator, Mapping
-from typing import Any, TypeVar
+import inspect
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from typing import Any, NamedTuple, TypeGuard, TypeVar
 
 from crowdbot.core import InputError, UnreadableValue
 
 __all__ = [
-    "EVERYTHING",
+    "PartialElement",
     "UnreadableValue",
-    "begin_partial",
+    "fill_defaults",
+    "has_kind",
     "is_partial",
     "kind_of",
-    "make_partial",
-    "origin",
+    "original_element",
+    "plugin_with_defaults",
+    "post_init_problem",
     "readable",
-    "rest",
     "skip_unreadable",
-    "whole",
 ]
 
 T = TypeVar("T")
-LOST, ORIGIN, WHOLE = "_lost_of_it", "_origin_of_it", "_whole_of_it"
 
 
-class _Everything:
-    """All fields of something of which not even the class is known, and which fields there are."""
-
-    def __contains__(self, name: object) -> bool:
-        return not str(name).startswith("__") or name == "__dataclass_fields__"
-
-
-EVERYTHING = _Everything()
+class _Description(NamedTuple):
+    kind: type
+    unreadable: frozenset[str] | None
+    origin: Any
+    default: Any
 
 
-@functools.cache
-def _partial_class(cls: type) -> type:
-    def look(self: Any, name: str) -> Any:
-        if name in object.__getattribute__(self, "__dict__").get(LOST, ()):
-            raise UnreadableValue(name)
-        return object.__getattribute__(self, name)
+class PartialElement:
+    """The readable fields of an element with a problem.
 
-    def unknown(self: Any, *args: Any, **more: Any) -> Any:
-        raise UnreadableValue
-
-    methods = dict.fromkeys(getattr(cls, "__abstractmethods__", ()), unknown)
-    return type(cls)(cls.__name__, (cls,), methods | {"__getattribute__": look, "__module__": cls.__module__})
-
-
-def make_partial(
-    cls: type, values: Mapping[str, Any], lost: Container[str], *, origin: Any = None, whole: Any = None
-) -> Any:
-    """Return an element with only the fields that could be read.
+    Fields are read as attributes, like those of the element. A field that could not be read raises
+    :class:`UnreadableValue`, which ends the check that needs it (:func:`skip_unreadable`): the reader has reported the
+    problem already. Methods and properties of the class of the element are computed from the readable fields.
 
     Args:
-        cls: class of the element.
-        values: of the fields that could be read.
-        lost: names of the others.
-        origin: the element that it is a copy of, if it is one.
-        whole: the element as it would be with defaults for what is lost, if that can be made.
+        kind: class of the element.
+        values: the readable fields.
+        unreadable: names of the other fields; None if no attribute can be read, since the class itself is unknown.
+        origin: the element that this is a copy of, if any.
+        default: the element with defaults for the unreadable fields, if there is one.
 
     >>> from crowdbot.trials import Spawner
-    >>> spawner = make_partial(Spawner, {"name": "hall"}, {"zone", "count"})
-    >>> spawner.name, isinstance(spawner, Spawner)
+    >>> spawner = PartialElement(Spawner, {"name": "hall"}, {"zone", "count"})
+    >>> spawner.name, has_kind(spawner, Spawner)
     ('hall', True)
     >>> list(skip_unreadable(iter([1]), (spawner.count for _ in [0]), iter([2])))
     [1, 2]
     """
-    made: Any = object.__new__(_partial_class(cls))
-    own = object.__getattribute__(made, "__dict__")
-    own.update(values)
-    own.update({LOST: lost, ORIGIN: origin, WHOLE: whole})
-    return made
+
+    def __init__(
+        self,
+        kind: type,
+        values: Mapping[str, Any],
+        unreadable: Collection[str] | None = (),
+        *,
+        origin: Any = None,
+        default: Any = None,
+    ) -> None:
+        names = None if unreadable is None else frozenset(unreadable)
+        self._partial = _Description(kind, names, origin, default)
+        vars(self).update({name: value for name, value in values.items() if name not in (names or ())})
+
+    def __getattr__(self, name: str) -> Any:
+        """Return an attribute of the class of the element; raise for an unreadable field."""
+        if name.startswith("__"):
+            raise AttributeError(name)
+        kind, unreadable, *_ = self._partial
+        if unreadable is None or name in unreadable:
+            raise UnreadableValue(name)
+        member = inspect.getattr_static(kind, name)
+        return member.__get__(self, kind) if hasattr(member, "__get__") else member
+
+    def mark_unreadable(self, names: Collection[str]) -> None:
+        """Make further fields unreadable."""
+        if self._partial.unreadable is not None:
+            self._partial = self._partial._replace(unreadable=self._partial.unreadable.union(names))
+        for name in names:
+            vars(self).pop(name, None)
 
 
-def begin_partial(made: Any) -> str:
-    """Run ``__post_init__`` of a partial element as far as possible, and return the problem that it reports."""
+def post_init_problem(element: PartialElement) -> str:
+    """Return the problem that ``__post_init__`` finds in the readable fields, empty if there is none."""
+    kind: Any = kind_of(element)
     try:
-        made.__post_init__()
+        kind.__post_init__(element)
     except UnreadableValue:
         return ""
     except InputError as error:
@@ -93,70 +98,75 @@ def begin_partial(made: Any) -> str:
     return ""
 
 
-def is_partial(thing: Any) -> bool:
+def is_partial(element: Any) -> bool:
     """Return whether a field of an element could not be read."""
-    return LOST in _own(thing)
+    return isinstance(element, PartialElement)
 
 
-def kind_of(thing: Any) -> type:
+def kind_of(element: Any) -> type:
     """Return the class of an element, partial or not."""
-    return type(thing).__mro__[1] if is_partial(thing) else type(thing)
+    return element._partial.kind if isinstance(element, PartialElement) else type(element)
 
 
-def origin(thing: Any) -> Any:
-    """Return the element that a copy was made of."""
-    found = _own(thing).get(ORIGIN)
-    return thing if found is None else origin(found)
+def has_kind(element: Any, kind: type[T]) -> TypeGuard[T]:
+    """Return whether the class of an element, partial or not, is ``kind`` or extends it."""
+    return issubclass(kind_of(element), kind)
 
 
-def whole(thing: Any) -> Any:
-    """Return a part as it would be with defaults for what could not be read.
+def original_element(element: Any) -> Any:
+    """Return the element that a partial copy was made of; the element itself if it is no copy."""
+    while isinstance(element, PartialElement) and element._partial.origin is not None:
+        element = element._partial.origin
+    return element
+
+
+def plugin_with_defaults(plugin: Any) -> Any:
+    """Return a plugin with defaults for the parameters that could not be read.
 
     Raises:
-        UnreadableValue: nobody knows what it would be.
+        UnreadableValue: there is no such plugin, for example because its class is unknown.
     """
-    if not is_partial(thing):
-        return thing
-    if (found := _own(thing)[WHOLE]) is None:
+    if not isinstance(plugin, PartialElement):
+        return plugin
+    if plugin._partial.default is None:
         raise UnreadableValue
-    return found
+    return plugin._partial.default
 
 
-def rest(thing: T, *needs: str, **instead: Any) -> T:
-    """Return an element with defaults for what could not be read of it.
+def fill_defaults(element: Any, *required: str, **replacements: Any) -> Any:
+    """Return an element with defaults for the fields that could not be read.
 
     Args:
-        thing: the element, partial or not.
-        needs: fields without which it is of no use.
-        instead: fields that are something else when anything in them could not be read.
+        element: the element, partial or not.
+        required: fields that must be readable.
+        replacements: values of fields that hold an unreadable element.
 
     Raises:
-        UnreadableValue: something that is needed, or has no default, could not be read.
+        UnreadableValue: a field that is required, or has no default, could not be read.
     """
-    if not is_partial(thing):
-        return thing
+    if not isinstance(element, PartialElement):
+        return element
+    kind: Any = kind_of(element)
     values = {}
-    for field in dataclasses.fields(thing):  # type: ignore[arg-type]
+    for field in dataclasses.fields(kind):
         try:
-            value = getattr(thing, field.name)
+            value = getattr(element, field.name)
         except UnreadableValue:
             missing = field.default is None and "None" not in str(field.type)
-            if field.name in needs or field.default is dataclasses.MISSING or missing:
+            if field.name in required or field.default is dataclasses.MISSING or missing:
                 raise
             value = field.default
         values[field.name] = value
-    values |= {name: other for name, other in instead.items() if any(is_partial(one) for one in values[name])}
-    made: Any = object.__new__(kind_of(thing))
-    _own(made).update(values | {ORIGIN: thing})
-    return made  # type: ignore[no-any-return]
+    values |= {name: other for name, other in replacements.items() if any(is_partial(one) for one in values[name])}
+    return PartialElement(kind, values, origin=element)
 
 
-def readable(things: Iterable[Any], name: str) -> list[tuple[int, Any]]:
-    """Return the values of a field of elements, with their index, where they could be read."""
+def readable(elements: Iterable[Any], name: str) -> list[tuple[int, Any]]:
+    """Return the readable values of a field of elements, each with the index of its element."""
     found = []
-    for k, thing in enumerate(things):
+    for k, element in enumerate(elements):
         try:
-            found.append((k, getattr(thing, name)))
+            found.append((k, getattr(element, name)))
         except UnreadableValue:
             continue
     return found
@@ -169,10 +179,3 @@ def skip_unreadable(*checks: Iterator[T]) -> Iterator[T]:
             yield from check
         except UnreadableValue:
             continue
-
-
-def _own(thing: Any) -> dict[str, Any]:
-    try:
-        return object.__getattribute__(thing, "__dict__")  # type: ignore[no-any-return]
-    except AttributeError:
-        return {}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,16 +17,20 @@ from .fields import attribute, check
 __all__ = ["Cube", "Light", "Prop", "Table", "Tree"]
 
 
-class _Standing:
-    """What stands fast at its place."""
+class _FixedProp(ABC):
+    """A prop that is fixed to the floor."""
 
     def __post_init__(self) -> None:
         check(self)
 
+    @abstractmethod
+    def prop(self) -> world.PropBody:
+        """Return the prop of a physics world."""
+
     @property
     def ring(self) -> NDArray[np.float64]:
         """Outline ``[N, 2]`` [m], counter-clockwise; of a tree that of its trunk."""
-        return _outline(self)  # type: ignore[arg-type]
+        return _outline(self.prop())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,15 +55,15 @@ class Cube:
     @property
     def ring(self) -> NDArray[np.float64]:
         """Its outline ``[N, 2]`` [m], counter-clockwise."""
-        return _outline(dataclasses.replace(self, fixed=True))
+        return _outline(world.CubeBody(**_values(Cube, self) | {"fixed": True}))
 
     def prop(self) -> world.PropBody:
         """Return it for a world with bodies."""
-        return world.CubeBody(**_values(self))
+        return world.CubeBody(**_values(Cube, self))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Table(_Standing):
+class Table(_FixedProp):
     """A table that stands fast."""
 
     x: float = attribute(about="x of the centre", unit="m")
@@ -70,11 +75,11 @@ class Table(_Standing):
 
     def prop(self) -> world.PropBody:
         """Return it for a world with bodies."""
-        return world.TableBody(**_values(self))
+        return world.TableBody(**_values(Table, self))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Tree(_Standing):
+class Tree(_FixedProp):
     """A tree that stands fast."""
 
     x: float = attribute(about="x of the centre", unit="m")
@@ -86,7 +91,7 @@ class Tree(_Standing):
 
     def prop(self) -> world.PropBody:
         """Return it for a world with bodies."""
-        return world.TreeBody(**_values(self))
+        return world.TreeBody(**_values(Tree, self))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,17 +109,18 @@ class Light:
 
     def light(self) -> world.LightSource:
         """Return it for a world with bodies."""
-        return world.LightSource(**_values(self))
+        return world.LightSource(**_values(Light, self))
 
 
 Prop = Cube | Table | Tree
 
 
-def _values(thing: Any) -> dict[str, Any]:
-    return {field.name: getattr(thing, field.name) for field in dataclasses.fields(thing)}
+def _values(cls: type[Any], thing: Any) -> dict[str, Any]:
+    """Return the fields of an element of a class; ``thing`` may be partial."""
+    return {field.name: getattr(thing, field.name) for field in dataclasses.fields(cls)}
 
 
-def _outline(prop: Prop) -> NDArray[np.float64]:
-    ring = prop.prop().outline()
+def _outline(body: world.PropBody) -> NDArray[np.float64]:
+    ring = body.outline()
     assert ring is not None
     return ring

@@ -12,7 +12,7 @@ from crowdbot.core import InputError, UnreadableValue, nearest_name
 from crowdbot.trials.agent import Agent
 from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import outline
-from crowdbot.trials.partial_element import kind_of, make_partial, readable, rest
+from crowdbot.trials.partial_element import PartialElement, fill_defaults, kind_of, readable
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
@@ -83,7 +83,8 @@ class ValidationContext:
     @functools.cached_property
     def stage(self) -> Stage:
         """The stage without what could not be read of it: whatever is wrong there is wrong on the whole one, too."""
-        return rest(self.trial.stage)
+        stage: Stage = fill_defaults(self.trial.stage)
+        return stage
 
     @property
     def router(self) -> Router | None:
@@ -130,4 +131,4 @@ def _without(thing: Any, wrong: Mapping[int, set[str]]) -> Any:
     if not lost and all(values[name] is value for name, value in inner.items()):
         return thing
     kept = {name: value for name, value in (values | inner).items() if name not in lost}
-    return make_partial(cls, kept, {field.name for field in dataclasses.fields(cls)} - {*kept}, origin=thing)
+    return PartialElement(cls, kept, {field.name for field in dataclasses.fields(cls)} - {*kept}, origin=thing)

@@ -9,13 +9,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, did_you_mean, stream
+from crowdbot.core import InputError, did_you_mean, stream, unread_fields
 from crowdbot.trials.agent import Agent, AgentParameter
 from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.fields import quote_value
 from crowdbot.trials.journey import Direction, Exit, Point, Zone
 from crowdbot.trials.notation import Points
-from crowdbot.trials.partial_element import readable, whole
+from crowdbot.trials.partial_element import has_kind, plugin_with_defaults, readable
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.placement.spawn_placement import points_in
 from crowdbot.trials.randomized_model import RandomizedModel
@@ -53,9 +53,9 @@ def names(checked: ValidationContext) -> Iterator[Problems]:
         yield _arrival(one)
         yield _named(one, "journey", DeclaredNames.of(trial.journeys))
         yield _named(one, "crowd", checked.crowd_names)
-        if isinstance(one, SourceSpec):
+        if has_kind(one, SourceSpec):
             yield _begins(one)
-        if isinstance(one, Agent):
+        if has_kind(one, Agent):
             yield from (_own(checked, one, parameter) for parameter in one.parameters)
     yield from (_named(one, "crowd", checked.crowd_names) for one in trial.recorded)
 
@@ -95,11 +95,11 @@ def _named(one: Any, word: str, names: DeclaredNames) -> Problems:
         yield one, f"{word}={quote_value(name)} is not the name of a {word}{did_you_mean(name, names.known)}; {there}"
 
 
-def _goals(one: Agent | Spawner | SourceSpec) -> Problems:
-    stands = isinstance(one, Agent) or getattr(one, "stands", False)
+def _goals(one: Any) -> Problems:
+    stands = has_kind(one, Agent) or getattr(one, "stands", False)
     if one.goal and one.journey:
         yield one, 'has both a goal and a journey; give one of them: goal="x,y x,y x,y" or journey="name"'
-    elif stands and isinstance(one, Spawner) and (one.goal or one.journey):
+    elif stands and has_kind(one, Spawner) and (one.goal or one.journey):
         yield one, 'has people who stand, and a goal or a journey; leave out stands="true", or where they go'
     elif not (one.goal or one.journey or stands):
         yield one, 'needs a goal zone or a journey: goal="x,y x,y x,y" or journey="name"'
@@ -129,15 +129,18 @@ def _own(checked: ValidationContext, agent: Agent, parameter: AgentParameter) ->
     crowds = [crowd for crowd in checked.crowds if crowd.name == agent.crowd or not agent.crowd]
     if not crowds:
         return
-    model = whole(crowds[0].model)
+    model = plugin_with_defaults(crowds[0].model)
+    model = model.model if isinstance(model, RandomizedModel) else model
+    if unread_fields(type(model)):  # defaults that are known only when code runs
+        return
     draws = {parameter.name.replace("-", "_"): Distribution.of(parameter.value)}
-    for sentence in RandomizedModel.problems(model.model if isinstance(model, RandomizedModel) else model, draws):
+    for sentence in RandomizedModel.problems(model, draws):
         yield parameter, sentence.replace("drawn", "given", 1)
 
 
 def _endless(stops: Sequence[Any]) -> Problems:
     for k, stop in enumerate(stops[:-1]):
-        if isinstance(stop, Direction):
+        if has_kind(stop, Direction):
             yield stop, f"is stop {k + 1} of {len(stops)} and has no end; a direction must be the last stop"
 
 
@@ -161,7 +164,7 @@ def astray(checked: ValidationContext, stop: Point | Direction | Zone) -> Iterat
     """Yield a stop at a point where nobody can be: the stop, its field, and the end of a sentence."""
     import shapely
 
-    if isinstance(stop, Point):
+    if has_kind(stop, Point):
         point = shapely.Point(stop.x, stop.y)
         if not checked.stage.holds(point):
             yield stop, "x", f"at {stop.x:g},{stop.y:g} lies outside the walkable area"
@@ -171,7 +174,7 @@ def astray(checked: ValidationContext, stop: Point | Direction | Zone) -> Iterat
 
 def _stop(checked: ValidationContext, stop: Point | Direction | Zone) -> Problems:
     stage = checked.stage
-    if isinstance(stop, Zone):
+    if has_kind(stop, Zone):
         if stop.aim == "nearest" or checked.router is None:
             if block := stage.block_in(area(stop.points), OVERLAP):
                 yield stop, f"zone reaches into {block}; move it, or cut it there"
@@ -196,12 +199,12 @@ class _Place(NamedTuple):
     @classmethod
     def of(cls, stop: Point | Direction | Zone) -> _Place | None:
         """Return the place of a stop; None of a direction."""
-        if isinstance(stop, Point):
+        if has_kind(stop, Point):
             return cls(Points.of([(stop.x, stop.y)]))
-        return cls(stop.points, stop.aim == "random") if isinstance(stop, Zone) else None
+        return cls(stop.points, stop.aim == "random") if has_kind(stop, Zone) else None
 
 
-def _first_leg(checked: ValidationContext, one: Agent | Spawner | SourceSpec) -> Problems:
+def _first_leg(checked: ValidationContext, one: Any) -> Problems:
     """Yield who finds no way around walls into the own journey or to the own goal."""
     router = checked.router
     if router is None or router.unreachable != "error" or not (one.goal or one.journey):
@@ -209,11 +212,11 @@ def _first_leg(checked: ValidationContext, one: Agent | Spawner | SourceSpec) ->
     journey = next((journey for journey in checked.trial.journeys if journey.name == one.journey), None)
     first = _Place(one.goal) if one.goal else journey and _Place.of(journey.stops[0])
     what = (
-        ("the goal" if isinstance(one, Agent) else "the goal zone")
+        ("the goal" if has_kind(one, Agent) else "the goal zone")
         if one.goal
         else f"the first stop of journey {one.journey!r}"
     )
-    start, word = (one.zone, "zone") if not isinstance(one, Agent) else (Points.of([one.position]), "place")
+    start, word = (one.zone, "zone") if not has_kind(one, Agent) else (Points.of([one.position]), "place")
     if first and not _leads(router, _Place(start), first):
         yield one, f"no way leads from its {word} to {what} for a body of radius {router.radius:g} m"
 

@@ -31,7 +31,7 @@ def misfits(robot: RobotSpec, step: float) -> list[Mount]:
     clock, found = FreeClock(step), []
     carried = robot.type_sensors
     for mount in robot.sensors:
-        if mount in carried:
+        if mount in carried and not math.isnan(mount.sensor.rate):  # a NaN rate is known only when code runs
             try:
                 for period in _periods(mount):
                     clock.every(period)

@@ -14,7 +14,7 @@ from crowdbot.trials.camera import Camera
 from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import quote_value
 from crowdbot.trials.notation import Points
-from crowdbot.trials.partial_element import origin, readable, rest, skip_unreadable
+from crowdbot.trials.partial_element import fill_defaults, has_kind, original_element, readable, skip_unreadable
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.placement.population import place
 from crowdbot.trials.recorded_people import RecordedPeople
@@ -69,7 +69,7 @@ def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) ->
     found += [*skip_unreadable(*(_recording(checked, one) for one in trial.recorded))]
     if not too_large:
         found += _places(checked)
-    return [(origin(thing), sentence) for thing, sentence in found]
+    return [(original_element(thing), sentence) for thing, sentence in found]
 
 
 def _by_thing(rows: Sequence[tuple[Any, str, str]]) -> dict[int, set[str]]:
@@ -83,21 +83,21 @@ def _by_thing(rows: Sequence[tuple[Any, str, str]]) -> dict[int, set[str]]:
 def _places(checked: ValidationContext) -> list[tuple[Any, str]]:
     """Return who finds no place: without those who could not be read, and without groups, there is only more room."""
     trial = checked.trial
-    spawners = [_or(spawner, NOBODY, "zone", "count", "radius", groups=()) for spawner in trial.spawners]
-    agents = [_or(agent, None, "x", "y", "radius") for agent in trial.agents]
+    spawners = [_filled_or(spawner, NOBODY, "zone", "count", "radius", groups=()) for spawner in trial.spawners]
+    agents = [_filled_or(agent, None, "x", "y", "radius") for agent in trial.agents]
     robots = [robot for robot in trial.robots if all(readable([robot], name) for name in ("x", "y", "radius"))]
     walks = []
     for one in trial.recorded:
         with contextlib.suppress(UnreadableValue, InputError):
-            walks.append((rest(one, "data"), one.walks(trial.duration)))
+            walks.append((fill_defaults(one, "data"), one.walks(trial.duration)))
     there = [agent for agent in agents if agent is not None]
     return place(checked.stage, spawners, robots, checked.seed, there, walks)[1]
 
 
-def _or(thing: Any, other: Any, *needs: str, **instead: Any) -> Any:
-    """Return what :func:`rest` does, something other when what is needed could not be read."""
+def _filled_or(thing: Any, other: Any, *required: str, **replacements: Any) -> Any:
+    """Return what :func:`fill_defaults` does, ``other`` if a required field could not be read."""
     try:
-        return rest(thing, *needs, **instead)
+        return fill_defaults(thing, *required, **replacements)
     except UnreadableValue:
         return other
 
@@ -143,7 +143,8 @@ def _period(thing: Any, name: str, called: str) -> Iterator[tuple[Any, str, floa
 def _measuring(robot: RobotSpec, mount: Mount) -> Iterator[tuple[Any, str, float]]:
     if mount in robot.type_sensors:
         return
-    yield mount, f"rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate
+    if not math.isnan(mount.sensor.rate):  # known only when code runs
+        yield mount, f"rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate
     if mount.sensor.delay > 0.0:
         yield mount, "delay", mount.sensor.delay
 
@@ -249,7 +250,7 @@ def _robots(stage: Stage, robots: Sequence[RobotSpec]) -> Iterator[Problems]:
 def _standing(stage: Stage, robot: RobotSpec, word: str, there: RobotSpec | RobotGoal) -> Problems:
     import shapely
 
-    spot, reach = there.position, there.tolerance if isinstance(there, RobotGoal) else 0.0
+    spot, reach = there.position, there.tolerance if has_kind(there, RobotGoal) else 0.0
     room = float(stage.clearance([spot])[0])
     block = stage.block_around(shapely.Point(spot))
     if not stage.holds(shapely.Point(spot)):

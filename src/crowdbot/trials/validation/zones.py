@@ -8,7 +8,7 @@ from typing import Any
 
 from crowdbot.trials.journey import Zone
 from crowdbot.trials.notation import Points
-from crowdbot.trials.partial_element import readable
+from crowdbot.trials.partial_element import has_kind, readable
 from crowdbot.trials.stage import Stage, area
 
 from .context import ValidationContext
@@ -61,7 +61,7 @@ def areas(checked: ValidationContext) -> list[Area]:
         found += _zones(group, "zone", label, smallest)
         found += _zones(group, "goal", "goal zone", smallest)
     for _, stops in readable(trial.journeys, "stops"):
-        found += _zones([stop for stop in stops if isinstance(stop, Zone)], "points", "zone", SMALLEST)
+        found += _zones([stop for stop in stops if has_kind(stop, Zone)], "points", "zone", SMALLEST)
     found += _zones(trial.portals, "zone", "zone", SMALLEST, border=True)
     found += _zones(trial.agents, "goal_zone", "goal zone", 0.0)
     return found + _zones(trial.exits, "zone", "zone", SMALLEST, border=True)
