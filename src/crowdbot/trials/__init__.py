@@ -1,4 +1,4 @@
-"""Trials: simulations as data. The dataclasses, their XML, the checks, built-in scenarios, placement and importers."""
+"""Trials: simulations as data. Dataclasses, XML, checks, built-in scenarios, placement of people, importers."""
 
 from .agent import Agent, AgentParameter
 from .builtin import builtin_trials, load_trial

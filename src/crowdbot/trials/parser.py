@@ -1,4 +1,4 @@
-"""Parser: from an XML text to a checked trial, and the checks of a trial made in Python."""
+"""Parser: reads and checks a trial from XML, and checks a trial made in Python."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ def parse_trial(
     Args:
         text: the XML.
         place: name of the file for messages.
-        folder: of the trial; code that the trial names is looked up here (default: the working folder).
+        folder: folder of the trial and of the code that it names (default: the working folder).
         trust: whether code from outside the folder may be loaded.
-        quiet: do not warn about names of earlier versions.
+        quiet: whether to omit warnings about names of earlier versions.
 
     Raises:
-        TrialError: with every problem found, one sentence each, in the order of the lines.
+        TrialError: the trial has errors; one sentence per error, in the order of the lines.
 
     >>> parse_trial('<trial name="t" duration="-1"><crowd type="orca" time-horizn="2"/></trial>')
     Traceback (most recent call last):
@@ -73,7 +73,7 @@ def check_trial(trial: Trial, seed: int | None = None) -> None:
 
     Args:
         trial: made in Python or read.
-        seed: places people with it; None is the trial's own.
+        seed: seed of the placement of people (default: the seed of the trial).
     """
     found = problems_of(trial, Crowds.spread(trial.crowd), seed)
     sentences = [f"trial {trial.name!r}: {_called(thing)} {sentence}" for thing, sentence in found]

@@ -1,4 +1,4 @@
-"""Props: what stands on a stage beside walls, and what lights it."""
+"""Props: furniture, plants and lights of a stage."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ class _FixedProp(ABC):
 
     @property
     def ring(self) -> NDArray[np.float64]:
-        """Outline ``[N, 2]`` [m], counter-clockwise; of a tree that of its trunk."""
+        """Outline ``[N, 2]`` [m], counter-clockwise; for a tree the outline of its trunk."""
         return _outline(self.prop())
 
 
 @dataclass(frozen=True, kw_only=True)
 class Cube:
-    """A box on the floor; robots and people of the physics world can push it unless it is fixed.
+    """A box on the floor. In the physics world robots and people can push it unless it is fixed.
 
     >>> Cube(x=1, y=2, size=0.4).ring.round(9).tolist()[0]
     [0.8, 1.8]
@@ -54,17 +54,17 @@ class Cube:
 
     @property
     def ring(self) -> NDArray[np.float64]:
-        """Its outline ``[N, 2]`` [m], counter-clockwise."""
+        """Outline ``[N, 2]`` [m], counter-clockwise."""
         return _outline(world.CubeBody(**_values(Cube, self) | {"fixed": True}))
 
     def prop(self) -> world.PropBody:
-        """Return it for a world with bodies."""
+        """Return the prop of a physics world."""
         return world.CubeBody(**_values(Cube, self))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Table(_FixedProp):
-    """A table that stands fast."""
+    """A table, fixed to the floor."""
 
     x: float = attribute(about="x of the centre", unit="m")
     y: float = attribute(about="y of the centre", unit="m")
@@ -74,13 +74,13 @@ class Table(_FixedProp):
     height: float = attribute(0.74, about="above the floor", unit="m", exclusive_min=0.05, max=100.0)
 
     def prop(self) -> world.PropBody:
-        """Return it for a world with bodies."""
+        """Return the prop of a physics world."""
         return world.TableBody(**_values(Table, self))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Tree(_FixedProp):
-    """A tree that stands fast."""
+    """A tree, fixed to the floor."""
 
     x: float = attribute(about="x of the centre", unit="m")
     y: float = attribute(about="y of the centre", unit="m")
@@ -90,13 +90,13 @@ class Tree(_FixedProp):
     crown: float = attribute(1.4, about="radius of the crown", unit="m", min=0.001, max=50.0)
 
     def prop(self) -> world.PropBody:
-        """Return it for a world with bodies."""
+        """Return the prop of a physics world."""
         return world.TreeBody(**_values(Tree, self))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Light:
-    """A lamp that shines down; without lamps it is day."""
+    """A lamp that shines down. A stage without lamps has daylight."""
 
     x: float = attribute(about="x coordinate", unit="m")
     y: float = attribute(about="y coordinate", unit="m")
@@ -108,7 +108,7 @@ class Light:
         check(self)
 
     def light(self) -> world.LightSource:
-        """Return it for a world with bodies."""
+        """Return the light of a physics world."""
         return world.LightSource(**_values(Light, self))
 
 

@@ -1,4 +1,4 @@
-"""Robot of a trial: where it begins and has to go, what it is, what it sees with and who steers it."""
+"""Robot of a trial: start, goal, type, drive, sensors and navigator."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ __all__ = ["Mount", "RobotGoal", "RobotSpec"]
 
 Floats = NDArray[np.float64]
 RADIUS, HEIGHT, MASS = 0.3, 1.0, 40.0
-"""Of a robot without a type [m, m, kg]."""
+"""Defaults of a robot without a type [m, m, kg]."""
 MOST_FILES = 500
 
 
 @dataclass(frozen=True)
 class RobotGoal:
-    """Where a robot has to go: it has arrived when its centre is within the tolerance."""
+    """Goal of a robot, reached when the robot's centre is within the tolerance."""
 
     x: float = attribute(about="x coordinate", unit="m")
     y: float = attribute(about="y coordinate", unit="m")
@@ -51,7 +51,7 @@ class RobotGoal:
 
 @dataclass(frozen=True, kw_only=True)
 class Mount:
-    """A sensor and where it sits on its robot, or on one of its links (x forward, y left, z up).
+    """A sensor and its pose on the robot or on one of its links (x forward, y left, z up).
 
     >>> from crowdbot.sensors import Lidar2D
     >>> Mount(sensor=Lidar2D()).z, Mount(sensor=Lidar2D(), link="head").z
@@ -75,25 +75,25 @@ class Mount:
 
     @property
     def usual(self) -> Mapping[str, Any]:
-        """What fields are when they are not given."""
+        """Defaults of fields that depend on others."""
         return {"z": 0.0 if self.link else MOUNT_HEIGHT}
 
     @property
     def origin(self) -> Floats:
-        """Its frame ``[4, 4]`` in that of the robot or of the link."""
+        """Frame ``[4, 4]`` of the sensor relative to the robot or the link."""
         return frame((self.x, self.y, self.z), roll_pitch_yaw(self.roll, self.pitch, self.heading))
 
 
 @dataclass(frozen=True, kw_only=True)
 class RobotSpec:
-    """A robot: where it begins and has to go, what it is, what it sees with and who steers it.
+    """A robot: start, goal, type, drive, sensors and navigator.
 
-    With a type it has the drive, size and sensors of that robot, colour cameras only when asked; what is given here
-    counts instead, and sensors come on top (or, with the name of one of the type, in its place). Without one it is an
+    The type defines drive, size and sensors (colour cameras only with ``cameras``). Fields given here override those of
+    the type; sensors are added, or replace the sensor of the type with the same name. A robot without a type is an
     upright cylinder with a drive.
 
     Raises:
-        InputError: a value is not allowed, there is no such type, or a sensor sits on no link.
+        InputError: a value is not allowed, the type does not exist, or a sensor is on an unknown link.
 
     >>> from crowdbot.navigation import Straight
     >>> robot = RobotSpec(type="turtlebot2", x=0, y=0, goal=RobotGoal(5, 0), navigator=Straight())
@@ -136,7 +136,7 @@ class RobotSpec:
     sensors: tuple[Mount, ...] = children("sensor", about="sensors", max=50)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     trust: bool = dataclasses.field(default=True, compare=False, repr=False)
-    """Where its folder lies, and whether it may lie outside; not part of the tree."""
+    """Folder of the robot folder, and whether that may lie outside; not part of the XML."""
 
     def __post_init__(self) -> None:
         usual = self.usual
@@ -167,7 +167,7 @@ class RobotSpec:
 
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return what is wrong with the type and the rider in a file, whatever else is wrong in its element."""
+        """Return the problems of the type and of the rider, independent of other problems of the element."""
         said: list[FieldProblem] = [
             ((), one) for one in rider_problems(values.get("rider", ""), values.get("type", ""))
         ]
@@ -180,7 +180,7 @@ class RobotSpec:
 
     @property
     def usual(self) -> Mapping[str, Any]:
-        """What fields are when they are not given."""
+        """Defaults of fields that depend on others."""
         if not self.type:
             return {"radius": RADIUS, "height": HEIGHT, "mass": MASS, "latency": 0.0, "sensors": ()}
         kind = self._kind
@@ -195,7 +195,7 @@ class RobotSpec:
 
     @property
     def type_sensors(self) -> tuple[Mount, ...]:
-        """The sensors of its type that it carries."""
+        """The sensors of the type that the robot has."""
         if not (self.type and self.default_sensors):
             return ()
         return tuple(
@@ -207,7 +207,7 @@ class RobotSpec:
 
     @functools.cached_property
     def body(self) -> world.Robot:
-        """The robot of a world, with the drive and the latency that count here."""
+        """The robot of a world, with the drive and the latency of this robot."""
         if not self.type:
             made = world.Robot.disc(self.name, self.drive, self.radius, height=self.height, mass=self.mass)
         else:
@@ -215,7 +215,7 @@ class RobotSpec:
         return dataclasses.replace(made, latency=self.latency)
 
     def frame_of(self, mount: Mount) -> Floats:
-        """Return the frame ``[4, 4]`` of a sensor in that of the robot, which is on the floor, in its posture."""
+        """Return the frame ``[4, 4]`` of a sensor relative to the robot (on the floor), in its driving posture."""
         if not mount.link:
             return mount.origin
         return np.asarray(self.body.model.poses(self.body.posture)[mount.link] @ mount.origin)
@@ -237,10 +237,10 @@ class RobotSpec:
         return x, y, z, round(roll, 12), round(pitch, 12), round(yaw, 12)
 
     def schedule(self, mount: Mount, clock: Clock) -> SensorSchedule:
-        """Return when a sensor measures; see the attribute ``rates``.
+        """Return the schedule of a sensor; see the attribute ``sensor_rates``.
 
         Raises:
-            InputError: its period or its delay is not a whole number of time steps.
+            InputError: the period or the delay is not a whole number of time steps.
         """
         if self.sensor_rates == "exact" or mount not in self.type_sensors:
             return SensorSchedule.of(mount.sensor, clock)
@@ -253,7 +253,7 @@ class RobotSpec:
         return self.x, self.y
 
     def files(self) -> tuple[Path, ...]:
-        """Return the files of its folder, none when it is built in."""
+        """Return the files of the robot folder; none for a built-in robot."""
         place = _folder(self.type, self.folder, self.trust) if self.type else None
         if place is None:
             return ()
@@ -267,12 +267,12 @@ class RobotSpec:
 
 
 def _drawn(mount: Mount | world.SensorMount) -> bool:
-    """Return whether a sensor needs a renderer, which is slow and needs graphics."""
+    """Return whether a sensor needs a renderer."""
     return mount.sensor.renders
 
 
 def _merged(carried: tuple[Mount, ...], own: Any) -> tuple[Mount, ...]:
-    """Return the sensors of a type, each replaced by an own one of its name, then the other own ones."""
+    """Return the sensors of a type, each replaced by the given one of its name, then the other given ones."""
     named = {getattr(mount, "name", ""): mount for mount in own}
     names = {mount.name for mount in carried}
     others = [mount for mount in own if getattr(mount, "name", "") not in names]
@@ -280,7 +280,7 @@ def _merged(carried: tuple[Mount, ...], own: Any) -> tuple[Mount, ...]:
 
 
 def _folder(name: str, folder: Path | None, trust: bool) -> Path | None:
-    """Return the robot folder beside the trial, None for a built-in robot."""
+    """Return the robot folder next to the trial, None for a built-in robot."""
     root = folder or Path.cwd()
     known = builtin_robots()
     try:

@@ -1,4 +1,4 @@
-"""Ground: areas as WKT or GeoJSON, and maps of ROS, as polygons of bounded size."""
+"""Stage maps: areas from WKT or GeoJSON and ROS maps, as polygons of limited size."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ def area_of(text: str, folder: Path | None, trust: bool) -> shapely.Geometry:
     """Return the polygon or polygons of an area.
 
     Args:
-        text: WKT, or the name of a file of WKT or GeoJSON in the folder.
-        folder: of the trial.
-        trust: whether the file may lie outside.
+        text: WKT, or the name of a WKT or GeoJSON file in the folder.
+        folder: folder of the trial.
+        trust: whether the file may lie outside the folder.
 
     Raises:
-        InputError: it is neither, holds no valid polygon, or too many corners.
+        InputError: the text is neither, or has no valid polygon or too many corners.
 
     >>> area_of("POLYGON ((0 0, 4 0, 4 3, 0 3, 0 0))", None, False).area
     12.0
@@ -56,7 +56,7 @@ def area_of(text: str, folder: Path | None, trust: bool) -> shapely.Geometry:
 
 
 def is_area_file(text: str) -> bool:
-    """Return whether an area is the name of a file, not WKT.
+    """Return whether an area is a file name and not WKT.
 
     >>> is_area_file("hall.geojson"), is_area_file("POLYGON ((0 0, 4 0, 4 3, 0 0))")
     (True, False)
@@ -108,13 +108,13 @@ def _checked(shape: Any, what: str) -> shapely.Geometry:
 
 
 def _parts(shape: Any) -> list[Any]:
-    """Return the single geometries of a collection, however deep."""
+    """Return the geometries of a collection, nested ones included."""
     inner = getattr(shape, "geoms", None)
     return [shape] if inner is None else [part for one in inner for part in _parts(one)]
 
 
 class _Map(NamedTuple):
-    """What the ``.yaml`` of a map says."""
+    """Content of the ``.yaml`` file of a map."""
 
     image: str
     resolution: float
@@ -125,18 +125,18 @@ class _Map(NamedTuple):
 
 
 def map_of(name: str, unknown: str, folder: Path | None, trust: bool) -> tuple[shapely.Polygon, ...]:
-    """Return what is solid in a map of ROS (map_server, ``.yaml`` with ``.pgm``) as polygons.
+    """Return the occupied cells of a ROS map (map_server, ``.yaml`` with ``.pgm``) as polygons.
 
-    Corners of cells are cut so far that no border is off by more than one cell.
+    Borders are simplified by at most one cell.
 
     Args:
-        name: of the ``.yaml`` in the folder.
-        unknown: whether cells of which nothing is known are ``occupied`` or ``free``.
-        folder: of the trial.
-        trust: whether the files may lie outside.
+        name: name of the ``.yaml`` file in the folder.
+        unknown: treatment of unknown cells, ``occupied`` or ``free``.
+        folder: folder of the trial.
+        trust: whether the files may lie outside the folder.
 
     Raises:
-        InputError: a file is missing, too large or no map.
+        InputError: a file is missing, too large or not a map.
     """
     _, row, image = _map_of(name, folder, trust)
     stamp = image.stat()
@@ -144,7 +144,7 @@ def map_of(name: str, unknown: str, folder: Path | None, trust: bool) -> tuple[s
 
 
 def map_files(name: str, folder: Path | None, trust: bool) -> dict[str, Path]:
-    """Return the files of a map by their names in the folder: the ``.yaml`` and its image; see :func:`map_of`."""
+    """Return the files of a map by name, the ``.yaml`` file and its image; arguments as in :func:`map_of`."""
     path, row, image = _map_of(name, folder, trust)
     return {name: path, (PurePosixPath(name).parent / row.image).as_posix(): image}
 
@@ -159,7 +159,7 @@ def _map_of(name: str, folder: Path | None, trust: bool) -> tuple[Path, _Map, Pa
 
 
 def _yaml(data: bytes, name: str) -> _Map:
-    """Read the flat list of keys that a map has."""
+    """Read the flat keys and values of a map file."""
     rows = {}
     for line in data.decode("utf-8", "replace").splitlines():
         key, colon, value = line.partition(":")
@@ -212,7 +212,7 @@ def _solids(image: Path, changed: int, size: int, row: _Map, unknown: str) -> tu
 
 
 def _pgm(data: bytes, name: str) -> NDArray[np.float64]:
-    """Return the grey values ``[H, W]`` from 0 to 1 of a PGM image, of bytes (P5) or of text (P2)."""
+    """Return the grey values ``[H, W]`` from 0 to 1 of a PGM image, binary (P5) or text (P2)."""
     head = re.match(rb"(P[25])(?:\s+(?:#[^\n]*\n\s*)*)(\d{1,6})(?:\s+(?:#[^\n]*\n\s*)*)(\d{1,6})"
                     rb"(?:\s+(?:#[^\n]*\n\s*)*)(\d{1,5})\s", data)  # fmt: skip
     if head is None:

@@ -1,4 +1,4 @@
-"""Figures: who people are and what they do beside walking, as their elements say it."""
+"""Appearance of people: bodies, outfits and activities."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ OUTFITS = 1000
 
 
 class PersonAppearance(NamedTuple):
-    """One person: name of the body, number of the outfit, and activity; empty and -1 for what was not said."""
+    """Body, outfit and activity of one person; empty or -1 if not given."""
 
     body: str
     outfit: int
@@ -31,11 +31,12 @@ class PersonAppearance(NamedTuple):
 
 
 class PeopleAppearance(NamedTuple):
-    """Everybody who has a place, robots apart, then who rides in a robot.
+    """Appearance of all people of a trial, followed by the riders of robots.
 
     Fields:
-        people: bodies of them all; activity: of those who do not ride.
-        riders: the agents of the robots in which somebody sits.
+        people: bodies of people and riders.
+        activity: activities of people, without riders.
+        riders: indices of the robots with a rider.
     """
 
     people: humans.People
@@ -44,7 +45,7 @@ class PeopleAppearance(NamedTuple):
 
 
 def body_names(text: str) -> tuple[str, ...]:
-    """Return the names of the bodies that ``body`` names, one by one or by kind.
+    """Return the names of the bodies in ``body``, which lists bodies and kinds of bodies.
 
     >>> len(body_names("man")), body_names("woman-36 mannequin")
     (20, ('woman-36', 'mannequin'))
@@ -58,7 +59,7 @@ def body_names(text: str) -> tuple[str, ...]:
 
 
 def draw_appearances(people: InitialPeople, seed: int) -> list[PersonAppearance]:
-    """Return who the people at the beginning are, in the order of their places."""
+    """Return the appearance of the people at the beginning, in the order of their indices."""
     found: list[PersonAppearance] = []
     agents = sum(isinstance(one, Agent) for one in people.owners)
     counts = np.bincount(people.owner, minlength=len(people.owners)).tolist()
@@ -73,10 +74,10 @@ def draw_appearances(people: InitialPeople, seed: int) -> list[PersonAppearance]
 
 
 def people_appearance(trial: Trial, people: InitialPeople, agents: int, seed: int) -> PeopleAppearance:
-    """Return bodies and activities of everybody of ``agents`` who is no robot, and of riders.
+    """Return bodies and activities of all ``agents`` except robots, and of riders.
 
-    Who is not told of is an adult, drawn as a world draws people. People of sources take free places in any order, so
-    what several sources say of bodies and activities is mixed.
+    The default is a random adult, drawn as in a world. People of sources take free indices in any order, so the bodies
+    and activities of several sources are mixed.
     """
     count = agents - len(trial.robots)
     default = humans.People.sample(count, stream(seed, "people"))
@@ -99,7 +100,7 @@ def people_appearance(trial: Trial, people: InitialPeople, agents: int, seed: in
 
 
 def _some(body: str, activity: str, count: int, keys: tuple[Any, ...], outfit: int | None) -> list[PersonAppearance]:
-    """Draw ``count`` figures; each kind of draw has a stream of its own."""
+    """Draw ``count`` appearances; bodies and activities have separate random streams."""
     names, busy = body_names(body), activity.split()
     seed, *rest = keys
     clothes = stream(seed, *rest, "body")

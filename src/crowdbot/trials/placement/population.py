@@ -1,4 +1,4 @@
-"""Placing people: at random in a zone, clear of walls, robots and each other."""
+"""Placement of people at random in zones, clear of walls, robots and each other."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ def place(
     agents: Sequence[Agent] = (),
     recorded: Sequence[tuple[RecordedPeople, Sequence[Walk]]] = (),
 ) -> tuple[InitialPeople, list[tuple[Any, str]]]:
-    """Return the people of a trial at its beginning, and whatever could not be placed with a sentence each.
+    """Return the people at the beginning of a trial, and the elements that cannot be placed, each with a sentence.
 
-    Spawner k draws from ``stream(seed, "spawner", k, ...)`` only: places, goals, speeds and radii have a stream each.
-    Later spawners keep clear of the people of earlier ones, all of them of agents, robots and recorded people.
+    Spawner k draws from ``stream(seed, "spawner", k, ...)`` only, with separate streams for positions, goals, speeds
+    and radii. People keep clear of agents, robots, recorded people and the people of earlier spawners.
 
     >>> zone = [(0, 0), (2, 0), (2, 2), (0, 2)]
     >>> people, problems = place(Stage(), [Spawner(count=50, zone=zone, goal=zone, radius=0.3)], [], seed=0)
@@ -67,7 +67,7 @@ def place(
 
 
 def _standing(stage: Stage, agents: Sequence[Agent], taken: OccupiedDiscs) -> Iterator[tuple[Agent, str]]:
-    """Yield agents that stand in something, and take the places of the others."""
+    """Yield agents that overlap something, and add all agents to the occupied discs."""
     if not agents:
         return
     room = stage.clearance([agent.position for agent in agents])
@@ -109,7 +109,7 @@ def _replayed(one: RecordedPeople, walks: Sequence[Walk], index: int, seed: int)
 
 
 def _begin(walk: Walk) -> tuple[float, float]:
-    """Return where somebody is at the beginning of the trial, or comes in later."""
+    """Return the position of a recorded person at the beginning of the trial, or at the first appearance."""
     return tuple(float(np.interp(max(0.0, walk.time[0]), walk.time, walk.position[:, k])) for k in (0, 1))  # type: ignore[return-value]
 
 

@@ -1,4 +1,4 @@
-"""What makes the ways of people impossible: names that nothing has, goals nobody reaches, zones without room."""
+"""Checks of flows of people: unknown names, unreachable goals, zones without room."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ __all__ = ["arrival_count", "astray", "duplicate_names", "flows", "names"]
 Floats = NDArray[np.float64]
 
 BATCHES = 30
-"""So many batches of points of a zone are tried for one where a body has room."""
+"""Number of batches of points in which a place with room for a body is searched."""
 SPOTS = 6
-"""So many points of a zone stand for all."""
+"""Number of points that represent a zone."""
 OVERLAP = 1e-9
-"""Zones that share less than this [m2] touch only."""
+"""Largest overlap [m2] of zones that only touch."""
 
 
 def arrival_count(trial: Trial) -> int:
-    """Return about how many people come in."""
+    """Return the approximate number of people who enter."""
     return round(sum(source.arrival_count(trial.duration) for source in trial.sources))
 
 
 def names(checked: ValidationContext) -> Iterator[Problems]:
-    """Yield checks of names that are taken or that nothing has, and of people who have no way to go or two."""
+    """Yield checks of duplicate and unknown names, and of people with no goal or two."""
     trial = checked.trial
     yield duplicate_names(trial.journeys, "journey")
     yield from (_endless(stops) for _, stops in readable(trial.journeys, "stops"))
@@ -61,7 +61,7 @@ def names(checked: ValidationContext) -> Iterator[Problems]:
 
 
 def duplicate_names(things: Sequence[Any], others: str) -> Problems:
-    """Yield everything whose name an earlier one has."""
+    """Yield every element with the name of an earlier one."""
     known: set[str] = set()
     for k, name in readable(things, "name"):
         if name in known:
@@ -70,7 +70,7 @@ def duplicate_names(things: Sequence[Any], others: str) -> Problems:
 
 
 def flows(checked: ValidationContext) -> Iterator[Problems]:
-    """Yield checks of zones without room and of ways that lead nowhere."""
+    """Yield checks of zones without room and of unreachable stops."""
     trial = checked.trial
     yield _routed(checked)
     yield from (_entrance(checked.stage, source) for source in trial.sources)
@@ -89,7 +89,7 @@ def _routed(checked: ValidationContext) -> Problems:
 
 
 def _named(one: Any, word: str, names: DeclaredNames) -> Problems:
-    """Yield a name that nothing has."""
+    """Yield an element that refers to an unknown name."""
     if (name := getattr(one, word)) and names.lack(name):
         there = f"there are {', '.join(names.known)}" if names.known else f"no {word} has a name here"
         yield one, f"{word}={quote_value(name)} is not the name of a {word}{did_you_mean(name, names.known)}; {there}"
@@ -125,7 +125,7 @@ def _more_than_fit(trial: Trial) -> Problems:
 
 
 def _own(checked: ValidationContext, agent: Agent, parameter: AgentParameter) -> Problems:
-    """Yield a parameter that the model of a person does not have, or cannot take."""
+    """Yield a parameter that the model of a person does not have or allow."""
     crowds = [crowd for crowd in checked.crowds if crowd.name == agent.crowd or not agent.crowd]
     if not crowds:
         return
@@ -161,7 +161,7 @@ def _entrance(stage: Stage, source: SourceSpec) -> Problems:
 
 
 def astray(checked: ValidationContext, stop: Point | Direction | Zone) -> Iterator[tuple[Any, str, str]]:
-    """Yield a stop at a point where nobody can be: the stop, its field, and the end of a sentence."""
+    """Yield a stop at an inaccessible point: the stop, its field, and the end of a sentence."""
     import shapely
 
     if has_kind(stop, Point):
@@ -184,28 +184,28 @@ def _stop(checked: ValidationContext, stop: Point | Direction | Zone) -> Problem
 
 
 def _straight_out(one: Spawner | SourceSpec, number: int, way: Exit) -> Problems:
-    """Yield those who would leave where they come in."""
+    """Yield spawners and sources in an exit."""
     if area(one.zone).intersection(area(way.zone)).area > OVERLAP:
         called = repr(way.name) if way.name else str(number)
         yield one, f"zone overlaps exit {called}, where people would leave at once; move one of them"
 
 
 class _Place(NamedTuple):
-    """Where a way begins or ends; ``anywhere`` in it, or where it suits the person best."""
+    """Begin or end of a path: any point of it (``anywhere``), or the best one."""
 
     points: Points
     anywhere: bool = True
 
     @classmethod
     def of(cls, stop: Point | Direction | Zone) -> _Place | None:
-        """Return the place of a stop; None of a direction."""
+        """Return the place of a stop; None for a direction."""
         if has_kind(stop, Point):
             return cls(Points.of([(stop.x, stop.y)]))
         return cls(stop.points, stop.aim == "random") if has_kind(stop, Zone) else None
 
 
 def _first_leg(checked: ValidationContext, one: Any) -> Problems:
-    """Yield who finds no way around walls into the own journey or to the own goal."""
+    """Yield people without a path to their goal or to the first stop of their journey."""
     router = checked.router
     if router is None or router.unreachable != "error" or not (one.goal or one.journey):
         return
@@ -222,7 +222,7 @@ def _first_leg(checked: ValidationContext, one: Any) -> Problems:
 
 
 def _leg(checked: ValidationContext, number: int, here: Any, there: Any) -> Problems:
-    """Yield a stop to which no way around walls leads from the one before."""
+    """Yield a stop without a path from the previous one."""
     router = checked.router
     if router is None or router.unreachable != "error":
         return
@@ -246,14 +246,14 @@ def _reached(router: Router, here: Floats, there: Floats) -> bool:
 
 
 def _any(router: Router, points: Points) -> Sequence[Floats]:
-    """Return a few points of a zone, where a body has room if there are any; the point itself of a single one."""
+    """Return a few points of a zone, with room for a body if possible; a single point is returned as it is."""
     if len(points) == 1:
         return [np.array(points[0])]
     return _spots(router, points) or [*itertools.islice(_points(points), SPOTS)]
 
 
 def _spots(router: Router, points: Points) -> Sequence[Floats]:
-    """Return a few points of a zone at which a body has room."""
+    """Return a few points of a zone with room for a body."""
     return [*itertools.islice((point for point in _points(points) if router.holds(point[None])[0]), SPOTS)]
 
 

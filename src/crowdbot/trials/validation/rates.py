@@ -1,4 +1,4 @@
-"""Rates: which sensors of a type of robot do not fit the time step of a trial, and what becomes of them."""
+"""Rates: sensors of robot types whose rates do not fit the time step of a trial."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["fitting", "misfits", "trial_remarks"]
 
 
 def fitting(periods: Sequence[float]) -> float:
-    """Return a time step of at most 0.1 s [s] of which all periods [s] are whole numbers, 0 when it would be too short.
+    """Return a time step [s] of at most 0.1 s that divides all periods [s], 0 if it would be below 0.005 s.
 
     >>> fitting([0.16, 0.1, 0.02]), fitting([0.1, 0.0123])
     (0.02, 0.0)
@@ -41,7 +41,7 @@ def misfits(robot: RobotSpec, step: float) -> list[Mount]:
 
 
 def trial_remarks(trial: Trial) -> list[str]:
-    """Return a sentence for every robot whose sensors measure at other times than its type says.
+    """Return a sentence for every robot whose sensors measure at other rates than those of its type.
 
     >>> from crowdbot.models import ORCA
     >>> from crowdbot.navigation import Straight

@@ -1,4 +1,4 @@
-"""What makes a trial impossible although every value is allowed: places, overlaps, people who do not fit, periods."""
+"""Checks of a trial whose values are allowed one by one: places, overlaps, room for people, periods."""
 
 from __future__ import annotations
 
@@ -30,21 +30,21 @@ from .zones import areas, crooked
 __all__ = ["problems_of"]
 
 MOST_VALUES = 100_000_000
-"""An episode is held in memory: recorded scenes times agents must not exceed this."""
+"""Largest number of recorded scenes times agents; an episode is kept in memory."""
 MOST_ARRIVALS = 100_000
 NOBODY = Spawner(count=0, zone=Points.parse("0,0 1,0 0,1"))
-"""Stands in for a spawner whose people cannot be placed, so that those of others are drawn as ever."""
+"""Replaces a spawner that could not be read; the random streams of the other spawners stay the same."""
 WALKING = 1.6
-"""About how fast [m/s] people go from portal to portal."""
+"""Assumed speed [m/s] of people between portals."""
 
 
 def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) -> list[tuple[Any, str]]:
-    """Return every problem: the element that has it, and the end of a sentence about it.
+    """Return every problem: the element, and the end of a sentence.
 
     Args:
-        trial: partial if something in it could not be read.
-        crowds: as they stand in its file.
-        seed: places people with it; None is the trial's own.
+        trial: the trial, partial if it has a problem.
+        crowds: the crowds in its file.
+        seed: seed of the placement of people (default: the seed of the trial).
     """
     checked = ValidationContext(trial, crowds, seed)
     too_large = [*skip_unreadable(*_size(checked))]
@@ -73,7 +73,7 @@ def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) ->
 
 
 def _by_thing(rows: Sequence[tuple[Any, str, str]]) -> dict[int, set[str]]:
-    """Return the fields of elements that have a problem, by the ``id`` of the element."""
+    """Return the fields with a problem by the ``id`` of their element."""
     found: dict[int, set[str]] = {}
     for thing, name, _ in rows:
         found.setdefault(id(thing), set()).add(name)
@@ -81,7 +81,7 @@ def _by_thing(rows: Sequence[tuple[Any, str, str]]) -> dict[int, set[str]]:
 
 
 def _places(checked: ValidationContext) -> list[tuple[Any, str]]:
-    """Return who finds no place: without those who could not be read, and without groups, there is only more room."""
+    """Return the people who do not fit. Without unreadable people and groups there is only more room."""
     trial = checked.trial
     spawners = [_filled_or(spawner, NOBODY, "zone", "count", "radius", groups=()) for spawner in trial.spawners]
     agents = [_filled_or(agent, None, "x", "y", "radius") for agent in trial.agents]
@@ -128,7 +128,7 @@ def _periods(checked: ValidationContext) -> Problems:
 
 
 def _due(trial: Trial) -> Iterator[Iterator[tuple[Any, str, float]]]:
-    """Yield what happens again and again: whose it is, what it is called, and after how long [s]."""
+    """Yield all periods: the element, a name, and the period [s]."""
     yield _period(trial.recording, "period", "recording period")
     yield _period(trial.recording, "markers", "recording markers")
     for robot in trial.robots:
@@ -150,7 +150,7 @@ def _measuring(robot: RobotSpec, mount: Mount) -> Iterator[tuple[Any, str, float
 
 
 def _exact(trial: Trial, robot: RobotSpec) -> Problems:
-    """Yield a robot with sensors of its type that do not fit the time step although they must."""
+    """Yield a robot with ``sensor-rates="exact"`` and sensors that do not fit the time step."""
     if robot.sensor_rates == "exact" and (others := misfits(robot, trial.step)):
         rates = ", ".join(f"{mount.name} {mount.sensor.rate:g} Hz" for mount in others)
         step = fitting([trial.recording.period, robot.control_period, *(1.0 / mount.sensor.rate for mount in others)])
@@ -226,7 +226,7 @@ def _too_large(checked: ValidationContext) -> Problems:
 
 
 def _through(trial: Trial, people: int) -> int:
-    """Return about how many people at most come out of portals as new ones."""
+    """Return the approximate maximum number of new people from portals."""
     if not trial.portals:
         return 0
     shortest = min(math.hypot(portal.dx, portal.dy) for portal in trial.portals)
@@ -234,7 +234,7 @@ def _through(trial: Trial, people: int) -> int:
 
 
 def _stage_shapes(stage: Stage) -> list[tuple[Any, str, str]]:
-    """Return what of a stage has no shape: the element, the field, and why as the end of a sentence."""
+    """Return the parts of a stage with an invalid shape: the element, the field, and the end of a sentence."""
     obstacles = [(stage.obstacles[k], "points", crooked(points)) for k, points in readable(stage.obstacles, "points")]
     ground = [(stage, "walkable", crooked(points)) for _, points in readable([stage], "walkable") if points]
     return [(thing, name, f"{name} {wrong}") for thing, name, wrong in (*obstacles, *ground) if wrong]

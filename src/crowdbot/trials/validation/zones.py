@@ -1,4 +1,4 @@
-"""Zones of a trial, whoever has them: their shapes, and whether anybody can be there."""
+"""Zones of a trial: their shapes, and whether they are accessible."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .context import ValidationContext
 __all__ = ["Area", "areas", "crooked"]
 
 SMALLEST = 1e-6
-"""A zone that people come in by, go to or leave by is at least this large [m2]."""
+"""Smallest area [m2] of a zone where people enter, go or leave."""
 
 
 @dataclass(frozen=True)
@@ -24,12 +24,12 @@ class Area:
     """A zone of an element.
 
     Fields:
-        element: whose it is.
-        name: of its field.
-        label: what it is called.
-        points: its corners.
-        smallest: area that it must have [m2].
-        border: whether it may reach out of the walkable area, as an exit in a door does.
+        element: element of the zone.
+        name: name of its field.
+        label: name of the zone in messages.
+        points: corners.
+        smallest: smallest area [m2].
+        border: whether it may extend beyond the walkable area, like an exit in a door.
     """
 
     element: Any
@@ -40,12 +40,12 @@ class Area:
     border: bool = False
 
     def crooked(self) -> str:
-        """Return what is wrong with the shape as the end of a sentence, empty when it is right."""
+        """Return the problem of the shape as the end of a sentence, empty if there is none."""
         wrong = crooked(self.points, self.smallest)
         return wrong and f"{self.name.replace('_', '-')} {wrong}"
 
     def place_problem(self, stage: Stage) -> str:
-        """Return why nobody can be there as the end of a sentence, empty when somebody can."""
+        """Return why the zone is not accessible as the end of a sentence, empty if it is."""
         zone = area(self.points)
         if not (stage.meets(zone) if self.border else stage.holds(zone)):
             where = "lies" if self.border else "reaches"
@@ -55,7 +55,7 @@ class Area:
 
 
 def areas(checked: ValidationContext) -> list[Area]:
-    """Return every zone of a trial that could be read."""
+    """Return the readable zones of a trial."""
     trial, found = checked.trial, list[Area]()
     for group, label, smallest in ((trial.spawners, "spawn zone", 0.0), (trial.sources, "zone", SMALLEST)):
         found += _zones(group, "zone", label, smallest)
@@ -72,7 +72,7 @@ def _zones(things: Sequence[Any], name: str, label: str, smallest: float, border
 
 
 def crooked(points: Points, smallest: float = 0.0) -> str:
-    """Return why points are not the corners of a polygon, as the end of a sentence; empty when they are."""
+    """Return why points are not the corners of a polygon as the end of a sentence, empty if they are."""
     import shapely
 
     if len(set(points)) < 3:
