@@ -145,7 +145,7 @@ def page(file: Path) -> None:
         "",
         "## Trials from recordings",
         "",
-        'Trials with recorded people are not built in. `<recorded data="..." without="...">` replays any recording,',
+        'Trials with recorded people are not built in. `<recorded data="..." exclude="...">` replays any recording,',
         "with one person replaced by the robot (as in SocNavBench and the evaluation of RDS).",
         "",
         "## A long trial",

@@ -31,8 +31,8 @@ FLOWS = {
     "with": ("1D+", "with the robot", ("east",)),
     "against": ("1D-", "against the robot", ("west",)),
     "both": ("1Dx", "with and against the robot", ("east", "west")),
-    "cross": ("2D", "across its way, from one side", ("south",)),
-    "cross-both": ("2Dx", "across its way, from both sides", ("south", "north")),
+    "cross": ("2D", "across the path of the robot, from one side", ("south",)),
+    "cross-both": ("2Dx", "across the path of the robot, from both sides", ("south", "north")),
 }
 """Flows by name: name in the challenge, description, journeys of people."""
 
@@ -43,7 +43,7 @@ JOURNEYS = {
     "south": Zone(box(-24.0, -11.0, 24.0, -10.0), aim="nearest"),
     "north": Zone(box(-24.0, 10.0, 24.0, 11.0), aim="nearest"),
 }
-"""Distance of goals, beyond the portals, which nobody reaches."""
+"""Goals of people, beyond the portals, so nobody reaches them."""
 
 
 def turtlebot() -> RobotSpec:
