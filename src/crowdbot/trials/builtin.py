@@ -56,8 +56,8 @@ def load_trial(source: str | Path, *, trust: bool = False, **values: Any) -> Tri
         return _builtin(str(source), trust, values)
     if not path.exists() and not path.suffix and len(path.parts) == 1:
         raise TrialError(
-            f"there is no trial {str(source)!r}{did_you_mean(str(source), known)}: no file has this name,"
-            f" and built in are {', '.join(known)}"
+            f"there is no trial {str(source)!r}{did_you_mean(str(source), known)}: there is no such file;"
+            f" built-in trials are {', '.join(known)}"
         )
     trial = parse_trial(read_trial_bytes(path), place=str(path), folder=path.parent, trust=trust)
     return apply_values(trial, values, place=trial.name, trust=trust)

@@ -79,7 +79,7 @@ class Crowds(Mixture):
         names = [crowd.name for crowd in crowds]
         for k, name in enumerate(names):
             if not name and len(names) > 1:
-                yield k, "needs the attribute 'name': of several crowds each has its own"
+                yield k, "needs the attribute 'name': each of several crowds has its own"
             elif name in names[:k]:
                 yield k, f"name {name!r} is taken by another crowd; give each its own"
 

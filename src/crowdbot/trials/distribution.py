@@ -43,7 +43,7 @@ class Distribution:
     def __post_init__(self) -> None:
         allowed = {"number": (1,), "uniform": (2,), "normal": (2, 4)}
         if self.kind not in allowed:
-            raise InputError(f"{self.kind!r} is no distribution{did_you_mean(self.kind, allowed)}; use {FORMS}")
+            raise InputError(f"{self.kind!r} is not a distribution{did_you_mean(self.kind, allowed)}; use {FORMS}")
         if len(self.values) not in allowed[self.kind]:
             raise InputError(f"{self.kind} takes {_counts(allowed[self.kind])} numbers, not {len(self.values)}")
         object.__setattr__(self, "values", tuple(float(v) for v in self.values))

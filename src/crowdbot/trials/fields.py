@@ -105,7 +105,7 @@ class Constraint:
         return ""
 
     def _reach(self, low: float, high: float) -> str:
-        return "" if low == high else f", and it reaches from {low:g} to {high:g}"
+        return "" if low == high else f", and it ranges from {low:g} to {high:g}"
 
 
 @dataclass(frozen=True)

@@ -63,8 +63,8 @@ def rider_problems(rider: str, kind: str) -> list[str]:
     """Return the problems of the rider of a robot of a type.
 
     >>> rider_problems("woman-36", "wheelchair"), rider_problems("woman", "pepper")
-    ([], ['rider="woman" needs type="wheelchair": nothing else has a seat; leave it out'])
+    ([], ['rider="woman" needs type="wheelchair": other robots have no seat; leave it out'])
     """
     if rider and kind != "wheelchair":
-        return [f'rider={quote_value(rider)} needs type="wheelchair": nothing else has a seat; leave it out']
+        return [f'rider={quote_value(rider)} needs type="wheelchair": other robots have no seat; leave it out']
     return [problem.replace("body=", "rider=", 1) for problem in word_problems(rider, "")]

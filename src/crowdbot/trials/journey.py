@@ -121,7 +121,7 @@ class Portal:
     def __post_init__(self) -> None:
         check(self)
         if self.dx == 0.0 and self.dy == 0.0:
-            raise InputError("needs dx or dy: how far from there people come out")
+            raise InputError("needs dx or dy: the offset of the exit from the zone")
 
     def gate(self) -> world.PortalTransfer:
         """Return the portal of a world."""

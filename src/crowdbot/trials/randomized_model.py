@@ -61,14 +61,15 @@ class RandomizedModel(CrowdModel):
             word = name.replace("_", "-")
             if name not in known:
                 words = [one.replace("_", "-") for one in known]
-                yield f"{word} cannot be drawn{did_you_mean(word, words)}; what can be is {', '.join(words) or 'none'}"
+                choices = f"available parameters: {', '.join(words) or 'none'}"
+                yield f"{word} cannot be drawn{did_you_mean(word, words)}; {choices}"
                 continue
             for value in drawn.extent:
                 try:
                     dataclasses.replace(model, **{name: value})
                 except InputError as error:
                     low, high = drawn.extent
-                    yield f'{word}="{drawn}" reaches from {low:g} to {high:g}: {error}'
+                    yield f'{word}="{drawn}" ranges from {low:g} to {high:g}: {error}'
                     break
 
     @property

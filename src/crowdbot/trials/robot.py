@@ -144,17 +144,17 @@ class RobotSpec:
             if (0, None) in readable([self], name):
                 object.__setattr__(self, name, usual.get(name))
         if self.drive is None:
-            raise InputError(f"needs the element <drive>: how it moves; or a type, such as {builtin_robots()[0]}")
+            raise InputError(f"needs the element <drive>, or a type such as {builtin_robots()[0]}")
         if isinstance(self.sensors, list | tuple):
             object.__setattr__(self, "sensors", _merged(self.type_sensors, self.sensors))
         check(self)
         if self.type and (self.height, self.mass) != (usual["height"], usual["mass"]):
             raise InputError(
-                f"has height or mass beside type={quote_value(self.type)}, which has its own; leave them out"
+                f"has height or mass in addition to type={quote_value(self.type)}, which defines them; leave them out"
             )
         if self.cameras and not any(_drawn(mount) for mount in self.type_sensors):
             raise InputError(
-                'has cameras="true" but none would come: it needs a type with colour cameras, such as pepper, and its'
+                'has cameras="true" but no such cameras: it needs a type with colour cameras, such as pepper, and its'
                 " sensors; leave it out"
             )
         for problem in rider_problems(self.rider, self.type):
@@ -162,7 +162,7 @@ class RobotSpec:
         for mount in self.sensors:
             links = self.body.model.links
             if mount.link and mount.link not in links:
-                raise InputError(f"sensor {mount.name!r} sits on link={quote_value(mount.link)}, which it has not"
+                raise InputError(f"sensor {mount.name!r} is on link={quote_value(mount.link)}, which does not exist"
                                  f"{did_you_mean(mount.link, links)}")  # fmt: skip
 
     @staticmethod
@@ -298,8 +298,8 @@ def _folder(name: str, folder: Path | None, trust: bool) -> Path | None:
     if name in known:
         return None
     raise InputError(
-        f"type={quote_value(name)} is no robot{did_you_mean(name, known)}: no folder {name[:60]!r} with a robot.xml"
-        f" is in {root.resolve()}, and built in are {', '.join(known)}"
+        f"type={quote_value(name)} is not a robot{did_you_mean(name, known)}: no folder {name[:60]!r} with a robot.xml"
+        f" is in {root.resolve()}; built-in robots are {', '.join(known)}"
     )
 
 

@@ -91,7 +91,7 @@ def _is_mounted(kind: Any) -> bool:
 
 def _check_attribute(here: Element, kind: Any, last: str) -> None:
     if WORD.fullmatch(last) is None:
-        raise InputError("is no path; write elements and an attribute, such as robot[NAME]/goal/x")
+        raise InputError("is not a path; write elements and an attribute, such as robot[NAME]/goal/x")
     if kind is None or _is_mounted(kind):
         return
     words = [part.word for part in outline(kind) if part.role == "attribute"]
@@ -106,7 +106,7 @@ def _inner(here: Element, kind: Any, step: str) -> tuple[Element, Any]:
     parts = {word: part for part in (outline(kind) if kind else ()) for word in part.words}
     if match is None or match[1] not in parts:
         near = did_you_mean(step, parts)
-        raise InputError(f"leads nowhere: <{here.tag}> has no element {step[:40]!r}{near}; it has {', '.join(parts)}")
+        raise InputError(f"does not exist: <{here.tag}> has no element {step[:40]!r}{near}; it has {', '.join(parts)}")
     part: FieldSpec = parts[match[1]]
     inner = None if part.role == "plugged" else part.elements[match[1]]
     there = [child for child in here.children if child.tag == match[1]]
@@ -122,15 +122,15 @@ def _chosen(here: Element, there: list[Element], kind: Any, tag: str, which: str
         if len(there) == 1:
             return there[0]
         if not there:
-            raise InputError(f"leads nowhere: there are 0 <{tag}>")
+            raise InputError(f"does not exist: there are 0 <{tag}>")
         choices = ", ".join(f"{tag}[{name or k}]" for k, name in enumerate(names, 1))
         raise InputError(f"is not clear: <{here.tag}> has {len(there)} <{tag}>; choose one: {choices}")
     if which in names:
         return there[names.index(which)]
     if not which.isdecimal():
-        raise InputError(f"leads nowhere: no <{tag}> has the name {which!r}{did_you_mean(which, names)}")
+        raise InputError(f"does not exist: no <{tag}> has the name {which!r}{did_you_mean(which, names)}")
     if not 1 <= int(which) <= len(there):
-        raise InputError(f"leads nowhere: there are {len(there)} <{tag}>, numbered from 1")
+        raise InputError(f"does not exist: there are {len(there)} <{tag}>, numbered from 1")
     return there[int(which) - 1]
 
 

@@ -51,7 +51,7 @@ def area_of(text: str, folder: Path | None, trust: bool) -> shapely.Geometry:
     try:
         shape = shapely.from_wkt(text)
     except (shapely.errors.ShapelyError, ValueError) as error:
-        raise InputError(f"is no WKT: {_first(error)}") from None
+        raise InputError(f"is not WKT: {_first(error)}") from None
     return _checked(shape, "the WKT")
 
 
@@ -73,7 +73,7 @@ def _from_file(path: Path, changed: int, size: int) -> shapely.Geometry:
         text = data.decode("utf-8-sig")
         shape = shapely.from_wkt(text) if WKT.match(text) else shapely.from_geojson(text)
     except UnicodeDecodeError:
-        raise InputError(f"{path.name} is no text; an area is a file of WKT or GeoJSON") from None
+        raise InputError(f"{path.name} is not text; an area is a file of WKT or GeoJSON") from None
     except (shapely.errors.ShapelyError, ValueError) as error:
         raise InputError(f"{path.name} is neither WKT nor GeoJSON of an area: {_first(error)}") from None
     return _checked(shape, path.name)
@@ -87,7 +87,7 @@ def _checked(shape: Any, what: str) -> shapely.Geometry:
     import shapely
 
     if shape is None:
-        raise InputError(f"{what} holds no polygon")
+        raise InputError(f"{what} contains no polygon")
     found = [part for part in _parts(shape) if not part.is_empty]
     parts = [part for part in found if part.geom_type == "Polygon"]
     if not parts:
@@ -167,14 +167,14 @@ def _yaml(data: bytes, name: str) -> _Map:
             rows[key.strip()] = value.split(" #")[0].strip().strip("\"'")
     missing = [key for key in ("image", "resolution", "origin") if not rows.get(key)]
     if missing:
-        raise InputError(f"{name} is no map of ROS: it does not say {' and '.join(missing)}")
+        raise InputError(f"{name} is not a ROS map: it does not say {' and '.join(missing)}")
     try:
         resolution = float(rows["resolution"])
         origin = [float(part) for part in rows["origin"].strip("[]").split(",")]
         negate = rows.get("negate", "0") in ("1", "true", "True")
         occupied, free = float(rows.get("occupied_thresh", "0.65")), float(rows.get("free_thresh", "0.196"))
     except ValueError as error:
-        raise InputError(f"{name} is no map of ROS: {error}") from None
+        raise InputError(f"{name} is not a ROS map: {error}") from None
     numbers = (resolution, *origin, occupied, free)
     if not all(math.isfinite(one) and abs(one) <= LARGEST for one in numbers) or resolution <= 0.0:
         raise InputError(f"{name} has a resolution or an origin that is not finite, too large, or not above 0")
@@ -216,7 +216,7 @@ def _pgm(data: bytes, name: str) -> NDArray[np.float64]:
     head = re.match(rb"(P[25])(?:\s+(?:#[^\n]*\n\s*)*)(\d{1,6})(?:\s+(?:#[^\n]*\n\s*)*)(\d{1,6})"
                     rb"(?:\s+(?:#[^\n]*\n\s*)*)(\d{1,5})\s", data)  # fmt: skip
     if head is None:
-        raise InputError(f"{name} is no PGM image (P5 or P2); save the map as .pgm")
+        raise InputError(f"{name} is not a PGM image (P5 or P2); save the map as .pgm")
     width, height, top = (int(head[k]) for k in (2, 3, 4))
     if not (0 < width * height <= MOST_CELLS and 0 < top < 65_536):
         raise InputError(f"{name} has {width} x {height} cells of up to {top}; at most {MOST_CELLS} cells are read")
@@ -229,7 +229,7 @@ def _pgm(data: bytes, name: str) -> NDArray[np.float64]:
     else:
         words = body.split()
         if len(words) < width * height or not all(word.isdigit() and len(word) < 6 for word in words):
-            raise InputError(f"{name} is cut off, or holds something that is no number")
+            raise InputError(f"{name} is cut off, or holds something that is not a number")
         cells = np.array(words[: width * height], dtype=np.int64)
     grey: NDArray[np.float64] = cells.reshape(height, width).astype(np.float64) / top
     return np.minimum(grey, 1.0)

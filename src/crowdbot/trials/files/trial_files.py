@@ -25,7 +25,7 @@ def resolve_file(name: str, folder: Path | None, trust: bool) -> Path:
         path = (root / name).resolve()
         there = path.is_file()
     except (OSError, ValueError, RuntimeError):
-        raise InputError(f"{name[:80]!r} is no name of a file") from None
+        raise InputError(f"{name[:80]!r} is not a file name") from None
     if not trust and not path.is_relative_to(root.resolve()):
         raise InputError(f"the file {name[:80]!r} lies outside {root}; move it there, or pass --trust to allow it")
     if not there:

@@ -91,12 +91,12 @@ def plan_of(path: str | Path, root: str | Path | None = None) -> Plan:
         )
     experience = _find(tree, "experience") or Element("experience")
     notes = {
-        f"<{element.tag}> of the configuration: recording and plug-ins are chosen anew": None
+        f"<{element.tag}> of the configuration: recording and plug-ins are not imported": None
         for element in tree.children
         if element.tag in ("log", "Recording", "AddOns")
     }
     if _text(experience, "userHeight"):
-        notes["userHeight of the configuration: the height of eyes is that of whoever takes part"] = None
+        notes["userHeight of the configuration: the eye height is that of the participant"] = None
     return Plan(
         path,
         path.parent,
@@ -128,7 +128,7 @@ def trials_of(plan: Plan, user: int) -> tuple[list[tuple[str, Trial]], tuple[str
     if not rows:
         said = "; ".join(notes)
         raise TrialError(
-            f"{plan.path}: no trial of the order {plan.fill_in(plan.pattern, user)[:80]!r} is read: {said}"
+            f"{plan.path}: no trial of the order {plan.fill_in(plan.pattern, user)[:80]!r} can be read: {said}"
         )
     return rows, tuple(notes)
 
@@ -181,7 +181,7 @@ class _Reader:
         scene = _find(root, "scene")
         mesh = scene.attributes.get("meshName", "") if scene else ""
         if mesh:
-            self.note(f"stage {mesh[:40]!r}: only the walls and pillars that the trial lists are carried over")
+            self.note(f"stage {mesh[:40]!r}: only the walls and pillars in the trial are imported")
         walls: list[Wall] = []
         solids: list[Obstacle] = []
         for one in _kinds(root, "obstacles", "obstacle"):
@@ -250,7 +250,7 @@ class _Reader:
                 lx, ly = _place(look)
                 heading = math.atan2(ly - y, lx - x)
         else:
-            self.note(f"agents steered by {law.tag} stand still: they were moved from outside, or from a table")
+            self.note(f"agents steered by {law.tag} stand still: they were moved externally or from a table")
         return Agent(
             name=f"agent{k + 1}",
             x=x,
@@ -284,7 +284,7 @@ class _Reader:
         else:
             goal = RobotGoal(x + 10.0 * math.cos(heading), y + 10.0 * math.sin(heading), 0.5)
             self.note("robots had no goal: it is set 10 m ahead of each")
-        self.note("robots were steered from outside and had bodies: they are now discs with a differential drive, ORCA")
+        self.note("robots were controlled externally: they are now discs with a differential drive and ORCA")
         return RobotSpec(
             name=f"robot{k + 1}" if k else "robot",
             x=x,

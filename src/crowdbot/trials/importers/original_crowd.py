@@ -65,9 +65,9 @@ KINDS: dict[str, tuple[type[CrowdModel], dict[str, str]]] = {
 }
 KINDS["RosSimConfig"] = KINDS["RVOconfig"]
 CLOSED = {
-    "HelbingConfig": "its binary is closed: the social force model stands in",
-    "TangentConfig": "its binary is closed: the tangent model stands in",
-    "UMANSconfig": "its policies are in another file: ORCA stands in",
+    "HelbingConfig": "its binary is closed: the social force model replaces it",
+    "TangentConfig": "its binary is closed: the tangent model replaces it",
+    "UMANSconfig": "its policies are in another file: ORCA replaces it",
 }
 
 
@@ -136,7 +136,7 @@ def crowds_of(walkers: Sequence[Walker], note: Callable[[str], None]) -> tuple[C
         made[kind] = _model(KINDS[kind][0], first, note)
     for walker in walkers:
         if walker.sim is not None and walker.sim.tag not in KINDS:
-            note(f"the simulator {walker.sim.tag}: ORCA stands in")
+            note(f"the simulator {walker.sim.tag}: ORCA replaces it")
     own = []
     for row, walker in zip(rows, walkers, strict=True):
         model = made[walker.kind]

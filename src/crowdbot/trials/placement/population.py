@@ -76,7 +76,7 @@ def _standing(stage: Stage, agents: Sequence[Agent], taken: OccupiedDiscs) -> It
         if free < agent.radius - EXACT:
             yield agent, f"stands {where}, {free:.2f} m from a wall, and the radius is {agent.radius:g} m"
         elif not taken.free(agent.x, agent.y, agent.radius - EXACT, gap=0.0):
-            yield agent, f"stands {where} in somebody else; move one of them"
+            yield agent, f"stands {where} and overlaps a person or a robot; move one of them"
         taken.add(agent.x, agent.y, agent.radius)
 
 

@@ -91,7 +91,7 @@ def _routed(checked: ValidationContext) -> Problems:
 def _named(one: Any, word: str, names: DeclaredNames) -> Problems:
     """Yield an element that refers to an unknown name."""
     if (name := getattr(one, word)) and names.lack(name):
-        there = f"there are {', '.join(names.known)}" if names.known else f"no {word} has a name here"
+        there = f"there are {', '.join(names.known)}" if names.known else f"no {word} has a name"
         yield one, f"{word}={quote_value(name)} is not the name of a {word}{did_you_mean(name, names.known)}; {there}"
 
 
@@ -100,14 +100,14 @@ def _goals(one: Any) -> Problems:
     if one.goal and one.journey:
         yield one, 'has both a goal and a journey; give one of them: goal="x,y x,y x,y" or journey="name"'
     elif stands and has_kind(one, Spawner) and (one.goal or one.journey):
-        yield one, 'has people who stand, and a goal or a journey; leave out stands="true", or where they go'
+        yield one, 'has stands="true" and a goal or a journey; leave out one of them'
     elif not (one.goal or one.journey or stands):
         yield one, 'needs a goal zone or a journey: goal="x,y x,y x,y" or journey="name"'
 
 
 def _arrival(one: Agent | Spawner | SourceSpec) -> Problems:
     if one.journey and one.arrival != "leave" and not one.goal and not getattr(one, "stands", False):
-        yield one, f'arrival="{one.arrival}" goes with a goal zone; for a journey say then="{one.arrival}" in it'
+        yield one, f'arrival="{one.arrival}" needs a goal zone; for a journey write then="{one.arrival}" in it'
 
 
 def _begins(source: SourceSpec) -> Problems:
@@ -180,7 +180,7 @@ def _stop(checked: ValidationContext, stop: Point | Direction | Zone) -> Problem
                 yield stop, f"zone reaches into {block}; move it, or cut it there"
         elif not len(_spots(checked.router, stop.points)):
             radius = checked.router.radius
-            yield stop, f"zone leaves no room for a body of radius {radius:g} m, which routing asks for"
+            yield stop, f"zone leaves no room for a body of radius {radius:g} m, which routing requires"
 
 
 def _straight_out(one: Spawner | SourceSpec, number: int, way: Exit) -> Problems:
@@ -218,7 +218,7 @@ def _first_leg(checked: ValidationContext, one: Any) -> Problems:
     )
     start, word = (one.zone, "zone") if not has_kind(one, Agent) else (Points.of([one.position]), "place")
     if first and not _leads(router, _Place(start), first):
-        yield one, f"no way leads from its {word} to {what} for a body of radius {router.radius:g} m"
+        yield one, f"there is no path from its {word} to {what} for a body of radius {router.radius:g} m"
 
 
 def _leg(checked: ValidationContext, number: int, here: Any, there: Any) -> Problems:
@@ -228,7 +228,7 @@ def _leg(checked: ValidationContext, number: int, here: Any, there: Any) -> Prob
         return
     begin, end = _Place.of(here), _Place.of(there)
     if begin and end and not _leads(router, begin, end):
-        yield there, f"no way leads to stop {number} from the one before for a body of radius {router.radius:g} m"
+        yield there, f"there is no path to stop {number} from the one before for a body of radius {router.radius:g} m"
 
 
 def _leads(router: Router, begin: _Place, end: _Place) -> bool:

@@ -47,8 +47,8 @@ def trial_remarks(trial: Trial) -> list[str]:
     >>> from crowdbot.navigation import Straight
     >>> from crowdbot.trials import RobotGoal
     >>> pepper = RobotSpec(type="pepper", x=0, y=0, goal=RobotGoal(5, 0), navigator=Straight())
-    >>> [sentence[-36:] for sentence in trial_remarks(Trial(name="t", duration=1, crowd=ORCA(), robots=[pepper]))]
-    ['step="0.01" all would be as they are']
+    >>> [sentence[-32:] for sentence in trial_remarks(Trial(name="t", duration=1, crowd=ORCA(), robots=[pepper]))]
+    ['step="0.01" no period is rounded']
     """
     found = []
     clock = FreeClock(trial.step)
@@ -63,10 +63,10 @@ def trial_remarks(trial: Trial) -> list[str]:
         if others:
             words = "; ".join(f"{' and '.join(names)} {row}" for row, names in rows.items())
             step = fitting([period for mount in others for period in _periods(mount)])
-            exact = f'; with step="{step:g}" all would be as they are' if step else ""
+            exact = f'; with step="{step:g}" no period is rounded' if step else ""
             found.append(
-                f"robot {robot.name!r} of type {robot.type!r} measures as often as the time step of {trial.step:g} s"
-                f" allows: {words}{exact}"
+                f"robot {robot.name!r} of type {robot.type!r} rounds the periods of its sensors to the time step of"
+                f" {trial.step:g} s: {words}{exact}"
             )
     return found
 

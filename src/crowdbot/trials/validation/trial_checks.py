@@ -111,7 +111,7 @@ def _recording(checked: ValidationContext, one: RecordedPeople) -> Problems:
         yield one, f"data={quote_value(one.data)} {error}"
         return
     if not walks:
-        yield one, f"data={quote_value(one.data)} has nobody from {one.begin:g} s on; take an earlier begin"
+        yield one, f"data={quote_value(one.data)} contains nobody after {one.begin:g} s; use an earlier begin"
 
 
 def _periods(checked: ValidationContext) -> Problems:
@@ -119,7 +119,7 @@ def _periods(checked: ValidationContext) -> Problems:
     clock = FreeClock(trial.step)
     periods = [*skip_unreadable(*_due(trial))]
     step = fitting([period for _, _, period in periods])
-    fits = f'; with step="{step:g}" all are' if step else ""
+    fits = f'; step="{step:g}" divides all periods' if step else ""
     for thing, name, period in periods:
         try:
             clock.every(period)
@@ -179,12 +179,12 @@ def _camera(robots: Sequence[RobotSpec], camera: Camera) -> Problems:
     bodies = {name: robots[k] for k, name in readable(robots, "name")}
     if names.lack(camera.robot):
         near = did_you_mean(camera.robot, bodies)
-        yield camera, f"robot={quote_value(camera.robot)} is no robot{near}; there are {', '.join(bodies) or 'none'}"
+        yield camera, f"robot={quote_value(camera.robot)} is not a robot{near}; there are {', '.join(bodies) or 'none'}"
     elif camera.robot not in bodies:
         return
     elif camera.link and camera.link not in (links := bodies[camera.robot].body.model.links):
         near = did_you_mean(camera.link, links)
-        yield camera, f"link={quote_value(camera.link)} is no link of robot {camera.robot!r}{near}"
+        yield camera, f"link={quote_value(camera.link)} is not a link of robot {camera.robot!r}{near}"
 
 
 def _size(checked: ValidationContext) -> Iterator[Problems]:
@@ -206,7 +206,7 @@ def _too_many(checked: ValidationContext) -> Problems:
     if coming > MOST_ARRIVALS:
         yield (
             checked.trial.sources[0],
-            f"lets people in, about {coming} together with other sources, more than {MOST_ARRIVALS}; take a lower rate,"
+            f"produces about {coming} people together with other sources, more than {MOST_ARRIVALS}; take a lower rate,"
             " an earlier end or fewer at most",
         )
 
@@ -221,7 +221,7 @@ def _too_large(checked: ValidationContext) -> Problems:
         yield (
             trial.recording,
             f"recording period {trial.recording.period:g} s makes {scenes:.0f} scenes of {agents} agents, more than"
-            f" {MOST_VALUES} places together; take a longer period, a shorter duration or fewer people",
+            f" {MOST_VALUES} positions in total; use a longer period, a shorter duration or fewer people",
         )
 
 

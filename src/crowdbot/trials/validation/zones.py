@@ -51,7 +51,7 @@ class Area:
             where = "lies" if self.border else "reaches"
             return f"{self.label} {where} outside the walkable area; move it, or make the area larger"
         block = stage.block_around(zone)
-        return block and f"{self.label} lies inside {block}; nobody can be there, move it"
+        return block and f"{self.label} lies inside {block}; it is not accessible, move it"
 
 
 def areas(checked: ValidationContext) -> list[Area]:
@@ -79,7 +79,7 @@ def crooked(points: Points, smallest: float = 0.0) -> str:
         return "must be at least 3 different points"
     polygon = area(points)
     if not polygon.is_valid:
-        return f"is no simple polygon: {shapely.is_valid_reason(polygon).lower()}; list its corners in order"
+        return f"is not a simple polygon: {shapely.is_valid_reason(polygon).lower()}; list its corners in order"
     if polygon.area > smallest:
         return ""
     return f"has {polygon.area:g} m2, it must have more than {smallest:g} m2" if polygon.area > 0.0 else "has no area"

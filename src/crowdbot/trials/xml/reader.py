@@ -163,7 +163,7 @@ class XmlReader:
             if inner.tag not in known:
                 words = ", ".join(f"<{word}>" for word in known) or "none"
                 meant = did_you_mean(inner.tag, known)
-                self._report(inner, f"is no element of <{element.tag}>{meant}; it takes {words}")
+                self._report(inner, f"is not an element of <{element.tag}>{meant}; it takes {words}")
                 if not meant:
                     continue
                 inner.tag = nearest_name(inner.tag, known)
@@ -173,7 +173,7 @@ class XmlReader:
             count[part.name] += 1
             if count[part.name] > part.max:
                 often = "twice; one is allowed" if part.max == 1 else f"more than {part.max} times"
-                self._report(inner, f"stands in <{element.tag}> {often}")
+                self._report(inner, f"occurs in <{element.tag}> {often}")
                 continue
             found[part.name].append(self._child(part, inner))
         gathered = {part.name: self._gather(part, found[part.name]) for part in known.values()}
@@ -181,7 +181,7 @@ class XmlReader:
 
     def _check_text(self, element: Element) -> None:
         if element.stray:
-            self._report(element, f"holds the text {element.stray[:40]!r}; values are written as attributes")
+            self._report(element, f"contains the text {element.stray[:40]!r}; values are written as attributes")
 
     def _gather(self, part: FieldSpec, made: list[Any]) -> Any:
         """Return the value of a field with these child elements, None if there are none."""
@@ -199,7 +199,7 @@ class XmlReader:
         if part.plug is None:
             return self._element(part.elements[inner.tag], inner)
         for deeper in inner.children:
-            self._report(deeper, f"is no element of <{inner.tag}>; it takes none")
+            self._report(deeper, f"is not an element of <{inner.tag}>; it takes none")
         self._check_text(inner)
         kind = self._type(part.plug, inner)
         if kind is not None:
