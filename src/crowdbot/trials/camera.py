@@ -90,13 +90,15 @@ def overview(stage: Stage, places: np.ndarray) -> Camera:
     )
     low, high = points.min(axis=0), points.max(axis=0)
     low, high = np.minimum(low, 0.5 * (low + high) - 2.0), np.maximum(high, 0.5 * (low + high) + 2.0)
-    every = [_looking(low, high, stage.wall_height, *np.radians(way)) for way in itertools.product(VIEWS, PITCHES)]
+    every = [
+        _overview_camera(low, high, stage.wall_height, *np.radians(way)) for way in itertools.product(VIEWS, PITCHES)
+    ]
     found = [one for k, one in enumerate(every) if k < len(PITCHES) or one.z < FARTHEST]
-    hidden = _hidden(stage, low, high, np.array([(one.x, one.y, one.z) for one in found]))
+    hidden = _hidden_shares(stage, low, high, np.array([(one.x, one.y, one.z) for one in found]))
     return found[int(np.argmax(hidden <= hidden.min() + ENOUGH))]
 
 
-def _looking(low: np.ndarray, high: np.ndarray, height: float, view: float, pitch: float) -> Camera:
+def _overview_camera(low: np.ndarray, high: np.ndarray, height: float, view: float, pitch: float) -> Camera:
     """Return the nearest camera with this field of view and pitch that shows the whole box ``low`` to ``high`` [m]."""
     wide, tall = 960, 600
     forward, up = (0.0, math.cos(pitch), -math.sin(pitch)), (0.0, math.sin(pitch), math.cos(pitch))
@@ -114,7 +116,7 @@ def _looking(low: np.ndarray, high: np.ndarray, height: float, view: float, pitc
     )  # fmt: skip
 
 
-def _hidden(stage: Stage, low: np.ndarray, high: np.ndarray, eyes: np.ndarray) -> np.ndarray:
+def _hidden_shares(stage: Stage, low: np.ndarray, high: np.ndarray, eyes: np.ndarray) -> np.ndarray:
     """Return ``[N]`` the share of the walkable floor that walls hide from ``eyes`` ``[N, 3]``."""
     import shapely
 

@@ -269,9 +269,9 @@ def check(element: Any) -> None:
     for part in outline(cls):
         value = getattr(element, part.name)
         if part.role == "attribute":
-            value = _brought(element, part, value)
+            value = _convert_attribute(element, part, value)
         elif part.role == "children" and part.into is None:
-            value = _listed(element, part, value)
+            value = _convert_children(element, part, value)
         elif not (isinstance(value, _contract(part)) or (value is None and not part.required)):
             raise InputError(
                 f"{cls.__name__}: {part.name} is a {type(value).__name__}, it must be a {_contract(part).__name__}"
@@ -286,7 +286,7 @@ def _contract(part: FieldSpec) -> type:
     return part.plug.places()[1] if part.plug else part.kind
 
 
-def _listed(element: Any, part: FieldSpec, value: Any) -> tuple[Any, ...]:
+def _convert_children(element: Any, part: FieldSpec, value: Any) -> tuple[Any, ...]:
     name = type(element).__name__
     if not isinstance(value, list | tuple):
         raise InputError(f"{name}: {part.name} is a {type(value).__name__}, it must be a list")
@@ -302,7 +302,7 @@ def _listed(element: Any, part: FieldSpec, value: Any) -> tuple[Any, ...]:
     return tuple(value)
 
 
-def _brought(element: Any, part: FieldSpec, value: Any) -> Any:
+def _convert_attribute(element: Any, part: FieldSpec, value: Any) -> Any:
     if value is None and part.default is None:
         return value
     try:

@@ -76,7 +76,7 @@ def check_trial(trial: Trial, seed: int | None = None) -> None:
         seed: seed of the placement of people (default: the seed of the trial).
     """
     found = problems_of(trial, Crowds.spread(trial.crowd), seed)
-    sentences = [f"trial {trial.name!r}: {_called(thing)} {sentence}" for thing, sentence in found]
+    sentences = [f"trial {trial.name!r}: {_describe(thing)} {sentence}" for thing, sentence in found]
     if trial.sweeps and not sentences:
         reader, root = XmlReader(trial.name, trial.folder or Path.cwd(), True), element_of(trial)
         problems = _variant_problems(reader, ReaderResult(trial.name, root), seed)
@@ -99,7 +99,7 @@ def _variant_problems(reader: XmlReader, base: ReaderResult, seed: int | None) -
     return lambda root: _read(reader, root, seed).new_sentences(base.problems)
 
 
-def _called(thing: Any) -> str:
+def _describe(thing: Any) -> str:
     if has_kind(thing, Obstacle):
         return "obstacle"
     name = getattr(thing, "name", "")

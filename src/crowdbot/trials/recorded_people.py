@@ -113,7 +113,7 @@ class RecordedPeople:
         path = resolve_file(self.data, self.folder, self.trust)
         stamp = path.stat()
         options = (self.fps, self.format or None, self.units or None, self.time_base)
-        return _loaded(path, stamp.st_mtime_ns, stamp.st_size, *options)
+        return _load(path, stamp.st_mtime_ns, stamp.st_size, *options)
 
     def walks(self, duration: float) -> tuple[Walk, ...]:
         """Return the people of a trial of this duration [s], by id.
@@ -147,7 +147,7 @@ def _ids(without: str) -> frozenset[int]:
 
 
 @functools.lru_cache(maxsize=4)
-def _loaded(
+def _load(
     path: Path, changed: int, size: int, fps: float | None, format: str | None, units: str | None, time_base: str
 ) -> Trajectories:
     """Return a recording, which is read again only if its file has changed."""

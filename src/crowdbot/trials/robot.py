@@ -146,13 +146,13 @@ class RobotSpec:
         if self.drive is None:
             raise InputError(f"needs the element <drive>, or a type such as {builtin_robots()[0]}")
         if isinstance(self.sensors, list | tuple):
-            object.__setattr__(self, "sensors", _merged(self.type_sensors, self.sensors))
+            object.__setattr__(self, "sensors", _merge_sensors(self.type_sensors, self.sensors))
         check(self)
         if self.type and (self.height, self.mass) != (usual["height"], usual["mass"]):
             raise InputError(
                 f"has height or mass in addition to type={quote_value(self.type)}, which defines them; leave them out"
             )
-        if self.cameras and not any(_drawn(mount) for mount in self.type_sensors):
+        if self.cameras and not any(_is_rendered(mount) for mount in self.type_sensors):
             raise InputError(
                 'has cameras="true" but no such cameras: it needs a type with colour cameras, such as pepper, and its'
                 " sensors; leave it out"
@@ -202,7 +202,7 @@ class RobotSpec:
             Mount(name=m.name, sensor=m.sensor, link=m.link, x=m.x, y=m.y, z=m.z, roll=m.roll, pitch=m.pitch,
                   heading=m.yaw)
             for m in self._kind.mounts
-            if self.cameras or not _drawn(m)
+            if self.cameras or not _is_rendered(m)
         )  # fmt: skip
 
     @functools.cached_property
@@ -266,12 +266,12 @@ class RobotSpec:
         return _kind(self.type, self.folder, self.trust)
 
 
-def _drawn(mount: Mount | world.SensorMount) -> bool:
+def _is_rendered(mount: Mount | world.SensorMount) -> bool:
     """Return whether a sensor needs a renderer."""
     return mount.sensor.renders
 
 
-def _merged(carried: tuple[Mount, ...], own: Any) -> tuple[Mount, ...]:
+def _merge_sensors(carried: tuple[Mount, ...], own: Any) -> tuple[Mount, ...]:
     """Return the sensors of a type, each replaced by the given one of its name, then the other given ones."""
     named = {getattr(mount, "name", ""): mount for mount in own}
     names = {mount.name for mount in carried}
@@ -306,12 +306,12 @@ def _folder(name: str, folder: Path | None, trust: bool) -> Path | None:
 def _kind(name: str, folder: Path | None, trust: bool) -> world.Robot:
     place = _folder(name, folder, trust)
     if place is None:
-        return _built_in(name)
-    return _loaded(place, trust, (place / "robot.xml").stat().st_mtime_ns, reads_only())
+        return _load_builtin(name)
+    return _load_folder(place, trust, (place / "robot.xml").stat().st_mtime_ns, reads_only())
 
 
 @functools.cache
-def _built_in(name: str) -> world.Robot:
+def _load_builtin(name: str) -> world.Robot:
     return world.Robot.load(_assets(name))
 
 
@@ -322,7 +322,7 @@ def _assets(name: str) -> Path:
 
 
 @functools.lru_cache(maxsize=16)
-def _loaded(place: Path, trust: bool, stamp: int, described: bool) -> world.Robot:
+def _load_folder(place: Path, trust: bool, stamp: int, described: bool) -> world.Robot:
     try:
         return world.Robot.load(place, trust=trust)
     except RobotError as error:

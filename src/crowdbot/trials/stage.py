@@ -119,8 +119,8 @@ class Stage:
         """Rings ``[N, 2]`` [m] as :meth:`crowdbot.core.Walls.of` takes them: solid on the left of each edge."""
         walls = [points for _, points in readable(self.walls, "points")]
         lines = [np.array(points[k : k + 2]) for points in walls for k in range(len(points) - 1)]
-        solids = [_turned(points, counter_clockwise=True) for _, points in readable(self.obstacles, "points")]
-        around = [_turned(self.walkable, counter_clockwise=False)] if self.walkable else []
+        solids = [_orient(points, counter_clockwise=True) for _, points in readable(self.obstacles, "points")]
+        around = [_orient(self.walkable, counter_clockwise=False)] if self.walkable else []
         fixed = (*lines, *solids, *around, *_rings(self._ground, solid=False), *_rings(self._map, solid=True))
         return (*fixed, *(ring for _, ring in readable(self.props, "ring")))
 
@@ -159,13 +159,13 @@ class Stage:
     def block_around(self, shape: Any) -> str:
         """Return the name of the solid that contains a shapely geometry, empty if there is none."""
         found = self._blocks.query(shape, predicate="covered_by")
-        return self._blocks_called[int(found.min())] if len(found) else ""
+        return self._block_names[int(found.min())] if len(found) else ""
 
     def block_in(self, shape: Any, smallest: float) -> str:
         """Return the name of a solid that overlaps a shapely geometry by more than ``smallest`` [m2], or nothing."""
         near = sorted(self._blocks.query(shape, predicate="intersects").tolist())
         blocks = self._blocks.geometries
-        return next((self._blocks_called[k] for k in near if shape.intersection(blocks[k]).area > smallest), "")
+        return next((self._block_names[k] for k in near if shape.intersection(blocks[k]).area > smallest), "")
 
     @functools.cached_property
     def _ground(self) -> tuple[Any, ...]:
@@ -195,7 +195,7 @@ class Stage:
         return shapely.STRtree([*solids, *self._map, *props])
 
     @functools.cached_property
-    def _blocks_called(self) -> list[str]:
+    def _block_names(self) -> list[str]:
         """Names of the blocks in messages."""
         solids = [f"obstacle {k + 1} of the stage" for k, _ in readable(self.obstacles, "points")]
         props = [f"prop {k + 1} of the stage" for k, _ in readable(self.props, "ring")]
@@ -218,8 +218,8 @@ def _rings(polygons: Sequence[Any], solid: bool) -> list[NDArray[np.float64]]:
     """Return the rings of solid polygons, or of a walkable area."""
     rings = []
     for polygon in polygons:
-        rings.append(_turned(polygon.exterior.coords[:-1], counter_clockwise=solid))
-        rings += [_turned(inner.coords[:-1], counter_clockwise=not solid) for inner in polygon.interiors]
+        rings.append(_orient(polygon.exterior.coords[:-1], counter_clockwise=solid))
+        rings += [_orient(inner.coords[:-1], counter_clockwise=not solid) for inner in polygon.interiors]
     return rings
 
 
@@ -230,7 +230,7 @@ def area(points: Points) -> Any:
     return shapely.Polygon(points)
 
 
-def _turned(points: Any, counter_clockwise: bool) -> NDArray[np.float64]:
+def _orient(points: Any, counter_clockwise: bool) -> NDArray[np.float64]:
     ring = np.array(points)
     x, y = ring[:, 0], ring[:, 1]
     doubled = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))

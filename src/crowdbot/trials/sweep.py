@@ -107,11 +107,11 @@ def sweep_problems(
         for sentence in others(_with(root, kind, pairs))[:3]:
             if sentence not in known:
                 known[sentence] = None
-                found.append(_blamed(root, kind, pairs, sentence, others))
+                found.append(_find_cause(root, kind, pairs, sentence, others))
     return found
 
 
-def _blamed(
+def _find_cause(
     root: Element, kind: type, pairs: Sequence[tuple[Sweep, str]], sentence: str, others: Callable[[Element], list[str]]
 ) -> tuple[Sweep, str]:
     """Return the sweep that causes a problem, and the sentence with its value; with all values if several do."""

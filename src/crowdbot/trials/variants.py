@@ -65,11 +65,11 @@ def expand_sweeps(trial: Trial, trust: bool = True) -> tuple[Trial, ...]:
     """
     if not trial.sweeps:
         return (trial,)
-    rows = _combined(trial)
+    rows = _combinations(trial)
     return tuple(_variant(trial, row, trust) for row in rows)
 
 
-def _combined(trial: Trial) -> list[tuple[str, ...]]:
+def _combinations(trial: Trial) -> list[tuple[str, ...]]:
     count = math.prod(len(sweep.each) for sweep in trial.sweeps)
     if count > MOST_VARIANTS:
         raise TrialError(f"trial {trial.name!r}: its sweeps make {count} variants, at most {MOST_VARIANTS}")

@@ -67,7 +67,7 @@ def draw_appearances(people: InitialPeople, seed: int) -> list[PersonAppearance]
         keys: tuple[Any, ...] = ("agent", k) if k < agents else ("spawner", k - agents)
         if isinstance(owner, Agent | Spawner):
             outfit = getattr(owner, "outfit", None)
-            found += _some(owner.body, owner.activity, count, (seed, *keys), outfit)
+            found += _draw(owner.body, owner.activity, count, (seed, *keys), outfit)
         else:
             found += [PersonAppearance("", -1, "")] * count
     return found
@@ -85,32 +85,32 @@ def people_appearance(trial: Trial, people: InitialPeople, agents: int, seed: in
     bodies = " ".join(source.body for source in trial.sources)
     busy = " ".join(source.activity or "walk" for source in trial.sources) if any(
         source.activity for source in trial.sources) else ""  # fmt: skip
-    said += _some(bodies, busy, count - len(said), (seed, "sources"), None)
+    said += _draw(bodies, busy, count - len(said), (seed, "sources"), None)
     names = [figure.body or one.name for figure, one in zip(said, default.persons, strict=True)]
     outfits = [
         figure.outfit if figure.outfit >= 0 else int(own) for figure, own in zip(said, default.variation, strict=True)
     ]
     carriers = [k for k, robot in enumerate(trial.robots) if robot.rider]
     for k in carriers:
-        (figure,) = _some(trial.robots[k].rider, "", 1, (seed, "rider", k), None)
+        (figure,) = _draw(trial.robots[k].rider, "", 1, (seed, "rider", k), None)
         names.append(figure.body)
         outfits.append(figure.outfit)
     busy_with = tuple(figure.activity or "walk" for figure in said)
     return PeopleAppearance(humans.People.of(names, outfits), busy_with, tuple(len(people) + k for k in carriers))
 
 
-def _some(body: str, activity: str, count: int, keys: tuple[Any, ...], outfit: int | None) -> list[PersonAppearance]:
+def _draw(body: str, activity: str, count: int, keys: tuple[Any, ...], outfit: int | None) -> list[PersonAppearance]:
     """Draw ``count`` appearances; bodies and activities have separate random streams."""
     names, busy = body_names(body), activity.split()
     seed, *rest = keys
     clothes = stream(seed, *rest, "body")
     who = clothes.integers(len(names), size=count).tolist() if names else [-1] * count
-    worn = clothes.integers(OUTFITS, size=count).tolist() if names else [-1] * count
+    outfits = clothes.integers(OUTFITS, size=count).tolist() if names else [-1] * count
     doing = stream(seed, *rest, "activity").integers(len(busy), size=count).tolist() if busy else [-1] * count
     return [
         PersonAppearance(
             names[who[k]] if names else "",
-            (worn[k] if outfit is None else outfit) if names else (-1 if outfit is None else outfit),
+            (outfits[k] if outfit is None else outfit) if names else (-1 if outfit is None else outfit),
             busy[doing[k]] if busy else "",
         )
         for k in range(count)

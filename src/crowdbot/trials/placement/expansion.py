@@ -53,8 +53,8 @@ def expand_spawners(trial: Trial, seed: int | None = None) -> Trial:
     agents = []
     for a, figure in enumerate(draw_appearances(people, chosen)):
         owner = people.owners[int(people.owner[a])]
-        agent = _dressed(owner if isinstance(owner, Agent) else _agent(people, a, owner), figure)
-        agents.append(_with_own(trial, agent, a, chosen))
+        agent = _with_appearance(owner if isinstance(owner, Agent) else _agent(people, a, owner), figure)
+        agents.append(_with_parameters(trial, agent, a, chosen))
     return dataclasses.replace(trial, agents=tuple(agents), spawners=(), seed=chosen)
 
 
@@ -78,12 +78,12 @@ def _agent(people: Any, a: int, spawner: Any) -> Agent:
     )
 
 
-def _dressed(agent: Agent, figure: PersonAppearance) -> Agent:
+def _with_appearance(agent: Agent, figure: PersonAppearance) -> Agent:
     outfit = figure.outfit if figure.outfit >= 0 else None
     return dataclasses.replace(agent, body=figure.body, outfit=outfit, activity=figure.activity)
 
 
-def _with_own(trial: Trial, agent: Agent, a: int, seed: int) -> Agent:
+def _with_parameters(trial: Trial, agent: Agent, a: int, seed: int) -> Agent:
     """Return the agent with the parameters that are drawn for it from the distributions of its crowd."""
     names = crowd_names(trial.crowd)
     k = names.index(agent.crowd) if agent.crowd else 0

@@ -45,13 +45,13 @@ def place(
     taken = OccupiedDiscs(2.0 * max(widest, default=1.0))
     for robot in robots:
         taken.add(robot.x, robot.y, robot.radius)
-    problems: list[tuple[Any, str]] = [*_standing(stage, agents, taken)]
-    replayed = [_replayed(one, walks, k, seed) for k, (one, walks) in enumerate(recorded)]
+    problems: list[tuple[Any, str]] = [*_place_agents(stage, agents, taken)]
+    replayed = [_recorded_people(one, walks, k, seed) for k, (one, walks) in enumerate(recorded)]
     for _, walks in recorded:
         for walk in walks:
             if walk.time[0] <= 0.0:
                 taken.add(*_begin(walk), 0.3)
-    groups = [_explicit(agents)]
+    groups = [_agents(agents)]
     for index, spawner in enumerate(spawners):
         if len(problems) >= MOST_PROBLEMS:
             break
@@ -66,7 +66,7 @@ def place(
     return InitialPeople.concatenate([*groups, *replayed], sizes, owners, walks), problems
 
 
-def _standing(stage: Stage, agents: Sequence[Agent], taken: OccupiedDiscs) -> Iterator[tuple[Agent, str]]:
+def _place_agents(stage: Stage, agents: Sequence[Agent], taken: OccupiedDiscs) -> Iterator[tuple[Agent, str]]:
     """Yield agents that overlap something, and add all agents to the occupied discs."""
     if not agents:
         return
@@ -80,7 +80,7 @@ def _standing(stage: Stage, agents: Sequence[Agent], taken: OccupiedDiscs) -> It
         taken.add(agent.x, agent.y, agent.radius)
 
 
-def _explicit(agents: Sequence[Agent]) -> InitialPeople:
+def _agents(agents: Sequence[Agent]) -> InitialPeople:
     place = np.array([agent.position for agent in agents], dtype=np.float64).reshape(-1, 2)
     goal = np.array([agent.goal[0] if agent.goal else agent.position for agent in agents], dtype=np.float64)
     return InitialPeople(
@@ -94,7 +94,7 @@ def _explicit(agents: Sequence[Agent]) -> InitialPeople:
     )
 
 
-def _replayed(one: RecordedPeople, walks: Sequence[Walk], index: int, seed: int) -> InitialPeople:
+def _recorded_people(one: RecordedPeople, walks: Sequence[Walk], index: int, seed: int) -> InitialPeople:
     count = len(walks)
     last = np.array([walk.position[-1] for walk in walks], dtype=np.float64).reshape(-1, 2)
     return InitialPeople(

@@ -130,7 +130,7 @@ class SpawnPlacement(NamedTuple):
         radius = spawner.radius.draw(self.stream("radius"), spawner.count)
         speed = spawner.speed.draw(self.stream("speed"), spawner.count)
         sizes = self._sizes()
-        position = self._together(radius, sizes) if sizes else self._scattered(radius)
+        position = self._place_groups(radius, sizes) if sizes else self._place_singles(radius)
         count = len(position)
         where = np.array(position, dtype=np.float64).reshape(-1, 2)
         goal = _goals(self.stage, spawner, radius[:count], self.stream("goal")) if spawner.goal else where.copy()
@@ -165,7 +165,7 @@ class SpawnPlacement(NamedTuple):
             left -= sizes[-1]
         return sorted(sizes, reverse=True)
 
-    def _scattered(self, radius: Floats) -> list[tuple[float, float]]:
+    def _place_singles(self, radius: Floats) -> list[tuple[float, float]]:
         places = _clear_points(self.stage, self.spawner.zone, self.stream("place"))
         position: list[tuple[float, float]] = []
         for r in radius:
@@ -176,7 +176,7 @@ class SpawnPlacement(NamedTuple):
             position.append(found)
         return position
 
-    def _together(self, radius: Floats, sizes: Sequence[int]) -> list[tuple[float, float]]:
+    def _place_groups(self, radius: Floats, sizes: Sequence[int]) -> list[tuple[float, float]]:
         places = _clear_points(self.stage, self.spawner.zone, self.stream("place"))
         rng, position = self.stream("member"), list[tuple[float, float]]()
         for size in sizes:

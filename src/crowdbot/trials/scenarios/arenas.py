@@ -139,7 +139,7 @@ def four_blocks(people: int, passage: float) -> Trial:
     )
 
 
-def _turned(points: Points, angle: float) -> Points:
+def _rotate(points: Points, angle: float) -> Points:
     """Return points rotated about the origin."""
     along, across = math.cos(angle), math.sin(angle)
     return Points.of(
@@ -152,7 +152,7 @@ def _crowd(name: str, people: int, away: float, angle: float, speed: float) -> S
     half = max(0.8, math.sqrt(people) / 2.0)
     zone = box(-away - half, -half, -away + half, half)
     goal = box(away - half, -half, away + half, half)
-    return Spawner(name=name, count=people, zone=_turned(zone, angle), goal=_turned(goal, angle), speed=number(speed))
+    return Spawner(name=name, count=people, zone=_rotate(zone, angle), goal=_rotate(goal, angle), speed=number(speed))
 
 
 def one_against_ten(people: int, angle: float, speed: float) -> Trial:
@@ -189,8 +189,8 @@ def _formation(name: str, people: int, away: float, angle: float) -> list[Agent]
     """Return people in ranks, 1 m apart, each with a goal mirrored at the centre."""
     wide = math.ceil(math.sqrt(people))
     places = [(-away - k // wide + (wide - 1) / 2.0, k % wide - (wide - 1) / 2.0) for k in range(people)]
-    starts = _turned(Points.of(places), angle)
-    goals = _turned(Points.of([(x + 2.0 * away, y) for x, y in places]), angle)
+    starts = _rotate(Points.of(places), angle)
+    goals = _rotate(Points.of([(x + 2.0 * away, y) for x, y in places]), angle)
     return [
         Agent(name=f"{name}{k + 1}", x=x, y=y, goal=Points.of([goal]), speed=1.3)
         for k, ((x, y), goal) in enumerate(zip(starts, goals, strict=True))

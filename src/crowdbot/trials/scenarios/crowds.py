@@ -52,7 +52,7 @@ def _count(density: float, length: float, width: float) -> int:
     return round(density * length * width)
 
 
-def _flowing(name: str, width: float, flows: dict[str, float], groups: float, gap: float = 12.0) -> Trial:
+def _flow_corridor(name: str, width: float, flows: dict[str, float], groups: float, gap: float = 12.0) -> Trial:
     """Return a corridor in which people walk east and west at densities [1/m2], and a robot goes east."""
     y = width / 2.0 - 0.35
     zone = box(-HALF + 0.5, -y, HALF - 0.5, y)
@@ -76,17 +76,17 @@ def _fields(one: Spawner) -> dict[str, Any]:
 
 def one_way_with(density: float, width: float, groups: float) -> Trial:
     """People walk in the direction of the robot."""
-    return _flowing("one-way-with", width, {"east": density}, groups)
+    return _flow_corridor("one-way-with", width, {"east": density}, groups)
 
 
 def one_way_against(density: float, width: float, groups: float) -> Trial:
     """People walk against the robot."""
-    return _flowing("one-way-against", width, {"west": density}, groups)
+    return _flow_corridor("one-way-against", width, {"west": density}, groups)
 
 
 def two_way(density: float, width: float, groups: float) -> Trial:
     """People walk in both directions."""
-    return _flowing("two-way", width, {"east": density / 2.0, "west": density / 2.0}, groups)
+    return _flow_corridor("two-way", width, {"east": density / 2.0, "west": density / 2.0}, groups)
 
 
 def density_ladder(density: float) -> Trial:

@@ -25,7 +25,7 @@ from crowdbot.world import Router
 
 from .context import DeclaredNames, Problems, ValidationContext
 
-__all__ = ["arrival_count", "astray", "duplicate_names", "flows", "names"]
+__all__ = ["arrival_count", "duplicate_names", "flows", "inaccessible_stops", "names"]
 
 Floats = NDArray[np.float64]
 
@@ -46,18 +46,18 @@ def names(checked: ValidationContext) -> Iterator[Problems]:
     """Yield checks of duplicate and unknown names, and of people with no goal or two."""
     trial = checked.trial
     yield duplicate_names(trial.journeys, "journey")
-    yield from (_endless(stops) for _, stops in readable(trial.journeys, "stops"))
+    yield from (_endless_stops(stops) for _, stops in readable(trial.journeys, "stops"))
     yield _more_than_fit(trial)
     for one in checked.people:
         yield _goals(one)
         yield _arrival(one)
-        yield _named(one, "journey", DeclaredNames.of(trial.journeys))
-        yield _named(one, "crowd", checked.crowd_names)
+        yield _unknown_name(one, "journey", DeclaredNames.of(trial.journeys))
+        yield _unknown_name(one, "crowd", checked.crowd_names)
         if has_kind(one, SourceSpec):
-            yield _begins(one)
+            yield _arrival_times(one)
         if has_kind(one, Agent):
-            yield from (_own(checked, one, parameter) for parameter in one.parameters)
-    yield from (_named(one, "crowd", checked.crowd_names) for one in trial.recorded)
+            yield from (_parameter(checked, one, parameter) for parameter in one.parameters)
+    yield from (_unknown_name(one, "crowd", checked.crowd_names) for one in trial.recorded)
 
 
 def duplicate_names(things: Sequence[Any], others: str) -> Problems:
@@ -72,23 +72,23 @@ def duplicate_names(things: Sequence[Any], others: str) -> Problems:
 def flows(checked: ValidationContext) -> Iterator[Problems]:
     """Yield checks of zones without room and of unreachable stops."""
     trial = checked.trial
-    yield _routed(checked)
+    yield _routing(checked)
     yield from (_entrance(checked.stage, source) for source in trial.sources)
     for _, stops in readable(trial.journeys, "stops"):
         yield from (_stop(checked, stop) for stop in stops)
     coming: tuple[Spawner | SourceSpec, ...] = (*trial.spawners, *trial.sources)
-    yield from (_straight_out(one, k, way) for one in coming for k, way in enumerate(trial.exits, 1))
+    yield from (_exit_overlap(one, k, way) for one in coming for k, way in enumerate(trial.exits, 1))
     yield from (_first_leg(checked, one) for one in checked.people)
     for _, stops in readable(trial.journeys, "stops"):
         yield from (_leg(checked, k, *pair) for k, pair in enumerate(itertools.pairwise(stops), 2))
 
 
-def _routed(checked: ValidationContext) -> Problems:
+def _routing(checked: ValidationContext) -> Problems:
     if why := checked.no_routing:
         yield checked.trial.routing, f"is impossible on this stage: {why}"
 
 
-def _named(one: Any, word: str, names: DeclaredNames) -> Problems:
+def _unknown_name(one: Any, word: str, names: DeclaredNames) -> Problems:
     """Yield an element that refers to an unknown name."""
     if (name := getattr(one, word)) and names.lack(name):
         there = f"there are {', '.join(names.known)}" if names.known else f"no {word} has a name"
@@ -110,7 +110,7 @@ def _arrival(one: Agent | Spawner | SourceSpec) -> Problems:
         yield one, f'arrival="{one.arrival}" needs a goal zone; for a journey write then="{one.arrival}" in it'
 
 
-def _begins(source: SourceSpec) -> Problems:
+def _arrival_times(source: SourceSpec) -> Problems:
     if source.begin >= source.end:
         yield source, f"begin {source.begin:g} s must be before end {source.end:g} s"
 
@@ -124,7 +124,7 @@ def _more_than_fit(trial: Trial) -> Problems:
         yield last, f"makes {first} people at the beginning, more than the capacity {trial.capacity}"
 
 
-def _own(checked: ValidationContext, agent: Agent, parameter: AgentParameter) -> Problems:
+def _parameter(checked: ValidationContext, agent: Agent, parameter: AgentParameter) -> Problems:
     """Yield a parameter that the model of a person does not have or allow."""
     crowds = [crowd for crowd in checked.crowds if crowd.name == agent.crowd or not agent.crowd]
     if not crowds:
@@ -138,7 +138,7 @@ def _own(checked: ValidationContext, agent: Agent, parameter: AgentParameter) ->
         yield parameter, sentence.replace("drawn", "given", 1)
 
 
-def _endless(stops: Sequence[Any]) -> Problems:
+def _endless_stops(stops: Sequence[Any]) -> Problems:
     for k, stop in enumerate(stops[:-1]):
         if has_kind(stop, Direction):
             yield stop, f"is stop {k + 1} of {len(stops)} and has no end; a direction must be the last stop"
@@ -160,7 +160,7 @@ def _entrance(stage: Stage, source: SourceSpec) -> Problems:
         )
 
 
-def astray(checked: ValidationContext, stop: Point | Direction | Zone) -> Iterator[tuple[Any, str, str]]:
+def inaccessible_stops(checked: ValidationContext, stop: Point | Direction | Zone) -> Iterator[tuple[Any, str, str]]:
     """Yield a stop at an inaccessible point: the stop, its field, and the end of a sentence."""
     import shapely
 
@@ -183,7 +183,7 @@ def _stop(checked: ValidationContext, stop: Point | Direction | Zone) -> Problem
             yield stop, f"zone leaves no room for a body of radius {radius:g} m, which routing requires"
 
 
-def _straight_out(one: Spawner | SourceSpec, number: int, way: Exit) -> Problems:
+def _exit_overlap(one: Spawner | SourceSpec, number: int, way: Exit) -> Problems:
     """Yield spawners and sources in an exit."""
     if area(one.zone).intersection(area(way.zone)).area > OVERLAP:
         called = repr(way.name) if way.name else str(number)
@@ -217,7 +217,7 @@ def _first_leg(checked: ValidationContext, one: Any) -> Problems:
         else f"the first stop of journey {one.journey!r}"
     )
     start, word = (one.zone, "zone") if not has_kind(one, Agent) else (Points.of([one.position]), "place")
-    if first and not _leads(router, _Place(start), first):
+    if first and not _is_path(router, _Place(start), first):
         yield one, f"there is no path from its {word} to {what} for a body of radius {router.radius:g} m"
 
 
@@ -227,17 +227,17 @@ def _leg(checked: ValidationContext, number: int, here: Any, there: Any) -> Prob
     if router is None or router.unreachable != "error":
         return
     begin, end = _Place.of(here), _Place.of(there)
-    if begin and end and not _leads(router, begin, end):
+    if begin and end and not _is_path(router, begin, end):
         yield there, f"there is no path to stop {number} from the one before for a body of radius {router.radius:g} m"
 
 
-def _leads(router: Router, begin: _Place, end: _Place) -> bool:
-    begins, ends = _any(router, begin.points), _any(router, end.points)
+def _is_path(router: Router, begin: _Place, end: _Place) -> bool:
+    begins, ends = _sample_points(router, begin.points), _sample_points(router, end.points)
     every, last = (all if begin.anywhere else any), (all if end.anywhere else any)
-    return every(last(_reached(router, here, there) for there in ends) for here in begins)
+    return every(last(_is_reachable(router, here, there) for there in ends) for here in begins)
 
 
-def _reached(router: Router, here: Floats, there: Floats) -> bool:
+def _is_reachable(router: Router, here: Floats, there: Floats) -> bool:
     try:
         router.towards(here, there)
     except InputError:
@@ -245,7 +245,7 @@ def _reached(router: Router, here: Floats, there: Floats) -> bool:
     return True
 
 
-def _any(router: Router, points: Points) -> Sequence[Floats]:
+def _sample_points(router: Router, points: Points) -> Sequence[Floats]:
     """Return a few points of a zone, with room for a body if possible; a single point is returned as it is."""
     if len(points) == 1:
         return [np.array(points[0])]

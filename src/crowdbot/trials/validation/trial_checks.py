@@ -23,9 +23,9 @@ from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
 
 from .context import DeclaredNames, Problems, ValidationContext
-from .flow_checks import arrival_count, astray, duplicate_names, flows, names
+from .flow_checks import arrival_count, duplicate_names, flows, inaccessible_stops, names
 from .rates import fitting, misfits
-from .zones import areas, crooked
+from .zones import areas, shape_problem
 
 __all__ = ["problems_of"]
 
@@ -50,18 +50,21 @@ def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) ->
     too_large = [*skip_unreadable(*_size(checked))]
     found = [
         *skip_unreadable(
-            _periods(checked), *(_exact(trial, robot) for robot in trial.robots), *_names(checked), *names(checked)
+            _periods(checked),
+            *(_exact_rates(trial, robot) for robot in trial.robots),
+            *_names(checked),
+            *names(checked),
         ),
         *too_large,
     ]
-    shapes = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.crooked())]
+    shapes = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.shape_problem())]
     shapes += _stage_shapes(trial.stage)
     checked = checked.without(_by_thing(shapes))
     lost = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.place_problem(checked.stage))]
     lost += [
         row
         for _, stops in readable(trial.journeys, "stops")
-        for row in skip_unreadable(*(astray(checked, s) for s in stops))
+        for row in skip_unreadable(*(inaccessible_stops(checked, s) for s in stops))
     ]
     checked = checked.without(_by_thing(lost))
     found += [(thing, sentence) for thing, _, sentence in (*shapes, *lost)]
@@ -117,7 +120,7 @@ def _recording(checked: ValidationContext, one: RecordedPeople) -> Problems:
 def _periods(checked: ValidationContext) -> Problems:
     trial = checked.trial
     clock = FreeClock(trial.step)
-    periods = [*skip_unreadable(*_due(trial))]
+    periods = [*skip_unreadable(*_all_periods(trial))]
     step = fitting([period for _, _, period in periods])
     fits = f'; step="{step:g}" divides all periods' if step else ""
     for thing, name, period in periods:
@@ -127,20 +130,20 @@ def _periods(checked: ValidationContext) -> Problems:
             yield thing, f"{name} {period:g} s is not a whole number of time steps of {trial.step:g} s{fits}"
 
 
-def _due(trial: Trial) -> Iterator[Iterator[tuple[Any, str, float]]]:
+def _all_periods(trial: Trial) -> Iterator[Iterator[tuple[Any, str, float]]]:
     """Yield all periods: the element, a name, and the period [s]."""
     yield _period(trial.recording, "period", "recording period")
     yield _period(trial.recording, "markers", "recording markers")
     for robot in trial.robots:
         yield _period(robot, "control_period", "control-period")
-        yield from (_measuring(robot, mount) for _, mounts in readable([robot], "sensors") for mount in mounts)
+        yield from (_sensor_periods(robot, mount) for _, mounts in readable([robot], "sensors") for mount in mounts)
 
 
 def _period(thing: Any, name: str, called: str) -> Iterator[tuple[Any, str, float]]:
     yield thing, called, getattr(thing, name)
 
 
-def _measuring(robot: RobotSpec, mount: Mount) -> Iterator[tuple[Any, str, float]]:
+def _sensor_periods(robot: RobotSpec, mount: Mount) -> Iterator[tuple[Any, str, float]]:
     if mount in robot.type_sensors:
         return
     if not math.isnan(mount.sensor.rate):  # known only when code runs
@@ -149,7 +152,7 @@ def _measuring(robot: RobotSpec, mount: Mount) -> Iterator[tuple[Any, str, float
         yield mount, "delay", mount.sensor.delay
 
 
-def _exact(trial: Trial, robot: RobotSpec) -> Problems:
+def _exact_rates(trial: Trial, robot: RobotSpec) -> Problems:
     """Yield a robot with ``sensor-rates="exact"`` and sensors that do not fit the time step."""
     if robot.sensor_rates == "exact" and (others := misfits(robot, trial.step)):
         rates = ", ".join(f"{mount.name} {mount.sensor.rate:g} Hz" for mount in others)
@@ -235,19 +238,21 @@ def _through(trial: Trial, people: int) -> int:
 
 def _stage_shapes(stage: Stage) -> list[tuple[Any, str, str]]:
     """Return the parts of a stage with an invalid shape: the element, the field, and the end of a sentence."""
-    obstacles = [(stage.obstacles[k], "points", crooked(points)) for k, points in readable(stage.obstacles, "points")]
-    ground = [(stage, "walkable", crooked(points)) for _, points in readable([stage], "walkable") if points]
+    obstacles = [
+        (stage.obstacles[k], "points", shape_problem(points)) for k, points in readable(stage.obstacles, "points")
+    ]
+    ground = [(stage, "walkable", shape_problem(points)) for _, points in readable([stage], "walkable") if points]
     return [(thing, name, f"{name} {wrong}") for thing, name, wrong in (*obstacles, *ground) if wrong]
 
 
 def _robots(stage: Stage, robots: Sequence[RobotSpec]) -> Iterator[Problems]:
     for k, robot in enumerate(robots):
-        yield _standing(stage, robot, "starts", robot)
-        yield from (_standing(stage, robot, "has its goal", goal) for _, goal in readable([robot], "goal"))
-        yield from (_apart(robot, other) for other in robots[:k])
+        yield _robot_place(stage, robot, "starts", robot)
+        yield from (_robot_place(stage, robot, "has its goal", goal) for _, goal in readable([robot], "goal"))
+        yield from (_robot_overlap(robot, other) for other in robots[:k])
 
 
-def _standing(stage: Stage, robot: RobotSpec, word: str, there: RobotSpec | RobotGoal) -> Problems:
+def _robot_place(stage: Stage, robot: RobotSpec, word: str, there: RobotSpec | RobotGoal) -> Problems:
     import shapely
 
     spot, reach = there.position, there.tolerance if has_kind(there, RobotGoal) else 0.0
@@ -261,7 +266,7 @@ def _standing(stage: Stage, robot: RobotSpec, word: str, there: RobotSpec | Robo
         yield robot, f"{word} {room:.2f} m from a wall, and its radius is {robot.radius:g} m"
 
 
-def _apart(robot: RobotSpec, other: RobotSpec) -> Problems:
+def _robot_overlap(robot: RobotSpec, other: RobotSpec) -> Problems:
     away = float(np.hypot(robot.x - other.x, robot.y - other.y))
     if away < robot.radius + other.radius:
         yield (

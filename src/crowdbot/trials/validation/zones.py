@@ -13,7 +13,7 @@ from crowdbot.trials.stage import Stage, area
 
 from .context import ValidationContext
 
-__all__ = ["Area", "areas", "crooked"]
+__all__ = ["Area", "areas", "shape_problem"]
 
 SMALLEST = 1e-6
 """Smallest area [m2] of a zone where people enter, go or leave."""
@@ -39,9 +39,9 @@ class Area:
     smallest: float = 0.0
     border: bool = False
 
-    def crooked(self) -> str:
+    def shape_problem(self) -> str:
         """Return the problem of the shape as the end of a sentence, empty if there is none."""
-        wrong = crooked(self.points, self.smallest)
+        wrong = shape_problem(self.points, self.smallest)
         return wrong and f"{self.name.replace('_', '-')} {wrong}"
 
     def place_problem(self, stage: Stage) -> str:
@@ -71,7 +71,7 @@ def _zones(things: Sequence[Any], name: str, label: str, smallest: float, border
     return [Area(things[k], name, label, points, smallest, border) for k, points in readable(things, name) if points]
 
 
-def crooked(points: Points, smallest: float = 0.0) -> str:
+def shape_problem(points: Points, smallest: float = 0.0) -> str:
     """Return why points are not the corners of a polygon as the end of a sentence, empty if they are."""
     import shapely
 

@@ -115,7 +115,7 @@ def _values(kind: Any, rule: Constraint) -> Element:
         return _simple({}, "truth", [])
     if kind is str:
         rows = [("enumeration", choice) for choice in rule.choices]
-        return _simple({}, "xs:string", rows or ([("pattern", _translated(rule.pattern))] if rule.pattern else []))
+        return _simple({}, "xs:string", rows or ([("pattern", _translate(rule.pattern))] if rule.pattern else []))
     rows = [("pattern", NUMBER)]
     if rule.exclusive_min is not None:
         rows.append(("minExclusive", f"{rule.exclusive_min:g}"))
@@ -125,7 +125,7 @@ def _values(kind: Any, rule: Constraint) -> Element:
     return _simple({}, "xs:double", rows)
 
 
-def _translated(pattern: str) -> str:
+def _translate(pattern: str) -> str:
     """Return a pattern without the syntax that XSD does not support."""
     return pattern.replace(r"[^\x00]", ".").replace("\\S", "[^\\s]")
 
