@@ -133,7 +133,7 @@ def test_parameters_differ_from_person_to_person() -> None:
     ("value", "sentence"),
     [
         ("normal(2)", 'time-horizon="normal(2)" normal takes 2 or 4 numbers, not 1'),
-        ("uniform(-1, 3)", 'time-horizon="uniform(-1, 3)" reaches from -1 to 3: ORCA: time_horizon = -1.0'),
+        ("uniform(-1, 3)", 'time-horizon="uniform(-1, 3)" ranges from -1 to 3: ORCA: time_horizon = -1.0'),
         ("gauss(1, 2)", "'gauss' is not a distribution"),
     ],
 )
