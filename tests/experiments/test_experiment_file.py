@@ -130,7 +130,7 @@ def _wrong(tmp_path: Path) -> list[str]:
         'e.xml:3: <scale> name="a b" must match',
         "e.xml:4: <number> has min above max",
         "e.xml:5: <number> has an empty text; write what is asked",
-        "e.xml:6: <choise> is no element of <instructions>, did you mean 'choice'?",
+        "e.xml:6: <choise> is not an element of <instructions>, did you mean 'choice'?",
         'e.xml:8: <block> order="latin" must be fixed or random or latin-square',
         'e.xml:8: <block> repetitions="0" must be at least 1',
         "e.xml:9: <trial> source='frontl': there is no trial 'frontl', did you mean 'frontal'?",

@@ -88,7 +88,7 @@ def test_a_trial_of_another_version_that_cannot_be_read_is_said(tmp_path: Path) 
     run(parse_trial(GOOD), out=tmp_path)
     strange = GOOD.replace("<crowd ", "<weather/><crowd ")
     path = rewritten(tmp_path / "episode.mcap", tmp_path / "x.mcap", trial=strange, version="9.9")
-    with pytest.raises(TrialError, match=r"x.mcap \(trial, written by crowdbot 9.9\):7: <weather> is no element"):
+    with pytest.raises(TrialError, match=r"x.mcap \(trial, written by crowdbot 9.9\):7: <weather> is not an element"):
         replay(path)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core import InputError, TrialError
-from crowdbot.trials import readable, skip_unreadable
+from crowdbot.trials import has_kind, kind_of, readable, skip_unreadable
 
 from .experiment import Block, Experiment, Screen, TrialEntry
 from .page import page_of
@@ -43,23 +43,23 @@ def problems_of(things: Iterable[Any], folder: Path | None, trust: bool) -> list
     """
     things = list(things)
     found = [*skip_unreadable(*(check for thing in things for check in _problems(thing)))]
-    found += skip_unreadable(*(_shown(thing, folder) for thing in things if isinstance(thing, Screen)))
-    entries = [thing for thing in things if isinstance(thing, TrialEntry)]
+    found += skip_unreadable(*(_shown(thing, folder) for thing in things if has_kind(thing, Screen)))
+    entries = [thing for thing in things if has_kind(thing, TrialEntry)]
     sources = readable(entries, "source")
     read = {source: _trial(source, folder, trust) for source in dict.fromkeys(source for _, source in sources)}
     return found + [(entries[k], sentence) for k, source in sources for sentence in read[source]]
 
 
 def _problems(thing: Any) -> Iterator[Found]:
-    if isinstance(thing, Question):
+    if issubclass(kind_of(thing), Question):
         yield _asked(thing)
-    if isinstance(thing, Screen):
+    if has_kind(thing, Screen):
         yield _twice(thing.questions, "question of this screen")
-    if isinstance(thing, Block):
+    if has_kind(thing, Block):
         for _, entries in readable([thing], "trials"):
             yield _twice(entries, "trial of this block")
             yield from (_twice((*entry.before, *entry.after), "screen of this trial") for entry in entries)
-    if isinstance(thing, Experiment):
+    if has_kind(thing, Experiment):
         yield from _whole(thing)
 
 

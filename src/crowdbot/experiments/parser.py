@@ -42,16 +42,15 @@ name, order, repetitions, seeds
     except UnicodeEncodeError:
         raise TrialError(f"{place}: this is not well-formed XML: it holds half a character") from None
     root = parse_trial_xml(data, place, "utf-8" if isinstance(text, str) else None)
-    reader = XmlReader(place, folder or Path.cwd(), trust)
     if root.tag != ROOT:
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
     update_names(root, place)
-    experiment = reader.element(Experiment, root)
-    for thing, sentence in problems_of(reader.made, folder, trust) if whole else []:
-        reader.say(reader.lines[id(thing)], reader.words[id(thing)], sentence)
-    reader.finish()
-    assert isinstance(experiment, Experiment)
-    return dataclasses.replace(experiment, folder=folder)
+    result = XmlReader(place, folder or Path.cwd(), trust).read(Experiment, root)
+    for thing, sentence in problems_of(result.elements, folder, trust) if whole else []:
+        result.report(thing, sentence)
+    result.raise_problems()
+    assert isinstance(result.value, Experiment)
+    return dataclasses.replace(result.value, folder=folder)
 
 
 def experiment_xml(experiment: Experiment) -> str:

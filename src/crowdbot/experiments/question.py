@@ -111,7 +111,9 @@ class Choice(Question):
         """Return also whether two options are recorded by the same value."""
         values = [option.value for option in self.options]
         twice = [value for k, value in enumerate(values) if value in values[:k]]
-        return super().problem() or (f"has the option {twice[0]!r} twice; give each its own value" if twice else "")
+        return Question.problem(self) or (
+            f"has the option {twice[0]!r} twice; give each its own value" if twice else ""
+        )
 
     def _typed(self, text: str) -> Any:
         words = [word for word in re.split(r"[\s,;]+", text) if word]
@@ -159,7 +161,9 @@ class Scale(Question):
 
     def problem(self) -> str:
         """Return also whether there is more than one step."""
-        return super().problem() or ("" if self.low < self.high else f"has low={self.low} not below high={self.high}")
+        return Question.problem(self) or (
+            "" if self.low < self.high else f"has low={self.low} not below high={self.high}"
+        )
 
     def _typed(self, text: str) -> Any:
         return int(text) if re.fullmatch("[+-]?[0-9]{1,6}", text) else text
@@ -195,7 +199,7 @@ class Number(Question):
     def problem(self) -> str:
         """Return also whether the limits leave an answer."""
         empty = self.min is not None and self.max is not None and self.min > self.max
-        return super().problem() or ("has min above max" if empty else "")
+        return Question.problem(self) or ("has min above max" if empty else "")
 
     def _typed(self, text: str) -> Any:
         try:

@@ -1,4 +1,4 @@
-"""Trials: simulations as data. The dataclasses, their XML, the checks, built-in scenarios, placement and importers."""
+"""Trials: simulations as data. Dataclasses, XML, checks, built-in scenarios, placement of people, importers."""
 
 from .agent import Agent, AgentParameter
 from .builtin import builtin_trials, load_trial
@@ -15,7 +15,7 @@ from .importers.recording import recorded_trial
 from .journey import Direction, Exit, Journey, Point, Portal, Zone
 from .notation import Points, plain
 from .parser import check_trial, parse_trial
-from .partial import readable, skip_unreadable
+from .partial_element import has_kind, kind_of, readable, skip_unreadable
 from .people import Group, SourceSpec, Spawner
 from .placement.appearance import PeopleAppearance, people_appearance
 from .placement.expansion import expand_spawners
@@ -104,9 +104,11 @@ __all__ = [
     "element_word",
     "expand_spawners",
     "expand_sweeps",
+    "has_kind",
     "import_original",
     "is_area_file",
     "is_code",
+    "kind_of",
     "load_trial",
     "map_files",
     "outline",

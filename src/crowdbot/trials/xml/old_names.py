@@ -1,4 +1,4 @@
-"""Old names of attributes: files written by earlier versions load, with one warning that says what to write now."""
+"""Old names of attributes: files of earlier versions load, with one warning that lists the current names."""
 
 from __future__ import annotations
 
