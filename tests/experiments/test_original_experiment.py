@@ -52,7 +52,7 @@ def test_orders_that_differ_otherwise_are_told(tmp_path: Path) -> None:
     config = study(tmp_path, "O{USER}", O1=one, O2=two, O3=three)
     done = import_experiment(config)
     assert done.experiment.blocks[0].order == "fixed"
-    assert any("the one of participant 1 is taken; those of 2 differ" in sentence for sentence in done.left_out)
+    assert any("the order of participant 1 is used; those of 2 differ" in sentence for sentence in done.left_out)
     assert [entry.name for entry in import_experiment(config, participant=2).experiment.blocks[0].trials] == [*"acb"]
 
 

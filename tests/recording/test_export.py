@@ -107,7 +107,7 @@ def test_what_cannot_be_exported_is_said(recorded: tuple[Path, RecordedEpisode],
     path = recorded[0]
     with pytest.raises(InputError, match=r"there is no table 'peple', did you mean 'people'"):
         export(path, tmp_path / "a.csv", "peple")
-    with pytest.raises(InputError, match=r"ends in .txt; give a name that ends in .parquet or .csv"):
+    with pytest.raises(InputError, match=r"has the extension '.txt'; use .parquet or .csv"):
         export(path, tmp_path / "a.txt")
     with pytest.raises(EpisodeError, match="there is no episode file"):
         export(tmp_path / "none.mcap", tmp_path / "a.csv")

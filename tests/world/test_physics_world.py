@@ -193,7 +193,7 @@ def test_joints_are_commanded():
     assert world.robot_bodies[0].joints()["HeadYaw"][0] == pytest.approx(0.5, abs=0.05)
     with pytest.raises(InputError, match="has no motor on joint 'HeadYow', did you mean 'HeadYaw'"):
         world.command(0, {"HeadYow": 0.5})
-    with pytest.raises(InputError, match="agent 1 is no robot; robots are \\[0\\]"):
+    with pytest.raises(InputError, match="agent 1 is not a robot; robots are \\[0\\]"):
         world.command(1, {"HeadYaw": 0.5})
     with pytest.raises(InputError, match="'left_wheel_joint' of cuybot is a wheel; use a Twist command"):
         alone(load("cuybot")).command(0, {"left_wheel_joint": 1.0})
