@@ -97,7 +97,7 @@ def test_orders_are_printed(capsys):
         (["run", "robot-speed", "--participant", "1", "--out", "out", "--answers", "typo.json"], "did you mean 'age'"),
         (["order", "robot-speed", "--participants", "0"], "at least 1"),
         (["summary", "."], "contains no sessions"),
-        (["new", "here"], "is there already"),
+        (["new", "here"], "already exists"),
         (["new", "there", "--like", "robot"], "did you mean 'robot-speed'"),
     ],
 )

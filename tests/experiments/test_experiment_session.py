@@ -103,7 +103,7 @@ def test_the_way_through() -> None:
     ("events", "wrong", "said"),
     [
         ((), Next(), "the screen 'hello' has unanswered questions: 'age'"),
-        ((), Start(), "'start' is not possible while the session is 'screen' at instructions 'hello'; possible events:"),
+        ((), Start(), "is not possible while the session is 'screen' at instructions 'hello'; possible events:"),
         ((), Begin(1, "f"), "possible events: answered, next, pause, abort"),
         ((), Repeat(), "'repeat' is not possible"),
         ((), Answered("agee", 1), "has no question 'agee'; it has age"),

@@ -339,10 +339,12 @@ def test_files_outside_are_named_in_a_warning(tmp_path: Path, capsys: pytest.Cap
     assert told[0] == "crowdbot: loads code from ../shy.py"
     assert len(told) == 2
     assert told[1].startswith(
-        "crowdbot: warning: the recording does not contain '../maps/hall.yaml', '../maps/pictures/hall.pgm', '../people.txt'"
-        " and 1 more (outside the folder of the trial): to replay it, identical files must be at the same"
+        "crowdbot: warning: the recording does not contain '../maps/hall.yaml', '../maps/pictures/hall.pgm',"
+        " '../people.txt' and 1 more (outside the folder of the trial): to replay it, identical files must be at the same"
     )
-    assert told[1].endswith("move files from outside into the folder of the trial, or copy them along with the recording")
+    assert told[1].endswith(
+        "move files from outside into the folder of the trial, or copy them along with the recording"
+    )
     with pytest.warns(SkippedAttachmentWarning, match="does not contain"):
         record(load_trial(trial, trust=True), out=tmp_path / "again")
     assert main(["run", str(trial), "--trust"]) == 0

@@ -92,7 +92,7 @@ def test_the_program_says_where_the_images_are(
     seen: Path, recorded: tuple[Path, RecordedEpisode], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["export", str(seen), "--to", str(tmp_path / "p.csv"), "--table", "pictures"]) == 0
-    assert capsys.readouterr().out == f"{tmp_path}/p.csv: 6 rows, their images in {tmp_path}/p-images\n"
+    assert capsys.readouterr().out == f"{tmp_path}/p.csv: 6 rows, images in {tmp_path}/p-images\n"
     assert main(["export", str(recorded[0]), "--to", str(tmp_path / "none.csv"), "--table", "pictures"]) == 0
     assert capsys.readouterr().out == f"{tmp_path}/none.csv: 0 rows\n"
     assert sorted(os.listdir(tmp_path)) == ["none.csv", "p-images", "p.csv"]

@@ -239,8 +239,8 @@ WRONG = {
     ),
     "negative rate": (["--to", "0.4", "--fps", "-5"], r"the rate -5 Hz must be finite and above 0"),
     "no world": (["--world", "physic"], r"--world physic must be planar or physics, did you mean 'physics'\?"),
-    "both": (["--at", "0.4", "--to", "0.6"], r"--at is for one image and --to for a film"),
-    "fps of an image": (["--at", "0.4", "--fps", "5"], r"--fps is for a film"),
+    "both": (["--at", "0.4", "--to", "0.6"], r"--at is for an image and --to for a video"),
+    "fps of an image": (["--at", "0.4", "--fps", "5"], r"--fps requires a video"),
     "ending": (["--out", "a.tiff"], r"a.tiff must end in .png, .jpg, .webp for an image, or be a folder"),
     "world": (
         ["--world", "physics", "--set", "world=planar"],
