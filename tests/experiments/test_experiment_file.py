@@ -314,7 +314,7 @@ def test_screens_come_from_the_folder_only(tmp_path: Path) -> None:
     assert page.html == "<p>one<br>two</p><p>&lt;three&gt;</p>"
     for name, said in (
         ("../out.txt", "outside"), ("link.txt", "outside"), ("latin.txt", "UTF-8"), ("large.txt", "larger"),
-        ("none.txt", "not there"), ("in.exe", "must end in"), (str(tmp_path / "out.txt"), "outside"),
+        ("none.txt", "does not exist"), ("in.exe", "must end in"), (str(tmp_path / "out.txt"), "outside"),
     ):  # fmt: skip
         with pytest.raises(InputError, match=said):
             page_of(Screen(name="s", file=name), folder)

@@ -340,7 +340,7 @@ def test_files_outside_are_named_in_a_warning(tmp_path: Path, capsys: pytest.Cap
     assert len(told) == 2
     assert told[1].startswith(
         "crowdbot: warning: the recording does not contain '../maps/hall.yaml', '../maps/pictures/hall.pgm',"
-        " '../people.txt' and 1 more (outside the folder of the trial): to replay it, identical files must be at the same"
+        " '../people.txt' and 1 more (outside the folder of the trial): to replay it, identical files must be"
     )
     assert told[1].endswith(
         "move files from outside into the folder of the trial, or copy them along with the recording"

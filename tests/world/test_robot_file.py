@@ -162,7 +162,7 @@ def test_an_entity_bomb_is_refused(tmp_path):
 def test_names_that_are_no_robot(tmp_path):
     for name, message in (
         ("peper", "there is no robot 'peper', did you mean 'pepper'?"),
-        (tmp_path, "holds no robot.xml; a robot is a folder with a URDF and a robot.xml"),
+        (tmp_path, "has no robot.xml; a robot is a folder with a URDF and a robot.xml"),
         (tmp_path / "x.urdf", "does not define drive and sensors"),
     ):
         with pytest.raises(RobotError) as caught:
