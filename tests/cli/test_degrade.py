@@ -60,6 +60,7 @@ def test_predictors_over_levels_with_table_json_and_plot(capsys, tmp_path, zara)
     assert [row["score"]["ade"] for row in again] == [row["score"]["ade"] for row in rows]
 
 
+@pytest.mark.sweep
 def test_all_degradations_and_all_predictors(capsys, tmp_path, small):
     page = _json(capsys, "--data", small, "--by", "all", "--set", "eye=3,-4", "--draws", "1", "--out", str(tmp_path))
     names = {"gaussian-noise", "missing-frames", "occlusion", "identity-switches", "late-start", "false-tracks"}

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from samples import sample
+
 BUG = """
 import crowdbot.cli.list as command
 
@@ -96,7 +98,7 @@ def test_a_reader_that_ends_early_is_no_error(words):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs a POSIX shell")
-@pytest.mark.parametrize("closed", ["<&-", ">&-", "2>&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("closed", sample(["<&- >&- 2>&-", "<&-", ">&-", "2>&-"], 1))
 def test_closed_streams_are_no_error(closed):
     done = run(f"{sys.executable} -m crowdbot list {closed}", shell=True)
     assert (done.returncode, done.stderr) == (0, "")

@@ -118,7 +118,7 @@ def test_two_runs_into_one_folder(tmp_path: Path) -> None:
         "run",
         "frontal",
         "--pace",
-        "2",
+        "4",
         "--json",
         "--out",
         str(tmp_path / "out"),

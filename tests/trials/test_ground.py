@@ -11,6 +11,7 @@ import pytest
 from crowdbot.core import InputError, TrialError
 from crowdbot.recording import run
 from crowdbot.trials import Stage, load_trial, parse_trial, trial_xml
+from crowdbot.trials.files import stage_maps
 from trial_texts import written
 
 HOUSE = "POLYGON ((0 0, 10 0, 10 6, 0 6, 0 0), (4 2, 6 2, 6 4, 4 4, 4 2))"
@@ -152,9 +153,20 @@ def test_a_turned_map_is_turned(tmp_path: Path) -> None:
     assert ring.max(axis=0).tolist() == pytest.approx([1.9, 1.2])
 
 
-def test_a_map_of_noise_is_refused(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("limit", "most", "size", "sentence"),
+    [
+        ("MOST_CORNERS", 2000, 80, r"has \d+ corners, more than 2000; clean or shrink the map"),
+        ("MOST_DETAIL", 4000, 80, r"has \d+ corners of cells, more than 4000; clean or shrink the map"),
+        ("MOST_DETAIL", 120_000, 900, r"has \d+ runs of solid cells, more than 120000; clean or shrink the map"),
+    ],
+)
+def test_a_map_of_noise_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, limit: str, most: int, size: int, sentence: str
+) -> None:
+    monkeypatch.setattr(stage_maps, limit, most)
     written(tmp_path, YAML, "map.yaml")
-    noise = np.random.default_rng(0).integers(0, 2, (300, 300), dtype=np.uint8) * 255
-    written(tmp_path, b"P5 300 300 255\n" + noise.tobytes(), "map.pgm")
-    with pytest.raises(InputError, match=r"has \d+ corners, more than 20000; clean or shrink the map"):
+    noise = np.random.default_rng(0).integers(0, 2, (size, size), dtype=np.uint8) * 255
+    written(tmp_path, f"P5 {size} {size} 255\n".encode() + noise.tobytes(), "map.pgm")
+    with pytest.raises(InputError, match=sentence):
         Stage(map="map.yaml", folder=tmp_path)

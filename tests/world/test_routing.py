@@ -173,7 +173,7 @@ def test_who_walks_the_way_arrives_after_its_length_and_clear_of_walls():
     assert shapely.distance(shapely.points(track), lines).min() > 0.5 * RADIUS - 1e-6
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(st.integers(0, 10_000))
 def test_whoever_is_pushed_about_still_arrives(seed):
     rng = np.random.default_rng(seed)

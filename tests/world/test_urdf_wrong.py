@@ -7,6 +7,7 @@ from robot_texts import joint, link, mesh, robot
 
 from crowdbot.core import InputError, RobotError
 from crowdbot.world import read_urdf
+from samples import sizes
 
 A, B, C = link("a"), link("b"), link("c")
 ZERO = "<limit lower='0' upper='1' effort='1' velocity='1'/>"
@@ -216,12 +217,13 @@ def refused_or_read(text):
         return error.problems, None
 
 
+@pytest.mark.parametrize("count", sizes(40, 60))
 @pytest.mark.parametrize("name", ["pepper/pepper.urdf", "urdf_tutorial/07-physics.urdf"])
-def test_damaged_files_are_refused_or_read_but_never_crash(urdf, name):
+def test_damaged_files_are_refused_or_read_but_never_crash(urdf, name, count):
     whole = (urdf / name).read_bytes()
     rng = np.random.default_rng(5)
     outcomes = set()
-    for _ in range(60):
+    for _ in range(count):
         data = bytearray(whole)
         for place in rng.integers(0, len(data), rng.integers(1, 6)):
             data[place] = int(rng.choice(list(b"<>\"'/ 0e-n&\x00\xff")))

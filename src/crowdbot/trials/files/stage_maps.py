@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["area_of", "is_area_file", "map_files", "map_of"]
 
 MOST_CORNERS = 20_000
+MOST_DETAIL = 120_000
 MOST_TEXT = 4_000_000
 MOST_CELLS = 16_000_000
 MOST_IMAGE = 64_000_000
@@ -197,9 +198,9 @@ def _solids(image: Path, changed: int, size: int, row: _Map, unknown: str) -> tu
     end = np.nonzero(change == -1)[1]
     if len(line) == 0:
         return ()
-    if len(line) > 1_000_000:
-        raise InputError(f"{image.name} has {len(line)} runs of solid cells, which is noise and no map")
+    _check_detail(image, len(line), "runs of solid cells")
     whole = shapely.union_all(shapely.box(begin, line, end, line + 1))
+    _check_detail(image, len(shapely.get_coordinates(whole)), "corners of cells")
     parts = shapely.get_parts(shapely.simplify(whole, 1.0, preserve_topology=True))
     corners = len(shapely.get_coordinates(parts))
     if corners > MOST_CORNERS:
@@ -209,6 +210,12 @@ def _solids(image: Path, changed: int, size: int, row: _Map, unknown: str) -> tu
     turn = np.array([[cos, sin], [-sin, cos]])
     placed = shapely.transform(parts, lambda cells: cells @ turn + np.array([x, y]))
     return tuple(part for part in np.atleast_1d(placed) if part.geom_type == "Polygon" and part.area > 0.0)
+
+
+def _check_detail(image: Path, count: int, what: str) -> None:
+    """Refuse noise: to simplify it takes minutes."""
+    if count > MOST_DETAIL:
+        raise InputError(f"{image.name} has {count} {what}, more than {MOST_DETAIL}; clean or shrink the map")
 
 
 def _pgm(data: bytes, name: str) -> NDArray[np.float64]:
