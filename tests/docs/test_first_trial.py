@@ -14,7 +14,7 @@ from crowdbot.trials import load_trial
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = (DOCS / "tutorials" / "first-trial.md").read_text(encoding="utf-8")
 ELEMENTS = (DOCS / "reference" / "trial-file.md").read_text(encoding="utf-8")
-STEPS = re.split(r"^\*\*\d+\. ", PAGE.split("\n## ")[0], flags=re.M)[1:]
+STEPS = re.split(r"^## \d+\. ", PAGE.split("\n## More")[0], flags=re.M)[1:]
 
 
 def blocks(step: str, language: str) -> list[str]:
@@ -62,3 +62,14 @@ def test_every_element_of_the_pages_exists() -> None:
     known = set(re.findall(r'<xs:element name="([a-z-]+)"', schema()))
     for page in (PAGE, ELEMENTS):
         assert set(re.findall(r"`?<([a-z-]+)[ >`/]", page)) <= known
+
+
+def test_every_attribute_of_the_reference_exists() -> None:
+    from crowdbot.trials import schema
+
+    known = set(re.findall(r'<xs:attribute name="([a-z-]+)"', schema()))
+    elements = re.findall(r"`<[a-z-]+ ([^<>`]*)/?>`", ELEMENTS)
+    named = {word for text in elements for word in re.findall(r"[a-z-]+", re.sub(r'"[^"]*"', "", text))}
+    named |= set(re.findall(r'`([a-z-]+)="', ELEMENTS))
+    assert len(named) > 30
+    assert named <= known
