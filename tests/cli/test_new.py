@@ -59,7 +59,7 @@ def test_a_trial_is_written_from_a_recording_and_from_an_original_file(tmp_path,
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["new", "trial", "{}/gone/t.xml"], "there is no folder"),
+        (["new", "trial", "{}/gone/t.xml"], "t.xml does not exist"),
         (["new", "trial", "{}/t.xml", "--from", "frontl"], "there is no trial 'frontl', did you mean 'frontal'?"),
         (["new", "trial", "{}/t.xml", "--set", "width"], "--set 'width' must be NAME=VALUE"),
         (["new", "trial", "{}/t.xml", "--set", "width=2", "--set", "width=3"], "--set width is given twice"),
