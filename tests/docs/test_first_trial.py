@@ -46,7 +46,7 @@ def test_each_step_does_what_it_says(
     check, run, replay, straight, many, sixth, new, people = said
     assert check == "hall.xml: OK\n"
     assert "outcome" in run
-    assert "replays to the same bytes" in replay
+    assert "replays with the same digest" in replay
     assert "hall, seed 5" in straight
     assert many.count("[count") == 12
     assert "[count 10, seed 1]" in sixth

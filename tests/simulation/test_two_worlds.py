@@ -142,7 +142,7 @@ def test_a_late_drive_follows_late_in_the_plane() -> None:
     moving = []
     for _ in range(5):
         running.step()
-        moving.append(float(simulation.world.twists[simulation.carriers[0].agent].forward[0]) > 0.0)
+        moving.append(float(simulation.world.twists[simulation.robots[0].agent].forward[0]) > 0.0)
     assert moving == [False, False, False, True, True]
 
 
@@ -185,7 +185,7 @@ def test_a_cube_is_pushed_in_physics() -> None:
         running.step()
     world: object = simulation.world
     assert world.prop(0)[0, 3] > 4.3  # type: ignore[attr-defined]
-    scan = simulation.carriers[0].readings["scan"]
+    scan = simulation.robots[0].readings["scan"]
     assert scan.ranges[0, 30] < 0.7  # type: ignore[attr-defined]
     wall = [touch for touch in simulation.touches if touch.other == -2]
     assert not wall

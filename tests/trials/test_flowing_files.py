@@ -129,7 +129,7 @@ MISTAKES = {
     "room for nobody": (
         'radius="0.25" un',
         'radius="6" un',
-        r":7: <routing> is impossible on this stage: nowhere between",
+        r":7: <routing> is impossible on this stage: no space between",
     ),
     "unknown attribute of routing": (
         'radius="0.25"',

@@ -185,7 +185,7 @@ def test_sweeps_make_variants() -> None:
     assert isinstance(ones[2].crowd, RandomizedModel)
     assert [one.end.goal for one in ones[:2]] == [True, False]
     assert not any(one.sweeps for one in ones)
-    with pytest.raises(TrialError, match="has 12 variants by its sweeps; run one of them"):
+    with pytest.raises(TrialError, match="has 12 variants in its sweeps; run one of them"):
         run(many)
     plain = parse_trial(GOOD)
     assert expand_sweeps(plain) == (plain,)
