@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import logging
 import warnings
 from pathlib import Path
 from typing import Any
@@ -85,7 +86,11 @@ def with_pieces(mesh: Mesh, method: str = "auto") -> tuple[Mesh, str]:
 
 
 def _trimesh() -> Any:
-    return import_optional("trimesh", "reading meshes of robots", "sim")
+    module = import_optional("trimesh", "reading meshes of robots", "sim")
+    log = logging.getLogger("trimesh")
+    if not log.handlers:  # otherwise Python prints the traces of errors that trimesh handles
+        log.addHandler(logging.NullHandler())
+    return module
 
 
 def _loaded(data: bytes, kind: str) -> Any:
