@@ -54,6 +54,8 @@ def read_mesh(path: Path, source: str, scale: tuple[float, float, float]) -> Mes
         raise InputError("it holds no triangles")
     if len(faces) > MOST_TRIANGLES:
         raise InputError(f"it holds {len(faces)} triangles, at most {MOST_TRIANGLES} are read; simplify the mesh")
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise InputError(f"a triangle names the point {faces.max()}, and it holds {len(vertices)} points")
     if not np.all(np.isfinite(vertices)) or np.abs(vertices).max() > 1e4:
         raise InputError("it holds points that are not finite or farther away than 10 km")
     return Mesh(source, vertices, faces)
