@@ -44,6 +44,7 @@ from .scene import PERSON_HEIGHT, Scene
 from .version import source_digest
 from .walls import Walls
 from .workers import each, run_saved_jobs
+from .write_errors import write_errors
 
 if TYPE_CHECKING:
     from .compiling import notify_compiling
@@ -139,4 +140,5 @@ __all__ = [
     "unread_fields",
     "without_running_code",
     "wrap_angle",
+    "write_errors",
 ]
