@@ -19,6 +19,7 @@ import contextlib
 import json
 import multiprocessing
 import os
+import platform
 import random
 import resource
 import shutil
@@ -125,6 +126,7 @@ def memory(field: str) -> int:
 
 def _child(pipe: Connection, kind: str, base: Path, work: Path, temporary: Path) -> None:
     warnings.simplefilter("ignore")
+    platform.processor()  # starts a program once, as some libraries do at their import
     os.chdir(work)
     log = (base.parent / "stderr").open("w+b")
     os.dup2(log.fileno(), 2)

@@ -35,6 +35,9 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
     if missing:
         held = ", ".join(arrays) or "nothing"
         raise DataError(f"{source.name} lacks the arrays {', '.join(missing)} of Social Ways; it holds {held}")
+    wrong = next((name for name in NAMES if arrays[name].dtype.kind not in "fiub"), None)
+    if wrong is not None:
+        raise DataError(f"{source.name}: the array {wrong} must hold numbers, it holds {arrays[wrong].dtype}")
     past, future, times = (arrays[name] for name in NAMES)
     count = len(past)
     fits = (
