@@ -20,7 +20,6 @@ signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 limit = int(sys.argv.pop(1))
 resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
 from crowdbot.cli import main
-from samples import sample
 raise SystemExit(main(sys.argv[1:]))
 """
 SHORT = ("--set", "duration=0.5")

@@ -68,11 +68,15 @@ def test_arrays_that_hold_no_numbers_are_named(tmp_path, name, dtype):
         load(path)
 
 
+linux = pytest.mark.skipif(sys.platform != "linux", reason="the fuzzer reads /proc and limits memory")
+
+
 def fuzz(count, seed, *kinds):
     tool = [sys.executable, ROOT / "tools" / "fuzz_readers.py", "--count", str(count), "--seed", str(seed)]
     return subprocess.run([*tool, "--only", *kinds], capture_output=True, text=True, check=False)
 
 
+@linux
 def test_a_sample_of_mutated_files_is_read_or_rejected():
     kinds = ("npz", "mcap", "maps", "sessions")
     done = fuzz(15, 7, *kinds)
@@ -82,6 +86,7 @@ def test_a_sample_of_mutated_files_is_read_or_rejected():
     assert int(last[3]) > 0
 
 
+@linux
 @pytest.mark.sweep
 @pytest.mark.parametrize("kind", KINDS)
 def test_mutated_files_are_read_or_rejected(kind):
@@ -90,6 +95,7 @@ def test_mutated_files_are_read_or_rejected(kind):
     assert int(done.stdout.splitlines()[-1].split()[3]) > 0
 
 
+@linux
 def test_a_run_continues_from_its_state_and_a_file_is_repeated(tmp_path):
     state = tmp_path / "state.json"
     tool = [sys.executable, ROOT / "tools" / "fuzz_readers.py", "--only", "npz", "--state", state, "--count"]
