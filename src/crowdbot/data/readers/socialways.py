@@ -66,7 +66,7 @@ def _arrays(source: Source) -> dict[str, NDArray[np.generic]]:
             size = sum(part.file_size for part in packed.infolist())
         if size > MAX_BYTES:
             raise DataError(f"{source.name} unpacks to {size} bytes, more than the limit of {MAX_BYTES}")
-        with np.load(source.path, allow_pickle=False) as unpacked:
+        with source.path.open("rb") as stream, np.load(stream, allow_pickle=False) as unpacked:
             return {name: np.asarray(unpacked[name]) for name in unpacked.files}
 
 
