@@ -41,10 +41,10 @@ from .plugins.plugin_module import plugin_address, plugin_sources, relative_name
 from .pose import MOUNT_HEIGHT, Pose, SpatialPose, Twist, product, wrap_angle
 from .random import stream
 from .scene import PERSON_HEIGHT, Scene
+from .system_errors import write_errors
 from .version import source_digest
 from .walls import Walls
 from .workers import each, run_saved_jobs
-from .write_errors import write_errors
 
 if TYPE_CHECKING:
     from .compiling import notify_compiling

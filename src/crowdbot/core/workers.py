@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 
 from .errors import CrowdbotError, InputError
 from .optional_imports import import_optional
-from .write_errors import write_errors
+from .system_errors import write_errors
 
 __all__ = ["Job", "Result", "each", "run_saved_jobs"]
 
