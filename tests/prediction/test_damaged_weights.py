@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crowdbot.core import CrowdbotError, DataError
+from crowdbot.core import CrowdbotError, DataError, InputError
 from crowdbot.data import Trajectories
 from crowdbot.prediction import AnchorNet, load_checkpoint, save_checkpoint
 from crowdbot.prediction.anchor_net.network_shapes import NEEDED, wrong_array
@@ -45,3 +45,13 @@ def test_a_checkpoint_without_usable_weights_is_named(tmp_path, past, weights):
     save_checkpoint(path, "anchor-net", content)
     with pytest.raises(CrowdbotError, match="weights.npz"):
         predict(path, past)
+
+
+def test_an_unknown_compression_is_one_sentence(tmp_path):
+    data = bytearray(CHECKPOINT.read_bytes())
+    data[data.rindex(b"PK\x01\x02") + 10] = 99  # in the directory of the last array
+    (tmp_path / "weights.npz").write_bytes(data)
+    with pytest.raises(
+        InputError, match=r"weights.npz is no checkpoint of crowdbot or is damaged \(NotImplementedError"
+    ):
+        load_checkpoint(tmp_path / "weights.npz")
