@@ -58,6 +58,8 @@ FLOW = """<?xml version="1.0" encoding="UTF-8"?>
 </trial>
 """
 
+BRIEF_FLOW = FLOW.replace('duration="20"', 'duration="8"')
+
 SHY = """from dataclasses import dataclass
 from crowdbot.core import Twist
 from crowdbot.navigation import Navigator

@@ -60,6 +60,7 @@ def test_predictors_over_levels_with_table_json_and_plot(capsys, tmp_path, zara)
     assert [row["score"]["ade"] for row in again] == [row["score"]["ade"] for row in rows]
 
 
+@pytest.mark.sweep
 def test_all_degradations_and_all_predictors(capsys, tmp_path, small):
     page = _json(capsys, "--data", small, "--by", "all", "--set", "eye=3,-4", "--draws", "1", "--out", str(tmp_path))
     names = {"gaussian-noise", "missing-frames", "occlusion", "identity-switches", "late-start", "false-tracks"}
@@ -157,16 +158,22 @@ def test_degradations_are_listed(capsys):
         (["--by", "occlusion", "--set", "eye=99"], ("eye = 99", "no track of this id")),
         (["--by", "occlusion", "--set", "eye=there"], ("'there' is not a number",)),
         (["--by", "occlusion", "--set", "eyes=1,2"], ("did you mean 'eye'?", "occlusion.reach")),
-        (["--by", "gaussian-noise", "--set", "sd=0.1"], ("the sweep of gaussian-noise varies it", "--levels")),
+        (
+            ["--by", "gaussian-noise", "--set", "sd=0.1"],
+            ("this parameter is varied by the sweep of gaussian-noise", "--levels"),
+        ),
         (["--by", "gaussian-noise", "--set", "sd"], ("NAME=VALUE",)),
-        (["--by", "gaussian-noise", "late-start", "--levels", "1"], ("--levels belong to one degradation, not to 2",)),
+        (["--by", "gaussian-noise", "late-start", "--levels", "1"], ("--levels requires a single degradation, not 2",)),
         (["--by", "gaussian-noise", "--predictor", "kalmann"], ("did you mean 'kalman'?",)),
         (["--by", "gaussian-noise", "--predictor", "kalman", "--model", "orca"], ("--model requires",)),
         (["--by", "gaussian-noise", "--protocol", "sgam"], ("did you mean 'sgan'?",)),
         (["--by", "gaussian-noise", "--observe", "40"], ("small.txt: no window of 40 observed",)),
         (["--by", "gaussian-noise", "--draws", "0"], ("draws = 0",)),
         (["--by", "gaussian-noise", "--every", "0"], ("every = 0 must be at least 1",)),
-        (["--by", "gaussian-noise", "--late", "extrapolate"], ("--late extrapolate is not for degrade", "late-start")),
+        (
+            ["--by", "gaussian-noise", "--late", "extrapolate"],
+            ("--late extrapolate is not supported by degrade", "late-start"),
+        ),
         (["--by", "gaussian-noise", "--out", "small.txt"], ("small.txt is a file; give a folder",)),
         (["--by", "gaussian-noise", "--write", "x.csv", "--predictor", "kalman"], ("does not evaluate",)),
         (["--by", "gaussian-noise", "late-start", "--write", "x.csv"], ("exactly one --data",)),

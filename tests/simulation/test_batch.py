@@ -13,10 +13,11 @@ from crowdbot.recording import run
 from crowdbot.simulation import run_batch
 from crowdbot.trials import Trial, expand_sweeps, load_trial, parse_trial
 from crowdbot.world import CrowdStepRequest, compute_together, run_step
+from samples import sample
 from space_trials import LEAN, room
 from trial_texts import FLOW
 
-SEEDS = range(8)
+SEEDS = range(4)
 
 
 def short(name: str) -> Trial:
@@ -26,9 +27,13 @@ def short(name: str) -> Trial:
 
 
 @pytest.mark.parametrize(
-    "name", ["frontal", "crossing-flows", "bottleneck", "two-crowds", "random-goals", "challenge-both-50", "two-way"]
+    "name",
+    sample(
+        ["frontal", "crossing-flows", "bottleneck", "two-crowds", "random-goals", "challenge-both-50", "two-way"],
+        ["frontal", "two-crowds"],
+    ),
 )
-def test_a_batch_of_eight_is_eight_single_runs(name: str) -> None:
+def test_a_batch_is_its_single_runs(name: str) -> None:
     trial = short(name)
     many = run_batch(trial, SEEDS)
     assert [one.digest for one in many] == [run(trial, seed).digest for seed in SEEDS]
@@ -109,7 +114,7 @@ def test_a_question_is_answered_alone() -> None:
 
 
 def test_wrong_batches_are_refused() -> None:
-    with pytest.raises(InputError, match="there are no seeds"):
+    with pytest.raises(InputError, match="seeds is empty"):
         run_batch(load_trial("frontal"), [])
     told: list[float] = []
     run_batch(short("frontal"), [1, 2], progress=told.append)

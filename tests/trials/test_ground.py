@@ -11,6 +11,7 @@ import pytest
 from crowdbot.core import InputError, TrialError
 from crowdbot.recording import run
 from crowdbot.trials import Stage, load_trial, parse_trial, trial_xml
+from crowdbot.trials.files import stage_maps
 from trial_texts import written
 
 HOUSE = "POLYGON ((0 0, 10 0, 10 6, 0 6, 0 0), (4 2, 6 2, 6 4, 4 4, 4 2))"
@@ -62,7 +63,7 @@ def test_an_area_may_lie_in_a_file(tmp_path: Path, name: str) -> None:
 @pytest.mark.parametrize(
     ("stage", "sentence"),
     [
-        ('area="POLYGON ((0 0, 1 0"', 't.xml:2: <stage> area="POLYGON ((0 0, 1 0" is no WKT: '),
+        ('area="POLYGON ((0 0, 1 0"', 't.xml:2: <stage> area="POLYGON ((0 0, 1 0" is not WKT: '),
         ('area="POLYGON ((0 0, 4 4, 4 0, 0 4, 0 0))"', "the WKT has a polygon that is not simple: self-intersection"),
         ('area="POLYGON EMPTY"', "holds nothing, it must hold polygons"),
         ('area="GEOMETRYCOLLECTION (POINT (1 1))"', "holds Point, it must hold polygons"),
@@ -70,16 +71,16 @@ def test_an_area_may_lie_in_a_file(tmp_path: Path, name: str) -> None:
         ('area="none.wkt"', "there is no file 'none.wkt'"),
         ('area="../area.wkt"', "lies outside"),
         ('area="/etc/passwd"', "lies outside"),
-        ('area="bad.bin"', "bad.bin is no text"),
+        ('area="bad.bin"', "bad.bin is not text"),
         ('area="bad.txt"', "bad.txt is neither WKT nor GeoJSON of an area"),
         ('area="many.wkt"', "has 25001 corners, more than 20000"),
         ('area="POLYGON ((0 0, 9 0, 9 9, 0 0))" walkable="0,0 9,0 9,9"', "has both walkable and area"),
         ('area="POLYGON ((0 0, 2 0, 2 6, 0 6, 0 0))"', "spawn zone reaches outside the walkable area"),
         ('map="none.yaml"', "there is no file 'none.yaml'"),
-        ('map="bad.txt"', "bad.txt is no map of ROS: it does not say image and resolution and origin"),
+        ('map="bad.txt"', "bad.txt is not a ROS map: it does not say image and resolution and origin"),
         ('map="noimage.yaml"', "there is no file 'gone.pgm'"),
         ('map="outside.yaml"', "lies outside"),
-        ('map="notpgm.yaml"', "bad.bin is no PGM image"),
+        ('map="notpgm.yaml"', "bad.bin is not a PGM image"),
         ('map="short.yaml"', "short.pgm is cut off: 3 bytes for 50 x 50 cells"),
         ('map="huge.yaml"', "huge.pgm has 99999 x 99999 cells"),
         ('map="nan.yaml"', "not finite, too large, or not above 0"),
@@ -152,9 +153,20 @@ def test_a_turned_map_is_turned(tmp_path: Path) -> None:
     assert ring.max(axis=0).tolist() == pytest.approx([1.9, 1.2])
 
 
-def test_a_map_of_noise_is_refused(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("limit", "most", "size", "sentence"),
+    [
+        ("MOST_CORNERS", 2000, 80, r"has \d+ corners, more than 2000; clean or shrink the map"),
+        ("MOST_DETAIL", 4000, 80, r"has \d+ corners of cells, more than 4000; clean or shrink the map"),
+        ("MOST_DETAIL", 120_000, 900, r"has \d+ runs of solid cells, more than 120000; clean or shrink the map"),
+    ],
+)
+def test_a_map_of_noise_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, limit: str, most: int, size: int, sentence: str
+) -> None:
+    monkeypatch.setattr(stage_maps, limit, most)
     written(tmp_path, YAML, "map.yaml")
-    noise = np.random.default_rng(0).integers(0, 2, (300, 300), dtype=np.uint8) * 255
-    written(tmp_path, b"P5 300 300 255\n" + noise.tobytes(), "map.pgm")
-    with pytest.raises(InputError, match=r"has \d+ corners, more than 20000; clean or shrink the map"):
+    noise = np.random.default_rng(0).integers(0, 2, (size, size), dtype=np.uint8) * 255
+    written(tmp_path, f"P5 {size} {size} 255\n".encode() + noise.tobytes(), "map.pgm")
+    with pytest.raises(InputError, match=sentence):
         Stage(map="map.yaml", folder=tmp_path)

@@ -57,7 +57,7 @@ def test_a_builtin_trial_is_right_and_survives_the_way_through_xml(name: str) ->
     assert type(trial.robots[0].navigator).__name__ in ("ORCANavigator", "Straight")
 
 
-@pytest.mark.parametrize("name", sample(QUICK, 6))
+@pytest.mark.parametrize("name", sample(QUICK, 4))
 def test_a_scenario_runs_and_is_not_impossible(name: str) -> None:
     episode = run(load_trial(name))
     assert episode.outcome == ("collision" if name == "dense-circle" else "success")
@@ -74,8 +74,10 @@ def test_everything_that_is_asked_for_is_done() -> None:
     assert load_trial("frontal", **{"robot/goal/x": "3"}).robots[0].goal.x == 3.0
 
 
-@pytest.mark.parametrize("angle", [45.0, 90.0, 135.0])
-@pytest.mark.parametrize("delay", [-1.0, 0.0, 1.0])
+MEETINGS = [(angle, delay) for angle in (45.0, 90.0, 135.0) for delay in (-1.0, 0.0, 1.0)]
+
+
+@pytest.mark.parametrize(("angle", "delay"), sample(MEETINGS, [(45.0, -1.0), (135.0, 1.0)], rows=True))
 def test_people_arrive_at_the_intersection_when_they_are_asked_to(angle: float, delay: float) -> None:
     trial = load_trial("intersection", angle=angle, delay=delay, robot=False)
     episode = run(trial)
@@ -169,14 +171,16 @@ def test_the_challenge_is_that_of_its_files() -> None:
     assert np.median(down) < -1.0
 
 
-def test_nobody_begins_in_the_robot_of_the_challenge() -> None:
-    for name in ("challenge-cross-350", "challenge-against-350", "challenge-both-350"):
-        trial = load_trial(name)
-        people = Simulation(trial, trial.seed).people
-        gap = np.hypot(*(people.position - trial.robots[0].position).T) - people.radius - trial.robots[0].radius
-        assert gap.min() > 0.0
-        touched = run(dataclasses.replace(trial, world="physics", duration=3.0))
-        assert touched.outcome == "timeout"
+@pytest.mark.parametrize(
+    "name", sample(["challenge-cross-350", "challenge-against-350", "challenge-both-350"], ["challenge-both-350"])
+)
+def test_nobody_begins_in_the_robot_of_the_challenge(name: str) -> None:
+    trial = load_trial(name)
+    people = Simulation(trial, trial.seed).people
+    gap = np.hypot(*(people.position - trial.robots[0].position).T) - people.radius - trial.robots[0].radius
+    assert gap.min() > 0.0
+    touched = run(dataclasses.replace(trial, world="physics", duration=1.0))
+    assert touched.outcome == "timeout"
 
 
 def test_the_long_trial_of_the_documents_has_a_thousand_people_for_ten_minutes() -> None:
@@ -198,7 +202,7 @@ def test_the_long_trial_of_the_documents_has_a_thousand_people_for_ten_minutes()
         ("frontal", {"navigator": "x.py:Y"}, "frontal: "),
         ("random-goals", {"people": 2.5}, "must be a whole number"),
         ("random-goals", {"people": 400, "side": 6.0}, "fit into the spawn zone"),
-        ("frontal", {"robot[2]/x": 1}, "leads nowhere: there are 1 <robot>"),
+        ("frontal", {"robot[2]/x": 1}, "does not exist: there are 1 <robot>"),
         ("crossing-flows", {"density": 1}, "names no attribute: <trial> has no 'density'"),
     ],
 )

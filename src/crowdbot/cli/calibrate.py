@@ -97,8 +97,8 @@ def _each(
     fit = campaign.merge(pieces)
     if fit.persons == 0:
         raise InputError(
-            f"{recording.path}: nobody in {fit.windows} windows can be compared by {fit.scheme.split(', ')[1]};"
-            " people must be seen at enough rows, and with others where distances between them count"
+            f"{recording.path}: nobody in {fit.windows} windows can be scored by {fit.scheme.split(', ')[1]};"
+            " people need enough observed rows, and neighbors if the cost uses distances between people"
         )
     return fit
 

@@ -67,7 +67,7 @@ def main(options: argparse.Namespace) -> int:
         evaluation.window_at(options.animate)  # fails before the evaluation starts
     keep = None if options.out is None else options.out / "parts"
     with progress(options.json) as report, warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message=".* is used instead$")  # a note says it, once
+        warnings.filterwarnings("ignore", message=".* is used instead$")  # reported once as a note
         try:
             done = _done(evaluation, options, keep, report)
         except KeyboardInterrupt:

@@ -61,7 +61,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def main(options: argparse.Namespace) -> int:
-    """Train and print where the weights are."""
+    """Train and print the path of the weights."""
     from crowdbot.core import InputError, UnknownName, write_errors
     from crowdbot.prediction import (
         BEST,
