@@ -21,7 +21,9 @@ def refused(capsys, tmp_path, *words):
 def test_a_trial_is_written_from_a_builtin_one(tmp_path, capsys):
     file = tmp_path / "mine.xml"
     assert main(["new", "trial", str(file), "--from", "two-way", "--set", "density=0.1", "--seed", "9"]) == 0
-    assert capsys.readouterr().out == f"wrote {file}\nwrote {tmp_path / 'test_mine.py'}\n"
+    test = tmp_path / "test_mine.py"
+    lines = (f"wrote {file}", f"wrote {test}", f"test it   pytest {test}", f"use it    crowdbot run {file}")
+    assert capsys.readouterr().out.splitlines() == [*lines]
     trial = load_trial(file)
     assert (trial.people, trial.seed) == (24, 9)
     assert main(["check", str(file)]) == 0

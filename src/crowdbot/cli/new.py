@@ -74,9 +74,10 @@ def main(options: argparse.Namespace) -> int:
         _write(file, text)
     if options.kind in FOLLOW_UP:
         test = next(file for file in files if file.name.startswith("test_"))
-        address = f"{options.file.name}:{_class_name(files[options.file])}" if options.kind in CLASSES else ""
+        cls = f":{_class_name(files[options.file])}" if options.kind in CLASSES else ""
+        use = FOLLOW_UP[options.kind].format(name=options.file.name + cls, address=f"{options.file}{cls}")
         print(f"test it   pytest {test}")
-        print(f"use it    {FOLLOW_UP[options.kind].format(address=address or options.file.name)}")
+        print(f"use it    {use}")
     return 0
 
 

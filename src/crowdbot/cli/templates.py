@@ -34,14 +34,15 @@ CLASSES = {
 FOLLOW_UP = {
     "model": "crowdbot predict --data DATA --predictor simulated --model {address}",
     "predictor": "crowdbot predict --data DATA --predictor {address}",
-    "sensor": '<sensor name="mine" type="{address}"/> in a <robot> of a trial',
+    "sensor": '<sensor name="mine" type="{name}"/> in a <robot> of a trial in the same folder',
     "goal": "crowdbot predict --data DATA --predictor simulated --goal {address}",
     "cost": "crowdbot calibrate --data DATA --cost {address}",
     "navigator": "crowdbot run frontal --set robot/navigator/type={address}",
-    "robot": '<robot type="{address}" .../> in a trial',
-    "stage": '<stage area="{address}"/> in a trial',
+    "robot": '<robot type="{name}" .../> in a trial in the same folder',
+    "stage": '<stage area="{name}"/> in a trial in the same folder',
+    "trial": "crowdbot run {address}",
 }
-"""Example of use of each kind."""
+"""How each kind is used: by its path, or by its name beside a trial."""
 
 
 def class_files(kind: str, file: Path) -> dict[Path, str]:

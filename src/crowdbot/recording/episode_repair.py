@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from crowdbot.core import EpisodeError, InputError, Walls, release_stale_lock
-from crowdbot.data import MCAP_MAGIC, McapError, McapReader, has_summary
+from crowdbot.data import MCAP_MAGIC, McapReader, has_summary
 from crowdbot.metrics import NavigationMetrics
 from crowdbot.simulation import robot_metrics
 
@@ -106,7 +106,7 @@ def repair(path: Path | str) -> float | None:
             return ending.last.time
     except OSError as error:
         raise EpisodeError(f"cannot repair {path}: {error.strerror}") from None
-    except (McapError, KeyError, ValueError, IndexError, AttributeError) as error:
-        if isinstance(error, EpisodeError | InputError):
-            raise
+    except (EpisodeError, InputError):
+        raise
+    except Exception as error:  # damaged bytes make their readers fail in many ways
         raise EpisodeError(f"{path} is damaged: {type(error).__name__}: {str(error)[:80]}") from error

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import logging
 import warnings
 from pathlib import Path
 from typing import Any
@@ -52,6 +53,8 @@ def read_mesh(path: Path, source: str, scale: tuple[float, float, float]) -> Mes
         raise InputError("it has no triangles")
     if len(faces) > MOST_TRIANGLES:
         raise InputError(f"it has {len(faces)} triangles, at most {MOST_TRIANGLES} are allowed; simplify the mesh")
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise InputError(f"a triangle names the point {faces.max()}, and it holds {len(vertices)} points")
     if not np.all(np.isfinite(vertices)) or np.abs(vertices).max() > 1e4:
         raise InputError("it has points that are not finite or farther than 10 km from the origin")
     return Mesh(source, vertices, faces)
@@ -84,7 +87,11 @@ def with_pieces(mesh: Mesh, method: str = "auto") -> tuple[Mesh, str]:
 
 
 def _trimesh() -> Any:
-    return import_optional("trimesh", "reading meshes of robots", "sim")
+    module = import_optional("trimesh", "reading meshes of robots", "sim")
+    log = logging.getLogger("trimesh")
+    if not log.handlers:  # otherwise Python prints the traces of errors that trimesh handles
+        log.addHandler(logging.NullHandler())
+    return module
 
 
 def _load_trimesh(data: bytes, kind: str) -> Any:
