@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 import random
-import re
 import shutil
 import signal
 import sys
@@ -22,6 +21,10 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from types import FrameType
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from fuzzing import XML_NUMBER, mutate_xml
 
 from crowdbot.core import CrowdbotError
 from crowdbot.recording import open_run
@@ -35,17 +38,7 @@ OUT = "out"
 MOST_PEOPLE = 2000
 """Files with more people are read and checked, but not run."""
 
-NASTY = """
-nan inf -inf 1e999 1e308 -1e308 1e-320 0 -0 -1 1 2 1e6 1e7 99999 100000 100001 2147483648 9007199254740993 0x10 1_000
-true false 1,0 0,0 1e6,1e6 0,0,0 normal(1,1) uniform(2,1) normal(1) x(1) () ( , ; : / .. ../x /etc/passwd ~ - é
-${HOME} %s {0} \\ ' &amp; &lt; &#0; &#x41; <!--x--> ]]> POLYGON
-"""
 ENDS = ("-1e300", "-1e-320", "1e-320", "1e-40", "1e-12", "1e-6", "1e-3", "1e3", "1e6", "1e9", "1e40", "1e300")
-FACTORS = (-1.0, 0.1, 0.5, 0.9, 1.1, 2.0, 3.0, 100.0)
-NUMBER = re.compile(r'(?<=[ ",])-?[0-9]+(?:\.[0-9]+)?(?=[ ",])')
-WORDS = re.compile(r'(?<=")[^"<>]*(?=")')
-TAGS = re.compile(r"<[^<>]+/>")
-NAMES = re.compile(r"(?<= )[a-z][a-z-]*(?==)|(?<=<)[a-z][a-z-]*")
 
 EXTRA = """<trial name="extra" duration="5" capacity="40">
   <stage area="POLYGON ((0 0, 12 0, 12 9, 0 9, 0 0), (5 5, 6 5, 6 6, 5 6, 5 5))"/>
@@ -117,7 +110,7 @@ def texts(new: bool = False) -> list[str]:
 def ends() -> Iterator[str]:
     """Yield files in which one number is an end of what a number can be."""
     for text in (EXTRA, *texts(new=True)):
-        for found in NUMBER.finditer(text):
+        for found in XML_NUMBER.finditer(text):
             yield from (text[: found.start()] + end + text[found.end() :] for end in ENDS)
 
 
@@ -126,44 +119,7 @@ def drawn(count: int, seed: int, new: bool = False) -> Iterator[str]:
     chance = random.Random(seed)  # noqa: S311
     good = texts(new)
     for _ in range(count):
-        yield mutated(chance.choice(good), chance)
-
-
-def mutated(text: str, chance: random.Random) -> str:
-    """Return a file with one to four changes: of characters, values, names or whole elements."""
-    for _ in range(chance.choice((1, 1, 2, 4))):
-        kind = chance.random()
-        if kind < 0.4:
-            text = _replaced(text, NUMBER, chance, lambda word: f"{float(word) * chance.choice(FACTORS):g}")
-        elif kind < 0.6:
-            text = _replaced(text, WORDS, chance, lambda _: chance.choice(NASTY.split()))
-        elif kind < 0.7:
-            text = _replaced(text, NAMES, chance, lambda word: _typo(word, chance))
-        elif kind < 0.8:
-            text = _replaced(text, TAGS, chance, lambda tag: tag * chance.choice((0, 2, 30)))
-        elif kind < 0.9:
-            words = WORDS.findall(text)
-            text = _replaced(text, WORDS, chance, lambda _, words=words: chance.choice(words))
-        else:
-            at = chance.randrange(len(text) + 1)
-            end = min(len(text), at + chance.choice((0, 0, 1, 5, 200)))
-            text = (
-                text[:at] + chance.choice(('"', "<", ">", "/", "&", "\x00", "\ud800", "", " ", "\n", "é")) + text[end:]
-            )
-    return text
-
-
-def _replaced(text, pattern, chance, change):
-    found = list(pattern.finditer(text))
-    if not found:
-        return text
-    one = chance.choice(found)
-    return text[: one.start()] + change(one.group()) + text[one.end() :]
-
-
-def _typo(word: str, chance: random.Random) -> str:
-    at = chance.randrange(len(word))
-    return word[:at] + chance.choice(("", "x", word[at] * 2)) + word[at + 1 :]
+        yield mutate_xml(chance.choice(good), chance)
 
 
 def judged(text: str, folder: Path) -> str:

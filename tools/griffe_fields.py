@@ -11,6 +11,7 @@ HEADING = re.compile(r"^Fields(?: \((?P<about>[^\n]*)\))?:$", flags=re.M)
 DOCTEST = re.compile(r"(^|\n\n)(>>> (?:.|\n(?!\n))*)(?=\n\n|\n?\Z)")
 UNIT = re.compile(r"\] \[(?=[a-zA-Z0-9/]+\])")
 ROLE = re.compile(r":[a-z]+:`~?([^`]+)`")
+SHARED = re.compile(r"^(?P<indent> +)(?P<names>\w+(?:, \w+)+): (?P<text>.*(?:\n(?P=indent) +.*)*)$", flags=re.M)
 
 
 class Fields(griffe.Extension):
@@ -23,16 +24,20 @@ class Fields(griffe.Extension):
 
 
 def google(text: str) -> str:
-    """Return a docstring with ``Attributes:`` for ``Fields:``, plain code for roles, and fenced examples.
+    """Return a docstring with ``Attributes:`` for ``Fields:``, one entry per name, and fenced examples.
 
-    >>> print(google("A thing.\\n\\nFields (arrays over E):\\n    x: ``[E]`` [m].\\n"))
+    >>> print(google("A thing.\\n\\nFields (arrays over E):\\n    x, y: ``[E]`` [m].\\n"))
     A thing.
     <BLANKLINE>
     Fields: arrays over E.
     <BLANKLINE>
     Attributes:
         x: ``[E]`` [m].
+        y: ``[E]`` [m].
     <BLANKLINE>
     """
     plain = DOCTEST.sub(r"\1```pycon\n\2\n```", ROLE.sub(r"`\1`", UNIT.sub(r"] \\[", text)))
-    return HEADING.sub(lambda m: f"Fields: {m['about']}.\n\nAttributes:" if m["about"] else "Attributes:", plain)
+    plain = HEADING.sub(lambda m: f"Fields: {m['about']}.\n\nAttributes:" if m["about"] else "Attributes:", plain)
+    return SHARED.sub(
+        lambda m: "\n".join(f"{m['indent']}{name}: {m['text']}" for name in m["names"].split(", ")), plain
+    )

@@ -38,8 +38,8 @@ This page holds the numbers that crowdbot claims, each with its protocol and the
 python tools/measured.py SHARED > docs/results/measured.md
 ```
 
-SHARED holds public recordings and reference steps of other engines, which are not part of crowdbot (see CONTRIBUTING.md
-in the repository). [Known weaknesses](../about/weaknesses.md) says what the numbers do not show.
+SHARED holds public recordings and reference steps of other engines, which are not part of crowdbot (see
+`tests/RECORDINGS.md` in the repository). [Known weaknesses](weaknesses.md) lists what the numbers do not show.
 
 | question | section |
 |---|---|
@@ -255,7 +255,7 @@ def _navigation() -> None:
     print("\n## Robots in `crossing-flows`\n")
     trial = cb.load_trial("crossing-flows")
     print(
-        f"Seeds {SEEDS.start} to {SEEDS.stop - 1}. People walk by {type(trial.crowd).__name__}. `visible` says whether"
+        f"Seeds {SEEDS.start} to {SEEDS.stop - 1}. People walk by {type(trial.crowd).__name__}. `visible`: whether"
         " they react to the robot.\n\n`crowdbot run crossing-flows --seed N --set robot/visible=false`"
     )
     rows = []

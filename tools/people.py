@@ -1,4 +1,4 @@
-"""Draw people for the documents: ``python tools/people.py FOLDER`` writes the pictures of ``docs/people/README.md``."""
+"""Draw people for the gallery: ``python tools/people.py docs/gallery/people``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Draw the pictures of the physics world: ``python tools/physics.py docs/physics``."""
+"""Draw the pictures of the physics world: ``python tools/physics.py docs/gallery/physics``."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def rays(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    target = Path(sys.argv[1] if len(sys.argv) > 1 else "docs/physics")
+    target = Path(sys.argv[1] if len(sys.argv) > 1 else "docs/gallery/physics")
     target.mkdir(parents=True, exist_ok=True)
     robots(target)
     cameras(target)

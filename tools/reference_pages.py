@@ -1,6 +1,7 @@
 """Write the reference of the site while it is built (a hook of mkdocs, used by mkdocs.yml).
 
-One page for each room with every name of its face, from the docstrings, and one page for each command, from argparse.
+One page for each room with every name of its face, from the docstrings, one page for each command, from argparse, and
+one page of all elements of a trial file, from its schema.
 """
 
 from __future__ import annotations
@@ -23,11 +24,14 @@ from mkdocs.structure.files import File, Files
 
 import crowdbot
 from crowdbot.cli import COMMANDS
+from crowdbot.trials import schema
 
 sys.path.insert(0, str(Path(__file__).parent))
-from griffe_fields import google
+from griffe_fields import ROLE, google
+from trial_elements import elements_page
 
 API, CLI = "reference/api", "reference/cli"
+ELEMENTS = "reference/trial-elements.md"
 
 
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
@@ -36,6 +40,7 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
     reference = next(section["Reference"] for section in config.nav if "Reference" in section)
     rooms = [{_title(room): f"{API}/{_title(room)}.md"} for room in faces()]
     commands = [{name: f"{CLI}/{name}.md"} for name in COMMANDS]
+    reference.insert(2, {"Trial elements": ELEMENTS})
     reference += [
         {"Command line": [f"{CLI}/index.md", *commands]},
         {"Python": [f"{API}/index.md", *rooms]},
@@ -45,7 +50,7 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the generated files."""
-    pages = {f"{API}/index.md": front_door(), f"{CLI}/index.md": all_commands()}
+    pages = {f"{API}/index.md": front_door(), f"{CLI}/index.md": all_commands(), ELEMENTS: elements_page(schema())}
     pages |= {f"{API}/{_title(room)}.md": face(room) for room in faces()}
     pages |= {f"{CLI}/{name}.md": command(name) for name in COMMANDS}
     for path, text in pages.items():
@@ -65,7 +70,7 @@ def face(module: ModuleType) -> str:
     groups: dict[str, list[str]] = {"Classes": [], "Functions": [], "Constants": []}
     for name in sorted(module.__all__, key=str.lower):
         groups[_group(getattr(module, name))].append(name)
-    lines = [f"# {module.__name__}", "", inspect.cleandoc(module.__doc__ or ""), ""]
+    lines = [f"# {module.__name__}", "", google(inspect.cleandoc(module.__doc__ or "")), ""]
     for title, names in groups.items():
         if names:
             links = [f"[`{n}`](#{_path(module, n)})" for n in names]
@@ -115,7 +120,7 @@ def front_door() -> str:
         "",
         "`import crowdbot as cb` gives the names below; each is loaded on first use.",
         "",
-        "| name | from | |",
+        "| name | room | meaning |",
         "|---|---|---|",
     ]
     for name in sorted((n for n in crowdbot.__all__ if not n.startswith("_")), key=str.lower):
@@ -124,7 +129,7 @@ def front_door() -> str:
         known = name in getattr(importlib.import_module(room), "__all__", ())
         link = f"[`cb.{name}`][{_path(importlib.import_module(room), name)}]" if known else f"`cb.{name}`"
         lines.append(f"| {link} | `{room}` | {_sentence(thing)} |")
-    lines += ["", "## Rooms", "", "| package | |", "|---|---|"]
+    lines += ["", "## Rooms", "", "| package | content |", "|---|---|"]
     lines += [f"| [`{room.__name__}`]({_title(room)}.md) | {_sentence(room)} |" for room in faces()]
     return "\n".join(lines) + "\n"
 
@@ -137,7 +142,7 @@ def all_commands() -> str:
         "`crowdbot COMMAND --help` prints the same. The exit status is 0 when a command is done, 1 when a check",
         "failed, 2 when the input is wrong, and 130 after Ctrl-C.",
         "",
-        "| command | |",
+        "| command | task |",
         "|---|---|",
     ]
     lines += [f"| [`crowdbot {name}`]({name}.md) | {line[0].upper()}{line[1:]}. |" for name, line in COMMANDS.items()]
@@ -163,7 +168,10 @@ def _sections(parser: argparse.ArgumentParser) -> Iterator[str]:
         below += [a for a in actions if isinstance(a, argparse._SubParsersAction)]
         rows = [a for a in actions if not isinstance(a, argparse._SubParsersAction)]
         if rows:
-            yield from [f"**{(group.title or 'options').capitalize()}**", "", "| | |", "|---|---|"]
+            title = "argument" if group.title == "positional arguments" else "option"
+            name = "" if group.title in ("positional arguments", "options") else (group.title or "")
+            yield from ([f"**{name[0].upper()}{name[1:]}**", ""] if name else [])
+            yield from [f"| {title} | meaning |", "|---|---|"]
             yield from (f"| {_words(action)} | {_help(parser, action)} |" for action in rows)
             yield ""
     for action in below:
@@ -196,7 +204,7 @@ def _group(thing: Any) -> str:
 
 def _sentence(thing: Any) -> str:
     text = (inspect.getdoc(thing) or "").split("\n\n")[0].replace("\n", " ").replace("|", "\\|")
-    return text.replace("``", "`")
+    return ROLE.sub(r"`\1`", text).replace("``", "`")
 
 
 def _title(module: ModuleType) -> str:

@@ -76,6 +76,7 @@ def check(dist: Path) -> int:
     problems += [f"{wheel.name} has {name}" for name in inside - set(needed) if name.startswith("crowdbot/")]
     problems += [f"{wheel.name} has {name}" for name in inside if re.search(r"__pycache__|\.py[co]$|^tests/", name)]
     problems += [f"{sdist.name} has no {name}" for name in tracked() if name not in sources]
+    problems += assets_without_terms()
     problems += versions_that_differ(str(project()["version"]))
     write_weights(dist / ARCHIVE, apart)
     print(f"{wheel.name}: {wheel.stat().st_size / 1e6:.1f} MB, {len(inside)} files")
@@ -99,6 +100,13 @@ def tracked() -> list[str]:
     """Return the files under version control but those about it."""
     run = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True)
     return [name for name in run.stdout.splitlines() if not name.startswith((".git",))]
+
+
+def assets_without_terms() -> list[str]:
+    """Return the files and folders of assets that LICENSE does not name."""
+    text = (ROOT / "LICENSE").read_text("utf-8")
+    assets = {"/".join(name.split("/")[:4]) for name in tracked() if name.startswith("src/crowdbot/assets/")}
+    return [f"LICENSE does not name {name}" for name in sorted(assets) if name not in text]
 
 
 def versions_that_differ(version: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""Draw the rays of every range sensor in a populated scene: ``python tools/sensors.py docs/sensors``."""
+"""Draw the rays of every range sensor in a populated scene: ``python tools/sensors.py docs/gallery/sensors``."""
 
 from __future__ import annotations
 

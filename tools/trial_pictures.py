@@ -2,7 +2,7 @@
 
     python tools/trial_pictures.py docs/gallery/trials
 
-writes one small picture a trial, and the page that lists them with their parameters.
+writes one small picture per trial into the folder, and beside it the page that lists them with their parameters.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def main() -> int:
     for name in options.names or builtin_trials():
         draw(load_trial(name), options.folder / f"{name}.png")
         print(name)
-    page(options.folder / "README.md")
+    page(options.folder.with_suffix(".md"))
     return 0
 
 
@@ -121,11 +121,15 @@ def people(axes: Any, episode: Episode) -> None:
 def page(file: Path) -> None:
     """Write the page that lists all."""
     lines = [
+        "---",
+        "hide: [toc]",
+        "---",
+        "",
         "# Built-in trials",
         "",
         "Each picture shows people (blue) and the robot (red) at the start, the paths of the first 20 s, and the goal",
-        "of the robot (x). Shaded zones are portals: people who enter one continue at the other. Blue: sources.",
-        "The pictures are made by `python tools/trial_pictures.py docs/gallery/trials`.",
+        "of the robot (x). Blue zones are sources; other shaded zones are portals: people who enter one continue at",
+        "the other. `python tools/trial_pictures.py docs/gallery/trials` makes the pictures and this page.",
         "",
         "Run a trial with `crowdbot run NAME`, change its parameters with `--set NAME=VALUE`, and list them with",
         "`crowdbot list trials NAME`. The last column gives the names of other simulators and the parameters",
@@ -140,18 +144,19 @@ def page(file: Path) -> None:
         about = load_trial(name).about
         options = "" if preset is None else "<br>".join(f"`{key}` {option}" for key, option in preset.own.items())
         also = "" if preset is None else preset.also.replace("; ", "<br>")
-        lines.append(f"| **{name}**<br>{about} | ![{name}]({name}.png) | {options} | {also} |")
+        lines.append(f"| **{name}**<br>{about} | ![{name}](trials/{name}.png) | {options} | {also} |")
     lines += [
         "",
         "## Trials from recordings",
         "",
-        'Trials with recorded people are not built in. `<recorded data="..." without="...">` replays any recording,',
+        'Trials with recorded people are not built in. `<recorded data="..." exclude="...">` replays any recording,',
         "with one person replaced by the robot (as in SocNavBench and the evaluation of RDS).",
+        "[Start from an existing trial](../how-to/trial.md#from-a-recording) shows how.",
         "",
         "## A long trial",
         "",
-        "[thousand.xml](thousand.xml) is not built in: a thousand people walk both ways for ten minutes, with a robot",
-        "among them, in a corridor of 100 m by 20 m that wraps around.",
+        "[thousand.xml](trials/thousand.xml) is not built in: a thousand people walk both ways for ten minutes, with a",
+        "robot among them, in a corridor of 100 m by 20 m that wraps around.",
         "`crowdbot run docs/gallery/trials/thousand.xml --out DIR` runs and records it with a progress bar;",
         "`python tools/long_trial.py DIR` prints its speed against real time, and the memory at quarters of the run.",
     ]

@@ -31,7 +31,7 @@ def test_it_is_a_set_of_samples_with_one_person_each() -> None:
 
 
 def test_wrong_numbers_and_methods_are_said() -> None:
-    with pytest.raises(InputError, match="1 of 4 rows are seen"):
+    with pytest.raises(InputError, match="1 of 4 rows are observed"):
         ToyData(observe=1)
     with pytest.raises(InputError, match="must be at least 1"):
         ToyData(groups=0)

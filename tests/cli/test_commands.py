@@ -75,19 +75,22 @@ def test_run_records_and_replay_agrees(capsys, tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["episode.mcap"]
 
 
+BRIEF = ["run", "crossing-flows", "--set", "duration=4", "--seed"]
+
+
 def test_the_digest_is_the_same_in_another_process(capsys):
-    here = _json(capsys, "run", "crossing-flows", "--seed", "2")
-    again = _json(capsys, "run", "crossing-flows", "--seed", "2")
-    there = json.loads(_program("run", "crossing-flows", "--seed", "2", "--json", check=True).stdout)
-    other = _json(capsys, "run", "crossing-flows", "--seed", "3")
+    here = _json(capsys, *BRIEF, "2")
+    again = _json(capsys, *BRIEF, "2")
+    there = json.loads(_program(*BRIEF, "2", "--json", check=True).stdout)
+    other = _json(capsys, *BRIEF, "3")
     assert here["digest"] == again["digest"] == there["digest"] != other["digest"]
     assert here["metrics"] == there["metrics"]
 
 
 def test_one_thread_gives_the_same_digest(capsys):
-    here = _json(capsys, "run", "crossing-flows", "--seed", "2")
+    here = _json(capsys, *BRIEF, "2")
     alone = {**os.environ, "NUMBA_NUM_THREADS": "1"}
-    there = json.loads(_program("run", "crossing-flows", "--seed", "2", "--json", check=True, env=alone).stdout)
+    there = json.loads(_program(*BRIEF, "2", "--json", check=True, env=alone).stdout)
     assert here["digest"] == there["digest"]
 
 

@@ -96,8 +96,8 @@ def test_orders_are_printed(capsys):
         (["run", "robot-speed", "--participant", "1", "--out", "out", "--answers", "list.json"], "one JSON object"),
         (["run", "robot-speed", "--participant", "1", "--out", "out", "--answers", "typo.json"], "did you mean 'age'"),
         (["order", "robot-speed", "--participants", "0"], "at least 1"),
-        (["summary", "."], "holds no session"),
-        (["new", "here"], "is there already"),
+        (["summary", "."], "contains no sessions"),
+        (["new", "here"], "already exists"),
         (["new", "there", "--like", "robot"], "did you mean 'robot-speed'"),
     ],
 )
@@ -131,7 +131,7 @@ def test_a_missing_answer_leaves_a_session_to_go_on_with(capsys, tmp_path, answe
     words = ["experiment", "run", "robot-speed", "--participant", "1", "--out", str(tmp_path / "data")]
     (tmp_path / "some.json").write_text('{"age": 30}')
     assert main([*words, "--answers", str(tmp_path / "some.json")]) == 2
-    assert "'robots' needs an answer: never or sometimes or often" in capsys.readouterr().err
+    assert "'robots' requires an answer: never or sometimes or often" in capsys.readouterr().err
     assert main([*words, "--answers", str(answers)]) == 2
     assert "--resume" in capsys.readouterr().err
     assert main([*words, "--answers", str(answers), "--resume"]) == 0

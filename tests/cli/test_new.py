@@ -21,12 +21,14 @@ def refused(capsys, tmp_path, *words):
 def test_a_trial_is_written_from_a_builtin_one(tmp_path, capsys):
     file = tmp_path / "mine.xml"
     assert main(["new", "trial", str(file), "--from", "two-way", "--set", "density=0.1", "--seed", "9"]) == 0
-    assert capsys.readouterr().out == f"wrote {file}\nwrote {tmp_path / 'test_mine.py'}\n"
+    test = tmp_path / "test_mine.py"
+    lines = (f"wrote {file}", f"wrote {test}", f"test it   pytest {test}", f"use it    crowdbot run {file}")
+    assert capsys.readouterr().out.splitlines() == [*lines]
     trial = load_trial(file)
     assert (trial.people, trial.seed) == (24, 9)
     assert main(["check", str(file)]) == 0
     capsys.readouterr()
-    assert "exists already" in refused(capsys, tmp_path, "new", "trial", file)
+    assert "already exists" in refused(capsys, tmp_path, "new", "trial", file)
     assert main(["new", "trial", str(file), "--force", "--explicit", "--set", "gap=5"]) == 0
     assert len(load_trial(file).agents) == 1
 
@@ -45,21 +47,21 @@ def test_a_trial_is_written_from_a_recording_and_from_an_original_file(tmp_path,
     file = tmp_path / "out" / "two.xml"
     words = ["new", "trial", str(file), "--recorded", str(data), "--fps", "25", "--reactive", "--replace", "2"]
     assert main(words) == 0
-    assert "copied two.txt beside it" in capsys.readouterr().err
+    assert "copied two.txt to the folder of the trial" in capsys.readouterr().err
     assert load_trial(file).recorded[0].mode == "reactive"
     assert main(["run", str(file)]) == 0
     original = tmp_path / "original.xml"
     original.write_text("<Trial><agents/></Trial>")
     capsys.readouterr()
     assert main(["new", "trial", str(tmp_path / "imported.xml"), "--import", str(original)]) == 0
-    assert "not carried over:\n  - no end by time was set" in capsys.readouterr().out
+    assert "not imported:\n  - no end by time was set" in capsys.readouterr().out
     assert main(["check", str(tmp_path / "imported.xml")]) == 0
 
 
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["new", "trial", "{}/gone/t.xml"], "there is no folder"),
+        (["new", "trial", "{}/gone/t.xml"], "t.xml does not exist"),
         (["new", "trial", "{}/t.xml", "--from", "frontl"], "there is no trial 'frontl', did you mean 'frontal'?"),
         (["new", "trial", "{}/t.xml", "--set", "width"], "--set 'width' must be NAME=VALUE"),
         (["new", "trial", "{}/t.xml", "--set", "width=2", "--set", "width=3"], "--set width is given twice"),
@@ -69,7 +71,7 @@ def test_a_trial_is_written_from_a_recording_and_from_an_original_file(tmp_path,
         (["new", "trial", "{}/t.xml", "--recorded", "{}/none.txt"], "there is no file 'none.txt'"),
         (["run", "frontal", "--variant", "1"], "--variant 1: frontal has no variants"),
         (["run", "frontal", "--set", "widht=2"], "frontal has no parameter 'widht', did you mean 'width'?"),
-        (["list", "trials", "frontl"], "'frontl' is no built-in trial with parameters, did you mean 'frontal'?"),
+        (["list", "trials", "frontl"], "'frontl' is not a built-in trial with parameters, did you mean 'frontal'?"),
     ],
 )
 def test_wrong_words_are_told_and_nothing_is_written(tmp_path, capsys, words, sentence):
@@ -81,7 +83,7 @@ def test_a_trial_with_sweeps_is_run_by_its_variants(tmp_path, capsys):
     text = trial_xml(load_trial("frontal")).replace("</trial>", '  <sweep path="seed" values="3 4"/>\n</trial>')
     file.write_text(text)
     said = refused(capsys, tmp_path, "run", file)
-    assert "has 2 variants by its sweeps; run one of them with --variant 1 to 2" in said
+    assert "has 2 variants in its sweeps; run one of them with --variant 1 to 2" in said
     assert "has 2 variants" in refused(capsys, tmp_path, "run", file, "--variant", "3")
     assert main(["run", str(file), "--variant", "2", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["seed"] == 4

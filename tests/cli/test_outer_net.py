@@ -42,7 +42,7 @@ def test_an_unexpected_error_is_one_sentence_with_a_trace_in_a_file(tmp_path):
     assert done.stdout == "half the output\n"
     found = re.fullmatch(
         r"crowdbot: ZeroDivisionError: nothing to divide \(<string>, line \d+\); this is a bug in crowdbot or in your"
-        r" code; the trace is in (.+)\n",
+        r" code; the traceback is in (.+)\n",
         done.stderr,
     )
     assert found, done.stderr
@@ -61,7 +61,7 @@ def test_debug_prints_the_trace(words, environment, tmp_path):
     assert done.returncode == 1
     assert done.stderr.startswith("Traceback (most recent call last)")
     assert done.stderr.splitlines()[-1].startswith("crowdbot: KeyError: 'x' (<string>, line ")
-    assert "the trace is in" not in done.stderr
+    assert "the traceback is in" not in done.stderr
     assert not list(tmp_path.iterdir())
 
 

@@ -1,6 +1,7 @@
-"""Full disks: one sentence, no trace, no half-written file."""
+"""Full disks, places that cannot be written, closed or narrow standard streams, Ctrl-C: one sentence, no trace."""
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -8,16 +9,30 @@ from pathlib import Path
 import pytest
 
 import crowdbot as cb
+from crowdbot.cli import main
+from samples import sample
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="limits and permissions of POSIX")
 SOURCES = Path(cb.__file__).parents[1]
 LIMITED = """
 import resource, signal, sys
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-resource.setrlimit(resource.RLIMIT_FSIZE, (200, 200))
+limit = int(sys.argv.pop(1))
+resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
 from crowdbot.cli import main
 raise SystemExit(main(sys.argv[1:]))
 """
+SHORT = ("--set", "duration=0.5")
+PREDICT = ("predict", "--data", "walk.txt", "--predictor", "constant-velocity")
+CALIBRATE = ("calibrate", "--data", "walk.txt", "--budget", "10")
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Return a folder with a short recording."""
+    rows = (f"{10 * k}\t{who}\t{0.5 * k}\t{2 * who}\n" for k in range(21) for who in (1, 2))
+    (tmp_path / "walk.txt").write_text("".join(rows))
+    return tmp_path
 
 
 def run(folder, *command, text="", **options):
@@ -27,10 +42,138 @@ def run(folder, *command, text="", **options):
     )
 
 
+def run_limited(folder, limit, *words):
+    """Run the program where no file may be larger than ``limit`` bytes, as on a full disk."""
+    return run(folder, "-B", "-c", LIMITED, str(limit), *words)
+
+
+def last_line(done):
+    assert done.returncode == 2, done.stderr
+    assert "Traceback" not in done.stderr + done.stdout
+    return done.stderr.splitlines()[-1]
+
+
+def written(folder):
+    return {path.name for path in folder.rglob("*") if path.is_file()} - {"walk.txt"}
+
+
 @pytest.mark.parametrize("words", [["trial", "t.xml"], ["navigator", "t.py"], ["schema", "t.xsd"], ["robot", "t"]])
 def test_new_on_a_full_disk_is_one_sentence_and_leaves_no_file(words, tmp_path):
-    done = run(tmp_path, "-B", "-c", LIMITED, "new", *words)
+    done = run_limited(tmp_path, 200, "new", *words)
     assert done.returncode == 2
     assert done.stderr.endswith("cannot be written: File too large\n")
     assert done.stderr.count("\n") == 1
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
+
+
+FULL = {
+    "predict": (200, PREDICT, "out/parts/"),
+    "run": (3000, ("run", "frontal", *SHORT), "out/episode.mcap"),
+    "demo": (200, ("demo",), "out/episode.mcap"),
+    "calibrate": (200, CALIBRATE, "out/parts/"),
+}
+
+
+@pytest.mark.parametrize("command", sample(FULL, 2))
+def test_a_full_disk_is_one_sentence_that_names_the_file(folder, command):
+    limit, words, what = FULL[command]
+    done = run_limited(folder, limit, *words, "--out", "out")
+    line = last_line(done)
+    assert line.startswith(f"crowdbot: {what}")
+    assert line.endswith(" cannot be written: File too large")
+    assert written(folder) == set()
+
+
+@pytest.mark.sweep
+def test_a_full_disk_at_the_last_plot_names_the_folder(folder):
+    assert last_line(run_limited(folder, 20_000, *PREDICT, "--out", "out")) == (
+        "crowdbot: out cannot be written: File too large"
+    )
+    assert not any(name.endswith(".part") for name in written(folder))
+
+
+PLACES = {"file": "walk.txt", "below a file": "walk.txt/deep", "system": "/proc/crowdbot"}
+
+
+@pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
+@pytest.mark.parametrize(
+    "words", [["run", "frontal", *SHORT], ["demo"], PREDICT, CALIBRATE], ids=["run", "demo", "predict", "calibrate"]
+)
+def test_a_place_that_cannot_be_written_is_one_sentence(folder, monkeypatch, capsys, words, place):
+    monkeypatch.chdir(folder)
+    before = (folder / "walk.txt").read_bytes()
+    assert main([*words, "--out", place]) == 2
+    line = capsys.readouterr().err.splitlines()[-1]
+    assert line.startswith(f"crowdbot: {place}")
+    assert "written" in line
+    assert written(folder) == set()
+    assert (folder / "walk.txt").read_bytes() == before
+
+
+@pytest.mark.parametrize("place", ["/proc/t.xml", "walk.txt/t.xml"])
+def test_a_trial_in_a_place_that_cannot_be_written_is_one_sentence(folder, monkeypatch, capsys, place):
+    monkeypatch.chdir(folder)
+    assert main(["new", "trial", place]) == 2
+    err = capsys.readouterr().err
+    assert err.startswith("crowdbot: ")
+    assert err.count("\n") == 1
+    assert written(folder) == set()
+
+
+@pytest.mark.parametrize("streams", sample(["<&-", "</dev/null", "<&- >&-"], 1))
+def test_an_experiment_without_an_input_waits_in_one_sentence(folder, streams):
+    command = f"{sys.executable} -m crowdbot experiment run robot-speed --participant 1 --out out {streams}"
+    done = subprocess.run(
+        command, shell=True, cwd=folder, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(SOURCES)}
+    )
+    assert last_line(done).endswith(
+        "crowdbot: the input has ended where welcome.age was waited for; go on later with --resume"
+    )
+    assert "session.jsonl" in written(folder)
+
+
+@pytest.mark.parametrize("words", sample([PREDICT, ("run", "frontal", *SHORT)], 1), ids=["predict", "run"])
+@pytest.mark.parametrize("closed", sample(["<&- >&- 2>&-", ">&-"], 1))
+def test_commands_end_well_with_closed_streams(folder, words, closed):
+    command = " ".join([sys.executable, "-m", "crowdbot", *words, closed])
+    done = subprocess.run(
+        command, shell=True, cwd=folder, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(SOURCES)}
+    )
+    assert (done.returncode, done.stdout) == (0, "")
+    assert "Traceback" not in done.stderr
+
+
+def test_questions_are_printed_to_an_output_of_ascii(folder):
+    words = ("experiment", "run", "robot-speed", "--participant", "1", "--out", "out")
+    done = run(folder, "-m", "crowdbot", *words, text="30\n", PYTHONIOENCODING="ascii")
+    assert last_line(done).startswith("crowdbot: the input has ended where ")
+    assert done.stdout.isascii()
+    assert "How often do you meet robots?" in done.stdout
+
+
+@pytest.mark.sweep
+def test_scores_are_printed_to_an_output_of_ascii(folder):
+    done = run(folder, "-m", "crowdbot", *PREDICT, PYTHONIOENCODING="ascii")
+    assert (done.returncode, done.stdout.isascii(), done.stderr.isascii()) == (0, True, True)
+    assert "walk.txt" in done.stdout
+
+
+@pytest.mark.parametrize("workers", sample(["1", "2"], 1))
+def test_predict_ends_soon_on_ctrl_c(folder, workers):
+    rows = (f"{10 * k}\t{who}\t{0.5 * k + 0.01 * who}\t{0.7 * who}\n" for k in range(2000) for who in range(1, 40))
+    (folder / "large.txt").write_text("".join(rows))
+    words = ["predict", "--data", "large.txt", "--predictor", "simulated", "--model", "social-force", "--samples", "40"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "crowdbot", *words, "--workers", workers, "--out", "out"],
+        cwd=folder, env={**os.environ, "PYTHONPATH": str(SOURCES)},
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    for line in process.stderr:
+        if line.endswith("...\n"):
+            break
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)  # the whole job takes many minutes
+    assert (process.returncode, out) == (130, "")
+    assert err.endswith("crowdbot: interrupted\n")
+    assert "run the same command again to resume" in err
+    assert "Traceback" not in err

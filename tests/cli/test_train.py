@@ -128,6 +128,7 @@ def test_wrong_words_are_one_sentence(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.sweep
 def test_the_study_trains_measures_and_draws(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = ["study", "gan", "--methods", "vanilla", "info+unrolled5", "--seeds", "1", "--updates", "2",
              "--check-every", "1", "--set", "hidden=4", "--out", str(tmp_path), "--json"]  # fmt: skip

@@ -1,17 +1,22 @@
-"""What tools/fuzz_readers.py found, and a sample of its mutated files; `make sweeps` reads 3000."""
+"""What tools/fuzz_readers.py found, and a sample of its mutated files; `make sweeps` reads 200 of every kind."""
 
+import json
 import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from synthetic_recordings import rows, sdd_annotations
+from synthetic_recordings import rows, sdd_annotations, social_ways
 
 from crowdbot.core import DataError
 from crowdbot.data import load
 
 ROOT = Path(__file__).parents[2]
+KINDS = (
+    "text", "hdf5", "sqlite", "parquet", "npz", "mcap", "weights", "trials", "originals", "robots", "meshes", "maps",
+    "episodes", "experiments", "sessions",
+)  # fmt: skip
 
 
 @pytest.mark.parametrize("label", ["inf", "-inf", "nan", "1.5", "2", "-1"])
@@ -51,19 +56,52 @@ def test_a_spline_cannot_span_any_time(tmp_path):
     assert len(load(path)) == 2001
 
 
-def fuzz(count, seed):
+@pytest.mark.parametrize("name", ["obsvs", "preds", "times"])
+@pytest.mark.parametrize("dtype", ["datetime64[s]", "U8", "complex128"])
+def test_arrays_that_hold_no_numbers_are_named(tmp_path, name, dtype):
+    path = tmp_path / "data_8_12.npz"
+    social_ways(path)
+    with np.load(path) as file:
+        arrays = dict(file)
+    np.savez(path, **{**arrays, name: arrays[name].astype(dtype)})
+    with pytest.raises(DataError, match=rf"{path.name}: the array {name} must hold numbers, it holds "):
+        load(path)
+
+
+linux = pytest.mark.skipif(sys.platform != "linux", reason="the fuzzer reads /proc and limits memory")
+
+
+def fuzz(count, seed, *kinds):
     tool = [sys.executable, ROOT / "tools" / "fuzz_readers.py", "--count", str(count), "--seed", str(seed)]
-    return subprocess.run(tool, capture_output=True, text=True, check=False)
+    return subprocess.run([*tool, "--only", *kinds], capture_output=True, text=True, check=False)
 
 
+@linux
 def test_a_sample_of_mutated_files_is_read_or_rejected():
-    done = fuzz(60, 7)
+    kinds = ("npz", "mcap", "maps", "sessions")
+    done = fuzz(15, 7, *kinds)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "'rejected':" in done.stdout
+    last = done.stdout.splitlines()[-1].split()
+    assert (last[0], int(last[1]), int(last[4])) == ("all", 15 * len(kinds), 0)
+    assert int(last[3]) > 0
 
 
+@linux
 @pytest.mark.sweep
-def test_mutated_files_are_read_or_rejected():
-    done = fuzz(3000, int(np.random.default_rng(8).integers(1 << 30)))
+@pytest.mark.parametrize("kind", KINDS)
+def test_mutated_files_are_read_or_rejected(kind):
+    done = fuzz(200, int(np.random.default_rng(8).integers(1 << 30)), kind)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "'rejected':" in done.stdout
+    assert int(done.stdout.splitlines()[-1].split()[3]) > 0
+
+
+@linux
+def test_a_run_continues_from_its_state_and_a_file_is_repeated(tmp_path):
+    state = tmp_path / "state.json"
+    tool = [sys.executable, ROOT / "tools" / "fuzz_readers.py", "--only", "npz", "--state", state, "--count"]
+    for count in ("3", "6"):
+        done = subprocess.run([*tool, count], capture_output=True, text=True, check=True)
+    known = json.loads(state.read_text())
+    counts = known["counts"]["npz"]
+    assert (counts["next"], counts.get("read", 0) + counts["rejected"]) == (6, 6)
+    assert "npz: 6 of 6" in done.stderr

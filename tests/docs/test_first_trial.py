@@ -14,7 +14,7 @@ from crowdbot.trials import load_trial
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = (DOCS / "tutorials" / "first-trial.md").read_text(encoding="utf-8")
 ELEMENTS = (DOCS / "reference" / "trial-file.md").read_text(encoding="utf-8")
-STEPS = re.split(r"^\*\*\d+\. ", PAGE.split("\n## ")[0], flags=re.M)[1:]
+STEPS = re.split(r"^## \d+\. ", PAGE.split("\n## More")[0], flags=re.M)[1:]
 
 
 def blocks(step: str, language: str) -> list[str]:
@@ -46,7 +46,7 @@ def test_each_step_does_what_it_says(
     check, run, replay, straight, many, sixth, new, people = said
     assert check == "hall.xml: OK\n"
     assert "outcome" in run
-    assert "replays to the same bytes" in replay
+    assert "replays with the same digest" in replay
     assert "hall, seed 5" in straight
     assert many.count("[count") == 12
     assert "[count 10, seed 1]" in sixth
@@ -62,3 +62,14 @@ def test_every_element_of_the_pages_exists() -> None:
     known = set(re.findall(r'<xs:element name="([a-z-]+)"', schema()))
     for page in (PAGE, ELEMENTS):
         assert set(re.findall(r"`?<([a-z-]+)[ >`/]", page)) <= known
+
+
+def test_every_attribute_of_the_reference_exists() -> None:
+    from crowdbot.trials import schema
+
+    known = set(re.findall(r'<xs:attribute name="([a-z-]+)"', schema()))
+    elements = re.findall(r"`<[a-z-]+ ([^<>`]*)/?>`", ELEMENTS)
+    named = {word for text in elements for word in re.findall(r"[a-z-]+", re.sub(r'"[^"]*"', "", text))}
+    named |= set(re.findall(r'`([a-z-]+)="', ELEMENTS))
+    assert len(named) > 30
+    assert named <= known

@@ -129,8 +129,8 @@ def _wrong(tmp_path: Path) -> list[str]:
         "e.xml:1: <experiment> has no attribute 'sed', did you mean 'seed'?; it takes name, about, seed, participants",
         'e.xml:3: <scale> name="a b" must match',
         "e.xml:4: <number> has min above max",
-        "e.xml:5: <number> has an empty text; write what is asked",
-        "e.xml:6: <choise> is no element of <instructions>, did you mean 'choice'?",
+        "e.xml:5: <number> has an empty text; give the text of the question",
+        "e.xml:6: <choise> is not an element of <instructions>, did you mean 'choice'?",
         'e.xml:8: <block> order="latin" must be fixed or random or latin-square',
         'e.xml:8: <block> repetitions="0" must be at least 1',
         "e.xml:9: <trial> source='frontl': there is no trial 'frontl', did you mean 'frontal'?",
@@ -138,9 +138,9 @@ def _wrong(tmp_path: Path) -> list[str]:
         "e.xml:11: <trial> source='broken.xml': broken.xml:1: <trial> duration=\"-1\" must be above 0 s",
         "e.xml:11: <trial> source='broken.xml': broken.xml:2: <crowd> unknown crowd model 'orka', did you mean 'orca'?",
         "e.xml:12: <trial> source='../outside.xml': the trial '../outside.xml' lies outside the folder",
-        "e.xml:15: <before> has both a text and a file; keep one",
+        "e.xml:15: <before> has both a text and a file; give one of them",
         "e.xml:17: <trial> name 'x' is taken by another trial of this block; give each its own",
-        "e.xml:18: <after> shows and asks nothing; give it a text, a file or a question",
+        "e.xml:18: <after> is empty; it needs a text, a file or a question",
     ],
 )
 def test_every_problem_is_said_at_once_with_its_line(tmp_path: Path, said: str) -> None:
@@ -162,14 +162,14 @@ def test_what_is_wrong_with_the_whole_is_said_too(tmp_path: Path) -> None:
     with pytest.raises(TrialError) as found:
         load_experiment(tmp_path / "e.xml")
     words = "\n".join(found.value.problems)
-    assert "e.xml:2: <instructions> file='helo.txt' is not there" in words
+    assert "e.xml:2: <instructions> file='helo.txt' does not exist" in words
     assert "e.xml:4: <block> name 'main' is taken by another block" in words
-    assert "e.xml:5: <after> name 'hello' is taken by a screen outside of this trial" in words
+    assert "e.xml:5: <after> name 'hello' is already used by a screen outside this trial" in words
     assert "e.xml:6: <after> name 'b' is taken by another screen of this trial" in words
     assert "e.xml:8: <ending> name 'hello' is taken by another screen" in words
     assert len(found.value.problems) == 5
     many = [TrialEntry(name=f"t{k}", source="frontal") for k in range(11)]
-    with pytest.raises(TrialError, match="has 11000 trials for a participant, at most 10000"):
+    with pytest.raises(TrialError, match="has 11000 trials per participant, the maximum is 10000"):
         check_experiment(Experiment(name="e", blocks=[Block(name="b", repetitions=1000, trials=many)]))
 
 
@@ -314,7 +314,7 @@ def test_screens_come_from_the_folder_only(tmp_path: Path) -> None:
     assert page.html == "<p>one<br>two</p><p>&lt;three&gt;</p>"
     for name, said in (
         ("../out.txt", "outside"), ("link.txt", "outside"), ("latin.txt", "UTF-8"), ("large.txt", "larger"),
-        ("none.txt", "not there"), ("in.exe", "must end in"), (str(tmp_path / "out.txt"), "outside"),
+        ("none.txt", "does not exist"), ("in.exe", "must end in"), (str(tmp_path / "out.txt"), "outside"),
     ):  # fmt: skip
         with pytest.raises(InputError, match=said):
             page_of(Screen(name="s", file=name), folder)
@@ -365,7 +365,7 @@ def test_random_orders_are_drawn_for_each_and_stay() -> None:
     fixed = _experiment("fixed", 4, repetitions=2)
     assert orders(fixed, fixed.blocks[0], 7) == [[0, 1, 2, 3]] * 2
     for who in (0, -1, 100_001):
-        with pytest.raises(InputError, match="is not one of the experiment 'e', 1 to 100000"):
+        with pytest.raises(InputError, match="in the experiment 'e'; participants are 1 to 100000"):
             orders(fixed, fixed.blocks[0], who)
 
 
@@ -423,7 +423,7 @@ def test_typed_answers(question: Choice, typed: str, meant: object) -> None:
 @pytest.mark.parametrize(
     ("question", "typed", "said"),
     [
-        (HAND, "", "'hand' needs an answer: left or right"), (HAND, "3", "must be left or right"),
+        (HAND, "", "'hand' requires an answer: left or right"), (HAND, "3", "must be left or right"),
         (HAND, "0", "must be"), (HAND, "1 2", "must be"), (HAND, "rigth", "did you mean 'right'"),
         (EASE, "3", "a whole number from -2 to 2"),
         (EASE, "1.5", "whole"), (EASE, "one", "whole"), (EASE, "٣", "whole"),

@@ -52,7 +52,7 @@ def test_orders_that_differ_otherwise_are_told(tmp_path: Path) -> None:
     config = study(tmp_path, "O{USER}", O1=one, O2=two, O3=three)
     done = import_experiment(config)
     assert done.experiment.blocks[0].order == "fixed"
-    assert any("the one of participant 1 is taken; those of 2 differ" in sentence for sentence in done.left_out)
+    assert any("the order of participant 1 is used; those of 2 differ" in sentence for sentence in done.left_out)
     assert [entry.name for entry in import_experiment(config, participant=2).experiment.blocks[0].trials] == [*"acb"]
 
 
@@ -91,14 +91,14 @@ def test_the_command_writes_a_folder_that_loads(tmp_path: Path, capsys: pytest.C
     folder = tmp_path / "new"
     assert main(["experiment", "new", str(folder), "--import", str(config)]) == 0
     out = capsys.readouterr().out
-    assert out.startswith(f"{folder}: a.xml, b.xml, experiment.xml\nnot carried over:\n  - ")
+    assert out.startswith(f"{folder}: a.xml, b.xml, experiment.xml\nnot imported:\n  - ")
     experiment = load_experiment(folder)
     assert (names(experiment, 1), names(experiment, 2)) == (["a", "b"], ["b", "a"])
     assert main(["experiment", "order", str(folder), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["orders"]["2"] == ["trials.b", "trials.a"]
     assert main(["check", str(folder / "a.xml")]) == 0
     assert main(["experiment", "new", str(folder), "--import", str(config)]) == 2
-    assert "is there already" in capsys.readouterr().err
+    assert "already exists" in capsys.readouterr().err
     assert main(["experiment", "new", str(tmp_path / "gone"), "--import", str(tmp_path / "none.xml")]) == 2
     assert not (tmp_path / "gone").exists()
 

@@ -104,5 +104,5 @@ def test_turning_shifting_and_reordering_changes_no_share(
 
 
 def test_an_unknown_kind_of_neighbors_is_refused() -> None:
-    with pytest.raises(InputError, match="collisions with neighbors 'ture', did you mean 'true'.: it is predicted or"):
+    with pytest.raises(InputError, match="collisions: neighbors 'ture', did you mean 'true'. must be predicted or"):
         collision_mask(*case(0), neighbors="ture")

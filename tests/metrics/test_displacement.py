@@ -141,7 +141,7 @@ def test_a_perfect_sample_of_weight_zero_is_not_the_best() -> None:
 def test_weights_that_are_no_shares_are_refused(weight: list[float]) -> None:
     truth = [[[0.0, 0.0]]]
     with pytest.raises(
-        InputError, match=r"guess: the weights of window 0 begin at .*; they must be at least 0 and add"
+        InputError, match=r"guess: the weights of window 0 start at .*; they must be at least 0 and sum"
     ):
         ade(*scene(truth, [truth, truth], weight))
 

@@ -331,7 +331,7 @@ def test_impossible_crowds_take_a_bounded_step(cost, optimiser):
         (lambda: PowerLawForce(time_horizon=0.0), "PowerLawForce: time_horizon = 0.0"),
         (
             lambda: CostModel(Effort(), optimiser="closed-form").velocity(crowd(0, A=2), 0.1),
-            "has no closed form; choose",
+            "has no closed form; use",
         ),
         (lambda: CostModel(GoalForce(np.ones(3))).velocity(crowd(0, A=2), 0.1), r"relaxation_time has shape \(3,\)"),
     ],

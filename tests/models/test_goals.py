@@ -101,7 +101,7 @@ def test_the_ground_truth_of_other_people():
         GroundTruth(walk(), future)
     with pytest.raises(InputError, match=r"people \[1, 3\] and the future \[2, 3\]"):
         GroundTruth(walk(), windows(np.zeros((2, 2, 3, 2))))
-    with pytest.raises(InputError, match="window 0 of .* is none of the 1 windows whose future is known"):
+    with pytest.raises(InputError, match="window 0 of .* is not one of the 1 windows with a known future"):
         GroundTruth(walk(), walk()).resolve(future)
 
 

@@ -190,11 +190,11 @@ def slow_clock():
         (lambda: LearnedDestinations.learn(street(), reach=0.0), "reach = 0.0"),
         (
             lambda: LearnedDestinations.learn(street()).resolve(windows(np.zeros((1, 8, 1, 2)), dt=0.1)),
-            "made has steps of 0.1 s, but the place was learned at steps of 0.4 s",
+            "made has steps of 0.1 s, but the goal was learned with steps of 0.4 s",
         ),
         (
             lambda: LearnedDestinations.learn(street()).choices(windows(np.zeros((1, 8, 1, 2)), units="px")),
-            "made is in px, the place was learned in m",
+            "made is in px, the goal was learned in m",
         ),
     ],
 )

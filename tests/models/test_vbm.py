@@ -325,7 +325,7 @@ def test_few_rays_are_enough_to_see_someone():
 
 
 def test_wrong_input_is_explained():
-    with pytest.raises(InputError, match="no variant 'crowdbott', did you mean 'crowdbot'"):
+    with pytest.raises(InputError, match="variant 'crowdbott' is unknown, did you mean 'crowdbot'"):
         VBM(variant="crowdbott")
     for rays in (1, 5000, 2.5, True):
         with pytest.raises(InputError, match="rays = .* whole number, 2 to 4096"):

@@ -5,9 +5,10 @@ import pytest
 from corridor import run, share
 
 from crowdbot.navigation import ORCANavigator, Straight
+from samples import sample
 
 
-@pytest.mark.parametrize("way", ["across", "diagonal", "along"])
+@pytest.mark.parametrize("way", sample(["across", "diagonal", "along"], 1))
 def test_orca_gets_through_people_who_see_it(way):
     rows = run(ORCANavigator(), range(8), way, length=20.0 if way == "across" else 30.0)
     assert share(rows, "success") >= 7 / 8
@@ -16,6 +17,7 @@ def test_orca_gets_through_people_who_see_it(way):
     assert share(rows, "path_efficiency") > 0.6
 
 
+@pytest.mark.sweep
 def test_orca_hurts_fewer_than_straight_among_people_who_do_not_see_it():
     setting = {"way": "diagonal", "width": 10.0, "length": 40.0, "visible": False}
     blind, careful = (run(navigator, range(12), **setting) for navigator in (Straight(), ORCANavigator()))

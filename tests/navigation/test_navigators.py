@@ -169,9 +169,9 @@ def test_a_plain_act_is_enough_and_keeps_the_memory():
 @pytest.mark.parametrize(
     ("navigator", "words"),
     [
-        (Plain((0.1, 0.2)), "navigator Plain gave a tuple, it must give a Twist"),
-        (Plain(None), "navigator Plain gave a NoneType, it must give a Twist"),
-        (Plain(Action(Twist())), "navigator Plain gave a Action, it must give a Twist"),
+        (Plain((0.1, 0.2)), "navigator Plain returned a tuple, it must return a Twist"),
+        (Plain(None), "navigator Plain returned a NoneType, it must return a Twist"),
+        (Plain(Action(Twist())), "navigator Plain returned a Action, it must return a Twist"),
     ],
 )
 def test_a_wrong_answer_is_rejected(navigator, words):

@@ -17,7 +17,7 @@ from crowdbot.data import Trajectories, Windows
 from crowdbot.prediction import AnchorNet, Anchors, ConstantVelocity, SampledConstantVelocity
 from crowdbot.prediction.anchor_net.agent_frame import SPEED_CLASSES
 from crowdbot.prediction.anchor_net.layers import attend, dense
-from crowdbot.prediction.anchor_net.predictor import NEEDED
+from crowdbot.prediction.anchor_net.network_shapes import NEEDED
 from crowdbot.prediction.joint_kernels import assign_futures, first_crossing, separate_paths
 from crowdbot.prediction.pretrained_weights import FOLDS, load_pretrained
 
@@ -217,7 +217,7 @@ def test_own_weights_are_read_and_wrong_ones_are_one_sentence(crowd: Maker, tmp_
     assert np.array_equal(own.predict(crowd(), 12).position, AnchorNet("all").predict(crowd(), 12).position)
     np.savez(tmp_path / "half.npz", **{k: v for k, v in numbers.items() if k != "query_bias"})
     np.savez(tmp_path / "old.npz", **numbers | {"own_1_weight": np.zeros((30, 256))})
-    for file, word in (("half", "query_bias is missing"), ("old", "own_1_weight has another shape")):
+    for file, word in (("half", "query_bias is missing"), ("old", "own_1_weight has shape")):
         with pytest.raises(DataError, match=f"{file}.npz is not a file of AnchorNet weights: {word}"):
             AnchorNet(file=str(tmp_path / f"{file}.npz")).predict(crowd(), 12)
     with pytest.raises(DataError, match="does not exist"):

@@ -144,6 +144,7 @@ def test_the_files_of_the_authors(recordings: Path, place: str) -> None:
         assert (score.ade, score.fde) == near(errors)
 
 
+@pytest.mark.sweep
 def test_sampled_constant_velocity_is_the_known_floor(recorded: Recorded) -> None:
     found = []
     for scene in SCENES:

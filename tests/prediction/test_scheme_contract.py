@@ -87,7 +87,7 @@ def test_ground_truth_goals_belong_to_their_windows(crowd: Maker) -> None:
     scheme = crowd_of(("orca", "progressive", "genetic"), GroundTruth(past, future))
     assert np.all(np.isfinite(scheme.predict(past, 4).position))
     stranger = dataclasses.replace(past, frame=past.frame + 999, id=past.id + 50)
-    with pytest.raises(InputError, match="is none of the 4 windows whose future is known"):
+    with pytest.raises(InputError, match="is not one of the 4 windows with a known future"):
         scheme.predict(stranger, 4)
 
 

@@ -116,7 +116,7 @@ def test_new_chance_and_branches_of_branches(flowing: Path, tmp_path: Path) -> N
     assert messages(tmp_path / "3" / "episode.mcap") == messages(tmp_path / "2" / "episode.mcap", 6.0)
     for folder in ("1", "2", "3"):
         assert replay(tmp_path / folder / "episode.mcap").equal
-    with pytest.raises(EpisodeError, match=r"has no instant at 3 s; it lasts from 4 s to 8 s"):
+    with pytest.raises(EpisodeError, match=r"has no step at 3 s; it lasts from 4 s to 8 s"):
         branch(second.path or "", 3.0)
 
 
@@ -146,25 +146,25 @@ def test_what_cannot_be_branched_is_said_in_a_sentence(small: Path, flowing: Pat
         assert "\n" not in str(found.value)
         return str(found.value)
 
-    assert refused(small, 1.23).endswith("has no instant at 1.23 s: it was recorded every 0.1 s; the nearest is 1.2 s")
-    assert '"ro bot/x" leads nowhere' in refused(small, 2.0, changes={"ro bot/x": 1})
-    assert '"robot/x y" is no path' in refused(small, 2.0, changes={"robot/x y": 1})
+    assert refused(small, 1.23).endswith("has no step at 1.23 s: it was recorded every 0.1 s; the nearest is 1.2 s")
+    assert '"ro bot/x" does not exist' in refused(small, 2.0, changes={"ro bot/x": 1})
+    assert '"robot/x y" is not a path' in refused(small, 2.0, changes={"robot/x y": 1})
     assert "choose one: spawner[" in refused(small, 2.0, changes={"spawner/count": 1})
-    assert "has no instant at 9 s; it lasts from 0 s to 4 s" in refused(small, 9.0)
+    assert "has no step at 9 s; it lasts from 0 s to 4 s" in refused(small, 9.0)
     assert refused(small, 2.0, changes={"step": 0.1}).startswith("step cannot change in a branch")
     assert refused(small, 2.0, changes={"spawner[east].count": 1}).startswith("spawners cannot change in a branch")
     assert "x of robot 'robot' cannot change in a branch" in refused(small, 2.0, changes={"robot.x": 1})
     assert "<trial> has 2 <spawner>; choose one" in refused(small, 2.0, changes={"spawner.count": 1})
     assert "<trial> has no element 'robt', did you mean" in refused(small, 2.0, changes={"robt.x": 1})
-    assert "leads nowhere" in refused(small, 2.0, changes={"ro bot.x": 1})
-    assert "a duration of 1 s is over at 2 s" in refused(small, 2.0, changes={"duration": 1})
-    assert "recording period of 0.3 s has no instant at 2 s" in refused(small, 2.0, changes={"recording.period": 0.3})
+    assert "does not exist" in refused(small, 2.0, changes={"ro bot.x": 1})
+    assert "a duration of 1 s ends before the branch begins at 2 s" in refused(small, 2.0, changes={"duration": 1})
+    assert "recording period of 0.3 s has no step at 2 s" in refused(small, 2.0, changes={"recording.period": 0.3})
     assert "goal of source 'north' cannot change" in refused(flowing, 2.0, changes={"source[north].arrival": "stay"})
     fewer = dataclasses.replace(FLOWING, sources=FLOWING.sources[:1])
-    assert "sources cannot be added or removed" in refused(flowing, 2.0, trial=fewer)
+    assert "the number of sources cannot change" in refused(flowing, 2.0, trial=fewer)
     with pytest.raises(TrialError, match="has no attribute 'spced'"):
         branch(small, 2.0, changes={"robot.navigator.spced": 2})
-    with pytest.raises(InputError, match="is the episode to branch from; record the branch to another place"):
+    with pytest.raises(InputError, match="is the source of the branch; record the branch to another file"):
         branch(small, 2.0, out=small)
     assert os.listdir(tmp_path) == []
 
@@ -173,7 +173,7 @@ def test_an_episode_that_does_not_replay_is_not_branched(small: Path, tmp_path: 
     from test_replay import rewritten
 
     path = rewritten(small, tmp_path / "other.mcap", seed="4")
-    with pytest.raises(EpisodeError, match=r"does not replay to the same bytes from 0 s on"):
+    with pytest.raises(EpisodeError, match=r"differs from its replay from 0 s on"):
         branch(path, 2.0)
 
 

@@ -93,12 +93,12 @@ def test_a_recording_keeps_what_its_trial_names(made: Path) -> None:
 
 
 def test_an_episode_replays_alone_when_its_code_is_trusted(moved: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(EpisodeError, match=r"needs the code 'shy.py', which does not lie in .* pass --trust"):
+    with pytest.raises(EpisodeError, match=r"needs the code 'shy.py', which does not exist in .* use --trust"):
         replay(moved)
     assert main(["replay", str(moved)]) == 2
     assert "--trust" in capsys.readouterr().err
     assert main(["replay", str(moved), "--trust"]) == 0
-    assert "replays to the same bytes" in capsys.readouterr().out
+    assert "replays with the same digest" in capsys.readouterr().out
     assert [path.name for path in moved.parent.iterdir()] == ["episode.mcap"]
 
 
@@ -109,13 +109,13 @@ def test_code_beside_the_episode_runs_without_trust_only_as_it_was_recorded(
     assert replay(moved).equal
     (moved.parent / "shy.py").write_text(SHY.replace("0.8", "0.7"))
     for again in (lambda: replay(moved), lambda: branch(moved, 1.0)):
-        with pytest.raises(EpisodeError, match=r"the code 'shy.py', and the one in .* has other bytes .* --trust"):
+        with pytest.raises(EpisodeError, match=r"the code 'shy.py', which differs in .* --trust"):
             again()
     assert main(["replay", str(moved)]) == 2
     assert capsys.readouterr().err.count("\n") == 1
     done = replay(moved, trust=True)
     assert (done.equal, done.changed) == (False, ("shy.py",))
-    assert str(done).endswith("; shy.py has other bytes than the recorded code")
+    assert str(done).endswith("; shy.py differs from the recorded code")
 
 
 def test_everything_beside_the_episode_but_other_code_is_refused_too(made: Path, tmp_path: Path) -> None:
@@ -124,7 +124,7 @@ def test_everything_beside_the_episode_but_other_code_is_refused_too(made: Path,
     assert replay(path).equal
     with (tmp_path / "all" / "shy.py").open("a") as file:
         file.write("raise SystemExit('ran')\n")
-    with pytest.raises(EpisodeError, match="other bytes than the recorded one"):
+    with pytest.raises(EpisodeError, match="differs in .* from the recorded code"):
         replay(path)
 
 
@@ -179,13 +179,13 @@ def test_large_files_are_named_and_not_kept(made: Path, tmp_path: Path, monkeypa
     monkeypatch.setattr(attachments, "MOST", 200)
     with pytest.warns(
         SkippedAttachmentWarning,
-        match=r"leaves out 'maps/pictures/hall.pgm', .* \(too large, at most 200 bytes are kept",
+        match=r"does not contain 'maps/pictures/hall.pgm', .* \(too large, at most 200 bytes in total",
     ):
         record(load_trial(made / "hall.xml"), out=tmp_path)
     path = tmp_path / "episode.mcap"
     kept = {row["name"]: row["kept"] for row in json.loads(read_episode(path).metadata["files"])}
     assert (kept["maps/hall.yaml"], kept["maps/pictures/hall.pgm"]) == (True, False)
-    with pytest.raises(EpisodeError, match=r"'maps/pictures/hall.pgm' of \d+ bytes, too large to be kept in it"):
+    with pytest.raises(EpisodeError, match=r"'maps/pictures/hall.pgm' of \d+ bytes, too large to be stored in it"):
         replay(path, trust=True)
     for name in NAMES:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
@@ -223,13 +223,13 @@ def rewritten(source: Path, target: Path, names: dict[str, str], data: bytes | N
 @pytest.mark.parametrize("name", ["../evil.txt", "/tmp/evil.txt", "a\\..\\evil.txt", "C:evil.txt", "maps/../../x", ""])
 def test_names_that_lead_outside_are_refused(moved: Path, tmp_path: Path, name: str) -> None:
     target = rewritten(moved, tmp_path / "other.mcap", {"people.txt": name})
-    with pytest.raises(EpisodeError, match="names a file outside its folder"):
+    with pytest.raises(EpisodeError, match="lists a file outside its folder"):
         replay(target, trust=True)
 
 
 def test_files_that_were_changed_in_the_episode_are_refused(moved: Path, tmp_path: Path) -> None:
     target = rewritten(moved, tmp_path / "other.mcap", {}, b"other")
-    with pytest.raises(EpisodeError, match=r"is damaged: the file '.*' in it is not the one that was recorded"):
+    with pytest.raises(EpisodeError, match=r"is damaged: the attached file '.*' differs from its digest"):
         replay(target, trust=True)
 
 
@@ -289,7 +289,7 @@ def test_an_episode_cannot_pass_code_off_as_data(moved: Path, tmp_path: Path, na
         values["files"] = json.dumps([*rows, row_of(name, trap)])
 
     target = retold(moved, tmp_path / "other.mcap", change, {name: trap})
-    with pytest.raises(EpisodeError, match="needs the code '.*', which does not lie in .*--trust"):
+    with pytest.raises(EpisodeError, match="needs the code '.*', which does not exist in .*--trust"):
         replay(target)
     assert not (tmp_path / "ran").exists()
 
@@ -314,7 +314,7 @@ def test_code_of_which_the_episode_does_not_tell_is_not_run(tmp_path: Path, how:
             values["trial"] = trap
 
     target = retold(tmp_path / "out" / "episode.mcap", tmp_path / "episode.mcap", change, {})
-    with pytest.raises(EpisodeError, match=r"needs the code '(mine/)?trap.py' and does not say .* --trust"):
+    with pytest.raises(EpisodeError, match=r"needs the code '(mine/)?trap.py' but has no digest .* --trust"):
         replay(target)
     with pytest.raises(EpisodeError, match="--trust"):
         branch(target, 1.0)
@@ -339,11 +339,13 @@ def test_files_outside_are_named_in_a_warning(tmp_path: Path, capsys: pytest.Cap
     assert told[0] == "crowdbot: loads code from ../shy.py"
     assert len(told) == 2
     assert told[1].startswith(
-        "crowdbot: warning: the recording leaves out '../maps/hall.yaml', '../maps/pictures/hall.pgm', '../people.txt'"
-        " and 1 more (outside the folder of the trial): it replays only where files with the same bytes lie"
+        "crowdbot: warning: the recording does not contain '../maps/hall.yaml', '../maps/pictures/hall.pgm',"
+        " '../people.txt' and 1 more (outside the folder of the trial): to replay it, identical files must be"
     )
-    assert told[1].endswith("move what lies outside into the folder of the trial, or take the files along")
-    with pytest.warns(SkippedAttachmentWarning, match="leaves out"):
+    assert told[1].endswith(
+        "move files from outside into the folder of the trial, or copy them along with the recording"
+    )
+    with pytest.warns(SkippedAttachmentWarning, match="does not contain"):
         record(load_trial(trial, trust=True), out=tmp_path / "again")
     assert main(["run", str(trial), "--trust"]) == 0
     assert "warning" not in capsys.readouterr().err
@@ -368,14 +370,14 @@ def test_files_outside_must_be_there_with_the_recorded_bytes(
         return told
 
     assert "outside the folder of its trial; pass --trust to allow it" in refused()
-    assert "there is none, seen from" in refused("--trust")
+    assert "does not exist in" in refused("--trust")
     where = ["--trust", "--folder", str(tmp_path / "deep")]
     assert main(["replay", path, *where]) == 0
     assert main(["branch", path, "--at", "1", *where]) == 0
     capsys.readouterr()
     (tmp_path / "people.txt").write_text((tmp_path / "people.txt").read_text().replace("2.5", "2.6"))
-    assert "'../people.txt', which lies outside the folder of its trial" in (told := refused(*where))
-    assert "has other bytes than the recorded one; bring that back" in told
+    assert "'../people.txt' outside the folder of its trial" in (told := refused(*where))
+    assert "has a different content; restore the recorded file" in told
 
 
 def test_files_outside_and_inside_meet_in_a_folder_for_the_time(tmp_path: Path) -> None:

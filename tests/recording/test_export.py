@@ -92,7 +92,7 @@ def test_the_program_says_where_the_images_are(
     seen: Path, recorded: tuple[Path, RecordedEpisode], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["export", str(seen), "--to", str(tmp_path / "p.csv"), "--table", "pictures"]) == 0
-    assert capsys.readouterr().out == f"{tmp_path}/p.csv: 6 rows, their images in {tmp_path}/p-images\n"
+    assert capsys.readouterr().out == f"{tmp_path}/p.csv: 6 rows, images in {tmp_path}/p-images\n"
     assert main(["export", str(recorded[0]), "--to", str(tmp_path / "none.csv"), "--table", "pictures"]) == 0
     assert capsys.readouterr().out == f"{tmp_path}/none.csv: 0 rows\n"
     assert sorted(os.listdir(tmp_path)) == ["none.csv", "p-images", "p.csv"]
@@ -107,7 +107,7 @@ def test_what_cannot_be_exported_is_said(recorded: tuple[Path, RecordedEpisode],
     path = recorded[0]
     with pytest.raises(InputError, match=r"there is no table 'peple', did you mean 'people'"):
         export(path, tmp_path / "a.csv", "peple")
-    with pytest.raises(InputError, match=r"ends in .txt; give a name that ends in .parquet or .csv"):
+    with pytest.raises(InputError, match=r"has the extension '.txt'; use .parquet or .csv"):
         export(path, tmp_path / "a.txt")
     with pytest.raises(EpisodeError, match="there is no episode file"):
         export(tmp_path / "none.mcap", tmp_path / "a.csv")

@@ -158,7 +158,7 @@ def test_a_file_that_is_cut_anywhere_opens_or_says_that_nothing_was_recorded(tmp
         with AnyReader([cut]) as reader:
             assert reader.message_count > 0
     assert opened > cuts // 2
-    assert all("no recorded instant" in sentence or "not an episode" in sentence for sentence in refused)
+    assert all("no recorded steps" in sentence or "not an episode" in sentence for sentence in refused)
 
 
 def test_a_new_run_takes_the_place_of_an_old_file_only_when_it_has_something(tmp_path: Path) -> None:

@@ -199,7 +199,7 @@ def test_an_exception_of_a_navigator_by_the_command(tmp_path: Path, capsys: pyte
     sentence = "ValueError: no way out (shy.py:8) at 1.1 s"
     code, told = said.err.splitlines(keepends=True)
     assert code == "crowdbot: loads code from shy.py\n"
-    assert told == f"crowdbot: trial 'small' ended with an error: {sentence}; --debug prints the trace\n"
+    assert told == f"crowdbot: trial 'small' ended with an error: {sentence}; --debug prints the traceback\n"
     read = read_episode(tmp_path / "episode.mcap")
     assert (read.complete, read.outcome, read.digest) == (True, "error", summary["digest"])
     assert str(read.failure) == sentence

@@ -210,7 +210,7 @@ def test_nothing_is_left_behind_before_the_first_instant(tmp_path: Path) -> None
     warm = dataclasses.replace(TRIAL.robots[0], sensors=[Mount(name="warm", sensor=Thermometer())])
     for place in ("c", "kept"):
         with pytest.raises(
-            EpisodeError, match=r"'robot/warm' gives a Reading, which has no ROS message; let it give one of Scan"
+            EpisodeError, match=r"'robot/warm' returns a Reading, which has no ROS message; return one of Scan"
         ):
             run(dataclasses.replace(TRIAL, robots=[warm]), out=tmp_path / place, force=True)
     assert os.listdir(tmp_path) == ["kept"]
@@ -231,12 +231,12 @@ def test_a_trial_that_has_no_xml_is_not_recorded(tmp_path: Path) -> None:
 
 def test_a_place_that_cannot_be_written_is_said(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("x")
-    with pytest.raises(InputError, match=r"file is a file, so no episode can be written in it; give a folder"):
+    with pytest.raises(InputError, match=r"file is a file; give a folder for the episode"):
         run(TRIAL, out=tmp_path / "file")
     with pytest.raises(EpisodeError, match=r"episode.mcap cannot be written: Not a directory; give another place"):
         run(TRIAL, out=tmp_path / "file" / "deeper")
     (tmp_path / "folder.mcap").mkdir()
-    with pytest.raises(InputError, match=r"folder.mcap is a folder; give the name of a file"):
+    with pytest.raises(InputError, match=r"folder.mcap is a folder; give a file name"):
         run(TRIAL, out=tmp_path / "folder.mcap")
 
 
@@ -252,15 +252,15 @@ def test_files_that_are_no_episodes_are_refused_in_a_sentence(recorded: tuple[Pa
         return str(found.value).removeprefix(f"{path} ")
 
     assert refused(b"") == "is empty"
-    assert refused(b"id,frame,x,y\n1,2,3,4\n").startswith("is not an MCAP file: it begins with b'id,frame'")
+    assert refused(b"id,frame,x,y\n1,2,3,4\n").startswith("is not an MCAP file: it starts with b'id,frame'")
     assert refused(whole[:8]).startswith("is an MCAP file but not an episode of crowdbot")
-    assert refused(whole[:3000]).startswith("holds no recorded instant: the run was killed before it began")
+    assert refused(whole[:3000]).startswith("has no recorded steps: the run was killed before the first one")
     assert refused(whole[:3000] + whole[-37:]).startswith("is damaged")
     hole = whole[: len(whole) // 2] + bytes(2000) + whole[len(whole) // 2 + 2000 :]
     assert refused(hole).startswith("is damaged")
     with pytest.raises(EpisodeError, match="there is no episode file"):
         read_episode(tmp_path / "none.mcap")
-    with pytest.raises(EpisodeError, match=r"is not a file; give the episode.mcap itself"):
+    with pytest.raises(EpisodeError, match=r"is a folder; give the episode.mcap in it"):
         read_episode(tmp_path)
 
 
@@ -298,7 +298,7 @@ def test_other_mcap_files_are_refused(tmp_path: Path) -> None:
         writer.start()
         writer.add_metadata("crowdbot", keys)
         writer.finish()
-    with pytest.raises(EpisodeError, match="does not hold what its record 'crowdbot' says"):
+    with pytest.raises(EpisodeError, match="has an invalid metadata record 'crowdbot'"):
         read_episode(path)
 
 

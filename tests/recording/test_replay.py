@@ -46,8 +46,10 @@ def test_a_replay_gives_the_same_digest(tmp_path: Path) -> None:
     assert done.equal
     assert done.recorded == done.replayed == episode.digest
     assert (done.seed, done.outcomes) == (11, (episode.outcome, episode.outcome))
-    assert str(done).endswith(f"small with seed 11 replays to the same bytes, digest {episode.digest}")
+    made = f"crowdbot {crowdbot.__version__}"
+    assert str(done).endswith(f"small with seed 11 (made with {made}) replays with the same digest {episode.digest}")
     assert done.as_dict()["equal"] is True
+    assert done.as_dict()["software"] == read_episode(tmp_path / "episode.mcap").software == made
     assert shares[-1] == 1.0
 
 
@@ -70,18 +72,21 @@ def test_a_difference_is_said_with_the_versions(tmp_path: Path) -> None:
     run(parse_trial(GOOD), out=tmp_path)
     other = replay(rewritten(tmp_path / "episode.mcap", tmp_path / "seed.mcap", seed="4"))
     assert not other.equal
-    assert str(other).endswith("the versions are the same")
+    assert str(other).endswith("the versions are equal")
     old = replay(rewritten(tmp_path / "episode.mcap", tmp_path / "old.mcap", digest="0" * 32, version="0.0.9"))
     assert not old.equal
-    assert f"it was written with other versions: version 0.0.9 then, {crowdbot.__version__} now" in str(old)
-    assert replay(rewritten(tmp_path / "episode.mcap", tmp_path / "new.mcap", version="0.0.9")).equal
+    assert f"it was recorded with other versions: version 0.0.9 then, {crowdbot.__version__} now" in str(old)
+    new = replay(rewritten(tmp_path / "episode.mcap", tmp_path / "new.mcap", version="0.0.9"))
+    assert new.equal
+    assert "(made with crowdbot 0.0.9) replays with the same digest" in str(new)
+    assert read_episode(tmp_path / "new.mcap").software == new.software == "crowdbot 0.0.9"
 
 
 def test_a_trial_of_another_version_that_cannot_be_read_is_said(tmp_path: Path) -> None:
     run(parse_trial(GOOD), out=tmp_path)
     strange = GOOD.replace("<crowd ", "<weather/><crowd ")
     path = rewritten(tmp_path / "episode.mcap", tmp_path / "x.mcap", trial=strange, version="9.9")
-    with pytest.raises(TrialError, match=r"x.mcap \(trial, written by crowdbot 9.9\):7: <weather> is no element"):
+    with pytest.raises(TrialError, match=r"x.mcap \(trial, written by crowdbot 9.9\):7: <weather> is not an element"):
         replay(path)
 
 
@@ -89,7 +94,7 @@ def test_code_of_a_recorded_trial_is_loaded_from_its_folder_only(tmp_path: Path)
     (tmp_path / "shy.py").write_text(SHY)
     trial = load_trial(written(tmp_path, changed('type="straight"', 'type="shy.py:Shy"')))
     episode = run(trial, out=tmp_path / "out")
-    with pytest.raises(EpisodeError, match=r"needs the code 'shy.py', which does not lie in .*; the episode brings it"):
+    with pytest.raises(EpisodeError, match=r"needs the code 'shy.py', which does not exist in .*; use --trust"):
         replay(tmp_path / "out" / "episode.mcap")
     assert replay(tmp_path / "out" / "episode.mcap", folder=tmp_path).replayed == episode.digest
 
@@ -103,9 +108,9 @@ def test_a_truncated_file_replays_as_far_as_it_goes(tmp_path: Path) -> None:
         done = replay(path)
         assert done.equal
         assert not done.complete
-        assert "killed before its end, replays to the same bytes" in str(done)
+        assert "killed before its end) replays with the same digest" in str(done)
     path.write_bytes(whole[:3000])
-    with pytest.raises(EpisodeError, match="holds no recorded instant: the run was killed before it began"):
+    with pytest.raises(EpisodeError, match="has no recorded steps: the run was killed before the first one"):
         replay(path)
 
 

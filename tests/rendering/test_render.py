@@ -228,19 +228,19 @@ def test_a_film_that_fails_leaves_nothing(ending: str, tmp_path: Path) -> None:
 
 WRONG = {
     "camera": (["--camera", "dor"], r"room has no camera 'dor', did you mean 'door'\?; it has door, overview"),
-    "late": (["--at", "7"], r"there is no image at 7 s: room lasts from 0 to 1 s; give a time in between"),
+    "late": (["--at", "7"], r"there is no image at 7 s: room lasts from 0 to 1 s"),
     "backwards": (
         ["--from", "0.6", "--to", "0.2"],
-        r"the film ends at 0.2 s, before it begins at 0.6 s; give a later end",
+        r"the end of the video \(0.2 s\) must be after its start \(0.6 s\)",
     ),
     "rate": (
         ["--to", "0.4", "--fps", "30"],
-        r"30 images a second: 0.0333333 s is not a whole number of time steps of 0.04 s; the nearest",
+        r"the rate 30 Hz gives a period of 0.0333333 s, which is not a multiple of the time step 0.04 s; the nearest",
     ),
-    "negative rate": (["--to", "0.4", "--fps", "-5"], r"-5 images a second must be finite and above 0"),
+    "negative rate": (["--to", "0.4", "--fps", "-5"], r"the rate -5 Hz must be finite and above 0"),
     "no world": (["--world", "physic"], r"--world physic must be planar or physics, did you mean 'physics'\?"),
-    "both": (["--at", "0.4", "--to", "0.6"], r"--at is for one image and --to for a film"),
-    "fps of an image": (["--at", "0.4", "--fps", "5"], r"--fps is for a film"),
+    "both": (["--at", "0.4", "--to", "0.6"], r"--at is for an image and --to for a video"),
+    "fps of an image": (["--at", "0.4", "--fps", "5"], r"--fps requires a video"),
     "ending": (["--out", "a.tiff"], r"a.tiff must end in .png, .jpg, .webp for an image, or be a folder"),
     "world": (
         ["--world", "physics", "--set", "world=planar"],
@@ -276,7 +276,7 @@ def test_without_extras(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
     import sys
 
     monkeypatch.setitem(sys.modules, "av", None)
-    with pytest.raises(MissingExtra, match=r"a film as .mp4 needs the extra \[sim\]"):
+    with pytest.raises(MissingExtra, match=r"a video as .mp4 needs the extra \[sim\]"):
         ImageWriter(tmp_path / "a.mp4", film=True)
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(MissingExtra, match=r"an image of a trial needs the extra \[sim\]: pip install"):

@@ -272,5 +272,5 @@ def test_a_pose_for_other_environments_is_refused():
 
 def test_noise_without_randomness_is_refused():
     lidar = Lidar2D(noise=Noise.parse("gaussian(0.1)"))
-    with pytest.raises(InputError, match="needs a generator"):
+    with pytest.raises(InputError, match="needs a random generator"):
         lidar.read(crowd(0), Pose.of((0.0, 0.0), 0.0))

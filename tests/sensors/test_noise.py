@@ -122,7 +122,7 @@ def test_wrong_text_is_explained(text, message):
 
 
 def test_noise_needs_a_generator():
-    with pytest.raises(InputError, match="needs a generator"):
+    with pytest.raises(InputError, match="needs a random generator"):
         apply_noise(np.ones((1, 2)), (Gaussian(0.1),), None)
     with pytest.raises(InputError, match="2 generators were given for 3 environments"):
         apply_noise(np.ones((3, 2)), (Gaussian(0.1),), [stream(0), stream(1)])

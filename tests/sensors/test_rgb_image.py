@@ -61,7 +61,7 @@ def test_noise_acts_on_the_values_and_stays_in_their_range():
     assert np.std((grainy - plain)[inside]) == pytest.approx(4.0, rel=0.05)
     lost = RGBCamera(**VIEW, noise=Dropout(1.0)).read(ROOM, EYE, stream(0, "eye")).rgb
     assert not lost.any()
-    with pytest.raises(InputError, match="needs a generator"):
+    with pytest.raises(InputError, match="needs a random generator"):
         RGBCamera(noise=Gaussian(1.0), width=4, height=3).read(ROOM, EYE)
 
 

@@ -167,7 +167,7 @@ def test_a_wrong_pose_is_refused(kind):
         kind().read(crowd(0, environments=3), Pose.of((0.0, 0.0), 0.0))
     with pytest.raises(InputError, match="pose of the sensor is not finite"):
         kind().read(crowd(0), Pose.of((0.0, math.nan), 0.0))
-    with pytest.raises(InputError, match="needs a generator"):
+    with pytest.raises(InputError, match="needs a random generator"):
         kind(noise=sensors.Gaussian(0.1)).read(crowd(0), Pose.of((0.0, 0.0), 0.0))
 
 

@@ -114,7 +114,7 @@ def test_a_question_is_answered_alone() -> None:
 
 
 def test_wrong_batches_are_refused() -> None:
-    with pytest.raises(InputError, match="there are no seeds"):
+    with pytest.raises(InputError, match="seeds is empty"):
         run_batch(load_trial("frontal"), [])
     told: list[float] = []
     run_batch(short("frontal"), [1, 2], progress=told.append)

@@ -199,7 +199,7 @@ def test_a_trial_of_recorded_people_is_a_file(track: Path) -> None:
         ("track.txt", "bad.txt", "bad.txt"),
         ('fps="25"', 'fps="25" exclude="8"', "exclude names person 8, who is not in track.txt"),
         ('fps="25"', 'fps="25" exclude="x"', 'exclude="x" must be whole numbers'),
-        ('fps="25"', 'fps="25" begin="99"', "has nobody from 99 s on; take an earlier begin"),
+        ('fps="25"', 'fps="25" begin="99"', "contains nobody after 99 s; use an earlier begin"),
         ('fps="25"', 'fps="25" mode="reactiv"', "must be scripted or reactive, did you mean 'reactive'?"),
         ('fps="25"', 'fps="25" crowd="calm"', 'crowd="calm" is not the name of a crowd'),
     ],

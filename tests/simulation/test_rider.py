@@ -95,7 +95,7 @@ def test_a_trial_with_a_rider_is_written_and_read() -> None:
     ("old", "new", "sentence"),
     [
         ('rider="woman-36"', 'rider="womn"', "rider=\"womn\" has 'womn', did you mean 'woman'?; it takes man, woman"),
-        ('x="1" y="-2"', 'x="1" y="-2" rider="man"', 'rider="man" needs type="wheelchair": nothing else has a seat'),
+        ('x="1" y="-2"', 'x="1" y="-2" rider="man"', 'rider="man" needs type="wheelchair": other robots have no seat'),
     ],
 )
 def test_who_cannot_ride_is_told(old: str, new: str, sentence: str) -> None:

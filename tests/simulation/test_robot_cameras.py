@@ -40,7 +40,7 @@ def test_cameras_of_a_type_come_when_they_are_asked_for(name: str) -> None:
 
 def test_who_asks_for_cameras_that_are_not_there_is_told() -> None:
     for name, more in (("wheelchair", {}), ("pepper", {"default_sensors": False})):
-        with pytest.raises(InputError, match=re.escape('has cameras="true" but none would come: it needs a type with')):
+        with pytest.raises(InputError, match=re.escape('has cameras="true" but no such cameras: it needs a type with')):
             made(name, cameras=True, **more)
 
 

@@ -103,7 +103,7 @@ class Mute(Navigator):
 
 
 def test_a_navigator_that_says_nothing_is_named() -> None:
-    sentence = "navigator Mute of robot 'robot' gave a NoneType, it must give a Twist"
+    sentence = "navigator Mute of robot 'robot' returned a NoneType, it must return a Twist"
     with pytest.warns(RunFailureWarning, match=sentence):
         episode = run(trial(robots=[robot(navigator=Mute())]))
     assert (episode.outcome, len(episode.times)) == ("error", 1)

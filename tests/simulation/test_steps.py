@@ -217,7 +217,7 @@ def test_clocks_that_do_not_fit_are_refused() -> None:
     late = FreeClock(0.05)
     late.advance()
     for clock in (late, FreeClock(0.1)):
-        with pytest.raises(InputError, match="but the trial begins at tick 0 with steps of 0.05 s"):
+        with pytest.raises(InputError, match="but the trial starts at tick 0 with steps of 0.05 s"):
             Simulation(TRIAL, 0, clock)
     running = SimulationRun(Simulation(TRIAL, 3, ExternalClock(0.05)))
     running.until(200_000_000)

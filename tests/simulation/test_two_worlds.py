@@ -142,7 +142,7 @@ def test_a_late_drive_follows_late_in_the_plane() -> None:
     moving = []
     for _ in range(5):
         running.step()
-        moving.append(float(simulation.world.twists[simulation.carriers[0].agent].forward[0]) > 0.0)
+        moving.append(float(simulation.world.twists[simulation.robots[0].agent].forward[0]) > 0.0)
     assert moving == [False, False, False, True, True]
 
 
@@ -185,7 +185,7 @@ def test_a_cube_is_pushed_in_physics() -> None:
         running.step()
     world: object = simulation.world
     assert world.prop(0)[0, 3] > 4.3  # type: ignore[attr-defined]
-    scan = simulation.carriers[0].readings["scan"]
+    scan = simulation.robots[0].readings["scan"]
     assert scan.ranges[0, 30] < 0.7  # type: ignore[attr-defined]
     wall = [touch for touch in simulation.touches if touch.other == -2]
     assert not wall
@@ -224,16 +224,20 @@ WRONG = {
     "no such robot": (
         'type="pepper"',
         'type="peper"',
-        r"type=\"peper\" is no robot, did you mean 'pepper'\?.*built in are",
+        r"type=\"peper\" is not a robot, did you mean 'pepper'\?.*built-in robots are",
     ),
-    "outside": ('type="pepper"', 'type="../pepper"', r"is no robot|lies outside"),
-    "mass beside a type": ('type="pepper"', 'type="pepper" mass="3"', r"has height or mass beside type=\"pepper\""),
+    "outside": ('type="pepper"', 'type="../pepper"', r"is not a robot|lies outside"),
+    "mass beside a type": (
+        'type="pepper"',
+        'type="pepper" mass="3"',
+        r"has height or mass in addition to type=\"pepper\"",
+    ),
     "no such link": (
         'link="CameraTop_frame"',
         'link="CameraTop"',
-        r"sits on link=\"CameraTop\", which it has not, did you",
+        r"is on link=\"CameraTop\", which does not exist, did you",
     ),
-    "no drive": ('<drive type="differential-drive"/>', "", r"needs the element <drive>: how it moves; or a type"),
+    "no drive": ('<drive type="differential-drive"/>', "", r"needs the element <drive>, or a type such as"),
     "no body": ('body="woman-36"', 'body="woman-37"', r"body=\"woman-37\" has 'woman-37', did you mean 'woman-"),
     "no activity": ('activity="phone"', 'activity="fone"', r"activity=\"fone\" has 'fone', did you mean 'phone'\?"),
     "no world": ('seed="4"', 'seed="4" world="phisics"', r"must be planar or physics, did you mean 'physics'\?"),
@@ -245,12 +249,12 @@ WRONG = {
     "a camera on nobody": (
         'robot="pepper" link',
         'robot="peper" link',
-        r"robot=\"peper\" is no robot, did you mean 'pepper'\?",
+        r"robot=\"peper\" is not a robot, did you mean 'pepper'\?",
     ),
     "a camera on no link": (
         'link="Head"',
         'link="head"',
-        r"link=\"head\" is no link of robot 'pepper', did you mean 'Head'",
+        r"link=\"head\" is not a link of robot 'pepper', did you mean 'Head'",
     ),
     "a link of nobody": ('robot="pepper" link="Head"', 'link="Head"', r"link=\"Head\" needs robot"),
     "a camera twice": ('camera name="head"', 'camera name="door"', r"name 'door' is taken by another camera"),

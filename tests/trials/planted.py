@@ -103,7 +103,9 @@ KINDS = (
     Kind('activity="phone"', 'activity="fone"', "<agent> activity=.fone. has 'fone', did you mean 'phone'"),
     Kind('outfit="2"', 'outfit="-2"', "<agent> outfit=.-2. must be at least 0"),
     Kind('count="2"', 'cuont="2"', "<spawner> has no attribute 'cuont', did you mean 'count'"),
-    Kind('speed="uniform(1, 1.4)"', 'speed="unifrm(1, 1.4)"', "<spawner> speed=.* no distribution, did you mean 'unif"),
+    Kind(
+        'speed="uniform(1, 1.4)"', 'speed="unifrm(1, 1.4)"', "<spawner> speed=.* not a distribution, did you mean 'unif"
+    ),
     Kind('size="2"', 'size="0"', "<group> size=.0. must be at least 1 and at most 50"),
     Kind('size="1" ', "", "<group> needs the attribute 'size'"),
     Kind('rate="0.2"', 'rate="0,2"', "<source> rate=.0,2. is not a number"),
@@ -133,7 +135,7 @@ KINDS = (
     Kind('rate="10"', 'rate="7"', "<sensor> rate 7 Hz: 0.142857 s is not a whole number of time steps", ('rays="90"',)),
     Kind('type="straight"', 'type="strait"', "<navigator> unknown navigator 'strait', did you mean 'straight'"),
     Kind('width="24"', 'width="fast"', "<sensor> width: 'fast' is not a int"),
-    Kind('type="pepper"', 'type="peper"', "<robot> type=.peper. is no robot, did you mean 'pepper'"),
+    Kind('type="pepper"', 'type="peper"', "<robot> type=.peper. is not a robot, did you mean 'pepper'"),
     # names and references
     Kind('<crowd name="calm"', '<crowd name="calm one"', "<crowd> name=.calm one. must match"),
     Kind(
@@ -149,26 +151,26 @@ KINDS = (
     Kind('-10,3 -11,3" journey="through"', '-10,3 -11,3"', "<source> needs a goal zone or a journey"),
     Kind('name="max-neighbors"', 'name="max-neighbor"', "<parameter> max-neighbor cannot be given, did you mean"),
     Kind('value="2"', 'value="-2"', "<parameter> time-horizon=.-2. .*must be at least 0.001 s"),
-    Kind('robot="pep"', 'robot="pepp"', "<camera> robot=.pepp. is no robot, did you mean 'pep'"),
+    Kind('robot="pep"', 'robot="pepp"', "<camera> robot=.pepp. is not a robot, did you mean 'pep'"),
     Kind(
         'link="Head" height',
         'link="Haed" height',
-        "<camera> link=.Haed. is no link .*'Head'",
+        "<camera> link=.Haed. is not a link .*'Head'",
         ("pepper", 'robot="pep"'),
     ),
     Kind('camera name="above"', 'camera name="head"', "<camera> name 'head' is taken by another camera", back=-1),
     # places
-    Kind('points="-1,4 1,4 1,5 -1,5"', 'points="-1,4 1,5 1,4 -1,5"', "<obstacle> points is no simple polygon"),
+    Kind('points="-1,4 1,4 1,5 -1,5"', 'points="-1,4 1,5 1,4 -1,5"', "<obstacle> points is not a simple polygon"),
     Kind('<point x="-2" y="0"', '<point x="-20" y="0"', "<point> at -20,0 lies outside the walkable area", (GROUND,)),
     Kind('<agent x="6" y="2"', '<agent x="0" y="-4.5"', "<agent> stands at 0,-4.5, 0.00 m from a wall"),
     Kind('x="-6" y="4.5"', 'x="-6" y="5.9"', "<agent> stands at -6,5.9, 0.10 m from a wall", (GROUND,)),
     Kind('zone="-10,-3 -8,-3 -8,0', 'zone="-10,-30 -8,-3 -8,0', "<spawner> spawn zone reaches outside", (GROUND,)),
-    Kind('goal="-5,-1 -4,-1 -4,1 -5,1"', 'goal="-5,-1 -4,1 -4,-1 -5,1"', "<spawner> goal is no simple polygon"),
+    Kind('goal="-5,-1 -4,-1 -4,1 -5,1"', 'goal="-5,-1 -4,1 -4,-1 -5,1"', "<spawner> goal is not a simple polygon"),
     Kind('count="4"', 'count="90"', "<spawner> only .* of 90 people fit into the spawn zone"),
     Kind('zone="2,3 4,3 4,5 2,5"', 'zone="2,3 4,3"', "<source> zone=.* must be at least 3 different points"),
     Kind('goal="2,-5 4,-5 4,-4 2,-4"', 'goal="-0.9,-4.9 0.9,-4.9 0,-4.1"', "<source> goal zone lies inside obstacle 2"),
     Kind('zone="11,-4 12,-4 12,-2 11,-2"', 'zone="31,-4 32,-4 32,-2"', "<exit> zone lies outside", (GROUND,)),
-    Kind('zone="11,0 12,0 12,1 11,1"', 'zone="11,0 12,0 13,0"', "<portal> zone is no simple polygon"),
+    Kind('zone="11,0 12,0 12,1 11,1"', 'zone="11,0 12,0 13,0"', "<portal> zone is not a simple polygon"),
     Kind(
         '<robot name="tim" x="2"', '<robot name="tim" x="20"', "<robot> starts at 20,-3 outside the walkable", (GROUND,)
     ),
@@ -177,14 +179,14 @@ KINDS = (
     Kind('control-period="0.1"', 'control-period="0.07"', "<robot> control-period 0.07 s is not a whole number"),
     Kind('period="0.2"', 'period="0.12"', "<recording> recording period 0.12 s is not a whole number"),
     Kind('markers="1"', 'markers="0"', "<recording> markers=.0. must be above 0 s and at most 1000000 s"),
-    Kind("<contact ", "<contct ", "<contct> is no element of <trial>, did you mean 'contact'"),
-    Kind('<source name="west"', '<sorce name="west"', "<sorce> is no element of <trial>, did you mean 'source'"),
-    Kind("<limits ", "<qqq/><limits ", "<qqq> is no element of <trial>; it takes"),
-    Kind("<end ", "text<end ", "<trial> holds the text 'text'; values are written as attributes", back=99),
+    Kind("<contact ", "<contct ", "<contct> is not an element of <trial>, did you mean 'contact'"),
+    Kind('<source name="west"', '<sorce name="west"', "<sorce> is not an element of <trial>, did you mean 'source'"),
+    Kind("<limits ", "<qqq/><limits ", "<qqq> is not an element of <trial>; it takes"),
+    Kind("<end ", "text<end ", "<trial> contains the text 'text'; values are written as attributes", back=99),
     Kind(
         'path="spawner[pairs]/count"',
         'path="spawner[pair]/count"',
-        "<sweep> .*leads nowhere: no <spawner> has the name",
+        "<sweep> .*does not exist: no <spawner> has the name",
     ),
     Kind(
         'values="3 4"', 'values="3 -4"', "<sweep> with .*count=-4: <spawner> count=.-4. must be at least 0", ("path=",)
@@ -192,7 +194,7 @@ KINDS = (
     Kind(
         "navigator/safety",
         "navigatr/safety",
-        "<sweep> .*leads nowhere: <robot> has no element 'navigatr', did you mean",
+        "<sweep> .*does not exist: <robot> has no element 'navigatr', did you mean",
     ),
     Kind(
         'values="0.1 0.2"',

@@ -129,7 +129,7 @@ MISTAKES = {
     "room for nobody": (
         'radius="0.25" un',
         'radius="6" un',
-        r":7: <routing> is impossible on this stage: nowhere between",
+        r":7: <routing> is impossible on this stage: no space between",
     ),
     "unknown attribute of routing": (
         'radius="0.25"',
@@ -140,7 +140,7 @@ MISTAKES = {
     "crowd without a name": (
         'name="hurried" type',
         "type",
-        r":9: <crowd> needs the attribute 'name': of several crowds",
+        r":9: <crowd> needs the attribute 'name': each of several crowds",
     ),
     "unknown model": (
         '"social-force"',
@@ -153,7 +153,7 @@ MISTAKES = {
     "iterations": ('iterations="4"', 'iterations="0"', r':10: <contact> iterations="0" must be at least 1'),
     "limit": ('max-speed="2.5"', 'max-speed="nan"', r':11: <limits> max-speed="nan" is not finite'),
     "limit that is none": ('max-speed="2.5"', 'max-speed="none"', r':11: <limits> max-speed="none" is not a number'),
-    "twice": ("<limits ", "<contact/><limits ", r":11: <contact> stands in <trial> twice; one is allowed"),
+    "twice": ("<limits ", "<contact/><limits ", r":11: <contact> occurs in <trial> twice; one is allowed"),
     "substeps": ('substeps="2"', 'substeps="0"', r':2: <trial> substeps="0" must be at least 1'),
     "heading-jitter": (
         'heading-jitter="0.001"',
@@ -174,7 +174,7 @@ MISTAKES = {
     "unknown stop": (
         "<direction ",
         "<directoin ",
-        r":15: <directoin> is no element of <journey>, did you mean 'direction'",
+        r":15: <directoin> is not an element of <journey>, did you mean 'direction'",
     ),
     "stop with a mistake": (
         'heading="0.3"',
@@ -182,7 +182,7 @@ MISTAKES = {
         r':15: <direction> heading="9" must be at most 6.28319 rad',
     ),
     "aim": ('aim="random"', 'aim="randon"', r':13: <zone> aim="randon" must be nearest or random, did you mean'),
-    "zone without area": ("-0.5,-1 0.5,-1 0.5,1 -0.5,1", "0,0 1,1 2,2", r":13: <zone> points is no simple polygon"),
+    "zone without area": ("-0.5,-1 0.5,-1 0.5,1 -0.5,1", "0,0 1,1 2,2", r":13: <zone> points is not a simple polygon"),
     "tiny zone": (
         "-0.5,-1 0.5,-1 0.5,1 -0.5,1",
         "0,0 1e-3,0 0,1e-3",
@@ -223,7 +223,7 @@ MISTAKES = {
     "arrival": (
         'journey="through" rate',
         'arrival="stay" journey="through" rate',
-        r"for a journey say then=\"stay\" in it",
+        r"for a journey write then=\"stay\" in it",
     ),
     "rate": ('rate="0.9"', 'rate="0"', r':22: <source> rate="0" must be above 0 1/s'),
     "timing": ('"regular"', '"regulr"', r':23: <source> timing="regulr" must be poisson or regular, did you mean'),
@@ -232,7 +232,7 @@ MISTAKES = {
     "radius of a body": (
         'radius="0.2"',
         'radius="uniform(0, 1)"',
-        r"must be above 0 m and at most 5 m, and it reaches from 0 to 1",
+        r"must be above 0 m and at most 5 m, and it ranges from 0 to 1",
     ),
     "crowd of people": (
         'max-count="90"',
@@ -254,7 +254,7 @@ MISTAKES = {
     "too many come": (
         'rate="0.9" max-count="90"',
         'rate="9999"',
-        r"<source> lets people in, about 1\d{5} together with other",
+        r"<source> produces about 1\d{5} people together with other",
     ),
     "obstacle in a source": (
         "</stage>",
@@ -293,13 +293,13 @@ def test_ways_that_lead_nowhere_are_found() -> None:
     sentences = "\n".join(found.value.problems)
     assert len(found.value.problems) == 3
     assert re.search(
-        r":20: <spawner> no way leads from its zone to the first stop of journey 'through' for a", sentences
+        r":20: <spawner> there is no path from its zone to the first stop of journey 'through' for a", sentences
     )
     assert re.search(
-        r":21: <spawner> no way leads from its zone to the goal zone for a body of radius 0.25 m", sentences
+        r":21: <spawner> there is no path from its zone to the goal zone for a body of radius 0.25 m", sentences
     )
-    assert re.search(r":22: <source> no way leads from its zone to the first stop of journey 'through'", sentences)
-    with pytest.raises(TrialError, match=r":14: <point> no way leads to stop 2 from the one before") as found:
+    assert re.search(r":22: <source> there is no path from its zone to the first stop of journey 'through'", sentences)
+    with pytest.raises(TrialError, match=r":14: <point> there is no path to stop 2 from the one before") as found:
         parse_trial(blocked("3,-4 3,-1.5 5,-1.5 5,-4"))
     assert len(found.value.problems) == 1
 
@@ -313,7 +313,9 @@ def test_zones_of_journeys_need_room() -> None:
     with pytest.raises(TrialError, match=r"<zone> zone reaches into obstacle 1 of the stage"):
         parse_trial(FLOW.replace("</stage>", bar).replace(' aim="random"', ""))
     screens = "".join(f'<wall points="{x},-0.99 {x},0.99"/>' for x in (-0.4, -0.2, 0, 0.2, 0.4)) + "</stage>"
-    with pytest.raises(TrialError, match=r"<zone> zone leaves no room for a body of radius 0.25 m, which routing asks"):
+    with pytest.raises(
+        TrialError, match=r"<zone> zone leaves no room for a body of radius 0.25 m, which routing requires"
+    ):
         parse_trial(FLOW.replace("</stage>", screens))
     inside = FLOW.replace("</stage>", '<obstacle points="3,-3 5,-3 5,-1 3,-1"/></stage>')
     with pytest.raises(TrialError, match=r"<point> at 4,-2 lies inside obstacle 1 of the stage"):

@@ -98,7 +98,7 @@ def test_long_values_are_cut_in_messages() -> None:
 
 def test_a_trial_that_would_fill_the_memory_is_refused() -> None:
     text = changed('duration="4"', 'duration="86400"').replace('count="2" zone="-5', 'count="99999" zone="-5', 1)
-    assert "more than 100000000 places together" in refused(text)
+    assert "more than 100000000 positions in total" in refused(text)
 
 
 @pytest.mark.parametrize("share", sizes(0.4, 1.0))

@@ -105,7 +105,7 @@ def test_laws_and_simulators_are_carried_over(tmp_path: Path) -> None:
 def test_what_is_left_out_is_told(tmp_path: Path) -> None:
     said = "\n".join(import_original(written(tmp_path, TRIAL)).left_out)
     for words in ("stage 'Kerlann'", "TrialCamPlayer", "screenRecorder", "recordingFile", "LawFileData",
-                  "mesh, height, variation", "robots were steered from outside"):  # fmt: skip
+                  "mesh, height, variation", "robots were controlled externally"):  # fmt: skip
         assert words in said
 
 

@@ -147,7 +147,7 @@ MISTAKES = {
     "unknown element": (
         "<crowd ",
         '<spawnner count="0" zone="0,0 1,0 1,1" goal="0,0 1,0 1,1"/><crowd ',
-        r":7: <spawnner> is no element of <trial>, did you mean 'spawner'\?; it takes <stage>, <routing>, <crowd>",
+        r":7: <spawnner> is not an element of <trial>, did you mean 'spawner'\?; it takes <stage>, <routing>, <crowd>",
     ),
     "unknown attribute": (
         'count="2"',
@@ -177,7 +177,7 @@ MISTAKES = {
     "radius that can be negative": (
         'radius="0.25"',
         'radius="normal(0.2, 0.1)"',
-        r"must be above 0 m and at most 5 m, and it reaches from -0.1 to 0.5",
+        r"must be above 0 m and at most 5 m, and it ranges from -0.1 to 0.5",
     ),
     "nan": ('duration="4"', 'duration="nan"', r':2: <trial> duration="nan" is not finite'),
     "infinite": ('x="-2"', 'x="1e999"', r':10: <robot> x="1e999" is not finite'),
@@ -188,7 +188,7 @@ MISTAKES = {
     "no distribution": (
         'speed="uniform(1, 1.4)"',
         'speed="unifrom(1, 1.4)"',
-        r":9: <spawner> speed=.* 'unifrom' is no distribution, did you mean 'uniform'\?",
+        r":9: <spawner> speed=.* 'unifrom' is not a distribution, did you mean 'uniform'\?",
     ),
     "too few numbers": ("uniform(1, 1.4)", "uniform(1)", r"uniform takes 2 numbers, not 1"),
     "no truth": ('collision="false"', 'collision="no"', r':16: <end> collision="no" must be true or false'),
@@ -209,8 +209,8 @@ MISTAKES = {
         '"straigth"',
         r":13: <navigator> unknown navigator 'straigth', did you mean 'straight'",
     ),
-    "element twice": ("<end ", "<stage/><end ", r":16: <stage> stands in <trial> twice; one is allowed"),
-    "stray text": ("<end ", "hello<end ", r":2: <trial> holds the text 'hello'; values are written as attributes"),
+    "element twice": ("<end ", "<stage/><end ", r":16: <stage> occurs in <trial> twice; one is allowed"),
+    "stray text": ("<end ", "hello<end ", r":2: <trial> contains the text 'hello'; values are written as attributes"),
     "value of a model": (
         'time-horizon="2"',
         'time-horizon="-2"',
@@ -236,7 +236,7 @@ MISTAKES = {
     "zone in an obstacle": (
         "-5,-2 -3,-2 -3,1 -5,1",
         "0.2,1.7 0.8,1.7 0.8,2.3",
-        r":8: <spawner> spawn zone lies inside obstacle 1 of the stage; nobody can be there",
+        r":8: <spawner> spawn zone lies inside obstacle 1 of the stage; it is not accessible",
     ),
     "zone in a wall": (
         "-5,-2 -3,-2 -3,1 -5,1",
@@ -256,7 +256,7 @@ MISTAKES = {
     "crooked zone": (
         "-5,-2 -3,-2 -3,1 -5,1",
         "-5,-2 -3,1 -3,-2 -5,1",
-        r":8: <spawner> zone is no simple polygon: self-intersection.*list its corners in order",
+        r":8: <spawner> zone is not a simple polygon: self-intersection.*list its corners in order",
     ),
     "too many people": (
         'count="2"',
@@ -349,7 +349,7 @@ def test_no_mistake_hides_another_in_its_element(tmp_path: Path) -> None:
         (6, "did you mean 'reactive'?"),
         (6, 'data="none.txt" there is no file'),
         (7, 'radius="-1"'),
-        (7, "type=\"peper\" is no robot, did you mean 'pepper'?"),
+        (7, "type=\"peper\" is not a robot, did you mean 'pepper'?"),
         (7, "needs the element <navigator>"),
         (9, "rays = -4"),
         (9, "range_max = -1.0"),

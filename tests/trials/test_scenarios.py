@@ -202,7 +202,7 @@ def test_the_long_trial_of_the_documents_has_a_thousand_people_for_ten_minutes()
         ("frontal", {"navigator": "x.py:Y"}, "frontal: "),
         ("random-goals", {"people": 2.5}, "must be a whole number"),
         ("random-goals", {"people": 400, "side": 6.0}, "fit into the spawn zone"),
-        ("frontal", {"robot[2]/x": 1}, "leads nowhere: there are 1 <robot>"),
+        ("frontal", {"robot[2]/x": 1}, "does not exist: there are 1 <robot>"),
         ("crossing-flows", {"density": 1}, "names no attribute: <trial> has no 'density'"),
     ],
 )

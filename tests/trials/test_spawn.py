@@ -136,7 +136,7 @@ def test_each_draw_takes_one_number() -> None:
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("triangle(1, 2)", "'triangle' is no distribution"),
+        ("triangle(1, 2)", "'triangle' is not a distribution"),
         ("normal(1)", "normal takes 2 or 4 numbers, not 1"),
         ("normal(1, -1)", "standard deviation -1, it must be above 0"),
         ("uniform(2, 1)", "low end 2 not below its high end 1"),

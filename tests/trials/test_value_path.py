@@ -65,21 +65,21 @@ def test_a_path_leads_to_one_attribute(path: str, where: str) -> None:
     [
         ("robot/x", "is not clear: <trial> has 2 <robot>; choose one: robot[robot], robot[tim]"),
         ("spawner/count", "choose one: spawner[1], spawner[1]"),
-        ("robot[tom]/x", "leads nowhere: no <robot> has the name 'tom', did you mean 'tim'?"),
-        ("robot[0]/x", "leads nowhere: there are 2 <robot>, numbered from 1"),
-        ("robot[3]/x", "leads nowhere: there are 2 <robot>, numbered from 1"),
-        ("source[1]/rate", "leads nowhere: there are 0 <source>, numbered from 1"),
-        ("source/rate", "leads nowhere: there are 0 <source>"),
-        ("robt[1]/x", "leads nowhere: <trial> has no element 'robt[1]', did you mean 'robot'?; it has "),
+        ("robot[tom]/x", "does not exist: no <robot> has the name 'tom', did you mean 'tim'?"),
+        ("robot[0]/x", "does not exist: there are 2 <robot>, numbered from 1"),
+        ("robot[3]/x", "does not exist: there are 2 <robot>, numbered from 1"),
+        ("source[1]/rate", "does not exist: there are 0 <source>, numbered from 1"),
+        ("source/rate", "does not exist: there are 0 <source>"),
+        ("robt[1]/x", "does not exist: <trial> has no element 'robt[1]', did you mean 'robot'?; it has "),
         (
             "robot[tim]/hight",
             "names no attribute: <robot> has no 'hight', did you mean 'height'?; it takes name, type,",
         ),
         ("durations", "names no attribute: <trial> has no 'durations', did you mean 'duration'?; it takes name,"),
-        ("robot[tim]/", "is no path; write elements and an attribute"),
-        ("", "is no path; write elements and an attribute, such as robot[NAME]/goal/x"),
-        ("robot[tim]//x", "leads nowhere: <robot> has no element ''"),
-        ("robot[[tim]]/x", "leads nowhere: <trial> has no element 'robot[[tim]]'"),
+        ("robot[tim]/", "is not a path; write elements and an attribute"),
+        ("", "is not a path; write elements and an attribute, such as robot[NAME]/goal/x"),
+        ("robot[tim]//x", "does not exist: <robot> has no element ''"),
+        ("robot[[tim]]/x", "does not exist: <trial> has no element 'robot[[tim]]'"),
     ],
 )
 def test_a_path_that_leads_nowhere_says_what_there_is(path: str, sentence: str) -> None:
@@ -123,7 +123,7 @@ def test_an_element_that_is_missing_is_made() -> None:
 
 
 def test_a_message_names_the_path_and_the_value_is_checked(trial: Trial) -> None:
-    with pytest.raises(TrialError, match=r'paths: "crowd/robot/x" leads nowhere: <crowd> has no element'):
+    with pytest.raises(TrialError, match=r'paths: "crowd/robot/x" does not exist: <crowd> has no element'):
         apply_values(trial, {"crowd/robot/x": 1})
     with pytest.raises(TrialError, match=r'<trial> duration="-1" must be above 0 s'):
         apply_values(trial, {"duration": -1})

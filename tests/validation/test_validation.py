@@ -247,9 +247,9 @@ def test_recordings_say_what_is_published(recordings):
 
 
 def test_a_folder_without_recordings_is_refused(tmp_path):
-    with pytest.raises(DataError, match="holds none of the recordings that are compared with: .*n56_cam1.csv"):
+    with pytest.raises(DataError, match="contains none of the reference recordings: .*n56_cam1.csv"):
         measure_recordings(tmp_path, _quiet)
-    with pytest.raises(DataError, match="is no folder; --data names the one"):
+    with pytest.raises(DataError, match="is not a folder; give the folder of the recordings"):
         measure_recordings(tmp_path / "nowhere", _quiet)
 
 

@@ -244,11 +244,11 @@ def test_a_wrong_source_is_explained(values, message):
 
 def test_wrong_worlds_of_sources_are_explained():
     for model in (ORCA(), Mixture((ORCA(),))):
-        with pytest.raises(InputError, match="model = 1, but the crowd is no mixture that has"):
+        with pytest.raises(InputError, match="model = 1, but the crowd has no mixture with"):
             world_of(PeopleSource(DOOR, ACROSS, rate=1.0, model=1), model=model)
-    with pytest.raises(InputError, match="a radius of -1.0 was drawn"):
+    with pytest.raises(InputError, match="the sampled radius -1.0 must be finite"):
         entries(world_of(PeopleSource(DOOR, ACROSS, rate=9.0, radius=Between(-1.0, -1.0))), 2.0)
-    with pytest.raises(InputError, match="ids must be whole numbers, no two the same"):
+    with pytest.raises(InputError, match="ids must be integers, unique in each environment"):
         world_of(scene=empty(3), ids=[0, 1, 1])
     with pytest.raises(InputError, match=r"ids have shape \[2\]"):
         world_of(scene=empty(3), ids=[0, 1])

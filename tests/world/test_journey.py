@@ -148,7 +148,7 @@ def test_people_reach_a_zone_behind_walls():
         (lambda: PointWaypoint(0.0, 0.0, tolerance=0.0), "PointWaypoint: tolerance 0.0 m"),
         (lambda: HeadingWaypoint(math.inf), "HeadingWaypoint: heading = inf"),
         (lambda: PolygonZone(((0, 0), (1, 1))), "three or more finite points"),
-        (lambda: PolygonZone(((0, 0), (1, 1), (2, 2))), "enclose 0 m2, which is no area"),
+        (lambda: PolygonZone(((0, 0), (1, 1), (2, 2))), "enclose 0 m2, the area must be above 0"),
         (lambda: PolygonZone(STAR, aim="randon"), "aim 'randon' is unknown, did you mean 'random'"),
         (lambda: WaypointSequence(()), "must be one or more waypoints"),
         (lambda: WaypointSequence((PointWaypoint(0, 0),), then="stays"), "did you mean 'stay'"),
@@ -166,14 +166,14 @@ def test_wrong_stops_are_explained(make, message):
 
 def test_wrong_worlds_of_journeys_are_explained():
     journeys = JourneyAssignment((WaypointSequence((PointWaypoint(0, 0),)),), which=[0, 0, 0])
-    with pytest.raises(InputError, match=r"which has shape \[3\], it must fit \[1, 2\]"):
+    with pytest.raises(InputError, match=r"which has shape \[3\], expected \[1, 2\]"):
         PlanarWorld(Scene.of(np.zeros((2, 2))), ORCA(), {}, 0.1, journeys=journeys)
     given_velocity = Scene.of(np.zeros((3, 2)), preferred_velocity=np.ones((3, 2)))
-    with pytest.raises(InputError, match="a scene with preferred velocities has no goals"):
+    with pytest.raises(InputError, match="the scene has preferred velocities instead of goals"):
         PlanarWorld(given_velocity, ORCA(), {}, 0.1, journeys=journeys)
     walled = PolygonZone(((1, 1), (2, 1), (2, 2), (1, 2)), aim="random")
     pillar = [(0, 0), (3, 0), (3, 3), (0, 3)]
-    with pytest.raises(InputError, match="no place for a body was found in the zone"):
+    with pytest.raises(InputError, match="no free position for a body was found in the zone"):
         PlanarWorld(
             Scene.of([[-2.0, 0.0]], walls=[pillar]), ORCA(), {}, 0.1,
             journeys=JourneyAssignment((WaypointSequence((walled,)),)), router=Router.of([pillar]),

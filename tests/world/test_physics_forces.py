@@ -170,5 +170,5 @@ def test_tissues():
     assert two_body_force(1.0, 60.0, "lower leg", person_mass=30.0) < two_body_force(1.0, 60.0, "lower leg")
     assert reduced_mass(math.inf, math.inf) == math.inf
     assert softness("hand", 70.0, 20.0, 0.005)[0] <= (math.pi / 0.03) ** 2
-    with pytest.raises(InputError, match="no limb 'tail'; there are pelvis"):
+    with pytest.raises(InputError, match="unknown limb 'tail'; use one of pelvis"):
         region_of("tail")

@@ -102,7 +102,7 @@ def test_what_cannot_be_drawn_is_said(world, monkeypatch):
     ):
         with pytest.raises(InputError, match=match):
             SceneCamera(**({"position": (0.0, 0.0, 1.0), "target": (1.0, 0.0, 1.0)} | wrong))
-    with pytest.raises(InputError, match="agent 2 is no robot"):
+    with pytest.raises(InputError, match="agent 2 is not a robot"):
         world.render(SceneCamera((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), robot=2))
     with pytest.raises(InputError, match="turtlebot2 has no link 'lasr_link', did you mean 'laser_link'"):
         world.render(SceneCamera((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), robot=0, link="lasr_link"))

@@ -78,7 +78,7 @@ def test_a_car_steers_on_its_own_wheels(forward, turn):
     joints = world.robot_body(0).joints()
     inner, outer = joints["front_left_steer"][0], joints["front_right_steer"][0]
     assert (abs(inner) > abs(outer)) == (turn / forward > 0.0) or turn == 0.0
-    with pytest.raises(InputError, match="'front_left_steer' of car is a wheel; drive it by a Twist"):
+    with pytest.raises(InputError, match="'front_left_steer' of car is a wheel; use a Twist command"):
         world.command(0, {"front_left_steer": 0.1})
 
 
@@ -95,15 +95,15 @@ def test_wheels_of_a_car_roll_about_one_point():
 
 
 def test_a_car_needs_wheels_and_a_drive_that_fit():
-    with pytest.raises(InputError, match="drives as DifferentialDrive and has wheels that steer; give it base"):
+    with pytest.raises(InputError, match="has a drive DifferentialDrive and steered wheels; use base"):
         alone(car(drive=DifferentialDrive()))
-    with pytest.raises(InputError, match="drives as AckermannDrive and has no wheels that steer"):
+    with pytest.raises(InputError, match="has a drive AckermannDrive and no steered wheels"):
         alone(car(wheels=(Wheel("rear_left_wheel", 0.1), Wheel("rear_right_wheel", 0.1))))
-    with pytest.raises(InputError, match="has no wheels that a motor turns"):
+    with pytest.raises(InputError, match="has no driven wheels"):
         alone(car(wheels=(Wheel("front_left_wheel", 0.1, "front_left_steer", driven=False),)))
-    with pytest.raises(InputError, match="the steering joint 'front_left_ster' is no joint that turns, did you mean"):
+    with pytest.raises(InputError, match="the steering joint 'front_left_ster' is not a rotating joint, did you mean"):
         car(wheels=(Wheel("front_left_wheel", 0.1, "front_left_ster"),))
-    with pytest.raises(InputError, match="Wheel: 'a' neither drives nor steers"):
+    with pytest.raises(InputError, match="Wheel: 'a' is neither driven nor steered"):
         Wheel("a", 0.1, driven=False)
 
 

@@ -192,11 +192,11 @@ def test_joints_are_commanded():
     for _ in range(40):
         world.step({0: Twist()})
     assert world.robot_bodies[0].joints()["HeadYaw"][0] == pytest.approx(0.5, abs=0.05)
-    with pytest.raises(InputError, match="has no motor on a joint 'HeadYow', did you mean 'HeadYaw'"):
+    with pytest.raises(InputError, match="has no motor on joint 'HeadYow', did you mean 'HeadYaw'"):
         world.command(0, {"HeadYow": 0.5})
-    with pytest.raises(InputError, match="agent 1 is no robot; robots are \\[0\\]"):
+    with pytest.raises(InputError, match="agent 1 is not a robot; robots are \\[0\\]"):
         world.command(1, {"HeadYaw": 0.5})
-    with pytest.raises(InputError, match="'left_wheel_joint' of cuybot is a wheel; drive it by a Twist"):
+    with pytest.raises(InputError, match="'left_wheel_joint' of cuybot is a wheel; use a Twist command"):
         alone(load("cuybot")).command(0, {"left_wheel_joint": 1.0})
     with pytest.raises(InputError, match="nan for joint 'HeadYaw'"):
         world.command(0, {"HeadYaw": float("nan")})
@@ -245,16 +245,16 @@ def test_what_cannot_be_is_refused():
             PhysicsWorld(scene, ORCA(), {0: robot} if robots is None else robots, dt, **options)
 
     refused("one environment, the scene has 2", scene=Scene.of(np.zeros((2, 1, 2)), external=True))
-    refused("0.012 s must be a whole number of steps of the engine, 0.005 s", dt=0.012)
+    refused("dt = 0.012 s must be a multiple of physics_dt = 0.005 s", dt=0.012)
     refused("physics_dt = 0.1 s must be from", physics_dt=0.1)
     refused("slots = -1 must be a whole number", slots=-1)
     refused("robots\\[0\\] is a DifferentialDrive; give a Robot", robots={0: DifferentialDrive()})
     refused("robot turtlebot2 of agent 0 is absent", scene=scene.replace(active=np.array([[False, True]])))
     refused("agent 1 has a drive but is not external", robots={1: robot})
-    refused("2 bodies are given for 1 agents that are no robots", people=People.of(["man-20", "man-20"]))
+    refused("2 bodies are given for 1 agents that are not robots", people=People.of(["man-20", "man-20"]))
     car = dataclasses.replace(robot, drive=AckermannDrive())
-    refused('drives as AckermannDrive and has no wheels that steer; give it base="planar"', robots={0: car})
-    refused("has no wheels that a motor turns", robots={0: dataclasses.replace(robot, wheels=())})
+    refused('has a drive AckermannDrive and no steered wheels; use base="planar"', robots={0: car})
+    refused("has no driven wheels", robots={0: dataclasses.replace(robot, wheels=())})
     with pytest.raises(InputError, match="CubeBody: mass = 0.0 must be finite and above 0"):
         CubeBody(0.0, 0.0, mass=0.0)
     with pytest.raises(InputError, match="LightSource: brightness = 2.0 must be from 0 to 1"):

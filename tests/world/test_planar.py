@@ -214,7 +214,7 @@ def test_a_wrong_world_is_explained(changes, message):
     ("commands", "message"),
     [
         ({}, "robot 0 has no command"),
-        ({0: Twist(), 3: Twist()}, "command is given for agent 3; robots are \\[0\\]"),
+        ({0: Twist(), 3: Twist()}, "agent 3 has a command but is not a robot; robots are \\[0\\]"),
         ({0: Twist(math.nan, 0.0)}, "forward = nan is not finite"),
     ],
 )

@@ -144,9 +144,9 @@ def test_what_cannot_be_shown_is_said():
     with pytest.raises(InputError, match="agent 7 is not in the scene, which has 2 agents"):
         Renderer(scene, {7: robot})
     renderer = Renderer(scene, {0: robot})
-    with pytest.raises(InputError, match="the scene has 1 agents, it was made for 2"):
+    with pytest.raises(InputError, match="the scene has 1 agents, expected 2"):
         renderer.show(Scene.of([[0.0, 0.0]]))
-    with pytest.raises(InputError, match="poses in 2 environments"):
+    with pytest.raises(InputError, match="the pose has 2 environments"):
         renderer.render(Optics(Lens.of(8, 8, 1.0)), SpatialPose.of([[0.0, 0.0, 1.0]] * 2))
     with pytest.raises(InputError, match="width = 5000 pixels must be from 1 to 1920"):
         renderer.render(Optics(Lens.of(5000, 8, 1.0)), SpatialPose.of((0.0, 0.0, 1.0)))

@@ -65,12 +65,12 @@ def test_a_robot_frees_who_is_near_and_only_those_who_may():
 @pytest.mark.parametrize(
     ("tracks", "release", "words"),
     [
-        ([ReplayedTrack(0, np.array([1.0, 1.0]), np.zeros((2, 2)))], 0.0, "its times do not rise"),
-        ([ReplayedTrack(0, np.array([1.0]), np.zeros((2, 2)))], 0.0, "must have places"),
+        ([ReplayedTrack(0, np.array([1.0, 1.0]), np.zeros((2, 2)))], 0.0, "times that do not increase"),
+        ([ReplayedTrack(0, np.array([1.0]), np.zeros((2, 2)))], 0.0, "must have positions"),
         ([ReplayedTrack(0, TIME, PLACE), ReplayedTrack(0, TIME, PLACE)], 0.0, "an agent has two tracks"),
         ([ReplayedTrack(0, TIME, PLACE * np.nan)], 0.0, "is not finite"),
         ([ReplayedTrack(0, TIME, PLACE)], -1.0, "release = -1.0 m must be finite and at least 0"),
-        ([ReplayedTrack(0, TIME, PLACE)], [1.0, 2.0], "one or one a track"),
+        ([ReplayedTrack(0, TIME, PLACE)], [1.0, 2.0], "give one value, or one per track"),
     ],
 )
 def test_wrong_scripts_are_told(tracks, release, words):

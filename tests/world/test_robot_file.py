@@ -76,28 +76,28 @@ def test_without_a_footprint_the_colliders_give_it(tmp_path):
             "max_speed = -1.0 m/s must be finite and above 0 m/s",
         ),
         (('<drive type="differential-drive" latency="-1"/>',), 'latency="-1" must be at least 0 s'),
-        ((DRIVE, "<lidar/>"), "robot.xml:3: <lidar> is no element of <robot>; it takes drive, footprint, sensor"),
+        ((DRIVE, "<lidar/>"), "robot.xml:3: <lidar> is not an element of <robot>; it accepts drive, footprint, sensor"),
         ((DRIVE, '<sensor type="lidar-2d"/>'), "robot.xml:3: <sensor> needs the attribute 'name'"),
         ((DRIVE, '<sensor name="s" type="sonar"/>'), "robot.xml:3: <sensor> unknown sensor 'sonar'"),
         ((DRIVE, '<sensor name="s" type="lidar-2d" x="near"/>'), 'x="near" is not a number'),
         ((DRIVE, '<sensor name="s" type="lidar-2d" rays="0"/>'), "rays = 0 must be a whole number of at least 1"),
         (
             (DRIVE, '<sensor name="s" type="lidar-2d" link="hed"/>'),
-            "<sensor> link='hed' is no link of the robot, did you mean 'head'?",
+            "<sensor> link='hed' is not a link of the robot, did you mean 'head'?",
         ),
         (
             (DRIVE, *['<sensor name="s" type="lidar-2d"/>'] * 2),
-            "robot.xml:4: <sensor> name 's' is taken by another sensor",
+            "robot.xml:4: <sensor> name 's' is already used by another sensor",
         ),
         (
             (DRIVE, '<wheel joint="axel" radius="0.1"/>'),
-            "robot.xml:3: <wheel> joint='axel' is no joint that turns, did you mean 'axle'?",
+            "robot.xml:3: <wheel> joint='axel' is not a rotating joint, did you mean 'axle'?",
         ),
         ((DRIVE, '<wheel joint="axle" radius="0"/>'), 'radius="0" must be above 0'),
         ((DRIVE, '<wheel joint="axle"/>'), "<wheel> needs the attribute 'radius', a number"),
         (
             (DRIVE, '<posture joint="nek" position="1"/>'),
-            "robot.xml:3: <posture> joint='nek' is no joint of the robot, did you mean 'neck'?",
+            "robot.xml:3: <posture> joint='nek' is not a joint of the robot, did you mean 'neck'?",
         ),
         ((DRIVE, *['<posture joint="neck" position="1"/>'] * 2), "gives the posture of a joint twice"),
         ((DRIVE, "<footprint/>"), "<footprint> needs either points or radius"),
@@ -118,8 +118,8 @@ def test_what_is_wrong_is_said(tmp_path, parts, message):
     [
         ('name="m"', "needs the attribute 'urdf'"),
         ('urdf="absent.urdf"', "there is no URDF file"),
-        ('urdf="../mine.urdf"', "leaves the robot's folder"),
-        ('urdf="/etc/passwd"', "leaves the robot's folder"),
+        ('urdf="../mine.urdf"', "is outside the robot folder"),
+        ('urdf="/etc/passwd"', "is outside the robot folder"),
         ('urdf="mine.urdf" base="legs"', "base = 'legs' must be wheels or planar"),
         ('urdf="mine.urdf" wheels="4"', "has no attribute 'wheels'"),
     ],
@@ -162,8 +162,8 @@ def test_an_entity_bomb_is_refused(tmp_path):
 def test_names_that_are_no_robot(tmp_path):
     for name, message in (
         ("peper", "there is no robot 'peper', did you mean 'pepper'?"),
-        (tmp_path, "holds no robot.xml; a robot is a folder with a URDF and a robot.xml"),
-        (tmp_path / "x.urdf", "says nothing of drive and sensors"),
+        (tmp_path, "has no robot.xml; a robot is a folder with a URDF and a robot.xml"),
+        (tmp_path / "x.urdf", "does not define drive and sensors"),
     ):
         with pytest.raises(RobotError) as caught:
             Robot.load(name)
@@ -193,7 +193,7 @@ def test_robots_can_be_made_in_python():
     for values, message in (
         ({"latency": -1.0}, "latency = -1.0 s"),
         ({"footprint": [[0.0, 0.0]]}, "the footprint of mine must be at least 3 points"),
-        ({"mounts": (SensorMount("s", Lidar2D(), "nose"),)}, "'nose', which is no link"),
+        ({"mounts": (SensorMount("s", Lidar2D(), "nose"),)}, "'nose', which is not a link"),
     ):
         with pytest.raises(InputError, match=message):
             dataclasses.replace(mine, **values)
@@ -254,12 +254,12 @@ def test_a_preset_names_a_product_and_attributes_change_it(tmp_path):
             '<sensor name="a" preset="velodyne-16"/>',
             "unknown sensor preset 'velodyne-16', did you mean 'velodyne-vlp-16'",
         ),
-        ('<sensor name="a" preset="velodyne-vlp-16" type="lidar-3d"/>', "has a preset and a type; one says what it is"),
+        ('<sensor name="a" preset="velodyne-vlp-16" type="lidar-3d"/>', "has both preset and type; give one of them"),
         ('<sensor name="a" preset="velodyne-vlp-16" colums="9"/>', "colums"),
         ('<sensor name="a" preset="velodyne-vlp-16" columns="-9"/>', "columns"),
         ('<wheel joint="axle" radius="0.1" driven="perhaps"/>', 'driven="perhaps" must be true or false'),
-        ('<wheel joint="axle" radius="0.1" driven="false"/>', "'axle' neither drives nor steers"),
-        ('<wheel joint="axle" radius="0.1" steering="nek"/>', "steering='nek' is no joint that turns"),
+        ('<wheel joint="axle" radius="0.1" driven="false"/>', "'axle' is neither driven nor steered"),
+        ('<wheel joint="axle" radius="0.1" steering="nek"/>', "steering='nek' is not a rotating joint"),
     ],
 )
 def test_wrong_presets_and_wheels_are_refused_in_one_sentence(tmp_path, text, match):

@@ -301,7 +301,7 @@ def test_absent_agents_may_hold_anything():
     [
         ({"radius": 0.0}, "radius 0.0 m must be finite and above 0"),
         ({"radius": math.nan}, "radius nan m"),
-        ({"radius": 30.0}, "nowhere between the walls is room for a body of radius 30.0 m"),
+        ({"radius": 30.0}, "no space between the walls is wide enough for a body of radius 30.0 m"),
         ({"unreachable": "neares"}, "unreachable = 'neares' is unknown, did you mean 'nearest'"),
     ],
 )
@@ -317,5 +317,5 @@ def test_a_place_that_is_no_number_is_explained():
 
 def test_too_many_corners_are_explained():
     angle = np.linspace(0.0, 2.0 * np.pi, 3200)[:-1]
-    with pytest.raises(InputError, match="ways may bend at 3199 points, 3000 are the most"):
+    with pytest.raises(InputError, match="the walls have 3199 corners, at most 3000 are allowed"):
         Router.of([100.0 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)])

@@ -97,7 +97,7 @@ def test_those_that_follow_others():
     places = model.positions({"j": 0.5})
     assert [float(places[name][0]) for name in "jkl"] == pytest.approx([0.5, 1.1, -1.1])
     assert [one.name for one in model.movable] == ["j"]
-    with pytest.raises(InputError, match="the joint 'k' of r follows 'j'; its position cannot be given"):
+    with pytest.raises(InputError, match="the joint 'k' of r follows 'j'; its position cannot be set"):
         model.poses({"k": 1.0})
     physics = mjcf(model, base="fixed", motors={"j": "position"}).load()
     assert physics.neq == 2
@@ -131,16 +131,16 @@ def test_limits_that_leave_no_way_are_noted_and_hold():
 def test_wrong_words_are_explained():
     model = two("revolute")
     for asked, message in (
-        ({"base": "planer"}, "base = 'planer' must be free, planar, fixed, kinematic, did you mean 'planar'?"),
-        ({"motors": {"x": "velocity"}}, "r has no joint 'x' that a motor could move"),
+        ({"base": "planer"}, "base = 'planer' must be one of free, planar, fixed, kinematic, did you mean 'planar'?"),
+        ({"motors": {"x": "velocity"}}, "r has no movable joint 'x'"),
         ({"motors": {"j": "speed"}}, "motor of 'j': 'speed' must be position, velocity, effort, or empty"),
-        ({"base": "fixed", "servo": BaseServo(1.0, 1.0)}, "a base servo needs a base that is free or planar"),
+        ({"base": "fixed", "servo": BaseServo(1.0, 1.0)}, "a base servo needs base='free' or base='planar'"),
     ):
         with pytest.raises(InputError, match=message.replace("?", "\\?")):
             mjcf(model, **asked)
     with pytest.raises(InputError, match="max_force = 0.0 must be finite and above 0"):
         BaseServo(0.0, 1.0)
-    with pytest.raises(InputError, match="the base 'a' of r has no mass; it can only be fixed or kinematic"):
+    with pytest.raises(InputError, match="the base 'a' of r has no mass; use base='fixed' or base='kinematic'"):
         mjcf(read_urdf("<robot name='r'><link name='a'/></robot>"))
 
 

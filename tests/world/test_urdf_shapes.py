@@ -81,11 +81,11 @@ def test_a_mesh_that_is_not_convex_is_cut_into_pieces(tmp_path):
 
 
 def test_without_a_library_for_pieces_the_hull_is_taken_and_said(tmp_path, monkeypatch):
-    monkeypatch.setattr(meshes, "_decomposed", lambda body: ())
+    monkeypatch.setattr(meshes, "_decompose", lambda body: ())
     bracket().export(tmp_path / "bracket.stl")
     model = read_urdf(write(tmp_path, mesh("bracket.stl", "collision")))
     assert len(model.links["a"].collisions[0].shape.pieces) == 1
-    assert "bracket.stl is wrapped in its convex hull of" in model.warnings[0]
+    assert "bracket.stl uses its convex hull," in model.warnings[0]
 
 
 def test_a_flat_mesh_can_touch(tmp_path):
@@ -104,10 +104,10 @@ def test_a_flat_mesh_can_touch(tmp_path):
         ("a.glb", b"glTF\x02\x00\x00\x00\xff\xff\xff\xff", "cannot be read as glb"),
         ("a.obj", b"v 1 2\nf 1 2 3", "cannot be used: it"),
         ("a.obj", b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "cannot be used: it"),
-        ("a.obj", b"v 1e9 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "farther away than 10 km"),
+        ("a.obj", b"v 1e9 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "farther than 10 km from the origin"),
         ("a.dae", b"<COLLADA/>", "cannot be used: it"),
         ("a.dae", b"<!DOCTYPE x [<!ENTITY a 'b'>]><COLLADA>&a;</COLLADA>", "must not have a DOCTYPE or entities"),
-        ("a.fbx", b"x", "a mesh must be stl, dae, obj, ply, glb, not 'fbx'"),
+        ("a.fbx", b"x", "the mesh format 'fbx' is not supported; use stl, dae, obj, ply, glb"),
     ],
     ids=lambda value: value[:24] if isinstance(value, str) else "",
 )
@@ -144,30 +144,30 @@ def test_what_takes_the_place_of_lost_colliders(tmp_path):
     seen = "<visual><geometry><box size='1 1 1'/></geometry></visual>"
     beside = read_urdf(write(tmp_path, lost, BALL.format(radius=0.5)))
     assert [part.shape for part in beside.links["a"].collisions] == [Sphere(0.5)]
-    assert beside.warnings[0].endswith("gone.stl is missing; in contacts its other colliders stand alone")
+    assert beside.warnings[0].endswith("gone.stl is missing; for contacts, only its other colliders are used")
     assert read_urdf(write(tmp_path, lost, seen)).links["a"].collisions[0].shape == Box((1.0, 1.0, 1.0))
     alone = read_urdf(write(tmp_path, lost, mass=60.0))
-    assert alone.warnings[0].endswith("in contacts the box of equal inertia takes its place")
+    assert alone.warnings[0].endswith("for contacts, the box of equal inertia is used")
     np.testing.assert_allclose(alone.links["a"].collisions[0].shape.size, [0.1] * 3, rtol=1e-6)
     light = read_urdf(write(tmp_path, lost, mass=0.008))
-    assert light.warnings[0].endswith("in contacts a cube of its mass at 1000 kg/m3 takes its place")
+    assert light.warnings[0].endswith("for contacts, a cube of its mass at 1000 kg/m3 is used")
     np.testing.assert_allclose(light.links["a"].collisions[0].shape.size, [0.02] * 3)
     frame = read_urdf(robot(f"<link name='a'>{lost}</link>"))
-    assert frame.warnings[0].endswith("nothing takes its place, the link cannot be touched")
+    assert frame.warnings[0].endswith("the link has no colliders")
 
 
 @pytest.mark.parametrize(
     ("moments", "words"),
     [
-        ((1.0, 1.0, 3.0), "break the triangle inequality"),
-        ((0.0, 0.0, 0.0), "are not all above 0"),
-        ((-1.0, 1.0, 1.0), "are not all above 0"),
+        ((1.0, 1.0, 3.0), "violate the triangle inequality"),
+        ((0.0, 0.0, 0.0), "must all be above 0"),
+        ((-1.0, 1.0, 1.0), "must all be above 0"),
     ],
 )
 def test_unphysical_inertia_becomes_that_of_the_shape(moments, words):
     shape = "<collision><geometry><box size='1 2 3'/></geometry></collision>"
     model = read_urdf(robot(link("a", shape, mass=12.0, moments=moments)))
-    assert "got a new inertia, from its shape at its 12 kg" in model.warnings[0]
+    assert "its inertia is replaced by that of its shape with a mass of 12 kg" in model.warnings[0]
     assert words in model.warnings[0]
     np.testing.assert_allclose(np.diag(model.links["a"].inertial.tensor), [13.0, 10.0, 5.0])
     ball = read_urdf(robot(link("a", mass=12.0, moments=moments))).links["a"].inertial
@@ -221,6 +221,6 @@ def test_colours(tmp_path):
     model = read_urdf(robot(*rows))
     colors = {name: [part.color for part in linked.visuals] for name, linked in model.links.items()}
     assert colors == {"a": [(1, 0, 0, 1)], "b": [(0, 1, 0, 0.5)], "c": [None, (0, 1, 0, 0.5)]}
-    assert any("names the colour 'unknown'" in text for text in model.warnings)
+    assert any("uses the colour 'unknown'" in text for text in model.warnings)
     with pytest.raises(RobotError, match='<color> rgba="1 1" must be 4 numbers'):
         read_urdf(robot("<material name='x'><color rgba='1 1'/></material>", link("a")))

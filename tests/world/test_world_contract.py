@@ -142,7 +142,7 @@ def test_a_world_says_what_is_wrong_with_commands(kind):
     world = build(kind)
     with pytest.raises(InputError, match="robot 0 has no command"):
         world.step({})
-    with pytest.raises(InputError, match="a command is given for agent 1; robots are"):
+    with pytest.raises(InputError, match="agent 1 has a command but is not a robot; robots are"):
         world.step({0: Twist(), 1: Twist()})
 
 

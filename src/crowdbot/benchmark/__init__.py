@@ -1,6 +1,6 @@
-"""Catalogue, demo and report, evaluation of predictors, speed measurements, and the comparison of GANs on toy data.
+"""Evaluation of predictors, demo and report, speed measurements, and a GAN comparison on toy data.
 
-Each name is loaded on first use.
+Names are loaded on first use.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Catalogue: what is built in, by kind, and the papers behind it."""
+"""Catalogue of built-in names by kind, and their papers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ KINDS = {
     "predictors": ("prediction", "Predictor"),
     "degradations": ("data.degrade", "Degradation"),
 }
-"""Kinds of plugs: the room that holds them and the contract that they keep."""
+"""Kinds of plug-ins with their room and contract."""
 
 REPORT = Paper(
     "EU H2020 CROWDBOT project",
@@ -38,7 +38,7 @@ PROGRAM = Paper(
 
 
 def builtin_names(kind: str | None = None) -> dict[str, dict[str, str]]:
-    """Return name -> one line, for one kind or for all.
+    """Return one-line descriptions by name, for one kind or for all.
 
     >>> "orca" in builtin_names("models")["models"]
     True
@@ -69,7 +69,7 @@ def papers(name: str) -> list[Paper]:
     """Return the papers behind a built-in name; ``crowdbot`` itself has its report.
 
     Raises:
-        InputError: no built-in has this name, or what it means comes from no paper.
+        InputError: no built-in has this name, or it has no paper.
     """
     if name.lower() == "crowdbot":
         return [PROGRAM, REPORT]
@@ -80,12 +80,12 @@ def papers(name: str) -> list[Paper]:
         raise UnknownName("name", name, {key.split()[1] for key in classes})
     found = list(dict.fromkeys(paper for cls in meant for paper in _papers_of(cls)))
     if not found:
-        raise InputError(f"{name} comes from no paper; to cite crowdbot itself: crowdbot cite")
+        raise InputError(f"{name} has no paper; to cite crowdbot itself: crowdbot cite")
     return found
 
 
 def cite(thing: Any) -> str:
-    """Return the papers behind a name, a class or an instance, one a line.
+    """Return the papers behind a name, a class or an instance, one per line.
 
     >>> cite("orca").endswith("https://doi.org/10.1007/978-3-642-19457-3_1")
     True

@@ -63,7 +63,7 @@ def run_demo(out: Path, seed: int | None = None, progress: Callable[[str, float]
     Args:
         out: folder of the results; created if missing.
         seed: random seed (default: the seed of the trial).
-        progress: called with the name of the current task and the completed share.
+        progress: called with the name of the current task and the completed fraction.
     """
     from crowdbot.trials import load_trial
 
@@ -106,7 +106,7 @@ def _predicted(
     predictors = (ConstantVelocity(), ConstantAcceleration(), Kalman(), Simulated.of(fit))
     for number, predictor in enumerate(predictors, start=1):
         score = evaluate(predictor, past, future, seed=seed)
-        score = dataclasses.replace(score, predictor=predictor.name.partition("(")[0])  # its parameters stand below
+        score = dataclasses.replace(score, predictor=predictor.name.partition("(")[0])  # parameters are listed below
         found.append(Predicted(predictor.predict(past, PREDICT, rng=stream(seed, "report")), score))
         progress(number / 4)
     return found

@@ -1,4 +1,4 @@
-"""Report: one self-contained page about a recorded trial and the predictions of its people."""
+"""Report: a self-contained HTML page about a recorded trial and the predictions of its people."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ if TYPE_CHECKING:
 __all__ = ["Predicted", "write_report"]
 
 COLORS = ("#e69f00", "#cc79a7", "#009e73", "#0072b2", "#d55e00", "#56b4e9")
-"""Colours that people with colour blindness can tell apart (Okabe & Ito)."""
+"""Colours that are distinguishable with colour blindness (Okabe & Ito)."""
 FRAME = 0.1
 """Period of the animation [s]."""
 OPENING = 5.0
-"""The page opens at this time [s], when the robot is among people."""
+"""Initial time of the animation [s], with the robot among people."""
 MARGIN = 0.6
 
 
 @dataclass(frozen=True)
 class Predicted:
-    """What one predictor said about the windows of an episode: its forecasts and their score."""
+    """Forecasts of a predictor for the windows of an episode, and their score."""
 
     forecast: Forecast
     score: Score
@@ -50,15 +50,15 @@ def write_report(
     commands: Mapping[str, str],
     seen: str,
 ) -> Path:
-    """Write the page; nothing is left behind when it fails.
+    """Write the page atomically.
 
     Args:
         path: file to write.
         episode: the recorded trial.
-        past, future: windows of its people at the prediction instants, ``[W, T, A, ...]``.
+        past, future: windows of its people at the prediction times, ``[W, T, A, ...]``.
         predicted: one entry for each predictor, over the same windows.
-        commands: what each part is reproduced by.
-        seen: one sentence about what the predictors know.
+        commands: commands that reproduce each part.
+        seen: one sentence about the input of the predictors.
     """
     page = Template(_asset("page.html")).substitute(
         title=html.escape(f"{episode.trial.name}: {episode.outcome}"),

@@ -120,7 +120,7 @@ def _save(chunk: CalibrationChunk, file: Path) -> None:
 
 
 def _load(file: Path) -> CalibrationChunk:
-    with np.load(file, allow_pickle=False) as kept:
+    with file.open("rb") as stream_, np.load(stream_, allow_pickle=False) as kept:
         first, last = kept["bounds"].tolist()
         arrays = {name: kept[name] for name in (*ARRAYS, "seconds")}
         return CalibrationChunk(first, last, kept["frame"], kept["people"], arrays)

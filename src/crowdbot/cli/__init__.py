@@ -60,10 +60,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
             sys.stdout.flush()
         except OSError:
             _discard_output()
-        if isinstance(end.__context__, BrokenPipeError):  # as rich ends on it
+        if isinstance(end.__context__, BrokenPipeError):  # rich ends with this exception
             return 0
         raise
-    except BrokenPipeError:  # the reader of the output has ended, as with `| head`
+    except BrokenPipeError:  # the reader of the output has ended, as in `| head`
         _discard_output()
         return 0
     except KeyboardInterrupt:
@@ -74,7 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _open_standard_streams() -> None:
-    """Replace closed standard streams by the null device, and let the output print what its encoding lacks as ``?``."""
+    """Replace closed standard streams by the null device; characters that the encoding lacks are printed as ``?``."""
     if None in (sys.stdin, sys.stdout, sys.stderr):
         while (free := os.open(os.devnull, os.O_RDWR)) <= 2:  # the lowest free number; 0 to 2 are the standard streams
             os.set_inheritable(free, True)
@@ -109,15 +109,15 @@ def _code_notices() -> Iterator[None]:
 
 
 def _discard_output() -> None:
-    """Send what is left of the output to the null device: it cannot be written, and Python tries again at its end."""
+    """Redirect the standard output to the null device after a write error, since Python flushes it again at exit."""
     null = os.open(os.devnull, os.O_WRONLY)
-    with contextlib.suppress(OSError):  # a stream that is no file
+    with contextlib.suppress(OSError):  # a stream without a file descriptor
         os.dup2(null, sys.stdout.fileno())
     os.close(null)
 
 
 def _report(error: Exception, debug: bool) -> int:
-    """Print one sentence about an error, with its trace if ``debug``, and return the exit status."""
+    """Print one sentence about an error, with its traceback if ``debug``, and return the exit status."""
     from crowdbot.core import CrowdbotError
 
     if debug:
@@ -139,7 +139,7 @@ def _report(error: Exception, debug: bool) -> int:
 
 
 def _describe(error: Exception, debug: bool) -> str:
-    """Return a sentence about an error that nobody expected, and write its trace into a file unless it was printed."""
+    """Return a sentence about an unexpected error; its traceback is written to a file unless it was printed."""
     frames = traceback.extract_tb(error.__traceback__)
     what = " ".join(f"{type(error).__name__}: {error}".split()).removesuffix(":")
     place = f" ({frames[-1].filename}, line {frames[-1].lineno})" if frames else ""
@@ -155,7 +155,7 @@ def _describe(error: Exception, debug: bool) -> str:
     except OSError:
         traceback.print_exception(error)
         return bug
-    return f"{bug}; the trace is in {file.name}"
+    return f"{bug}; the traceback is in {file.name}"
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
@@ -168,7 +168,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=f"crowdbot {__version__}")
-    trace = "print the trace of an error (also: CROWDBOT_DEBUG=1)"
+    trace = "print the traceback of an error (also: CROWDBOT_DEBUG=1)"
     parser.add_argument("--debug", action="store_true", help=trace)
     commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="command")
     wanted = next((word for word in words if not word.startswith("-")), None)

@@ -24,12 +24,14 @@ def main(options: argparse.Namespace) -> int:
     import json
 
     from crowdbot.benchmark import measure
+    from crowdbot.core import write_errors
 
     with progress(options.json) as report:
         rows = measure(options.names, repeats=options.repeats, progress=report, recording=options.data)
     table = [row.as_dict() for row in rows]
     if options.out is not None:
-        options.out.write_text(json.dumps(table, indent=2) + "\n", encoding="utf-8")
+        with write_errors(options.out):
+            options.out.write_text(json.dumps(table, indent=2) + "\n", encoding="utf-8")
     if options.json:
         print_json({"rows": table})
         return 0

@@ -97,8 +97,8 @@ def _each(
     fit = campaign.merge(pieces)
     if fit.persons == 0:
         raise InputError(
-            f"{recording.path}: nobody in {fit.windows} windows can be compared by {fit.scheme.split(', ')[1]};"
-            " people must be seen at enough rows, and with others where distances between them count"
+            f"{recording.path}: nobody in {fit.windows} windows can be scored by {fit.scheme.split(', ')[1]};"
+            " people need enough observed rows, and neighbors if the cost uses distances between people"
         )
     return fit
 
@@ -171,15 +171,17 @@ def as_json(fit: Fit) -> dict[str, Any]:
 def _written(folder: Path, fits: dict[str, Fit], shared: bool) -> None:
     """Write the summary and, for individual parameters, the table of parameters and the population prior."""
     from crowdbot.calibration import PopulationPrior
+    from crowdbot.core import write_errors
 
-    folder.mkdir(parents=True, exist_ok=True)
     text = json_text({name: as_json(fit) for name, fit in fits.items()})
-    (folder / "calibration.json").write_text(text + "\n", encoding="utf-8")
     names = ["calibration.json"]
-    if not shared:
-        _people(fits).to_parquet(folder / "parameters.parquet", index=False)
-        PopulationPrior.from_fits(list(fits.values())).save(folder / "prior.json")
-        names += ["parameters.parquet", "prior.json"]
+    with write_errors(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "calibration.json").write_text(text + "\n", encoding="utf-8")
+        if not shared:
+            _people(fits).to_parquet(folder / "parameters.parquet", index=False)
+            PopulationPrior.from_fits(list(fits.values())).save(folder / "prior.json")
+            names += ["parameters.parquet", "prior.json"]
     note(f"wrote {', '.join(names)} in {folder}")
 
 

@@ -57,13 +57,13 @@ def _packages(words: list[str]) -> dict[str, Path]:
     for word in words:
         name, sign, folder = word.partition("=")
         if not (name and sign and Path(folder).is_dir()):
-            raise InputError(f"--package {word!r} must be NAME=FOLDER with a folder that exists")
+            raise InputError(f"--package {word!r} must be NAME=FOLDER with an existing folder")
         found[name] = Path(folder)
     return found
 
 
 def _is_robot(name: str) -> bool:
-    """Return whether a name means a robot: by its ending, its file, or among the built-in ones."""
+    """Return whether a name is a robot: by extension, by content, or a built-in robot."""
     from crowdbot.world import builtin_robots
 
     path = Path(name)
@@ -132,14 +132,14 @@ def _print_robot(row: dict[str, Any]) -> None:
     x, y, z = row["center_of_mass"]
     moments = " ".join(f"{row['inertia'][k][k]:.4g}" for k in range(3))
     print(f"{row['name']}: root {row['root']}")
-    print(f"  links   {row['links']}: {row['links_with_mass']} have a mass, {row['links_that_touch']} can be touched")
-    print(f"  joints  {row['joints']}: {kinds}; {row['joints_that_mimic']} follow another")
+    print(f"  links   {row['links']}: {row['links_with_mass']} with mass, {row['links_that_touch']} with colliders")
+    print(f"  joints  {row['joints']}: {kinds}; {row['joints_that_mimic']} mimic another joint")
     print(f"  mass    {row['mass']:.4g} kg, centre at {x:.3f} {y:.3f} {z:.3f} m, inertia {moments} kg m2")
     if row["footprint"]:
         size = " x ".join(f"{side:.3f}" for side in row["size"])
         print(f"  size    {size} m, footprint of {len(row['footprint'])} corners")
     else:
-        print("  size    unknown: nothing of it can be touched")
+        print("  size    unknown: the robot has no colliders")
     print(f"  meshes  {len(row['meshes'])} read, {row['convex_pieces']} convex pieces")
     if "drive" in row:
         print(f"  drive   {row['drive']}, latency {row['latency']:g} s")

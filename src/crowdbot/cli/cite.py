@@ -9,7 +9,7 @@ from .output import add_json, print_json
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
-    parser.add_argument("names", metavar="NAME", nargs="*", help="built-in names; none means crowdbot itself")
+    parser.add_argument("names", metavar="NAME", nargs="*", help="built-in names (default: crowdbot itself)")
     parser.add_argument("--bibtex", action="store_true", help="print BibTeX entries")
     add_json(parser)
 

@@ -147,7 +147,9 @@ def _check_names(values: Mapping[str, str], kinds: set[type]) -> None:
         word = key.replace("_", "-")
         if word not in known and word not in full:
             near = did_you_mean(word, [*known, *full])
-            raise InputError(f"--set {key}: no chosen degradation takes it{near}; they take {', '.join(full)}")
+            raise InputError(
+                f"--set {key}: no chosen degradation has this parameter{near}; they have {', '.join(full)}"
+            )
 
 
 def _check_sweep(
@@ -157,15 +159,18 @@ def _check_sweep(
     from crowdbot.data.degrade import Chain
 
     if options.levels is not None and len(degradations) > 1:
-        raise InputError(f"--levels belong to one degradation, not to {len(degradations)}; without it each has its own")
+        raise InputError(
+            f"--levels requires a single degradation, not {len(degradations)}; omit it to use the "
+            f"levels of each degradation"
+        )
     for degradation in degradations:
         first = degradation.links[0] if isinstance(degradation, Chain) else degradation
         if first.level in _own(type(first), values):
-            raise InputError(f"--set {first.level}: the sweep of {first.name} varies it; give --levels instead")
+            raise InputError(
+                f"--set {first.level}: this parameter is varied by the sweep of {first.name}; use --levels instead"
+            )
     if options.late != "skip":
-        raise InputError(
-            f"--late {options.late} is not for degrade, where people come late by --by late-start; leave it out"
-        )
+        raise InputError(f"--late {options.late} is not supported by degrade; use --by late-start instead")
     if options.out is not None and options.out.exists() and not options.out.is_dir():
         raise InputError(f"--out {options.out} is a file; give a folder")
 
@@ -182,7 +187,7 @@ def _predictors(options: argparse.Namespace, found: Sequence[Recording]) -> list
         if not issubclass(known[name], prediction.LearnedPredictor) and not required_fields(known[name])
     )
     options.predictor = [*dict.fromkeys(options.predictor or plain)]
-    options.set = []  # they are parameters of the degradation here
+    options.set = []  # --set applies to degradations here
     made = predictor_specs(options)
     late = next((one.goal for one in made if one.goal is not None), None)
     if late is not None and len(found) > 1:
@@ -234,7 +239,7 @@ def _keep(
 
         return [file, *plot_degradation(list(done.values()), options.out, _title(options, task))]
     except OSError as error:
-        raise InputError(f"--out {options.out} cannot be written: {error.strerror or error}") from None
+        raise InputError(f"cannot write --out {options.out}: {error.strerror or error}") from None
 
 
 def _title(options: argparse.Namespace, task: DegradedTask) -> str:

@@ -1,4 +1,4 @@
-"""``crowdbot experiment``: run trials with participants, see their orders, and sum up what came out."""
+"""``crowdbot experiment``: run trials with participants, print their orders, and summarise the results."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     _run_arguments(_verb(verbs, "run", "run the session of one participant"))
     order = _verb(verbs, "order", "print the order of trials for each participant")
     _add_experiment(order)
-    order.add_argument("--participants", type=int, metavar="N", help="how many (default: as planned, or 12)")
-    summary = _verb(verbs, "summary", "sum up sessions: a row for each trial of each participant")
-    summary.add_argument("folder", metavar="DIR", type=Path, help="what run was given as --out")
-    summary.add_argument(
-        "--out", type=Path, metavar="FILE", help="write every column to a .csv, .parquet or .json file"
+    order.add_argument(
+        "--participants", type=int, metavar="N", help="number of participants (default: as planned, or 12)"
     )
-    new = _verb(verbs, "new", "write a small experiment to begin with")
-    new.add_argument("folder", metavar="DIR", type=Path, help="a folder that is not there yet")
+    summary = _verb(verbs, "summary", "summarise sessions: one row for each trial of each participant")
+    summary.add_argument("folder", metavar="DIR", type=Path, help="output folder of the sessions (--out)")
+    summary.add_argument("--out", type=Path, metavar="FILE", help="write all columns to a .csv, .parquet or .json file")
+    new = _verb(verbs, "new", "create a small experiment to start from")
+    new.add_argument("folder", metavar="DIR", type=Path, help="new folder")
     begin = new.add_mutually_exclusive_group()
     begin.add_argument("--like", default="robot-speed", metavar="NAME", help="a built-in experiment")
     begin.add_argument(
@@ -37,21 +37,23 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         dest="original",
         type=Path,
         metavar="FILE",
-        help="a configuration or an order file of the CrowdBot simulator of 2021",
+        help="configuration or order file of the CrowdBot simulator (2021)",
     )
-    new.add_argument("--participant", type=int, metavar="N", help="whose order is imported (default: as configured)")
+    new.add_argument(
+        "--participant", type=int, metavar="N", help="participant whose order is imported (default: as configured)"
+    )
     new.add_argument(
         "--root",
         type=Path,
         metavar="DIR",
-        help="project folder of that simulator, searched for files that an imported file names (default: its folder)",
+        help="project folder of that simulator, for files that an imported file refers to (default: its folder)",
     )
     for command in (order, summary, new):
         add_json(command)
 
 
 def main(options: argparse.Namespace) -> int:
-    """Do what the verb says."""
+    """Run the subcommand."""
     verbs = {"run": _run, "order": _order, "summary": _summary, "new": _new}
     return verbs[options.verb](options)
 
@@ -64,22 +66,24 @@ def _verb(verbs: Any, name: str, line: str) -> argparse.ArgumentParser:
 
 def _add_experiment(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("experiment", metavar="FILE", help="an experiment file, its folder, or a built-in name")
-    parser.add_argument("--trust", action="store_true", help="let trials lie, and load code from, elsewhere")
+    parser.add_argument(
+        "--trust", action="store_true", help="allow trials and code outside the folder of the experiment"
+    )
 
 
 def _run_arguments(parser: argparse.ArgumentParser) -> None:
     _add_experiment(parser)
     parser.add_argument("--participant", type=int, required=True, metavar="N", help="number of the participant, from 1")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder of all participants")
-    parser.add_argument("--resume", action="store_true", help="go on with a session that was begun")
+    parser.add_argument("--resume", action="store_true", help="continue an existing session")
     parser.add_argument(
-        "--answers", type=Path, metavar="FILE", help="JSON of answers by question, to go through without anybody"
+        "--answers", type=Path, metavar="FILE", help="JSON file with answers by question, for a run without input"
     )
     add_json(parser)
 
 
 def _run(options: argparse.Namespace) -> int:
-    """Run a session; status 0 when it is done, 1 when it was aborted, 130 when it was left."""
+    """Run a session and return the status: 0 when done, 1 when aborted, 130 when closed."""
     from crowdbot.experiments import (
         Console,
         ConsoleClosed,
@@ -106,7 +110,10 @@ def _run(options: argparse.Namespace) -> int:
         with spoken_warnings():
             Console(sitting, person, write, _tell).run()
     except ConsoleClosed as left:
-        note(f"crowdbot: the session waits in {sitting.folder}{f' ({left})' if str(left) else ''}; go on with --resume")
+        note(
+            f"crowdbot: the session is stored in {sitting.folder}{f' ({left})' if str(left) else ''}; continue "
+            f"with --resume"
+        )
         return 130
     finally:
         sitting.close()
@@ -114,7 +121,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _tell(what: str, share: float) -> None:
-    """Show how far a trial is, on stderr: in place on a terminal, otherwise when it begins and ends."""
+    """Print the progress of a trial on stderr: in place on a terminal, otherwise at its start and end."""
     if sys.stderr.isatty():
         sys.stderr.write(f"\r{what}  {100.0 * share:3.0f} %" + ("\n" if share == 1.0 else ""))
         sys.stderr.flush()
@@ -172,7 +179,7 @@ def _order(options: argparse.Namespace) -> int:
 
 
 def _balance(experiment: Experiment, count: int) -> list[str]:
-    """Return for each Latin square whether it is balanced over so many participants."""
+    """Return for each Latin square whether it is balanced for this number of participants."""
     from crowdbot.experiments import rows_of
 
     said = []
@@ -211,7 +218,7 @@ def _new(options: argparse.Namespace) -> int:
     if options.original is None and options.like not in known:
         raise UnknownName("experiment", options.like, known)
     if options.folder.exists():
-        raise InputError(f"{options.folder} is there already; give a folder that is not there yet")
+        raise InputError(f"{options.folder} already exists; give a new folder")
     left_out: tuple[str, ...] = ()
     try:
         if options.original is not None:
@@ -219,21 +226,21 @@ def _new(options: argparse.Namespace) -> int:
         else:
             shutil.copytree(known[options.like], options.folder)
     except OSError as error:
-        raise InputError(f"{options.folder} cannot be written: {error.strerror or error}") from None
+        raise InputError(f"cannot write {options.folder}: {error.strerror or error}") from None
     files = sorted(path.name for path in options.folder.iterdir())
     if options.json:
         print_json({"folder": str(options.folder), "files": files, "left_out": list(left_out)})
         return 0
     print(f"{options.folder}: {', '.join(files)}")
     if left_out:
-        print("not carried over:")
+        print("not imported:")
     for sentence in left_out:
         print(f"  - {sentence}")
     return 0
 
 
 def _imported(options: argparse.Namespace) -> tuple[str, ...]:
-    """Write an experiment of the original simulator with its trials, and return what is left out and to mend."""
+    """Write an imported experiment with its trials, and return what was not imported and what is to be corrected."""
     from crowdbot.core import TrialError
     from crowdbot.experiments import FILE, experiment_xml, import_experiment
     from crowdbot.trials import check_trial, trial_xml
@@ -248,5 +255,5 @@ def _imported(options: argparse.Namespace) -> tuple[str, ...]:
         try:
             check_trial(trial)
         except TrialError as error:
-            mend += [f"to mend in {name}: {sentence}" for sentence in error.problems]
+            mend += [f"to correct in {name}: {sentence}" for sentence in error.problems]
     return (*done.left_out, *mend)

@@ -11,14 +11,15 @@ from .output import add_json, print_json
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument("episode", metavar="EPISODE.mcap", type=Path)
-    parser.add_argument("--to", type=Path, required=True, metavar="FILE", help="name that ends in .parquet or .csv")
+    parser.add_argument("--to", type=Path, required=True, metavar="FILE", help="output file, .parquet or .csv")
     parser.add_argument("--force", action="store_true", help="overwrite an existing file")
     parser.add_argument(
         "--table",
         default="people",
         metavar="NAME",
-        help="people (robots too), robots, contacts, forces, collisions; of sensors: scans, points, ranges, images"
-        " (of depth), pictures (in colour, with a folder of PNG files), inertial, odometry, bumpers, tracked",
+        help="people (including robots), robots, contacts, forces, collisions; sensors: scans, points, ranges, "
+        "images"
+        " (depth), pictures (colour, with a folder of PNG files), inertial, odometry, bumpers, tracked",
     )
     add_json(parser)
 
@@ -34,6 +35,6 @@ def main(options: argparse.Namespace) -> int:
         told = {"episode": str(options.episode), "table": options.table, "file": str(options.to), "rows": rows}
         print_json(told | images)
     else:
-        more = f", their images in {images['images']}" if images else ""
+        more = f", images in {images['images']}" if images else ""
         print(f"{options.to}: {rows} rows{more}")
     return 0

@@ -1,4 +1,4 @@
-"""``crowdbot new KIND FILE``: write a file that is ready to run, and its contract test."""
+"""``crowdbot new KIND FILE``: write a file that is ready to run, with its contract test."""
 
 from __future__ import annotations
 
@@ -32,22 +32,22 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--from", dest="source", metavar="TRIAL", help="built-in name or file to start from (default: frontal)"
     )
     begin.add_argument(
-        "--import", dest="original", type=Path, metavar="FILE", help="file of the CrowdBot simulator of 2021"
+        "--import", dest="original", type=Path, metavar="FILE", help="file of the CrowdBot simulator (2021)"
     )
-    begin.add_argument("--recorded", type=Path, metavar="DATA", help="recording whose people are the crowd")
+    begin.add_argument("--recorded", type=Path, metavar="DATA", help="recording with the people of the trial")
     group.add_argument(
         "--root",
         type=Path,
         metavar="DIR",
-        help="project folder of that simulator, searched for files that an imported file names (default: its folder)",
+        help="project folder of that simulator, for files that an imported file refers to (default: its folder)",
     )
     add_settings(group)
-    group.add_argument("--explicit", action="store_true", help="each person at the start as an agent to edit")
+    group.add_argument("--explicit", action="store_true", help="write each initial person as a separate agent")
     group.add_argument("--seed", type=int, help="seed of the trial (default: from --from)")
     group = parser.add_argument_group("a trial of recorded people")
     group.add_argument("--fps", type=float, help="frames per second of the recording (default: from the file)")
     group.add_argument("--reactive", action="store_true", help="crowd model for people near the robot")
-    group.add_argument("--replace", type=int, metavar="ID", help="person whose place the robot takes")
+    group.add_argument("--replace", type=int, metavar="ID", help="person that the robot replaces")
 
 
 def main(options: argparse.Namespace) -> int:
@@ -58,9 +58,9 @@ def main(options: argparse.Namespace) -> int:
     files = _files(options)
     for file in (options.file, *files):
         if file.exists() and not options.force:
-            raise InputError(f"{file} exists already; give another name, or --force to replace it")
+            raise InputError(f"{file} already exists; use another name, or --force to replace it")
     if not options.file.parent.is_dir():
-        raise InputError(f"there is no folder {options.file.parent} to write {options.file.name} in")
+        raise InputError(f"the folder {options.file.parent} of {options.file.name} does not exist")
     if options.kind == "schema":
         from crowdbot.trials import schema
 
@@ -74,14 +74,15 @@ def main(options: argparse.Namespace) -> int:
         _write(file, text)
     if options.kind in FOLLOW_UP:
         test = next(file for file in files if file.name.startswith("test_"))
-        address = f"{options.file.name}:{_class_name(files[options.file])}" if options.kind in CLASSES else ""
+        cls = f":{_class_name(files[options.file])}" if options.kind in CLASSES else ""
+        use = FOLLOW_UP[options.kind].format(name=options.file.name + cls, address=f"{options.file}{cls}")
         print(f"test it   pytest {test}")
-        print(f"use it    {FOLLOW_UP[options.kind].format(address=address or options.file.name)}")
+        print(f"use it    {use}")
     return 0
 
 
 def _files(options: argparse.Namespace) -> dict[Path, str]:
-    """Return the texts of the files that do not depend on the other options."""
+    """Return the texts of files that do not depend on other options."""
     if options.kind in CLASSES:
         return class_files(options.kind, options.file)
     if options.kind == "robot":
@@ -130,9 +131,12 @@ def _recorded_trial(options: argparse.Namespace) -> Trial:
     if beside.resolve() != options.recorded.resolve():
         if not beside.exists():
             shutil.copyfile(options.recorded, beside)
-            note(f"copied {options.recorded.name} beside it: a trial reads only files in its own folder")
+            note(
+                f"copied {options.recorded.name} to the folder of the trial, since a trial reads only files in "
+                f"its folder"
+            )
         elif beside.read_bytes() != options.recorded.read_bytes():
-            raise InputError(f"{beside} exists and is another file; write the trial into another folder")
+            raise InputError(f"{beside} exists with a different content; write the trial to another folder")
     return trial
 
 
@@ -150,7 +154,7 @@ def _import_trials(options: argparse.Namespace) -> None:
             check_trial(trial)
         except TrialError as error:
             problems += [f"{file.name}: {sentence}" for sentence in error.problems]
-    for title, rows in (("not carried over", done.left_out), ("errors", problems)):
+    for title, rows in (("not imported", done.left_out), ("errors", problems)):
         if rows:
             print(f"{title}:")
             for sentence in rows:
@@ -158,7 +162,7 @@ def _import_trials(options: argparse.Namespace) -> None:
 
 
 def _write(file: Path, text: str) -> None:
-    """Write a whole file or none."""
+    """Write a file atomically."""
     from crowdbot.core import InputError
 
     part = file.with_name(file.name + ".part")
@@ -169,5 +173,5 @@ def _write(file: Path, text: str) -> None:
     except OSError as error:
         with contextlib.suppress(OSError):
             part.unlink(missing_ok=True)
-        raise InputError(f"{file} cannot be written: {error.strerror or error}") from None
+        raise InputError(f"cannot write {file}: {error.strerror or error}") from None
     print(f"wrote {file}")

@@ -1,4 +1,4 @@
-"""What commands write: one JSON object or tables on stdout, progress and notes on stderr."""
+"""Output of commands: JSON or tables on stdout, progress and notes on stderr."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ __all__ = [
 ]
 
 Progress = Callable[[str, float], None]
-"""Called with what is being done and the share that is done, 0 to 1."""
+"""Progress callback: called with the name of the current task and the completed fraction, 0 to 1."""
 
 
 def add_json(parser: argparse.ArgumentParser) -> None:
@@ -34,12 +34,12 @@ def add_json(parser: argparse.ArgumentParser) -> None:
 
 
 def print_json(value: Any) -> None:
-    """Print one JSON object; numbers that JSON does not know (NaN, infinity) become null."""
+    """Print one JSON object; NaN and infinity become null."""
     print(json_text(value))
 
 
 def json_text(value: Any) -> str:
-    """Return what :func:`print_json` prints."""
+    """Return the text that :func:`print_json` prints."""
     return json.dumps(_plain(value), indent=2, allow_nan=False)
 
 
@@ -84,7 +84,7 @@ def print_metrics(title: str, metrics: Mapping[str, float]) -> None:
 
 
 def number(value: Any, digits: int = 3) -> str:
-    """Return a number for a table; what is missing or infinite is said in a word."""
+    """Return a number for a table; missing and infinite values are written as words."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return "-"
     if isinstance(value, float) and math.isinf(value):
@@ -95,7 +95,7 @@ def number(value: Any, digits: int = 3) -> str:
 
 
 def note(sentence: str) -> None:
-    """Say something on stderr."""
+    """Print a sentence on stderr."""
     print(sentence, file=sys.stderr, flush=True)
 
 
@@ -119,9 +119,9 @@ def spoken_warnings() -> Iterator[None]:
 
 @contextmanager
 def progress(quiet: bool = False) -> Iterator[Progress]:
-    """Show bars on stderr, one for each thing that is being done; plain lines when stderr is no terminal.
+    """Show progress bars on stderr, one for each task; plain lines if stderr is not a terminal.
 
-    Says why nothing moves, too, when kernels have to be compiled first.
+    Also reports the compilation of kernels.
     """
     if quiet:
         yield lambda what, share: None
@@ -139,7 +139,7 @@ def _compiling_told(say: Callable[[str], None]) -> Iterator[None]:
 
     def tell() -> None:
         first = "first run: " if is_cold() else ""
-        say(f"{first}compiling kernels once, into {cache_folder()}; that takes up to a minute or two")
+        say(f"{first}compiling kernels once, into {cache_folder()}; this takes one to two minutes")
 
     with notify_compiling(tell):
         yield

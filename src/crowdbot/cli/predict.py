@@ -55,7 +55,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Evaluate every predictor on every recording."""
     from crowdbot.benchmark import Evaluation
-    from crowdbot.core import InputError
+    from crowdbot.core import InputError, write_errors
 
     if options.animate is not None and options.out is None:
         raise InputError("--animate requires --out DIR")
@@ -67,7 +67,7 @@ def main(options: argparse.Namespace) -> int:
         evaluation.window_at(options.animate)  # fails before the evaluation starts
     keep = None if options.out is None else options.out / "parts"
     with progress(options.json) as report, warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message=".* is used instead$")  # a note says it, once
+        warnings.filterwarnings("ignore", message=".* is used instead$")  # reported once as a note
         try:
             done = _done(evaluation, options, keep, report)
         except KeyboardInterrupt:
@@ -75,7 +75,8 @@ def main(options: argparse.Namespace) -> int:
             raise
     results = evaluation.results(done)
     if options.out is not None:
-        _written(options, evaluation, results)
+        with write_errors(options.out):
+            _written(options, evaluation, results)
     if options.json:
         print_json(as_json(evaluation, results))
         return 0

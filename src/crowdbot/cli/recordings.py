@@ -1,4 +1,4 @@
-"""Options for recordings, shared by the commands that read them; rows, frames and seconds are told apart."""
+"""Options for recordings, shared by several commands; rows, frames and seconds are distinguished."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ def add_recordings(parser: argparse.ArgumentParser, predict: int = 12) -> None:
     add("--format", metavar="NAME", help="file format, see crowdbot list formats (default: detected)")
     add("--time-base", default="true", metavar="NAME", help="true or published, for the ETH file with two time bases")
     add("--units", metavar="NAME", help="units of the coordinates: m, cm, mm or px (default: from the file)")
-    add("--late", default="skip", metavar="NAME", help="people who appear while observed: skip or extrapolate")
+    add("--late", default="skip", metavar="NAME", help="people who appear during the observation: skip or extrapolate")
     add(
         "--learn", type=float, default=0.0, metavar="SHARE",
-        help="first share of each recording, for goals that are learned; only the rest is predicted (default 0)",
+        help="first share of each recording, used to learn goals; only the rest is predicted (default 0)",
     )  # fmt: skip
     add("--every", type=int, default=1, metavar="N", help="only every N-th window of each recording (default 1)")
 
@@ -55,7 +55,7 @@ def recordings(options: argparse.Namespace) -> tuple[Recording, ...]:
 
 
 def tell_notes(found: tuple[Recording, ...]) -> None:
-    """Print the notes of the recordings, each sentence once."""
+    """Print the notes of the recordings, without duplicates."""
     for sentence in dict.fromkeys(f"{one.name}: {one.tracks.note}" for one in found if one.tracks.note):
         note(sentence)
 

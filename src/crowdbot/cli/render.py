@@ -1,4 +1,4 @@
-"""``crowdbot render TRIAL --camera NAME``: make an image or a film of a trial."""
+"""``crowdbot render TRIAL --camera NAME``: render an image or a video of a trial."""
 
 from __future__ import annotations
 
@@ -27,26 +27,30 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--out",
         type=Path,
         metavar="FILE",
-        help=".png, .jpg or .webp for an image, .mp4, .gif or .webp for a film, or a folder for numbered images",
+        help=".png, .jpg or .webp for an image, .mp4, .gif or .webp for a video, or a folder for numbered images",
     )
     parser.add_argument("--force", action="store_true", help="overwrite an existing file")
-    parser.add_argument("--at", type=float, metavar="T", help="one image at T s (default: 0)")
-    parser.add_argument("--from", dest="begin", type=float, metavar="T", help="a film from T s on (default: 0)")
+    parser.add_argument("--at", type=float, metavar="T", help="one image at time T in s (default: 0)")
+    parser.add_argument("--from", dest="begin", type=float, metavar="T", help="start of a video in s (default: 0)")
     parser.add_argument("--to", dest="end", type=float, metavar="T", help="a film until T s")
     parser.add_argument("--fps", type=float, metavar="F", help="images per second (default: about 25)")
-    parser.add_argument("--depth", action="store_true", help="also the depth: PNG of millimetres, or grey in a film")
-    parser.add_argument("--segmentation", action="store_true", help="also a segmentation image, one colour per object")
+    parser.add_argument(
+        "--depth", action="store_true", help="also write the depth: PNG in millimetres, or grey in a video"
+    )
+    parser.add_argument(
+        "--segmentation", action="store_true", help="also write a segmentation image, one colour per object"
+    )
     parser.add_argument("--list", action="store_true", help="list the cameras of the trial and exit")
-    parser.add_argument("--seed", type=int, help="seed of everything random (default: the trial's own)")
-    parser.add_argument("--trust", action="store_true", help="let the trial load code from outside its own folder")
+    parser.add_argument("--seed", type=int, help="random seed (default: the seed of the trial)")
+    parser.add_argument("--trust", action="store_true", help="allow code outside the folder of the trial")
     add_world(parser)
     add_settings(parser)
-    parser.add_argument("--variant", type=int, metavar="N", help="number of the variant of a trial with sweeps, from 1")
+    parser.add_argument("--variant", type=int, metavar="N", help="variant of a trial with sweeps, counted from 1")
     add_json(parser)
 
 
 def main(options: argparse.Namespace) -> int:
-    """Make the image or the film."""
+    """Render the image or the video."""
     from crowdbot.rendering import ImageWriter, camera_names, render_images
     from crowdbot.trials import load_trial
 
@@ -91,17 +95,17 @@ def _take(options: argparse.Namespace, duration: float) -> RenderRequest:
 
     span = [word for word, value in (("--from", options.begin), ("--to", options.end)) if value is not None]
     if options.at is not None and span:
-        raise InputError(f"--at is for one image and {span[0]} for a film; give one of them")
+        raise InputError(f"--at is for an image and {span[0]} for a video; give one of them")
     out = options.out
     if options.at is not None or (not span and (out is None or out.suffix.lower() not in (".mp4", ".gif"))):
         if options.fps is not None:
-            raise InputError("--fps is for a film; give --to T as well")
+            raise InputError("--fps requires a video; add --to T")
         return RenderRequest(options.at or 0.0)
     return RenderRequest(options.begin or 0.0, duration if options.end is None else options.end, options.fps)
 
 
 def _rate(take: RenderRequest, step: float) -> float:
-    """Return how many images a second of a film are shown."""
+    """Return the frame rate of a video [Hz]."""
     import math
 
     from crowdbot.rendering import SMOOTH

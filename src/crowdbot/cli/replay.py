@@ -16,7 +16,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def add_places(parser: argparse.ArgumentParser) -> None:
-    """Add the options of where files of the trial may come from."""
+    """Add the options for the location of trial files."""
     parser.add_argument(
         "--folder",
         type=Path,
@@ -31,7 +31,7 @@ def add_places(parser: argparse.ArgumentParser) -> None:
 
 
 def main(options: argparse.Namespace) -> int:
-    """Replay; status 1 when the digests differ."""
+    """Replay; the status is 1 if the digests differ."""
     from crowdbot.recording import replay
 
     with progress(options.json) as report:

@@ -1,4 +1,4 @@
-"""``crowdbot run TRIAL``: run one trial, record it and print what happened."""
+"""``crowdbot run TRIAL``: run one trial, record it and print a summary."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options."""
     parser.add_argument("trial", metavar="TRIAL", help="a trial file or a built-in name, such as crossing-flows")
-    parser.add_argument("--seed", type=int, help="seed of everything random (default: the trial's own)")
+    parser.add_argument("--seed", type=int, help="random seed (default: the seed of the trial)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="record to DIR/episode.mcap")
     parser.add_argument("--force", action="store_true", help="overwrite an existing file")
     parser.add_argument("--pace", type=float, metavar="X", help="speed in multiples of real time (default: unlimited)")
-    parser.add_argument("--trust", action="store_true", help="let the trial load code from outside its own folder")
+    parser.add_argument("--trust", action="store_true", help="allow code outside the folder of the trial")
     add_world(parser)
     add_settings(parser)
-    parser.add_argument("--variant", type=int, metavar="N", help="number of the variant of a trial with sweeps, from 1")
+    parser.add_argument("--variant", type=int, metavar="N", help="variant of a trial with sweeps, counted from 1")
     add_json(parser)
 
 
@@ -81,6 +81,6 @@ def _report_failure(done: RunSummary, debug: bool) -> int:
         return 0
     if debug:
         note(done.failure.trace)
-    hint = "" if debug else "; --debug prints the trace"
+    hint = "" if debug else "; --debug prints the traceback"
     note(f"crowdbot: trial {done.trial.name!r} ended with an error: {done.failure}{hint}")
     return 1

@@ -38,7 +38,7 @@ def settings(options: argparse.Namespace) -> dict[str, str]:
     """Return the values by name.
 
     Raises:
-        InputError: one is not of the form NAME=VALUE, or is given twice.
+        InputError: a setting is not of the form NAME=VALUE, or a name is given twice.
     """
     from crowdbot.core import InputError, did_you_mean
 
@@ -63,10 +63,10 @@ def settings(options: argparse.Namespace) -> dict[str, str]:
 
 
 def select_variant(trial: Trial, variant: int | None) -> Trial:
-    """Return a trial, or of a trial with sweeps the variant that was asked for, from 1.
+    """Return a trial, or the given variant (from 1) of a trial with sweeps.
 
     Raises:
-        InputError: it has none of this number, or none was asked for.
+        InputError: the variant does not exist, or is required but not given.
     """
     from crowdbot.core import InputError
     from crowdbot.trials import expand_sweeps
@@ -76,7 +76,7 @@ def select_variant(trial: Trial, variant: int | None) -> Trial:
     variants = expand_sweeps(trial)
     if variant is None:
         raise InputError(
-            f"{trial.name} has {len(variants)} variants by its sweeps; run one of them with --variant 1 to"
+            f"{trial.name} has {len(variants)} variants in its sweeps; run one of them with --variant 1 to"
             f" {len(variants)} (crowdbot check lists them)"
         )
     if not trial.sweeps or not 1 <= variant <= len(variants):

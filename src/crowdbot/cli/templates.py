@@ -1,4 +1,4 @@
-"""The files that ``crowdbot new`` writes for users' own code, robots and stages, with their contract tests."""
+"""File templates of ``crowdbot new``, with their contract tests."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["CLASSES", "FOLLOW_UP", "class_files", "robot_files", "stage_files", 
 
 
 class ClassKind(NamedTuple):
-    """A kind of class that users write: its room, where its built-in ones are, its contract and the check of it."""
+    """A kind of user-defined class: room, folder of built-in classes, contract and contract check."""
 
     room: str
     plugins: str
@@ -34,28 +34,29 @@ CLASSES = {
 FOLLOW_UP = {
     "model": "crowdbot predict --data DATA --predictor simulated --model {address}",
     "predictor": "crowdbot predict --data DATA --predictor {address}",
-    "sensor": '<sensor name="mine" type="{address}"/> in a <robot> of a trial',
+    "sensor": '<sensor name="mine" type="{name}"/> in a <robot> of a trial in the same folder',
     "goal": "crowdbot predict --data DATA --predictor simulated --goal {address}",
     "cost": "crowdbot calibrate --data DATA --cost {address}",
     "navigator": "crowdbot run frontal --set robot/navigator/type={address}",
-    "robot": '<robot type="{address}" .../> in a trial',
-    "stage": '<stage area="{address}"/> in a trial',
+    "robot": '<robot type="{name}" .../> in a trial in the same folder',
+    "stage": '<stage area="{name}"/> in a trial in the same folder',
+    "trial": "crowdbot run {address}",
 }
-"""How each kind is used, after it was written."""
+"""How each kind is used: by its path, or by its name beside a trial."""
 
 
 def class_files(kind: str, file: Path) -> dict[Path, str]:
     """Return the text of a Python file with a class of a kind, and of its contract test.
 
     Raises:
-        InputError: the name of the file is no Python module.
+        InputError: the file name is not a Python module name.
 
     >>> [path.name for path in class_files("navigator", Path("shy_robot.py"))]
     ['shy_robot.py', 'test_shy_robot.py']
     """
     stem = file.stem
     if file.suffix != ".py" or not stem.isidentifier() or keyword.iskeyword(stem) or stem.startswith("test_"):
-        raise InputError(f"{file.name!r} is not a Python module; name it like my_{kind}.py")
+        raise InputError(f"{file.name!r} is not a Python module name; use a name such as my_{kind}.py")
     name = "".join(word[:1].upper() + word[1:] for word in stem.split("_"))
     part = CLASSES[kind]
     test = _test_file(file)
@@ -64,14 +65,14 @@ def class_files(kind: str, file: Path) -> dict[Path, str]:
 
 
 def robot_files(folder: Path) -> dict[Path, str]:
-    """Return the text of the files of a robot: URDF, ``robot.xml`` and, beside the folder, its contract test.
+    """Return the files of a robot: URDF, ``robot.xml`` and, beside the folder, its contract test.
 
     Raises:
-        InputError: the name of the folder is no name of a robot.
+        InputError: the folder name is not a valid robot name.
     """
     name = folder.name
     if not re.fullmatch(r"[A-Za-z][\w-]*", name):
-        raise InputError(f"{name!r} is no name of a robot folder; use letters, digits, - and _")
+        raise InputError(f"{name!r} is not a valid robot name; use letters, digits, - and _")
     test = folder.parent / f"test_{_identifier(name)}.py"
     return {
         folder / f"{name}.urdf": _fill("robot.urdf.txt", name=name),
@@ -83,7 +84,7 @@ def robot_files(folder: Path) -> dict[Path, str]:
 def stage_files(file: Path) -> dict[Path, str]:
     """Return the text of a GeoJSON area and of its contract test."""
     if file.suffix not in (".geojson", ".json"):
-        raise InputError(f"{file.name!r} must end in .geojson: a stage is a walkable area")
+        raise InputError(f"{file.name!r} must end in .geojson, since a stage is a walkable area")
     return {file: _fill("stage.txt"), **_named_test("stage.test.txt", file)}
 
 

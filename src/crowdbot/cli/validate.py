@@ -23,17 +23,19 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Run the checks, write the page and print the table."""
+    from crowdbot.core import write_errors
     from crowdbot.validation import CHECKS, select_models, validate, write_page
 
     models, skipped = select_models([name for name in (options.models or "").split(",") if name])
     kept = options.out / "validation"
     try:
-        with progress(options.json) as report:
+        with progress(options.json) as report, write_errors(options.out):
             done = validate(models, kept, options.data, options.quick, report, skipped)
     except KeyboardInterrupt:
         note(f"results are stored in {kept}; run the same command again to resume")
         raise
-    page = write_page(done, options.out, _command(options))
+    with write_errors(options.out):
+        page = write_page(done, options.out, _command(options))
     if options.json:
         print_json({**done.as_dict(), "page": str(page)})
         return 0

@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 
 from .errors import CrowdbotError, InputError
 from .optional_imports import import_optional
+from .system_errors import write_errors
 
 __all__ = ["Job", "Result", "each", "run_saved_jobs"]
 
@@ -71,17 +72,38 @@ def run_saved_jobs(
         function, jobs, workers, cluster: see :func:`each`.
         files: one file for each job; empty to save nothing.
         save, load: write and read a result.
+
+    Raises:
+        InputError: a file cannot be written, or is damaged.
     """
     left = [number for number in range(len(jobs)) if not files or not files[number].exists()]
     for number in sorted(set(range(len(jobs))) - set(left)):
-        yield number, load(files[number])
+        yield number, _load_saved(files[number], load)
     for order, result in each(function, [jobs[number] for number in left], workers, cluster):
         if files:
-            fresh = files[left[order]].with_suffix(".part")
-            fresh.parent.mkdir(parents=True, exist_ok=True)
-            save(result, fresh)
-            fresh.replace(files[left[order]])
+            _save_whole(files[left[order]], result, save)
         yield left[order], result
+
+
+def _load_saved(file: Path, load: Callable[[Path], Result]) -> Result:
+    try:
+        return load(file)
+    except Exception as error:  # NumPy raises many kinds of errors at damaged files
+        raise InputError(f"{file} is damaged ({type(error).__name__}); remove it to run its job again") from None
+
+
+def _save_whole(file: Path, result: Result, save: Callable[[Result, Path], None]) -> None:
+    """Write a whole file or none."""
+    draft = file.with_suffix(".part")
+    with write_errors(file):
+        try:
+            draft.parent.mkdir(parents=True, exist_ok=True)
+            save(result, draft)
+            draft.replace(file)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                draft.unlink(missing_ok=True)
+            raise
 
 
 def _in_processes(function: Callable[[Job], Result], jobs: Sequence[Job], workers: int) -> Iterator[tuple[int, Result]]:

@@ -1,4 +1,4 @@
-"""A trial that runs in a thread, and can be paused, continued or aborted."""
+"""BackgroundRun: a trial that runs in a thread and can be paused, continued or aborted."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class BackgroundRun:
         self._given_up = False
         self._episode: Episode | None = None
         self._error: Exception | None = None
-        self._ended = threading.Event()  # joining a thread is not safe against Ctrl-C in every Python
+        self._ended = threading.Event()  # joining a thread is not safe against Ctrl-C in all Python versions
         threading.Thread(target=self._run, args=(trial, seed, out), daemon=True).start()
 
     def hold(self) -> None:
@@ -74,9 +74,9 @@ class BackgroundRun:
     def _run(self, trial: Trial, seed: int, out: Path | None) -> None:
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore", RunFailureWarning)  # the episode says so itself
+                warnings.simplefilter("ignore", RunFailureWarning)  # the failure is part of the episode
                 self._episode = run(trial, seed=seed, out=out, progress=self._report)
-        except Exception as error:  # raised again by result(), where somebody can be told
+        except Exception as error:  # raised again by result(), for the caller
             self._error = error
         finally:
             self._ended.set()

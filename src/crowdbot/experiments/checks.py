@@ -1,4 +1,4 @@
-"""What makes an experiment impossible although every value is allowed: names, screens, trials."""
+"""Checks of an experiment across elements: names, screens and trials."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from crowdbot.core import InputError, TrialError
-from crowdbot.trials import readable, skip_unreadable
+from crowdbot.trials import has_kind, kind_of, readable, skip_unreadable
 
 from .experiment import Block, Experiment, Screen, TrialEntry
 from .page import page_of
@@ -18,13 +18,13 @@ from .trial_source import trial_of
 __all__ = ["everything", "problems_of"]
 
 MOST_TRIALS = 10_000
-"""No session has more trials than that."""
+"""Maximum number of trials in a session."""
 
 Found = Iterator[tuple[Any, str]]
 
 
 def everything(experiment: Experiment) -> list[Any]:
-    """Return the elements of an experiment that have a name of their own, outer ones last."""
+    """Return the named elements of an experiment, outer elements last."""
     screens = [*experiment.instructions, *experiment.endings]
     trials = [entry for block in experiment.blocks for entry in block.trials]
     screens += [screen for block in experiment.blocks for screen in block.screens]
@@ -34,32 +34,32 @@ def everything(experiment: Experiment) -> list[Any]:
 
 
 def problems_of(things: Iterable[Any], folder: Path | None, trust: bool) -> list[tuple[Any, str]]:
-    """Return every problem: the element that has it, and the end of a sentence about it.
+    """Return all problems as pairs of an element and the end of a sentence about it.
 
     Args:
-        things: elements, as :func:`everything` returns them; those that could be read of a wrong file.
-        folder: of the experiment.
-        trust: whether trials may lie, and load code from, elsewhere.
+        things: elements from :func:`everything`; for a file with errors, those that could be read.
+        folder: folder of the experiment.
+        trust: whether trials outside the folder, and their code, may be loaded.
     """
     things = list(things)
     found = [*skip_unreadable(*(check for thing in things for check in _problems(thing)))]
-    found += skip_unreadable(*(_shown(thing, folder) for thing in things if isinstance(thing, Screen)))
-    entries = [thing for thing in things if isinstance(thing, TrialEntry)]
+    found += skip_unreadable(*(_shown(thing, folder) for thing in things if has_kind(thing, Screen)))
+    entries = [thing for thing in things if has_kind(thing, TrialEntry)]
     sources = readable(entries, "source")
     read = {source: _trial(source, folder, trust) for source in dict.fromkeys(source for _, source in sources)}
     return found + [(entries[k], sentence) for k, source in sources for sentence in read[source]]
 
 
 def _problems(thing: Any) -> Iterator[Found]:
-    if isinstance(thing, Question):
+    if issubclass(kind_of(thing), Question):
         yield _asked(thing)
-    if isinstance(thing, Screen):
+    if has_kind(thing, Screen):
         yield _twice(thing.questions, "question of this screen")
-    if isinstance(thing, Block):
+    if has_kind(thing, Block):
         for _, entries in readable([thing], "trials"):
             yield _twice(entries, "trial of this block")
             yield from (_twice((*entry.before, *entry.after), "screen of this trial") for entry in entries)
-    if isinstance(thing, Experiment):
+    if has_kind(thing, Experiment):
         yield from _whole(thing)
 
 
@@ -80,13 +80,13 @@ def _whole(experiment: Experiment) -> Iterator[Found]:
 
 def _taken(screen: Screen, outer: Sequence[Screen]) -> Found:
     if screen.name in [name for _, name in readable(outer, "name")]:
-        yield screen, f"name {screen.name!r} is taken by a screen outside of this trial; give it its own"
+        yield screen, f"name {screen.name!r} is already used by a screen outside this trial; names must differ"
 
 
 def _too_many(experiment: Experiment) -> Found:
     count = sum(len(block.trials) * block.repetitions for block in experiment.blocks)
     if count > MOST_TRIALS:
-        yield experiment, f"has {count} trials for a participant, at most {MOST_TRIALS}; take fewer repetitions"
+        yield experiment, (f"has {count} trials per participant, the maximum is {MOST_TRIALS}; reduce the repetitions")
 
 
 def _twice(things: Sequence[Any], what: str) -> Found:
@@ -94,14 +94,14 @@ def _twice(things: Sequence[Any], what: str) -> Found:
     for k, name in readable(things, "name"):
         count[name] += 1
         if count[name] > 1:
-            yield things[k], f"name {name!r} is taken by another {what}; give each its own"
+            yield things[k], f"name {name!r} is already used by another {what}; names must differ"
 
 
 def _shown(screen: Screen, folder: Path | None) -> Found:
     if screen.text and screen.file:
-        yield screen, "has both a text and a file; keep one"
+        yield screen, "has both a text and a file; give one of them"
     elif not (screen.text.strip() or screen.file or screen.questions):
-        yield screen, "shows and asks nothing; give it a text, a file or a question"
+        yield screen, "is empty; it needs a text, a file or a question"
     elif screen.file:
         try:
             page_of(screen, folder)

@@ -1,4 +1,4 @@
-"""Console: the front end of an experiment that needs nothing but a terminal."""
+"""Console: the terminal front end of experiments."""
 
 from __future__ import annotations
 
@@ -24,58 +24,58 @@ __all__ = ["Console", "ConsoleClosed"]
 
 WIDTH = 78
 MENU = {
-    "resume": "go on where it stopped",
-    "next": "go on without this trial",
-    "repeat": "run the trial once more from its beginning",
-    "abort": "end the session for good",
-    "leave": "close the program; go on later with --resume",
+    "resume": "continue",
+    "next": "continue without this trial",
+    "repeat": "repeat the trial from its start",
+    "abort": "end the session permanently",
+    "leave": "close the program; continue later with --resume",
 }
 
 
 class ConsoleClosed(Exception):
-    """The experimenter has closed the program; the session waits."""
+    """The experimenter closed the program; the session can be resumed."""
 
 
 class Console:
     """Shows screens, reads answers and runs trials until the session is over.
 
-    Ctrl-C pauses, a trial too, and shows a menu.
+    Ctrl-C pauses the session, including a running trial, and shows a menu.
 
     Args:
-        sitting: of the participant.
-        person: who answers.
+        runner: runner of the session of the participant.
+        respondent: source of the answers.
         write: shows a text to the participant.
-        tell: called with what runs and the share that is done, 0 to 1.
+        report: called with the name of the running trial and the completed fraction, 0 to 1.
     """
 
     def __init__(
         self,
-        sitting: SessionRunner,
-        person: Respondent,
+        runner: SessionRunner,
+        respondent: Respondent,
         write: Callable[[str], None],
-        tell: Callable[[str, float], None],
+        report: Callable[[str, float], None],
     ) -> None:
-        self.sitting, self.person, self.write, self.tell = sitting, person, write, tell
+        self.runner, self.respondent, self.write, self.report = runner, respondent, write, report
         self._interrupt = Interrupt()
 
     def run(self) -> None:
-        """Go through the session.
+        """Run the session.
 
         Raises:
-            ConsoleClosed: the session was left before its end.
-            InputError: answers that cannot be given anew are missing or wrong; the session waits.
+            ConsoleClosed: the program was closed before the end of the session.
+            InputError: scripted answers are missing or wrong; the session can be resumed.
         """
         with self._interrupt:
-            while not self.sitting.session.over:
+            while not self.runner.session.over:
                 try:
                     self._step()
                 except KeyboardInterrupt:
-                    self.sitting.do(Pause("Ctrl-C"))
+                    self.runner.do(Pause("Ctrl-C"))
 
     def _step(self) -> None:
-        phase = self.sitting.session.phase
+        phase = self.runner.session.phase
         if phase == "ready":
-            self.sitting.do(Start())
+            self.runner.do(Start())
         elif phase == "screen":
             self._screen()
         elif phase == "trial":
@@ -84,46 +84,46 @@ class Console:
             self._menu()
 
     def _screen(self) -> None:
-        page, step = self.sitting.page, self.sitting.session.step
+        page, step = self.runner.page, self.runner.session.step
         assert page is not None
         text = "\n".join(_wrapped(line) for line in page.text.splitlines())
         self.write(f"\n{'-' * WIDTH}\n{text}\n" if text else f"\n{'-' * WIDTH}\n")
         if text:
-            self.sitting.log_screen(text)
-        for question in self.sitting.session.open:
+            self.runner.log_screen(text)
+        for question in self.runner.session.open:
             self._ask(step.name, question)
         self.write("\n[Enter] ")
         with self._interrupt.interruptible():
-            self.person.go_on()
-        self.sitting.do(Next())
+            self.respondent.go_on()
+        self.runner.do(Next())
 
     def _ask(self, screen: str, question: Question) -> None:
         text = _asked(question)
         self.write(text)
-        self.sitting.log_screen(text.strip())
+        self.runner.log_screen(text.strip())
         while True:
             self.write("> ")
             with self._interrupt.interruptible():
-                given = self.person.answer(screen, question)
+                given = self.respondent.answer(screen, question)
             try:
-                self.sitting.do(Answered(question.name, question.read(given)))
+                self.runner.do(Answered(question.name, question.read(given)))
                 return
             except InputError as error:
-                if not self.person.patient:
+                if not self.respondent.patient:
                     raise
                 self.write(f"  {CONTROL.sub('', str(error))}\n")
 
     def _trial(self) -> None:
-        trial, seed, folder = self.sitting.begin()
-        steps = self.sitting.session.steps
-        what = f"trial {self.sitting.session.step.number} of {max(step.number for step in steps)}"
+        trial, seed, folder = self.runner.begin()
+        steps = self.runner.session.steps
+        what = f"trial {self.runner.session.step.number} of {max(step.number for step in steps)}"
         running = BackgroundRun(trial, seed, folder / "episode.mcap")
-        self.tell(what, 0.0)
-        while self.sitting.session.phase == "running":
+        self.report(what, 0.0)
+        while self.runner.session.phase == "running":
             try:
                 with self._interrupt.interruptible():
                     while not running.wait(0.2):
-                        self.tell(what, running.share)
+                        self.report(what, running.share)
             except KeyboardInterrupt:
                 self._held(running)
                 continue
@@ -131,93 +131,93 @@ class Console:
                 self._given_up(running)
                 raise
             self._end(running, folder)
-        self.tell(what, 1.0)
+        self.report(what, 1.0)
 
     def _held(self, running: BackgroundRun) -> None:
-        """Hold a trial, and let it go on unless the experimenter wants something else."""
+        """Pause a trial, and continue it unless the experimenter decides otherwise."""
         running.hold()
         try:
-            self.sitting.do(Pause("Ctrl-C"))
-            while self.sitting.session.phase == "pause":
+            self.runner.do(Pause("Ctrl-C"))
+            while self.runner.session.phase == "pause":
                 self._menu()
         finally:
-            if self.sitting.session.phase == "running":
+            if self.runner.session.phase == "running":
                 running.go()
             else:
                 self._given_up(running)
 
     def _given_up(self, running: BackgroundRun) -> None:
-        """Wait until a trial has given up, so that no other one begins beside it."""
+        """Wait until a trial has aborted, before another one begins."""
         running.give_up()
         try:
             with self._interrupt.interruptible():
                 while not running.wait(0.2):
                     pass
         except KeyboardInterrupt:
-            raise ConsoleClosed("the trial does not end") from None
+            raise ConsoleClosed("the trial does not stop") from None
 
     def _end(self, running: BackgroundRun, folder: Path) -> None:
         try:
             episode = running.result()
         except CrowdbotError as error:
-            self.sitting.do(Fail(str(error)))
-        except Exception as error:  # code that a trial names may raise anything; the session must outlive it
+            self.runner.do(Fail(str(error)))
+        except Exception as error:  # the code of a trial may raise anything; the session must continue
             report = folder / "error.txt"
             trace = "".join(traceback.format_exception(error))
             try:
                 report.write_text(trace, encoding="utf-8", errors="backslashreplace")
-                where = f"the trace is in {report.name}"
+                where = f"the traceback is in {report.name}"
             except OSError as failure:
-                where = f"{report.name} cannot be written: {failure.strerror}"
+                where = f"cannot write {report.name}: {failure.strerror}"
             frame = traceback.extract_tb(error.__traceback__)[-1]
             place = f"{Path(frame.filename).name}, line {frame.lineno}"
-            self.sitting.do(Fail(f"{type(error).__name__}: {error} ({place}); {where}"))
+            self.runner.do(Fail(f"{type(error).__name__}: {error} ({place}); {where}"))
         else:
             if episode.failure is None:
-                self.sitting.finish(episode)
+                self.runner.finish(episode)
                 return
             report = folder / "error.txt"
             report.write_text(episode.failure.trace, encoding="utf-8")
-            self.sitting.do(Fail(f"{episode.failure.message}; more in {report.name}"))
+            self.runner.do(Fail(f"{episode.failure.message}; more in {report.name}"))
 
     def _menu(self) -> None:
-        session = self.sitting.session
+        session = self.runner.session
         words = (*session.possible_events, "leave")
         rows = "\n".join(f"  {word:<8}{MENU[word]}" for word in words)
         reason = CONTROL.sub("", session.reason)
         self.write(f"\n{'=' * WIDTH}\nPAUSE{f' ({reason})' if reason else ''}\n{rows}\n> ")
         try:
             with self._interrupt.interruptible():
-                word = self.person.choose(words)
+                word = self.respondent.choose(words)
         except KeyboardInterrupt:
             word = "leave"
         if word == "leave":
             raise ConsoleClosed(session.reason)
         chosen: dict[str, Event] = {"resume": Resume(), "next": Next(), "repeat": Repeat(), "abort": Abort("menu")}
-        self.sitting.do(chosen[word])
+        self.runner.do(chosen[word])
 
 
 class Interrupt:
-    """Lets Ctrl-C interrupt only where nothing can be torn; one that comes elsewhere waits until then."""
+    """Delays Ctrl-C outside of interruptible sections."""
 
     def __init__(self) -> None:
         self._open = self._asked = False
         self._before: object = None
 
     def __enter__(self) -> Interrupt:
-        """Take Ctrl-C over, in the main thread."""
+        """Install the signal handler, in the main thread."""
         if threading.current_thread() is threading.main_thread():
             self._before = signal.signal(signal.SIGINT, self._ask)
         return self
 
     def __exit__(self, *error: object) -> None:
-        """Give it back."""
+        """Restore the signal handler."""
         if self._before is not None:
             signal.signal(signal.SIGINT, self._before)  # type: ignore[arg-type]
 
     @contextlib.contextmanager
     def interruptible(self) -> Iterator[None]:
-        """Let Ctrl-C interrupt here."""
+        """Allow Ctrl-C to interrupt in this section."""
         self._open = True
         try:
             if self._asked:
@@ -233,11 +233,11 @@ class Interrupt:
 
 
 def _asked(question: Question) -> str:
-    """Return a question and what may be answered."""
+    """Return a question with its allowed answers."""
     lines = [_wrapped(CONTROL.sub("", question.text))]
     if isinstance(question, Choice):
         lines += [f"  {k}  {CONTROL.sub('', option.label)}" for k, option in enumerate(question.options, 1)]
-        hint = "numbers with commas between" if question.multiple else "a number"
+        hint = "numbers separated by commas" if question.multiple else "a number"
     else:
         hint = CONTROL.sub("", question.hint)
     return "\n" + "\n".join(lines) + f"\n  ({hint}{'' if question.required else ', or nothing'})\n"

@@ -1,4 +1,4 @@
-"""Events: what can happen in a session. Each is one record of its log."""
+"""Events of a session; each one is a record of its log."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Start:
-    """The session begins."""
+    """Start of the session."""
 
 
 @dataclass(frozen=True)
 class Next:
-    """The participant goes on from a screen, or the experimenter from a trial that failed."""
+    """The participant leaves a screen, or the experimenter continues after a failed trial."""
 
 
 @dataclass(frozen=True)
 class Answered:
-    """A question of the screen was answered, perhaps again; the last answer counts."""
+    """Answer to a question of the current screen. If a question is answered again, the last answer counts."""
 
     question: str
     value: Any
@@ -36,7 +36,7 @@ class Answered:
 
 @dataclass(frozen=True)
 class Begin:
-    """The trial begins, with a seed, and is recorded in a folder of the session."""
+    """Start of a trial with a seed; its episode is recorded in a folder of the session."""
 
     seed: int
     folder: str
@@ -44,7 +44,7 @@ class Begin:
 
 @dataclass(frozen=True)
 class Finish:
-    """The trial is over: how it ended, what was measured, and the digest of its episode."""
+    """End of a trial: outcome, metrics and digest of its episode."""
 
     outcome: str
     digest: str
@@ -53,31 +53,31 @@ class Finish:
 
 @dataclass(frozen=True)
 class Fail:
-    """The trial could not be run to its end."""
+    """Failure of a trial."""
 
     reason: str
 
 
 @dataclass(frozen=True)
 class Pause:
-    """Everything waits."""
+    """Pause of the session."""
 
     reason: str = ""
 
 
 @dataclass(frozen=True)
 class Resume:
-    """It goes on where it waited."""
+    """End of a pause."""
 
 
 @dataclass(frozen=True)
 class Repeat:
-    """The trial is run once more from its beginning; what was answered after it no longer counts."""
+    """Repetition of the last trial; answers given after it are discarded."""
 
 
 @dataclass(frozen=True)
 class Abort:
-    """The session ends here for good."""
+    """Permanent end of the session."""
 
     reason: str = ""
 
@@ -85,7 +85,7 @@ class Abort:
 Event = Start | Next | Answered | Begin | Finish | Fail | Pause | Resume | Repeat | Abort
 
 EVENTS: dict[str, type] = {kebab_case(kind.__name__): kind for kind in typing.get_args(Event)}
-"""The kinds of events by their words."""
+"""Event classes by their names in the log."""
 
 
 def record_of(event: Event) -> dict[str, Any]:
@@ -101,21 +101,21 @@ def event_of(record: Mapping[str, Any]) -> Event:
     """Return the event of a record.
 
     Raises:
-        InputError: it is none.
+        InputError: the record is not an event.
 
     >>> event_of({"event": "pause", "reason": "phone"})
     Pause(reason='phone')
     """
     kind = EVENTS.get(str(record.get("event")))
     if kind is None:
-        raise InputError(f"{str(record.get('event'))[:40]!r} is no event; known are {', '.join(EVENTS)}")
+        raise InputError(f"{str(record.get('event'))[:40]!r} is not an event; events are {', '.join(EVENTS)}")
     kinds = typing.get_type_hints(kind)
     given = {key: value for key, value in record.items() if key not in ("event", "at")}
     for field in dataclasses.fields(kind):
         fits = typing.get_origin(kinds[field.name]) or kinds[field.name]
         if field.name not in given or not (fits is Any or isinstance(given[field.name], fits)):
-            raise InputError(f"event {record['event']!r} has no right {field.name!r}")
+            raise InputError(f"event {record['event']!r} has an invalid {field.name!r}")
     if set(given) != {field.name for field in dataclasses.fields(kind)}:
-        raise InputError(f"event {record['event']!r} holds more than {', '.join(kinds) or 'its name'}")
+        raise InputError(f"event {record['event']!r} has fields other than {', '.join(kinds) or 'its name'}")
     made: Event = kind(**given)
     return made

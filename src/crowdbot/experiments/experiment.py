@@ -1,4 +1,4 @@
-"""Experiment: trials for participants, with screens around them, as one tree of frozen dataclasses that is the XML."""
+"""Experiment: screens, trials, blocks and experiments as frozen dataclasses that map to XML."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ SEEDS = ("same", "by-repetition", "by-participant")
 
 @dataclass(frozen=True, kw_only=True)
 class Screen:
-    """What a participant reads, and is asked, before going on."""
+    """A screen with a text and questions."""
 
     name: str = attribute(about="name of the screen in the answers", pattern=SHORT)
-    text: str = attribute("", about="what is shown, for a line or two")
-    file: str = attribute("", about="what is shown: a .txt or .html file in the folder of the experiment")
-    questions: tuple[Question, ...] = children(QUESTIONS, about="what is asked", max=100)
+    text: str = attribute("", about="short text to show")
+    file: str = attribute("", about="text to show: a .txt or .html file in the folder of the experiment")
+    questions: tuple[Question, ...] = children(QUESTIONS, about="questions", max=100)
 
     def __post_init__(self) -> None:
         check(self)
@@ -31,11 +31,13 @@ class Screen:
 
 @dataclass(frozen=True, kw_only=True)
 class TrialEntry:
-    """A trial that participants go through."""
+    """A trial of a block."""
 
     name: str = attribute(about="name of the trial in this experiment", pattern=SHORT)
     source: str = attribute(about="a trial file in the folder of the experiment, or a built-in trial")
-    seed: int | None = attribute(None, about="seed of the trial; its own when left out", min=-(2**53), max=2**53)
+    seed: int | None = attribute(
+        None, about="seed of the trial (default: the seed in the trial)", min=-(2**53), max=2**53
+    )
     before: tuple[Screen, ...] = children("before", about="screens before this trial", max=100)
     after: tuple[Screen, ...] = children("after", about="screens after this trial", max=100)
 
@@ -45,25 +47,25 @@ class TrialEntry:
 
 @dataclass(frozen=True, kw_only=True)
 class Block:
-    """Trials that are ordered among themselves.
+    """A group of trials with a common order.
 
     Fields:
-        order: ``fixed``, as they are written; ``random``, drawn for each participant and repetition; ``latin-square``,
-            a row of a Williams square, in which every trial stands equally often at every place and equally often
-            right after every other one.
-        repetitions: how often all trials are gone through.
-        seeds: ``same`` crowd every time, ``by-repetition`` another one in each repetition, the same for everybody, or
-            ``by-participant`` another one for each participant and repetition.
+        order: ``fixed`` (as written), ``random`` (for each participant and repetition) or ``latin-square``: a row of a
+            Williams square, in which each trial occurs equally often at each position and equally often directly after
+            each other trial.
+        repetitions: number of repetitions of all trials.
+        seeds: ``same`` (same crowd every time), ``by-repetition`` (a new crowd in each repetition, equal for all
+            participants) or ``by-participant`` (a new crowd for each participant and repetition).
     """
 
     name: str = attribute(about="name of the block", pattern=SHORT)
     order: str = attribute("fixed", about="order of the trials", choices=ORDERS)
-    repetitions: int = attribute(1, about="how often all trials are gone through", min=1, max=1000)
-    seeds: str = attribute("by-repetition", about="when crowds are drawn anew", choices=SEEDS)
+    repetitions: int = attribute(1, about="number of repetitions of all trials", min=1, max=1000)
+    seeds: str = attribute("by-repetition", about="when the seeds of crowds change", choices=SEEDS)
     instructions: tuple[Screen, ...] = children("instructions", about="screens before the block", max=100)
-    before: tuple[Screen, ...] = children("before", about="screens before every trial", max=100)
+    before: tuple[Screen, ...] = children("before", about="screens before each trial", max=100)
     trials: tuple[TrialEntry, ...] = children("trial", about="the trials", min=1, max=1000)
-    after: tuple[Screen, ...] = children("after", about="screens after every trial", max=100)
+    after: tuple[Screen, ...] = children("after", about="screens after each trial", max=100)
     transitions: tuple[Screen, ...] = children("transition", about="screens between two trials", max=100)
 
     def __post_init__(self) -> None:
@@ -71,15 +73,15 @@ class Block:
 
     @property
     def screens(self) -> tuple[Screen, ...]:
-        """Every screen that the block itself names."""
+        """All screens defined by the block."""
         return (*self.instructions, *self.before, *self.after, *self.transitions)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Experiment:
-    """Trials for participants, with screens around them.
+    """Blocks of trials for participants, with screens before, between and after them.
 
-    An experiment made in Python is checked like one from a file when a session begins, or by
+    An experiment created in Python is checked when a session begins, or by
     :func:`crowdbot.experiments.check_experiment`.
 
     Raises:
@@ -92,14 +94,14 @@ class Experiment:
     """
 
     name: str = attribute(about="name of the experiment", pattern=r"\S.{0,79}")
-    about: str = attribute("", about="one line for people")
+    about: str = attribute("", about="description, one line")
     seed: int = attribute(0, about="seed of random orders", min=-(2**53), max=2**53)
-    participants: int | None = attribute(None, about="how many participants there will be", min=1, max=100_000)
+    participants: int | None = attribute(None, about="number of participants", min=1, max=100_000)
     instructions: tuple[Screen, ...] = children("instructions", about="first screens", max=100)
-    blocks: tuple[Block, ...] = children("block", about="trials that are ordered together", min=1, max=100)
+    blocks: tuple[Block, ...] = children("block", about="groups of trials", min=1, max=100)
     endings: tuple[Screen, ...] = children("ending", about="last screens", max=100)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
-    """Where screens and trials lie; not part of the tree."""
+    """Folder of the screens and trials; not part of the XML."""
 
     def __post_init__(self) -> None:
         check(self)

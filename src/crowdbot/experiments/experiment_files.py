@@ -1,4 +1,4 @@
-"""The experiments that come with crowdbot, and the one way to load an experiment and its trials."""
+"""Built-in experiments, and loading of experiments and their trials."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def _shipped() -> Path:
 
 
 def builtin_experiments() -> dict[str, Path]:
-    """Return the folders of the built-in experiments by their names.
+    """Return the folders of the built-in experiments by name.
 
     >>> "robot-speed" in builtin_experiments()
     True
@@ -35,12 +35,13 @@ def load_experiment(source: str | Path, *, trust: bool = False) -> Experiment:
     """Read and check an experiment with its screens and trials.
 
     Args:
-        source: an experiment file, a folder that holds ``experiment.xml``, or a built-in name; a file or folder of
-            that name in the working folder comes first.
-        trust: whether trials from outside its folder may be used, and may load code from outside their own folders.
+        source: an experiment file, a folder with an ``experiment.xml``, or a built-in name; a file or folder in the
+            working directory takes precedence over a built-in name.
+        trust: whether trials outside the folder of the experiment may be used, and trials may load code from outside
+            their folders.
 
     Raises:
-        TrialError: there is no such experiment, or with everything that is wrong with it, a sentence each.
+        TrialError: the experiment does not exist or has errors; the exception lists all of them.
 
     >>> load_experiment("robot-speed").blocks[-1].order
     'latin-square'
@@ -48,8 +49,8 @@ def load_experiment(source: str | Path, *, trust: bool = False) -> Experiment:
     path, known = _file(source), builtin_experiments()
     if path is None:
         raise TrialError(
-            f"there is no experiment {str(source)!r}{did_you_mean(str(source), known)}: no file has this name,"
-            f" and built in are {', '.join(known)}"
+            f"there is no experiment {str(source)!r}{did_you_mean(str(source), known)}: it is neither a file"
+            f" nor a built-in experiment ({', '.join(known)})"
         )
     data = read_trial_bytes(path)
     if not data.strip():
@@ -58,7 +59,7 @@ def load_experiment(source: str | Path, *, trust: bool = False) -> Experiment:
 
 
 def is_experiment(source: str | Path) -> bool:
-    """Return whether a name or a file means an experiment, not a trial.
+    """Return whether a name or file is an experiment instead of a trial.
 
     >>> is_experiment("robot-speed"), is_experiment("frontal")
     (True, False)
@@ -70,7 +71,7 @@ def is_experiment(source: str | Path) -> bool:
 
 
 def _root(data: bytes) -> str:
-    """Return the name of the root element; empty when none begins before anything that no trial may have."""
+    """Return the name of the root element; empty if there is none near the start of the file."""
     found: list[str] = []
     parser = expat.ParserCreate()
 

@@ -14,7 +14,7 @@ __all__ = ["SessionLog", "read_log"]
 
 FORMAT = 1
 LOCKED_BYTE = 1 << 30
-"""Position of the byte that is locked on Windows."""
+"""Position of the locked byte on Windows."""
 
 
 class SessionLog:
@@ -38,9 +38,9 @@ class SessionLog:
             path.parent.mkdir(parents=True, exist_ok=True)
             log = cls(path, _open_locked(path, "xb"))
         except FileExistsError:
-            raise EpisodeError(f"{path} exists already; a session is never overwritten") from None
+            raise EpisodeError(f"{path} already exists; sessions are not overwritten") from None
         except OSError as error:
-            raise EpisodeError(f"{path} cannot be written: {error.strerror}; use another folder") from None
+            raise EpisodeError(f"cannot write {path}: {error.strerror}; use another folder") from None
         log.append({"format": FORMAT, **head})
         return log
 
@@ -49,12 +49,12 @@ class SessionLog:
         """Open a log to continue it, and return its records.
 
         Raises:
-            EpisodeError: the file is missing, cannot be written or is no log.
+            EpisodeError: the file is missing, cannot be written or is not a log.
         """
         try:
             stream = _open_locked(path, "r+b")
         except OSError as error:
-            raise EpisodeError(f"{path} cannot be written: {error.strerror}") from None
+            raise EpisodeError(f"cannot write {path}: {error.strerror}") from None
         try:
             records, length = _records(path)
             stream.truncate(length)
@@ -76,7 +76,7 @@ class SessionLog:
             self._stream.flush()
             os.fsync(self._stream.fileno())
         except OSError as error:
-            raise EpisodeError(f"{self.path} cannot be written: {error.strerror}") from None
+            raise EpisodeError(f"cannot write {self.path}: {error.strerror}") from None
 
     def close(self) -> None:
         """Close the file."""
@@ -95,7 +95,7 @@ def _open_locked(path: Path, mode: Literal["xb", "r+b"]) -> BinaryIO:
         _lock(stream)
     except OSError:
         stream.close()
-        raise EpisodeError(f"{path} is being written by another program; end that one first") from None
+        raise EpisodeError(f"{path} is in use by another program; close that program first") from None
     return stream
 
 
@@ -116,10 +116,10 @@ else:
 
 
 def read_log(path: Path) -> list[dict[str, Any]]:
-    """Return the records of a log, the first one says what it is about; a cut last record is left out.
+    """Return the records of a log; the first one describes the session. An incomplete last record is left out.
 
     Raises:
-        EpisodeError: it is missing or no log.
+        EpisodeError: the file is missing or is not a log.
     """
     return _records(path)[0]
 
@@ -128,7 +128,7 @@ def _records(path: Path) -> tuple[list[dict[str, Any]], int]:
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise EpisodeError(f"{path} cannot be read: {error.strerror}") from None
+        raise EpisodeError(f"cannot read {path}: {error.strerror}") from None
     length = data.rfind(b"\n") + 1
     records = []
     for number, line in enumerate(data[:length].splitlines(), 1):
@@ -137,8 +137,8 @@ def _records(path: Path) -> tuple[list[dict[str, Any]], int]:
         except ValueError:
             record = None
         if not isinstance(record, dict):
-            raise EpisodeError(f"{path}:{number}: this is no record of a session, but {line[:40]!r}")
+            raise EpisodeError(f"{path}:{number}: invalid session record {line[:40]!r}")
         records.append(record)
     if not records or records[0].get("format") != FORMAT:
-        raise EpisodeError(f"{path} is no log of a session that this version reads (format {FORMAT})")
+        raise EpisodeError(f"{path} is not a session log supported by this version (format {FORMAT})")
     return records, length

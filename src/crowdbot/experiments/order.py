@@ -1,4 +1,4 @@
-"""Orders of trials, balanced or drawn, and the seeds of their crowds."""
+"""Orders of trials (fixed, random, balanced) and seeds of their crowds."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["orders", "rows_of", "seed_of", "williams"]
 def williams(count: int) -> list[list[int]]:
     """Return the rows of a Williams square: ``count`` rows, or twice as many for an odd count.
 
-    Every condition stands equally often at every place, and equally often right after every other condition.
+    Each condition occurs equally often at each position, and equally often directly after each other condition.
     Williams 1949, Experimental designs balanced for the estimation of residual effects of treatments,
     https://doi.org/10.1071/CH9490149.
 
@@ -25,31 +25,31 @@ def williams(count: int) -> list[list[int]]:
     [[0, 1, 3, 2], [1, 2, 0, 3], [2, 3, 1, 0], [3, 0, 2, 1]]
     """
     if count < 1:
-        raise InputError(f"a square of {count} conditions is none; it needs at least one")
+        raise InputError(f"a Latin square of {count} conditions is not possible; it needs at least one")
     first = [(k + 1) // 2 if k % 2 else (count - k // 2) % count for k in range(count)]
     rows = [[(place + shift) % count for place in first] for shift in range(count)]
     return rows if count % 2 == 0 or count == 1 else rows + [row[::-1] for row in rows]
 
 
 def rows_of(block: Block) -> int:
-    """Return after how many participants the orders of a block begin again; 0 for random ones, 1 for fixed ones."""
+    """Return after how many participants the orders of a block repeat; 0 for random orders, 1 for fixed ones."""
     count = len(block.trials)
     return {"random": 0, "fixed": 1}.get(block.order, count * (1 + (count % 2 and count > 1)))
 
 
 def orders(experiment: Experiment, block: Block, participant: int) -> list[list[int]]:
-    """Return the order of the trials of a block, indices, for each repetition.
+    """Return the order of the trials of a block as indices, for each repetition.
 
-    In a Latin square, participant 1 takes the first row, the next one the next; each repetition goes one row on, so
-    that the first and every later repetition are balanced over the participants.
+    In a Latin square, participant k takes row k, and each repetition takes the next row. Each repetition is therefore
+    balanced over the participants.
 
     Args:
-        experiment: has the seed of random orders.
-        block: one of its blocks.
+        experiment: experiment with the seed of random orders.
+        block: a block of the experiment.
         participant: number, from 1.
 
     Raises:
-        InputError: the participant is not one of the experiment.
+        InputError: there is no such participant.
     """
     check_participant(experiment, participant)
     count, every = len(block.trials), range(block.repetitions)
@@ -62,10 +62,12 @@ def orders(experiment: Experiment, block: Block, participant: int) -> list[list[
 
 
 def check_participant(experiment: Experiment, participant: int) -> None:
-    """Raise :class:`InputError` when there is no such participant."""
+    """Raise :class:`InputError` if there is no such participant."""
     most = experiment.participants or 100_000
     if not 1 <= participant <= most:
-        raise InputError(f"participant {participant} is not one of the experiment {experiment.name!r}, 1 to {most}")
+        raise InputError(
+            f"there is no participant {participant} in the experiment {experiment.name!r}; participants are 1 to {most}"
+        )
 
 
 def _drawn(seed: int, block: str, participant: int, repetition: int, count: int) -> list[int]:
@@ -75,7 +77,7 @@ def _drawn(seed: int, block: str, participant: int, repetition: int, count: int)
 
 
 def seed_of(base: int, seeds: str, participant: int, repetition: int) -> int:
-    """Return the seed of a trial; the first repetition takes the trial's own, unless each participant has another.
+    """Return the seed of a trial; the first repetition uses the base seed unless seeds depend on the participant.
 
     Args:
         base: seed of the trial.

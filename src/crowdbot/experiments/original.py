@@ -1,4 +1,4 @@
-"""Import: experiments of the CrowdBot simulator of 2021, from a configuration or an order file."""
+"""Import of experiments of the CrowdBot simulator (2021) from configuration and order files."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ __all__ = ["ImportedExperiment", "import_experiment"]
 
 @dataclass(frozen=True)
 class ImportedExperiment:
-    """An experiment that was imported.
+    """An imported experiment.
 
     Fields:
-        experiment: one block of all trials.
-        trials: by the names of their files, which the experiment has as sources.
-        left_out: a sentence about everything that could not be carried over.
+        experiment: experiment with one block of all trials.
+        trials: trials by file name, the sources in the experiment.
+        left_out: one sentence for each item that was not imported.
     """
 
     experiment: Experiment
@@ -36,17 +36,16 @@ def import_experiment(
 ) -> ImportedExperiment:
     """Read an experiment of the original simulator.
 
-    Two orders for odd and even participants (``{TWO}``), or any that make the rows of a Williams square, become a Latin
-    square; of other orders that differ, one is taken. A sequence that is gone through several times becomes
-    repetitions.
+    Two orders for odd and even participants (``{TWO}``), or orders that form the rows of a Williams square, become a
+    Latin square. Of other orders, one is used. A repeated sequence becomes repetitions.
 
     Args:
-        path: of a configuration (root element ``Config``) or of an order file.
-        participant: whose order is taken; None takes the one that the configuration names.
-        root: folder of the simulator's project, as in :func:`crowdbot.trials.import_original`.
+        path: a configuration (root element ``Config``) or an order file.
+        participant: participant whose order is used; None uses that of the configuration.
+        root: folder of the simulator project, see :func:`crowdbot.trials.import_original`.
 
     Raises:
-        TrialError: the file is missing, hostile, neither of these, or not one of its trials can be read.
+        TrialError: the file is missing, unsafe or of another format, or none of its trials can be read.
     """
     plan = plan_of(path, root)
     user = plan.user if participant is None else participant
@@ -60,8 +59,8 @@ def import_experiment(
     notes = (
         *notes,
         *more,
-        "screens: the original shows none, so add instructions, questions and an ending",
-        "seeds: the original begins every run with the same one, so crowds are the same for everybody",
+        "screens: the original has none; add instructions, questions and an ending",
+        "seeds: the original starts every run with the same seed, so crowds are equal for all participants",
     )
     experiment = Experiment(
         name=(plan.path.stem.strip() or "imported")[:80],
@@ -72,7 +71,7 @@ def import_experiment(
 
 
 def _names(entries: Sequence[str]) -> dict[str, str]:
-    """Return a short name for each file of a trial, each with its own."""
+    """Return a unique short name for each trial file."""
     found: dict[str, str] = {}
     for entry in dict.fromkeys(entries):
         short = re.sub("[^A-Za-z0-9_]", "_", PurePosixPath(entry).stem)[:30]
@@ -85,7 +84,7 @@ def _names(entries: Sequence[str]) -> dict[str, str]:
 
 
 def _times(sequence: Sequence[str]) -> int:
-    """Return how often a sequence repeats one that is shorter."""
+    """Return how often a sequence repeats a shorter one."""
     count = len(sequence)
     lengths = (size for size in range(1, count + 1) if count % size == 0)
     return next(count // size for size in lengths if list(sequence[:size]) * (count // size) == list(sequence))
@@ -94,7 +93,7 @@ def _times(sequence: Sequence[str]) -> int:
 def _block(
     plan: Plan, user: int, once: Sequence[str], times: int, names: dict[str, str]
 ) -> tuple[Block, tuple[str, ...]]:
-    """Return the block of trials, and what of its orders is left out."""
+    """Return the block of trials, and the parts of its orders that were not imported."""
     entries = []
     for k, name in enumerate(once):
         again = once[:k].count(name)
@@ -108,11 +107,14 @@ def _block(
     if len(set(once)) == len(once) and times == 1:
         latin = _latin(others, once)
         if latin is not None:
-            return latin, ("participants are counted from 1 here: who was 0 has the order of the last row",)
+            return latin, (
+                "participants are numbered from 1 here: participant 0 of the original is the one with the last row",
+            )
     told = ", ".join(map(str, [who for who, sequence in others.items() if sequence != whole][:20]))
     return fixed, (
-        f"orders: the one of participant {user} is taken; those of {told} differ (import each by --participant, or give"
-        ' the block order="latin-square")',
+        f"orders: the order of participant {user} is used; those of {told} differ (import each with "
+        f"--participant, or"
+        ' set order="latin-square" in the block)',
     )
 
 
@@ -124,7 +126,7 @@ def _sequence(plan: Plan, user: int, names: dict[str, str]) -> list[str]:
 
 
 def _latin(others: dict[int, list[str]], once: Sequence[str]) -> Block | None:
-    """Return a block whose Latin square gives every participant the order that was written, None when none does."""
+    """Return a block whose Latin square reproduces the given orders, None if there is none."""
     if any(sorted(sequence) != sorted(once) for sequence in others.values()):
         return None
     first = others.get(1, list(once))
@@ -142,5 +144,7 @@ def _latin(others: dict[int, list[str]], once: Sequence[str]) -> Block | None:
 
 
 def _last(others: dict[int, list[str]], rank: int) -> int:
-    """Return the number from 1 that stands for participant 0: the one after a whole round of the square."""
+    """Return the participant number (from 1) with the order of participant 0: the one after a full cycle of the
+    square.
+    """
     return rank * (1 + rank % 2) if rank > 1 else 1

@@ -1,4 +1,4 @@
-"""Page: what a screen shows, as text for a console and as harmless HTML for a browser."""
+"""Page: the content of a screen as text for a console and as sanitised HTML for a browser."""
 
 from __future__ import annotations
 
@@ -26,25 +26,25 @@ KEPT = frozenset(
         " table caption thead tbody tr td th dl dt dd",
     )
 )
-"""Elements that say how a text looks and can do nothing else."""
+"""Allowed elements, which only format text."""
 VOID = frozenset(("br", "hr"))
 DROPPED = frozenset(
     re.findall(r"\w+", "script style head title iframe object embed template noscript svg math select textarea")
 )
-"""Elements whose content is not shown either."""
+"""Elements whose content is removed."""
 LINES = KEPT - frozenset(re.findall(r"\w+", "b strong i em u sub sup small code span td th"))
 CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
-"""What a terminal takes for a command, or what turns the direction of a line."""
+"""Control characters of terminals and text directions."""
 
 
 @dataclass(frozen=True)
 class Page:
-    """What a screen shows.
+    """Content of a screen.
 
     Fields:
-        text: for a console.
-        html: for a browser; only elements that shape text, and pictures by the name of a file beside the experiment.
-        digest: of the bytes it was made of.
+        text: text for a console.
+        html: HTML for a browser, with text formatting only and pictures from the folder of the experiment.
+        digest: hash of the source.
     """
 
     text: str
@@ -53,14 +53,14 @@ class Page:
 
 
 def page_of(screen: Screen, folder: Path | None) -> Page:
-    """Return what a screen shows.
+    """Return the content of a screen.
 
     Args:
-        screen: with a text or a file.
-        folder: of the experiment (default: the working folder).
+        screen: screen with a text or a file.
+        folder: folder of the experiment (default: the working directory).
 
     Raises:
-        InputError: the file is missing, lies outside the folder, is too large, or is no text in UTF-8.
+        InputError: the file is missing, outside the folder, too large, or not UTF-8 text.
 
     >>> page_of(Screen(name="welcome", text="a < b"), None).html
     '<p>a &lt; b</p>'
@@ -88,9 +88,9 @@ def _bytes(name: str, folder: Path | None) -> bytes:
     try:
         path = (root / name).resolve()
         if not path.is_relative_to(root):
-            raise InputError(f"file={name!r} lies outside the folder of the experiment; put it there")
+            raise InputError(f"file={name!r} is outside the folder of the experiment; move it into the folder")
         if not path.is_file():
-            raise InputError(f"file={name!r} is not there; it is looked up in the folder of the experiment")
+            raise InputError(f"file={name!r} does not exist in the folder of the experiment")
         with path.open("rb") as stream:
             data = stream.read(MOST_BYTES + 1)
     except (OSError, ValueError) as error:
@@ -98,15 +98,15 @@ def _bytes(name: str, folder: Path | None) -> bytes:
             raise
         raise InputError(f"file={name!r} cannot be read: {getattr(error, 'strerror', None) or error}") from None
     if len(data) > MOST_BYTES:
-        raise InputError(f"file={name!r} is larger than {MOST_BYTES} bytes, which no screen needs to be")
+        raise InputError(f"file={name!r} is larger than {MOST_BYTES} bytes, the maximum")
     return data
 
 
 def sanitise_html(source: str) -> tuple[str, str]:
-    """Return the plain text of an HTML source, and the HTML that is left when only the shape of the text is kept.
+    """Return the plain text of an HTML source and its HTML reduced to text formatting.
 
-    Scripts, styles, links, forms, event handlers and every attribute go. Of pictures, those remain whose source is the
-    plain name of a picture file.
+    Scripts, styles, links, forms, event handlers and all attributes are removed. Pictures are kept if their source is a
+    plain file name.
 
     >>> sanitise_html("<h1 onclick='x()'>Hi</h1><script>x()</script><p>a &amp; <b>b</p>")
     ('Hi\\n\\na & b', '<h1>Hi</h1><p>a &amp; <b>b</b></p>')
@@ -118,7 +118,7 @@ def sanitise_html(source: str) -> tuple[str, str]:
 
 
 class _Sieve(HTMLParser):
-    """Writes only what it knows; whatever it reads, its output is made of known elements and escaped text."""
+    """HTML sanitiser: the output consists only of allowed elements and escaped text."""
 
     def __init__(self) -> None:
         super().__init__(convert_charrefs=True)

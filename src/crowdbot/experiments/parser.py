@@ -1,4 +1,4 @@
-"""From XML to an experiment and back, by the same outline as trials: every problem at once, with its line."""
+"""Parser and writer of experiment files; reports all errors, each with its line."""
 
 from __future__ import annotations
 
@@ -22,36 +22,35 @@ def parse_experiment(
     """Read an experiment from XML and check it.
 
     Args:
-        text: the XML.
-        place: name of the file for messages.
-        folder: where its screens and trials lie (default: the working folder).
-        trust: whether trials may lie, and load code from, elsewhere.
-        whole: whether screens and trials are looked at, too; a copy beside recorded sessions has none.
+        text: XML text.
+        place: file name for messages.
+        folder: folder of screens and trials (default: the working directory).
+        trust: whether trials outside the folder, and their code, may be loaded.
+        whole: whether screens and trials are checked, too; the copy in a recorded session has none.
 
     Raises:
-        TrialError: with every problem found, one sentence each, in the order of the lines.
+        TrialError: the experiment has errors; the exception lists all of them in line order.
 
     >>> parse_experiment('<experiment name="e"><block name="b" ordr="random"/></experiment>')
     Traceback (most recent call last):
     crowdbot.core.errors.TrialError: experiment:1: <block> has no attribute 'ordr', did you mean 'order'?; it takes \
-name, order, repetitions, seeds
+    name, order, repetitions, seeds
     experiment:1: <block> needs the element <trial>: the trials
     """
     try:
         data = text.encode() if isinstance(text, str) else text
     except UnicodeEncodeError:
-        raise TrialError(f"{place}: this is not well-formed XML: it holds half a character") from None
+        raise TrialError(f"{place}: not well-formed XML: the text contains an unpaired surrogate") from None
     root = parse_trial_xml(data, place, "utf-8" if isinstance(text, str) else None)
-    reader = XmlReader(place, folder or Path.cwd(), trust)
     if root.tag != ROOT:
-        raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
+        raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, expected <{ROOT}>")
     update_names(root, place)
-    experiment = reader.element(Experiment, root)
-    for thing, sentence in problems_of(reader.made, folder, trust) if whole else []:
-        reader.say(reader.lines[id(thing)], reader.words[id(thing)], sentence)
-    reader.finish()
-    assert isinstance(experiment, Experiment)
-    return dataclasses.replace(experiment, folder=folder)
+    result = XmlReader(place, folder or Path.cwd(), trust).read(Experiment, root)
+    for thing, sentence in problems_of(result.elements, folder, trust) if whole else []:
+        result.report(thing, sentence)
+    result.raise_problems()
+    assert isinstance(result.value, Experiment)
+    return dataclasses.replace(result.value, folder=folder)
 
 
 def experiment_xml(experiment: Experiment) -> str:
@@ -60,14 +59,14 @@ def experiment_xml(experiment: Experiment) -> str:
 
 
 def check_experiment(experiment: Experiment, *, trust: bool = False) -> None:
-    """Check an experiment made in Python: names, files, trials.
+    """Check an experiment created in Python: names, files and trials.
 
     Args:
         experiment: the experiment.
         trust: whether trials may load code from outside their folders.
 
     Raises:
-        TrialError: with every problem found, a sentence each.
+        TrialError: the experiment has errors; the exception lists all of them.
     """
     found = problems_of(everything(experiment), experiment.folder, trust)
     if sentences := [f"experiment {experiment.name!r}: {_called(thing)} {sentence}" for thing, sentence in found]:

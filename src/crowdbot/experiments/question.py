@@ -1,4 +1,4 @@
-"""Questions to a participant: what is asked, and which answers are allowed."""
+"""Questions to participants and their allowed answers."""
 
 from __future__ import annotations
 
@@ -13,51 +13,51 @@ from crowdbot.trials import UNWRITABLE, attribute, check, children, plain, quote
 __all__ = ["QUESTIONS", "SHORT", "Answer", "Choice", "ChoiceOption", "FreeText", "Number", "Question", "Scale"]
 
 SHORT = "[A-Za-z][A-Za-z0-9_]{0,39}"
-"""Names of screens, questions, blocks and trials: they become columns and folders."""
+"""Pattern of names of screens, questions, blocks and trials, which become columns and folders."""
 
 Answer = str | int | float | tuple[str, ...] | None
-"""What was answered; None is no answer, where one is not required."""
+"""Type of answers; None for an optional question without an answer."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Question(ABC):
-    """The contract of questions."""
+    """Contract of questions."""
 
     name: str = attribute(about="name of its column in the answers", pattern=SHORT)
-    text: str = attribute(about="what is asked")
-    required: bool = attribute(True, about="whether it must be answered")
+    text: str = attribute(about="text of the question")
+    required: bool = attribute(True, about="whether an answer is required")
 
     def __post_init__(self) -> None:
         check(self)
 
     def read(self, text: str) -> Answer:
-        """Return the answer that a typed text means.
+        """Return the answer given as text.
 
         Raises:
-            InputError: the text is no allowed answer.
+            InputError: the answer is not allowed.
         """
         return self.take(self._typed(text.strip()) if text.strip() else None)
 
     def take(self, value: Any) -> Answer:
-        """Return an answer that came as a value, as from a form.
+        """Return an answer given as a value, for example from a form.
 
         Raises:
-            InputError: it is not allowed.
+            InputError: the answer is not allowed.
         """
         if value is None or (isinstance(value, str | list | tuple) and not len(value)):
             if self.required:
-                raise InputError(f"{self.name!r} needs an answer: {self.hint}")
+                raise InputError(f"{self.name!r} requires an answer: {self.hint}")
             return None
         return self._taken(value)
 
     @property
     @abstractmethod
     def hint(self) -> str:
-        """What may be answered, for people."""
+        """Description of the allowed answers."""
 
     def problem(self) -> str:
-        """Return what is wrong with the question although every value of it is allowed."""
-        return "" if self.text.strip() else "has an empty text; write what is asked"
+        """Return a problem that involves several values of the question."""
+        return "" if self.text.strip() else "has an empty text; give the text of the question"
 
     def _typed(self, text: str) -> Any:
         return text
@@ -66,28 +66,28 @@ class Question(ABC):
     def _taken(self, value: Any) -> Answer: ...
 
     def _refuse(self, value: Any) -> InputError:
-        return InputError(f"{quote_value(value)} is no answer to {self.name!r}, it must be {self.hint}")
+        return InputError(f"{quote_value(value)} is not an answer to {self.name!r}, it must be {self.hint}")
 
 
 @dataclass(frozen=True, kw_only=True)
 class ChoiceOption:
-    """One of the answers of a choice."""
+    """An option of a choice."""
 
-    value: str = attribute(about="what is recorded", pattern=SHORT)
-    text: str = attribute("", about="what is shown; the value when it is left out")
+    value: str = attribute(about="recorded value", pattern=SHORT)
+    text: str = attribute("", about="text to show (default: the value)")
 
     def __post_init__(self) -> None:
         check(self)
 
     @property
     def label(self) -> str:
-        """What is shown."""
+        """Text to show."""
         return self.text or self.value
 
 
 @dataclass(frozen=True, kw_only=True)
 class Choice(Question):
-    """A choice of one option, or of several.
+    """A choice of one or several options.
 
     >>> options = [ChoiceOption(value="left"), ChoiceOption(value="right")]
     >>> hand = Choice(name="hand", text="Which hand?", options=options)
@@ -95,10 +95,10 @@ class Choice(Question):
     ('right', 'left')
     >>> hand.read("lefd")
     Traceback (most recent call last):
-    crowdbot.core.errors.InputError: "lefd" is no answer to 'hand', did you mean 'left'?; it must be left or right
+    crowdbot.core.errors.InputError: "lefd" is not an answer to 'hand', did you mean 'left'?; it must be left or right
     """
 
-    multiple: bool = attribute(False, about="whether more than one may be chosen")
+    multiple: bool = attribute(False, about="whether several options may be chosen")
     options: tuple[ChoiceOption, ...] = children("option", about="the answers", min=1, max=100)
 
     @property
@@ -108,10 +108,10 @@ class Choice(Question):
         return f"some of {', '.join(values)}" if self.multiple else " or ".join(values)
 
     def problem(self) -> str:
-        """Return also whether two options are recorded by the same value."""
+        """Return duplicate options as well."""
         values = [option.value for option in self.options]
         twice = [value for k, value in enumerate(values) if value in values[:k]]
-        return super().problem() or (f"has the option {twice[0]!r} twice; give each its own value" if twice else "")
+        return Question.problem(self) or (f"has the option {twice[0]!r} twice; values must differ" if twice else "")
 
     def _typed(self, text: str) -> Any:
         words = [word for word in re.split(r"[\s,;]+", text) if word]
@@ -129,7 +129,8 @@ class Choice(Question):
             if not isinstance(one, str) or one not in known:
                 meant = did_you_mean(str(one), known)
                 raise InputError(
-                    f"{quote_value(one)} is no answer to {self.name!r}{f'{meant};' if meant else ','} it must be"
+                    f"{quote_value(one)} is not an answer to {self.name!r}{f'{meant};' if meant else ','} it must "
+                    f"be"
                     f" {self.hint}"
                 )
         if not self.multiple:
@@ -139,27 +140,29 @@ class Choice(Question):
 
 @dataclass(frozen=True, kw_only=True)
 class Scale(Question):
-    """A rating in whole steps, such as a Likert scale from 1 to 7.
+    """A rating on an integer scale, such as a Likert scale from 1 to 7.
 
     >>> Scale(name="ease", text="How easy was it?").read("8")
     Traceback (most recent call last):
-    crowdbot.core.errors.InputError: "8" is no answer to 'ease', it must be a whole number from 1 to 7
+    crowdbot.core.errors.InputError: "8" is not an answer to 'ease', it must be a whole number from 1 to 7
     """
 
     low: int = attribute(1, about="lowest step", min=-1000, max=1000)
     high: int = attribute(7, about="highest step", min=-1000, max=1000)
-    low_text: str = attribute("", about="what the lowest step means")
-    high_text: str = attribute("", about="what the highest step means")
+    low_text: str = attribute("", about="label of the lowest step")
+    high_text: str = attribute("", about="label of the highest step")
 
     @property
     def hint(self) -> str:
-        """The steps and what their ends mean."""
+        """The range and the labels of its ends."""
         ends = [f"{self.low} {self.low_text}".rstrip(), f"{self.high} {self.high_text}".rstrip()]
         return f"a whole number from {ends[0]} to {ends[1]}"
 
     def problem(self) -> str:
-        """Return also whether there is more than one step."""
-        return super().problem() or ("" if self.low < self.high else f"has low={self.low} not below high={self.high}")
+        """Return invalid limits as well."""
+        return Question.problem(self) or (
+            "" if self.low < self.high else f"has low={self.low}, which must be below high={self.high}"
+        )
 
     def _typed(self, text: str) -> Any:
         return int(text) if re.fullmatch("[+-]?[0-9]{1,6}", text) else text
@@ -178,10 +181,10 @@ class Number(Question):
     27
     """
 
-    unit: str = attribute("", about="unit of the answer, for people")
+    unit: str = attribute("", about="unit of the answer, for display")
     min: float | None = attribute(None, about="lowest answer")
     max: float | None = attribute(None, about="highest answer")
-    integer: bool = attribute(False, about="whether it must be a whole number")
+    integer: bool = attribute(False, about="whether the answer must be a whole number")
 
     @property
     def hint(self) -> str:
@@ -193,9 +196,9 @@ class Number(Question):
         return ", ".join(words)
 
     def problem(self) -> str:
-        """Return also whether the limits leave an answer."""
+        """Return invalid limits as well."""
         empty = self.min is not None and self.max is not None and self.min > self.max
-        return super().problem() or ("has min above max" if empty else "")
+        return Question.problem(self) or ("has min above max" if empty else "")
 
     def _typed(self, text: str) -> Any:
         try:
@@ -215,7 +218,7 @@ class Number(Question):
 
 @dataclass(frozen=True, kw_only=True)
 class FreeText(Question):
-    """Words of the participant's own.
+    """A free text.
 
     >>> FreeText(name="remarks", text="Anything else?", required=False).read("  no ")
     'no'
@@ -225,16 +228,16 @@ class FreeText(Question):
 
     @property
     def hint(self) -> str:
-        """How long it may be."""
+        """The maximum length."""
         return f"a text of at most {self.max_length} characters"
 
     def _taken(self, value: Any) -> Answer:
         if not isinstance(value, str) or len(value) > self.max_length:
             raise self._refuse(value)
         if UNWRITABLE.search(value):
-            raise InputError(f"the answer to {self.name!r} holds a control character; write it without")
+            raise InputError(f"the answer to {self.name!r} contains a control character, which is not allowed")
         return value
 
 
 QUESTIONS: dict[str, type[Question]] = {"choice": Choice, "scale": Scale, "number": Number, "free-text": FreeText}
-"""The kinds of questions by their elements."""
+"""Question classes by XML element."""

@@ -1,4 +1,4 @@
-"""Who answers on a console: somebody who types, or answers that were written down before."""
+"""Respondents: sources of answers in a console, typed or scripted."""
 
 from __future__ import annotations
 
@@ -18,31 +18,32 @@ __all__ = ["ConsoleRespondent", "Respondent", "ScriptedRespondent"]
 
 
 class Respondent(ABC):
-    """The contract of who answers."""
+    """Contract of respondents."""
 
     patient: bool = False
-    """Whether a wrong answer can be given anew."""
+    """Whether an invalid answer can be repeated."""
 
     @abstractmethod
     def answer(self, screen: str, question: Question) -> str:
-        """Return what is answered, as typed."""
+        """Return the answer as text."""
 
     @abstractmethod
     def go_on(self) -> None:
-        """Return when the screen was read."""
+        """Return when the screen has been read."""
 
     @abstractmethod
     def choose(self, words: tuple[str, ...]) -> str:
-        """Return what the experimenter chooses in a pause."""
+        """Return the choice of the experimenter in a pause."""
 
 
 class ConsoleRespondent(Respondent):
-    """Somebody who types lines; a pipe or a file of lines, where each is right at once, does as well.
+    """Reads answers line by line from a terminal, a pipe or a file.
 
     Args:
-        stream: lines.
+        stream: stream of lines.
         write: shows a text.
-        patient: whether a wrong answer can be given anew; not from a pipe, whose next line answers something else.
+        patient: whether an invalid answer can be repeated; not for a pipe, whose next line is the answer to another
+            question.
     """
 
     def __init__(self, stream: TextIO, write: Callable[[str], None], patient: bool) -> None:
@@ -53,17 +54,17 @@ class ConsoleRespondent(Respondent):
         return self._line(f"{screen}.{question.name}")
 
     def go_on(self) -> None:
-        """Read a line, whatever it says."""
+        """Read and discard a line."""
         self._line("the Enter key")
 
     def choose(self, words: tuple[str, ...]) -> str:
-        """Read lines until one is a word, or begins one."""
+        """Read lines until one is an option, or the start of one."""
         while True:
             given = self._line("a choice").strip().lower()
             fits = [word for word in words if given and word.startswith(given)]
             if len(fits) == 1:
                 return fits[0]
-            self._write(f"  {given[:40]!r} is none of {', '.join(words)}\n> ")
+            self._write(f"  {given[:40]!r} is not one of {', '.join(words)}\n> ")
 
     def _line(self, what: str) -> str:
         try:
@@ -71,22 +72,22 @@ class ConsoleRespondent(Respondent):
         except UnicodeDecodeError:
             raise InputError(f"the line for {what} is not in the encoding of this terminal; use UTF-8") from None
         if not line:
-            raise InputError(f"the input has ended where {what} was waited for; go on later with --resume")
+            raise InputError(f"the input ended before {what}; continue later with --resume")
         return line.rstrip("\r\n")
 
 
 class ScriptedRespondent(Respondent):
-    """Answers by name, ``screen.question`` or ``question``; screens go on by themselves, and pauses abort.
+    """Answers from a mapping by ``screen.question`` or ``question``; does not wait at screens, and aborts at a pause.
 
     Raises:
-        InputError: a name that nothing asks.
+        InputError: a name is not that of a question.
 
     >>> from crowdbot.experiments import load_experiment
     >>> person = ScriptedRespondent({"age": 30, "opinion.comfort": 5}, load_experiment("robot-speed"))
     >>> ScriptedRespondent({"aged": 30}, load_experiment("robot-speed"))
     Traceback (most recent call last):
-    crowdbot.core.errors.InputError: nothing asks 'aged', did you mean 'age'?; answers are given to welcome.age, \
-welcome.robots, opinion.comfort, opinion.remarks
+    crowdbot.core.errors.InputError: there is no question 'aged', did you mean 'age'?; questions are welcome.age, \
+    welcome.robots, opinion.comfort, opinion.remarks
     """
 
     def __init__(self, answers: Mapping[str, Any], experiment: Experiment) -> None:
@@ -96,36 +97,36 @@ welcome.robots, opinion.comfort, opinion.remarks
         for name in answers:
             if name not in known and name not in short:
                 meant = did_you_mean(name, [*short, *known])
-                raise InputError(f"nothing asks {name[:60]!r}{meant}; answers are given to {', '.join(known)}")
+                raise InputError(f"there is no question {name[:60]!r}{meant}; questions are {', '.join(known)}")
         self._answers = answers
 
     @classmethod
     def load(cls, path: Path, experiment: Experiment) -> ScriptedRespondent:
-        """Read the answers from a file with one JSON object.
+        """Read answers from a JSON file with one object.
 
         Raises:
-            InputError: the file cannot be read or holds something else.
+            InputError: the file cannot be read or is not a JSON object.
         """
         try:
             answers = json.loads(path.read_text(encoding="utf-8"))
         except OSError as error:
-            raise InputError(f"{path} cannot be read: {error.strerror}") from None
+            raise InputError(f"cannot read {path}: {error.strerror}") from None
         except ValueError as error:
             raise InputError(f"{path} is not JSON: {error}") from None
         if not isinstance(answers, dict):
-            raise InputError(f'{path} must hold one JSON object of answers, such as {{"welcome.age": 30}}')
+            raise InputError(f'{path} must contain one JSON object of answers, such as {{"welcome.age": 30}}')
         return cls(answers, experiment)
 
     def answer(self, screen: str, question: Question) -> str:
-        """Return the answer to this question of this screen, or to this question of any."""
+        """Return the answer to this question of this screen, or to this question of any screen."""
         value = self._answers.get(f"{screen}.{question.name}", self._answers.get(question.name))
         if value is None:
             return ""
         return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
 
     def go_on(self) -> None:
-        """Go on at once."""
+        """Do not wait."""
 
     def choose(self, words: tuple[str, ...]) -> str:
-        """Leave: nobody is there to decide."""
+        """Close the program."""
         return "leave"

@@ -1,16 +1,16 @@
-"""Session: one participant's way through an experiment, as a pure state machine.
+"""Session: the progress of a participant through an experiment, as an immutable state machine.
 
-States and the events that lead on::
+States and transitions::
 
     ready    start -> screen or trial
     screen   answered -> screen, next -> the following screen or trial, or done
     trial    begin -> running
     running  finish -> the following screen or trial, or done; fail -> pause
-    pause    resume -> where it waited; after a failed trial: next -> the following screen or trial
+    pause    resume -> the interrupted state; after a failed trial: next -> the following screen or trial
     done, aborted
 
 ``pause`` and ``abort`` are possible before the end, ``repeat`` once a trial has begun. A session is a value: an event
-makes another one, so that a console, a browser, a headset and the reader of a log all go the same way.
+returns a new one. Consoles, browsers, headsets and log readers share this class.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ __all__ = ["Result", "Session"]
 
 @dataclass(frozen=True)
 class Result:
-    """What came of a trial: the last attempt counts.
+    """Result of a trial; the last attempt counts.
 
-    ``outcome`` is that of its episode; ``failed`` when it could not be run, and the reason says why.
+    ``outcome`` is that of its episode, or ``failed`` with a reason.
     """
 
     seed: int
@@ -48,17 +48,17 @@ class Result:
 
 @dataclass(frozen=True)
 class Session:
-    """Where a participant is.
+    """Progress of a participant.
 
     Fields:
-        steps: the plan of this participant.
+        steps: plan of the participant.
         phase: ``ready``, ``screen``, ``trial`` (about to begin), ``running``, ``pause``, ``done`` or ``aborted``.
-        index: of the step.
-        waiting: the phase that a pause interrupts; ``failed`` after a trial that failed.
-        reason: why it is paused or was aborted.
-        answers: by index of the step and name of the question.
-        attempts: how often each trial was begun, by index of the step.
-        results: of trials that ended, by index of the step.
+        index: index of the current step.
+        waiting: the phase interrupted by a pause; ``failed`` after a failed trial.
+        reason: reason of the pause or abort.
+        answers: answers by step index and name of the question.
+        attempts: number of starts of each trial, by step index.
+        results: results of finished trials, by step index.
 
     >>> from crowdbot.experiments import load_experiment
     >>> session = Session.of(load_experiment("robot-speed"), participant=1).after(Start())
@@ -66,7 +66,7 @@ class Session:
     ('screen', 'welcome', ['age', 'robots'])
     >>> session.after(Next())
     Traceback (most recent call last):
-    crowdbot.core.errors.InputError: the screen 'welcome' still asks 'age', 'robots'; answer before you go on
+    crowdbot.core.errors.InputError: the screen 'welcome' has unanswered questions: 'age', 'robots'
     """
 
     steps: tuple[SessionStep, ...]
@@ -85,24 +85,24 @@ class Session:
 
     @property
     def step(self) -> SessionStep:
-        """The screen or trial that it is at; the last one at the end."""
+        """The current screen or trial; at the end, the last one."""
         return self.steps[min(self.index, len(self.steps) - 1)]
 
     @property
     def open(self) -> tuple[Question, ...]:
-        """The questions of this screen that have not been answered."""
+        """The unanswered questions of the current screen."""
         known = self.answers.get(self.index, {})
         screen = self.step.screen if self.phase == "screen" else None
         return tuple(question for question in screen.questions if question.name not in known) if screen else ()
 
     @property
     def over(self) -> bool:
-        """Whether nothing can happen any more."""
+        """Whether the session has ended."""
         return self.phase in ("done", "aborted")
 
     @property
     def possible_events(self) -> tuple[str, ...]:
-        """The words of the events that are possible now; what a front end offers."""
+        """Names of the events that are possible now."""
         again = ("repeat",) if self._latest() is not None else ()
         return {
             "ready": ("start", "abort"),
@@ -116,12 +116,12 @@ class Session:
         """Return the session after an event.
 
         Raises:
-            InputError: the event is not possible now, or the answer is not allowed; what is, is said.
+            InputError: the event is not possible now, or the answer is not allowed.
         """
         word = kebab_case(type(event).__name__)
         if word not in self.possible_events:
             known = ", ".join(self.possible_events) or "nothing"
-            raise InputError(f"{word!r} is not possible {self._where()}; possible is {known}")
+            raise InputError(f"{word!r} is not possible {self._where()}; possible events: {known}")
         match event:
             case Start():
                 return self._at(0)
@@ -166,7 +166,7 @@ class Session:
         left = [question.name for question in self.open if question.required]
         if left:
             names = ", ".join(map(repr, left))
-            raise InputError(f"the screen {self.step.name!r} still asks {names}; answer before you go on")
+            raise InputError(f"the screen {self.step.name!r} has unanswered questions: {names}")
         return self._at(self.index + 1)
 
     def _answered(self, name: str, value: Any) -> Session:
@@ -174,7 +174,7 @@ class Session:
         questions = {question.name: question for question in self.step.screen.questions}
         if name not in questions:
             known = ", ".join(questions) or "nothing"
-            raise InputError(f"the screen {self.step.name!r} does not ask {name[:40]!r}; it asks {known}")
+            raise InputError(f"the screen {self.step.name!r} has no question {name[:40]!r}; it has {known}")
         here = {**self.answers.get(self.index, {}), name: questions[name].take(value)}
         return dataclasses.replace(self, answers={**self.answers, self.index: here})
 
@@ -187,7 +187,7 @@ class Session:
         return dataclasses.replace(self.results[self.index], **changes)
 
     def _latest(self) -> int | None:
-        """Return the step of the latest trial that was begun, on the way here."""
+        """Return the step of the last trial that was begun."""
         return max((index for index in self.attempts if index <= self.index), default=None)
 
     def _again(self) -> Session:

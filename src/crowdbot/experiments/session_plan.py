@@ -1,4 +1,4 @@
-"""Plan: every screen and trial of one participant, in order."""
+"""Plan of a session: the screens and trials of one participant, in order."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ class SessionStep:
 
     Fields:
         role: ``instructions``, ``before``, ``trial``, ``after``, ``transition`` or ``ending``.
-        screen: what is shown; None for a trial.
-        block: name of its block; empty outside of blocks.
-        entry: the trial, for itself and the screens right before and after it; otherwise None.
-        number: of that trial in the session, from 1; otherwise 0.
-        repetition: of its block, from 0.
-        seeds: when crowds are drawn anew, see :class:`crowdbot.experiments.Block`.
+        screen: the screen; None for a trial.
+        block: name of the block; empty outside of blocks.
+        entry: the trial, also for screens directly before and after it; otherwise None.
+        number: number of that trial in the session, from 1; otherwise 0.
+        repetition: repetition of the block, from 0.
+        seeds: when the seeds of crowds change, see :class:`crowdbot.experiments.Block`.
     """
 
     role: str
@@ -41,10 +41,10 @@ class SessionStep:
 
 
 def plan(experiment: Experiment, participant: int) -> tuple[SessionStep, ...]:
-    """Return what a participant goes through; the same for the same participant every time.
+    """Return the plan of a participant, which depends only on the experiment and the participant.
 
     Raises:
-        InputError: the participant is not one of the experiment.
+        InputError: there is no such participant.
 
     >>> from crowdbot.experiments import load_experiment
     >>> [step.name for step in plan(load_experiment("robot-speed"), 2) if step.role == "trial"]

@@ -12,7 +12,7 @@ from typing import Any
 from crowdbot.core import EpisodeError, InputError
 from crowdbot.recording import as_json, versions
 from crowdbot.simulation import Episode
-from crowdbot.trials import Trial, trial_xml
+from crowdbot.trials import Trial, restore_old_names, trial_xml
 
 from .event import Answered, Begin, Event, Finish, Repeat, Resume, event_of, record_of
 from .experiment import Experiment, Screen
@@ -36,23 +36,23 @@ def folder_of(out: Path, participant: int) -> Path:
 
 
 class SessionRunner:
-    """One participant's session as it happens.
+    """Runs the session of one participant.
 
-    Everything is on the disk before it counts, so that a crash loses nothing but a trial that was running. The folder
-    of the participant holds the log, a copy of the experiment, the answers, and a folder for each trial.
+    Each event is written to disk before it takes effect; a crash loses only the running trial. The folder of the
+    participant contains the log, a copy of the experiment, the answers, and a folder for each trial.
 
     Args:
-        experiment: checked.
+        experiment: the experiment.
         participant: number, from 1.
         out: folder of all participants.
-        clock: returns the time [s], written to every record; nothing else reads a clock.
-        resume: go on with a session that was begun, instead of beginning one.
-        trust: whether trials may lie, and load code from, elsewhere.
+        clock: returns the time [s] of each record.
+        resume: continue an existing session.
+        trust: whether trials outside the folder, and their code, may be loaded.
 
     Raises:
         InputError: there is no such participant.
-        EpisodeError: there is a session already, none to resume, or the experiment has changed since it began.
-        TrialError: everything that is wrong with the experiment.
+        EpisodeError: a session already exists, there is none to resume, or the experiment has changed since its start.
+        TrialError: the experiment has errors; the exception lists all of them.
     """
 
     def __init__(
@@ -89,10 +89,10 @@ class SessionRunner:
             self._begun(head)
 
     def do(self, event: Event) -> Session:
-        """Let something happen, write it down and return where that leads.
+        """Apply an event, log it and return the new session.
 
         Raises:
-            InputError: it is not possible now; nothing is written then.
+            InputError: the event is not possible now; nothing is logged.
         """
         after, at, index = self.session.after(event), self.clock(), self.session.index
         if isinstance(event, Answered):
@@ -112,15 +112,15 @@ class SessionRunner:
 
     @property
     def page(self) -> Page | None:
-        """What the screen shows; None at a trial."""
+        """Content of the current screen; None at a trial."""
         screen = self.session.step.screen
         return self.pages[screen] if screen else None
 
     def begin(self) -> tuple[Trial, int, Path]:
-        """Begin the trial; return it, its seed and the folder for its episode."""
+        """Begin the trial; return it, its seed and the folder of its episode."""
         step, index = self.session.step, self.session.index
         if step.entry is None:
-            raise InputError(f"{step.role} {step.name!r} is a screen, no trial can begin there")
+            raise InputError(f"{step.role} {step.name!r} is a screen, not a trial")
         trial = self.trials[step.entry.source]
         base = trial.seed if step.entry.seed is None else step.entry.seed
         seed = seed_of(base, step.seeds, self.participant, step.repetition)
@@ -131,7 +131,7 @@ class SessionRunner:
         try:
             folder.mkdir(exist_ok=True)
         except OSError as error:
-            raise EpisodeError(f"{folder} cannot be made: {error.strerror}") from None
+            raise EpisodeError(f"cannot create {folder}: {error.strerror}") from None
         self._write_answers(step.number)
         return trial, seed, folder
 
@@ -147,8 +147,9 @@ class SessionRunner:
         path = self.folder / LOG
         if path.exists():
             raise EpisodeError(
-                f"participant {self.participant} has a session in {self.folder} already; go on with it (--resume), or"
-                " choose another participant or folder"
+                f"participant {self.participant} already has a session in {self.folder}; continue it with "
+                f"--resume, or"
+                " use another participant or folder"
             )
         self.log = SessionLog.create(path, head)
         try:
@@ -163,10 +164,11 @@ class SessionRunner:
             raise EpisodeError(f"participant {self.participant} has no session in {self.folder.parent} to resume")
         self.log, records = SessionLog.open(path)
         try:
-            if (records[0].get("experiment"), records[0].get("digest")) != (head["experiment"], head["digest"]):
+            known = (head["digest"], self._digest(old_names=True))
+            if records[0].get("experiment") != head["experiment"] or records[0].get("digest") not in known:
                 raise EpisodeError(
-                    f"{path} was begun with another state of the experiment (its screens and trials belong to it);"
-                    " bring that back, or begin another session"
+                    f"{path} belongs to another version of the experiment or of its screens and trials;"
+                    " restore that version, or begin another session"
                 )
             for number, record in enumerate(records[1:], 2):
                 self._again(path, number, record)
@@ -195,24 +197,24 @@ class SessionRunner:
             self._times[index, event.question] = float(record.get("at") or 0.0)
 
     def _lost(self) -> None:
-        """Go on where somebody paused, and begin a trial anew that was running when the program ended.
+        """Continue after a pause, and restart a trial that was running when the program ended.
 
-        Each event by itself leads to a state from which this can be done again, should the program end in between.
+        Each event leads to a state from which this can be repeated if the program ends in between.
         """
         if self.session.phase == "pause" and self.session.waiting != "failed":
             self.do(Resume())
         if self.session.phase == "running":
             self.do(Repeat())
 
-    def _digest(self) -> str:
-        """Return the hash of the experiment, its screens and its trials."""
-        pages = [page.digest for page in self.pages.values()]
-        trials = [trial_xml(trial) for trial in self.trials.values()]
-        whole = json.dumps([experiment_xml(self.experiment), pages, trials])
+    def _digest(self, *, old_names: bool = False) -> str:
+        """Return the hash of the experiment, its screens and its trials; optionally as version 0.1 made it."""
+        texts = [experiment_xml(self.experiment), *(trial_xml(trial) for trial in self.trials.values())]
+        first, *trials = map(restore_old_names, texts) if old_names else texts
+        whole = json.dumps([first, [page.digest for page in self.pages.values()], trials])
         return hashlib.blake2b(whole.encode(), digest_size=16).hexdigest()
 
     def _write_answers(self, number: int) -> None:
-        """Write the answers that belong to a trial into its folder, those that belong to none beside the log."""
+        """Write the answers of a trial to its folder, and answers without a trial beside the log."""
         folder = self.folder
         if number:
             trial = next(
@@ -232,11 +234,11 @@ class SessionRunner:
 
 
 def _write(path: Path, text: str) -> None:
-    """Write a whole file or none."""
+    """Write a file atomically."""
     draft = path.with_name(f".{path.name}.part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         draft.write_text(text, encoding="utf-8")
         os.replace(draft, path)
     except OSError as error:
-        raise EpisodeError(f"{path} cannot be written: {error.strerror}") from None
+        raise EpisodeError(f"cannot write {path}: {error.strerror}") from None

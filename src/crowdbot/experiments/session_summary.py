@@ -1,4 +1,4 @@
-"""Summary: what participants went through and answered, one row for each trial."""
+"""Summary of sessions: trials and answers of all participants, one row per trial."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ Row = dict[str, Any]
 
 
 def session_of(folder: Path) -> tuple[int, Session]:
-    """Return the number of a participant and where the session recorded in a folder has come to.
+    """Return the participant number and the session recorded in a folder.
 
     Raises:
-        EpisodeError: the folder holds no session, or a damaged one.
+        EpisodeError: the folder has no session, or a damaged one.
         TrialError: the copy of the experiment is damaged.
     """
     path = folder / LOG
@@ -47,12 +47,12 @@ def session_of(folder: Path) -> tuple[int, Session]:
 
 
 def summary(folder: Path | str) -> list[Row]:
-    """Return a row for every trial of every participant in a folder, in the order in which they were met.
+    """Return a row for each trial of each participant in a folder, in session order.
 
-    Each row holds ``participant``, ``session`` (``done``, ``aborted`` or ``unfinished``), ``number``, ``block``,
+    Each row contains ``participant``, ``session`` (``done``, ``aborted`` or ``unfinished``), ``number``, ``block``,
     ``repetition`` (from 1), ``trial``, ``source``, ``attempt``, ``seed``, ``outcome`` (of the episode; ``failed``,
     ``running`` or ``not run``), ``digest``, ``folder``, the metrics of the episode, and the answers as
-    ``screen.question``. Answers that belong to no trial stand in every row of their participant.
+    ``screen.question``. Answers without a trial are repeated in all rows of the participant.
 
     Raises:
         EpisodeError: there is no session, or one is damaged.
@@ -61,7 +61,7 @@ def summary(folder: Path | str) -> list[Row]:
     if not folders and (Path(folder) / LOG).is_file():
         folders = [Path(folder)]
     if not folders:
-        raise EpisodeError(f"{folder} holds no session; give the folder that experiment run has written (--out)")
+        raise EpisodeError(f"{folder} contains no sessions; give the output folder of 'experiment run' (--out)")
     found = [session_of(one) for one in folders]
     rows = [
         row for participant, session in sorted(found, key=lambda one: one[0]) for row in _rows(participant, session)
@@ -82,7 +82,7 @@ _FIRST = (
 
 
 def _rows(participant: int, session: Session) -> Iterator[Row]:
-    """Yield rows; the names of metrics are marked, so that columns can be put in order."""
+    """Yield rows; names of metrics are marked for the order of columns."""
     general = dict(_answers(session, 0))
     state = session.phase if session.over else "unfinished"
     for index, step in enumerate(session.steps):
@@ -122,10 +122,10 @@ def _number(value: Any) -> float | None:
 
 
 def save_summary(rows: Sequence[Row], path: Path) -> None:
-    """Write a summary as ``.csv``, ``.parquet`` or ``.json``, by the ending of the file.
+    """Write a summary as ``.csv``, ``.parquet`` or ``.json``, by file extension.
 
     Raises:
-        InputError: the ending is another one, or the file cannot be written.
+        InputError: the extension is not supported, or the file cannot be written.
     """
     import pandas as pd
 
@@ -141,4 +141,4 @@ def save_summary(rows: Sequence[Row], path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         getattr(table, writers[path.suffix])(path, **options)
     except OSError as error:
-        raise InputError(f"{path} cannot be written: {error.strerror or error}") from None
+        raise InputError(f"cannot write {path}: {error.strerror or error}") from None

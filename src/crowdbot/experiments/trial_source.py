@@ -1,4 +1,4 @@
-"""Trial sources: the trial that an entry of an experiment names."""
+"""Loading of the trial named by an entry of an experiment."""
 
 from __future__ import annotations
 
@@ -11,23 +11,22 @@ __all__ = ["trial_of"]
 
 
 def trial_of(source: str, folder: Path | None, trust: bool = False) -> Trial:
-    """Return the trial that ``source`` means: a file in the folder of the experiment, or a built-in one.
+    """Return the trial named by ``source``: a file in the folder of the experiment, or a built-in trial.
 
     Raises:
-        TrialError: everything that is wrong with the trial.
-        InputError: the file lies outside the folder.
+        TrialError: the trial has errors; the exception lists all of them.
+        InputError: the file is outside the folder.
     """
     root = (folder or Path.cwd()).resolve()
     path = (root / source).resolve()
     if path.is_file():
         if not trust and not path.is_relative_to(root):
-            raise InputError(
-                f"the trial {source!r} lies outside the folder of the experiment; pass --trust to allow it"
-            )
+            raise InputError(f"the trial {source!r} is outside the folder of the experiment; use --trust to allow it")
         return parse_trial(read_trial_bytes(path), place=source, folder=path.parent, trust=trust)
     if source in builtin_trials():
         return load_trial(source)
     raise TrialError(
-        f"there is no trial {source!r}{did_you_mean(source, builtin_trials())}: it is no file in the folder of the"
-        f" experiment, and built in are {', '.join(builtin_trials())}"
+        f"there is no trial {source!r}{did_you_mean(source, builtin_trials())}: it is neither a file in the "
+        f"folder of the"
+        f" experiment nor a built-in trial ({', '.join(builtin_trials())})"
     )

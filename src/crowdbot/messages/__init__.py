@@ -1,4 +1,4 @@
-"""Messages: ROS 2 message types, CDR encoding, and the codecs of sensor readings."""
+"""ROS 2 messages: types, CDR encoding, and codecs of sensor readings."""
 
 from .cdr import MAP, Shape, marker_bytes, people_bytes
 from .codec import Codec, MeasuredReading, mount_pose, unpack_arrays

@@ -1,6 +1,6 @@
-"""CDR bytes of the two large messages, people and shapes, packed directly, byte-identical to the message library.
+"""Fast CDR encoding of the two large messages, people and markers, byte-identical to the message library.
 
-A message of a thousand people is several times faster so, and a recorder writes ten of them for each simulated second.
+This is several times faster for a thousand people; a recorder writes ten such messages per simulated second.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ __all__ = ["MAP", "Shape", "marker_bytes", "people_bytes"]
 Floats = NDArray[np.float64]
 
 START = b"\x00\x01\x00\x00"
-"""Little-endian CDR; positions are counted after it."""
+"""Little-endian CDR header; alignment is counted after it."""
 TAGNAMES = struct.pack("<II7sxI8sI", 2, 7, b"radius", 8, b"heading", 2)
 MAP = "map"
-"""The frame of the world."""
+"""Name of the world frame."""
 FRAME = MAP.encode() + b"\0"
 
 
 class Shape(NamedTuple):
-    """A marker: its group and number in it, its kind and action, place, size [m] and colour; lines have points."""
+    """A marker: namespace, id, type, action, position, size [m] and colour; lines have points."""
 
     group: str
     number: int
@@ -41,7 +41,7 @@ class Shape(NamedTuple):
 def people_bytes(
     nanoseconds: int, ids: NDArray[np.int64], position: Floats, velocity: Floats, radius: Floats, heading: Floats
 ) -> bytes:
-    """Return ``people_msgs/People``: the name is the id, radius [m] and heading [rad] are tags."""
+    """Return ``people_msgs/People``: the name is the id; radius [m] and heading [rad] are tags."""
     seconds, rest = divmod(nanoseconds, 1_000_000_000)
     out = bytearray(struct.pack(f"<iII{len(FRAME)}s", seconds, rest, len(FRAME), FRAME))
     out += bytes(-len(out) % 4) + struct.pack("<I", len(ids))
@@ -88,20 +88,20 @@ def _marker(out: bytearray, stamp: tuple[int, int], shape: Shape) -> None:
 
 @functools.cache
 def _head(start: int, group: int) -> struct.Struct:
-    """Return the layout from the header to the number of points, for a begin at a multiple of 8 and so much more."""
+    """Return the layout from the header to the number of points, for an offset modulo 8."""
     return _layout(start, ["i", "I", "I", f"{len(FRAME)}s", "I", f"{group}s", *"iii", *"dddddddddd", *"ffff", *"iI?I"])
 
 
 @functools.cache
 def _tail(start: int) -> struct.Struct:
-    """Return the layout of what follows the points: everything is empty but the header of the texture."""
+    """Return the layout after the points: all fields are empty except the header of the texture."""
     return _layout(
         start, [*"II", "1s", *"iII", f"{len(FRAME)}s", *"I", "1s", *"III", "1s", *"I", "1s", *"I", "1s", *"I?"]
     )
 
 
 def _layout(start: int, fields: list[str]) -> struct.Struct:
-    """Return a struct whose fields are aligned to their size, as CDR has them."""
+    """Return a struct with fields aligned to their size, as in CDR."""
     text, place = "<", start
     for field in fields:
         size = struct.calcsize(f"<{field}")

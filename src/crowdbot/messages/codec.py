@@ -1,4 +1,4 @@
-"""Codec: how one class of readings becomes messages and back, and arrays that no standard message has a place for."""
+"""Codec: conversion of a class of readings to messages and back, including arrays without a standard message."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ if TYPE_CHECKING:
 __all__ = ["Codec", "MeasuredReading", "mount_pose", "pack_arrays", "unpack_arrays"]
 
 MOST = 1 << 27
-"""No array may have more numbers: a few bytes can pretend to hold any amount."""
+"""Maximum number of elements of an array, a protection against damaged files."""
 
 
 class MeasuredReading(NamedTuple):
-    """A reading that is to be recorded.
+    """A reading with its sensor.
 
     Fields:
-        reading: E is 1.
-        sensor: the sensor that measured it.
-        robot: name of its robot.
-        topic: ``robot/sensor``, which is the name of its frame too.
+        reading: the reading, E = 1.
+        sensor: the sensor.
+        robot: name of the robot.
+        topic: ``robot/sensor``, also the name of its frame.
     """
 
     reading: Any
@@ -38,11 +38,11 @@ class MeasuredReading(NamedTuple):
 
     @property
     def nanoseconds(self) -> int:
-        """When it was measured [ns]."""
+        """Time of the measurement [ns]."""
         return round(float(self.reading.time) * 1e9)
 
     def header(self, make: Messages, ending: str = "") -> Any:
-        """Return the header of its messages; some frames have an ending."""
+        """Return the header of its messages; ``ending`` is appended to the frame."""
         return make.header(self.nanoseconds, self.topic + ending)
 
 
@@ -55,14 +55,14 @@ def _no_frames(robot: str, topic: str) -> list[tuple[str, str, SpatialPose]]:
 
 @dataclass(frozen=True)
 class Codec:
-    """How one class of readings becomes messages and back.
+    """Conversion of a class of readings to messages and back.
 
     Fields:
-        write: returns standard messages, each with what its topic has after that of the sensor.
-        read: returns the fields that standard messages, by these endings, hold; it is given the rest too.
-        rest: fields that these have no place for.
-        short: those of the rest that are kept in 32 bits.
-        frames: fixed frames that the messages need: parent, child, and where the child is in it, by robot and topic.
+        write: returns standard messages with the suffixes of their topics.
+        read: returns the fields in standard messages by suffix; receives the remaining fields, too.
+        rest: fields that the standard messages do not contain.
+        short: fields of ``rest`` that are stored in 32 bits.
+        frames: static frames of the messages by robot and topic: parent, child, and pose of the child.
     """
 
     write: Callable[[Messages, MeasuredReading], Rows]
@@ -75,7 +75,7 @@ class Codec:
 def pack_arrays(
     fields: Mapping[str, Any], short: Sequence[str] = ()
 ) -> Iterator[tuple[str, str, NDArray[np.uint32], NDArray[np.uint8]]]:
-    """Yield name, type, shape and bytes of arrays and poses; an array of one number over and over keeps it once.
+    """Yield name, type, shape and bytes of arrays and poses; a constant array is stored as one number.
 
     >>> [(name, kind, len(data)) for name, kind, _, data in pack_arrays({"part": np.full((1, 360), -1)})]
     [('part', '<i8', 8)]
@@ -97,14 +97,14 @@ def unpack_arrays(fields: Iterable[Any]) -> dict[str, Any]:
     """Return the arrays and poses of ``crowdbot_msgs/Array`` messages by name.
 
     Raises:
-        ValueError: one is not what it says.
+        ValueError: an array does not match its description.
     """
     found: dict[str, Any] = {}
     for field in fields:
         kind = np.dtype(field.dtype)
         shape = tuple(int(size) for size in field.shape)
         if kind.kind not in "fiub" or math.prod(shape) > MOST:
-            raise ValueError(f"{field.name} is an array of {field.dtype} of shape {shape}")
+            raise ValueError(f"{field.name} has an invalid type {field.dtype} or shape {shape}")
         flat = np.frombuffer(bytes(field.data), dtype=kind)
         if kind.kind == "f":
             flat = flat.astype(np.float64)
@@ -118,7 +118,7 @@ def unpack_arrays(fields: Iterable[Any]) -> dict[str, Any]:
 
 
 def mount_pose(robot: Any, mount: Any) -> SpatialPose:
-    """Return where a sensor sits on its robot, which may know that from its own links."""
+    """Return the pose of a sensor on its robot; a mount may define it."""
     if hasattr(robot, "sensor_pose"):
         x, y, z, roll, pitch, yaw = robot.sensor_pose(mount)
         return SpatialPose.of((x, y, z), roll, pitch, yaw)

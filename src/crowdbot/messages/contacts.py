@@ -1,4 +1,4 @@
-"""Contacts with forces, of the physics world: bodies, body parts, forces and complete collisions."""
+"""Messages of contact forces and contact events in the physics world."""
 
 from __future__ import annotations
 
@@ -19,19 +19,20 @@ __all__ = [
 ]
 
 FORCES = "/crowdbot/forces"
-"""Topic of the forces of each step."""
+"""Topic of the contact forces of each step."""
 COLLISIONS = "/crowdbot/collisions"
-"""Topic of the collisions that are over."""
+"""Topic of finished contact events."""
 
 
 class ContactForceRecord(NamedTuple):
-    """What two did to each other in one step: see ``crowdbot.world.ContactForce``.
+    """Force between two bodies in one step, see ``crowdbot.world.ContactForce``.
 
     Fields:
         time: end of the step [s].
-        first, second: who: the name of a robot, the id of a person, ``wall``, or ``prop`` with its number.
-        first_part: the link of a robot; limb, part: of the person, empty without one.
-        force: [N]; vector: from the first on the second [N]; depth: overlap [m]; point: where [m].
+        first, second: the bodies: name of a robot, id of a person, ``wall``, or ``prop`` with its number.
+        first_part: link of a robot; limb, part: limb of the person, empty without a person.
+        force: magnitude [N]; vector: force of the first on the second body [N]; depth: penetration [m]; point: position
+            [m].
     """
 
     time: float
@@ -47,7 +48,7 @@ class ContactForceRecord(NamedTuple):
 
 
 class ContactEventRecord(NamedTuple):
-    """From the first touch of two to their parting: see ``crowdbot.world.BodyContactEvent``; times in [s]."""
+    """Contact of two bodies from start to end, see ``crowdbot.world.BodyContactEvent``; times in [s]."""
 
     first: str
     second: str
@@ -69,13 +70,13 @@ class ContactEventRecord(NamedTuple):
 
 
 def contact_messages(make: Messages, now: int, frame: Any, names: Mapping[int, str]) -> Iterator[tuple[str, Any]]:
-    """Yield topic and message of the forces and collisions of an instant, if there are any.
+    """Yield topic and message of the contact forces and contact events of a step, if any.
 
     Args:
-        make: messages.
+        make: message factory.
         now: simulated time [ns].
-        frame: has ``forces`` and ``collisions`` when its world knows them.
-        names: of robots, by their ids.
+        frame: step record; ``forces`` and ``collisions`` are empty in the planar world.
+        names: names of robots by id.
     """
     ids = frame.ids.tolist()
 
@@ -131,7 +132,7 @@ def read_forces(time: float, message: Any) -> list[ContactForceRecord]:
 
 
 def read_contact_events(message: Any) -> list[ContactEventRecord]:
-    """Return the collisions of a message."""
+    """Return the contact events of a message."""
     return [
         ContactEventRecord(*(getattr(one, name) for name in ContactEventRecord._fields)) for one in message.collisions
     ]

@@ -1,8 +1,8 @@
 """Images: depth and colour as ``sensor_msgs/Image`` with ``sensor_msgs/CameraInfo``, and back.
 
-An image is on ``<robot>/<sensor>/image``, its intrinsics on ``camera_info`` and whom each pixel shows on ``labels``,
-all in the optical frame of REP-103 (z ahead, x to the right, y down), which hangs on the frame of the sensor. Colours
-are raw rgb8: chunks of the file are compressed anyway, without loss, and every viewer reads them.
+An image is on ``<robot>/<sensor>/image``, its intrinsics on ``camera_info`` and the agent of each pixel on ``labels``.
+All are in the optical frame of REP-103 (z forward, x right, y down), a child of the frame of the sensor. Colours are
+raw rgb8, which all viewers support; chunks of the file are compressed without loss.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ __all__ = ["depth_codec", "image_in", "lens_in", "picture_codec"]
 
 OPTICAL = "_optical"
 KINDS = {"32FC1": ("<f4", 1), "32SC1": ("<i4", 1), "rgb8": ("|u1", 3)}
-"""Type and number of channels of each encoding that is written here."""
+"""Type and number of channels of the encodings."""
 
 
 def _image(make: Messages, told: MeasuredReading, encoding: str, pixels: NDArray[Any]) -> Any:
@@ -48,7 +48,7 @@ def image_in(message: Any) -> NDArray[Any]:
     """Return the pixels ``[H, W]`` or ``[H, W, 3]`` of a ``sensor_msgs/Image``.
 
     Raises:
-        KeyError, ValueError: the encoding is another one, or it does not hold as many as it says.
+        KeyError, ValueError: the encoding is not supported, or the size of the data is wrong.
     """
     kind, channels = KINDS[message.encoding]
     shape = (message.height, message.width) if channels == 1 else (message.height, message.width, channels)
@@ -119,10 +119,10 @@ def _read_picture(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[st
 
 
 def _frames(robot: str, topic: str) -> list[tuple[str, str, SpatialPose]]:
-    """The optical frame: z of it looks along x of the sensor, x to its right."""
+    """Return the optical frame: its z axis is the x axis of the sensor, its x axis points right."""
     return [(topic, topic + OPTICAL, SpatialPose.of((0.0, 0.0, 0.0), -0.5 * math.pi, 0.0, -0.5 * math.pi))]
 
 
 depth_codec = Codec(_write_depth, _read_depth, rest=("part",), frames=_frames)
 picture_codec = Codec(_write_picture, _read_picture, frames=_frames)
-"""For readings with ``rgb`` ``[E, H, W, 3]`` uint8 and a ``lens``; ``hit`` ``[E, H, W]`` or None."""
+"""Codec of readings with ``rgb`` ``[E, H, W, 3]`` uint8 and a ``lens``; ``hit`` is ``[E, H, W]`` or None."""

@@ -1,4 +1,4 @@
-"""Shapes for viewers: people, robots, goals and walls as a ``visualization_msgs/MarkerArray``."""
+"""Markers of people, robots, goals and walls as ``visualization_msgs/MarkerArray``."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ __all__ = ["KIND", "markers"]
 KIND = "visualization_msgs/msg/MarkerArray"
 BODY_HEIGHT, ROBOT_HEIGHT, GOAL_HEIGHT = 1.7, 0.8, 0.02
 ORANGE, BLUE, GREEN = (0.9, 0.6, 0.0), (0.0, 0.45, 0.7), (0.0, 0.62, 0.45)
-"""Colours that people with colour blindness can tell apart (Okabe & Ito)."""
+"""Colours that are distinguishable with colour blindness (Okabe & Ito)."""
 Goal = tuple[float, float, float]
 SPHERE, CYLINDER, LINE_LIST, DELETE_ALL = 2, 3, 5, 3
-"""Kinds and an action of ``visualization_msgs/Marker``."""
+"""Types and an action of ``visualization_msgs/Marker``."""
 
 
 def markers(nanoseconds: int, scene: Scene, ids: NDArray[np.int64], goals: Sequence[Goal]) -> bytes:
-    """Return everything that is there as shapes, as CDR bytes; the array begins by deleting those before.
+    """Return markers of all objects as CDR bytes; the first marker deletes previous ones.
 
     Args:
         nanoseconds: simulated time [ns].
-        scene: E is 1; agents that are moved from outside are robots.
-        ids: ``[A]`` ids of the agents.
-        goals: x, y and tolerance [m] of each robot.
+        scene: scene, E = 1; external agents are robots.
+        ids: ids of the agents ``[A]``.
+        goals: goal x, y and tolerance [m] of each robot.
     """
     return marker_bytes(nanoseconds, _shapes(scene, ids, goals))
 

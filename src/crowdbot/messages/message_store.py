@@ -1,4 +1,4 @@
-"""ROS 2 messages: what crowdbot knows, in the types of ROS 2 Humble and people_msgs, as CDR bytes.
+"""ROS 2 message types (Humble, people_msgs and crowdbot_msgs) and their CDR encoding.
 
 Frames follow REP-103 and REP-105: ``map``, ``<robot>/base_link``, ``<robot>/<sensor>``. Ranges follow REP-117.
 """
@@ -74,7 +74,7 @@ OWN = {
     "crowdbot_msgs/msg/Collision": COLLISION,
     "crowdbot_msgs/msg/Collisions": COLLISIONS,
 }
-"""Types that ROS 2 Humble does not bring; the text of each stands in the file."""
+"""Type definitions that are not part of ROS 2 Humble; they are stored in the file."""
 
 
 @functools.cache
@@ -86,13 +86,13 @@ def _store() -> Any:
 
 
 class Messages:
-    """Makes messages and their bytes."""
+    """Creates and encodes messages."""
 
     def __init__(self) -> None:
         self.store = _store()
 
     def definition(self, kind: str) -> str:
-        """Return the text of a message type with everything it is made of, as ``ros2msg`` schemas hold it."""
+        """Return the definition of a message type with all its parts, as in ``ros2msg`` schemas."""
         return str(self.store.generate_msgdef(kind, ros_version=2)[0])
 
     def encode_message(self, message: Any) -> bytes:
@@ -100,7 +100,7 @@ class Messages:
         return bytes(self.store.serialize_cdr(message, message.__msgtype__))
 
     def decode_message(self, data: bytes, kind: str) -> Any:
-        """Return the message that CDR bytes hold."""
+        """Return the message from CDR bytes."""
         return self.store.deserialize_cdr(data, kind)
 
     def make(self, kind: str, /, **fields: Any) -> Any:
@@ -125,7 +125,7 @@ class Messages:
         return self.make("std_msgs/msg/String", data=words)
 
     def contacts(self, nanoseconds: int, rows: Iterable[tuple[str, str, float]]) -> Any:
-        """Return ``crowdbot_msgs/Contacts`` of rows: the robot, whom it touched, the smallest clearance [m]."""
+        """Return ``crowdbot_msgs/Contacts`` from rows of robot, other body and smallest clearance [m]."""
         found = [
             self.make("crowdbot_msgs/msg/Contact", robot=robot, other=other, clearance=float(gap))
             for robot, other, gap in rows
@@ -133,7 +133,7 @@ class Messages:
         return self.make("crowdbot_msgs/msg/Contacts", header=self.header(nanoseconds), contacts=found)
 
     def people(self, nanoseconds: int, scene: Scene, ids: NDArray[np.int64]) -> bytes:
-        """Return the bytes of ``people_msgs/People``: who is there; radius [m] and heading [rad] are tags."""
+        """Return the bytes of ``people_msgs/People``; radius [m] and heading [rad] are tags."""
         there = np.flatnonzero(scene.active[0] & ~scene.external[0])
         there = there[np.argsort(ids[there])]
         rows = (scene.position, scene.velocity, scene.radius, scene.heading)
@@ -142,7 +142,7 @@ class Messages:
     def odometry(
         self, nanoseconds: int, name: str, x: float, y: float, heading: float, twist: Sequence[float], frame: str = MAP
     ) -> Any:
-        """Return ``nav_msgs/Odometry``: a pose in a frame, and the twist forward, turn, left in the robot's own."""
+        """Return ``nav_msgs/Odometry``: a pose in a frame, and the twist forward, turn, left in the robot frame."""
         forward, turn, left = map(float, twist)
         return self.make(
             "nav_msgs/msg/Odometry",
@@ -159,14 +159,14 @@ class Messages:
         )
 
     def transforms(self, nanoseconds: int, rows: Iterable[tuple[str, str, float, float, float]]) -> Any:
-        """Return ``tf2_msgs/TFMessage`` of rows: parent frame, child frame, x, y [m], heading [rad]."""
+        """Return ``tf2_msgs/TFMessage`` from rows of parent frame, child frame, x, y [m], heading [rad]."""
         return self._transforms(
             nanoseconds,
             ((parent, child, (x, y, 0.0), self.quaternion(heading)) for parent, child, x, y, heading in rows),
         )
 
     def fixed(self, nanoseconds: int, rows: Iterable[tuple[str, str, SpatialPose]]) -> Any:
-        """Return ``tf2_msgs/TFMessage`` of rows: parent frame, child frame, where the child is in its parent."""
+        """Return ``tf2_msgs/TFMessage`` from rows of parent frame, child frame and pose of the child."""
         return self._transforms(
             nanoseconds,
             (

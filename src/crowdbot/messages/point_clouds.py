@@ -1,4 +1,4 @@
-"""Points: clouds of laser scanners and sectors of bumpers as ``sensor_msgs/PointCloud2`` and back."""
+"""Point clouds of laser scanners and bumpers as ``sensor_msgs/PointCloud2``, and back."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def points_in(message: Any) -> NDArray[Any]:
     """Return the points ``[H, W]`` of a ``sensor_msgs/PointCloud2`` as structured rows.
 
     Raises:
-        ValueError: the message does not hold as many as it says.
+        ValueError: the size of the data is wrong.
     """
     kinds = {number: kind for kind, number in NUMBERS.items()}
     kind = np.dtype(

@@ -1,18 +1,18 @@
-"""Readings as messages and back: one table says what each reading of a sensor becomes in a recording.
+"""Codecs of sensor readings: a table of the message types of each class of readings.
 
-A reading becomes messages of standard ROS types, and one ``crowdbot_msgs/Reading`` beside them, which holds its kind,
-the exact pose and what the standard types have no place for (labels of body parts, biases, true velocities). Numbers
-that a standard type holds in 32 bits are read back with these.
+A reading is stored as messages of standard ROS types and one ``crowdbot_msgs/Reading`` with its class, the exact pose
+and fields that the standard types do not contain (labels of body parts, biases, true velocities). Fields that a
+standard type stores in 32 bits have that precision when read back.
 
 =============== =======================================================================================================
-``Scan``        ``sensor_msgs/LaserScan``; intensities hold whom each beam hit
-``Cloud``       ``sensor_msgs/PointCloud2``: x, y, z, intensity (cosine of incidence), range, label (whom it hit), ring
+``Scan``        ``sensor_msgs/LaserScan``; intensities contain the id of the agent hit
+``Cloud``       ``sensor_msgs/PointCloud2``: x, y, z, intensity (cosine of incidence), range, label (agent hit), ring
 ``Echo``        ``sensor_msgs/Range``
-``DepthImage``  ``sensor_msgs/Image`` 32FC1 on ``image`` and 32SC1 (who is seen) on ``labels``, ``CameraInfo``
+``DepthImage``  ``sensor_msgs/Image`` 32FC1 on ``image`` and 32SC1 (agent ids) on ``labels``, ``CameraInfo``
 ``Inertial``    ``sensor_msgs/Imu``
 ``Odometry``    ``nav_msgs/Odometry``, in the frame ``<robot>/odom``
-``Touch``       ``sensor_msgs/PointCloud2``, one point a sector, NaN where nothing presses: ROS has no type for
-                bumpers, and this is the one that navigation takes (as of ``kobuki_bumper2pc``)
+``Touch``       ``sensor_msgs/PointCloud2``, one point per sector, NaN without contact; ROS has no type for
+                bumpers, and navigation stacks use this one (see ``kobuki_bumper2pc``)
 ``Tracked``     ``people_msgs/People`` in the frame of the sensor
 =============== =======================================================================================================
 """
@@ -52,7 +52,7 @@ __all__ = ["CODECS", "KIND", "REST", "codec_of", "decode_reading", "encode_readi
 
 KIND = "crowdbot_msgs/msg/Reading"
 REST = "/reading"
-"""What the topic of the message with the rest of a reading has after that of the sensor."""
+"""Suffix of the topic of the message with the remaining fields."""
 
 
 KIND_NAMES = {
@@ -63,9 +63,9 @@ KIND_NAMES = {
     "RgbImage": "Picture",
     "TrackedPeople": "Tracked",
 }
-"""Names of classes in recordings, where they differ from those in Python."""
+"""Class names in recordings, where they differ from Python."""
 FIELD_NAMES = {"cos_incidence": "facing"}
-"""Names of fields in recordings, where they differ from those in Python."""
+"""Field names in recordings, where they differ from Python."""
 
 
 def recorded_name(kind: type[Reading]) -> str:
@@ -74,10 +74,10 @@ def recorded_name(kind: type[Reading]) -> str:
 
 
 def encode_reading(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
-    """Return the messages of a reading, with what their topics have after that of the sensor.
+    """Return the messages of a reading with the suffixes of their topics.
 
     Raises:
-        EpisodeError: the reading is of a kind that the table does not have.
+        EpisodeError: the class of the reading is not in the table.
     """
     codec = codec_of(type(told.reading), told.topic)
     reading = told.reading
@@ -92,30 +92,30 @@ def encode_reading(make: Messages, told: MeasuredReading) -> list[tuple[str, Any
 
 
 def codec_of(kind: type[Reading], topic: str = "") -> Codec:
-    """Return how readings of a class are recorded: as the nearest of its parents that is in the table.
+    """Return the codec of a class of readings, or of its nearest parent class in the table.
 
     Raises:
-        EpisodeError: there is none.
+        EpisodeError: there is no codec.
     """
     for cls in kind.__mro__:
         if cls in CODECS:
             return CODECS[cls]
     known = ", ".join(cls.__name__ for cls in CODECS)
     raise EpisodeError(
-        f"sensor {topic!r} gives a {kind.__name__}, which has no ROS message; let it give one of {known}, or run"
+        f"sensor {topic!r} returns a {kind.__name__}, which has no ROS message; return one of {known}, or run"
         " without out"
     )
 
 
 def decode_reading(whole: Any, others: Mapping[str, Any]) -> Reading:
-    """Return the reading that messages hold.
+    """Return the reading from messages.
 
     Args:
         whole: ``crowdbot_msgs/Reading``.
-        others: the standard messages by what their topics have after that of the sensor.
+        others: standard messages by suffix of their topic.
 
     Raises:
-        KeyError, ValueError: they do not belong together.
+        KeyError, ValueError: the messages do not match.
     """
     kind = next(cls for cls in CODECS if recorded_name(cls) == whole.kind)
     names = {recorded: name for name, recorded in FIELD_NAMES.items()}
@@ -179,7 +179,7 @@ def _read_echo(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[str, 
 def _write_inertial(make: Messages, told: MeasuredReading) -> list[tuple[str, Any]]:
     reading, sensor = told.reading, told.sensor
     unknown = np.zeros(9)
-    unknown[0] = -1.0  # as the type says: there is no estimate of the orientation
+    unknown[0] = -1.0  # the message type defines -1 as: no estimate of the orientation
     imu = make.make(
         "sensor_msgs/msg/Imu",
         header=told.header(make),
@@ -194,7 +194,7 @@ def _write_inertial(make: Messages, told: MeasuredReading) -> list[tuple[str, An
 
 
 def _variance(sensor: Any, density: str) -> Any:
-    """Return the covariance of white noise of a density at the rate of the sensor."""
+    """Return the variance of white noise of a density at the rate of the sensor."""
     return (np.eye(3) * float(getattr(sensor, density, 0.0)) ** 2 * float(sensor.rate)).ravel()
 
 
@@ -252,7 +252,7 @@ def _read_tracked(others: Mapping[str, Any], rest: Mapping[str, Any]) -> dict[st
 
 
 def _odometry_frames(robot: str, topic: str) -> list[tuple[str, str, SpatialPose]]:
-    """The estimate begins as the true pose, so the odometry frame lies where the map does."""
+    """Return the odometry frame; odometry starts at the true pose, so the frame is that of the map."""
     return [("map", f"{robot}/odom", Pose.of((0.0, 0.0), 0.0).to_spatial(0.0))]
 
 
@@ -267,11 +267,11 @@ CODECS: dict[type[Reading], Codec] = {
     BumperReading: touch_codec,
     TrackedPeople: Codec(_write_tracked, _read_tracked, rest=("present",)),
 }
-"""What each class of readings becomes; a subclass is recorded as its parent."""
+"""Codecs by class of readings; a subclass uses the codec of its parent."""
 
 
 def unencoded_fields() -> list[type[Reading]]:
-    """Return the classes of readings of ``crowdbot.sensors`` that the table lacks."""
+    """Return the classes of readings of ``crowdbot.sensors`` without a codec."""
     from crowdbot import sensors
 
     classes = [getattr(sensors, name) for name in sensors.__all__]

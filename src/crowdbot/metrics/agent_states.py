@@ -1,4 +1,4 @@
-"""State of the agents that are present at one instant."""
+"""AgentStates: states of the agents present at one time."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class AgentStates:
-    """State of the N agents, people and robots, that are present at one instant.
+    """States of the N agents, people and robots, present at one time.
 
     Fields:
         time: simulated time [s].
-        ids: ``[N]`` identity of each agent, increasing.
+        ids: identity of each agent ``[N]``, increasing.
         position, velocity: ``[N, 2]`` [m], [m/s].
         heading, radius: ``[N]`` [rad], [m].
 

@@ -1,4 +1,4 @@
-"""Predicted collisions of people with other predictions or with the ground truth."""
+"""Collisions of predicted people with other predictions or with the ground truth."""
 
 from __future__ import annotations
 
@@ -16,28 +16,28 @@ Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 
 CONTACT = 0.2
-"""Two people closer than this [m] have collided (TrajNet++)."""
+"""Two people closer than this [m] collide (TrajNet++)."""
 NEIGHBORS = ("predicted", "true")
 PAIRS_AT_ONCE = 500_000
-"""So many distances of pairs are held at once, however many samples there are."""
+"""Maximum number of pair distances in memory at once."""
 
 
 def collision_mask(forecast: Forecast, future: Windows, limit: float = CONTACT, neighbors: str = "predicted") -> Bools:
     """Return ``[W, K, A]``: scored people who come closer than ``limit`` [m], centre to centre, to another at any step.
 
-    A step counts while both are truly still there; between steps nothing is looked at. Samples that weigh nothing
-    collide with nobody.
+    A step counts if both people are present in the ground truth; positions between steps are not tested. Samples with
+    weight 0 do not collide.
 
     Args:
-        forecast, future: of the same windows.
-        limit: distance [m] that is too close.
-        neighbors: ``predicted``: the other scored people of the window, where the same sample predicts them (Col-I of
-            TrajNet++); ``true``: everyone else of the window where they truly walked, people who are not scored and
-            robots too (Col-II). Robots are never among those who collide, and who enters after the last observed step
-            is not in the window.
+        forecast, future: forecast and future of the same windows.
+        limit: collision distance [m].
+        neighbors: ``predicted``: predictions of the other scored people of the window in the same sample (Col-I of
+            TrajNet++); ``true``: true positions of all others in the window, including people who are not scored and
+            robots (Col-II). Robots themselves are not scored. People who enter after the last observed step are not in
+            the window.
 
     Raises:
-        InputError: forecast and future do not belong together, or the word for the neighbours is unknown.
+        InputError: forecast and future do not match, or ``neighbors`` is unknown.
     """
     check(forecast, future)
     _known(neighbors)
@@ -45,7 +45,7 @@ def collision_mask(forecast: Forecast, future: Windows, limit: float = CONTACT, 
     hit = np.zeros((W, K, A), dtype=np.bool_)
     for window in np.flatnonzero(
         neighbor_mask(future, neighbors).any(axis=1)
-    ):  # one by one: most padded pairs are nobody
+    ):  # one by one: most padded pairs are empty
         here = future.present[window]
         who = np.flatnonzero(future.scored[window])
         others = who if neighbors == "predicted" else np.flatnonzero(here.any(axis=0))
@@ -61,10 +61,10 @@ def collision_mask(forecast: Forecast, future: Windows, limit: float = CONTACT, 
 
 
 def collision_share(forecast: Forecast, future: Windows, limit: float = CONTACT, neighbors: str = "predicted") -> float:
-    """Return the share of people with company who come closer than ``limit`` [m] to another one.
+    """Return the share of people with neighbors who come closer than ``limit`` [m] to another one.
 
-    It is a mean over the people of :func:`accompanied` and, by their weight, over the samples; NaN when nobody has
-    company. What counts as a neighbour is said at :func:`collided`.
+    The share is a mean over the people of :func:`neighbor_mask` and a weighted mean over the samples; NaN without such
+    people. Neighbors are defined in :func:`collision_mask`.
     """
     together = neighbor_mask(future, neighbors)
     hit = collision_mask(forecast, future, limit, neighbors)
@@ -74,10 +74,10 @@ def collision_share(forecast: Forecast, future: Windows, limit: float = CONTACT,
 
 
 def neighbor_mask(future: Windows, neighbors: str = "predicted") -> Bools:
-    """Return ``[W, A]``: scored people who have somebody to collide with.
+    """Return ``[W, A]``: scored people with neighbors.
 
-    With ``predicted`` neighbours these are the people of windows with at least two scored ones, with ``true``
-    neighbours those who have anyone else truly there at a step at which they are there themselves.
+    With ``predicted``, these are the people in windows with at least two scored people; with ``true``, people who share
+    at least one step with anyone else in the ground truth.
     """
     if _known(neighbors) == "predicted":
         return np.asarray(future.scored & (future.scored.sum(axis=1) > 1)[:, None])
@@ -86,14 +86,12 @@ def neighbor_mask(future: Windows, neighbors: str = "predicted") -> Bools:
 
 
 def mean_over_samples(forecast: Forecast, value: Bools) -> Floats:
-    """Return the mean ``[W, A]`` of values ``[W, K, A]`` over the samples by their weight."""
+    """Return the weighted mean ``[W, A]`` of values ``[W, K, A]`` over the samples."""
     return np.asarray(np.sum(value * forecast.weight[:, :, None], axis=1))
 
 
 def _known(neighbors: str) -> str:
     if neighbors not in NEIGHBORS:
         allowed = " or ".join(NEIGHBORS)
-        raise InputError(
-            f"collisions with neighbors {neighbors!r}{did_you_mean(neighbors, NEIGHBORS)}: it is {allowed}"
-        )
+        raise InputError(f"collisions: neighbors {neighbors!r}{did_you_mean(neighbors, NEIGHBORS)} must be {allowed}")
     return neighbors

@@ -1,4 +1,4 @@
-"""Contact events of a robot, found while the records arrive."""
+"""ContactTracker: incremental detection of the contact events of a robot."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from .contacts import ContactEvent, contact_events
 __all__ = ["ContactTracker"]
 
 APART = 1.0
-"""A person is followed until this long [s] after the last instant near the robot; a contact ends earlier than that."""
+"""A person is tracked until this time [s] after being near the robot; contacts end earlier."""
 
 
 class ContactTracker:
-    """Finds the contact events of one robot incrementally. Only the people near the robot are kept in memory.
+    """Detects the contact events of one robot incrementally. Only people near the robot are stored.
 
     Args:
         robot: id of the robot.
-        radius: its radius [m].
+        radius: radius of the robot [m].
     """
 
     def __init__(self, robot: int, radius: float) -> None:
@@ -29,10 +29,10 @@ class ContactTracker:
         self._before: AgentStates | None = None
         self._ended: list[ContactEvent] = []
         self._near: dict[int, tuple[float, float, list[AgentStates]]] = {}
-        """By id of a person near the robot: last time near, radius, and the instants with both alone."""
+        """Data of people near the robot by id: last time near, radius, and the states of both."""
 
     def update(self, states: AgentStates, near: NDArray[np.int64]) -> None:
-        """Add an instant; ``near`` are the ids of the people close to the robot since the instant before."""
+        """Add a step; ``near`` are the ids of people close to the robot since the previous step."""
         for person in near.tolist():
             since = [] if self._before is None else [self._pair(self._before, person)]
             radius = float(states.radius[np.searchsorted(states.ids, person)])
@@ -45,12 +45,12 @@ class ContactTracker:
         self._before = states
 
     def events(self) -> tuple[ContactEvent, ...]:
-        """Return the contact events up to now by first touch, as :func:`contact_events`, with ids as ``person``."""
+        """Return the contact events so far by first contact, see :func:`contact_events`, with ids as ``person``."""
         events = [*self._ended, *(event for person in self._near for event in self._events_of(person))]
         return tuple(sorted(events, key=lambda event: (event.begin, event.person)))
 
     def _pair(self, states: AgentStates, person: int) -> AgentStates:
-        """Return an instant with the robot and one person alone; an absent person has the id -1."""
+        """Return the states of the robot and one person; an absent person has the id -1."""
         ids = np.array([self.robot, person])
         position, velocity, here = states.at(ids)
         return AgentStates(states.time, np.where(here, ids, -1), position, velocity, np.zeros(2), np.zeros(2))

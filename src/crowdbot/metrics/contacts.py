@@ -16,23 +16,23 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 RELEASE = 0.05
-"""A contact is over when the clearance stays above this [m] ..."""
+"""A contact ends if the clearance stays above this [m] ..."""
 HOLD = 0.5
 """... for this long [s]."""
 MARGIN = 0.05
-"""Closing speeds [m/s] that differ by less have the same share in a contact; a robot slower than this stands."""
+"""Tolerance of closing speeds [m/s] for a mutual contact; a slower robot is at rest."""
 
 
 @dataclass(frozen=True)
 class ContactEvent:
-    """One contact between the robot and someone, from first touch to last overlap.
+    """A contact between the robot and a person, from first contact to last overlap.
 
     Fields:
-        person: index of the other one.
-        begin, end: first touch and end of the last time step with overlap [s].
-        depth: deepest overlap [m], positive.
+        person: index of the person.
+        begin, end: first contact and end of the last time step with overlap [s].
+        depth: maximum overlap [m], positive.
         cause: ``robot``, ``person`` or ``mutual``, see :func:`cause_of`.
-        impact_speed: relative speed along the normal at first touch [m/s], 0 when they part.
+        impact_speed: closing speed along the normal at first contact [m/s], 0 when separating.
     """
 
     person: int
@@ -44,11 +44,11 @@ class ContactEvent:
 
 
 def cause_of(normal: Floats, robot_velocity: Floats, person_velocity: Floats) -> str:
-    """Return who caused a contact: ``robot``, ``person`` or ``mutual``.
+    """Return the cause of a contact: ``robot``, ``person`` or ``mutual``.
 
-    With n the unit vector from robot to person, each is charged its own closing speed, ``c_R = max(0, v.n)`` and
-    ``c_i = max(0, -v_i.n)``; the larger one, by more than 0.05 m/s, is the cause. A robot slower
-    than 0.05 m/s never is.
+    With n the unit vector from robot to person, the closing speeds are ``c_R = max(0, v.n)`` and ``c_i = max(0,
+    -v_i.n)``. The larger one is the cause if the difference exceeds 0.05 m/s. A robot slower than 0.05 m/s is never the
+    cause.
 
     >>> n = np.array([1.0, 0.0])
     >>> cause_of(n, np.array([1.0, 0.0]), np.zeros(2)), cause_of(n, np.zeros(2), np.array([-1.0, 0.0]))
@@ -64,11 +64,11 @@ def cause_of(normal: Floats, robot_velocity: Floats, person_velocity: Floats) ->
 def contact_events(
     times: Floats, position: Floats, velocity: Floats, radius: Floats, active: Bools, robot: int
 ) -> tuple[ContactEvent, ...]:
-    """Return the contacts of the robot with everyone, by first touch.
+    """Return the contacts of the robot with all people, by first contact.
 
-    An event begins when the clearance swept between two samples falls below 0 and ends once the clearance at the
-    samples has stayed above 0.05 m for 0.5 s. Velocities at first touch are those of the positions between the two
-    samples; ``velocity`` is used only for who is in contact at its first sample.
+    An event begins when the swept clearance between two samples falls below 0, and ends when the clearance at the
+    samples stays above 0.05 m for 0.5 s. Velocities at first contact are position differences between the two samples;
+    ``velocity`` is used only for contacts at the first sample.
 
     >>> p = np.zeros((3, 2, 2)); p[:, 1, 0] = [0.6, 0.4, 0.6]
     >>> v, r, here = np.zeros((3, 2, 2)), np.array([0.25, 0.25]), np.ones((3, 2), bool)
@@ -113,7 +113,7 @@ def _stretches(times: Floats, swept: Floats, gap: Floats) -> list[tuple[int, int
 def _first_touch(
     times: Floats, position: Floats, velocity: Floats, radius: Floats, active: Bools, robot: int, person: int, k: int
 ) -> tuple[float, Floats, Floats, Floats]:
-    """Return time, normal (robot to person) and both velocities at the first touch, in the step that ends at k."""
+    """Return time, normal (robot to person) and both velocities at first contact, in the step that ends at k."""
     reach = float(radius[robot] + radius[person])
     away = position[k, person] - position[k, robot]
     own, other = velocity[k, robot], velocity[k, person]
@@ -134,7 +134,7 @@ def _first_touch(
 
 
 def _touch(away: Floats, closing: Floats, reach: float) -> float:
-    """Return when the distance ``|away + closing t|`` has shrunk to ``reach``, or when it is smallest (a graze)."""
+    """Return the time at which ``|away + closing t|`` reaches ``reach``, or its minimum (graze)."""
     a, b, c = float(closing @ closing), float(away @ closing), float(away @ away) - reach**2
     if a == 0.0 or b >= 0.0:
         return 0.0

@@ -1,7 +1,7 @@
-"""Distance between predicted and true positions: ADE, FDE, the best of K samples, misses.
+"""Displacement errors: ADE, FDE, best of K samples, and miss rate.
 
-A person counts when the protocol scores them; a future that ends early counts for the steps that exist. ADE is the mean
-over these steps, FDE the distance at the last of them. A sample whose weight is 0 is padding: it counts nowhere.
+Only people scored by the protocol count. A future that ends early counts up to its end. ADE is the mean distance over
+these steps, FDE the distance at the last one. Samples with weight 0 are padding and ignored.
 """
 
 from __future__ import annotations
@@ -30,19 +30,18 @@ Bools = NDArray[np.bool_]
 
 RULES = ("person", "scene", "same")
 MISS = 2.0
-"""A person is missed when no sample ends within this distance [m] of the truth."""
+"""A person is missed if no sample ends within this distance [m] of the true position."""
 SUM = 1e-6
-"""The weights of the samples of a window may miss the sum of 1 by this much."""
+"""Tolerance of the sum of the weights of a window."""
 
 
 def distances(forecast: Forecast, future: Windows) -> tuple[Floats, Bools]:
     """Return the distance to the truth ``[W, K, T, A]`` [m] and which steps count ``[W, T, A]``.
 
-    Steps that do not count have the distance 0. Samples that weigh nothing have theirs too.
+    Steps that do not count have the distance 0. Distances include samples with weight 0.
 
     Raises:
-        InputError: forecast and future do not belong together, a scored person was not predicted, or the weights of
-            the samples are not shares.
+        InputError: forecast and future do not match, a scored person was not predicted, or the weights do not sum to 1.
     """
     check(forecast, future)
     counted = future.present & future.scored[:, None]
@@ -52,24 +51,24 @@ def distances(forecast: Forecast, future: Windows) -> tuple[Floats, Bools]:
 
 
 def ade(forecast: Forecast, future: Windows) -> Floats:
-    """Return the average displacement error ``[W, K, A]`` [m] over the steps that exist.
+    """Return the average displacement error ``[W, K, A]`` [m] over the existing steps.
 
-    It is NaN for who is not scored and for samples that weigh nothing.
+    NaN for people who are not scored and for samples with weight 0.
     """
     return mean_and_final(forecast, *distances(forecast, future))[0]
 
 
 def fde(forecast: Forecast, future: Windows) -> Floats:
-    """Return the displacement error ``[W, K, A]`` [m] at the last step that exists; NaN as in :func:`ade`."""
+    """Return the displacement error ``[W, K, A]`` [m] at the last existing step; NaN as in :func:`ade`."""
     return mean_and_final(forecast, *distances(forecast, future))[1]
 
 
 def best_of(ade: Floats, fde: Floats, rule: str = "person") -> tuple[Floats, Floats]:
-    """Return ADE and FDE ``[W, A]`` [m] of the best of K samples, from those of every sample ``[W, K, A]``.
+    """Return ADE and FDE ``[W, A]`` [m] of the best of K samples, from the errors of all samples ``[W, K, A]``.
 
     Args:
-        ade, fde: errors of every sample, NaN for people who are not scored and for samples that do not count.
-        rule: ``person``: the smallest over the samples for each person, ADE and FDE on their own (Social-STGCNN,
+        ade, fde: errors of all samples; NaN for people who are not scored and for samples with weight 0.
+        rule: ``person``: the smallest over the samples for each person, ADE and FDE separately (Social-STGCNN,
             Trajectron++); ``scene``: the sample with the smallest sum over the people of a window, ADE and FDE on
             their own (SGAN); ``same``: for each person the sample with the smallest ADE, which also gives the FDE
             (TrajNet++).
@@ -86,13 +85,13 @@ def best_of(ade: Floats, fde: Floats, rule: str = "person") -> tuple[Floats, Flo
 
 
 def miss_rate(fde: Floats, limit: float = MISS) -> float:
-    """Return the share of scored people whose (best) FDE ``[W, A]`` is above ``limit`` [m]; NaN when there are none."""
+    """Return the share of scored people whose (best) FDE ``[W, A]`` is above ``limit`` [m]; NaN without people."""
     known = fde[~np.isnan(fde)]
     return float(np.mean(known > limit)) if len(known) else float("nan")
 
 
 def mean_and_final(forecast: Forecast, distance: Floats, counted: Bools) -> tuple[Floats, Floats]:
-    """Return ADE and FDE ``[W, K, A]`` [m] from what :func:`distances` gave."""
+    """Return ADE and FDE ``[W, K, A]`` [m] from the result of :func:`distances`."""
     count = counted.sum(axis=1)[:, None]
     steps = counted.shape[1]
     last = steps - 1 - np.argmax(counted[:, ::-1], axis=1)
@@ -103,7 +102,7 @@ def mean_and_final(forecast: Forecast, distance: Floats, counted: Bools) -> tupl
 
 
 def check(forecast: Forecast, future: Windows) -> None:
-    """Raise :class:`InputError` unless a forecast can be held against a future, see :func:`distances`."""
+    """Raise :class:`InputError` if a forecast does not match a future, see :func:`distances`."""
     W, _, T, A, _ = forecast.position.shape
     if future.present.shape != (W, T, A):
         raise InputError(
@@ -123,8 +122,8 @@ def check(forecast: Forecast, future: Windows) -> None:
     shares = np.all(weight >= 0.0, axis=1) & (np.abs(weight.sum(axis=1) - 1.0) < SUM)
     for window in np.flatnonzero(future.scored.any(axis=1) & ~shares)[:1]:
         raise InputError(
-            f"{forecast.predictor}: the weights of window {window} begin at {weight[window].min():.4g} and add up to"
-            f" {weight[window].sum():.4g}; they must be at least 0 and add up to 1"
+            f"{forecast.predictor}: the weights of window {window} start at {weight[window].min():.4g} and sum to"
+            f" {weight[window].sum():.4g}; they must be at least 0 and sum to 1"
         )
     unseen = future.scored & ~future.present.any(axis=1)
     if np.any(unseen):

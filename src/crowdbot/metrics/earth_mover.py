@@ -1,4 +1,4 @@
-"""The earth mover's distance: how far drawn paths must be moved to become the real ones."""
+"""Earth mover's distance between sets of paths."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ __all__ = ["earth_mover_distance"]
 def earth_mover_distance(real: ArrayLike, drawn: ArrayLike) -> NDArray[np.float64]:
     """Return the earth mover's distance ``[...]`` [m] of equally many real and drawn paths, lower is better.
 
-    With equal numbers and weights, moving earth is pairing each real path with one drawn path; the best pairing is
-    found exactly, and the mean distance of the pairs is returned. The distance of two paths is the mean over the steps,
-    as ADE. Two samples of one distribution are not at 0, the less so the fewer they are: compare at equal numbers.
+    With equal numbers and weights, the distance is the mean over the optimal one-to-one assignment of real to drawn
+    paths. The distance of two paths is the mean over the steps, as in ADE. Two samples of the same distribution have a
+    distance above 0 that decreases with their size: compare only equal numbers.
 
     Args:
         real: ``[..., N, T, 2]`` [m].

@@ -1,4 +1,4 @@
-"""The energy score: how near the samples are to the truth, less how far they are apart."""
+"""Energy score: mean distance of the samples to the truth, minus half their mean distance from each other."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ OVER = ("steps", "path")
 
 @kernel
 def _distance(one: Floats, other: Floats, steps: int, path: bool) -> float:  # pragma: no cover - compiled
-    """Return the distance over the first steps: the mean, or for a path the root of the mean square."""
+    """Return the distance over the first steps: the mean, or for a path the root mean square."""
     total = 0.0
     for t in range(steps):
         dx, dy = one[t, 0] - other[t, 0], one[t, 1] - other[t, 1]
@@ -38,7 +38,7 @@ def _scores(
     """Return the score ``[N]`` of each person of each window."""
     K, T = samples.shape[1], samples.shape[2]
     found = np.zeros(len(window))
-    own = np.empty((K + 1, T, 2))  # the samples that count, then the truth, at the steps that exist
+    own = np.empty((K + 1, T, 2))  # samples with weight, then the truth, at the existing steps
     share = np.empty(K + 1)
     for n in range(len(window)):
         w, a = window[n], person[n]
@@ -61,25 +61,24 @@ def _scores(
 
 
 def energy_score(forecast: Forecast, future: Windows, over: str = "steps") -> Floats:
-    """Return the energy score ``[W, A]`` [m] of weighted samples, lower is better; NaN for who is not scored.
+    """Return the energy score ``[W, A]`` [m] of weighted samples, lower is better; NaN for people who are not scored.
 
-    ``sum_k w_k |x_k - y| - 1/2 sum_k sum_l w_k w_l |x_k - x_l|`` for samples x with weights w and the truth y. Proper:
-    nobody gains, on average, by predicting anything else than what they believe. For one sample it is the distance
-    itself, so with ``steps`` a deterministic forecast scores its ADE, and the two can be compared. The samples are
-    taken as the whole forecast, so more draws of one distribution score a little better: compare at equal numbers.
+    ``sum_k w_k |x_k - y| - 1/2 sum_k sum_l w_k w_l |x_k - x_l|`` for samples x with weights w and the truth y. The
+    score is proper: the true distribution minimises its expectation. For one sample it is the distance; with ``steps``,
+    the score of a deterministic forecast is its ADE. More samples of the same distribution score slightly better:
+    compare only equal numbers of samples.
 
     Args:
-        forecast, future: of the same windows.
-        over: ``steps``: positions at each step, mean over the steps that exist; ``path``: the whole trajectory as one
-            vector, so that it matters which step goes with which; its length is divided by the root of the number of
-            steps, that is ``|.|`` is the root mean square distance over the steps.
+        forecast, future: forecast and future of the same windows.
+        over: ``steps``: positions at each step, mean over the existing steps; ``path``: the whole trajectory as one
+            vector, which includes the correlation of steps; ``|.|`` is the root mean square distance over the steps.
 
-    The work grows with the square of the number of samples.
+    The computing time grows with the square of the number of samples.
 
     Paper: Gneiting, Raftery (2007), doi 10.1198/016214506000001437, section 4.3 with beta = 1.
 
     Raises:
-        InputError: forecast and future do not belong together, or ``over`` is unknown.
+        InputError: forecast and future do not match, or ``over`` is unknown.
 
     >>> import numpy as np
     >>> here = np.ones((1, 1, 1), dtype=bool)
@@ -91,9 +90,9 @@ def energy_score(forecast: Forecast, future: Windows, over: str = "steps") -> Fl
     """
     check(forecast, future)
     if over not in OVER:
-        raise InputError(f"energy score over {over!r}{did_you_mean(over, OVER)}: it is {' or '.join(OVER)}")
+        raise InputError(f"energy score: over {over!r}{did_you_mean(over, OVER)} must be {' or '.join(OVER)}")
     if forecast.samples == 1 and over == "steps":
-        return ade(forecast, future)[:, 0]  # the same, and no kernel has to be loaded for it
+        return ade(forecast, future)[:, 0]  # equal to the ADE; avoids loading a kernel
     found = np.full(future.scored.shape, np.nan)
     window, person = np.nonzero(future.scored)
     samples, weight = np.ascontiguousarray(forecast.position), np.ascontiguousarray(forecast.weight)

@@ -1,6 +1,6 @@
-"""Navigation metrics of one robot, updated record by record. Live runs, recordings and logs use this one class.
+"""NavigationMetrics: incremental navigation metrics of one robot, for live runs, recordings and logs.
 
-Before, a run and its log gave different values for some keys. These values count now:
+Definition of values that depend on the source of the data:
 
 =================================  ====================================================================================
 key                                value
@@ -44,13 +44,13 @@ __all__ = ["NavigationMetrics", "NavigationOutcome"]
 Floats = NDArray[np.float64]
 
 NEAR = 1.0
-"""People closer than this [m] are followed for contacts."""
+"""People closer than this [m] are tracked for contacts."""
 MOVING = 0.05
-"""Above this speed [m/s] the direction of the velocity is a heading."""
+"""Minimum speed [m/s] at which the direction of the velocity defines the heading."""
 
 
 class NavigationOutcome(NamedTuple):
-    """How an episode ended: ``success``, ``collision`` or ``timeout``, and the sample at which that was decided."""
+    """Outcome of an episode: ``success``, ``collision`` or ``timeout``, and the deciding sample."""
 
     name: str
     sample: int
@@ -73,15 +73,15 @@ class _Sample(NamedTuple):
 class NavigationMetrics:
     """Navigation metrics of one robot, updated record by record; see :data:`crowdbot.metrics.NAVIGATION_METRICS`.
 
-    Memory grows by a few numbers for each record.
+    Memory grows by a few numbers per record.
 
     Args:
         robot: id of the robot.
-        radius: its radius [m].
+        radius: radius of the robot [m].
         goal: ``[2]`` position of the goal [m].
         tolerance: distance [m] below which the goal is reached.
         walls: segments ``[N, 4]`` [m].
-        time_limit: [s] after the first record.
+        time_limit: time limit after the first record [s].
 
     >>> metrics = NavigationMetrics(0, 0.3, (1.0, 0.0), tolerance=0.2)
     >>> for k in range(3):
@@ -112,15 +112,15 @@ class NavigationMetrics:
 
     @property
     def outcome(self) -> NavigationOutcome:
-        """The outcome as the records show it; a timeout until it is decided."""
+        """Outcome according to the records; a timeout until decided."""
         return self._decided or NavigationOutcome("timeout", len(self._samples) - 1)
 
     def update(self, states: AgentStates, contact: bool = False) -> None:
         """Add a record. Records after the arrival at the goal or after the time limit do not count.
 
         Args:
-            states: everybody who is present, the robot included.
-            contact: whether the world found a contact of the robot since the record before.
+            states: all agents present, including the robot.
+            contact: whether the world detected a contact of the robot since the previous record.
 
         Raises:
             InputError: the time does not increase, or the robot is absent.
@@ -148,10 +148,10 @@ class NavigationMetrics:
         self._finished = arrived
 
     def result(self, outcome: str | None = None) -> dict[str, float]:
-        """Return every metric of :data:`crowdbot.metrics.NAVIGATION_METRICS` up to now.
+        """Return every metric of :data:`crowdbot.metrics.NAVIGATION_METRICS` so far.
 
         Args:
-            outcome: outcome of the run if it was judged at every time step; by default :attr:`outcome`.
+            outcome: outcome of the run if evaluated at every time step (default: :attr:`outcome`).
 
         Raises:
             InputError: there is no record yet.
@@ -239,7 +239,7 @@ class NavigationMetrics:
 
 
 def _heading(states: AgentStates, own: int) -> float:
-    """Return the heading of the robot, from its velocity if it is unknown; NaN if it does not move either."""
+    """Return the heading of the robot, or of its velocity if unknown; NaN at rest."""
     heading = float(states.heading[own])
     if math.isfinite(heading):
         return heading

@@ -1,9 +1,9 @@
-"""How sure a mean over people is: confidence intervals by the bootstrap, drawn by person and not by window.
+"""Confidence intervals of means over people by the cluster bootstrap.
 
-Windows of one person overlap, so their errors are almost the same number again and again; drawing windows would make
-the interval several times too narrow. Here whole people are drawn with all their windows (the cluster bootstrap,
-Davison, Hinkley (1997), Bootstrap Methods and their Application, section 3.8, doi 10.1017/CBO9780511802843). People who
-walk together still err together, which no interval here knows: in dense crowds it is too narrow rather than too wide.
+Windows of a person overlap, and their errors are strongly correlated; resampling windows would give intervals that are
+several times too narrow. Therefore, people are resampled with all their windows (cluster bootstrap, Davison, Hinkley
+(1997), Bootstrap Methods and their Application, section 3.8, doi 10.1017/CBO9780511802843). Correlations between people
+who walk together are not included; in dense crowds the intervals are rather too narrow.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ RESAMPLES = 1000
 LEVEL = 0.95
 UNKNOWN: Interval = (math.nan, math.nan)
 DRAWS_AT_ONCE = 2_000_000
-"""So many people are drawn at once, however many there are."""
+"""Number of people drawn at once, which limits memory."""
 
 
 @dataclass(frozen=True)
@@ -48,11 +48,11 @@ NAMES = tuple(field.name for field in fields(Intervals))
 
 @dataclass(frozen=True)
 class PersonValues:
-    """Sums over the windows of each of M people: what means are made of, and intervals can be drawn from.
+    """Sums over the windows of each of M people, for means and their intervals.
 
     Fields:
-        id: ``[M]`` identity in the recording; people of several recordings stand one after another.
-        total, count: ``[M, 7]`` sum of the values that are known and their number, columns as in :class:`Intervals`.
+        id: ``[M]`` identity in the recording; people of several recordings are concatenated.
+        total, count: ``[M, 7]`` sum and number of the known values, columns as in :class:`Intervals`.
     """
 
     id: Integers
@@ -61,7 +61,7 @@ class PersonValues:
 
     @classmethod
     def of(cls, id: Integers, values: Sequence[Floats]) -> PersonValues:
-        """Add up values ``[N]`` by the person ``[N]`` they belong to; NaN is no value."""
+        """Add up values ``[N]`` by person ``[N]``; NaN is ignored."""
         known, row = np.unique(id, return_inverse=True)
         there = [~np.isnan(value) for value in values]
         total = [
@@ -72,7 +72,7 @@ class PersonValues:
 
     @classmethod
     def concatenate(cls, parts: Sequence[PersonValues]) -> PersonValues:
-        """Return the people of several recordings together: nobody is in two of them."""
+        """Return the people of several recordings together; recordings share no people."""
         arrays = ([getattr(part, name) for part in parts] for name in ("id", "total", "count"))
         return cls(*map(np.concatenate, arrays))
 
@@ -83,10 +83,10 @@ class PersonValues:
     def minus(self, other: PersonValues, name: str) -> tuple[float, Interval]:
         """Return the difference of a mean to that of another predictor on the same people, and its interval.
 
-        The same people are drawn for both, so that what is hard for everyone cancels out.
+        The same people are drawn for both (paired comparison).
 
         Raises:
-            InputError: the name is unknown, or the others are other people.
+            InputError: the name is unknown, or the people differ.
         """
         if name not in NAMES:
             raise InputError(f"there is no mean of {name!r}, there are {', '.join(NAMES)}")
@@ -106,20 +106,20 @@ def bootstrap_interval(
     """Return the percentile interval (low, high) of a mean over windows, drawn by person.
 
     Args:
-        values: ``[N]``, one for each person and window; NaN is no value.
-        person: ``[N]``, whose value it is. All values of a person are drawn together, as often as the person is.
-        resamples: how many times as many people as there are, are drawn with replacement.
-        level: share of the means of the resamples that lies inside.
-        seed: of the draws.
+        values: values ``[N]``, one per person and window; NaN is ignored.
+        person: person of each value ``[N]``. All values of a person are drawn together.
+        resamples: number of bootstrap samples; each draws all people with replacement.
+        level: confidence level.
+        seed: seed of the draws.
 
-    With less than two people it is (NaN, NaN).
+    The result is (NaN, NaN) for fewer than two people.
 
     Raises:
         InputError: resamples are below 1, or the level is not between 0 and 1.
 
     >>> import numpy as np
     >>> rng = np.random.default_rng(1)
-    >>> own = rng.normal(size=50)  # 50 people, each of whom errs alike in 20 windows
+    >>> own = rng.normal(size=50)  # 50 people with equal errors in 20 windows
     >>> person = np.repeat(np.arange(50), 20)
     >>> by_person = bootstrap_interval(own[person], person)
     >>> by_window = bootstrap_interval(own[person], np.arange(1000))
@@ -154,7 +154,7 @@ def _ratio(total: Floats, count: Floats) -> Floats:
 
 
 def _percentiles(means: Floats, count: Floats, level: float) -> list[Interval]:
-    """Return the interval of every column; unknown where less than two of the people have a value."""
+    """Return the interval of each column; NaN for fewer than two people with values."""
     found = [UNKNOWN] * means.shape[1]
     tail = 50.0 * (1.0 - level)
     for column in np.flatnonzero(np.sum(count > 0.0, axis=0) > 1):

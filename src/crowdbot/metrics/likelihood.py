@@ -1,4 +1,4 @@
-"""How likely the truth was under the samples: the negative logarithm of a kernel density estimate."""
+"""Negative log-likelihood of the truth under a kernel density estimate of the samples."""
 
 from __future__ import annotations
 
@@ -16,33 +16,33 @@ __all__ = ["FLOOR", "kde_nll"]
 Floats = NDArray[np.float64]
 
 FLOOR = -20.0
-"""Logarithms of the density are not let below this [nat], as in the Trajectron and in TrajNet++."""
+"""Lower bound of the log density [nat], as in the Trajectron and in TrajNet++."""
 FLAT = 1e-12
-"""Samples on a line have no density in the plane: smallest over largest eigenvalue of their covariance."""
+"""Minimum ratio of the eigenvalues of the covariance; samples on a line have no density in the plane."""
 EQUAL = 1e-9
-"""Samples that scatter less than this [m] are the same sample."""
+"""Samples with a smaller spread [m] count as equal."""
 NUMBERS_AT_ONCE = 400_000
-"""So many positions are held at once, however many people there are."""
+"""Maximum number of positions in memory at once."""
 
 
 def kde_nll(forecast: Forecast, future: Windows, floor: float = FLOOR) -> Floats:
     """Return the negative log-likelihood ``[W, A]`` [nat] of the true positions under the samples, lower is better.
 
-    At every step a Gaussian kernel is laid on every sample, as ``scipy.stats.gaussian_kde`` does it: its covariance is
-    that of the weighted samples times ``n ** (-1 / 3)``, Scott's rule in the plane, where ``n = 1 / sum(weight ** 2)``
-    is the effective number of samples. The logarithm of the density [m^-2] at the true position is not let below
-    ``floor``, and the mean over the steps that exist is taken.
+    At each step, the density is a sum of Gaussian kernels at the samples, as in ``scipy.stats.gaussian_kde``. The
+    kernel covariance is the covariance of the weighted samples times ``n ** (-1 / 3)`` (Scott's rule in the plane),
+    where ``n = 1 / sum(weight ** 2)`` is the effective number of samples. The logarithm of the density [m^-2] at the
+    true position is limited to at least ``floor`` and averaged over the existing steps.
 
-    A forecast of one sample has no density, nor have samples that are equal or stand on a line: such steps are left out
-    (TrajNet++), and the value is NaN where no step remains, as for who is not scored. It depends on the number of
-    samples: compare at equal numbers (TrajNet++ draws 100, Trajectron++ 2000), and few are a poor estimate. The value
-    has no lower bound, so people who nearly stand can rule the mean; :func:`energy_score` knows none of these troubles.
+    A single sample, equal samples and samples on a line have no density; such steps are left out (TrajNet++). The value
+    is NaN if no step remains, and for people who are not scored. It depends on the number of samples: compare only
+    equal numbers (TrajNet++ uses 100, Trajectron++ 2000). The value has no lower bound, so people nearly at rest can
+    dominate the mean. :func:`energy_score` has none of these limitations.
 
     Papers: Ivanovic, Pavone (2019), The Trajectron, arXiv 1810.05993 (the metric); Scott (1992), doi
     10.1002/9780470316849 (the width).
 
     Raises:
-        InputError: forecast and future do not belong together.
+        InputError: forecast and future do not match.
 
     >>> import numpy as np
     >>> here = np.ones((1, 1, 1), dtype=bool)

@@ -1,4 +1,4 @@
-"""Mahalanobis distance and spread: how far the truth is from the samples in units of their scatter, and the scatter."""
+"""Mahalanobis distance of the truth to the samples (AMD) and spread of the samples (AMV)."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ __all__ = ["mahalanobis"]
 Floats = NDArray[np.float64]
 
 FLAT = 1e-12
-"""Samples on a line have no scatter across it: smallest over largest eigenvalue of their covariance."""
+"""Minimum ratio of the eigenvalues of the covariance; samples on a line have no spread across it."""
 
 
 def mahalanobis(forecast: Forecast, future: Windows) -> tuple[Floats, Floats]:
-    """Return AMD ``[W, A]`` and AMV ``[W, A]`` [m^2] of weighted samples, lower is better; best of K sees neither.
+    """Return AMD ``[W, A]`` and AMV ``[W, A]`` [m^2] of weighted samples, lower is better.
 
-    At every step a normal density is laid through the samples, with their weighted mean and unbiased covariance. AMD is
-    the Mahalanobis distance of the true position to it, mean over the steps that exist: 0 in the middle, about 1.25
-    when the truth comes from this density, more when the samples are too sure or elsewhere. AMV is the largest
-    eigenvalue of the covariance, mean over the same steps: samples that lie everywhere are paid for here. The paper
-    fits a mixture whose number of normal densities is chosen by BIC to 1000 samples; with the usual 20 that is one.
+    At each step, a normal density with the weighted mean and unbiased covariance of the samples is computed. AMD is the
+    mean Mahalanobis distance of the true position over the existing steps: 0 at the mean, about 1.25 if the truth has
+    this distribution, larger for overconfident or displaced samples. AMV is the mean of the largest eigenvalue of the
+    covariance, which penalises widely spread samples. The paper fits a mixture with a number of components chosen by
+    BIC to 1000 samples; with the usual 20 samples this is one component.
 
-    Steps whose samples are equal or stand on a line have no distance and are left out; both are NaN where no step
-    remains, as for who is not scored and for forecasts of one sample.
+    Steps with equal samples or samples on a line are left out. Both values are NaN if no step remains, for people who
+    are not scored, and for forecasts with one sample.
 
     Paper: Mohamed et al. (2022), Social-Implicit, ECCV, arXiv 2203.03057.
 
     Raises:
-        InputError: forecast and future do not belong together.
+        InputError: forecast and future do not match.
 
     >>> here = np.ones((1, 1, 1), dtype=bool)
     >>> future = Windows(np.full((1, 1, 1, 2), 2.0), here, here[:, 0], ~here[:, 0], np.array([[7]]),

@@ -1,4 +1,4 @@
-"""Modes: which of the ways that people may go are found by drawn paths."""
+"""Mode coverage of drawn paths."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ __all__ = ["mode_count", "mode_coverage", "mode_shares"]
 Floats = NDArray[np.float64]
 
 FOUND = 0.25
-"""A mode is found when it has at least this part of an even share."""
+"""A mode is found if it has at least this fraction of an equal share."""
 
 
 def mode_shares(drawn: ArrayLike, modes: ArrayLike, within: float = np.inf) -> Floats:
-    """Return the share of paths that belongs to each mode, ``[..., M]``; what is near to none belongs to none.
+    """Return the share of paths of each mode, ``[..., M]``; paths far from all modes belong to none.
 
     Args:
         drawn: ``[..., K, T, 2]`` [m].
-        modes: ``[..., M, T, 2]`` [m], the middle of each.
+        modes: ``[..., M, T, 2]`` [m], the centre of each mode.
         within: mean distance [m] over the steps within which a path belongs to its nearest mode.
 
     Raises:
-        InputError: the shapes do not fit, or there is no path or mode.
+        InputError: the shapes do not match, or there is no path or mode.
 
     >>> ways = [[[1.0, 0.0]], [[0.0, 1.0]]]
     >>> mode_shares([[[1.0, 0.1]], [[0.9, 0.0]], [[0.0, 1.1]], [[5.0, 5.0]]], ways, within=0.5).tolist()
@@ -36,7 +36,7 @@ def mode_shares(drawn: ArrayLike, modes: ArrayLike, within: float = np.inf) -> F
     fits = paths.ndim >= 3 and paths.ndim == middles.ndim and paths.shape[-2:] == middles.shape[-2:]
     if not fits or paths.shape[:-3] != middles.shape[:-3] or 0 in (*paths.shape, *middles.shape):
         raise InputError(
-            f"paths {list(paths.shape)} and modes {list(middles.shape)} do not fit; they are [..., K, T, 2] and"
+            f"paths {list(paths.shape)} and modes {list(middles.shape)} do not match; they must be [..., K, T, 2] and"
             " [..., M, T, 2], at least one of each"
         )
     away = path_distances(paths, middles)
@@ -45,12 +45,12 @@ def mode_shares(drawn: ArrayLike, modes: ArrayLike, within: float = np.inf) -> F
 
 
 def mode_count(drawn: ArrayLike, modes: ArrayLike, within: float = np.inf) -> NDArray[np.int64]:
-    """Return how many modes are found ``[...]``: those with at least a quarter of an even share of the paths."""
+    """Return the number of found modes ``[...]``: those with at least a quarter of an equal share of the paths."""
     shares = mode_shares(drawn, modes, within)
     return np.asarray((shares >= FOUND / shares.shape[-1]).sum(axis=-1), dtype=np.int64)
 
 
 def mode_coverage(drawn: ArrayLike, modes: ArrayLike, within: float = np.inf) -> Floats:
-    """Return how much of an even spread over the modes is there, ``[...]`` in 0..1: 1 when all have an even share."""
+    """Return the coverage ``[...]`` from 0 to 1: 1 if all modes have equal shares."""
     shares = mode_shares(drawn, modes, within)
     return np.asarray(np.minimum(shares, 1.0 / shares.shape[-1]).sum(axis=-1))

@@ -1,4 +1,4 @@
-"""Motion metrics of a logged robot: path, stops, smoothness.
+"""Motion metrics of a logged robot: path length, stops and smoothness.
 
 A log is sampled at ``times [T]`` [s], increasing; ``position [T, 2]`` [m], ``velocity [T, 2]`` [m/s], ``heading [T]``.
 """
@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 JERK_STEP = 0.1
 """Step [s] at which velocities are differentiated: jerk grows with one over its square."""
 STALL_SPEED = 0.05
-"""A robot slower than this [m/s] stands."""
+"""A robot slower than this [m/s] is at rest."""
 
 
 def path_length(position: Floats) -> float:
@@ -31,7 +31,7 @@ def path_length(position: Floats) -> float:
 
 
 def path_efficiency(position: Floats) -> float:
-    """Return straight distance between both ends over path length, in (0, 1]; NaN for who never moved.
+    """Return straight distance between both ends over path length, in (0, 1]; NaN without motion.
 
     >>> round(path_efficiency(np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 4.0]])), 4)
     0.7143
@@ -43,9 +43,9 @@ def path_efficiency(position: Floats) -> float:
 
 
 def stalled_time(times: Floats, velocity: Floats, speed: float = STALL_SPEED) -> float:
-    """Return how long the robot stood [s]: the time steps at whose end it is slower than ``speed`` [m/s].
+    """Return the time at rest [s]: the sum of time steps at whose end the speed is below ``speed`` [m/s].
 
-    Turning on the spot counts as standing.
+    Turning on the spot counts as rest.
 
     >>> stalled_time(np.array([0.0, 0.5, 1.0]), np.array([[1.0, 0.0], [0.0, 0.0], [1.0, 0.0]]))
     0.5
@@ -54,7 +54,7 @@ def stalled_time(times: Floats, velocity: Floats, speed: float = STALL_SPEED) ->
 
 
 def longest_stall(times: Floats, velocity: Floats, speed: float = STALL_SPEED) -> float:
-    """Return the longest time without a break in which the robot stood [s], counted as in :func:`stalled_time`.
+    """Return the longest continuous time at rest [s], as defined in :func:`stalled_time`.
 
     >>> v = np.array([[0.0, 0.0], [0.0, 0.0], [1.0, 0.0], [0.0, 0.0], [0.0, 0.0]])
     >>> longest_stall(np.arange(5.0), v)
@@ -68,10 +68,10 @@ def longest_stall(times: Floats, velocity: Floats, speed: float = STALL_SPEED) -
 
 
 def jerk(times: Floats, velocity: Floats, step: float = JERK_STEP) -> Floats:
-    """Return the size of the jerk ``[S]`` [m/s3]: second difference of the velocity over ``step`` squared.
+    """Return the magnitude of the jerk ``[S]`` [m/s3]: second difference of the velocity over ``step`` squared.
 
-    The velocity is first read off by straight interpolation every ``step`` [s] (the log's own mean step when that is
-    longer), because a finite difference depends on its step. Fewer than three samples give none.
+    The velocity is first interpolated linearly at every ``step`` [s] (the mean step of the log if longer), because a
+    finite difference depends on its step. The result is empty for fewer than three samples.
 
     >>> t = np.arange(0.0, 1.05, 0.1)
     >>> jerk(t, np.stack([t**2, 0 * t], axis=1)).round(6).max().item()

@@ -51,7 +51,7 @@ NAVIGATION_METRICS: dict[str, tuple[str, str]] = {
     "local_density": ("1/m2", "mean number of people within 2.5 m of the robot's centre / (pi 2.5^2)"),
     "max_local_density": ("1/m2", "its maximum"),
 }
-"""Unit and definition of every key of :func:`navigation_metrics`, in order."""
+"""Unit and definition of each key of :func:`navigation_metrics`, in order."""
 
 
 def outcome(
@@ -66,12 +66,12 @@ def outcome(
     walls: Floats | None = None,
     time_limit: float = math.inf,
 ) -> NavigationOutcome:
-    """Return how an episode ended.
+    """Return the outcome of an episode.
 
-    A collision is a clearance below 0 to a person or (when ``walls [N, 4]`` are given) to a wall, on the straight way
-    between samples; a success is a sample with ``|p - goal| < tolerance`` [m] not later than ``time_limit`` [s] after
-    the first; what comes first counts, and a contact in the time step that reaches the goal comes first. Otherwise it
-    is a timeout, at the last sample within the limit.
+    A collision is a clearance below 0 to a person, or to a wall if ``walls [N, 4]`` are given, on the straight path
+    between samples. A success is a sample with ``|p - goal| < tolerance`` [m] at most ``time_limit`` [s] after the
+    first. The first of these events counts; a contact in the step that reaches the goal is a collision. Otherwise the
+    outcome is a timeout, at the last sample within the limit.
 
     >>> p = np.array([[[0.0, 0.0], [5.0, 5.0]], [[1.0, 0.0], [5.0, 5.0]]])
     >>> outcome(np.arange(2.0), p, np.full(2, 0.3), np.ones((2, 2), bool), 0, np.array([1.1, 0.0]), tolerance=0.2)
@@ -97,22 +97,22 @@ def navigation_metrics(
 ) -> dict[str, float]:
     """Return every metric of :data:`NAVIGATION_METRICS` for one robot in one episode.
 
-    The log counts up to the first sample at the goal, to the time limit, or to its end. Without people, clearances
-    and times to collision are ``inf``; what is not defined is NaN.
+    The log is evaluated up to the first sample at the goal, the time limit, or its end. Without people, clearances and
+    times to collision are ``inf``; undefined values are NaN.
 
     Args:
-        times: ``[T]`` [s], increasing.
+        times: times ``[T]`` [s], increasing.
         position, velocity: ``[T, A, 2]`` [m], [m/s] of robot and people.
-        radius: ``[A]`` [m].
-        active: ``[T, A]`` who is there.
-        robot: index of the robot, there all the time.
-        goal, tolerance: ``[2]`` [m] and the distance [m] below which it is reached.
-        heading: ``[T]`` [rad] of the robot; by default the direction of its velocity while it moves.
+        radius: radii ``[A]`` [m].
+        active: which agents are present ``[T, A]``.
+        robot: index of the robot, which is always present.
+        goal, tolerance: goal ``[2]`` [m] and the distance [m] below which it is reached.
+        heading: heading of the robot ``[T]`` [rad] (default: direction of its velocity).
         walls: segments ``[N, 4]`` [m].
-        time_limit: [s] after the first sample.
+        time_limit: time limit after the first sample [s].
 
     Raises:
-        InputError: shapes do not fit, times do not increase, the robot is absent at some sample or a value is NaN.
+        InputError: shapes do not match, times do not increase, the robot is absent at some sample or a value is NaN.
     """
     _check(times, position, velocity, radius, active, robot)
     return _metrics(
@@ -159,8 +159,8 @@ def _check(times: Floats, position: Floats, velocity: Floats, radius: Floats, ac
     if not 0 <= robot < agents:
         raise InputError(f"navigation metrics: robot = {robot} is not an index of {agents} agents")
     if count == 0 or np.any(np.diff(times) <= 0.0):
-        raise InputError("navigation metrics: times must increase and hold at least one sample")
+        raise InputError("navigation metrics: times must increase and contain at least one sample")
     if not np.all(active[:, robot]):
         raise InputError(f"navigation metrics: robot {robot} is absent at {times[np.argmin(active[:, robot])]} s")
     if not (np.all(np.isfinite(position[active])) and np.all(np.isfinite(velocity[active]))):
-        raise InputError("navigation metrics: a position or velocity of someone who is there is not finite")
+        raise InputError("navigation metrics: a position or velocity of an agent that is present is not finite")

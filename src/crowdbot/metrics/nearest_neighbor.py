@@ -1,4 +1,4 @@
-"""The 1-nearest-neighbour test: can samples be told from the real ones by who stands next to whom?"""
+"""1-nearest-neighbor two-sample test between real and drawn paths."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ __all__ = ["nearest_neighbor_accuracy", "path_distances"]
 Floats = NDArray[np.float64]
 
 TIE = 1e-12
-"""Distances that differ less than this share are equal."""
+"""Relative tolerance of equal distances."""
 
 
 def nearest_neighbor_accuracy(real: ArrayLike, drawn: ArrayLike) -> Floats:
-    """Return how often the nearest other path is of the same kind, ``[...]`` in 0..1; 0.5 is ideal.
+    """Return the leave-one-out accuracy of the 1-nearest-neighbor classifier, ``[...]`` from 0 to 1; 0.5 is ideal.
 
-    Every path, real or drawn, is left out once and named after the nearest one of all others: 1 says that the two kinds
-    can be told apart, 0 that drawn paths are copies of real ones. When several are equally near, the share among them
-    that has the right kind counts. The distance is the mean over the steps, as ADE. With 20 paths of each kind the
-    standard deviation is about 0.1: average over conditions and draws.
+    Each path, real or drawn, is classified by its nearest other path. An accuracy of 1 means that real and drawn paths
+    are distinguishable, 0 that drawn paths are copies of real ones. Among equally near paths, the share of the correct
+    class counts. The distance is the mean over the steps, as in ADE. With 20 paths of each class the standard deviation
+    is about 0.1: average over conditions and draws.
 
     Args:
         real: ``[..., N, T, 2]`` [m].
-        drawn: ``[..., N, T, 2]`` [m], as many.
+        drawn: ``[..., N, T, 2]`` [m], the same number.
 
     Paper: Xu et al. (2018), arXiv 1806.07755; Lopez-Paz, Oquab (2017), arXiv 1610.06545.
 

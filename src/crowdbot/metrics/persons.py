@@ -1,4 +1,4 @@
-"""Errors of every scored person of many windows, one row for each person and window."""
+"""Errors of scored people, one row per person and window."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 MOST_FOR_ENERGY = 100
-"""With more samples the energy score, whose work grows with their square, would take longer than all the rest."""
+"""Maximum number of samples for the energy score, whose computing time grows with their square."""
 
 
 @dataclass(frozen=True)
 class PersonErrors:
-    """Errors of N scored people, one row for each person and window; what is best is that of the best sample.
+    """Errors of N scored people, one row per person and window; errors are those of the best sample.
 
     Fields:
         person: ``[N]`` identity in the recording; the windows of one person overlap.
         ade, fde: ``[N]`` [m].
         distance: ``[N, T]`` [m] of the sample with the best ADE; 0 where there is no true position.
-        exists: ``[N, T]``, where there is one.
-        collided: ``[N]``, share of the samples in which the person comes within 0.2 m of another as predicted.
+        exists: ``[N, T]``, whether there is a true position.
+        collided: ``[N]``, share of the samples in which the person comes within 0.2 m of another predicted person.
         together: ``[N]``, whether the window has another scored person.
-        true_collided: ``[N]``, the same share for others, robots too, where they truly walked.
-        accompanied: ``[N]``, whether anyone else is truly there.
-        nll: ``[N]`` [nat], see :func:`~crowdbot.metrics.kde_nll`; NaN where the samples have no density.
+        true_collided: ``[N]``, the same share with true positions of others, including robots.
+        accompanied: ``[N]``, whether anyone else is present in the ground truth.
+        nll: ``[N]`` [nat], see :func:`~crowdbot.metrics.kde_nll`; NaN if the samples have no density.
         energy: ``[N]`` [m], see :func:`~crowdbot.metrics.energy_score`, over steps; NaN for more than 100 samples.
     """
 
@@ -53,7 +53,7 @@ class PersonErrors:
     energy: Floats
 
     def over_horizon(self) -> Floats:
-        """Return the mean distance ``[T]`` [m] at each step over the people still there; NaN when nobody is."""
+        """Return the mean distance ``[T]`` [m] at each step over the people still present; NaN without people."""
         count = self.exists.sum(axis=0)
         total = self.distance.sum(axis=0)
         return np.where(count > 0, total / np.maximum(count, 1), np.nan)
@@ -91,9 +91,9 @@ def person_errors(forecast: Forecast, future: Windows, rule: str = "person") -> 
 
 
 def error_over_horizon(forecast: Forecast, future: Windows, rule: str = "person") -> Floats:
-    """Return the mean error ``[T]`` [m] at each future step over the people still there; NaN when nobody is.
+    """Return the mean error ``[T]`` [m] at each future step over the people still present; NaN without people.
 
-    Of K samples it follows the one with the best ADE, by person or by scene as ``rule`` says.
+    Of K samples, the one with the best ADE is used, by person or by scene according to ``rule``.
     """
     distance, counted = distances(forecast, future)
     kept = _followed(distance, mean_and_final(forecast, distance, counted)[0], rule)

@@ -28,13 +28,13 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 JUMP = 15.0
-"""What moves faster [m/s] between two samples has left and entered again: nothing was swept."""
+"""A larger speed [m/s] between two samples means that the person left and entered again; nothing is swept."""
 ZONES = {"intimate": 0.45, "personal": 1.2, "social": 3.6}
-"""Outer edge of each proxemic zone [m], doi 10.1086/200975 (Hall 1968), used here from surface to surface."""
+"""Outer edges of the proxemic zones [m], doi 10.1086/200975 (Hall 1968), surface to surface."""
 
 
 def swept_distance(start: Floats, end: Floats) -> Floats:
-    """Return the smallest distance to the origin on the straight way from ``start`` to ``end``, both ``[..., 2]`` [m].
+    """Return the smallest distance to the origin on the straight line from ``start`` to ``end``, both ``[..., 2]`` [m].
 
     >>> float(swept_distance(np.array([-3.0, 0.5]), np.array([3.0, 0.5])))
     0.5
@@ -48,9 +48,9 @@ def swept_distance(start: Floats, end: Floats) -> Floats:
 
 
 def clearance(position: Floats, radius: Floats, active: Bools, robot: int) -> Floats:
-    """Return the clearance of everyone to the robot at each sample, ``[T, A]`` [m].
+    """Return the clearance of all agents to the robot at each sample, ``[T, A]`` [m].
 
-    ``d = |p_i - p| - r_i - r``, negative when they overlap, ``inf`` for the robot itself and for who is absent.
+    ``d = |p_i - p| - r_i - r``, negative for overlap, ``inf`` for the robot itself and for absent agents.
 
     >>> p = np.array([[[0.0, 0.0], [2.0, 0.0]]])
     >>> clearance(p, np.array([0.3, 0.2]), np.ones((1, 2), bool), robot=0).tolist()
@@ -62,10 +62,10 @@ def clearance(position: Floats, radius: Floats, active: Bools, robot: int) -> Fl
 
 
 def swept_clearance(times: Floats, position: Floats, radius: Floats, active: Bools, robot: int) -> Floats:
-    """Return the smallest clearance of everyone to the robot since the sample before, ``[T, A]`` [m].
+    """Return the smallest clearance of all agents to the robot since the previous sample, ``[T, A]`` [m].
 
-    Between two samples both move straight and evenly, so that a contact between samples is not missed. The first
-    sample, and the first of someone who just entered (or jumped, at more than 15 m/s), counts as it stands.
+    Motion between samples is assumed straight and uniform, which detects contacts between samples. The first sample of
+    an agent, also after a jump at more than 15 m/s, is not swept.
 
     >>> p = np.array([[[0.0, 0.0], [1.0, 0.0]], [[1.0, 0.0], [0.0, 0.0]]])
     >>> swept_clearance(np.array([0.0, 0.5]), p, np.array([0.3, 0.2]), np.ones((2, 2), bool), robot=0)[:, 1].tolist()
@@ -84,11 +84,11 @@ def swept_clearance(times: Floats, position: Floats, radius: Floats, active: Boo
 
 
 def wall_clearance(position: Floats, radius: float, walls: Floats) -> Floats:
-    """Return the smallest clearance of a disc to walls since the sample before, ``[T]`` [m].
+    """Return the smallest clearance of a disc to walls since the previous sample, ``[T]`` [m].
 
     Args:
         position: ``[T, 2]`` [m], moving straight between samples.
-        radius: of the disc [m].
+        radius: radius of the disc [m].
         walls: segments ``[N, 4]`` x, y, x, y [m].
 
     >>> wall_clearance(np.array([[0.0, 1.0], [2.0, 1.0]]), 0.3, np.array([[1.0, 0.0, 1.0, 0.5]])).round(3).tolist()
@@ -118,7 +118,7 @@ def proxemic_shares(nearest: Floats) -> dict[str, float]:
     """Return the share of samples whose nearest clearance ``[T]`` [m] falls in each zone, surface to surface.
 
     Intimate below 0.45 m (contact included), personal 0.45 to 1.2 m, social 1.2 to 3.6 m; the rest is public.
-    Hall measured between people's bodies; between centres the zones would be wider by both radii.
+    Hall measured between bodies; between centres, the zones are wider by both radii.
 
     >>> proxemic_shares(np.array([-0.1, 0.5, 2.0, 9.0]))
     {'intimate': 0.25, 'personal': 0.25, 'social': 0.25}
@@ -132,10 +132,10 @@ def proxemic_shares(nearest: Floats) -> dict[str, float]:
 
 
 def time_to_collision(position: Floats, velocity: Floats, radius: Floats, active: Bools, robot: int) -> Floats:
-    """Return when everyone would touch the robot if all kept their velocity, ``[T, A]`` [s].
+    """Return the time to collision of all agents with the robot at constant velocities, ``[T, A]`` [s].
 
-    The smallest t >= 0 with ``|s + w t| = r + r_i`` for relative position s and velocity w; 0 when they overlap,
-    ``inf`` when they never meet, for the robot itself and for who is absent.
+    The smallest t >= 0 with ``|s + w t| = r + r_i`` for relative position s and velocity w; 0 for overlap, ``inf``
+    without a collision, for the robot itself and for absent agents.
 
     >>> p, v = np.array([[[0.0, 0.0], [3.0, 0.0]]]), np.array([[[1.0, 0.0], [-1.0, 0.0]]])
     >>> time_to_collision(p, v, np.array([0.5, 0.5]), np.ones((1, 2), bool), robot=0).tolist()
@@ -155,8 +155,8 @@ def time_to_collision(position: Floats, velocity: Floats, radius: Floats, active
 def local_density(position: Floats, active: Bools, robot: int, reach: float = 2.5) -> Floats:
     """Return the density of people around the robot at each sample, ``[T]`` [1/m2].
 
-    ``N / (pi reach^2)`` with N the people whose centre lies within ``reach`` [m] of the robot's centre; the circle is
-    not cut at walls.
+    ``N / (pi reach^2)`` with N the number of people whose centre is within ``reach`` [m] of the centre of the robot;
+    walls do not clip the circle.
 
     >>> p = np.array([[[0.0, 0.0], [1.0, 0.0], [4.0, 0.0]]])
     >>> local_density(p, np.ones((1, 3), bool), robot=0, reach=2.0).round(4).tolist()

@@ -1,4 +1,4 @@
-"""Models of walking people: how each agent of a scene chooses its next velocity, and where it wants to go."""
+"""Crowd models and goal estimators."""
 
 from . import costs
 from .contract import check_goal, check_model

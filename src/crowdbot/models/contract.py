@@ -1,4 +1,4 @@
-"""The contract of crowd models and goals, as checks for your own ones."""
+"""Contract checks for custom crowd models and goals."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def check_model(model: CrowdModel) -> None:
     """Check that a crowd model keeps its contract on small crowds.
 
     Raises:
-        InputError: the first rule that it breaks.
+        InputError: the first violated rule.
 
     >>> from crowdbot.models import ORCA
     >>> check_model(ORCA())
@@ -58,7 +58,7 @@ def check_goal(goal: Goal) -> None:
     """Check that a goal keeps its contract on small windows.
 
     Raises:
-        InputError: the first rule that it breaks.
+        InputError: the first violated rule.
 
     >>> from crowdbot.models import CurrentDirection
     >>> check_goal(CurrentDirection())
@@ -109,7 +109,7 @@ def _velocity(model: CrowdModel, scene: Scene) -> Floats:
 
 
 def _crowd() -> Scene:
-    """Return 2 environments with 12 agents: walls, an external agent, and one who is absent."""
+    """Return 2 environments with 12 agents, including walls, an external agent and an absent agent."""
     rng = stream(0, "contract")
     grid = np.stack(np.meshgrid(np.arange(4.0), np.arange(3.0)), axis=-1).reshape(1, 12, 2)
     position = np.concatenate([grid, grid]) + rng.uniform(-0.2, 0.2, (2, 12, 2))

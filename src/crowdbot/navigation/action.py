@@ -1,4 +1,4 @@
-"""What a navigator asks a robot to do until its next decision."""
+"""Action: the output of a navigator until its next decision."""
 
 from __future__ import annotations
 

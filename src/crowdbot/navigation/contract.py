@@ -1,4 +1,4 @@
-"""The contract of navigators, as a check for your own ones."""
+"""Contract check for custom navigators."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def check_navigator(navigator: Navigator) -> None:
     """Check that a navigator keeps its contract in a small scene with and without people.
 
     Raises:
-        InputError: the first rule that it breaks.
+        InputError: the first violated rule.
 
     >>> from crowdbot.navigation import Straight
     >>> check_navigator(Straight())
@@ -45,7 +45,7 @@ def _decisions(navigator: Navigator, observations: list[Observation]) -> list[Ac
     for observation in observations:
         action, memory = navigator.decide(observation, memory)
         if not all(math.isfinite(value) for value in action.twist):
-            raise InputError(f"{type(navigator).__name__} gave {action.twist}; its values must be finite")
+            raise InputError(f"{type(navigator).__name__} returned {action.twist}; its values must be finite")
         actions.append(action)
     return actions
 

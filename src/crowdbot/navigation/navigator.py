@@ -65,7 +65,7 @@ class Navigator(ABC):
             answer = (Action(answer), memory)
         if not (isinstance(answer, tuple) and len(answer) == 2 and isinstance(answer[0], Action)):
             wanted = "a Twist" if plain else "(Action, memory)"
-            raise InputError(f"navigator {name} gave a {type(answer).__name__}, it must give {wanted}")
+            raise InputError(f"navigator {name} returned a {type(answer).__name__}, it must return {wanted}")
         action = Action(Twist(*map(float, answer[0].twist)), answer[0].joints)
         if action.joints:
             raise InputError(

@@ -23,16 +23,16 @@ SLOWING_TIME = 0.5
 
 
 class DriveLimits(NamedTuple):
-    """DriveLimits of a drive; unknown accelerations are ``inf``."""
+    """Limits of a drive; unknown accelerations are ``inf``."""
 
     max_speed: float
-    """[m/s]"""
+    """Maximum speed [m/s]."""
     max_turn_rate: float
-    """[rad/s]"""
+    """Maximum turn rate [rad/s]."""
     max_acceleration: float = math.inf
-    """[m/s2]"""
+    """Maximum acceleration [m/s2]."""
     max_turn_acceleration: float = math.inf
-    """[rad/s2]"""
+    """Maximum angular acceleration [rad/s2]."""
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,7 @@ class Observation:
 
     @property
     def bearing(self) -> float:
-        """Direction to the goal in the robot's frame, -pi to pi [rad]; 0 when it is there."""
+        """Direction to the goal in the robot frame, -pi to pi [rad]; 0 at the goal."""
         if self.distance == 0.0:
             return 0.0
         return wrap_angle(math.atan2(self.goal[1] - self.pose[1], self.goal[0] - self.pose[0]) - self.heading)

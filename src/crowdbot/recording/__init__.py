@@ -1,4 +1,4 @@
-"""Recording: episodes as MCAP files. Write, read, repair, replay, branch, export."""
+"""Recording of episodes as MCAP files: write, read, repair, replay, branch and export."""
 
 from .attachments import AttachedFile, SkippedAttachmentWarning, named_files
 from .episode_branch import branch

@@ -1,4 +1,4 @@
-"""Branch: go on from an instant of a recorded episode, with the same or with other values."""
+"""Branch: continue a recorded episode from a given time, with the same or with changed values."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True)
 class _Options:
-    """What a branch does differently, and where it is recorded."""
+    """Changes of a branch, and where it is recorded."""
 
     seed: int | None
     changes: Mapping[str, Any]
@@ -72,30 +72,30 @@ def branch(
     trust: bool = False,
     progress: Progress | None = None,
 ) -> RunSummary | Episode:
-    """Continue an episode from a recorded instant, with the same or with other values.
+    """Continue an episode from a recorded step, with the same or with changed values.
 
-    The trial runs again, without recording, up to the instant; its digest is compared with the recorded digest at
-    every instant on the way. A branch therefore starts in exactly the recorded state, including everything that people,
-    sensors and random streams remember; this takes as long as the original run up to the instant. Without changes,
-    every message and the final digest equal those of the original.
+    The trial is simulated again without recording up to that step, and its digest is compared at each recorded step. A
+    branch therefore starts in exactly the recorded state, including the internal states of people, sensors and random
+    streams. This takes as long as the original run. Without changes, all messages and the final digest equal those of
+    the original.
 
     Args:
-        source: an episode file (also a branch, or the file of a killed run), or an episode in memory.
-        at: a recorded instant [s].
-        seed: new random streams from then on; None continues the old ones.
-        changes: other values by path, as in :class:`crowdbot.trials.Sweep`; they apply from the next step.
+        source: an episode file (also a branch or an incomplete file), or an episode in memory.
+        at: time of a recorded step [s].
+        seed: seed of new random streams; None continues the old ones.
+        changes: changed values by path, see :class:`crowdbot.trials.Sweep`; they apply from the next step on.
         trial: the trial to continue with; ``changes`` apply to it.
         out: file to record to, or a folder for ``episode.mcap``.
         force: whether an existing file may be overwritten.
-        folder, trust: as in :func:`replay`, for files only.
-        progress: called with the completed share, 0 to 1.
+        folder, trust: see :func:`replay`; for files only.
+        progress: called with the completed fraction, 0 to 1.
 
     Returns:
         An :class:`Episode` for an episode in memory, otherwise a :class:`RunSummary`.
 
     Raises:
-        EpisodeError: the file cannot be read, has no such instant, or does not replay to the same bytes.
-        InputError: a change that only applies at the start.
+        EpisodeError: the file cannot be read, has no such step, or does not replay with the same digest.
+        InputError: a changed value only affects the start.
 
     >>> from crowdbot.models import ORCA
     >>> from crowdbot.simulation import simulate
@@ -114,7 +114,7 @@ def branch(
 def _branch_of_file(source: Path, at: float, folder: Path | None, trust: bool, options: _Options) -> RunSummary:
     out = options.out
     if out is not None and episode_path(out).exists() and episode_path(out).resolve() == source.resolve():
-        raise InputError(f"{source} is the episode to branch from; record the branch to another place")
+        raise InputError(f"{source} is the source of the branch; record the branch to another file")
     with unpack_attachments(source, read_metadata(source), folder, trust) as place:
         course = Provenance.of(source, place.folder, trust)
         tally, outcome, simulation = _run(course, at, digests(source), options, EpisodeStatistics, str(source))
@@ -126,7 +126,7 @@ def _branch_of_file(source: Path, at: float, folder: Path | None, trust: bool, o
 
 def _branch_of_episode(episode: Episode, at: float, options: _Options) -> Episode:
     if episode.times[0] > 0.0:
-        raise InputError("this episode is a branch; record the first one and branch from the files")
+        raise InputError("this episode is a branch; record the original to a file and branch from that")
     course = Provenance((ProvenanceSegment(0, episode.trial, episode.seed),))
     log, outcome, simulation = _run(course, at, {}, options, EpisodeLog, f"episode {episode.trial.name!r}")
     warn_of_failure(simulation)
@@ -141,7 +141,7 @@ def _run(
     old = last.trial if options.trial is None else options.trial
     new = apply_values(old, options.changes, place=f"trial {old.name!r} with changes")
     if options.out is not None:
-        trial_xml(new)  # raises now if the trial cannot be recorded
+        trial_xml(new)  # raises if the trial cannot be recorded
     with catch_interrupt() as stop:
         comparison = DigestComparison(EpisodeDigest(), dict(wanted))
         simulation = _there(course, at, comparison, stop, options.progress, name, max(wanted, default=None))
@@ -162,38 +162,38 @@ def _there(
     name: str,
     latest: int | None,
 ) -> Simulation:
-    """Return the simulation at the instant to branch from."""
+    """Return the simulation at the step to branch from."""
     last = course.parts[-1]
     tick = _tick(last, at, name, latest)
     half = None if progress is None else lambda share: progress(0.5 * share)
     simulation = course.simulate_until(comparison, stop, half, until=tick)
     if comparison.differs is not None:
         raise EpisodeError(
-            f"{name} does not replay to the same bytes from {comparison.differs:g} s on, so there is no state to"
-            " branch from; crowdbot replay tells the versions"
+            f"{name} differs from its replay from {comparison.differs:g} s on, so it cannot be branched;"
+            " crowdbot replay compares the versions"
         )
     return simulation
 
 
 def _tick(last: ProvenanceSegment, at: float, name: str, latest: int | None) -> int:
-    """Return the tick of an instant; ``latest`` is the last one that was recorded [ns]."""
+    """Return the tick of a time; ``latest`` is the last recorded time [ns]."""
     period, step = round(last.trial.recording.period * 1e9), round(last.trial.step * 1e9)
     nanoseconds = round(at * 1e9)
     first, end = last.tick * step, last.trial.ticks * step
     end = end if latest is None else max(first, min(end, latest))
     if not first <= nanoseconds <= end:
-        raise EpisodeError(f"{name} has no instant at {at:g} s; it lasts from {first / 1e9:g} s to {end / 1e9:g} s")
+        raise EpisodeError(f"{name} has no step at {at:g} s; it lasts from {first / 1e9:g} s to {end / 1e9:g} s")
     if nanoseconds % period:
         near = round(nanoseconds / period) * period / 1e9
         raise EpisodeError(
-            f"{name} has no instant at {at:g} s: it was recorded every {period / 1e9:g} s; the nearest is {near:g} s"
+            f"{name} has no step at {at:g} s: it was recorded every {period / 1e9:g} s; the nearest is {near:g} s"
         )
     return nanoseconds // step
 
 
 def _check_period(simulation: Simulation, new: Trial, at: float) -> None:
     if simulation.tick % simulation.world.clock.every(new.recording.period):
-        raise InputError(f"a recording period of {new.recording.period:g} s has no instant at {at:g} s")
+        raise InputError(f"a recording period of {new.recording.period:g} s has no step at {at:g} s")
 
 
 def _record(
@@ -204,7 +204,7 @@ def _record(
     options: _Options,
     stop: StopRequest,
 ) -> str:
-    """Record the instant itself and everything after; return the outcome."""
+    """Record the current step and all following ones; return the outcome."""
     out, progress = options.out, options.progress
     frame = comparison.latest
     assert frame is not None

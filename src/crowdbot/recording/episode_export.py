@@ -1,4 +1,4 @@
-"""Export: an episode file as a Parquet or CSV table, written instant by instant in constant memory."""
+"""Export of an episode file as a Parquet or CSV table, step by step in constant memory."""
 
 from __future__ import annotations
 
@@ -21,29 +21,29 @@ __all__ = ["TABLES", "export"]
 
 Columns = dict[str, Any]
 ROWS = 100_000
-"""Number of rows per write."""
+"""Rows per write."""
 
 
 def export(path: Path | str, to: Path | str, table: str = "people", force: bool = False) -> int:
-    """Write a table of an episode file; the ending of the name says how: ``.parquet`` or ``.csv``.
+    """Write a table of an episode file as ``.parquet`` or ``.csv``, by file extension.
 
-    Tables, each with the time [s] and one row for each instant and
+    Tables, with the time [s] and one row per step for each
 
-    * ``people``: everybody, robots too: id, robot (its name or empty), x, y [m], vx, vy [m/s], heading [rad] and
+    * ``people``: person or robot: id, robot (its name or empty), x, y [m], vx, vy [m/s], heading [rad] and
       radius [m];
-    * ``robots``: each robot: its name, x, y, heading, the twist forward [m/s], turn [rad/s] and left [m/s], and what
-      it is asked for (command_forward, ...);
-    * ``scans``: each beam: the sensor, x, y, heading of it in the world, angle [rad], range [m], and hit: the id of who
-      was hit, -1 nothing, -2 a wall;
-    * ``contacts``: each contact in each time step: robot, other, clearance [m];
+    * ``robots``: robot: name, x, y, heading, twist forward [m/s], turn [rad/s] and left [m/s], and command
+      (command_forward, ...);
+    * ``scans``: beam: sensor, its x, y, heading in the world, angle [rad], range [m], and hit: id of the person or
+      robot, -1 nothing, -2 a wall;
+    * ``contacts``: contact: robot, other, clearance [m];
     * ``forces`` and ``collisions``, of the physics world: the two bodies, the body part, force [N], ...;
-    * what other sensors measured, with the sensor and its x, y, z [m] and heading [rad] in the world: ``points`` of
-      clouds (where each beam ended in the world, range, intensity, ring, hit), ``ranges`` of ultrasound and infrared,
+    * readings of other sensors, with the sensor and its x, y, z [m] and heading [rad] in the world: ``points`` of
+      clouds (end of each beam in the world, range, intensity, ring, hit), ``ranges`` of ultrasound and infrared,
       ``inertial``, ``odometry``, ``bumpers`` (each pressed sector), ``tracked`` (each tracked person);
-    * ``pictures`` of colour cameras: size, fx, fy, cx, cy of the lens [pixels], the ids that are seen if the camera
-      reports them, and the file of the image, a PNG in the folder ``NAME-images`` next to the table ``NAME``;
-    * ``images`` of depth cameras: size, the nearest depth [m] and the ids that are seen; the pixels of depth and of
-      labels are in the episode file itself.
+    * ``pictures`` of colour cameras: size, fx, fy, cx, cy of the lens [pixels], visible ids if the camera reports them,
+      and the PNG file of the image, in the folder ``NAME-images`` beside the table ``NAME``;
+    * ``images`` of depth cameras: size, smallest depth [m] and visible ids; pixels of depth and labels are only in the
+      episode file.
 
     Returns:
         The number of rows.
@@ -56,7 +56,7 @@ def export(path: Path | str, to: Path | str, table: str = "people", force: bool 
     if table not in TABLES:
         raise InputError(f"there is no table {table!r}{did_you_mean(table, TABLES)}; tables are {', '.join(TABLES)}")
     if to.suffix not in (".parquet", ".csv"):
-        raise InputError(f"{to} ends in {to.suffix or 'nothing'}; give a name that ends in .parquet or .csv")
+        raise InputError(f"{to} has the extension {to.suffix or 'none'!r}; use .parquet or .csv")
     bodies = _bodies(path)
     pictures = ImageExport(to)
     make = pictures.columns if table == "pictures" else TABLES[table]
@@ -73,7 +73,7 @@ def export(path: Path | str, to: Path | str, table: str = "people", force: bool 
                 draft.unlink(missing_ok=True)
                 pictures.drop()
     except OSError as error:
-        raise EpisodeError(f"{to} cannot be written: {error.strerror}") from None
+        raise EpisodeError(f"cannot write {to}: {error.strerror}") from None
     return count
 
 
@@ -84,7 +84,7 @@ def _bodies(path: Path) -> dict[str, tuple[int, float]]:
         robots = json.loads(read_metadata(path)["robots"])
         return {one["name"]: (int(one["id"]), float(one["radius"])) for one in robots}
     except (ValueError, KeyError, TypeError) as error:
-        raise EpisodeError(f"{path} does not say which robots it has: {error}") from None
+        raise EpisodeError(f"{path} has an invalid list of robots: {error}") from None
 
 
 def _write(batches: Iterator[Columns], draft: Path, suffix: str) -> int:
@@ -109,7 +109,7 @@ def _write(batches: Iterator[Columns], draft: Path, suffix: str) -> int:
 
 
 def _gathered(batches: Iterator[Columns]) -> Iterator[Columns]:
-    """Yield the columns of many instants together; at least once, if only with no rows."""
+    """Yield batches of columns of several steps; at least one, even without rows."""
     held: list[Columns] = []
     rows, told = 0, False
     for batch in batches:
@@ -201,7 +201,7 @@ def _contacts(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Col
 
 
 def _named(kind: type[Any], rows: list[Any], wide: tuple[str, ...] = ()) -> Columns:
-    """Return a column for each field of rows, three for fields with an x, y and z."""
+    """Return a column for each field of rows, and three for vector fields."""
     columns: Columns = {}
     hints = get_type_hints(kind)
     for name in kind._fields:

@@ -1,4 +1,4 @@
-"""Recorded: an episode as it is read from its file, without running anything."""
+"""Reader of episode files."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, eq=False)
 class RecordedEpisode:
-    """What an episode file holds; the fields of :class:`Episode` that a file keeps, under the same names.
+    """Content of an episode file, with the field names of :class:`Episode`.
 
     Fields:
         path: the file.
-        metadata: the records ``crowdbot`` and ``crowdbot.end`` as text: trial (XML), seed, versions, digest, ...
-        complete: whether the run came to its end; otherwise it was killed, and the outcome is ``interrupted``.
-        times: ``[T]`` [s].
+        metadata: metadata records ``crowdbot`` and ``crowdbot.end`` as text: trial (XML), seed, versions, digest, ...
+        complete: whether the file is complete; otherwise the run was killed, and the outcome is ``interrupted``.
+        times: times ``[T]`` [s].
         position, velocity: ``[T, A, 2]`` [m], [m/s]; 0 for absent agents.
         heading: ``[T, A]`` [rad].
         radius: ``[A]`` [m].
@@ -45,14 +45,14 @@ class RecordedEpisode:
         ids: ``[A]``.
         robots: indices of the robots.
         commands: ``[T, R, 3]`` forward [m/s], turn [rad/s], left [m/s].
-        readings: by ``robot/sensor``, everything that was measured; numbers have the 32 bits of those messages that
-            have no more (:mod:`crowdbot.messages.reading_codecs`).
-        scans_by_topic: those of planar laser scanners, by ``robot/sensor``.
+        readings: all readings by ``robot/sensor``; values of 32-bit message fields have that precision
+            (:mod:`crowdbot.messages.reading_codecs`).
+        scans_by_topic: scans of planar laser scanners, by ``robot/sensor``.
         walls: rings ``[N, 2]`` [m].
-        metrics: by name.
-        contacts: of robots, in every time step.
-        forces, collisions: of the physics world, with partner, body part and force.
-        digests: ``[T]`` of the episode up to each instant, as if it had been interrupted there.
+        metrics: metrics by name.
+        contacts: contacts of robots in all time steps.
+        forces, collisions: contact forces and contact events of the physics world.
+        digests: ``[T]`` digest of the episode up to each step, as if interrupted there.
     """
 
     path: Path
@@ -93,12 +93,12 @@ class RecordedEpisode:
 
     @property
     def steps(self) -> int:
-        """Number of time steps done."""
+        """Number of time steps."""
         return int(self.metadata["steps"])
 
     @property
     def outcome(self) -> str:
-        """How the run ended."""
+        """Outcome of the run."""
         return self.metadata["outcome"]
 
     @property
@@ -108,29 +108,34 @@ class RecordedEpisode:
 
     @property
     def digest(self) -> str:
-        """Hash of the episode as it was run, up to its last recorded instant when the run was killed."""
+        """Digest of the run; up to the last recorded step if the run was killed."""
         return self.metadata["digest"]
 
     @property
     def version(self) -> str:
-        """Version of crowdbot that ran it."""
+        """Version of crowdbot that recorded the episode."""
         return self.metadata["version"]
 
     @property
+    def software(self) -> str:
+        """Software that made the episode, such as ``crowdbot 0.1.0``."""
+        return f"crowdbot {self.version}"
+
+    @property
     def scans(self) -> tuple[ScanRow, ...]:
-        """What the first laser scanner of the first robot measured."""
+        """Scans of the first laser scanner of the first robot."""
         return next(iter(self.scans_by_topic.values()), ())
 
     def tracks(self, dt: float = 0.4) -> Trajectories:
-        """Return people and robots every ``dt`` [s] as trajectories, as :meth:`Episode.tracks` does."""
+        """Return people and robots every ``dt`` [s] as trajectories, see :meth:`Episode.tracks`."""
         return tracks_of(self, self.name, dt)
 
 
 def read_episode(path: Path | str) -> RecordedEpisode:
-    """Read an episode file, also of a run that was killed or is still going on.
+    """Read an episode file, also of a killed or running simulation.
 
     Raises:
-        EpisodeError: the file is missing, damaged, or no episode of crowdbot.
+        EpisodeError: the file is missing, damaged, or not an episode of crowdbot.
     """
     path = Path(path)
     with _opened(path) as stream:
@@ -138,17 +143,17 @@ def read_episode(path: Path | str) -> RecordedEpisode:
         with _sentences(path):
             found = list(read_steps(tape))
         known = _known(path, tape.metadata)
-    with _sentences(path, f"does not hold what its record {METADATA!r} says"):
+    with _sentences(path, f"has an invalid metadata record {METADATA!r}"):
         return _assembled(path, known, found)
 
 
 def read_metadata(path: Path | str) -> dict[str, str]:
-    """Return what an episode file says of itself, without its messages; see :attr:`RecordedEpisode.metadata`.
+    """Return the metadata of an episode file without reading its messages; see :attr:`RecordedEpisode.metadata`.
 
-    What only the end of a run can tell (outcome, digest, ...) is missing when the run was killed.
+    Values known only at the end (outcome, digest, ...) are missing if the run was killed.
 
     Raises:
-        EpisodeError: as of :func:`read_episode`.
+        EpisodeError: see :func:`read_episode`.
     """
     path = Path(path)
     with _opened(path) as stream, _sentences(path):
@@ -159,10 +164,10 @@ def read_metadata(path: Path | str) -> dict[str, str]:
 
 
 def iterate_steps(path: Path | str) -> Iterator[RecordedStep]:
-    """Yield what is recorded instant by instant, in constant memory.
+    """Yield the recorded steps in constant memory.
 
     Raises:
-        EpisodeError: as of :func:`read_episode`.
+        EpisodeError: see :func:`read_episode`.
     """
     path = Path(path)
     with _opened(path) as stream, _sentences(path):
@@ -176,24 +181,24 @@ def _opened(path: Path) -> Iterator[BinaryIO]:
     if not path.exists():
         raise EpisodeError(f"there is no episode file {path}")
     if not path.is_file():
-        raise EpisodeError(f"{path} is not a file; give the episode.mcap itself")
+        raise EpisodeError(f"{path} is a folder; give the episode.mcap in it")
     try:
         stream = path.open("rb")
     except OSError as error:
-        raise EpisodeError(f"{path} cannot be read: {error.strerror}") from None
+        raise EpisodeError(f"cannot read {path}: {error.strerror}") from None
     with stream:
         head = stream.read(len(MCAP_MAGIC))
         if not head:
             raise EpisodeError(f"{path} is empty")
         if head != MCAP_MAGIC:
-            raise EpisodeError(f"{path} is not an MCAP file: it begins with {head!r}")
+            raise EpisodeError(f"{path} is not an MCAP file: it starts with {head!r}")
         stream.seek(0)
         yield stream
 
 
 @contextlib.contextmanager
 def _sentences(path: Path, what: str = "is damaged") -> Iterator[None]:
-    """Say in one sentence what is wrong; bytes that are damaged make their readers fail in many ways."""
+    """Convert read errors into one sentence; damaged files cause many kinds of exceptions."""
     try:
         yield
     except (EpisodeError, OSError):
@@ -205,12 +210,14 @@ def _sentences(path: Path, what: str = "is damaged") -> Iterator[None]:
 def _known(path: Path, records: Mapping[str, dict[str, str]]) -> dict[str, str]:
     known = {**records.get(METADATA, {}), **records.get(ENDING, {})}
     if any(key not in known for key in KEYS):
-        raise EpisodeError(f"{path} is an MCAP file but not an episode of crowdbot: it has no record {METADATA!r}")
+        raise EpisodeError(
+            f"{path} is an MCAP file but not an episode of crowdbot: it has no metadata record {METADATA!r}"
+        )
     return known
 
 
 def recorded_failure(known: Mapping[str, str]) -> RunFailure | None:
-    """Return the exception that the metadata of an episode name, if any."""
+    """Return the exception in the metadata of an episode, if any."""
     if "error" not in known:
         return None
     return RunFailure(known["error"], known.get("error_place", "unknown"), float(known.get("error_time", "nan")))
@@ -228,7 +235,7 @@ def _assembled(path: Path, known: dict[str, str], found: Sequence[RecordedStep])
     due = [(moment, moment.people) for moment in found if moment.people is not None]
     complete = all(key in known for key in END_KEYS)
     if not due and not complete:
-        raise EpisodeError(f"{path} holds no recorded instant: the run was killed before it began")
+        raise EpisodeError(f"{path} has no recorded steps: the run was killed before the first one")
     robots = json.loads(known["robots"])
     places = [int(robot["id"]) for robot in robots]
     if complete:
@@ -291,7 +298,7 @@ class _Arrays:
         )
 
     def put(self, k: int, people: AgentStates) -> None:
-        """Put people in at an instant."""
+        """Add people at a step."""
         if np.any(people.ids < 0):
             raise ValueError(f"a person has the id {people.ids.min()}")
         self.position[k, people.ids], self.velocity[k, people.ids] = people.position, people.velocity
@@ -299,6 +306,6 @@ class _Arrays:
         self.active[k, people.ids] = True
 
     def put_robot(self, k: int, place: int, radius: float, state: Any) -> None:
-        """Put a robot in at an instant."""
+        """Add a robot at a step."""
         self.position[k, place], self.velocity[k, place] = (state.x, state.y), (state.vx, state.vy)
         self.heading[k, place], self.radius[place], self.active[k, place] = state.heading, radius, True

@@ -1,4 +1,4 @@
-"""Ending: what a run that was killed could not write any more, from what it did write; and the summary of its file."""
+"""Repair of the files of killed runs: outcome, metrics and file summary."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from crowdbot.core import EpisodeError, InputError, Walls, release_stale_lock
-from crowdbot.data import MCAP_MAGIC, McapError, McapReader, has_summary
+from crowdbot.data import MCAP_MAGIC, McapReader, has_summary
 from crowdbot.metrics import NavigationMetrics
 from crowdbot.simulation import robot_metrics
 
@@ -21,10 +21,10 @@ __all__ = ["EpisodeEnd", "repair"]
 
 
 class EpisodeEnd:
-    """Gathers what the record at the end would say of a run that was interrupted at its last recorded instant.
+    """Computes the end metadata of a run as if it was interrupted at its last recorded step.
 
     Args:
-        known: the record at the beginning.
+        known: metadata at the start of the file.
     """
 
     def __init__(self, known: Mapping[str, str]) -> None:
@@ -48,7 +48,7 @@ class EpisodeEnd:
         self.touching: set[int] = set()
 
     def take(self, moment: RecordedStep) -> None:
-        """Take an instant."""
+        """Add a step."""
         self.count = max(self.count, *(1 + who for who in moment.largest_ids()), 0)
         names = {name for one in moment.contacts for name in (one.robot, one.other)}
         self.touching |= {body[0] for name, body in self.bodies.items() if name in names}
@@ -61,7 +61,7 @@ class EpisodeEnd:
             self.touching = set()
 
     def metadata(self) -> dict[str, str]:
-        """Return the record."""
+        """Return the end metadata."""
         assert self.last is not None
         names = [one["name"] for one in self.robots]
         return {
@@ -74,16 +74,16 @@ class EpisodeEnd:
 
 
 def repair(path: Path | str) -> float | None:
-    """Give the file of a run that was killed its end: what the run would have written when interrupted, and a summary.
+    """Complete the file of a killed run: add the end metadata of an interrupted run and the file summary.
 
-    Nothing that was recorded is changed; a torn record at the end is cut off.
+    Recorded data are not changed; an incomplete record at the end is removed.
 
     Returns:
-        The time [s] of the last recorded instant; None when the file has its end and nothing was done.
+        Time [s] of the last recorded step; None if the file is already complete.
 
     Raises:
-        EpisodeError: the file is damaged, no episode of crowdbot, or cannot be written.
-        InputError: the run is still writing it.
+        EpisodeError: the file is damaged, not an episode of crowdbot, or cannot be written.
+        InputError: the run is still in progress.
     """
     path = Path(path)
     try:
@@ -100,13 +100,13 @@ def repair(path: Path | str) -> float | None:
                 ending = ending or EpisodeEnd(tape.metadata.get(METADATA, {}))
                 ending.take(moment)
             if ending is None or ending.last is None:
-                raise EpisodeError(f"{path} holds no recorded instant: the run was killed before it began")
+                raise EpisodeError(f"{path} has no recorded steps: the run was killed before the first one")
             added = {} if END_KEYS[0] in tape.metadata.get(ENDING, {}) else {ENDING: ending.metadata()}
             finish(stream, added)
             return ending.last.time
     except OSError as error:
-        raise EpisodeError(f"{path} cannot be repaired: {error.strerror}") from None
-    except (McapError, KeyError, ValueError, IndexError, AttributeError) as error:
-        if isinstance(error, EpisodeError | InputError):
-            raise
+        raise EpisodeError(f"cannot repair {path}: {error.strerror}") from None
+    except (EpisodeError, InputError):
+        raise
+    except Exception as error:  # damaged bytes make their readers fail in many ways
         raise EpisodeError(f"{path} is damaged: {type(error).__name__}: {str(error)[:80]}") from error

@@ -1,4 +1,4 @@
-"""Replay: run a recorded episode again and compare."""
+"""Replay: simulate a recorded episode again and compare the digests."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ __all__ = ["Replay", "replay"]
 
 @dataclass(frozen=True)
 class Replay:
-    """What came out of running a recorded episode again.
+    """Result of a replay.
 
     Fields:
-        path: of the episode.
-        trial, seed: what was run.
-        recorded, replayed: digest of the recording and of the new run.
-        outcomes: of the recording and of the new run.
-        recorded_versions, versions: of crowdbot, Python, numpy and numba, then and now.
-        differs: the first recorded instant [s] at which they differ; None when it is not known or there is none.
-        complete: whether the recording came to its end; one that was killed is compared as far as it goes.
+        path: the episode.
+        trial, seed: the trial and its seed.
+        recorded, replayed: digests of the recording and of the new run.
+        outcomes: outcomes of the recording and of the new run.
+        recorded_versions, versions: versions of crowdbot, Python, numpy and numba of both runs.
+        differs: time [s] of the first recorded step that differs; None if equal or unknown.
+        complete: whether the recording is complete; an incomplete one is compared up to its last step.
         failures: the exceptions that ended the recording and the new run.
-        changed: files of code that have other bytes than the recorded ones, and were trusted.
+        changed: trusted code files that differ from the recorded ones.
     """
 
     path: Path
@@ -48,12 +48,17 @@ class Replay:
     failures: tuple[RunFailure | None, RunFailure | None] = (None, None)
 
     @property
+    def software(self) -> str:
+        """Software that made the episode, such as ``crowdbot 0.1.0``."""
+        return f"crowdbot {self.recorded_versions['version']}"
+
+    @property
     def equal(self) -> bool:
-        """Whether both digests are equal: every recorded array, reading, command and the outcome."""
+        """Whether both digests are equal."""
         return self.recorded == self.replayed
 
     def as_dict(self) -> dict[str, Any]:
-        """Return what ``crowdbot replay --json`` prints."""
+        """Return the output of ``crowdbot replay --json``."""
         return {
             "episode": str(self.path),
             "trial": self.trial,
@@ -61,6 +66,7 @@ class Replay:
             "equal": self.equal,
             "recorded": self.recorded,
             "replayed": self.replayed,
+            "software": self.software,
             "outcome": self.outcomes[0],
             "replayed_outcome": self.outcomes[1],
             "recorded_versions": self.recorded_versions,
@@ -73,21 +79,20 @@ class Replay:
         }
 
     def __str__(self) -> str:
-        """Return one or two sentences for people."""
-        what = f"{self.path}: {self.trial} with seed {self.seed}"
-        if not self.complete:
-            what += ", killed before its end,"
-        told = f"; {', '.join(self.changed)} has other bytes than the recorded code" if self.changed else ""
+        """Return a report in one or two sentences."""
+        killed = "" if self.complete else ", killed before its end"
+        what = f"{self.path}: {self.trial} with seed {self.seed} (made with {self.software}{killed})"
+        told = f"; {', '.join(self.changed)} differs from the recorded code" if self.changed else ""
         recorded, replayed = self.failures
         if recorded is not None:
             told += f"; the recorded run ended with an error: {recorded}"
         if replayed is not None and replayed != recorded:
             told += f"; the replay ended with an error: {replayed}"
         if self.equal:
-            return f"{what} replays to the same bytes, digest {self.recorded}{told}"
+            return f"{what} replays with the same digest {self.recorded}{told}"
         other = [f"{n} {v} then, {self.versions[n]} now" for n, v in self.recorded_versions.items()
                  if v != self.versions[n]]  # fmt: skip
-        why = f"it was written with other versions: {'; '.join(other)}" if other else "the versions are the same"
+        why = f"it was recorded with other versions: {'; '.join(other)}" if other else "the versions are equal"
         since = "" if self.differs is None else f" from {self.differs:g} s on"
         return f"{what} does NOT replay{since}: recorded digest {self.recorded}, replayed {self.replayed}; {why}{told}"
 
@@ -99,27 +104,28 @@ def replay(
     trust: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> Replay:
-    """Run the trial of an episode file again, with its seed, and compare the digests.
+    """Simulate the trial of an episode file again, with its seed, and compare the digests.
 
-    An episode that was interrupted or ended with an error is run for as many steps as it has.
+    An episode that was interrupted or ended with an error is simulated for the recorded number of steps.
 
     Args:
-        path: of the episode.
-        folder: where files that the trial names lie (default: the folder of the episode). Code runs from there when
-            it has the recorded bytes. Data are those that were recorded, which the episode holds.
-        trust: whether other code may run, that which the episode holds included, and whether files may lie outside
-            that folder, where they must have the recorded bytes.
-        progress: called with the completed share, 0 to 1.
+        path: the episode.
+        folder: folder of the files of the trial (default: the folder of the episode). Code runs from there if it is
+            identical to the recorded code. Data files are taken from the episode.
+        trust: whether to run other code, including code stored in the episode, and to use files outside that folder
+            (which must be identical to the recorded ones).
+        progress: called with the completed fraction, 0 to 1.
 
     Raises:
-        EpisodeError: the file cannot be read, or a file of its trial is missing, other than recorded, or not trusted.
-        TrialError: the trial in it cannot be read by this version.
+        EpisodeError: the file cannot be read, or a file of its trial is missing, differs from the recorded one, or is
+            not trusted.
+        TrialError: this version cannot read the trial in it.
     """
     path = Path(path)
     known, wanted = read_metadata(path), digests(path)
     complete = all(key in known for key in END_KEYS)
     if not (complete or wanted):
-        raise EpisodeError(f"{path} holds no recorded instant: the run was killed before it began")
+        raise EpisodeError(f"{path} has no recorded steps: the run was killed before the first one")
     recorded = known if complete else known | _ended(known, wanted)
     comparison = DigestComparison(EpisodeDigest(), wanted)
     with unpack_attachments(path, known, folder, trust) as place, catch_interrupt() as stop:
@@ -147,6 +153,6 @@ def replay(
 
 
 def _ended(known: dict[str, str], wanted: dict[int, str]) -> dict[str, str]:
-    """Return how a run ended that was killed: at its last recorded instant."""
+    """Return the outcome of a replay that is interrupted at the last recorded step."""
     last = max(wanted)
     return {"digest": wanted[last], "outcome": "interrupted", "steps": str(last // int(known["step_ns"]))}

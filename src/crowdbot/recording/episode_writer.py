@@ -1,4 +1,4 @@
-"""Recorder: an episode as one MCAP file of ROS 2 messages that also holds the trial, the seed and the versions."""
+"""Recorder: writes an episode as an MCAP file of ROS 2 messages, with trial, seed and versions."""
 
 from __future__ import annotations
 
@@ -39,36 +39,36 @@ LATCHED = (
     f"  deadline: {FOREVER}\n  lifespan: {FOREVER}\n"
     f"  liveliness: 1\n  liveliness_lease_duration: {FOREVER}\n  avoid_ros_namespace_conventions: false\n"
 )
-"""Quality of service of fixed frames, for late subscribers in ROS (read by rosbag2)."""
+"""Quality of service of static frames, for late subscribers in ROS (read by rosbag2)."""
 APART = 500_000_000
-"""Simulated time between two writes [ns]; the bytes of the file do not depend on wall time."""
+"""Simulated time between two writes [ns]; the content of the file does not depend on wall time."""
 
 
 class Recorder:
-    """Writes the step records of a run to a file that can be read at any time, also after the run was killed.
+    """Writes the step records of a run to a file that is readable at any time, also after the process is killed.
 
     Topics: ``/clock``, ``/tf`` (``map`` to each robot), ``/tf_static`` (each robot to its sensors), ``/people``,
     ``/crowd/markers``, ``/crowdbot/digest``, for each robot ``/<robot>/odom``, ``/<robot>/cmd_vel`` and
-    ``/<robot>/<sensor>`` (which message for which sensor: :mod:`crowdbot.messages`), and ``/crowdbot/contacts``
-    whenever a robot touches somebody or a wall; in the physics world ``/crowdbot/forces`` and
-    ``/crowdbot/collisions`` too. Every stamp is simulated time.
+    ``/<robot>/<sensor>`` (message types of sensors: :mod:`crowdbot.messages`), and ``/crowdbot/contacts``
+    for contacts of a robot with people or walls; in the physics world ``/crowdbot/forces`` and
+    ``/crowdbot/collisions`` too. All time stamps are simulated time.
 
-    The file appears with the first recorded instant, in place of one that was there, and grows every half second of
-    simulated time. Use as a context: when it ends without :meth:`complete`, the file is left as a killed run leaves
-    it; before the first instant nothing is left behind, not even folders it made.
+    The file is created, or replaced, at the first recorded step and grows every half second of simulated time. Use it
+    as a context manager: without :meth:`complete`, the file is left incomplete; before the first step, no file and no
+    new folder remains.
 
     Args:
-        path: of the file.
-        tally: of the run; it receives each instant before the recorder.
-        origin: what the run branched from, as the metadata keeps it.
-        begin: tick of the first instant.
-        earlier: the trials that it branched from, whose files it keeps too.
+        path: the file.
+        tally: statistics of the run; they receive each step before the recorder.
+        origin: metadata of the episode that the run branched from.
+        begin: tick of the first step.
+        earlier: trials that it branched from, whose files are stored, too.
         force: whether an existing file may be overwritten.
 
     Raises:
         EpisodeError: the file cannot be written.
         InputError: the trial cannot be written as XML, the file exists and ``force`` is false, or another run is
-            writing it.
+            writing to it.
 
     Warns:
         SkippedAttachmentWarning: files that the trial refers to are not stored.
@@ -95,7 +95,7 @@ class Recorder:
         self.made: list[Path] = []
         self.tape: McapWriter | None = None
         self.last = (0, "")
-        """Steps until the last recorded instant, and the digest of an episode that ends there."""
+        """Number of steps until the last recorded step, and the digest of an episode that ends there."""
         self._markers_every = round(self.trial.recording.markers * 1e9)
         start = begin * round(self.trial.step * 1e9)
         self._markers_due = -(-start // self._markers_every) * self._markers_every
@@ -109,7 +109,7 @@ class Recorder:
         ]
 
     def __enter__(self) -> Recorder:
-        """Make the folder and lock the file."""
+        """Create the folder and lock the file."""
         try:
             self._make_folder(self.path.parent)
             if not os.access(self.path.parent, os.W_OK):
@@ -120,7 +120,7 @@ class Recorder:
             raise
         except OSError as error:
             self._clear()
-            raise EpisodeError(f"{self.path} cannot be written: {error.strerror}; give another place") from None
+            raise EpisodeError(f"cannot write {self.path}: {error.strerror}; use another file") from None
         self.tape = McapWriter(self.path, "ros2", f"crowdbot {versions()['version']}")
         self.tape.metadata(METADATA, self._metadata())
         for file, place in self.files:
@@ -131,14 +131,14 @@ class Recorder:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Leave what has been written; remove what is empty."""
+        """Keep the written data; remove empty files."""
         if self.tape is not None:
             self.tape.close(finished=False)
         self._lock.close()
         self._clear()
 
     def take(self, frame: StepRecord) -> None:
-        """Write an instant."""
+        """Write a step."""
         first = self.trial.people
         now, make = frame.nanoseconds, self.messages
         self._write("/clock", make.clock(now), now)
@@ -163,7 +163,7 @@ class Recorder:
             self._flush()
 
     def complete(self, outcome: str, steps: int, failure: RunFailure | None = None) -> None:
-        """Write the outcome and finish the file; an interrupted run ends at the last recorded instant."""
+        """Write the outcome and finish the file; an interrupted run ends at the last recorded step."""
         assert self.tape is not None
         interrupted = outcome == "interrupted"
         ending = {
@@ -180,7 +180,7 @@ class Recorder:
         try:
             self.tape.close(finished=True)
         except OSError as error:
-            raise EpisodeError(f"{self.path} cannot be written: {error.strerror}") from None
+            raise EpisodeError(f"cannot write {self.path}: {error.strerror}") from None
         self.tape = None
 
     def _scene(self, frame: StepRecord, first: int) -> None:
@@ -195,7 +195,7 @@ class Recorder:
             self._put("/crowd/markers", MARKERS, markers(now, scene, frame.ids, self._goals), now)
 
     def _fixed(self, frame: StepRecord) -> None:
-        """Write where sensors sit, at every instant, so each instant is self-contained."""
+        """Write the frames of sensors at each step, which makes each step self-contained."""
         rows = list(self._mounts)
         for robot, mount, reading in frame.readings:
             topic = f"{robot.name}/{mount.name}"
@@ -231,14 +231,14 @@ class Recorder:
         try:
             self.tape.message(self.channels[topic], nanoseconds, data)
         except OSError as error:
-            raise EpisodeError(f"{self.path} cannot be written: {error.strerror}") from None
+            raise EpisodeError(f"cannot write {self.path}: {error.strerror}") from None
 
     def _flush(self) -> None:
         assert self.tape is not None
         try:
             self.tape.flush()
         except OSError as error:
-            raise EpisodeError(f"{self.path} cannot be written: {error.strerror}") from None
+            raise EpisodeError(f"cannot write {self.path}: {error.strerror}") from None
 
     def _metadata(self) -> dict[str, str]:
         robots = [

@@ -1,4 +1,4 @@
-"""Exported pictures: the colour images of an episode as PNG files, in a folder next to the table that names them."""
+"""Export of the colour images of an episode as PNG files, in a folder beside their table."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ def folder_of(table: Path) -> Path:
 
 
 class ImageExport:
-    """Writes images while their table is made, to a folder of another name until all are there.
+    """Writes images to a temporary folder while their table is written.
 
     Args:
-        table: the file of the table.
+        table: file of the table.
     """
 
     def __init__(self, table: Path) -> None:
@@ -40,7 +40,7 @@ class ImageExport:
         self.draft = table.with_name(f".{table.name}.{os.getpid()}.images")
 
     def columns(self, moment: RecordedStep, bodies: Mapping[str, tuple[int, float]]) -> dict[str, Any]:
-        """Write the images of an instant, and return the rows of the table with their files."""
+        """Write the images of a step and return the rows of the table with their files."""
         rows = READING_TABLES["pictures"](moment, bodies)
         files = [
             self._written(topic, reading) for topic, reading in moment.readings.items() if isinstance(reading, RgbImage)
@@ -48,18 +48,18 @@ class ImageExport:
         return {**rows, "file": np.array(files, dtype=object)}
 
     def finish(self) -> None:
-        """Give the images their folder; others that lie in it stay."""
+        """Move the images to their folder; other files in it are kept."""
         if self.draft.is_dir():
             self.folder.mkdir(exist_ok=True)
             for file in sorted(self.draft.iterdir()):
                 file.replace(self.folder / file.name)
 
     def drop(self) -> None:
-        """Remove what is not finished."""
+        """Remove unfinished images."""
         shutil.rmtree(self.draft, ignore_errors=True)
 
     def _written(self, topic: str, picture: RgbImage) -> str:
-        """Write an image, named by its sensor and its time [ns], and return its name as seen from the table."""
+        """Write an image named by sensor and time [ns], and return its path relative to the table."""
         from PIL import Image
 
         name = f"{re.sub(r'[^A-Za-z0-9_]+', '-', topic)}-{round(picture.time * 1e9):013d}.png"

@@ -1,8 +1,8 @@
-"""McapWriter: writes an MCAP file that is valid after every write, also if the process is killed.
+"""McapWriter: writes MCAP files that are valid after every write, even if the process is killed.
 
-Messages are gathered in a chunk. Each write appends the chunk, its index and a short end without a summary over the end
-of the write before. So the file always opens; only the chunk that is being gathered can be lost. A file that is
-finished has the summary and the indexes that make other tools fast.
+Messages are collected in a chunk. Each write replaces the file footer by the chunk, its index and a new footer without
+a summary. The file can therefore always be opened; only the current chunk can be lost. A finished file has the summary
+and the indexes for fast access.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from crowdbot.data import MCAP_MAGIC, McapOpcode, McapReader, read_attachment
 __all__ = ["McapWriter", "finish"]
 
 LARGE = 4 << 20
-"""A chunk should not hold more bytes."""
+"""Maximum size of a chunk [bytes]."""
 
 
 def _bytes(*records: McapRecord) -> bytes:
@@ -52,11 +52,11 @@ SHORT_END = _bytes(DataEnd(0), Footer(0, 0, 0)) + MCAP_MAGIC
 
 
 class McapWriter:
-    """Writes an MCAP file, which appears at the first :meth:`flush`, in place of one that was there.
+    """Writes an MCAP file, created or replaced at the first :meth:`flush`.
 
     Args:
-        path: of the file; the folder must be there.
-        profile, library: of the header.
+        path: the file; its folder must exist.
+        profile, library: fields of the header.
     """
 
     def __init__(self, path: Path, profile: str, library: str) -> None:
@@ -71,20 +71,20 @@ class McapWriter:
         self._channels = 0
 
     def schema(self, name: str, text: str) -> int:
-        """Return the number of a message type."""
+        """Return the id of a message type."""
         if name not in self._schemas:
             self._schemas[name] = len(self._schemas) + 1
             self._before += _bytes(Schema(self._schemas[name], text.encode(), "ros2msg", name))
         return self._schemas[name]
 
     def channel(self, topic: str, schema: int, quality: str = "") -> int:
-        """Return the number of a new channel; ``quality`` is that of ROS 2 (YAML, as rosbag2 keeps it)."""
+        """Return the id of a new channel; ``quality`` is the quality of service in ROS 2 (YAML, as in rosbag2)."""
         self._channels += 1
         self._before += _bytes(Channel(self._channels, topic, "cdr", {"offered_qos_profiles": quality}, schema))
         return self._channels
 
     def attachment(self, name: str, data: bytes) -> None:
-        """Add a file; its times are 0 to keep the bytes reproducible."""
+        """Add an attachment; its times are 0 for reproducible content."""
         self._before += _bytes(Attachment(0, 0, name, "application/octet-stream", data))
 
     def metadata(self, name: str, values: Mapping[str, str]) -> None:
@@ -99,11 +99,11 @@ class McapWriter:
 
     @property
     def large(self) -> bool:
-        """Whether so much is gathered that it should be written before it is due."""
+        """Whether the current chunk is large enough to be written early."""
         return len(self._chunk) > LARGE
 
     def flush(self) -> None:
-        """Write everything that was added."""
+        """Write all pending data."""
         data = self._before + self._packed()
         self._before, self._index = b"", {}
         self._chunk.clear()
@@ -112,7 +112,7 @@ class McapWriter:
             self.end += len(data)
 
     def close(self, finished: bool) -> None:
-        """Close the file, with its summary when it is finished; without, it is left as a killed run leaves it."""
+        """Close the file. If ``finished``, write the summary; otherwise leave it incomplete."""
         stream, self.stream = self.stream, None
         if stream is not None:
             with stream:
@@ -120,7 +120,7 @@ class McapWriter:
                     finish(stream)
 
     def _packed(self) -> bytes:
-        """Return the chunk and the index of its messages."""
+        """Return the chunk and its message index."""
         if not self._chunk:
             return b""
         import zstandard
@@ -155,7 +155,7 @@ class McapWriter:
 
 @dataclass
 class _Layout:
-    """What lies where in the data of a file."""
+    """Positions of records in a file."""
 
     records: dict[int, dict[int, bytes]] = field(
         default_factory=lambda: {McapOpcode.SCHEMA: {}, McapOpcode.CHANNEL: {}}
@@ -166,7 +166,7 @@ class _Layout:
     counts: dict[int, int] = field(default_factory=dict)
 
     def take(self, kind: int, place: int, body: bytes) -> None:
-        """Note a record."""
+        """Add a record."""
         if kind in self.records:
             (number,) = struct.unpack_from("<H", body)
             self.records[kind][number] = struct.pack("<BQ", kind, len(body)) + body
@@ -190,7 +190,7 @@ class _Layout:
 
     @property
     def statistics(self) -> Statistics:
-        """How much there is."""
+        """Statistics of the file."""
         return Statistics(
             attachment_count=len(self.attachments),
             channel_count=len(self.records[McapOpcode.CHANNEL]),
@@ -205,7 +205,7 @@ class _Layout:
 
 
 def finish(stream: BinaryIO, more: Mapping[str, Mapping[str, str]] | None = None) -> None:
-    """Give a file that :class:`McapWriter` wrote a summary in place of its short, torn or missing end.
+    """Write the summary of a file of :class:`McapWriter`, replacing an incomplete or missing end.
 
     Args:
         stream: open for reading and writing.
@@ -233,7 +233,7 @@ def finish(stream: BinaryIO, more: Mapping[str, Mapping[str, str]] | None = None
 
 
 def _summary(layout: _Layout, start: int) -> bytes:
-    """Return everything that follows the data, which ends at ``start``."""
+    """Return the content after the data, which end at ``start``."""
     groups = {
         Opcode.SCHEMA: b"".join(layout.records[McapOpcode.SCHEMA].values()),
         Opcode.CHANNEL: b"".join(layout.records[McapOpcode.CHANNEL].values()),
@@ -253,7 +253,7 @@ def _summary(layout: _Layout, start: int) -> bytes:
 
 
 def _write(stream: BinaryIO, data: bytes) -> None:
-    """Write all; a stream without a buffer may take a part."""
+    """Write all data; an unbuffered stream may write only a part."""
     rest = memoryview(data)
     while rest:
         rest = rest[stream.write(rest) :]

@@ -1,4 +1,4 @@
-"""What the writer and the reader of an episode file agree on."""
+"""Names and formats shared by the writer and the reader of episode files."""
 
 from __future__ import annotations
 
@@ -27,23 +27,25 @@ __all__ = [
 ]
 
 METADATA = "crowdbot"
-"""Name of the metadata record that stands at the beginning."""
+"""Name of the metadata record at the start."""
 ENDING = "crowdbot.end"
-"""Name of the metadata record at the end; the file of a run that was killed has none."""
+"""Name of the metadata record at the end; missing in files of killed runs."""
 KEYS = ("trial", "trial_name", "seed", "version", "walls", "robots")
-"""What the record at the beginning must hold, each as text."""
+"""Required keys of the record at the start (text values)."""
 END_KEYS = ("digest", "outcome", "steps", "people", "metrics")
-"""What the record at the end must hold; in format 1 one record held everything, and stood at the end."""
+"""Required keys of the record at the end. In format 1, a single record at the end had all keys."""
 FORMAT = "2"
 DIGEST = "/crowdbot/digest"
-"""Topic of the digest up to each recorded instant, as it is when the run is interrupted there."""
+"""Topic of the digest up to each recorded step, as if interrupted there."""
 CONTACTS = "/crowdbot/contacts"
 """Topic of the contacts of robots."""
 
 
 def versions() -> dict[str, str]:
-    """Return the versions that an episode depends on."""
-    door = importlib.import_module("crowdbot")  # the front door opens on this room, so it is not imported above
+    """Return the versions of the packages that affect an episode."""
+    door = importlib.import_module(
+        "crowdbot"
+    )  # crowdbot imports this package, so it cannot be imported at module level
     return {
         "version": str(door.__version__),
         "python": platform.python_version(),
@@ -58,7 +60,7 @@ def heading_of(quaternion: Any) -> float:
 
 
 def as_json(value: Any) -> str:
-    """Return JSON; numbers that JSON does not know are null (NaN) and the words ``inf`` and ``-inf``.
+    """Return JSON; NaN is written as null, infinity as ``inf`` and ``-inf``.
 
     >>> as_json({"a": float("inf"), "b": [1.5, float("nan")]})
     '{"a": "inf", "b": [1.5, null]}'
@@ -67,7 +69,7 @@ def as_json(value: Any) -> str:
 
 
 def from_json(text: str) -> dict[str, float]:
-    """Return the numbers by name that :func:`as_json` has written.
+    """Return the numbers by name from JSON of :func:`as_json`.
 
     >>> from_json('{"a": "inf", "b": null, "c": 1.5}')
     {'a': inf, 'b': nan, 'c': 1.5}

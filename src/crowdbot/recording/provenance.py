@@ -1,4 +1,4 @@
-"""Provenance: trials, seeds and branch times from which an episode can be simulated again."""
+"""Provenance: trials, seeds and branch times of an episode, from which it can be simulated again."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["DigestComparison", "Provenance", "ProvenanceSegment", "digests"]
 
 @dataclass(frozen=True)
 class ProvenanceSegment:
-    """A trial and a seed that count from a tick on."""
+    """A trial and a seed that apply from a tick on."""
 
     tick: int
     trial: Trial
@@ -29,10 +29,10 @@ class ProvenanceSegment:
 
 
 class DigestComparison:
-    """Compares the digest at every recorded instant with what was recorded.
+    """Compares the digest at each recorded step with the recorded digest.
 
     Attributes:
-        differs: the first instant [s] at which they are not the same, None when there is none yet.
+        differs: time [s] of the first step that differs, or None.
     """
 
     def __init__(self, digest: EpisodeDigest, wanted: dict[int, str]) -> None:
@@ -41,7 +41,7 @@ class DigestComparison:
         self.latest: StepRecord | None = None
 
     def take(self, frame: StepRecord) -> None:
-        """Compare an instant."""
+        """Compare a step."""
         self.digest.take(frame)
         if frame.due:
             self.latest = frame
@@ -52,17 +52,17 @@ class DigestComparison:
 
 @dataclass(frozen=True)
 class Provenance:
-    """The parts of an episode, the first from tick 0; it was recorded from the beginning of the last."""
+    """Segments of an episode, the first from tick 0. The recording starts with the last segment."""
 
     parts: tuple[ProvenanceSegment, ...]
 
     @classmethod
     def of(cls, path: Path, folder: Path | None = None, trust: bool = False) -> Provenance:
-        """Read how a recorded episode came about.
+        """Read the provenance of a recorded episode.
 
         Raises:
             EpisodeError: the file cannot be read.
-            TrialError: a trial in it cannot be read by this version.
+            TrialError: this version cannot read a trial in it.
         """
         known = read_metadata(path)
         place = f"{path} (trial, written by crowdbot {known['version']})"
@@ -75,12 +75,12 @@ class Provenance:
             rows = [(int(one["tick"]), str(one["trial"]), int(one["seed"])) for one in origin]
             rows.append((int(known.get("begin", "0")), known["trial"], int(known["seed"])))
         except (ValueError, TypeError, KeyError) as error:
-            raise EpisodeError(f"{path} does not say what it branched from: {error}") from None
+            raise EpisodeError(f"{path} has an invalid record of its origin: {error}") from None
         return cls(tuple(ProvenanceSegment(tick, parsed(xml), seed) for tick, xml, seed in rows))
 
     @property
     def origin(self) -> list[dict[str, Any]]:
-        """What the metadata of an episode keep of the parts before the last."""
+        """Metadata of the segments before the last."""
         return [{"tick": part.tick, "trial": trial_xml(part.trial), "seed": part.seed} for part in self.parts[:-1]]
 
     def simulate_until(
@@ -90,16 +90,16 @@ class Provenance:
         progress: Callable[[float], None] | None = None,
         until: int | None = None,
     ) -> Simulation:
-        """Run everything before the last part, without recording, and return the simulation as the last part begins.
+        """Simulate all segments before the last, without recording, and return the simulation at its start.
 
         Args:
             sink: receives the step records.
             stop: interrupts the run when set.
-            progress: called with the completed share, 0 to 1.
-            until: continue with the last part up to this tick.
+            progress: called with the completed fraction, 0 to 1.
+            until: continue with the last segment up to this tick.
 
         Raises:
-            EpisodeError: the run ends before.
+            EpisodeError: the run ends earlier.
         """
         first = self.parts[0]
         simulation = Simulation(first.trial, first.seed)
@@ -119,7 +119,7 @@ def _on(
     stop: StopRequest,
     progress: Callable[[float], None] | None,
 ) -> None:
-    """Go on to a tick."""
+    """Continue to a tick."""
     running = SimulationRun(simulation, [sink])
     told = -1
     while simulation.tick < end:
@@ -137,7 +137,7 @@ def _on(
 
 
 def digests(path: Path) -> dict[int, str]:
-    """Return the recorded digest at every recorded instant [ns]; none in files of format 1.
+    """Return the recorded digests by time [ns]; empty for files of format 1.
 
     Raises:
         EpisodeError: the file cannot be read.
@@ -150,6 +150,6 @@ def digests(path: Path) -> dict[int, str]:
             for heard in McapReader(stream).messages():
                 if heard.topic.topic == DIGEST:
                     found[heard.stamp] = str(messages.decode_message(heard.data, heard.topic.kind).data)
-    except Exception as error:  # damaged bytes make their readers fail in many ways; all mean the same to the user
+    except Exception as error:  # damaged files cause many kinds of exceptions
         raise EpisodeError(f"{path} is damaged: {type(error).__name__}: {str(error)[:80] or 'no details'}") from error
     return found

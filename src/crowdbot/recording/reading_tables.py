@@ -1,4 +1,4 @@
-"""Tables of sensor readings: the columns of each class of readings, for :func:`crowdbot.recording.export`."""
+"""Tables of sensor readings for :func:`crowdbot.recording.export`."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ def _kind(name: str) -> Any:
 
 
 def _table(kind: type[Reading], rows: Callable[[Any], Columns], names: tuple[str, ...]) -> Callable[..., Columns]:
-    """Return what makes the rows of an instant of every sensor that gives this class of readings."""
+    """Return a function that creates the rows of a step from all readings of a class."""
 
     def columns(moment: RecordedStep, bodies: Mapping[str, tuple[int, float]]) -> Columns:
         found: dict[str, list[Any]] = {name: [] for name in ("time", "sensor", *PLACE, *names)}
@@ -155,4 +155,4 @@ def _table(kind: type[Reading], rows: Callable[[Any], Columns], names: tuple[str
 
 
 READING_TABLES: dict[str, Callable[..., Columns]] = {name: _table(*row) for name, row in TABLES.items()}
-"""By name: what makes the columns of an instant."""
+"""Functions that create the columns of a step, by table name."""

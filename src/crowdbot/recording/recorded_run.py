@@ -1,4 +1,4 @@
-"""Run a trial and record it: to an episode in memory, to a file, or both; free, or stepped from outside."""
+"""Functions that run a trial and record it, in memory or to a file."""
 
 from __future__ import annotations
 
@@ -40,27 +40,26 @@ def run(
     clock: Clock | None = None,
     force: bool = False,
 ) -> Episode:
-    """Run a trial; see :mod:`crowdbot.simulation.simulation` for the order of a step.
+    """Run a trial; the order of a step is described in :mod:`crowdbot.simulation.simulation`.
 
-    Contacts and arrivals are judged in every step; the run then ends at the next recorded instant, so that instants
-    are evenly spaced. The first Ctrl-C ends it there too: the episode so far has the outcome ``interrupted`` and is
-    kept, in the file too. A second one raises :class:`KeyboardInterrupt` and leaves the file as ``kill`` does: it
-    opens, and at most the last second of simulated time is missing.
+    Contacts and arrivals are evaluated in every step; the run ends at the next recorded step. The first Ctrl-C ends the
+    run at the next recorded step with the outcome ``interrupted``. A second one raises :class:`KeyboardInterrupt`; the
+    file is then incomplete but readable, without at most the last second of simulated time.
 
-    An exception in a navigator, sensor or crowd model ends the run too: the episode has the outcome ``error`` and
-    names the exception and its place in ``failure``, and a :class:`~crowdbot.simulation.RunFailureWarning` is issued.
+    An exception in a navigator, sensor or crowd model also ends the run. The episode then has the outcome ``error`` and
+    the exception in ``failure``, and a :class:`~crowdbot.simulation.RunFailureWarning` is issued.
 
     Args:
-        trial: what to run.
-        seed: of everything random; None is the trial's own.
-        out: file to record to, or a folder for ``episode.mcap``; it can be read while the run goes on.
-        progress: called with the completed share, 0 to 1.
+        trial: the trial.
+        seed: random seed (default: the seed of the trial).
+        out: file to record to, or a folder for ``episode.mcap``; the file can be read during the run.
+        progress: called with the completed fraction, 0 to 1.
         clock: :class:`~crowdbot.core.PacedClock` for real time; None runs as fast as possible.
         force: whether an existing episode file may be overwritten.
 
     Raises:
-        TrialError: the trial is impossible; every problem is named, and nothing is written.
-        InputError: ``out`` exists and ``force`` is false, or another run is writing it.
+        TrialError: the trial is impossible; the exception lists all problems, and nothing is written.
+        InputError: ``out`` exists and ``force`` is false, or another run is writing to it.
 
     >>> from crowdbot.models import ORCA
     >>> episode = run(Trial(name="empty", duration=1.0, crowd=ORCA()))
@@ -82,7 +81,7 @@ def record(
     clock: Clock | None = None,
     force: bool = False,
 ) -> RunSummary:
-    """Run a trial as :func:`run` does, but keep no arrays: memory does not grow with the length of the run.
+    """Run a trial like :func:`run`, but without arrays: memory does not grow with the duration.
 
     >>> from crowdbot.models import ORCA
     >>> record(Trial(name="empty", duration=1.0, crowd=ORCA())).outcome
@@ -127,7 +126,7 @@ def open_run(
     bridges: Sequence[Bridge] = (),
     force: bool = False,
 ) -> Iterator[SimulationRun]:
-    """Open a trial to be stepped from outside; when the context ends before the run does, it was interrupted.
+    """Open a run that the caller advances; leaving the context before its end interrupts it.
 
     >>> from crowdbot.models import ORCA
     >>> with open_run(Trial(name="empty", duration=1.0, crowd=ORCA())) as running:
@@ -152,11 +151,11 @@ def open_run(
 
 
 def episode_path(out: Path | str) -> Path:
-    """Return the file to write: ``out`` itself when it is called .mcap, otherwise episode.mcap in it."""
+    """Return the output file: ``out`` if its extension is .mcap, otherwise ``episode.mcap`` in it."""
     path = Path(out)
     file = path if path.suffix == ".mcap" else path / "episode.mcap"
     if file.is_dir():
-        raise InputError(f"{file} is a folder; give the name of a file, or of the folder for episode.mcap")
+        raise InputError(f"{file} is a folder; give a file name, or the folder for episode.mcap")
     if file.parent.exists() and not file.parent.is_dir():
-        raise InputError(f"{file.parent} is a file, so no episode can be written in it; give a folder")
+        raise InputError(f"{file.parent} is a file; give a folder for the episode")
     return file

@@ -1,4 +1,4 @@
-"""Moments: what an episode file holds, instant by instant."""
+"""Recorded steps of an episode file."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ Floats = NDArray[np.float64]
 
 
 class RecordedContact(NamedTuple):
-    """A contact: when [s], the robot, the touched body (an id, a robot or ``wall``), the smallest clearance [m]."""
+    """A recorded contact: time [s], robot, other body (an id, a robot or ``wall``) and smallest clearance [m]."""
 
     time: float
     robot: str
@@ -46,7 +46,7 @@ class RecordedContact(NamedTuple):
 
 
 class RobotState(NamedTuple):
-    """A robot: place [m], heading [rad], velocity [m/s] in the world, and the twist in its own frame."""
+    """State of a robot: position [m], heading [rad], velocity [m/s] in the world, and twist in its own frame."""
 
     x: float
     y: float
@@ -58,18 +58,18 @@ class RobotState(NamedTuple):
 
 @dataclass
 class RecordedStep:
-    """One instant of a file.
+    """A recorded step.
 
     Fields:
         nanoseconds: simulated time.
-        people: the people present, without robots; None when only readings or contacts were due.
-        robots: by name.
-        commands: by name of the robot: forward [m/s], turn [rad/s], left [m/s].
-        readings: by ``robot/sensor``; none in files of crowdbot 0.4 and before.
-        scans: those of planar laser scanners, by ``robot/sensor``.
-        forces, collisions: of the physics world: of the step that ended at this instant, and those that are over.
-        contacts: of the step that ended at this instant.
-        digest: of the episode up to here, as if it were interrupted here; empty in files of format 1.
+        people: the people present, without robots; None if only readings or contacts were due.
+        robots: robots by name.
+        commands: commands by robot name: forward [m/s], turn [rad/s], left [m/s].
+        readings: readings by ``robot/sensor``; none in files of crowdbot 0.4 and earlier.
+        scans: scans of planar laser scanners, by ``robot/sensor``.
+        forces, collisions: contact forces of this step, and contact events that ended, in the physics world.
+        contacts: contacts of this step.
+        digest: digest of the episode as if it was interrupted here; empty in files of format 1.
     """
 
     nanoseconds: int
@@ -89,7 +89,7 @@ class RecordedStep:
         return self.nanoseconds / 1e9
 
     def largest_ids(self) -> set[int]:
-        """Return the largest id of people that this instant names, if any."""
+        """Return the largest id of people in this step, if any."""
         seen = [] if self.people is None else [int(self.people.ids.max(initial=-1))]
         hits = [getattr(reading, "hit", None) for reading in self.readings.values()]
         hits += [scan.hit for scan in self.scans.values()]
@@ -99,7 +99,7 @@ class RecordedStep:
         """Return people and robots together.
 
         Args:
-            robots: id and radius [m] by name.
+            robots: id and radius [m] of robots by name.
         """
         people = self.people
         assert people is not None
@@ -118,10 +118,10 @@ class RecordedStep:
 
 
 def read_steps(tape: McapReader) -> Iterator[RecordedStep]:
-    """Yield the instants of a file.
+    """Yield the steps of a file.
 
     Raises:
-        McapError: the bytes are not those that were written; other errors when they mean nothing.
+        McapError: the file is damaged; invalid content raises other errors.
     """
     from crowdbot.messages import Messages
 
@@ -158,7 +158,7 @@ def _moment(stamp: int, messages: list[tuple[str, Any]]) -> RecordedStep:
 def _take(
     moment: RecordedStep, poses: dict[str, tuple[str, float, float, float]], topic: str, message: Any, sensors: set[str]
 ) -> None:
-    """Take a message that is no reading."""
+    """Process a message that is not a reading."""
     robot = topic.strip("/").rpartition("/")[0]
     kind = message.__msgtype__
     if topic == "/people":

@@ -1,4 +1,4 @@
-"""Rendering: images and films of the cameras of a trial."""
+"""Images and videos from the cameras of a trial."""
 
 from .camera_images import SMOOTH, RenderedImage, RenderRequest, camera_names, render_images
 from .image_writer import ImageWriter, color_segmentation

@@ -1,4 +1,4 @@
-"""Images of a camera while a trial runs."""
+"""Images of a camera during a run of a trial."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from crowdbot.trials import OVERVIEW, Camera, Mount, Trial, check_trial, overvie
 __all__ = ["RenderRequest", "RenderedImage", "camera_names", "render_images"]
 
 SMOOTH = 0.04
-"""Default time between two images of a film [s], rounded to time steps."""
+"""Default time between two images of a video [s], rounded to time steps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,11 +26,11 @@ class RenderedImage:
     """One image.
 
     Fields:
-        time: simulated [s].
+        time: simulated time [s].
         rgb: ``[H, W, 3]`` red, green, blue from 0 to 255.
-        depth: ``[H, W]`` [m] along the axis of the camera, infinite for nothing; None unless asked for.
-        segmentation: ``[H, W]`` id of the person or robot; -1 nothing, -2 wall, -3 floor, -4 prop; None unless asked
-            for.
+        depth: ``[H, W]`` [m] along the axis of the camera, infinite without a surface; None if not requested.
+        segmentation: ``[H, W]`` id of the person or robot; -1 background, -2 wall, -3 floor, -4 prop; None if not
+            requested.
     """
 
     time: float
@@ -40,9 +40,9 @@ class RenderedImage:
 
 
 class RenderRequest(NamedTuple):
-    """When images are made: from ``begin`` to ``end`` [s], ``rate`` for each second [Hz].
+    """Times of images: from ``begin`` to ``end`` [s] at a ``rate`` [Hz].
 
-    Without an end there is one image; without a rate about 25 a second, as the time step allows.
+    Without an end, there is one image. The default rate is about 25 Hz, depending on the time step.
     """
 
     begin: float = 0.0
@@ -51,7 +51,7 @@ class RenderRequest(NamedTuple):
 
 
 def camera_names(trial: Trial) -> tuple[str, ...]:
-    """Return the cameras of a trial: its own, ``overview``, and those of its robots as ``robot/sensor``.
+    """Return the cameras of a trial: its cameras, ``overview``, and cameras of robots as ``robot/sensor``.
 
     >>> from crowdbot.trials import load_trial
     >>> camera_names(load_trial("frontal"))
@@ -72,18 +72,18 @@ def render_images(
     segmentation: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> Iterator[RenderedImage]:
-    """Run a trial and yield what a camera sees.
+    """Run a trial and yield images of a camera.
 
     Args:
-        trial: without sweeps.
-        camera: see :func:`camera_names`; None is the first of the trial, or the overview.
-        take: when.
-        seed: of everything random; None is the trial's own.
-        depth, segmentation: whether these are made too.
-        progress: called with the completed share, 0 to 1.
+        trial: the trial, without sweeps.
+        camera: see :func:`camera_names`; default: the first camera of the trial, or the overview.
+        take: times of the images.
+        seed: random seed (default: the seed of the trial).
+        depth, segmentation: whether to render these images, too.
+        progress: called with the completed fraction, 0 to 1.
 
     Raises:
-        InputError: there is no such camera or no way to draw, the run is over before the first image, or ends with an
+        InputError: the camera is unknown, no OpenGL backend works, or the run ends before the first image or with an
             exception.
         MissingExtra: mujoco is not installed.
 
@@ -108,14 +108,14 @@ def render_images(
             if progress is not None:
                 progress(simulation.tick / max(1, last))
         if simulation.failure is not None:
-            raise InputError(f"{trial.name} cannot be rendered: the trial ended with an error: {simulation.failure}")
+            raise InputError(f"cannot render {trial.name}: the trial ended with an error: {simulation.failure}")
         if simulation.tick < tick:
             break
         yield lens.shot()
     if simulation.tick < first:
         time = simulation.world.clock.time
-        raise InputError(f"{trial.name} was over at {time:g} s ({running.outcome}); take an earlier time than"
-                         f" {take.begin:g} s")  # fmt: skip
+        raise InputError(f"{trial.name} ended at {time:g} s ({running.outcome}), before the image at"
+f" {take.begin:g} s; give an earlier time")  # fmt: skip
     if progress is not None:
         progress(1.0)
 
@@ -124,31 +124,29 @@ def _ticks(simulation: Simulation, take: RenderRequest) -> tuple[int, int, int]:
     clock, lasts = simulation.world.clock, simulation.trial.duration
     for value in (take.begin, take.begin if take.end is None else take.end):
         if not 0.0 <= value <= lasts:
-            raise InputError(
-                f"there is no image at {value:g} s: {simulation.trial.name} lasts from 0 to {lasts:g} s; give a time"
-                " in between"
-            )
+            raise InputError(f"there is no image at {value:g} s: {simulation.trial.name} lasts from 0 to {lasts:g} s")
     first = round(take.begin / clock.dt)
     if take.end is None:
         return first, first, 1
     if take.end < take.begin:
-        raise InputError(f"the film ends at {take.end:g} s, before it begins at {take.begin:g} s; give a later end")
+        raise InputError(f"the end of the video ({take.end:g} s) must be after its start ({take.begin:g} s)")
     if take.rate is None:
         return first, round(take.end / clock.dt), max(1, math.ceil(SMOOTH / clock.dt - 1e-9))
     if not 0.0 < take.rate < math.inf:
-        raise InputError(f"{take.rate:g} images a second must be finite and above 0")
+        raise InputError(f"the rate {take.rate:g} Hz must be finite and above 0")
     try:
         return first, round(take.end / clock.dt), clock.every(1.0 / take.rate)
     except InputError:
         steps = max(1, round(1.0 / (take.rate * clock.dt)))
         raise InputError(
-            f"{take.rate:g} images a second: {1.0 / take.rate:g} s is not a whole number of time steps of"
-            f" {clock.dt:g} s; the nearest that is one is {1.0 / (steps * clock.dt):g} images a second"
+            f"the rate {take.rate:g} Hz gives a period of {1.0 / take.rate:g} s, which is not a multiple of the "
+            f"time step"
+            f" {clock.dt:g} s; the nearest possible rate is {1.0 / (steps * clock.dt):g} Hz"
         ) from None
 
 
 def _check_drawing() -> None:
-    """Fail before the run if nothing can be drawn."""
+    """Check before the run that rendering works."""
     import_optional("mujoco", "an image of a trial", "sim")
 
 
@@ -157,25 +155,25 @@ def _looks(mount: Mount) -> bool:
 
 
 class _Lens:
-    """A camera at work."""
+    """A camera of a running simulation."""
 
     def __init__(self, simulation: Simulation, name: str, seed: int, depth: bool, segmentation: bool) -> None:
         self.simulation, self.depth, self.segmentation = simulation, depth, segmentation
         self.rng = stream(seed, "render", name)
-        self.carrier: RobotRuntime | None = None
+        self.runtime: RobotRuntime | None = None
         own = {camera.name: camera for camera in simulation.trial.cameras}
         robot, _, self.sensor = name.partition("/")
         if self.sensor:
-            self.carrier = next(one for one in simulation.carriers if one.robot.name == robot)
+            self.runtime = next(one for one in simulation.robots if one.robot.name == robot)
             return
         scene = simulation.world.scene
         self.camera: Camera = own[name] if name in own else overview(
             simulation.trial.stage, scene.position[0, scene.active[0]])  # fmt: skip
-        self.agent = next((c.agent for c in simulation.carriers if c.robot.name == self.camera.robot), None)
+        self.agent = next((c.agent for c in simulation.robots if c.robot.name == self.camera.robot), None)
 
     def shot(self) -> RenderedImage:
-        """Return what it sees now."""
-        rgb, depth, who = self._by_sensor() if self.carrier else self._standing()
+        """Return the current image."""
+        rgb, depth, who = self._by_sensor() if self.runtime else self._standing()
         ids = self.simulation.ids
         named = None if who is None else np.where(who >= 0, ids[np.maximum(who, 0)], who)
         return RenderedImage(self.simulation.world.clock.time, rgb, depth, named)
@@ -190,15 +188,15 @@ class _Lens:
         )
 
     def _by_sensor(self) -> tuple[Any, Any, Any]:
-        assert self.carrier is not None
+        assert self.runtime is not None
         around = self.simulation.around
-        probe = next(one for one in self.carrier.probes if one.mount.name == self.sensor)
+        probe = next(one for one in self.runtime.probes if one.mount.name == self.sensor)
         sensor: Any = probe.mount.sensor
         camera = sensor if isinstance(sensor, RGBCamera) else RGBCamera(
             width=sensor.width, height=sensor.height, field_of_view=sensor.field_of_view, distortion=sensor.distortion,
-            near=max(0.05, 0.25 * sensor.range_min),  # without the shell of the head around the lens
+            near=max(0.05, 0.25 * sensor.range_min),  # clip the housing around the lens
         )  # fmt: skip
-        pose, studio = probe.pose(self.carrier.agent, around), around.studio
+        pose, studio = probe.pose(self.runtime.agent, around), around.studio
         picture = camera.read(around.flat, pose, self.rng, studio)
         if not (self.depth or self.segmentation):
             return picture.rgb[0], None, None

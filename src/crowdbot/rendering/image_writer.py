@@ -1,4 +1,4 @@
-"""Images and videos as files: PNG, GIF, WebP, MP4, or a folder of numbered PNGs."""
+"""Writer of images and videos: PNG, JPEG, GIF, WebP, MP4, or a folder of numbered PNG files."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ __all__ = ["FILMS", "IMAGES", "ImageWriter", "color_segmentation", "painted_dept
 IMAGES = (".png", ".jpg", ".webp")
 FILMS = (".mp4", ".gif", ".webp")
 FARTHEST = 20.0
-"""Films of depth are black from here on [m]."""
+"""Depth [m] shown as black in videos."""
 LABELS = {-1: 0, -2: 1, -3: 2, -4: 3}
-"""Numbers in the PNG of a segmentation: nothing, wall, floor, prop; then 4 and the id of people and robots."""
+"""Values in the PNG of a segmentation: background, wall, floor, prop; persons and robots are 4 plus their id."""
 
 
 class ImageWriter:
     """Writes images to files; a file appears complete or not at all.
 
     Args:
-        path: a file with one of the endings :data:`IMAGES` (one shot) or :data:`FILMS`, or a folder.
-        film: whether there are several shots.
-        rate: of a film [Hz].
-        force: whether existing images and films may be overwritten.
+        path: a file with an extension of :data:`IMAGES` (one image) or :data:`FILMS`, or a folder.
+        film: whether to write a video.
+        rate: frame rate of a video [Hz].
+        force: whether existing files may be overwritten.
 
     Raises:
         InputError: the file name extension is unknown, the folder does not exist, or the file exists and ``force`` is
             false.
-        MissingExtra: an MP4 is asked for and av is not installed.
+        MissingExtra: the file is an MP4 and av is not installed.
     """
 
     def __init__(self, path: Path, film: bool, rate: float = 20.0, force: bool = False) -> None:
@@ -45,18 +45,18 @@ class ImageWriter:
         self.folder = path.suffix == "" or path.is_dir()
         if not self.folder and path.suffix.lower() not in known:
             raise InputError(
-                f"{path} must end in {', '.join(known)} for {'a film' if film else 'an image'}, or be a folder"
+                f"{path} must end in {', '.join(known)} for {'a video' if film else 'an image'}, or be a folder"
             )
         if not self.folder and path.parent.exists() and not path.parent.is_dir():
-            raise InputError(f"{path.parent} is a file; give another place for {path.name}")
+            raise InputError(f"{path.parent} is a file; use another path for {path.name}")
         if self.folder and path.is_file():
-            raise InputError(f"{path} is a file without an ending that is known; give {', '.join(known)}, or a folder")
+            raise InputError(f"{path} is a file without a known extension; use {', '.join(known)}, or a folder")
         self._check_overwrite()
         if path.suffix.lower() == ".mp4":
             av_module()
 
     def write(self, shots: Iterable[RenderedImage]) -> tuple[list[Path], int]:
-        """Write the shots, and return the files and how many shots there were.
+        """Write the images and return the files and the number of images.
 
         Raises:
             InputError: a file cannot be written.
@@ -74,15 +74,15 @@ class ImageWriter:
                     return [_saved(first, kind, self._named(kind)) for kind in kinds], 1
                 return self._films(every, kinds)
         except OSError as error:
-            raise InputError(f"{self.path} cannot be written: {error.strerror or error}; give another place") from None
+            raise InputError(f"cannot write {self.path}: {error.strerror or error}; use another path") from None
 
     def _check_overwrite(self) -> None:
-        """Refuse an existing file before the run, which may take long."""
+        """Reject an existing file before a possibly long run."""
         found = (
             next(iter(sorted(self.path.glob("*-[0-9][0-9][0-9][0-9][0-9].png"))), None) if self.folder else self.path
         )
         if found is not None and found.exists() and not self.force:
-            raise InputError(f"{found} already exists; give another place, or --force (force=True) to overwrite it")
+            raise InputError(f"{found} already exists; use another path, or --force (force=True) to overwrite it")
 
     def _named(self, kind: str) -> Path:
         more = "" if kind == "rgb" else f"-{kind}"
@@ -112,7 +112,7 @@ class ImageWriter:
 
 
 def _saved(shot: RenderedImage, kind: str, path: Path) -> Path:
-    """Write one image: depth in millimetres with 16 bits, a segmentation by numbers with a palette."""
+    """Write one image: depth in millimetres with 16 bits, segmentation as palette indices."""
     from PIL import Image
 
     if kind == "rgb":
@@ -146,7 +146,7 @@ def _painted(shot: RenderedImage, kind: str) -> NDArray[np.uint8]:
 
 
 def painted_depth(depth: NDArray[np.float64]) -> NDArray[np.uint8]:
-    """Return depth ``[H, W]`` [m] as a grey image ``[H, W, 3]``: near is white, 20 m and nothing are black.
+    """Return depth ``[H, W]`` [m] as a grey image ``[H, W, 3]``: near is white, 20 m and farther is black.
 
     >>> painted_depth(np.array([[0.0, 10.0, np.inf]]))[0, :, 0].tolist()
     [255, 128, 0]
@@ -156,7 +156,7 @@ def painted_depth(depth: NDArray[np.float64]) -> NDArray[np.uint8]:
 
 
 def color_segmentation(who: NDArray[np.int64]) -> NDArray[np.uint8]:
-    """Return a segmentation ``[H, W]`` as an image ``[H, W, 3]``: everybody in an own colour, nothing black.
+    """Return a segmentation ``[H, W]`` as an image ``[H, W, 3]``, one colour per object; the background is black.
 
     >>> color_segmentation(np.array([[-1, -3, 5]])).shape
     (1, 3, 3)
@@ -172,7 +172,7 @@ def _numbers(who: NDArray[np.int64]) -> NDArray[np.uint8]:
 
 
 def _palette() -> NDArray[np.uint8]:
-    """Return ``[256, 3]``: black, then greys, then hues that differ from one number to the next."""
+    """Return the palette ``[256, 3]``: black, greys, then hues that differ between consecutive numbers."""
     hue = (np.arange(252) * 0.618034) % 1.0
     turn = (hue[:, None] * 6.0 + np.array([0.0, 4.0, 2.0])) % 6.0
     bright = np.clip(np.abs(turn - 3.0) - 1.0, 0.0, 1.0)

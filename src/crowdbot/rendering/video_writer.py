@@ -1,7 +1,7 @@
 """Videos as MP4, GIF and animated WebP, written image by image in constant memory.
 
-Pillow writes the GIF or WebP of one image; what makes a film of them (GIF89a; the container of WebP, chunks VP8X, ANIM
-and ANMF) is put around it here. An image is cut to the part that has changed, and one that is the same lasts longer.
+Pillow encodes single images as GIF or WebP; this module writes the animation containers (GIF89a; WebP with the chunks
+VP8X, ANIM and ANMF). Each image is cropped to its changed part, and identical images are merged.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ __all__ = ["VideoWriter", "av_module", "reel"]
 
 Image = NDArray[np.uint8]
 Box = tuple[int, int, int, int]
-"""Left, top, right and bottom of a part of an image, in pixels."""
+"""Left, top, right and bottom of a part of an image [pixels]."""
 CLEAR = 255
-"""Number of the colour of a GIF through which the image before is seen: what is the same packs well."""
+"""Transparent colour index of a GIF; unchanged pixels compress well."""
 
 
 class VideoWriter(ABC):
-    """A film that is being written, to a file of another name until it is finished."""
+    """Writes a video to a temporary file until it is finished."""
 
     def __init__(self, path: Path, rate: float) -> None:
         self.path, self.rate = path, rate
@@ -39,27 +39,27 @@ class VideoWriter(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """Write what is left."""
+        """Write pending data."""
 
     @abstractmethod
     def drop(self) -> None:
-        """Close the file, whole or not."""
+        """Close the file."""
 
     def finish(self) -> Path:
-        """Give the file its name."""
+        """Rename the finished file."""
         self.close()
         self.drop()
         self.part.replace(self.path)
         return self.path
 
     def abandon(self) -> None:
-        """Remove what is not finished."""
+        """Remove the unfinished file."""
         self.drop()
         self.part.unlink(missing_ok=True)
 
 
 def reel(path: Path, rate: float) -> VideoWriter:
-    """Return what writes a film with this ending, ``rate`` images a second."""
+    """Return a writer for this file extension, with ``rate`` images per second."""
     kinds: dict[str, type[VideoWriter]] = {".mp4": _Mp4, ".gif": _Gif, ".webp": _WebP}
     return kinds[path.suffix.lower()](path, rate)
 
@@ -72,7 +72,9 @@ class _Mp4(VideoWriter):
 
     def add(self, image: Image) -> None:
         av = av_module()
-        even = np.ascontiguousarray(image[: len(image) // 2 * 2, : image.shape[1] // 2 * 2])  # as the format wants it
+        even = np.ascontiguousarray(
+            image[: len(image) // 2 * 2, : image.shape[1] // 2 * 2]
+        )  # the format requires even sizes
         if self.file is None:
             self.file = av.open(str(self.part), "w", format="mp4")
             self.track = self.file.add_stream("libx264", rate=Fraction(self.rate).limit_denominator(10_000))
@@ -93,12 +95,12 @@ class _Mp4(VideoWriter):
 
 
 class _Parts(VideoWriter):
-    """A film of parts of images, of which the last one waits until it is known how long it lasts."""
+    """A video of changed image parts; the last one is held back until its duration is known."""
 
     unit: float
-    """In which it counts time [s]."""
+    """Time unit [s]."""
     grid: int = 1
-    """Left and top of a part are multiples of this [pixels]."""
+    """Alignment of left and top of a part [pixels]."""
 
     def __init__(self, path: Path, rate: float) -> None:
         super().__init__(path, rate)
@@ -143,15 +145,15 @@ class _Parts(VideoWriter):
 
     @abstractmethod
     def head(self, width: int, height: int) -> None:
-        """Begin a film of this size."""
+        """Start a video of this size."""
 
     @abstractmethod
     def put(self, image: Image, same: NDArray[np.bool_], box: Box, lasts: int) -> None:
-        """Write a part, of which some pixels are the ``same`` as before, that is shown for so many units of time."""
+        """Write a part with a mask of pixels that are the ``same`` as before, and its duration in time units."""
 
     @abstractmethod
     def foot(self) -> None:
-        """End the film."""
+        """Finish the video."""
 
 
 class _Gif(_Parts):
@@ -159,7 +161,7 @@ class _Gif(_Parts):
 
     def head(self, width: int, height: int) -> None:
         self.write(b"GIF89a" + _little(2, width, height) + b"\x70\0\0")
-        self.write(b"\x21\xff\x0bNETSCAPE2.0\x03\x01\0\0\0")  # again and again
+        self.write(b"\x21\xff\x0bNETSCAPE2.0\x03\x01\0\0\0")  # endless loop
 
     def put(self, image: Image, same: NDArray[np.bool_], box: Box, lasts: int) -> None:
         from PIL import Image as Pictures
@@ -172,7 +174,9 @@ class _Gif(_Parts):
         clear.save(alone, format="GIF", interlace=False, optimize=False)
         palette, data = _gif_parts(alone.getvalue())
         bits = (len(palette) // 3).bit_length() - 2
-        self.write(b"\x21\xf9\x04\x05" + _little(2, min(lasts, 65_535)) + bytes([CLEAR, 0]))  # stays until the next one
+        self.write(
+            b"\x21\xf9\x04\x05" + _little(2, min(lasts, 65_535)) + bytes([CLEAR, 0])
+        )  # keep until the next image
         self.write(b"\x2c" + _little(2, *box[:2], box[2] - box[0], box[3] - box[1]) + bytes([0x80 | bits]))
         self.write(palette + data)
 
@@ -208,7 +212,7 @@ class _WebP(_Parts):
 
 
 def _changed(same: NDArray[np.bool_], grid: int) -> Box | None:
-    """Return the smallest box with everything that is not the same, None when nothing is.
+    """Return the smallest box around all changed pixels, None without changes.
 
     >>> same = np.ones((5, 8), dtype=np.bool_)
     >>> same[2:4, 3] = False
@@ -223,7 +227,7 @@ def _changed(same: NDArray[np.bool_], grid: int) -> Box | None:
 
 
 def _gif_parts(data: bytes) -> tuple[bytes, bytes]:
-    """Return the palette and the compressed pixels of a GIF of one image."""
+    """Return palette and compressed pixels of a GIF of one image."""
     end = 13 + 3 * 2 ** ((data[10] & 7) + 1)
     palette, at = data[13:end], end
     while data[at] == 0x21:  # an extension: a label and blocks
@@ -243,9 +247,9 @@ def _little(size: int, *values: int) -> bytes:
 
 
 def av_module() -> Any:
-    """Return the library that writes MP4.
+    """Return the module ``av``, which writes MP4.
 
     Raises:
         MissingExtra: it is not installed.
     """
-    return import_optional("av", "a film as .mp4", "sim")
+    return import_optional("av", "a video as .mp4", "sim")

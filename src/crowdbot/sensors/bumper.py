@@ -75,7 +75,7 @@ class Bumper(Sensor):
             raise InputError(f"Bumper: low = {self.low} m and high = {self.high} m must be finite and in this order")
 
     def sector(self, points: ArrayLike, pose: Pose | SpatialPose) -> Ints:
-        """Return the sector ``[E, N]`` of points ``[E, N, 2]`` or ``[E, N, 3]`` of the world."""
+        """Return the sector ``[E, N]`` of points ``[E, N, 2]`` or ``[E, N, 3]`` in the world."""
         place = planar_pose(pose)
         away = np.asarray(points, dtype=np.float64)[..., :2] - place.position[:, None]
         angle = np.arctan2(away[..., 1], away[..., 0]) - place.heading[:, None] - self.first
@@ -106,7 +106,7 @@ class Bumper(Sensor):
         return finite_or_nan(apply_noise(depth, self.noises, rng))
 
     def _press(self, centre: Floats, size: Floats, owner: Ints, heading: float, depth: Floats, hit: Ints) -> None:
-        """Press the sectors that discs at ``centre`` ``[N, 2]`` from the ring's own centre reach into."""
+        """Press the sectors that overlap discs at ``centre`` ``[N, 2]``, relative to the centre of the ring."""
         away = np.hypot(centre[:, 0], centre[:, 1])
         deep = self.radius + size - away
         half = _half_arc(away, size, self.radius)
@@ -122,7 +122,9 @@ class Bumper(Sensor):
 
 
 def _half_arc(away: Floats, size: Floats, radius: float) -> Floats:
-    """Return half the angle of the ring that lies in discs ``away`` from its centre, pi when all of it does."""
+    """Return half the angle of the ring that lies in discs at distance ``away`` from its centre; pi if all of it
+    does.
+    """
     cosine = (away**2 + radius**2 - size**2) / np.maximum(2.0 * away * radius, 1e-300)
     return np.asarray(np.where(away + radius <= size, math.pi, np.arccos(np.clip(cosine, -1.0, 1.0))))
 
@@ -131,7 +133,7 @@ Arcs = tuple[Floats, Floats, Ints]
 
 
 def _rounds(scene: Scene, e: int, place: Floats, low: float, high: float) -> list[Arcs]:
-    """Discs of agents without limbs, limbs and posts, as discs from the ring's centre."""
+    """Return agents without limbs, limbs and posts as discs relative to the centre of the ring."""
     bodies = scene.bodies
     bare = np.ones(scene.shape[1], dtype=np.bool_)
     found: list[Arcs] = []
@@ -158,7 +160,7 @@ def _kept(centre: Floats, size: Floats, owner: Ints, scene: Scene, e: int) -> Ar
 
 
 def _limbs(start: Floats, end: Floats, radius: Floats, place: Floats, low: float, high: float) -> tuple[Floats, Floats]:
-    """Return where each limb is nearest to the upright ring, ``[B, 2]`` from its centre, and its radius there."""
+    """Return the nearest point of each limb to the ring, ``[B, 2]`` relative to its centre, and the radius there."""
     a = start - np.append(place, 0.0)
     e = end - start
     flat = a[:, 0] * e[:, 0] + a[:, 1] * e[:, 1]
@@ -179,7 +181,7 @@ def _limbs(start: Floats, end: Floats, radius: Floats, place: Floats, low: float
 
 
 def _walls(scene: Scene, place: Floats, radius: float) -> Arcs:
-    """Return walls as small discs along what of them lies in the ring, close enough to leave no gap."""
+    """Return the parts of walls inside the ring as small discs without gaps."""
     walls = scene.walls.segments()
     a, e = walls[:, :2] - place, walls[:, 2:] - walls[:, :2]
     length2 = np.maximum((e**2).sum(axis=1), 1e-300)

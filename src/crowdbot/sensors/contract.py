@@ -1,4 +1,4 @@
-"""The contract of sensors, as a check for your own ones."""
+"""Contract check for custom sensors."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def check_sensor(sensor: Sensor, renderer: ImageSource | None = None) -> None:
         renderer: renderer of 2 environments, for cameras.
 
     Raises:
-        InputError: the first rule that it breaks.
+        InputError: the first violated rule.
 
     >>> from crowdbot.sensors import Lidar2D
     >>> check_sensor(Lidar2D(rays=36))
@@ -68,7 +68,7 @@ def _check_alone(name: str, alone: Reading, both: Reading) -> None:
     """Check the arrays that have environments first."""
     for field in dataclasses.fields(both):
         one, two = getattr(alone, field.name), getattr(both, field.name)
-        if not isinstance(two, np.ndarray) or two.ndim == 0 or _same(one, two):  # equal: it has no environments
+        if not isinstance(two, np.ndarray) or two.ndim == 0 or _same(one, two):  # equal: not an array by environment
             continue
         if two.shape[0] != 2 or not _same(np.asarray(one)[:1], two[:1]):
             raise InputError(

@@ -154,7 +154,7 @@ class DepthCamera(Sensor):
     def from_image(
         self, source: ImageSource, time: float, pose: SpatialPose, rng: Randomness | None = None
     ) -> DepthImage:
-        """Return depth and labels from what ``source`` renders (``depth``, ``hit`` and ``part``), undistorted."""
+        """Return depth and labels from images of ``source`` (``depth``, ``hit``, ``part``), without distortion."""
         images = source.render(self, pose)
         depth = np.asarray(images["depth"], dtype=np.float64)
         nothing = np.full(depth.shape, NOTHING)

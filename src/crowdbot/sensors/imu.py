@@ -30,8 +30,9 @@ class ImuReading(Reading):
     Fields:
         acceleration: ``[E, 3]`` specific force [m/s^2]; at rest and level it is (0, 0, 9.80665).
         turn_rate: ``[E, 3]`` [rad/s].
-        velocity: ``[E, 3]`` mean velocity in the world since the reading before [m/s], NaN at the first. Ground truth.
-        acceleration_bias, turn_bias: ``[E, 3]`` biases at this instant. Ground truth.
+        velocity: ``[E, 3]`` mean velocity in the world since the previous reading [m/s], NaN at the first. Ground
+            truth.
+        acceleration_bias, turn_bias: ``[E, 3]`` current biases. Ground truth.
     """
 
     acceleration: Floats
@@ -48,7 +49,7 @@ class ImuState:
     Fields:
         time: time of the measurement [s].
         pose: pose of the unit.
-        velocity: ``[E, 3]`` mean velocity since the measurement before [m/s], NaN after the first.
+        velocity: ``[E, 3]`` mean velocity since the previous measurement [m/s], NaN after the first.
         acceleration_bias: ``[E, 3]`` [m/s^2].
         turn_bias: ``[E, 3]`` [rad/s].
     """
@@ -195,7 +196,7 @@ def elapsed_time(sensor: Sensor, view: SensorView, state: TimedState) -> float:
 
 
 def rotation_vector(before: Floats, after: Floats) -> Floats:
-    """Return the rotation from one quaternion ``[E, 4]`` to another as axis times angle [rad], in the first's frame."""
+    """Return the rotation from one quaternion ``[E, 4]`` to another as axis times angle [rad], in the first frame."""
     turn = product(before * np.array([1.0, -1.0, -1.0, -1.0]), after)
     turn = turn * np.where(turn[:, :1] < 0.0, -1.0, 1.0)
     size = np.sqrt((turn[:, 1:] ** 2).sum(axis=1, keepdims=True))

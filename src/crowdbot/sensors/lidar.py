@@ -31,7 +31,7 @@ TURN = 2.0 * math.pi
 
 @kernel
 def _stretches(low: float, width: float, first: float, step: float, count: int) -> tuple[int, int, int, int]:
-    """Return the beams from angle low over width, one beam more at each side, as two stretches begin, end."""
+    """Return the beams from angle low over width, plus one beam on each side, as two index ranges."""
     low = (low - first) % TURN
     begin = max(0, math.floor(low / step) - 1)
     end = min(count, math.ceil((low + width) / step) + 2)
@@ -94,7 +94,7 @@ def _scan(
     place: Floats, heading: Floats, angles: Floats, step: float, centre: Floats, radius: Floats,
     active: NDArray[np.bool_], walls: Floats, limit: float,
 ) -> tuple[Floats, Floats, Indices]:  # fmt: skip
-    """Return the distance to the nearest surface, the cosine of the incidence there and what it belongs to."""
+    """Return the distance to the nearest surface, its cosine of incidence and its object."""
     environments, count = len(place), len(angles)
     distance = np.full((environments, count), np.inf)
     cos_incidence = np.ones((environments, count))

@@ -70,9 +70,9 @@ class Lidar3D(Ranging):
     Ranges, incidence and noise are those of :class:`Lidar2D`. A planar pose is level, at the height of a usual mount.
 
     Fields:
-        elevations: of the rings [rad], K numbers, positive upward.
+        elevations: elevations of the K rings [rad], positive upward.
         columns: number of beams R of a ring.
-        azimuth_from, azimuth_to: where a ring begins and ends [rad], both included; a full circle does not repeat
+        azimuth_from, azimuth_to: first and last azimuth of a ring [rad], both included; a full circle does not repeat
             its first beam.
         range_min, range_max: smallest and largest measured distance [m].
         max_incidence: largest angle between beam and surface normal that gives a return [rad].
@@ -140,11 +140,11 @@ class Lidar3D(Ranging):
         return np.linspace(self.azimuth_from, self.azimuth_to, self.columns, endpoint=not full)
 
     def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[PointCloud, None]:
-        """Return the cloud from ``pose``; ``rng`` is needed only when there is noise.
+        """Return the cloud from the pose of the view; ``rng`` is needed only with noise.
 
         Raises:
-            InputError: scene and pose have different numbers of environments, noise lacks a generator, or there are
-                no skins where they are asked for.
+            InputError: scene and pose have different numbers of environments, noise lacks a generator, or skins are
+                requested and the scene has none.
         """
         self.check(view)
         scene, pose = view.scene, view.pose

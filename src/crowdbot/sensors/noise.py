@@ -17,7 +17,7 @@ __all__ = ["Dropout", "Gaussian", "Noise", "Offset", "Peak", "Quantised", "Rando
 
 Floats = NDArray[np.float64]
 Randomness = np.random.Generator | Sequence[np.random.Generator]
-"""One generator for all environments, or one for each, which gives the same bits alone and in a batch."""
+"""A generator for all environments, or one per environment, which gives equal results alone and in a batch."""
 
 TERM = re.compile(r"\s*([A-Za-z][\w-]*)\s*\(([^()]*)\)\s*[,+]?")
 
@@ -126,9 +126,9 @@ class Peak(Noise):
 
 @dataclass(frozen=True)
 class Dropout(Noise):
-    """A lost return: with ``probability`` a reading is infinite, which range sensors show as nothing within reach.
+    """A lost return: with ``probability``, a reading is infinite, which means no object within range.
 
-    Sensors of other things show NaN.
+    Other sensors return NaN.
 
     >>> Dropout(1.0).draw((2,), np.random.default_rng(0)).tolist()
     [inf, inf]
@@ -173,14 +173,14 @@ class Quantised(Noise):
         return np.zeros(shape)
 
     def apply(self, values: Floats, rng: np.random.Generator) -> Floats:
-        """Return the rounded readings; what is infinite stays infinite."""
+        """Return the rounded readings; infinite values are unchanged."""
         return np.round(values / self.step) * self.step
 
 
 def apply_noise(values: Floats, noise: tuple[Noise, ...], rng: Randomness | None) -> Floats:
-    """Return ``values`` ``[E, ...]`` with every noise; what is infinite stays infinite.
+    """Return ``values`` ``[E, ...]`` with all noise applied; infinite values are unchanged.
 
-    The number of draws depends on the shape only, never on what was measured.
+    The number of draws depends only on the shape.
 
     Raises:
         InputError: there is noise but no generator, or not one generator for each environment.
@@ -191,7 +191,7 @@ def apply_noise(values: Floats, noise: tuple[Noise, ...], rng: Randomness | None
     if not noise:
         return values
     if rng is None:
-        raise InputError("a sensor with noise needs a generator of randomness: pass rng=stream(seed, ...)")
+        raise InputError("a sensor with noise needs a random generator: pass rng=stream(seed, ...)")
     generators = [rng] * len(values) if isinstance(rng, np.random.Generator) else list(rng)
     if len(generators) != len(values):
         raise InputError(f"{len(generators)} generators were given for {len(values)} environments")

@@ -26,8 +26,8 @@ class Odometry(Reading):
 
     Fields:
         estimate: integrated pose; starts at the true pose.
-        twist: ``[E, 3]`` forward [m/s], turn [rad/s], left [m/s], mean since the reading before.
-        travelled: ``[E, 3]`` distance of the left and right wheel and sideways, errors included [m].
+        twist: ``[E, 3]`` forward [m/s], turn [rad/s], left [m/s], mean since the previous reading.
+        travelled: ``[E, 3]`` distance of the left and right wheel and sideways, with errors [m].
         ticks: ``[E, 3]`` counts of the encoders, 0 without encoders.
     """
 
@@ -44,8 +44,8 @@ class OdometryState:
     Fields:
         time: time of the measurement [s].
         pose: true pose of the robot.
-        estimate: pose by the wheels.
-        travelled: ``[E, 3]`` distance of the left wheel, the right wheel and sideways, errors included [m].
+        estimate: pose from the wheels.
+        travelled: ``[E, 3]`` distance of the left wheel, the right wheel and sideways, with errors [m].
         ticks: ``[E, 3]`` counts of the encoders.
     """
 
@@ -109,7 +109,7 @@ class WheelOdometry(Sensor):
     def measure(
         self, view: SensorView, state: OdometryState | None, rng: Randomness | None = None
     ) -> tuple[Odometry, OdometryState]:
-        """Return the pose by the wheels, which starts at the true pose, and the state for the next measurement.
+        """Return the pose from the wheels, which starts at the true pose, and the state for the next measurement.
 
         Raises:
             InputError: numbers of environments differ, time did not increase, or noise lacks a generator.
@@ -146,7 +146,7 @@ def _with_state(reading: Odometry) -> tuple[Odometry, OdometryState]:
 
 
 def arc_between(before: Pose, after: Pose) -> tuple[Floats, Floats, Floats]:
-    """Return forward [m], left [m] and turn [rad] of the arcs of steady motion between two poses, each ``[E]``."""
+    """Return forward [m], left [m] and turn [rad] of the arcs of constant twist between two poses, ``[E]`` each."""
     turn = math.pi - (math.pi - (after.heading - before.heading)) % (2.0 * math.pi)
     step = after.position - before.position
     middle = before.heading + 0.5 * turn
@@ -156,7 +156,7 @@ def arc_between(before: Pose, after: Pose) -> tuple[Floats, Floats, Floats]:
 
 
 def along_arc(pose: Pose, forward: Floats, left: Floats, turn: Floats) -> Pose:
-    """Return the pose at the end of such arcs."""
+    """Return the pose at the end of arcs."""
     middle = pose.heading + 0.5 * turn
     cos, sin = np.cos(middle), np.sin(middle)
     chord = np.sinc(turn / (2.0 * math.pi))

@@ -241,4 +241,4 @@ _PRESETS = {
     ),
 }
 PRESETS: Mapping[str, SensorPreset] = MappingProxyType(_PRESETS)
-"""Name -> product."""
+"""Presets by name."""

@@ -46,7 +46,9 @@ def nearest(
     fan: tuple[Beams, Floats, Floats],
     rng: Randomness | None,
 ) -> RangeReading:
-    """Return the smallest distance of a bundle: sorted beams, their directions ``[R, 3]`` and lengths ``[R]`` [m]."""
+    """Return the smallest distance of a bundle of beams: sorted beams, directions ``[R, 3]`` and lengths ``[R]``
+    [m].
+    """
     bundle, directions, length = fan
     hits = cast_rays(scene, spatial_pose(pose), bundle, float(length.max()), skins=sensor.skins, normals=False)
     back = (hits.distance <= length) & (hits.cos_incidence >= sensor.min_cos_incidence)

@@ -50,16 +50,16 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 TURN = 2.0 * math.pi
 MARGIN = 1e-9
-"""Windows are this much larger [rad] at every side, against rounding."""
+"""Margin [rad] of windows against rounding."""
 MANY = 4
-"""From this many environments on, threads share them."""
+"""Minimum number of environments for multi-threading."""
 
 
 @kernel
 def _try(
     kind: int, s: Floats, n: int, begin: int, end: int, near: float, beams: Beams, distance: Floats, which: Ints
 ) -> None:
-    """Try a shape on some beams, unless they have met something nearer than it can be."""
+    """Test a shape on some beams, unless they already have a closer intersection."""
     a, b, c, d, e, f, g, h, i, j = s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8], s[9]
     for k in range(begin, end):
         if near < distance[k]:
@@ -83,7 +83,7 @@ def _try(
 def _draw(
     kind: int, s: Floats, n: int, corner: Floats, near: float, beams: Beams, distance: Floats, which: Ints
 ) -> None:
-    """Try a shape on the beams in its window."""
+    """Test a shape on the beams in its window."""
     if near == 0.0 and within(kind, s):
         for k in range(len(distance)):
             if distance[k] > 0.0:
@@ -117,7 +117,7 @@ def _draw(
 
 @kernel
 def _turned(turn: Floats, x: float, y: float, z: float, out: Floats, at: int) -> None:
-    """Write the vector x, y, z of the world in the sensor's frame."""
+    """Write the vector x, y, z of the world in the sensor frame."""
     out[at] = turn[0, 0] * x + turn[1, 0] * y + turn[2, 0] * z
     out[at + 1] = turn[0, 1] * x + turn[1, 1] * y + turn[2, 1] * z
     out[at + 2] = turn[0, 2] * x + turn[1, 2] * y + turn[2, 2] * z
@@ -125,7 +125,7 @@ def _turned(turn: Floats, x: float, y: float, z: float, out: Floats, at: int) ->
 
 @kernel
 def _moved(e: int, kind: int, n: int, shapes: RayShapes, place: Floats, turn: Floats, s: Floats, corner: Floats) -> int:
-    """Write shape ``n`` of a kind in the sensor's frame: its row and the corners of its hull; return how many."""
+    """Write shape ``n`` of a kind in the sensor frame: its row and the corners of its hull; return their number."""
     if kind == TRIANGLE:
         for k in range(3):
             p = shapes.vertices[e, shapes.faces[n, k]]
@@ -163,7 +163,7 @@ def _bring(
     table: Floats, kinds: Ints, present: NDArray[np.bool_], place: Floats, turn: Floats, limit: float, down: float,
     up: float, rows: Floats, seen: Ints, nearest: Floats,
 ) -> int:  # fmt: skip
-    """Write the rods that can be seen in the sensor's frame, and how near they come; return how many."""
+    """Write the visible rods in the sensor frame and their distances; return their number."""
     kept = 0
     px, py, pz = place[0], place[1], place[2]
     a, b, c = turn[0, 2], turn[1, 2], turn[2, 2]
@@ -190,7 +190,7 @@ def _bring_flat(
     e: int, shapes: RayShapes, place: Floats, turn: Floats, limit: float, down: float, up: float, rows: Floats,
     corner: Floats, seen: Ints, nearest: Floats, kept: int,
 ) -> int:  # fmt: skip
-    """Do the same for all other shapes."""
+    """Write the other visible shapes in the same way."""
     for n in range(len(shapes.kind)):
         kind = shapes.kind[n]
         if not shapes.present[e, n] or kind in (CAPSULE, CYLINDER):
@@ -209,7 +209,7 @@ def _tell(
     kind: Ints, owner: Ints, label: Ints, rows: Floats, place: Floats, turn: Floats, beams: Beams, reach: Floats,
     which: Ints, distance: Floats, cos_incidence: Floats, normal: Floats, hit: Ints, part: Ints,
 ) -> None:  # fmt: skip
-    """Write what every beam has met, in the order in which the beams were given."""
+    """Write the intersection of each beam, in the order of the input."""
     ox, oy, oz, height = turn[2, 0], turn[2, 1], turn[2, 2], place[2]
     told = len(normal) > 0
     before, fx, fy, fz = -1, 0.0, 0.0, 0.0
@@ -233,7 +233,7 @@ def _tell(
                 ny = (d * y - rows[n, 1] - s * rows[n, 4]) * over
                 nz = (d * z - rows[n, 2] - s * rows[n, 5]) * over
             else:
-                if n != before or kind[n] in (CYLINDER, BOX):  # what is flat has the same normal at the next beam
+                if n != before or kind[n] in (CYLINDER, BOX):  # flat shapes have the same normal at the next beam
                     before = n
                     fx, fy, fz = normal_at(kind[n], d * x, d * y, d * z, rows[n])
                 nx, ny, nz = fx, fy, fz
@@ -259,7 +259,7 @@ def _one(
     down, up = beams.down, beams.up
     kept = _bring(shapes.rows[e], shapes.kind, shapes.present[e], place, turn, limit, down, up, rows, seen, nearest)
     kept = _bring_flat(e, shapes, place, turn, limit, down, up, rows, corner, seen, nearest, kept)
-    for i in np.argsort(nearest[:kept], kind="mergesort"):  # so that what is behind is rarely tried
+    for i in np.argsort(nearest[:kept], kind="mergesort"):  # nearest first: hidden shapes are rarely tested
         n = seen[i]
         kind = shapes.kind[n]
         if kind not in (CAPSULE, CYLINDER):

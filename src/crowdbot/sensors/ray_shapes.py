@@ -1,4 +1,4 @@
-"""RayShapes of a scene as rows for the ray casting kernel."""
+"""RayShapes: the shapes of a scene as rows for the ray casting kernel."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ WALLS = -2
 FLOOR = -3
 """Value of ``hit`` for the floor."""
 PROP = -4
-"""Value of ``hit`` for an object of the stage that is neither wall nor floor."""
+"""Value of ``hit`` for a prop."""
 OVERLAP = 1e-9
 """Walls are extended by this length [m] at both ends, against gaps at corners by rounding."""
 TALLEST = 1e4
@@ -36,7 +36,7 @@ BARE = Skins.of(np.zeros((1, 0, 3)), np.zeros((0, 3)), owner=())
 
 
 class RayShapes(NamedTuple):
-    """P shapes in E environments; those of kind ``TRIANGLE`` come first and have no rows of their own.
+    """P shapes in E environments; shapes of kind ``TRIANGLE`` come first and have no rows.
 
     Fields:
         kind: ``[P]`` as in :mod:`crowdbot.core.rays`.
@@ -98,9 +98,9 @@ def collect_shapes(scene: Scene, skins: bool) -> RayShapes:
 
 
 def _seen_as(scene: Scene, bodies: Bodies, skinned: Ints) -> tuple[Ints, Ints]:
-    """Return the capsules that no skin stands for, and the agents that are seen as cylinders."""
+    """Return the capsules that are not replaced by a skin, and the agents represented by cylinders."""
     agents = scene.shape[1]
-    bare = np.ones(agents + 1, dtype=np.bool_)  # the last is for those that are no agents
+    bare = np.ones(agents + 1, dtype=np.bool_)  # the last entry is for shapes without agent
     for owner in (skinned, bodies.owner, bodies.box_owner, bodies.post_owner):
         if len(owner):
             _strike(owner, bare)
@@ -131,7 +131,7 @@ def _strike(owner: Ints, bare: Bools) -> None:
 
 @kernel
 def _mark_present(kind: Ints, rows: Floats, owner: Ints, active: Bools, present: Bools) -> None:
-    """Mark the shapes whose owner is active, whose numbers are finite and whose extent is above 0; name props."""
+    """Mark the shapes with an active owner, finite values and positive extent; label props."""
     for e in range(len(rows)):
         for n in range(len(kind)):
             here = owner[n] < 0 or (owner[n] < active.shape[1] and active[e, owner[n]])
@@ -180,7 +180,7 @@ def _write_upright(row: Floats, foot: Floats, height: Floats | float, radius: Fl
 
 @kernel
 def _write_walls(start: Floats, end: Floats, before: Ints, after: Ints, height: float, row: Floats) -> None:
-    """Write walls a little longer at both ends; the second side of a thin one is not there."""
+    """Write walls extended at both ends; the second side of a thin wall is absent."""
     for m in range(len(start)):
         dx, dy = end[m, 0] - start[m, 0], end[m, 1] - start[m, 1]
         longer = OVERLAP / max(math.sqrt(dx * dx + dy * dy), 1e-300)

@@ -48,14 +48,14 @@ class RgbImage(Reading):
 class RGBCamera(Sensor):
     """A colour camera. It looks along the x axis of its pose, z is up in the image.
 
-    The image comes from the renderer of the view, with the distortion of the lens. Without a renderer, the camera casts
-    rays and shows the shapes of the scene in one colour each, which needs no graphics. Noise is added to the values
-    from 0 to 255; dropouts are 0.
+    The image comes from the renderer of the view, with the distortion of the lens. Without a renderer, the camera uses
+    ray casting and shows each shape of the scene in one colour. Noise is added to the values from 0 to 255; dropouts
+    are 0.
 
     Fields:
         width, height: size of the image [pixels].
-        field_of_view: horizontal [rad]; pixels are square.
-        distortion: k1, k2, p1, p2, k3 of the lens; empty for none.
+        field_of_view: horizontal field of view [rad]; pixels are square.
+        distortion: coefficients k1, k2, p1, p2, k3 of the lens (default: none).
         near, far: clipping distances [m].
         segmentation: whether the image includes the segmentation.
 
@@ -94,7 +94,7 @@ class RGBCamera(Sensor):
         return Lens.of(self.width, self.height, self.field_of_view, self.distortion or (0.0,) * 5)
 
     def measure(self, view: SensorView, state: None, rng: Randomness | None = None) -> tuple[RgbImage, None]:
-        """Return the image of the renderer of ``view``, or one by rays if there is no renderer.
+        """Return the image of the renderer of ``view``, or by ray casting without a renderer.
 
         Raises:
             InputError: the pose does not fit the scene, or noise lacks a generator.

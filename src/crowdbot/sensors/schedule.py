@@ -13,7 +13,7 @@ __all__ = ["SensorSchedule"]
 
 @dataclass(frozen=True)
 class SensorSchedule:
-    """SensorSchedule of a sensor: it measures at every ``every``-th tick; readings arrive ``late`` ticks later.
+    """Schedule of a sensor: it measures at every ``every``-th tick; readings arrive ``late`` ticks later.
 
     >>> from crowdbot.core import FreeClock
     >>> from crowdbot.sensors import Lidar2D

@@ -35,7 +35,7 @@ class Reading:
 
 
 class _Measures(Protocol[Reading_co]):
-    """The contract of a sensor whose reading has a known type."""
+    """Contract of a sensor with a known type of reading."""
 
     def begin(self) -> Any: ...
 
@@ -142,7 +142,7 @@ class Sensor(ABC):
         return self.measure(SensorView(scene, pose, renderer), self.begin(), rng)[0]
 
     def check(self, view: SensorView) -> None:
-        """Raise :class:`InputError` unless the pose of ``view`` is finite and fits its scene."""
+        """Raise :class:`InputError` if the pose of ``view`` is not finite or does not fit its scene."""
         view.check(type(self).__name__)
 
 
@@ -157,5 +157,5 @@ def planar_pose(pose: Pose | SpatialPose) -> Pose:
 
 
 def finite_or_nan(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return ``values`` with NaN in place of infinite values."""
+    """Return ``values`` with NaN instead of infinite values."""
     return np.asarray(np.where(np.isfinite(values), values, np.nan))

@@ -1,4 +1,4 @@
-"""What a sensor is given to measure: the scene, its own pose and a renderer."""
+"""SensorView: the input of a sensor, with scene, pose and renderer."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class SensorView:
         return self.scene.shape[0]
 
     def check(self, sensor: str) -> None:
-        """Raise :class:`InputError` unless the pose is finite and has one row for each environment of the scene."""
+        """Raise :class:`InputError` if the pose is not finite or does not have one row for each environment."""
         pose = self.pose
         turn = pose.rotation if isinstance(pose, SpatialPose) else pose.heading[:, None]
         if len(pose.position) != self.environments or len(turn) != self.environments:

@@ -1,4 +1,4 @@
-"""Simulation: a trial and a seed become an episode. Contract :class:`Simulation`, verb ``run``."""
+"""Simulation of a trial with a seed; the result is an episode."""
 
 from .batch import run_batch
 from .episode import Episode, EpisodeLog, ScanRow, scan_row, tracks_of

@@ -20,17 +20,17 @@ def run_batch(
 ) -> tuple[Episode, ...]:
     """Run a trial with several seeds and return the episodes in the order of the seeds.
 
-    In each time step the crowd model is called once for all active runs: their scenes are the environments of one
-    scene. Robots, contacts, sensors and bodies are computed per run. A model that is not built in is called once per
-    run. The first Ctrl-C ends all runs at their next recorded instant.
+    In each time step, the crowd model is called once for all active runs, whose scenes are the environments of one
+    scene. Robots, contacts, sensors and bodies are computed per run. Models that are not built-in are called once per
+    run. The first Ctrl-C ends all runs at their next recorded step.
 
     Args:
-        trial: without sweeps.
-        seeds: of the runs.
+        trial: the trial, without sweeps.
+        seeds: seeds of the runs.
         progress: called with the completed share, 0 to 1.
 
     Raises:
-        InputError: there is no seed.
+        InputError: the list of seeds is empty.
         TrialError: the trial is impossible with one of the seeds.
 
     >>> from crowdbot.trials import load_trial
@@ -40,7 +40,7 @@ def run_batch(
     True
     """
     if not seeds:
-        raise InputError("run_batch: there are no seeds; give at least one, such as range(8)")
+        raise InputError("run_batch: seeds is empty; give at least one seed, such as range(8)")
     for seed in seeds:
         check_trial(trial, int(seed))
     logs = [EpisodeLog(trial, int(seed)) for seed in seeds]
@@ -74,11 +74,11 @@ def _step(steps: Sequence[StepGenerator[str | None]]) -> None:
 
 
 def _compute(requests: Sequence[CrowdStepRequest]) -> Sequence[Scene | Exception]:
-    """Return the answers; if the model raises, each request is computed alone and only some have an exception."""
+    """Return the results; if the model raises, compute each request separately to find those that fail."""
     states = [request.rng.bit_generator.state for request in requests]
     try:
         return compute_together(requests)
-    except Exception:  # raised again below, by the request that causes it
+    except Exception:  # raised again below, for the request that causes it
         for request, state in zip(requests, states, strict=True):
             request.rng.bit_generator.state = state
         return [_attempt(request) for request in requests]
@@ -92,7 +92,7 @@ def _attempt(request: CrowdStepRequest) -> Scene | Exception:
 
 
 def _next(one: StepGenerator[str | None], answer: Scene | Exception | None) -> CrowdStepRequest | None:
-    """Return the next request of a step, None when it is done."""
+    """Return the next request of a step, or None at its end."""
     try:
         if isinstance(answer, Exception):
             return one.throw(answer)

@@ -1,4 +1,4 @@
-"""Episode: what happened in one run of a trial, as arrays over recorded instants."""
+"""Episode: the result of a run as arrays over recorded steps."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ class ScanRow:
     """One scan of one sensor.
 
     Fields:
-        time: [s].
+        time: time [s].
         pose: x, y [m] and heading [rad] of the sensor in the world.
         angles, ranges: ``[R]`` [rad], [m]; ranges as in :class:`crowdbot.sensors.Scan`.
-        hit: ``[R]`` index of the agent that was hit, -1 nothing, -2 a wall.
+        hit: ``[R]`` index of the agent that was hit; -1 nothing, -2 a wall.
     """
 
     time: float
@@ -44,28 +44,28 @@ class ScanRow:
 
 @dataclass(frozen=True, eq=False)
 class Episode:
-    """One run as arrays: T recorded instants, A agents, R robots.
+    """The result of a run as arrays: T recorded steps, A agents, R robots.
 
     Agents are the initial people, then the robots, then the people who enter, in order of entry. Each agent has one
     column in the arrays and one id.
 
     Fields:
-        trial, seed: what was run.
-        outcome: ``success``, ``collision`` or ``timeout``; ``finished`` when there was no robot, ``interrupted`` when
-            it was stopped from outside, ``error`` when an exception in user code ended it.
-        steps: number of time steps done.
-        times: ``[T]`` [s].
+        trial, seed: the trial and its seed.
+        outcome: ``success``, ``collision`` or ``timeout``; ``finished`` without a robot, ``interrupted`` if stopped
+            from outside, ``error`` after an exception in user code.
+        steps: number of time steps.
+        times: times ``[T]`` [s].
         position, velocity: ``[T, A, 2]`` [m], [m/s]; 0 for absent agents.
         heading: ``[T, A]`` [rad].
-        radius: ``[A]`` [m]; 0 for agents present only between two recorded instants.
+        radius: ``[A]`` [m]; 0 for agents present only between two recorded steps.
         active: ``[T, A]`` whether the agent is present.
         ids: ``[A]`` identity in recordings and tracks.
         robots: indices of the robots, in the order of the trial.
-        twists, commands: ``[T, R, 3]`` forward [m/s], turn [rad/s], left [m/s]: how each robot moves, and what it is
-            asked to do from this instant on.
-        readings: by ``robot/sensor``, everything that was measured.
-        metrics: of the first robot; those of others are called ``name.metric``. See ``NAVIGATION_METRICS``.
-        digest: hash of every recorded array, reading, command and the outcome; equal exactly when these are.
+        twists, commands: ``[T, R, 3]`` forward [m/s], turn [rad/s], left [m/s]: current twist of each robot, and its
+            command from this time on.
+        readings: all readings by ``robot/sensor``.
+        metrics: metrics of the first robot; those of others are named ``name.metric``. See ``NAVIGATION_METRICS``.
+        digest: hash of all recorded arrays, readings and commands and of the outcome.
         failure: the exception that ended the run, for the outcome ``error``.
     """
 
@@ -90,12 +90,12 @@ class Episode:
 
     @property
     def walls(self) -> tuple[Floats, ...]:
-        """Rings ``[N, 2]`` [m] of the stage."""
+        """Walls of the stage as rings ``[N, 2]`` [m]."""
         return self.trial.stage.rings
 
     @property
     def scans(self) -> tuple[ScanRow, ...]:
-        """What the first laser scanner of the first robot measured."""
+        """Scans of the first laser scanner of the first robot."""
         for readings in self.readings.values():
             rows = tuple(scan_row(reading) for reading in readings if isinstance(reading, Scan))
             if rows:
@@ -106,18 +106,18 @@ class Episode:
         """Return people and robots every ``dt`` [s] as trajectories; frame k is at k times ``dt``.
 
         Raises:
-            InputError: ``dt`` is not a whole number of recording periods.
+            InputError: ``dt`` is not a multiple of the recording period.
         """
         return tracks_of(self, self.trial.name, dt)
 
     def _repr_svg_(self) -> str:
-        """Return a drawing for notebooks: the walls and everyone's path."""
+        """Return a drawing of walls and paths for notebooks."""
         period = float(self.times[1] - self.times[0]) if len(self.times) > 1 else self.trial.step
         return tracks_of(self, f"{self.trial.name}, seed {self.seed}, {self.outcome}", period)._repr_svg_()
 
 
 def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
-    """Return the trajectories of an episode, run or read."""
+    """Return the trajectories of an episode."""
     wanted = np.arange(math.floor(float(view.times[-1]) / dt + 1e-9) + 1) * dt
     rows = np.clip(np.searchsorted(view.times, wanted - 1e-6), 0, len(view.times) - 1)
     if np.any(np.abs(view.times[rows] - wanted) > 1e-6):
@@ -143,7 +143,7 @@ class EpisodeLog(EpisodeStatistics):
     """Collects the arrays of an episode while it runs.
 
     Args:
-        trial, seed, digest: as of :class:`EpisodeStatistics`.
+        trial, seed, digest: see :class:`EpisodeStatistics`.
     """
 
     def __init__(self, trial: Trial, seed: int, digest: EpisodeDigest | None = None) -> None:
@@ -154,7 +154,7 @@ class EpisodeLog(EpisodeStatistics):
         self.readings: dict[str, list[Reading]] = {}
 
     def keep(self, frame: StepRecord) -> None:
-        """Add an instant that the digest already contains."""
+        """Add a step that the digest already contains."""
         super().keep(frame)
         for robot, mount, reading in frame.readings:
             self.readings.setdefault(f"{robot.name}/{mount.name}", []).append(reading)
@@ -193,7 +193,7 @@ class EpisodeLog(EpisodeStatistics):
 
 
 def _by_person(rows: Sequence[NDArray[Any]], ids: Sequence[NDArray[np.int64]], agents: int) -> NDArray[Any]:
-    """Return ``[T, agents, ...]``, a column for every id, of rows ``[A, ...]`` whose places belong to ``ids``."""
+    """Return rows ``[A, ...]`` as ``[T, agents, ...]`` with one column per id; ``ids`` are the ids of the rows."""
     out = np.zeros((len(rows), agents, *rows[0].shape[1:]), dtype=rows[0].dtype)
     for k, (row, who) in enumerate(zip(rows, ids, strict=True)):
         out[k, who[who >= 0]] = row[who >= 0]
@@ -201,7 +201,7 @@ def _by_person(rows: Sequence[NDArray[Any]], ids: Sequence[NDArray[np.int64]], a
 
 
 def scan_row(scan: Scan) -> ScanRow:
-    """Return a scan of one environment as a row."""
+    """Return a scan with E = 1 as a row."""
     pose = planar_pose(scan.pose)
     (x, y), heading = pose.position[0], pose.heading[0]
     return ScanRow(scan.time, (float(x), float(y), float(heading)), scan.angles, scan.ranges[0], scan.hit[0])

@@ -14,7 +14,7 @@ INSTALLED = [Path(sysconfig.get_path(name)).resolve() for name in ("stdlib", "pl
 
 
 class RunFailureWarning(UserWarning):
-    """An exception ended a run; its episode has the outcome ``error``."""
+    """An exception ended a run; the outcome of its episode is ``error``."""
 
 
 @dataclass(frozen=True)
@@ -42,12 +42,12 @@ class RunFailure:
 
     @classmethod
     def of(cls, error: Exception, time: float, folder: Path | None = None) -> RunFailure:
-        """Describe an exception; a place in ``folder`` is relative to it, of another only the file name is given."""
+        """Describe an exception; files in ``folder`` have relative paths, others only their name."""
         message = " ".join(f"{type(error).__name__}: {error}".split()).removesuffix(":")
         return cls(message, _place(error, folder), time, "".join(traceback.format_exception(error)))
 
     def __str__(self) -> str:
-        """Return one sentence without its full stop."""
+        """Return a sentence without full stop."""
         return f"{self.message} ({self.place}) at {self.time:g} s"
 
 

@@ -1,4 +1,4 @@
-"""Sensing: what the sensors of a robot measure, when, and when it is handed over."""
+"""MountedSensor: a sensor on a robot with its schedule, latency and state."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LEVEL = 1e-9
 
 
 class DeliveredReading(NamedTuple):
-    """A reading with person ids, and the ids of the visible people; None for readings that cannot show people."""
+    """A reading with person ids, and the ids of visible people; None for sensors that do not detect people."""
 
     reading: Reading
     seen: Ints | None
@@ -32,16 +32,16 @@ class DeliveredReading(NamedTuple):
 
 @dataclass
 class MountedSensor:
-    """A sensor at work.
+    """A sensor of a running simulation.
 
     Fields:
-        mount: what measures, and where it sits.
-        placed: x, y, z [m], roll, pitch, yaw [rad] of it on the robot in its posture.
-        schedule: when it measures, and how late its readings arrive.
-        rng: its randomness.
-        space: whether it looks through space, at bodies; otherwise from above, at discs.
+        mount: the sensor and its mounting pose.
+        placed: x, y, z [m], roll, pitch, yaw [rad] on the robot in its posture.
+        schedule: sampling times and latency.
+        rng: random number generator.
+        space: whether it senses bodies in space; otherwise discs in the plane.
         state: state of the sensor, from its ``begin`` or its last measurement.
-        waiting: tick of arrival of what is on its way.
+        waiting: readings not yet delivered, with their tick of arrival.
     """
 
     mount: Mount
@@ -53,7 +53,7 @@ class MountedSensor:
     waiting: list[tuple[int, DeliveredReading]] = field(default_factory=list)
 
     def work(self, tick: int, agent: int, around: WorldView, ids: Ints) -> list[DeliveredReading]:
-        """Measure when it is due, and return what arrives now, oldest first."""
+        """Measure if due, and return the readings that arrive now, oldest first."""
         if self.schedule.measures(tick):
             reading = self._measure(agent, around)
             told = name_by_id(reading, ids)
@@ -77,13 +77,13 @@ class MountedSensor:
         return reading
 
     def pose(self, agent: int, around: WorldView) -> Pose | SpatialPose:
-        """Return where the sensor is: in the plane when it looks from above, otherwise in space."""
+        """Return the pose of the sensor, in the plane or in space."""
         mount = MountPlacement(self.mount.link, self.mount.origin, self.placed)
         return around.world.sensor_pose(agent, mount, self.space)
 
 
 def spatial(robot: RobotSpec, mount: Mount, bodies: str) -> bool:
-    """Return whether a sensor looks through space."""
+    """Return whether a sensor senses bodies in space."""
     _, _, _, roll, pitch, _ = robot.sensor_pose(mount)
     tilted = max(abs(roll), abs(pitch)) > LEVEL
     return bodies != "discs" or tilted or mount.sensor.spatial or mount.sensor.sees_skins
@@ -92,7 +92,7 @@ def spatial(robot: RobotSpec, mount: Mount, bodies: str) -> bool:
 def mounted_sensors(
     trial: Any, robot: RobotSpec, world: World, seed: int, known: Mapping[str, MountedSensor] | None = None
 ) -> tuple[MountedSensor, ...]:
-    """Return the sensors of a robot at work; those of ``known`` go on with their chance and what is on its way."""
+    """Return the sensors of a robot; those in ``known`` keep their random state and pending readings."""
     bodies = trial.bodies or world.people_shape
     found = []
     for mount in robot.sensors:
@@ -116,7 +116,7 @@ def mounted_sensors(
 
 
 def name_by_id(reading: Reading, ids: Ints) -> Reading:
-    """Return a reading with person ids in place of agent indices."""
+    """Return a reading with person ids instead of agent indices."""
     if np.array_equal(ids, np.arange(len(ids))):
         return reading
     if isinstance(reading, TrackedPeople):
@@ -141,7 +141,7 @@ def _tracked(reading: TrackedPeople, ids: Ints) -> TrackedPeople:
 
 
 def visible_ids(reading: Reading) -> Ints | None:
-    """Return the ids of the visible people; None for readings that cannot show people."""
+    """Return the ids of visible people; None for sensors that do not detect people."""
     if isinstance(reading, TrackedPeople):
         return np.flatnonzero(reading.present[0])
     hit = getattr(reading, "hit", None)

@@ -1,4 +1,4 @@
-"""Runs: simulate a trial with a seed, to its end or step by step."""
+"""Runs of a simulation, to its end or step by step."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Bridge(Protocol):
 
 
 class StopRequest:
-    """A request to stop the run, set from outside."""
+    """A request to stop the run."""
 
     asked: bool = False
 
@@ -65,7 +65,7 @@ class SimulationRun:
         simulation: a new simulation, or one that another run has advanced.
         sinks: receive every step record.
         bridges: called in every step.
-        ticks: interrupt the run after this number of steps; None does not.
+        ticks: interrupt the run after this number of steps (default: no limit).
 
     Attributes:
         outcome: None while the run continues; ``error`` after an exception in a model, sensor, navigator or bridge.
@@ -112,7 +112,7 @@ class SimulationRun:
             yield from self.simulation.step_requests()
         except MissingExtra:
             raise
-        except Exception as error:  # the code of a model may raise anything
+        except Exception as error:  # crowd models may raise anything
             self._fail(error)
             return self.outcome
         self._observe()
@@ -143,7 +143,7 @@ class SimulationRun:
                 bridge.exchange(simulation, readings)
         except MissingExtra:
             raise
-        except Exception as error:  # the code of sensors, navigators and bridges may raise anything
+        except Exception as error:  # sensors, navigators and bridges may raise anything
             self._fail(error)
         due = simulation.tick % self._every == 0
         if due and self.outcome is None:
@@ -171,10 +171,10 @@ def simulate(
     progress: Progress | None = None,
     clock: Clock | None = None,
 ) -> Episode:
-    """Run a trial in memory; see :func:`crowdbot.recording.run`, which can record to a file too.
+    """Run a trial in memory; see :func:`crowdbot.recording.run`, which can also record to a file.
 
     Raises:
-        TrialError: the trial is impossible; every problem is named.
+        TrialError: the trial is impossible; the exception lists all problems.
 
     >>> from crowdbot.models import ORCA
     >>> simulate(Trial(name="empty", duration=1.0, crowd=ORCA())).outcome
@@ -209,9 +209,9 @@ def run_to_end(
     Args:
         simulation: a new simulation, or one that another run has advanced.
         sinks: receive every step record.
-        stop: ends the run at the next recorded instant when set.
+        stop: ends the run at the next recorded step when set.
         progress: called with the completed share, 0 to 1.
-        ticks: interrupt the run after this number of steps; None does not.
+        ticks: interrupt the run after this number of steps (default: no limit).
     """
     total = simulation.trial.ticks
     running = SimulationRun(simulation, sinks, ticks=ticks, stop=stop)
@@ -236,14 +236,14 @@ def _outcome(simulation: Simulation) -> str | None:
         return simulation.ended
     if simulation.tick < simulation.trial.ticks:
         return None
-    return event or ("timeout" if simulation.carriers else "finished")
+    return event or ("timeout" if simulation.robots else "finished")
 
 
 @contextlib.contextmanager
 def catch_interrupt() -> Iterator[StopRequest]:
-    """Turn the first Ctrl-C into ``stop.asked``, which ends the run cleanly; a second one interrupts at once.
+    """Set ``stop.asked`` at the first Ctrl-C, which ends the run; a second one interrupts immediately.
 
-    It has no effect outside the main thread, where Python delivers no signals.
+    No effect outside the main thread, since Python delivers no signals there.
     """
     stop = StopRequest()
     if threading.current_thread() is not threading.main_thread():

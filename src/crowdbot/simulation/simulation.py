@@ -1,17 +1,17 @@
-"""Simulation: a trial that is running, one step of time at a time.
+"""Simulation: a running trial, advanced in time steps.
 
-The order of a step, from tick k to tick k + 1 (docs/concepts/steps.md gives the reasons):
+Order of a step from tick k to tick k + 1 (see docs/concepts/steps.md):
 
 1. **time**: the clock allows the step: immediately (free), when due (paced), or on request (external);
 2. **crowd**: people move, from the scene of tick k;
-3. **robots**: drives follow the commands the robots hold, from the same scene of tick k;
-4. **physics**: bodies that overlap are pushed apart; contacts are found, swept over the step; the scene is at k + 1;
-5. **flow**: people who have arrived or are in an exit leave, others enter; contacts and arrivals are judged;
-6. **sensors** that are due measure the new scene, then navigators that are due decide; commands are held meanwhile;
-7. **bridges** pass on what was measured and may give robots other commands;
-8. **recorders** write what is due: scene, readings, contacts and commands.
+3. **robots**: drives follow the current commands, from the scene of tick k;
+4. **physics**: overlaps are resolved and contacts during the step are detected; the scene is at k + 1;
+5. **flow**: people at their goal or in an exit leave, others enter; contacts and arrivals are evaluated;
+6. **sensors** that are due measure the new scene, then navigators that are due decide;
+7. **bridges** forward the readings and may change commands;
+8. **recorders** write scene, readings, contacts and commands that are due.
 
-At tick 0 only 6 to 8 happen. A sensor, a navigator and a recorder are due every n-th tick, n being whole.
+At tick 0, only parts 6 to 8 run. Sensors, navigators and recorders are due every n-th tick.
 """
 
 from __future__ import annotations
@@ -42,17 +42,17 @@ if TYPE_CHECKING:
 __all__ = ["RobotContact", "RobotRuntime", "Simulation", "StepRecord", "start_scene"]
 
 INSTANT = 1e-9
-"""Times [s] that differ by less are the same."""
+"""Tolerance of times [s]."""
 ARRIVED = 0.3
-"""People also leave this near [m] to their own point of the goal zone."""
+"""Distance [m] to the own goal point within which people in a goal zone leave."""
 
 
 WALL = -2
-"""Code for a wall in place of the id of a touched agent; as in scans."""
+"""Code of a wall instead of an agent id, as in scans."""
 
 
 class RobotContact(NamedTuple):
-    """A robot and what it touched during a step: their ids (-2: a wall) and the smallest clearance [m], negative."""
+    """A contact of a robot during a step: ids of both agents (-2: a wall) and the smallest clearance [m], negative."""
 
     robot: int
     other: int
@@ -61,19 +61,19 @@ class RobotContact(NamedTuple):
 
 @dataclass(frozen=True)
 class StepRecord:
-    """The record of one instant.
+    """The record of one time step.
 
     Fields:
         tick: number of steps since the start.
         nanoseconds: simulated time [ns].
-        scene: all agents, absent ones included; E is 1.
-        ids: ``[A]`` ids of the agents; several people may use one index in turn.
+        scene: all agents, including absent ones; E = 1.
+        ids: ``[A]`` ids of the agents; an index can be reused by another person.
         twists, commands: ``[R, 3]`` forward [m/s], turn [rad/s], left [m/s] of each robot: actual and commanded.
-        readings: the readings of this instant with robot and mount; hits are person ids.
-        due: whether the scene is to be recorded; otherwise only the readings and contacts are.
-        touches: the contacts of the step that ended now.
-        forces: in the physics world what bodies did to each other in that step.
-        collisions: in the physics world those that have come to an end since the last frame.
+        readings: readings of this step with robot and mount; hits are person ids.
+        due: whether the scene is recorded; otherwise only readings and contacts.
+        touches: contacts of the last step.
+        forces: contact forces of the last step, in the physics world.
+        collisions: contact events that ended since the last record, in the physics world.
     """
 
     tick: int
@@ -91,7 +91,7 @@ class StepRecord:
 
 @dataclass
 class RobotRuntime:
-    """The state of a robot in a simulation: its agent index, latest readings and current command."""
+    """State of a robot in a simulation: agent index, latest readings and current command."""
 
     robot: RobotSpec
     agent: int
@@ -103,7 +103,7 @@ class RobotRuntime:
     """Ids of the people in the latest reading of each sensor."""
     command: Twist = field(default_factory=Twist)
     memory: Any = None
-    """Memory of the navigator, once it has begun."""
+    """State of the navigator after its first decision."""
     begun: bool = False
     arrived: bool = False
 
@@ -112,23 +112,23 @@ class Simulation:
     """A running simulation of a trial.
 
     Args:
-        trial, seed: what to simulate.
-        clock: a clock at tick 0 with the time step of the trial; None is a free clock.
+        trial, seed: the trial and its seed.
+        clock: a clock at tick 0 with the time step of the trial; None: a free clock.
         posed: compute body poses for rendering even if no sensor needs them.
 
     Attributes:
-        around: the world as sensors and cameras see it.
-        world: moves people and robots, and holds the clock.
-        carriers: the robots.
-        event: ``success`` or ``collision`` once that has happened, whichever came first.
+        around: the world for sensors and cameras.
+        world: moves people and robots; has the clock.
+        robots: states of the robots.
+        event: ``success`` or ``collision``, whichever occurred first.
         touches: contacts of the latest step.
-        begun: whether the parts 6 to 8 of tick 0 are done.
-        ended: the outcome once another condition of the trial for its end holds.
-        failure: the exception that ended the run, if one did.
+        begun: whether parts 6 to 8 of tick 0 have run.
+        ended: the outcome after another end condition of the trial.
+        failure: the exception that ended the run, or None.
 
     Raises:
-        TrialError: people do not fit with this seed.
-        InputError: the clock has other steps, or has run before.
+        TrialError: people cannot be placed with this seed.
+        InputError: the clock has another time step, or is not at tick 0.
 
     >>> from crowdbot.models import ORCA
     >>> simulation = Simulation(Trial(name="empty", duration=1.0, crowd=ORCA()), seed=0)
@@ -151,7 +151,7 @@ class Simulation:
             figures = people_appearance(trial, people, self.world.scene.shape[1], seed)
         skins = trial.bodies == "skins" or any(m.sensor.sees_skins for r in trial.robots for m in r.sensors)
         self.around = WorldView(trial, self.world, figures, seed, skins)
-        self.carriers = [self._carrier(robot, len(people) + k) for k, robot in enumerate(trial.robots)]
+        self.robots = [self._robot_runtime(robot, len(people) + k) for k, robot in enumerate(trial.robots)]
         self.event: str | None = None
         self.touches: tuple[RobotContact, ...] = ()
         self.begun = False
@@ -169,53 +169,53 @@ class Simulation:
     def step_requests(self) -> StepGenerator[None]:
         """Advance one step and yield the requests to the crowd model; see :func:`crowdbot.simulation.run_batch`."""
         before, ids = self.world.scene, self.ids.copy()
-        yield from self.world.step_requests({carrier.agent: carrier.command for carrier in self.carriers})
+        yield from self.world.step_requests({runtime.agent: runtime.command for runtime in self.robots})
         self._let_leave()
         self.world.pose_people()
         self._judge(before, ids)
 
     def sense(self) -> tuple[tuple[RobotSpec, Mount, Reading], ...]:
-        """Let due sensors measure and return the readings that arrive now: the first half of part 6."""
+        """Measure with due sensors and return the readings that arrive now: the first half of part 6."""
         new = []
-        for carrier in self.carriers:
-            for probe in carrier.probes:
+        for runtime in self.robots:
+            for probe in runtime.probes:
                 name = probe.mount.name
-                for told in probe.work(self.tick, carrier.agent, self.around, self.ids):
-                    carrier.readings[name] = told.reading
+                for told in probe.work(self.tick, runtime.agent, self.around, self.ids):
+                    runtime.readings[name] = told.reading
                     if told.seen is not None:
-                        carrier.seen[name] = told.seen
-                    new.append((carrier.robot, probe.mount, told.reading))
+                        runtime.seen[name] = told.seen
+                    new.append((runtime.robot, probe.mount, told.reading))
         return tuple(new)
 
     def decide(self) -> None:
         """Let due navigators decide: the second half of part 6."""
-        for carrier in self.carriers:
-            if self.tick % carrier.control_every == 0:
-                self._decide(carrier)
+        for runtime in self.robots:
+            if self.tick % runtime.control_every == 0:
+                self._decide(runtime)
 
-    def _decide(self, carrier: RobotRuntime) -> None:
-        navigator, observation = carrier.robot.navigator, self.observation(carrier)
-        if not carrier.begun:
-            carrier.memory, carrier.begun = navigator.begin(observation), True
-        action, carrier.memory = navigator.decide(observation, carrier.memory, robot=carrier.robot.name)
-        carrier.command = action.twist
+    def _decide(self, runtime: RobotRuntime) -> None:
+        navigator, observation = runtime.robot.navigator, self.observation(runtime)
+        if not runtime.begun:
+            runtime.memory, runtime.begun = navigator.begin(observation), True
+        action, runtime.memory = navigator.decide(observation, runtime.memory, robot=runtime.robot.name)
+        runtime.command = action.twist
 
-    def observation(self, carrier: RobotRuntime) -> Observation:
-        """Return what a robot observes: the people in the latest readings of its sensors.
+    def observation(self, runtime: RobotRuntime) -> Observation:
+        """Return the observation of a robot: the people in the latest readings of its sensors.
 
-        Their true positions and velocities are given, as from a perfect tracker.
+        Positions and velocities are exact, as from a perfect tracker.
         """
         scene = self.around.flat
         seen = np.zeros(scene.shape[1], dtype=np.bool_)
-        for hit in carrier.seen.values():
+        for hit in runtime.seen.values():
             seen |= np.isin(self.ids, hit)
-        scans = [reading for reading in carrier.readings.values() if isinstance(reading, Scan)]
+        scans = [reading for reading in runtime.readings.values() if isinstance(reading, Scan)]
         return Observation.of(
             scene,
-            carrier.agent,
-            carrier.limits,
-            dt=carrier.robot.control_period,
-            twist=self.world.twists[carrier.agent].at(0),
+            runtime.agent,
+            runtime.limits,
+            dt=runtime.robot.control_period,
+            twist=self.world.twists[runtime.agent].at(0),
             seen=seen,
             scan=scans[0] if scans else None,
         )
@@ -223,15 +223,15 @@ class Simulation:
     def frame(
         self, readings: tuple[tuple[RobotSpec, Mount, Reading], ...] = (), due: bool = True, last: bool = False
     ) -> StepRecord:
-        """Return what is to be recorded of this instant: part 8; the ``last`` one has collisions that go on."""
-        twists = [self.world.twists[carrier.agent].at(0) for carrier in self.carriers]
+        """Return the record of the current step: part 8. The ``last`` one includes open contact events."""
+        twists = [self.world.twists[runtime.agent].at(0) for runtime in self.robots]
         return StepRecord(
             self.tick,
             self.world.clock.nanoseconds,
             self.world.scene,
             self.ids.copy(),
             _rows(twists),
-            _rows([carrier.command for carrier in self.carriers]),
+            _rows([runtime.command for runtime in self.robots]),
             readings,
             due,
             self.touches,
@@ -241,16 +241,16 @@ class Simulation:
 
     @property
     def forces(self) -> tuple[ContactForce, ...]:
-        """What bodies of the physics world did to each other in the latest step; none in the plane."""
+        """Contact forces of the last step; none in the planar world."""
         return self.world.forces
 
     @property
     def eventful(self) -> bool:
-        """Whether something has happened that is recorded even when no scene is due."""
+        """Whether there is something to record although no scene is due."""
         return bool(self.touches or self.forces)
 
     def _collisions(self, last: bool) -> tuple[BodyContactEvent, ...]:
-        """Return the collisions that have ended since they were asked for before, by their ends."""
+        """Return the contact events that ended since the previous call, ordered by end."""
         now = self.world.clock.time
         over = [one for one in self.world.contact_events if last or now - one.end > HOLD + INSTANT]
         over.sort(key=lambda one: (one.end, one.begin, one.first, one.second))
@@ -258,34 +258,34 @@ class Simulation:
         return tuple(new)
 
     def turn_to(self, trial: Trial, seed: int) -> None:
-        """Go on by another trial; see :func:`crowdbot.simulation.apply_overrides`, which changes the world first."""
+        """Continue with another trial; see :func:`crowdbot.simulation.apply_overrides`, which changes the world."""
         self.trial, self.seed = trial, seed
         self.around.change(trial)
 
     def ask(self, robot: str, command: Twist) -> None:
-        """Give a robot another command, which it holds until its navigator decides again: for bridges, part 7.
+        """Set the command of a robot until the next decision of its navigator; used by bridges, part 7.
 
         Raises:
             InputError: there is no robot of this name.
         """
-        for carrier in self.carriers:
-            if carrier.robot.name == robot:
-                carrier.command = Twist(*map(float, command))
+        for runtime in self.robots:
+            if runtime.robot.name == robot:
+                runtime.command = Twist(*map(float, command))
                 return
-        known = ", ".join(carrier.robot.name for carrier in self.carriers) or "none"
+        known = ", ".join(runtime.robot.name for runtime in self.robots) or "none"
         raise InputError(f"there is no robot {robot!r}; the trial has {known}")
 
     @property
     def tick(self) -> int:
-        """Number of steps since the beginning."""
+        """Number of steps since the start."""
         return self.world.clock.tick
 
     @property
     def ids(self) -> NDArray[np.int64]:
-        """Ids of the agents ``[A]``."""
+        """Ids ``[A]`` of the agents."""
         return np.asarray(self.world.ids[0])
 
-    def _carrier(self, robot: RobotSpec, agent: int) -> RobotRuntime:
+    def _robot_runtime(self, robot: RobotSpec, agent: int) -> RobotRuntime:
         every = self.world.clock.every
         return RobotRuntime(
             robot,
@@ -299,7 +299,7 @@ class Simulation:
         own = self.world.clock
         if clock.tick or clock.step_ns != own.step_ns:
             raise InputError(
-                f"the clock is at tick {clock.tick} with steps of {clock.dt} s, but the trial begins at tick 0 with"
+                f"the clock is at tick {clock.tick} with steps of {clock.dt} s, but the trial starts at tick 0 with"
                 f" steps of {own.dt} s"
             )
         self.world.clock = clock
@@ -319,23 +319,23 @@ class Simulation:
             self.world.scene = scene.replace(active=scene.active & ~gone)
 
     def _judge(self, before: Scene, ids: NDArray[np.int64]) -> None:
-        """Find contacts and arrivals; ``ids`` are from before the step, since an index may be reused."""
+        """Detect contacts and arrivals; ``ids`` are from before the step, since an index may be reused."""
         now = self.world.scene
         touches = [RobotContact(int(ids[one.robot]), int(ids[one.other]), one.clearance) for one in self.world.contacts]
-        for carrier in self.carriers:
-            gap = float(self.world.wall_clearance(carrier.agent)[0])
+        for runtime in self.robots:
+            gap = float(self.world.wall_clearance(runtime.agent)[0])
             if gap < 0.0:
-                touches.append(RobotContact(int(ids[carrier.agent]), WALL, gap))
-            away = float(np.hypot(*(now.position[0, carrier.agent] - np.array(carrier.robot.goal.position))))
-            carrier.arrived |= away < carrier.robot.goal.tolerance
+                touches.append(RobotContact(int(ids[runtime.agent]), WALL, gap))
+            away = float(np.hypot(*(now.position[0, runtime.agent] - np.array(runtime.robot.goal.position))))
+            runtime.arrived |= away < runtime.robot.goal.tolerance
         self.touches = tuple(touches)
         collided = bool(touches)
         if self.event is None and collided:
             self.event = "collision"
-        elif self.event is None and self.carriers and all(carrier.arrived for carrier in self.carriers):
+        elif self.event is None and self.robots and all(runtime.arrived for runtime in self.robots):
             self.event = "success"
         if self.ended is None:
-            robots = {carrier.robot.name: carrier.agent for carrier in self.carriers}
+            robots = {runtime.robot.name: runtime.agent for runtime in self.robots}
             self.ended = end_outcome(self.trial, self.world, self.people, robots)
 
 

@@ -1,4 +1,4 @@
-"""Statistics of a run without its arrays: digest, number of agents, navigation metrics."""
+"""Statistics of a run without its arrays: digest, number of agents and navigation metrics."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ __all__ = ["EpisodeDigest", "EpisodeStatistics", "RunSummary", "present", "robot
 
 @dataclass(frozen=True)
 class RunSummary:
-    """How a run went, without its arrays.
+    """Summary of a run, without its arrays.
 
     Fields:
-        trial, seed: what was run.
-        outcome, steps, digest, metrics: as those of :class:`Episode`.
-        begin, end: times of the first and the last recorded instant [s].
-        agents: how many people and robots there ever were.
-        path: the recording, if there is one.
+        trial, seed: the trial and its seed.
+        outcome, steps, digest, metrics: see :class:`Episode`.
+        begin, end: times of the first and the last recorded step [s].
+        agents: total number of people and robots.
+        path: the recording, or None.
         failure: the exception that ended the run, for the outcome ``error``.
     """
 
@@ -50,13 +50,13 @@ class RunSummary:
 
 
 class EpisodeDigest:
-    """The hash of an episode, made while it runs."""
+    """Hash of an episode, updated while it runs."""
 
     def __init__(self) -> None:
         self._sum = hashlib.blake2b(digest_size=16)
 
     def take(self, frame: StepRecord) -> None:
-        """Add an instant: every array of its readings, then, when it is due, of its scene, then forces."""
+        """Add a record: all arrays of its readings, then of its scene if due, then forces."""
         for robot, mount, reading in frame.readings:
             self._sum.update(f"reading {frame.nanoseconds} {robot.name}/{mount.name}\n".encode())
             for field in dataclasses.fields(reading):
@@ -67,23 +67,23 @@ class EpisodeDigest:
             for array in (*who, *present(frame), frame.twists, frame.commands):
                 self._sum.update(_bytes(array))
         for force in frame.forces:
-            self._sum.update(f"force {tuple(force)!r}\n".encode())
+            self._sum.update(f"force {_contact_text(*force)}\n".encode())
         for collision in frame.collisions:
-            self._sum.update(f"collision {dataclasses.astuple(collision)!r}\n".encode())
+            self._sum.update(f"collision {_contact_text(*dataclasses.astuple(collision))}\n".encode())
 
     def hexdigest(self, outcome: str) -> str:
-        """Return the hash of everything so far and the outcome."""
+        """Return the hash of all records so far and the outcome."""
         whole = self._sum.copy()
         whole.update(f"outcome {outcome}\n".encode())
         return whole.hexdigest()
 
 
 class EpisodeStatistics:
-    """Counts and measures while an episode runs.
+    """Statistics of a running episode.
 
     Args:
-        trial, seed: what runs.
-        digest: digest of the time before the first instant, None for a run from the start.
+        trial, seed: the trial and its seed.
+        digest: digest of the time before the first record; None for a run from the start.
     """
 
     def __init__(self, trial: Trial, seed: int, digest: EpisodeDigest | None = None) -> None:
@@ -99,12 +99,12 @@ class EpisodeStatistics:
         ]
 
     def take(self, frame: StepRecord) -> None:
-        """Take an instant."""
+        """Add a record."""
         self.digest.take(frame)
         self.keep(frame)
 
     def keep(self, frame: StepRecord) -> None:
-        """Take an instant that the digest has already."""
+        """Add a record that the digest already contains."""
         self.agents = max(self.agents, 1 + int(frame.ids.max(initial=-1)))
         self._touching |= {who for one in frame.touches for who in (one.robot, one.other)}
         if frame.due:
@@ -117,13 +117,13 @@ class EpisodeStatistics:
             self._touching = set()
 
     def metrics(self, outcome: str) -> dict[str, float]:
-        """Return the metrics of every robot."""
+        """Return the metrics of all robots."""
         return robot_metrics(self.travels, [robot.name for robot in self.trial.robots], outcome)
 
     def summary(
         self, outcome: str, steps: int, path: Path | None = None, failure: RunFailure | None = None
     ) -> RunSummary:
-        """Return how the run went."""
+        """Return the summary of the run."""
         return RunSummary(
             self.trial,
             self.seed,
@@ -140,7 +140,7 @@ class EpisodeStatistics:
 
 
 def robot_metrics(travels: Sequence[NavigationMetrics], names: Iterable[str], outcome: str) -> dict[str, float]:
-    """Return the metrics of all robots; a single robot has the outcome of the run, judged in every time step."""
+    """Return the metrics of all robots; for a single robot, the outcome is that of the run."""
     found: dict[str, float] = {}
     for number, (travel, name) in enumerate(zip(travels, names, strict=True)):
         values = travel.result(outcome if len(travels) == 1 else None)
@@ -149,7 +149,7 @@ def robot_metrics(travels: Sequence[NavigationMetrics], names: Iterable[str], ou
 
 
 def present(frame: StepRecord) -> tuple[NDArray[Any], ...]:
-    """Return position, velocity, heading and active of E = 1, 0 for absent agents."""
+    """Return position, velocity, heading and active of a record, E = 1; 0 for absent agents."""
     scene = frame.scene
     here = scene.active[0]
     return (
@@ -172,6 +172,12 @@ def _instant(frame: StepRecord) -> AgentStates:
         scene.heading[0, there],
         scene.radius[0, there],
     )
+
+
+def _contact_text(first: tuple[str, int], second: tuple[str, int], *values: object) -> str:
+    """Return what the digest takes of a contact: text without the names of classes, which may change."""
+    bodies = [f"Party(kind={kind!r}, number={number!r})" for kind, number in (first, second)]
+    return f"({', '.join([*bodies, *map(repr, values)])})"
 
 
 def _bytes(value: Any) -> bytes:

@@ -1,4 +1,4 @@
-"""Termination: people who leave at their goals, and the conditions that end a trial before its duration."""
+"""Termination: departure of people at their goals, and end conditions of a trial."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["end_outcome", "goal_zones"]
 
 
 def goal_zones(people: InitialPeople) -> list[tuple[NDArray[np.int64], Any]]:
-    """Return the people who leave at their goal and the prepared goal zone, empty for a point goal."""
+    """Return the people who leave at their goal, with the prepared goal zones; empty for a point goal."""
     import shapely
 
     members: dict[Any, list[int]] = {}
@@ -30,13 +30,13 @@ def goal_zones(people: InitialPeople) -> list[tuple[NDArray[np.int64], Any]]:
 
 
 def end_outcome(trial: Trial, world: PlanarWorld, people: InitialPeople, robots: Mapping[str, int]) -> str | None:
-    """Return the outcome that the end conditions of a trial give now, None if none of them holds.
+    """Return the outcome of the end conditions of a trial, or None if none of them holds.
 
     Args:
-        trial: with its conditions.
-        world: as it is now.
-        people: at the start, with those of recordings.
-        robots: agent of each robot by name, in the order of the trial.
+        trial: trial with end conditions.
+        world: current world.
+        people: initial and recorded people.
+        robots: agent index of each robot by name, in the order of the trial.
     """
     if trial.end.empty and _count_people(world) == 0 and not _expects_people(trial, world, people):
         return "finished"
@@ -53,7 +53,7 @@ def _count_people(world: PlanarWorld) -> int:
 
 
 def _expects_people(trial: Trial, world: PlanarWorld, people: InitialPeople) -> bool:
-    """Return whether anybody may still come in."""
+    """Return whether more people can enter."""
     time = world.clock.time
     walks = any(walk.time[0] > time for walk in people.walks)
     come = (source.arrival_count(trial.duration) > source.arrival_count(time) for source in trial.sources)

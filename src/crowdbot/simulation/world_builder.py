@@ -1,4 +1,4 @@
-"""Opening: the world of a trial before its first step."""
+"""Construction of the initial world of a trial."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ __all__ = ["build_world", "limits_of", "start_scene"]
 
 
 def build_world(trial: Trial, people: InitialPeople, seed: int) -> tuple[PlanarWorld, PeopleAppearance | None]:
-    """Return the world of a trial at the beginning: people, robots, then free places for who comes in.
+    """Return the initial world of a trial: people, robots, then free slots for people who enter.
 
-    With it come the bodies of people, when the world has bodies or a sensor looks at them.
+    Bodies of people are included if the world has bodies or a sensor needs them.
 
-    People are numbered first, then robots, then everybody who comes in, so that whoever is there at the beginning has
-    the number of the own place. Free places have numbers below 0.
+    Ids are assigned to people first, then to robots, then to people who enter; initial ids equal indices. Free slots
+    have negative ids.
     """
     if trial.sweeps:
         count = len(expand_sweeps(trial))
-        raise TrialError(f"trial {trial.name!r} has {count} variants by its sweeps; run one of them")
+        raise TrialError(f"trial {trial.name!r} has {count} variants in its sweeps; run one of them")
     sources = [source.source(trial.journeys, crowd_names(trial.crowd)) for source in trial.sources]
     first = len(people)
     scene = start_scene(trial, people, spare := _spare(trial, first, sources, seed))
@@ -80,7 +80,7 @@ def build_world(trial: Trial, people: InitialPeople, seed: int) -> tuple[PlanarW
 
 
 def _embodied(trial: Trial) -> bool:
-    """Whether anything needs the bodies of people."""
+    """Return whether anything needs the bodies of people."""
     if trial.world == "physics":
         return True
     kind = trial.bodies or PlanarWorld.people_shape
@@ -106,7 +106,7 @@ def _with_bodies(
 
 
 def start_scene(trial: Trial, people: InitialPeople, spare: int = 0) -> Scene:
-    """Return the scene at the beginning, E = 1: people walking towards their goals, standing robots, free places."""
+    """Return the initial scene, E = 1: people walking towards their goals, robots at rest, free slots."""
     robots = trial.robots
     away = people.goal - people.position
     distance = np.hypot(away[:, 0], away[:, 1])
@@ -140,20 +140,20 @@ def start_scene(trial: Trial, people: InitialPeople, spare: int = 0) -> Scene:
 
 
 def limits_of(drive: Any) -> DriveLimits:
-    """Return the limits of a drive by the names that drives use; a drive without them is taken as 1 m/s and 1 rad/s."""
+    """Return the limits of a drive by field name (default: 1 m/s and 1 rad/s)."""
     known = {name: float(getattr(drive, name)) for name in DriveLimits._fields if hasattr(drive, name)}
     return DriveLimits(**({"max_speed": 1.0, "max_turn_rate": 1.0} | known))
 
 
 def _spare(trial: Trial, first: int, sources: Sequence[PeopleSource], seed: int) -> int:
-    """Return how many free places are needed: as many as people ever come in, up to the capacity."""
+    """Return the number of free slots: the maximum number of people who enter, up to the capacity."""
     end = trial.ticks * trial.step
     come = sum(source.come_by(end, seed, number) for number, source in enumerate(sources))
     return come if trial.capacity is None else min(come, max(0, trial.capacity - first))
 
 
 def _model(trial: Trial, people: InitialPeople, agents: int, seed: int) -> CrowdModel:
-    """Return by what everybody walks: with several crowds a mixture in which each person has a place."""
+    """Return the crowd model; with several crowds, a mixture with a model for each person."""
     if not isinstance(trial.crowd, Crowds):
         return own(trial.crowd, seed, 0, agents, _values(people, range(len(people))))
     which = _chosen(people, agents, "crowd", trial.crowd.names, 0)
@@ -165,7 +165,7 @@ def _model(trial: Trial, people: InitialPeople, agents: int, seed: int) -> Crowd
 
 
 def _values(people: InitialPeople, members: Iterable[int]) -> dict[int, dict[str, float]]:
-    """Return the own parameters of those of some people who have any."""
+    """Return the individual parameters of people, if any."""
     found = {}
     for a in members:
         owner = people.owners[people.owner[a]] if a < len(people) else None
@@ -175,7 +175,7 @@ def _values(people: InitialPeople, members: Iterable[int]) -> dict[int, dict[str
 
 
 def _script(people: InitialPeople) -> ReplayedPeople | None:
-    """Return the recordings that people follow."""
+    """Return the recorded tracks that people follow."""
     if not people.walks:
         return None
     first = len(people) - len(people.walks)
@@ -195,7 +195,7 @@ def _journeys(trial: Trial, people: InitialPeople, agents: int) -> JourneyAssign
 
 
 def _chosen(people: InitialPeople, agents: int, word: str, names: tuple[str, ...], otherwise: int) -> NDArray[np.int64]:
-    """Return ``[A]`` the index of the journey or crowd that everybody's agent, spawner or recording names."""
+    """Return ``[A]`` the index of the journey or crowd of each agent, from its spawner or recording."""
 
     def index(owner: Any) -> int:
         name = getattr(owner, word, "")
@@ -209,7 +209,7 @@ def _chosen(people: InitialPeople, agents: int, word: str, names: tuple[str, ...
 def _setting_off(
     scene: Scene, first: int, router: Router | None, journeys: JourneyAssignment | None, given: NDArray[np.float64]
 ) -> Scene:
-    """Return the scene in which the ``first`` people walk on their ways, around walls and to their first stops."""
+    """Return the scene in which the ``first`` people start on their paths around walls to their first waypoints."""
     position, aim = scene.position[0, :first], scene.goal[0, :first].copy()
     if router is not None:
         led = np.ones(first, dtype=np.bool_) if journeys is None else journeys.uses_routing(scene)[0, :first]

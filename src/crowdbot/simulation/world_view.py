@@ -1,4 +1,4 @@
-"""Surroundings: what sensors and cameras see of a simulation, in either world."""
+"""WorldView: the world of a simulation as seen by sensors and cameras."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ if TYPE_CHECKING:
 __all__ = ["WorldView"]
 
 SKIN = 1
-"""Level of detail of the skins that rays meet."""
+"""Level of detail of skins for ray casting."""
 
 
 class WorldView:
-    """A world as sensors see it: from above as discs, or in space with bodies, or drawn.
+    """A world for sensors: as discs in the plane, as bodies in space, or rendered.
 
     Args:
-        trial: with stage and robots.
-        world: of either kind.
-        figures: bodies and activities of people; None when nothing looks through space.
-        seed: of the ways that people walk.
-        skins: whether rays meet the skins of people.
+        trial: trial with stage and robots.
+        world: planar or physics world.
+        figures: bodies and activities of people; None if no sensor needs bodies.
+        seed: seed of the gaits.
+        skins: whether rays hit the skins of people.
     """
 
     def __init__(self, trial: Trial, world: World, figures: PeopleAppearance | None, seed: int, skins: bool) -> None:
@@ -49,17 +49,17 @@ class WorldView:
 
     @property
     def bodies(self) -> dict[int, Any]:
-        """The robots by agent."""
+        """The robots by agent index."""
         return {self._first + k: robot.body for k, robot in enumerate(self.trial.robots)}
 
     def change(self, trial: Trial) -> None:
-        """Take robots and stage from another trial."""
+        """Use robots and stage of another trial."""
         self.trial = trial
         self.world.change_bodies(self.bodies, trial.stage.physical(), _walls(trial))
 
     @property
     def flat(self) -> Scene:
-        """The scene from above, with props among the walls."""
+        """The planar scene, with props among the walls."""
         return self.world.plane_scene()
 
     @property
@@ -71,7 +71,7 @@ class WorldView:
         return self._space[1]
 
     def render(self, camera: Any, pose: SpatialPose) -> Mapping[str, NDArray[Any]]:
-        """Return images of a camera now, as the renderer of a :class:`crowdbot.sensors.SensorView`.
+        """Return current images of a camera, as the renderer of a :class:`crowdbot.sensors.SensorView`.
 
         Raises:
             MissingExtra: mujoco is not installed.
@@ -80,7 +80,7 @@ class WorldView:
 
     @property
     def studio(self) -> Renderer:
-        """Renderer of the world as it is now.
+        """Renderer of the current world.
 
         Raises:
             MissingExtra: mujoco is not installed.

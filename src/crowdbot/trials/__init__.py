@@ -1,4 +1,4 @@
-"""Trials: simulations as data. The dataclasses, their XML, the checks, built-in scenarios, placement and importers."""
+"""Trials: simulations as data. Dataclasses, XML, checks, built-in scenarios, placement of people, importers."""
 
 from .agent import Agent, AgentParameter
 from .builtin import builtin_trials, load_trial
@@ -15,7 +15,7 @@ from .importers.recording import recorded_trial
 from .journey import Direction, Exit, Journey, Point, Portal, Zone
 from .notation import Points, plain
 from .parser import check_trial, parse_trial
-from .partial import readable, skip_unreadable
+from .partial_element import has_kind, kind_of, readable, skip_unreadable
 from .people import Group, SourceSpec, Spawner
 from .placement.appearance import PeopleAppearance, people_appearance
 from .placement.expansion import expand_spawners
@@ -34,7 +34,7 @@ from .sweep import Sweep
 from .trial import End, EndCondition, RecordingSpec, Trial
 from .validation.rates import trial_remarks
 from .variants import apply_values, expand_sweeps
-from .xml.old_names import OldNameWarning, update_names
+from .xml.old_names import OldNameWarning, restore_old_names, update_names
 from .xml.reader import XmlReader
 from .xml.trial_text import parse_trial_xml, read_trial_bytes
 from .xml.writer import element_from, trial_xml
@@ -104,9 +104,11 @@ __all__ = [
     "element_word",
     "expand_spawners",
     "expand_sweeps",
+    "has_kind",
     "import_original",
     "is_area_file",
     "is_code",
+    "kind_of",
     "load_trial",
     "map_files",
     "outline",
@@ -123,6 +125,7 @@ __all__ = [
     "readable",
     "recorded_trial",
     "resolve_file",
+    "restore_old_names",
     "schema",
     "skip_unreadable",
     "trial_remarks",

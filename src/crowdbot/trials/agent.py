@@ -1,4 +1,4 @@
-"""Agents: people each of whom stands in the trial with the own place, goal and body, as explicit trials have them."""
+"""Agents: single people of a trial, each with its own start, goal and body."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class AgentParameter:
 
 @dataclass(frozen=True, kw_only=True)
 class Agent:
-    """One person: with a goal or a journey a walker, without both somebody who stays in place.
+    """One person. A person without a goal and a journey stays in place.
 
     Raises:
         InputError: a value is not allowed.
@@ -65,13 +65,13 @@ class Agent:
 
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return what is wrong with the words of a file, whatever else is wrong in its element."""
+        """Return the problems of bodies and activities, independent of other problems of the element."""
         found = word_problems(values.get("body", ""), values.get("activity", ""))
         return [((), sentence) for sentence in found]
 
     @property
     def count(self) -> int:
-        """One person."""
+        """Number of people: 1."""
         return 1
 
     @property
@@ -81,7 +81,7 @@ class Agent:
 
     @property
     def facing(self) -> float:
-        """Heading at the start [rad], NaN towards the goal."""
+        """Heading at the start [rad]; NaN means towards the goal."""
         if self.heading is None:
             return math.nan if self.goal or self.journey else 0.0
         return self.heading

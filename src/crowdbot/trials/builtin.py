@@ -1,4 +1,4 @@
-"""The trials that come with crowdbot, and the one way to load a trial."""
+"""Built-in trials, and the function that loads a trial."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ def builtin_trials() -> tuple[str, ...]:
 
 
 def load_trial(source: str | Path, *, trust: bool = False, **values: Any) -> Trial:
-    """Read or make a trial, and check it.
+    """Load and check a trial.
 
     Args:
-        source: a trial file or a built-in name; a file of that name in the working folder comes first.
+        source: a trial file or a built-in name; a file of this name in the working folder takes precedence.
         trust: whether the trial may load code from outside its own folder, or read files there.
-        values: parameters of a built-in trial that has some; of any trial, values by their paths as
-            :class:`crowdbot.trials.Sweep` has them, such as ``world="physics"``.
+        values: parameters of a built-in trial, or values by path as in :class:`crowdbot.trials.Sweep`, such as
+            ``world="physics"``.
 
     Raises:
-        TrialError: there is no such trial, or with everything that is wrong with it, a sentence each.
+        TrialError: the trial does not exist or has errors; one sentence per error.
 
     >>> load_trial("crossing-flows").people
     40
@@ -56,8 +56,8 @@ def load_trial(source: str | Path, *, trust: bool = False, **values: Any) -> Tri
         return _builtin(str(source), trust, values)
     if not path.exists() and not path.suffix and len(path.parts) == 1:
         raise TrialError(
-            f"there is no trial {str(source)!r}{did_you_mean(str(source), known)}: no file has this name,"
-            f" and built in are {', '.join(known)}"
+            f"there is no trial {str(source)!r}{did_you_mean(str(source), known)}: there is no such file;"
+            f" built-in trials are {', '.join(known)}"
         )
     trial = parse_trial(read_trial_bytes(path), place=str(path), folder=path.parent, trust=trust)
     return apply_values(trial, values, place=trial.name, trust=trust)

@@ -1,4 +1,4 @@
-"""Cameras of a trial: from where images and videos of it are made."""
+"""Cameras of a trial, for images and videos."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
 __all__ = ["OVERVIEW", "Camera", "overview"]
 
 OVERVIEW = "overview"
-"""Name of the camera that sees the whole stage, unless the trial has one of this name."""
+"""Name of the automatic camera that shows the whole stage; a camera of the trial with this name replaces it."""
 VIEWS, PITCHES = (60, 40, 25), range(60, 90, 4)
-"""Horizontal angles of view of that camera, and how steeply it may look down [degrees], the likest first."""
+"""Horizontal fields of view and pitch angles [degrees] of that camera, in order of preference."""
 FARTHEST = 150.0
-"""Narrower lenses are not taken where they would have to be higher [m]."""
+"""Largest height [m] of that camera with a narrow field of view."""
 ENOUGH = 0.04
-"""Share of the floor that it may hide more than the best."""
+"""Share of the floor that walls may hide in addition to the minimum."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Camera:
-    """A camera in the world, or on a robot or one of its links; it looks along x of its own frame.
+    """A camera in the world, on a robot, or on a link of a robot. It looks along the x axis of its frame.
 
     >>> Camera(name="door", x=1, y=2, heading=1.57).z
     1.6
@@ -57,7 +57,7 @@ class Camera:
         check(self)
 
     def view(self, agent: int | None) -> world.SceneCamera:
-        """Return it for a studio; ``agent`` is the robot that carries it."""
+        """Return the camera of a renderer; ``agent`` is the index of the robot that carries it."""
         flat = math.cos(self.pitch)
         ahead = (flat * math.cos(self.heading), flat * math.sin(self.heading), -math.sin(self.pitch))
         place = (self.x, self.y, self.z)
@@ -75,10 +75,10 @@ class Camera:
 
 
 def overview(stage: Stage, places: np.ndarray) -> Camera:
-    """Return a camera that sees a whole stage, and all ``places`` ``[N, 2]`` [m], from the south and above.
+    """Return a camera that shows a whole stage and all ``places`` ``[N, 2]`` [m], seen from the south and above.
 
-    It looks down at 60 degrees from near by. Where walls would hide more of the floor than they must, it looks steeper,
-    and from farther away through a narrower lens.
+    The default pitch is 60 degrees. If walls hide too much of the floor, the pitch is steeper and the camera is farther
+    away with a narrower field of view.
 
     >>> from crowdbot.trials import load_trial
     >>> stage = load_trial("frontal").stage
@@ -90,22 +90,24 @@ def overview(stage: Stage, places: np.ndarray) -> Camera:
     )
     low, high = points.min(axis=0), points.max(axis=0)
     low, high = np.minimum(low, 0.5 * (low + high) - 2.0), np.maximum(high, 0.5 * (low + high) + 2.0)
-    every = [_looking(low, high, stage.wall_height, *np.radians(way)) for way in itertools.product(VIEWS, PITCHES)]
+    every = [
+        _overview_camera(low, high, stage.wall_height, *np.radians(way)) for way in itertools.product(VIEWS, PITCHES)
+    ]
     found = [one for k, one in enumerate(every) if k < len(PITCHES) or one.z < FARTHEST]
-    hidden = _hidden(stage, low, high, np.array([(one.x, one.y, one.z) for one in found]))
+    hidden = _hidden_shares(stage, low, high, np.array([(one.x, one.y, one.z) for one in found]))
     return found[int(np.argmax(hidden <= hidden.min() + ENOUGH))]
 
 
-def _looking(low: np.ndarray, high: np.ndarray, height: float, view: float, pitch: float) -> Camera:
-    """Return the nearest camera of this view and pitch that sees a whole box from ``low`` to ``high`` [m]."""
+def _overview_camera(low: np.ndarray, high: np.ndarray, height: float, view: float, pitch: float) -> Camera:
+    """Return the nearest camera with this field of view and pitch that shows the whole box ``low`` to ``high`` [m]."""
     wide, tall = 960, 600
     forward, up = (0.0, math.cos(pitch), -math.sin(pitch)), (0.0, math.sin(pitch), math.cos(pitch))
     edges = math.tan(0.5 * view), math.tan(0.5 * view) * tall / wide
     corners = np.array(list(itertools.product((low[0], high[0]), (low[1], high[1]), (0.0, height))))
-    ground = np.linspace(low[1], high[1], 41)[:, None]  # where its axis may meet the floor
+    ground = np.linspace(low[1], high[1], 41)[:, None]  # candidate points where the axis meets the floor
     off = corners - np.stack([np.broadcast_to(0.5 * (low[0] + high[0]), ground.shape), ground, 0.0 * ground], axis=-1)
     tallest = (np.abs(off @ up) / edges[1] - off @ forward).max(axis=-1)
-    k = int(tallest.argmin())  # as far from the upper as from the lower edge of the image
+    k = int(tallest.argmin())  # centres the box between the upper and the lower edge of the image
     away = 1.05 * max(tallest[k], (np.abs(off[k, :, 0]) / edges[0] - off[k] @ forward).max())
     place = corners[0] - off[k, 0] - away * np.array(forward)
     return Camera(
@@ -114,8 +116,8 @@ def _looking(low: np.ndarray, high: np.ndarray, height: float, view: float, pitc
     )  # fmt: skip
 
 
-def _hidden(stage: Stage, low: np.ndarray, high: np.ndarray, eyes: np.ndarray) -> np.ndarray:
-    """Return ``[N]`` which share of the floor that people can stand on walls hide from ``eyes`` ``[N, 3]``."""
+def _hidden_shares(stage: Stage, low: np.ndarray, high: np.ndarray, eyes: np.ndarray) -> np.ndarray:
+    """Return ``[N]`` the share of the walkable floor that walls hide from ``eyes`` ``[N, 3]``."""
     import shapely
 
     sides = [low[k] + (np.arange(24) + 0.5) / 24.0 * (high[k] - low[k]) for k in (0, 1)]
@@ -126,7 +128,7 @@ def _hidden(stage: Stage, low: np.ndarray, high: np.ndarray, eyes: np.ndarray) -
         return np.zeros(len(eyes))
     tree = shapely.STRtree(shapely.linestrings(walls.reshape(-1, 2, 2)))
     shares = []
-    for eye in eyes:  # a ray to a point of the floor runs below the tops of walls on its last part only
+    for eye in eyes:  # only the last part of a ray to the floor is below the tops of walls
         below = floor + (eye[:2] - floor) * min(1.0, stage.wall_height / eye[2])
         rays = shapely.linestrings(np.stack([floor, below], axis=1))
         shares.append(len(np.unique(tree.query(rays, predicate="intersects")[0])) / len(floor))

@@ -1,6 +1,6 @@
-"""Crowd: by which model people walk, around which walls they find their way, and what their bodies do.
+"""Crowd: the models of people, their routing, contact and limits.
 
-Everybody walks by the one model of a trial, or, when it has several named crowds, by that of the own crowd.
+A trial has one crowd model for all people, or several named crowds with a model each.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ __all__ = ["ContactSpec", "Crowd", "Crowds", "Limits", "Routing", "crowd_names"]
 
 @dataclass(frozen=True, kw_only=True)
 class Crowd:
-    """A model and, when there are several, the name by which spawners and sources choose it."""
+    """A crowd model. If a trial has several, each has a name that spawners and sources refer to."""
 
     name: str = attribute("", about="name that spawners and sources refer to", pattern=NAME)
     model: CrowdModel = mounted_field("models", "CrowdModel", drawn=True, about="crowd model")
@@ -32,14 +32,14 @@ class Crowd:
 
 @dataclass(frozen=True)
 class Crowds(Mixture):
-    """Several named crowds, each with its model; spawners and sources say whose people are in which.
+    """Several named crowds, each with its model. Spawners and sources refer to them by name.
 
     Fields:
-        models: of each crowd.
-        names: of each crowd.
+        models: model of each crowd.
+        names: name of each crowd.
 
     Raises:
-        InputError: names are missing, or not all different.
+        InputError: a name is missing or used twice.
 
     >>> from crowdbot.models import ORCA, SocialForce
     >>> Crowds((ORCA(), SocialForce()), names=("calm", "hurried")).names
@@ -61,37 +61,37 @@ class Crowds(Mixture):
 
     @staticmethod
     def gather(crowds: Sequence[Crowd]) -> CrowdModel:
-        """Return the crowds of a trial as one model: the only one itself when it has no name."""
+        """Return the crowds of a trial as one model; a single crowd without a name is its model itself."""
         if len(crowds) == 1 and not crowds[0].name:
             return crowds[0].model
         return Crowds(tuple(crowd.model for crowd in crowds), names=tuple(crowd.name for crowd in crowds))
 
     @staticmethod
     def spread(model: CrowdModel) -> tuple[Crowd, ...]:
-        """Return the crowds that :meth:`gather` made a model of."""
+        """Return the crowds of a model from :meth:`gather`."""
         if not isinstance(model, Crowds):
             return (Crowd(model=model),)
         return tuple(Crowd(name=name, model=one) for name, one in zip(model.names, model.models, strict=True))
 
     @staticmethod
     def problems(crowds: Sequence[Crowd]) -> Iterator[tuple[int, str]]:
-        """Yield the index of every crowd whose name is missing or taken, and a sentence."""
+        """Yield the index of every crowd with a missing or duplicate name, and the problem."""
         names = [crowd.name for crowd in crowds]
         for k, name in enumerate(names):
             if not name and len(names) > 1:
-                yield k, "needs the attribute 'name': of several crowds each has its own"
+                yield k, "needs the attribute 'name': each of several crowds has its own"
             elif name in names[:k]:
                 yield k, f"name {name!r} is taken by another crowd; give each its own"
 
 
 def crowd_names(model: Any) -> tuple[str, ...]:
-    """Return the names of the crowds of a trial; none when it has one without a name."""
+    """Return the names of the crowds of a trial; empty for a single crowd without a name."""
     return model.names if isinstance(model, Crowds) else ()
 
 
 @dataclass(frozen=True, kw_only=True)
 class Routing:
-    """People find the shortest way around walls to their goals; without it they walk straight towards them."""
+    """People take the shortest path around walls to their goals. Without routing they walk straight to them."""
 
     radius: float = attribute(0.3, about="distance that paths keep from walls", unit="m", exclusive_min=0.0, max=10.0)
     unreachable: str = attribute(
@@ -104,13 +104,13 @@ class Routing:
         check(self)
 
     def router(self, walls: Walls) -> world.Router:
-        """Return who leads people around these walls."""
+        """Return the router for these walls."""
         return world.Router.of(walls, self.radius, self.unreachable)
 
 
 @dataclass(frozen=True, kw_only=True)
 class ContactSpec:
-    """People whose bodies overlap after a step are pushed apart, and nobody ends up in a wall."""
+    """Contact between people: overlapping bodies are pushed apart, and nobody is pushed into a wall."""
 
     variant: str = attribute(
         "position",
@@ -124,13 +124,13 @@ class ContactSpec:
         check(self)
 
     def bodies(self) -> world.ContactModel:
-        """Return what bodies do in a world."""
+        """Return the contact model of a world."""
         return world.ContactModel(self.variant, self.stiffness, self.iterations)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """What people cannot go beyond, whatever their model asks for."""
+    """Limits of speed and acceleration of people, applied after the crowd model."""
 
     max_speed: float | None = attribute(None, about="maximum speed", unit="m/s", exclusive_min=0.0)
     max_acceleration: float | None = attribute(

@@ -1,4 +1,4 @@
-"""Distributions: a parameter of a spawner is a number, or differs from person to person."""
+"""Distributions: a parameter of people is a number, or is drawn for each person."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ FORMS = "a number, uniform(low, high), normal(mean, sd) or normal(mean, sd, low,
 
 @dataclass(frozen=True)
 class Distribution:
-    """A number that is drawn anew for each person.
+    """A number that is drawn for each person.
 
     Kinds: ``number`` (value), ``uniform`` (low, high), ``normal`` (mean, standard deviation, low, high). A normal
-    distribution is cut at ``low`` and ``high``; when they are not given, at three standard deviations, so that a
-    speed or a radius has bounds that can be checked before anything runs.
+    distribution is truncated at ``low`` and ``high`` (default: three standard deviations), so every value has bounds
+    that can be checked in advance.
 
     Raises:
         InputError: the kind is unknown, the numbers are too few, too many, not finite or in the wrong order.
@@ -43,7 +43,7 @@ class Distribution:
     def __post_init__(self) -> None:
         allowed = {"number": (1,), "uniform": (2,), "normal": (2, 4)}
         if self.kind not in allowed:
-            raise InputError(f"{self.kind!r} is no distribution{did_you_mean(self.kind, allowed)}; use {FORMS}")
+            raise InputError(f"{self.kind!r} is not a distribution{did_you_mean(self.kind, allowed)}; use {FORMS}")
         if len(self.values) not in allowed[self.kind]:
             raise InputError(f"{self.kind} takes {_counts(allowed[self.kind])} numbers, not {len(self.values)}")
         object.__setattr__(self, "values", tuple(float(v) for v in self.values))
@@ -65,7 +65,7 @@ class Distribution:
 
     @classmethod
     def of(cls, value: Any) -> Distribution:
-        """Make a distribution of a number, a text or a distribution."""
+        """Return a distribution from a number, a text or a distribution."""
         if isinstance(value, cls):
             return value
         return cls.parse(value) if isinstance(value, str) else cls("number", (float(value),))
@@ -84,7 +84,7 @@ class Distribution:
         return self.values[-2 if len(self.values) > 1 else 0], self.values[-1]
 
     def draw(self, rng: np.random.Generator, count: int) -> NDArray[np.float64]:
-        """Return ``[count]`` values; every value takes exactly one number from ``rng``."""
+        """Return ``[count]`` values; each value uses exactly one number from ``rng``."""
         share = rng.random(count)
         low, high = self.extent
         if self.kind == "number":

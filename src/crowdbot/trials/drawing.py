@@ -1,4 +1,4 @@
-"""A trial as a small drawing: its stage, the zones of people, and its robots."""
+"""SVG drawing of a trial: stage, zones of people, robots."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The grammar of trials: what a field of the tree is called in XML, what it may be, and what it means.
+"""Fields of trial elements: their XML names, allowed values and descriptions.
 
-Trials are frozen dataclasses whose fields are made by the functions below. The reader, the writer and the checks walk
-over :func:`outline` and know nothing else, so that a new element is a new dataclass and nothing more.
+Trials are frozen dataclasses whose fields are made by the functions below. The reader, the writer and the schema only
+use :func:`outline`, so a new element only needs a new dataclass.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Any
 
 from crowdbot.core import Bounds, InputError, did_you_mean
 
-from .partial import is_partial
+from .partial_element import PartialElement
 
 __all__ = [
     "Constraint",
@@ -38,16 +38,16 @@ __all__ = [
 ]
 
 FieldProblem = tuple[Collection[str], str]
-"""What ``mistakes(values)`` of an element finds, whatever else is wrong in it: fields that nobody can use, and why."""
+"""A problem from ``mistakes(values)`` of an element: the names of the unusable fields, and a sentence."""
 LARGEST = 1e6
-"""No number in a trial may be larger than this, whatever its unit."""
+"""Largest number in a trial, in any unit."""
 
 UNWRITABLE = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 @dataclass(frozen=True)
 class Constraint:
-    """What one attribute may be; ``unit`` and ``about`` are for people."""
+    """The allowed values of an attribute; ``unit`` and ``about`` document it."""
 
     about: str
     unit: str = ""
@@ -59,7 +59,7 @@ class Constraint:
     points: int = 0
 
     def problem(self, value: Any) -> str:
-        """Return what is wrong with a value as the end of a sentence, empty when it is right.
+        """Return the problem of a value as the end of a sentence, empty if there is none.
 
         >>> Constraint("number of people", min=0).problem(-3)
         'must be at least 0 and at most 1000000'
@@ -82,7 +82,7 @@ class Constraint:
 
     @functools.cached_property
     def bounds(self) -> Bounds:
-        """What a number may be."""
+        """The range of a number."""
         lowest = -LARGEST if self.min is None and self.exclusive_min is None else self.min
         return Bounds(self.unit, lowest, self.exclusive_min, LARGEST if self.max is None else self.max)
 
@@ -105,12 +105,12 @@ class Constraint:
         return ""
 
     def _reach(self, low: float, high: float) -> str:
-        return "" if low == high else f", and it reaches from {low:g} to {high:g}"
+        return "" if low == high else f", and it ranges from {low:g} to {high:g}"
 
 
 @dataclass(frozen=True)
 class PluginSpec:
-    """The room and the contract of a part that users can bring: the XML says ``type="..."``."""
+    """A part that users can extend: the package and the base class of ``type="..."`` in XML."""
 
     room: str
     contract: str
@@ -118,7 +118,7 @@ class PluginSpec:
     """Whether its attributes may be distributions."""
 
     def places(self) -> tuple[types.ModuleType, type]:
-        """Return the room and the contract class."""
+        """Return the package and the base class."""
         room = importlib.import_module(f"crowdbot.{self.room}")
         return room, getattr(room, self.contract)
 
@@ -128,19 +128,19 @@ class FieldSpec:
     """One field of an element.
 
     Fields:
-        name: in Python.
-        word: in XML: of the attribute, or of the child element.
+        name: name in Python.
+        word: name of the attribute or of the child element in XML.
         role: ``attribute``, ``child``, ``children``, ``plugged`` (a child element) or ``mounted``
-            (a plug whose attributes stand in this element).
-        kind: type of the value, of children of one of them.
-        required: whether it must be given.
-        default: when it is not.
-        rule: of an attribute.
-        plug: of a plug.
-        about: one line for people.
-        max: largest number of child elements.
-        elements: the child elements that it takes, by word.
-        into: what makes one value of all children and the reverse, see :func:`children`.
+            (a plugin whose attributes are those of this element).
+        kind: type of the value, or of one child.
+        required: whether a value must be given.
+        default: value if none is given.
+        rule: allowed values of an attribute.
+        plug: package and base class of a plugin.
+        about: description, one line.
+        max: maximum number of child elements.
+        elements: classes of the child elements by XML name.
+        into: conversion between child elements and one value, see :func:`children`.
         optional: whether the value may be None.
     """
 
@@ -160,11 +160,11 @@ class FieldSpec:
 
     @property
     def words(self) -> tuple[str, ...]:
-        """The child elements that it takes."""
+        """XML names of the child elements."""
         return (self.word,) if self.role == "plugged" else tuple(self.elements)
 
     def wrong(self, value: Any) -> str:
-        """Return what is wrong with a value as the end of a sentence; a default is always right."""
+        """Return the problem of a value as the end of a sentence; a default has none."""
         is_default = not self.required and value == self.default
         return "" if self.rule is None or is_default else self.rule.problem(value)
 
@@ -181,13 +181,13 @@ def attribute(
     pattern: str = "",
     points: int = 0,
 ) -> Any:
-    """Make a field that is an XML attribute: a number, a word, true or false, points, a distribution."""
+    """Return a field that is an XML attribute: a number, a word, true or false, points, or a distribution."""
     rule = Constraint(about, unit, min, exclusive_min, max, choices, pattern, points)
     return dataclasses.field(default=default, metadata={"role": "attribute", "rule": rule, "about": about})
 
 
 def child(factory: Any = dataclasses.MISSING, *, about: str) -> Any:
-    """Make a field that is one child element; with None as its factory it may be left out, and is None then."""
+    """Return a field that is one child element; with ``factory=None`` it is optional and defaults to None."""
     row = {"role": "child", "about": about}
     if factory is None:
         return dataclasses.field(default=None, metadata=row)
@@ -195,34 +195,34 @@ def child(factory: Any = dataclasses.MISSING, *, about: str) -> Any:
 
 
 def children(words: str | Mapping[str, type], *, about: str, min: int = 0, max: int = 10_000, into: Any = None) -> Any:
-    """Make a field that is any number of child elements, from ``min`` (0 or 1) to ``max``, in their order.
+    """Return a field of ``min`` (0 or 1) to ``max`` child elements, in order.
 
     Args:
-        words: what each is called; several kinds are given with their classes.
-        about: one line for people.
-        min: whether there must be one.
-        max: how many there may be.
-        into: makes one value of them: ``into.gather(children)`` is the value, ``into.spread(value)`` the children,
-            ``into.problems(children)`` yields the index of every child that does not fit to the others, and why.
+        words: XML name, or classes by XML name.
+        about: description, one line.
+        min: minimum number of elements.
+        max: maximum number of elements.
+        into: converts the children to one value: ``into.gather(children)`` returns the value, ``into.spread(value)``
+            the children, ``into.problems(children)`` yields the index and the problem of every conflicting child.
     """
     row = {"role": "children", "words": words, "about": about, "max": max, "into": into}
     return dataclasses.field(metadata=row) if min else dataclasses.field(default=(), metadata=row)
 
 
 def plugin_field(room: str, contract: str, *, about: str, default: Any = dataclasses.MISSING) -> Any:
-    """Make a field that is a child element with a ``type`` from a room, or with an address."""
+    """Return a field that is a child element whose ``type`` is a built-in name or an address."""
     row = {"role": "plugged", "plug": PluginSpec(room, contract), "about": about}
     return dataclasses.field(default=default, metadata=row)
 
 
 def mounted_field(room: str, contract: str, *, about: str, drawn: bool = False) -> Any:
-    """Make a field whose ``type`` and attributes, ``drawn`` from distributions, stand in the element itself."""
+    """Return a field whose ``type`` and attributes belong to the element itself; ``drawn`` allows distributions."""
     return dataclasses.field(metadata={"role": "mounted", "plug": PluginSpec(room, contract, drawn), "about": about})
 
 
 @functools.cache
 def outline(cls: type) -> tuple[FieldSpec, ...]:
-    """Return the fields of an element in the order in which they are written."""
+    """Return the fields of an element in the order of the XML."""
     hints = typing.get_type_hints(cls)
     return tuple(_part(field, hints[field.name]) for field in dataclasses.fields(cls) if "role" in field.metadata)
 
@@ -252,26 +252,26 @@ def _part(field: dataclasses.Field[Any], hint: Any) -> FieldSpec:
 
 
 def _without_none(hint: Any) -> Any:
-    """Return the type of a value that may be left out."""
+    """Return the type of an optional value without None."""
     options = [option for option in typing.get_args(hint) if option is not type(None)]
     return options[0] if isinstance(hint, types.UnionType) and len(options) == 1 else hint
 
 
 def check(element: Any) -> None:
-    """Bring the fields of an element to their types and raise :class:`InputError` when a value is not allowed.
+    """Convert the fields of an element to their types; raise :class:`InputError` if a value is not allowed.
 
-    To be called in ``__post_init__``. Lists become tuples, and a number becomes a distribution where one is due. The
-    reader has checked the fields of a partial element already.
+    Called in ``__post_init__``. Lists become tuples, and numbers become distributions if the field is one. The reader
+    has already checked the fields of a partial element.
     """
     cls: type = type(element)
-    if is_partial(element):
+    if isinstance(element, PartialElement):
         return
     for part in outline(cls):
         value = getattr(element, part.name)
         if part.role == "attribute":
-            value = _brought(element, part, value)
+            value = _convert_attribute(element, part, value)
         elif part.role == "children" and part.into is None:
-            value = _listed(element, part, value)
+            value = _convert_children(element, part, value)
         elif not (isinstance(value, _contract(part)) or (value is None and not part.required)):
             raise InputError(
                 f"{cls.__name__}: {part.name} is a {type(value).__name__}, it must be a {_contract(part).__name__}"
@@ -286,7 +286,7 @@ def _contract(part: FieldSpec) -> type:
     return part.plug.places()[1] if part.plug else part.kind
 
 
-def _listed(element: Any, part: FieldSpec, value: Any) -> tuple[Any, ...]:
+def _convert_children(element: Any, part: FieldSpec, value: Any) -> tuple[Any, ...]:
     name = type(element).__name__
     if not isinstance(value, list | tuple):
         raise InputError(f"{name}: {part.name} is a {type(value).__name__}, it must be a list")
@@ -302,7 +302,7 @@ def _listed(element: Any, part: FieldSpec, value: Any) -> tuple[Any, ...]:
     return tuple(value)
 
 
-def _brought(element: Any, part: FieldSpec, value: Any) -> Any:
+def _convert_attribute(element: Any, part: FieldSpec, value: Any) -> Any:
     if value is None and part.default is None:
         return value
     try:
@@ -331,6 +331,6 @@ def element_word(cls: type) -> str:
 
 
 def quote_value(value: Any, limit: int = 60) -> str:
-    """Return a value in quotes for a message, cut when it is long."""
+    """Return a value in quotes for a message; long values are shortened."""
     text = str(value)
     return f'"{text if len(text) <= limit else text[: limit - 3] + "..."}"'

@@ -1,4 +1,4 @@
-"""Words about people: the bodies and activities that their elements name."""
+"""Kinds of people: the bodies and activities that elements can name."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ ABOUT_ACTIVITY = "walk, talk, phone, bottle, text or sit; from a list, one is ch
 
 
 def check_words(body: str, activity: str) -> None:
-    """Raise unless every word is a body or an activity.
+    """Check that every word is a known body or activity.
 
     Raises:
-        InputError: one is not.
+        InputError: a word is unknown.
 
     >>> check_words("woman-36 child", "talk phone")
     >>> check_words("womn", "")
@@ -43,7 +43,7 @@ adult, child, mannequin or a name from crowdbot list humans
 
 
 def word_problems(body: str, activity: str) -> list[str]:
-    """Return a sentence for every word that is no body or no activity."""
+    """Return a sentence for every unknown body or activity."""
     bodies = (*KINDS, *humans.names())
     takes = f"{', '.join(KINDS)} or a name from crowdbot list humans"
     wrong = [(word, "body", body, bodies, takes) for word in body.split() if word not in bodies]
@@ -60,11 +60,11 @@ def word_problems(body: str, activity: str) -> list[str]:
 
 
 def rider_problems(rider: str, kind: str) -> list[str]:
-    """Return what is wrong with who sits in a robot of a type.
+    """Return the problems of the rider of a robot of a type.
 
     >>> rider_problems("woman-36", "wheelchair"), rider_problems("woman", "pepper")
-    ([], ['rider="woman" needs type="wheelchair": nothing else has a seat; leave it out'])
+    ([], ['rider="woman" needs type="wheelchair": other robots have no seat; leave it out'])
     """
     if rider and kind != "wheelchair":
-        return [f'rider={quote_value(rider)} needs type="wheelchair": nothing else has a seat; leave it out']
+        return [f'rider={quote_value(rider)} needs type="wheelchair": other robots have no seat; leave it out']
     return [problem.replace("body=", "rider=", 1) for problem in word_problems(rider, "")]

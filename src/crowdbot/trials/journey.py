@@ -1,4 +1,4 @@
-"""Journeys: where people go, one stop after the other, and the exits where they go out."""
+"""Journeys: sequences of stops, and the exits and portals of people."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ class Point:
         check(self)
 
     def stop(self) -> world.Waypoint:
-        """Return the stop of a world."""
+        """Return the waypoint of a world."""
         return world.PointWaypoint(self.x, self.y, self.tolerance)
 
 
 @dataclass(frozen=True)
 class Direction:
-    """A direction to walk in for ever, so the last stop of a journey; no routing leads there."""
+    """A direction to walk in without end: the last stop of a journey. Routing does not apply to it."""
 
     heading: float = attribute(about="counter-clockwise from +x", unit="rad", min=-2.0 * math.pi, max=2.0 * math.pi)
 
@@ -42,7 +42,7 @@ class Direction:
         check(self)
 
     def stop(self) -> world.Waypoint:
-        """Return the stop of a world."""
+        """Return the waypoint of a world."""
         return world.HeadingWaypoint(self.heading)
 
 
@@ -62,13 +62,13 @@ class Zone:
         check(self)
 
     def stop(self) -> world.Waypoint:
-        """Return the stop of a world."""
+        """Return the waypoint of a world."""
         return world.PolygonZone(self.points, self.aim, self.tolerance)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Journey:
-    """Stops that people go to one after the other; spawners and sources name it.
+    """A sequence of stops; spawners and sources refer to it by name.
 
     >>> Journey(name="home", stops=[Point(5, 0), Zone([(9, 0), (10, 0), (10, 2)])]).then
     'leave'
@@ -86,13 +86,13 @@ class Journey:
         check(self)
 
     def journey(self) -> world.WaypointSequence:
-        """Return the journey of a world."""
+        """Return the waypoint sequence of a world."""
         return world.WaypointSequence(tuple(stop.stop() for stop in self.stops), self.then)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Exit:
-    """A zone in which everybody leaves, wherever they wanted to go; robots stay."""
+    """A zone in which all people leave, whatever their goal; robots are not affected."""
 
     name: str = attribute("", about="name for messages")
     zone: Points = attribute(about="corners x,y of the zone", unit="m", points=3)
@@ -107,7 +107,7 @@ class Exit:
 
 @dataclass(frozen=True, kw_only=True)
 class Portal:
-    """A zone whose people come out elsewhere, as new people with an identity of their own; robots do not.
+    """A zone that moves people elsewhere, with a new id; robots are not affected.
 
     >>> Portal(zone="25,-5 30,-5 30,5 25,5", dx=-50).dy
     0.0
@@ -121,7 +121,7 @@ class Portal:
     def __post_init__(self) -> None:
         check(self)
         if self.dx == 0.0 and self.dy == 0.0:
-            raise InputError("needs dx or dy: how far from there people come out")
+            raise InputError("needs dx or dy: the offset of the exit from the zone")
 
     def gate(self) -> world.PortalTransfer:
         """Return the portal of a world."""

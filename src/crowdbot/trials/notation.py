@@ -1,4 +1,4 @@
-"""Numbers and points as they stand in a trial: ``0,0 4,0 4,2``."""
+"""Notation of numbers and points in a trial: ``0,0 4,0 4,2``."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from crowdbot.core import InputError, parse_number
 __all__ = ["NAME", "Points", "plain"]
 
 NAME = "[A-Za-z][A-Za-z0-9_]*"
-"""Names that other parts refer to; those of robots and sensors become names of ROS topics and frames."""
+"""Names that other elements refer to; names of robots and sensors are part of ROS topics and frames."""
 
 
 def plain(value: float) -> str:
-    """Return the shortest text that reads back as the same number.
+    """Return the shortest text that is parsed as the same number.
 
     >>> plain(4.0), plain(0.1)
     ('4', '0.1')
@@ -34,7 +34,7 @@ class Points(tuple[tuple[float, float], ...]):
 
     @classmethod
     def parse(cls, text: str) -> Points:
-        """Read points that are separated by blanks, with a comma between x and y."""
+        """Read points separated by blanks, with a comma between x and y."""
         points = []
         for place in re.sub(r"\s*,\s*", ",", text.strip()).split():
             pair = place.split(",")
@@ -48,7 +48,7 @@ class Points(tuple[tuple[float, float], ...]):
 
     @classmethod
     def of(cls, value: Iterable[Any] | str) -> Points:
-        """Make points of any ``[N, 2]`` numbers or of a text."""
+        """Return points from any ``[N, 2]`` numbers or from a text."""
         if isinstance(value, cls):
             return value
         if isinstance(value, str):

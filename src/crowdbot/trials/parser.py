@@ -1,4 +1,4 @@
-"""Parser: from an XML text to a checked trial, and the checks of a trial made in Python."""
+"""Parser: reads and checks a trial from XML, and checks a trial made in Python."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from crowdbot.core import Element, TrialError
 
 from .crowd import Crowd, Crowds
 from .fields import element_word
-from .partial import kind_of
+from .partial_element import has_kind, kind_of
 from .stage import Obstacle
 from .sweep import sweep_problems
 from .trial import Trial
 from .validation.trial_checks import problems_of
 from .xml.old_names import update_names
 from .xml.reader import ROOT, XmlReader
+from .xml.reader_result import ReaderResult
 from .xml.trial_text import parse_trial_xml
 from .xml.writer import element_of
 
@@ -37,12 +38,12 @@ def parse_trial(
     Args:
         text: the XML.
         place: name of the file for messages.
-        folder: of the trial; code that the trial names is looked up here (default: the working folder).
+        folder: folder of the trial and of the code that it names (default: the working folder).
         trust: whether code from outside the folder may be loaded.
-        quiet: do not warn about names of earlier versions.
+        quiet: whether to omit warnings about names of earlier versions.
 
     Raises:
-        TrialError: with every problem found, one sentence each, in the order of the lines.
+        TrialError: the trial has errors; one sentence per error, in the order of the lines.
 
     >>> parse_trial('<trial name="t" duration="-1"><crowd type="orca" time-horizn="2"/></trial>')
     Traceback (most recent call last):
@@ -59,12 +60,12 @@ max-neighbors, time-horizon, time-horizon-walls, max-speed, name
         raise TrialError(f"{place}:{root.line}: the root element is <{root.tag[:40]}>, it must be <{ROOT}>")
     update_names(root, place, quiet=quiet)
     reader = XmlReader(place, folder or Path.cwd(), trust)
-    trial = _read_checked(reader, root)
-    for sweep, sentence in sweep_problems(root, Trial, trial.sweeps, _variant_problems(reader)):
-        reader.say(reader.lines[id(sweep)], "sweep", sentence)
-    reader.finish()
-    assert isinstance(trial, Trial)
-    return dataclasses.replace(trial, folder=folder)
+    result = _read(reader, root, None)
+    for sweep, sentence in sweep_problems(root, Trial, result.value.sweeps, _variant_problems(reader, result, None)):
+        result.report(sweep, sentence)
+    result.raise_problems()
+    assert isinstance(result.value, Trial)
+    return dataclasses.replace(result.value, folder=folder)
 
 
 def check_trial(trial: Trial, seed: int | None = None) -> None:
@@ -72,44 +73,34 @@ def check_trial(trial: Trial, seed: int | None = None) -> None:
 
     Args:
         trial: made in Python or read.
-        seed: places people with it; None is the trial's own.
+        seed: seed of the placement of people (default: the seed of the trial).
     """
     found = problems_of(trial, Crowds.spread(trial.crowd), seed)
-    sentences = [f"trial {trial.name!r}: {_called(thing)} {sentence}" for thing, sentence in found]
+    sentences = [f"trial {trial.name!r}: {_describe(thing)} {sentence}" for thing, sentence in found]
     if trial.sweeps and not sentences:
-        reader = XmlReader(trial.name, trial.folder or Path.cwd(), True, seed)
-        sentences = [
-            sentence
-            for _, sentence in sweep_problems(element_of(trial), Trial, trial.sweeps, _variant_problems(reader))
-        ]
+        reader, root = XmlReader(trial.name, trial.folder or Path.cwd(), True), element_of(trial)
+        problems = _variant_problems(reader, ReaderResult(trial.name, root), seed)
+        sentences = [sentence for _, sentence in sweep_problems(root, Trial, trial.sweeps, problems)]
     if sentences:
         raise TrialError(*sentences)
 
 
-def _read_checked(reader: XmlReader, root: Element) -> Any:
-    """Return the trial that an element means, partial when it has a problem, after looking for all of them."""
-    trial = reader.element(Trial, root)
-    crowds = [one for one in reader.made if isinstance(one, Crowd)]
-    for thing, sentence in problems_of(trial, crowds, reader.seed):
-        reader.say(reader.lines.get(id(thing), root.line), reader.words.get(id(thing), ROOT), sentence)
-    return trial
+def _read(reader: XmlReader, root: Element, seed: int | None) -> ReaderResult:
+    """Return a trial, partial if it has a problem, with every problem; ``seed`` as in :func:`check_trial`."""
+    result = reader.read(Trial, root)
+    crowds = [one for one in result.elements if has_kind(one, Crowd)]
+    for thing, sentence in problems_of(result.value, crowds, seed):
+        result.report(thing, sentence)
+    return result
 
 
-def _variant_problems(base: XmlReader) -> Callable[[Element], list[str]]:
+def _variant_problems(reader: XmlReader, base: ReaderResult, seed: int | None) -> Callable[[Element], list[str]]:
     """Return a function that lists the problems of a variant that the trial itself does not have."""
-
-    def problems(root: Element) -> list[str]:
-        reader = XmlReader(base.place, base.folder, base.trust, base.seed)
-        _read_checked(reader, root)
-        return [
-            f"<{tag}> {sentence}" for line, tag, sentence in reader.found if (line, tag, sentence) not in base.found
-        ]
-
-    return problems
+    return lambda root: _read(reader, root, seed).new_sentences(base.problems)
 
 
-def _called(thing: Any) -> str:
-    if isinstance(thing, Obstacle):
+def _describe(thing: Any) -> str:
+    if has_kind(thing, Obstacle):
         return "obstacle"
     name = getattr(thing, "name", "")
     return element_word(kind_of(thing)) + (f" {name!r}" if name else "")

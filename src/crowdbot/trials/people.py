@@ -1,4 +1,4 @@
-"""Where people come from: spawners place them before a trial begins, sources let them in while it runs."""
+"""Spawners and sources: people placed before a trial begins, and people who enter while it runs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ BODY_RADIUS = Distribution("uniform", (0.2, 0.3))
 
 @dataclass(frozen=True)
 class Group:
-    """A size of groups among the people of a spawner, and how often it comes compared to the others.
+    """A group size among the people of a spawner, and its relative frequency.
 
     >>> Group(2, 0.5).share
     0.5
@@ -39,9 +39,9 @@ class Group:
 
 @dataclass(frozen=True, kw_only=True)
 class Spawner:
-    """People who are placed at random in a zone, and walk to a random point of a goal zone, or on a journey.
+    """People at random places of a zone, who walk to a random point of a goal zone or follow a journey.
 
-    People of a group begin near each other and share goal and speed.
+    Members of a group start near each other and have the same goal and speed.
 
     Raises:
         InputError: a value is not allowed.
@@ -75,14 +75,14 @@ class Spawner:
 
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return what is wrong with the words of a file, whatever else is wrong in its element."""
+        """Return the problems of bodies and activities, independent of other problems of the element."""
         found = word_problems(values.get("body", ""), values.get("activity", ""))
         return [((), sentence) for sentence in found]
 
 
 @dataclass(frozen=True, kw_only=True)
 class SourceSpec:
-    """People who come in while the trial runs, at random places of a zone, as soon as there is room for them.
+    """People who enter while the trial runs, at random places of a zone, as soon as there is room.
 
     Raises:
         InputError: a value is not allowed.
@@ -115,12 +115,12 @@ class SourceSpec:
 
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return what is wrong with the words of a file, whatever else is wrong in its element."""
+        """Return the problems of bodies and activities, independent of other problems of the element."""
         found = word_problems(values.get("body", ""), values.get("activity", ""))
         return [((), sentence) for sentence in found]
 
     def arrival_count(self, duration: float) -> float:
-        """Return how many people come within a duration [s]: evenly the most, at random the mean."""
+        """Return the number of arrivals within a duration [s]: the maximum if regular, the mean if random."""
         come = self.rate * max(0.0, min(self.end, duration) - self.begin) + 1.0
         return come if self.max_count is None else min(come, float(self.max_count))
 

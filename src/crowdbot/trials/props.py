@@ -1,8 +1,9 @@
-"""Props: what stands on a stage beside walls, and what lights it."""
+"""Props: furniture, plants and lights of a stage."""
 
 from __future__ import annotations
 
 import dataclasses
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,21 +17,25 @@ from .fields import attribute, check
 __all__ = ["Cube", "Light", "Prop", "Table", "Tree"]
 
 
-class _Standing:
-    """What stands fast at its place."""
+class _FixedProp(ABC):
+    """A prop that is fixed to the floor."""
 
     def __post_init__(self) -> None:
         check(self)
 
+    @abstractmethod
+    def prop(self) -> world.PropBody:
+        """Return the prop of a physics world."""
+
     @property
     def ring(self) -> NDArray[np.float64]:
-        """Outline ``[N, 2]`` [m], counter-clockwise; of a tree that of its trunk."""
-        return _outline(self)  # type: ignore[arg-type]
+        """Outline ``[N, 2]`` [m], counter-clockwise; for a tree the outline of its trunk."""
+        return _outline(self.prop())
 
 
 @dataclass(frozen=True, kw_only=True)
 class Cube:
-    """A box on the floor; robots and people of the physics world can push it unless it is fixed.
+    """A box on the floor. In the physics world robots and people can push it unless it is fixed.
 
     >>> Cube(x=1, y=2, size=0.4).ring.round(9).tolist()[0]
     [0.8, 1.8]
@@ -49,17 +54,17 @@ class Cube:
 
     @property
     def ring(self) -> NDArray[np.float64]:
-        """Its outline ``[N, 2]`` [m], counter-clockwise."""
-        return _outline(dataclasses.replace(self, fixed=True))
+        """Outline ``[N, 2]`` [m], counter-clockwise."""
+        return _outline(world.CubeBody(**_values(Cube, self) | {"fixed": True}))
 
     def prop(self) -> world.PropBody:
-        """Return it for a world with bodies."""
-        return world.CubeBody(**_values(self))
+        """Return the prop of a physics world."""
+        return world.CubeBody(**_values(Cube, self))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Table(_Standing):
-    """A table that stands fast."""
+class Table(_FixedProp):
+    """A table, fixed to the floor."""
 
     x: float = attribute(about="x of the centre", unit="m")
     y: float = attribute(about="y of the centre", unit="m")
@@ -69,13 +74,13 @@ class Table(_Standing):
     height: float = attribute(0.74, about="above the floor", unit="m", exclusive_min=0.05, max=100.0)
 
     def prop(self) -> world.PropBody:
-        """Return it for a world with bodies."""
-        return world.TableBody(**_values(self))
+        """Return the prop of a physics world."""
+        return world.TableBody(**_values(Table, self))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Tree(_Standing):
-    """A tree that stands fast."""
+class Tree(_FixedProp):
+    """A tree, fixed to the floor."""
 
     x: float = attribute(about="x of the centre", unit="m")
     y: float = attribute(about="y of the centre", unit="m")
@@ -85,13 +90,13 @@ class Tree(_Standing):
     crown: float = attribute(1.4, about="radius of the crown", unit="m", min=0.001, max=50.0)
 
     def prop(self) -> world.PropBody:
-        """Return it for a world with bodies."""
-        return world.TreeBody(**_values(self))
+        """Return the prop of a physics world."""
+        return world.TreeBody(**_values(Tree, self))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Light:
-    """A lamp that shines down; without lamps it is day."""
+    """A lamp that shines down. A stage without lamps has daylight."""
 
     x: float = attribute(about="x coordinate", unit="m")
     y: float = attribute(about="y coordinate", unit="m")
@@ -103,18 +108,19 @@ class Light:
         check(self)
 
     def light(self) -> world.LightSource:
-        """Return it for a world with bodies."""
-        return world.LightSource(**_values(self))
+        """Return the light of a physics world."""
+        return world.LightSource(**_values(Light, self))
 
 
 Prop = Cube | Table | Tree
 
 
-def _values(thing: Any) -> dict[str, Any]:
-    return {field.name: getattr(thing, field.name) for field in dataclasses.fields(thing)}
+def _values(cls: type[Any], thing: Any) -> dict[str, Any]:
+    """Return the fields of an element of a class; ``thing`` may be partial."""
+    return {field.name: getattr(thing, field.name) for field in dataclasses.fields(cls)}
 
 
-def _outline(prop: Prop) -> NDArray[np.float64]:
-    ring = prop.prop().outline()
+def _outline(body: world.PropBody) -> NDArray[np.float64]:
+    ring = body.outline()
     assert ring is not None
     return ring

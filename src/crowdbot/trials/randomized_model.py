@@ -1,4 +1,4 @@
-"""Drawn: a crowd model whose parameters differ from person to person."""
+"""Randomized model: a crowd model with parameters that are drawn for each person."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ Values = Mapping[int, Mapping[str, float]]
 
 @dataclass(frozen=True)
 class RandomizedModel(CrowdModel):
-    """A model, and the distributions from which some of its parameters are drawn for each person.
+    """A model and the distributions from which some of its parameters are drawn for each person.
 
-    Whoever comes in while a trial runs takes over the parameters of the place in the arrays, drawn alike.
+    People who enter during a trial get the parameters of their index in the arrays, from the same distributions.
 
     Fields:
-        model: with the other parameters.
-        draws: names of parameters, as they are in Python, each with a distribution.
+        model: model with the other parameters.
+        draws: names of parameters in Python, each with a distribution.
 
     Raises:
-        InputError: the model has no such parameter, or cannot take every value that may be drawn.
+        InputError: the model has no such parameter, or does not allow the whole range of a distribution.
 
     >>> from crowdbot.models import ORCA
     >>> crowd = RandomizedModel(ORCA(), {"time_horizon": "uniform(1, 3)"})
@@ -55,25 +55,26 @@ class RandomizedModel(CrowdModel):
 
     @staticmethod
     def problems(model: CrowdModel, draws: Mapping[str, Distribution]) -> Iterator[str]:
-        """Yield why parameters cannot be drawn for a model, as ends of a sentence."""
+        """Yield the problems of distributions for parameters of a model, as ends of a sentence."""
         known = [row.name for row in parameters(model)]
         for name, drawn in draws.items():
             word = name.replace("_", "-")
             if name not in known:
                 words = [one.replace("_", "-") for one in known]
-                yield f"{word} cannot be drawn{did_you_mean(word, words)}; what can be is {', '.join(words) or 'none'}"
+                choices = f"available parameters: {', '.join(words) or 'none'}"
+                yield f"{word} cannot be drawn{did_you_mean(word, words)}; {choices}"
                 continue
             for value in drawn.extent:
                 try:
                     dataclasses.replace(model, **{name: value})
                 except InputError as error:
                     low, high = drawn.extent
-                    yield f'{word}="{drawn}" reaches from {low:g} to {high:g}: {error}'
+                    yield f'{word}="{drawn}" ranges from {low:g} to {high:g}: {error}'
                     break
 
     @property
     def memory_at_start(self) -> Mapping[str, float]:
-        """What the memory of a scene holds for somebody new, as the model says it."""
+        """Initial values of the memory of a new person, as defined by the model."""
         return self.model.memory_at_start
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
@@ -81,7 +82,7 @@ class RandomizedModel(CrowdModel):
         return self.resolve(0, 0, scene.shape[1]).velocity(scene, dt, rng)
 
     def resolve(self, seed: int, crowd: int, agents: int) -> CrowdModel:
-        """Return the model with an own value for each of ``agents``, as crowd number ``crowd`` of a trial."""
+        """Return the model with one value per agent, as crowd number ``crowd`` of a trial."""
         drawn = {
             name: dist.draw(stream(seed, "crowd", crowd, name), agents)
             for name, dist in self.draws
@@ -90,12 +91,12 @@ class RandomizedModel(CrowdModel):
 
 
 def is_drawn(text: str) -> bool:
-    """Whether an attribute is a distribution, ``normal(1, 0.2)``, and not a number."""
+    """Return whether an attribute is a distribution such as ``normal(1, 0.2)``."""
     return re.fullmatch(r"\s*[A-Za-z][A-Za-z-]*\s*\([^()]*\)\s*", text) is not None
 
 
 def own(model: CrowdModel, seed: int, crowd: int, agents: int, values: Values) -> CrowdModel:
-    """Return a model in which parameters are drawn, and given people have the values given for them by name."""
+    """Return a model with drawn parameters, and with the given values by agent and name."""
     whole = model.resolve(seed, crowd, agents) if isinstance(model, RandomizedModel) else model
     if not values:
         return whole
@@ -110,5 +111,5 @@ def own(model: CrowdModel, seed: int, crowd: int, agents: int, values: Values) -
 
 
 def names_of(model: CrowdModel) -> Sequence[str]:
-    """Return the parameters of a model that a person can have an own value of."""
+    """Return the names of the parameters of a model that can differ from person to person."""
     return [row.name for row in parameters(model.model if isinstance(model, RandomizedModel) else model)]

@@ -1,4 +1,4 @@
-"""Recorded people as a crowd: any recording that can be read, as it was or reacting to a robot."""
+"""Recorded people: the people of a recording, replayed or reacting to a robot."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ __all__ = ["RecordedPeople", "Walk"]
 
 Floats = NDArray[np.float64]
 LONGEST_GAP = 2.0
-"""Over a gap of more than this [s] nobody is moved: the person is away, and comes back as another."""
+"""Longest gap [s] that is interpolated; after a longer one the person returns as another."""
 
 
 class Walk(NamedTuple):
-    """A recorded person from one appearance to the next absence: ``[T]`` times [s] of the trial, ``[T, 2]`` places."""
+    """A recorded person without longer gaps: times ``[T]`` [s] of the trial, positions ``[T, 2]`` [m]."""
 
     person: int
     time: Floats
@@ -41,11 +41,11 @@ class Walk(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class RecordedPeople:
-    """People of a recording: they are where they were, or walk by the model of their crowd once a robot is near.
+    """People of a recording. They follow it, or the model of their crowd if a robot is near.
 
-    Scripted people react to nothing. Reactive people are scripted until a robot that people see is nearer than
-    ``near``; from then on they walk to where their recording will be a little later, and to its end. People whose
-    track has a gap of more than 2 s are away meanwhile.
+    Scripted people react to nothing. Reactive people follow the recording until a visible robot is nearer than
+    ``reaction_distance``; from then on the crowd model moves them towards their recorded position a little later, up to
+    the end of the recording. People are absent during gaps of more than 2 s in their track.
 
     Raises:
         InputError: a value is not allowed.
@@ -78,7 +78,7 @@ class RecordedPeople:
     crowd: str = attribute("", about="name of the crowd whose model reacting people follow (default: the first)")
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     trust: bool = dataclasses.field(default=True, compare=False, repr=False)
-    """Where the file lies, and whether it may lie outside; not part of the tree."""
+    """Folder of the file, and whether the file may lie outside; not part of the XML."""
 
     def __post_init__(self) -> None:
         check(self)
@@ -86,7 +86,7 @@ class RecordedPeople:
 
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return what is wrong with the name of the file and with ids, whatever else is wrong in its element."""
+        """Return the problems of the file name and of the ids, independent of other problems of the element."""
         found: list[FieldProblem] = []
         try:
             _ids(values.get("exclude", ""))
@@ -100,26 +100,26 @@ class RecordedPeople:
         return found
 
     def excluded_ids(self) -> frozenset[int]:
-        """Return the ids that are left out."""
+        """Return the excluded ids."""
         return _ids(self.exclude)
 
     def tracks(self) -> Trajectories:
-        """Return the recording in metres, read once.
+        """Return the recording in metres; the file is read once.
 
         Raises:
             InputError: there is no such file in the folder of the trial.
-            DataError: it cannot be read, or somebody who is left out is not in it.
+            DataError: it cannot be read.
         """
         path = resolve_file(self.data, self.folder, self.trust)
         stamp = path.stat()
         options = (self.fps, self.format or None, self.units or None, self.time_base)
-        return _loaded(path, stamp.st_mtime_ns, stamp.st_size, *options)
+        return _load(path, stamp.st_mtime_ns, stamp.st_size, *options)
 
     def walks(self, duration: float) -> tuple[Walk, ...]:
-        """Return everybody who is there during a trial of this duration [s], by id.
+        """Return the people of a trial of this duration [s], by id.
 
         Raises:
-            InputError, DataError: as :meth:`tracks`; or somebody who is left out is not in the recording.
+            InputError, DataError: as :meth:`tracks`, or an excluded person is not in the recording.
         """
         tracks = self.tracks()
         known = set(tracks.ids.tolist())
@@ -147,10 +147,10 @@ def _ids(without: str) -> frozenset[int]:
 
 
 @functools.lru_cache(maxsize=4)
-def _loaded(
+def _load(
     path: Path, changed: int, size: int, fps: float | None, format: str | None, units: str | None, time_base: str
 ) -> Trajectories:
-    """Read a recording once for as long as its file stays the same."""
+    """Return a recording, which is read again only if its file has changed."""
     from crowdbot.data import RowRateError, load
 
     try:

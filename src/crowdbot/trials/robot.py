@@ -1,4 +1,4 @@
-"""Robot of a trial: where it begins and has to go, what it is, what it sees with and who steers it."""
+"""Robot of a trial: start, goal, type, drive, sensors and navigator."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ from crowdbot.world import Drive, builtin_robots, frame, roll_pitch_yaw
 from .fields import FieldProblem, attribute, check, child, children, mounted_field, plugin_field, quote_value
 from .human_kinds import ABOUT_RIDER, rider_problems
 from .notation import NAME
-from .partial import readable
+from .partial_element import readable
 
 __all__ = ["Mount", "RobotGoal", "RobotSpec"]
 
 Floats = NDArray[np.float64]
 RADIUS, HEIGHT, MASS = 0.3, 1.0, 40.0
-"""Of a robot without a type [m, m, kg]."""
+"""Defaults of a robot without a type [m, m, kg]."""
 MOST_FILES = 500
 
 
 @dataclass(frozen=True)
 class RobotGoal:
-    """Where a robot has to go: it has arrived when its centre is within the tolerance."""
+    """Goal of a robot, reached when the robot's centre is within the tolerance."""
 
     x: float = attribute(about="x coordinate", unit="m")
     y: float = attribute(about="y coordinate", unit="m")
@@ -51,7 +51,7 @@ class RobotGoal:
 
 @dataclass(frozen=True, kw_only=True)
 class Mount:
-    """A sensor and where it sits on its robot, or on one of its links (x forward, y left, z up).
+    """A sensor and its pose on the robot or on one of its links (x forward, y left, z up).
 
     >>> from crowdbot.sensors import Lidar2D
     >>> Mount(sensor=Lidar2D()).z, Mount(sensor=Lidar2D(), link="head").z
@@ -75,25 +75,25 @@ class Mount:
 
     @property
     def usual(self) -> Mapping[str, Any]:
-        """What fields are when they are not given."""
+        """Defaults of fields that depend on others."""
         return {"z": 0.0 if self.link else MOUNT_HEIGHT}
 
     @property
     def origin(self) -> Floats:
-        """Its frame ``[4, 4]`` in that of the robot or of the link."""
+        """Frame ``[4, 4]`` of the sensor relative to the robot or the link."""
         return frame((self.x, self.y, self.z), roll_pitch_yaw(self.roll, self.pitch, self.heading))
 
 
 @dataclass(frozen=True, kw_only=True)
 class RobotSpec:
-    """A robot: where it begins and has to go, what it is, what it sees with and who steers it.
+    """A robot: start, goal, type, drive, sensors and navigator.
 
-    With a type it has the drive, size and sensors of that robot, colour cameras only when asked; what is given here
-    counts instead, and sensors come on top (or, with the name of one of the type, in its place). Without one it is an
+    The type defines drive, size and sensors (colour cameras only with ``cameras``). Fields given here override those of
+    the type; sensors are added, or replace the sensor of the type with the same name. A robot without a type is an
     upright cylinder with a drive.
 
     Raises:
-        InputError: a value is not allowed, there is no such type, or a sensor sits on no link.
+        InputError: a value is not allowed, the type does not exist, or a sensor is on an unknown link.
 
     >>> from crowdbot.navigation import Straight
     >>> robot = RobotSpec(type="turtlebot2", x=0, y=0, goal=RobotGoal(5, 0), navigator=Straight())
@@ -136,7 +136,7 @@ class RobotSpec:
     sensors: tuple[Mount, ...] = children("sensor", about="sensors", max=50)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     trust: bool = dataclasses.field(default=True, compare=False, repr=False)
-    """Where its folder lies, and whether it may lie outside; not part of the tree."""
+    """Folder of the robot folder, and whether that may lie outside; not part of the XML."""
 
     def __post_init__(self) -> None:
         usual = self.usual
@@ -144,17 +144,17 @@ class RobotSpec:
             if (0, None) in readable([self], name):
                 object.__setattr__(self, name, usual.get(name))
         if self.drive is None:
-            raise InputError(f"needs the element <drive>: how it moves; or a type, such as {builtin_robots()[0]}")
+            raise InputError(f"needs the element <drive>, or a type such as {builtin_robots()[0]}")
         if isinstance(self.sensors, list | tuple):
-            object.__setattr__(self, "sensors", _merged(self.type_sensors, self.sensors))
+            object.__setattr__(self, "sensors", _merge_sensors(self.type_sensors, self.sensors))
         check(self)
         if self.type and (self.height, self.mass) != (usual["height"], usual["mass"]):
             raise InputError(
-                f"has height or mass beside type={quote_value(self.type)}, which has its own; leave them out"
+                f"has height or mass in addition to type={quote_value(self.type)}, which defines them; leave them out"
             )
-        if self.cameras and not any(_drawn(mount) for mount in self.type_sensors):
+        if self.cameras and not any(_is_rendered(mount) for mount in self.type_sensors):
             raise InputError(
-                'has cameras="true" but none would come: it needs a type with colour cameras, such as pepper, and its'
+                'has cameras="true" but no such cameras: it needs a type with colour cameras, such as pepper, and its'
                 " sensors; leave it out"
             )
         for problem in rider_problems(self.rider, self.type):
@@ -162,12 +162,12 @@ class RobotSpec:
         for mount in self.sensors:
             links = self.body.model.links
             if mount.link and mount.link not in links:
-                raise InputError(f"sensor {mount.name!r} sits on link={quote_value(mount.link)}, which it has not"
+                raise InputError(f"sensor {mount.name!r} is on link={quote_value(mount.link)}, which does not exist"
                                  f"{did_you_mean(mount.link, links)}")  # fmt: skip
 
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return what is wrong with the type and the rider in a file, whatever else is wrong in its element."""
+        """Return the problems of the type and of the rider, independent of other problems of the element."""
         said: list[FieldProblem] = [
             ((), one) for one in rider_problems(values.get("rider", ""), values.get("type", ""))
         ]
@@ -180,7 +180,7 @@ class RobotSpec:
 
     @property
     def usual(self) -> Mapping[str, Any]:
-        """What fields are when they are not given."""
+        """Defaults of fields that depend on others."""
         if not self.type:
             return {"radius": RADIUS, "height": HEIGHT, "mass": MASS, "latency": 0.0, "sensors": ()}
         kind = self._kind
@@ -195,19 +195,19 @@ class RobotSpec:
 
     @property
     def type_sensors(self) -> tuple[Mount, ...]:
-        """The sensors of its type that it carries."""
+        """The sensors of the type that the robot has."""
         if not (self.type and self.default_sensors):
             return ()
         return tuple(
             Mount(name=m.name, sensor=m.sensor, link=m.link, x=m.x, y=m.y, z=m.z, roll=m.roll, pitch=m.pitch,
                   heading=m.yaw)
             for m in self._kind.mounts
-            if self.cameras or not _drawn(m)
+            if self.cameras or not _is_rendered(m)
         )  # fmt: skip
 
     @functools.cached_property
     def body(self) -> world.Robot:
-        """The robot of a world, with the drive and the latency that count here."""
+        """The robot of a world, with the drive and the latency of this robot."""
         if not self.type:
             made = world.Robot.disc(self.name, self.drive, self.radius, height=self.height, mass=self.mass)
         else:
@@ -215,7 +215,7 @@ class RobotSpec:
         return dataclasses.replace(made, latency=self.latency)
 
     def frame_of(self, mount: Mount) -> Floats:
-        """Return the frame ``[4, 4]`` of a sensor in that of the robot, which is on the floor, in its posture."""
+        """Return the frame ``[4, 4]`` of a sensor relative to the robot (on the floor), in its driving posture."""
         if not mount.link:
             return mount.origin
         return np.asarray(self.body.model.poses(self.body.posture)[mount.link] @ mount.origin)
@@ -237,10 +237,10 @@ class RobotSpec:
         return x, y, z, round(roll, 12), round(pitch, 12), round(yaw, 12)
 
     def schedule(self, mount: Mount, clock: Clock) -> SensorSchedule:
-        """Return when a sensor measures; see the attribute ``rates``.
+        """Return the schedule of a sensor; see the attribute ``sensor_rates``.
 
         Raises:
-            InputError: its period or its delay is not a whole number of time steps.
+            InputError: the period or the delay is not a whole number of time steps.
         """
         if self.sensor_rates == "exact" or mount not in self.type_sensors:
             return SensorSchedule.of(mount.sensor, clock)
@@ -253,7 +253,7 @@ class RobotSpec:
         return self.x, self.y
 
     def files(self) -> tuple[Path, ...]:
-        """Return the files of its folder, none when it is built in."""
+        """Return the files of the robot folder; none for a built-in robot."""
         place = _folder(self.type, self.folder, self.trust) if self.type else None
         if place is None:
             return ()
@@ -266,13 +266,13 @@ class RobotSpec:
         return _kind(self.type, self.folder, self.trust)
 
 
-def _drawn(mount: Mount | world.SensorMount) -> bool:
-    """Return whether a sensor needs a renderer, which is slow and needs graphics."""
+def _is_rendered(mount: Mount | world.SensorMount) -> bool:
+    """Return whether a sensor needs a renderer."""
     return mount.sensor.renders
 
 
-def _merged(carried: tuple[Mount, ...], own: Any) -> tuple[Mount, ...]:
-    """Return the sensors of a type, each replaced by an own one of its name, then the other own ones."""
+def _merge_sensors(carried: tuple[Mount, ...], own: Any) -> tuple[Mount, ...]:
+    """Return the sensors of a type, each replaced by the given one of its name, then the other given ones."""
     named = {getattr(mount, "name", ""): mount for mount in own}
     names = {mount.name for mount in carried}
     others = [mount for mount in own if getattr(mount, "name", "") not in names]
@@ -280,7 +280,7 @@ def _merged(carried: tuple[Mount, ...], own: Any) -> tuple[Mount, ...]:
 
 
 def _folder(name: str, folder: Path | None, trust: bool) -> Path | None:
-    """Return the robot folder beside the trial, None for a built-in robot."""
+    """Return the robot folder next to the trial, None for a built-in robot."""
     root = folder or Path.cwd()
     known = builtin_robots()
     try:
@@ -298,20 +298,20 @@ def _folder(name: str, folder: Path | None, trust: bool) -> Path | None:
     if name in known:
         return None
     raise InputError(
-        f"type={quote_value(name)} is no robot{did_you_mean(name, known)}: no folder {name[:60]!r} with a robot.xml"
-        f" is in {root.resolve()}, and built in are {', '.join(known)}"
+        f"type={quote_value(name)} is not a robot{did_you_mean(name, known)}: no folder {name[:60]!r} with a robot.xml"
+        f" is in {root.resolve()}; built-in robots are {', '.join(known)}"
     )
 
 
 def _kind(name: str, folder: Path | None, trust: bool) -> world.Robot:
     place = _folder(name, folder, trust)
     if place is None:
-        return _built_in(name)
-    return _loaded(place, trust, (place / "robot.xml").stat().st_mtime_ns, reads_only())
+        return _load_builtin(name)
+    return _load_folder(place, trust, (place / "robot.xml").stat().st_mtime_ns, reads_only())
 
 
 @functools.cache
-def _built_in(name: str) -> world.Robot:
+def _load_builtin(name: str) -> world.Robot:
     return world.Robot.load(_assets(name))
 
 
@@ -322,7 +322,7 @@ def _assets(name: str) -> Path:
 
 
 @functools.lru_cache(maxsize=16)
-def _loaded(place: Path, trust: bool, stamp: int, described: bool) -> world.Robot:
+def _load_folder(place: Path, trust: bool, stamp: int, described: bool) -> world.Robot:
     try:
         return world.Robot.load(place, trust=trust)
     except RobotError as error:

@@ -1,4 +1,4 @@
-"""Stage: where people and robots can be, and its geometry."""
+"""Stage: walls, obstacles, props, walkable area, and their geometry."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from crowdbot.core import InputError, Walls
 from .fields import FieldProblem, attribute, check, children, quote_value
 from .files.stage_maps import area_of, map_of
 from .notation import Points
-from .partial import readable
+from .partial_element import readable
 from .props import Cube, Light, Prop, Table, Tree
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class Wall:
 
 @dataclass(frozen=True)
 class Obstacle:
-    """A solid polygon, listed either way round."""
+    """A solid polygon; its corners may be in either order."""
 
     points: Points = attribute(about="corners x,y of the polygon", unit="m", points=3)
 
@@ -54,9 +54,9 @@ class Obstacle:
 
 @dataclass(frozen=True)
 class Stage:
-    """Walls, obstacles, props and, when given, the walkable area: its border is a wall, and nobody can be outside.
+    """Walls, obstacles, props and an optional walkable area. Its border is a wall; its outside is not accessible.
 
-    In the plane props are solid by their outlines, the trunk of a tree; only a physics world has bodies to push.
+    In the planar world the outlines of props are solid (of a tree, its trunk). Props move in the physics world only.
 
     >>> stage = Stage(walkable=[(0, 0), (8, 0), (8, 4), (0, 4)], obstacles=[Obstacle([(3, 1), (4, 1), (4, 2)])])
     >>> len(stage.rings), stage.clearance([(1.0, 2.0), (3.9, 1.5), (9.0, 9.0)]).tolist()
@@ -79,7 +79,7 @@ class Stage:
     lights: tuple[Light, ...] = children("light", about="lamps (default: daylight)", max=50)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
     trust: bool = dataclasses.field(default=True, compare=False, repr=False)
-    """Where the files lie, and whether they may lie outside; not part of the tree."""
+    """Folder of the files, and whether files may lie outside; not part of the XML."""
 
     def __post_init__(self) -> None:
         check(self)
@@ -93,7 +93,7 @@ class Stage:
 
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return what is wrong with the ground, whatever else is wrong in its element."""
+        """Return the problems of area and map, independent of other problems of the element."""
         said: list[FieldProblem] = []
         if values.get("walkable") and values.get("area"):
             said.append((("walkable", "area"), TWO_GROUNDS))
@@ -111,7 +111,7 @@ class Stage:
 
     @property
     def bounded(self) -> bool:
-        """Whether there is a walkable area."""
+        """Whether the stage has a walkable area."""
         return bool(self.walkable or self.area)
 
     @property
@@ -119,8 +119,8 @@ class Stage:
         """Rings ``[N, 2]`` [m] as :meth:`crowdbot.core.Walls.of` takes them: solid on the left of each edge."""
         walls = [points for _, points in readable(self.walls, "points")]
         lines = [np.array(points[k : k + 2]) for points in walls for k in range(len(points) - 1)]
-        solids = [_turned(points, counter_clockwise=True) for _, points in readable(self.obstacles, "points")]
-        around = [_turned(self.walkable, counter_clockwise=False)] if self.walkable else []
+        solids = [_orient(points, counter_clockwise=True) for _, points in readable(self.obstacles, "points")]
+        around = [_orient(self.walkable, counter_clockwise=False)] if self.walkable else []
         fixed = (*lines, *solids, *around, *_rings(self._ground, solid=False), *_rings(self._map, solid=True))
         return (*fixed, *(ring for _, ring in readable(self.props, "ring")))
 
@@ -129,14 +129,14 @@ class Stage:
         return Walls.of(self.rings if props else self.rings[: len(self.rings) - len(readable(self.props, "ring"))])
 
     def physical(self) -> PhysicsStage:
-        """Return what a world with bodies has beside walls."""
+        """Return props, lights and heights for the physics world."""
         from crowdbot.world import PhysicsStage
 
         props, lights = tuple(one.prop() for one in self.props), tuple(one.light() for one in self.lights)
         return PhysicsStage(self.wall_height, self.friction, props, lights)
 
     def clearance(self, points: Any) -> NDArray[np.float64]:
-        """Return ``[N]`` how far points ``[N, 2]`` are from the nearest solid [m]; 0 inside it or off the area."""
+        """Return ``[N]`` the distance [m] of points ``[N, 2]`` to the nearest solid; 0 in it or outside the area."""
         import shapely
 
         places = shapely.points(np.asarray(points, dtype=np.float64))
@@ -149,23 +149,23 @@ class Stage:
         return away
 
     def holds(self, shape: Any) -> bool:
-        """Return whether a shapely geometry lies in the walkable area; without one everything does."""
+        """Return whether a shapely geometry lies in the walkable area; always true without one."""
         return not self.bounded or bool(self._area.buffer(1e-9).covers(shape))
 
     def meets(self, shape: Any) -> bool:
-        """Return whether a shapely geometry has a part in the walkable area; without one everything has."""
+        """Return whether a shapely geometry intersects the walkable area; always true without one."""
         return not self.bounded or bool(self._area.intersects(shape))
 
     def block_around(self, shape: Any) -> str:
-        """Return what solid a shapely geometry lies in, empty when there is none."""
+        """Return the name of the solid that contains a shapely geometry, empty if there is none."""
         found = self._blocks.query(shape, predicate="covered_by")
-        return self._blocks_called[int(found.min())] if len(found) else ""
+        return self._block_names[int(found.min())] if len(found) else ""
 
     def block_in(self, shape: Any, smallest: float) -> str:
-        """Return a solid of which more than ``smallest`` [m2] lie in a shapely geometry, empty when there is none."""
+        """Return the name of a solid that overlaps a shapely geometry by more than ``smallest`` [m2], or nothing."""
         near = sorted(self._blocks.query(shape, predicate="intersects").tolist())
         blocks = self._blocks.geometries
-        return next((self._blocks_called[k] for k in near if shape.intersection(blocks[k]).area > smallest), "")
+        return next((self._block_names[k] for k in near if shape.intersection(blocks[k]).area > smallest), "")
 
     @functools.cached_property
     def _ground(self) -> tuple[Any, ...]:
@@ -195,15 +195,15 @@ class Stage:
         return shapely.STRtree([*solids, *self._map, *props])
 
     @functools.cached_property
-    def _blocks_called(self) -> list[str]:
-        """What the blocks are called."""
+    def _block_names(self) -> list[str]:
+        """Names of the blocks in messages."""
         solids = [f"obstacle {k + 1} of the stage" for k, _ in readable(self.obstacles, "points")]
         props = [f"prop {k + 1} of the stage" for k, _ in readable(self.props, "ring")]
         return [*solids, *("a solid of the map" for _ in self._map), *props]
 
     @functools.cached_property
     def _solids(self) -> Any:
-        """The edges of walls and of the walkable area, and the obstacles, for the search of the nearest."""
+        """Spatial index of walls, borders of the walkable area, and blocks."""
         import shapely
 
         lines = [np.array(points) for _, points in readable(self.walls, "points")]
@@ -215,11 +215,11 @@ class Stage:
 
 
 def _rings(polygons: Sequence[Any], solid: bool) -> list[NDArray[np.float64]]:
-    """Return the rings of polygons that are solid, or of an area that is not."""
+    """Return the rings of solid polygons, or of a walkable area."""
     rings = []
     for polygon in polygons:
-        rings.append(_turned(polygon.exterior.coords[:-1], counter_clockwise=solid))
-        rings += [_turned(inner.coords[:-1], counter_clockwise=not solid) for inner in polygon.interiors]
+        rings.append(_orient(polygon.exterior.coords[:-1], counter_clockwise=solid))
+        rings += [_orient(inner.coords[:-1], counter_clockwise=not solid) for inner in polygon.interiors]
     return rings
 
 
@@ -230,7 +230,7 @@ def area(points: Points) -> Any:
     return shapely.Polygon(points)
 
 
-def _turned(points: Any, counter_clockwise: bool) -> NDArray[np.float64]:
+def _orient(points: Any, counter_clockwise: bool) -> NDArray[np.float64]:
     ring = np.array(points)
     x, y = ring[:, 0], ring[:, 1]
     doubled = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))

@@ -1,4 +1,4 @@
-"""The contract of stages, as a check for your own ones."""
+"""Contract test of stages."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ __all__ = ["check_stage"]
 PERSON = 0.3
 """Room that a person needs around its centre [m]."""
 CELLS = 100
-"""Points of the search for free room, along each axis."""
+"""Points per axis of the search for free room."""
 
 
 def check_stage(stage: Stage) -> None:
-    """Check that a stage has walls, and room for people between them.
+    """Check that a stage has walls and room for people.
 
     Raises:
-        InputError: the first rule that it breaks.
+        InputError: the first violated rule.
 
     >>> check_stage(Stage(walkable=[(0, 0), (8, 0), (8, 4), (0, 4)]))
     >>> check_stage(Stage(walkable=[(0, 0), (8, 0), (8, 0.4), (0, 0.4)]))

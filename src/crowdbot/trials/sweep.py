@@ -1,4 +1,4 @@
-"""Sweeps: one file that stands for many trials, each with other values in the places that are named."""
+"""Sweeps: one file describes many trials with different values of some attributes."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from typing import Any
 from crowdbot.core import Element, InputError
 
 from .fields import FieldProblem, attribute, check, quote_value
-from .partial import readable
+from .partial_element import readable
 from .value_path import set_value, set_values
 
 __all__ = ["MOST_VARIANTS", "Sweep", "sweep_problems"]
 
 MOST_VARIANTS = 10_000
 CHECKED = 50
-"""No more variants than this are checked when a file with sweeps is read."""
+"""Number of variants that are checked when a file with sweeps is read."""
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """Values that one attribute of a trial takes, one after the other.
+    """Values of one attribute of a trial; each value makes a variant of the trial.
 
-    A path leads over elements to an attribute, as in ``duration``, ``crowd/time-horizon``, ``spawner[2]/count`` (the
-    second) or ``robot[tim]/navigator/type`` (by name). Values are separated by blanks, or by semicolons where they hold
-    blanks themselves; ``1:4`` means 1 2 3. Several sweeps are combined in all ways, the last one changes fastest.
+    A path names elements and an attribute, as in ``duration``, ``crowd/time-horizon``, ``spawner[2]/count`` (the
+    second) or ``robot[tim]/navigator/type`` (by name). Values are separated by blanks, or by semicolons if they contain
+    blanks; ``1:4`` means 1 2 3. Several sweeps make all combinations; the last one changes fastest.
 
     Raises:
         InputError: there is no value.
@@ -49,7 +49,7 @@ class Sweep:
 
     @staticmethod
     def mistakes(values: Mapping[str, Any]) -> list[FieldProblem]:
-        """Return what is wrong with the values, whatever else is wrong in its element."""
+        """Return the problems of the values, independent of other problems of the element."""
         try:
             _each(values.get("values", "1"))
         except InputError as error:
@@ -80,13 +80,13 @@ def _each(values: str) -> tuple[str, ...]:
 def sweep_problems(
     root: Element, kind: type, sweeps: Sequence[Sweep], others: Callable[[Element], list[str]]
 ) -> list[tuple[Sweep, str]]:
-    """Return what is wrong with sweeps and with the first variants of a trial, each sentence once, with its sweep.
+    """Return the problems of sweeps and of the first variants of a trial, each once, with its sweep.
 
     Args:
-        root: the trial as its file has it.
+        root: XML tree of the trial.
         kind: class of the trial.
-        sweeps: partial if something in them could not be read.
-        others: says of a variant what is wrong with it and not with the trial.
+        sweeps: the sweeps, possibly partial.
+        others: function that returns the problems of a variant that the trial itself does not have.
     """
     found: list[tuple[Sweep, str]] = []
     there = []
@@ -107,14 +107,14 @@ def sweep_problems(
         for sentence in others(_with(root, kind, pairs))[:3]:
             if sentence not in known:
                 known[sentence] = None
-                found.append(_blamed(root, kind, pairs, sentence, others))
+                found.append(_find_cause(root, kind, pairs, sentence, others))
     return found
 
 
-def _blamed(
+def _find_cause(
     root: Element, kind: type, pairs: Sequence[tuple[Sweep, str]], sentence: str, others: Callable[[Element], list[str]]
 ) -> tuple[Sweep, str]:
-    """Return the sweep without which a variant is right, and the sentence with its value; with all if it is not one."""
+    """Return the sweep that causes a problem, and the sentence with its value; with all values if several do."""
     for k, (sweep, value) in enumerate(pairs):
         if len(pairs) > 1 and sentence not in others(_with(root, kind, [*pairs[:k], *pairs[k + 1 :]])):
             return sweep, f"with {sweep.path}={value}: {sentence}"

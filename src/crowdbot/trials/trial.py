@@ -1,4 +1,4 @@
-"""Trial: everything of a simulation as one tree of frozen dataclasses. The XML of a trial is this tree."""
+"""Trial: the description of a simulation as a tree of frozen dataclasses, which is also the XML tree."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ __all__ = ["End", "EndCondition", "Mount", "RecordingSpec", "RobotGoal", "RobotS
 
 @dataclass(frozen=True)
 class EndCondition:
-    """A condition under which a trial ends: what a robot has crossed, how many people are there, how late it is.
+    """A condition that ends a trial: position of a robot, number of people, or time.
 
     >>> EndCondition("x", above=20.0).holds(21.0)
     True
@@ -53,7 +53,7 @@ class EndCondition:
 
 @dataclass(frozen=True)
 class End:
-    """What ends a trial before its duration is over."""
+    """Conditions that end a trial before its duration is over."""
 
     goal: bool = attribute(True, about="every robot has reached its goal")
     collision: bool = attribute(True, about="a robot touches a person, a wall or another robot")
@@ -66,7 +66,7 @@ class End:
 
 @dataclass(frozen=True)
 class RecordingSpec:
-    """How often what is recorded. A trial ends at a recorded instant."""
+    """Recording periods. A trial ends at a recorded instant."""
 
     period: float = attribute(0.1, about="time between two recorded scenes", unit="s", exclusive_min=0.0)
     markers: float = attribute(0.5, about="time between two sets of shapes for viewers", unit="s", exclusive_min=0.0)
@@ -77,9 +77,9 @@ class RecordingSpec:
 
 @dataclass(frozen=True, kw_only=True)
 class Trial:
-    """One simulation: a stage, people, robots, and when it ends.
+    """A simulation: stage, people, robots, end conditions.
 
-    A trial made in Python is checked like one from a file when it runs, or by :func:`crowdbot.trials.check_trial`.
+    A trial made in Python is checked when it runs, or by :func:`crowdbot.trials.check_trial`.
 
     Raises:
         InputError: a value is not allowed.
@@ -136,7 +136,7 @@ class Trial:
     recording: RecordingSpec = child(RecordingSpec, about="recording rates")
     sweeps: tuple[Sweep, ...] = children("sweep", about="parameter sweeps", max=20)
     folder: Path | None = dataclasses.field(default=None, compare=False, repr=False)
-    """Where code that the trial names lies; not part of the tree."""
+    """Folder of the code that the trial names; not part of the XML."""
 
     def __post_init__(self) -> None:
         check(self)
@@ -148,12 +148,12 @@ class Trial:
             )
 
     def _repr_svg_(self) -> str:
-        """Return a drawing for notebooks: stage, zones of people, robots and their goals."""
+        """Return an SVG drawing for notebooks: stage, zones of people, robots and their goals."""
         return trial_svg(self)
 
     @property
     def people(self) -> int:
-        """Number of agents, people of spawners and recorded people: those who have places before the robots."""
+        """Number of agents, people of spawners and recorded people; their indices come before those of robots."""
         recorded = sum(len(one.walks(self.duration)) for one in self.recorded)
         return len(self.agents) + sum(spawner.count for spawner in self.spawners) + recorded
 

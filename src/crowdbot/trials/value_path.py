@@ -1,4 +1,4 @@
-"""Value paths: the address of one attribute in a trial, used by sweeps, ``--set``, branches and Python alike."""
+"""Value paths: the address of an attribute in a trial, for sweeps, ``--set``, branches and Python."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ WORD = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
 
 def set_values(root: Element, kind: type, values: Mapping[str, str]) -> None:
-    """Set several attributes; new types first, since a new type drops the parameters of the old one.
+    """Set several attributes. Types are set first, since a new type removes the parameters of the old one.
 
     Raises:
-        InputError: a path leads nowhere; the message names it.
+        InputError: a path does not exist; the message names it.
     """
     for path in sorted(values, key=lambda path: _steps(path)[-1] != "type"):
         try:
@@ -37,7 +37,7 @@ def set_value(root: Element, kind: type, path: str, text: str) -> None:
 
     A path names elements and then an attribute, separated by slashes or dots, as in ``duration``,
     ``crowd/time-horizon`` or ``robot[pepper].navigator.max-speed``. Of several elements of one kind, the brackets
-    choose one by its name or by its number, counted from 1. A new ``type`` drops the parameters of the old type.
+    select one by name or by number, counted from 1. A new ``type`` removes the parameters of the old type.
 
     Args:
         root: the trial, changed in place.
@@ -46,7 +46,7 @@ def set_value(root: Element, kind: type, path: str, text: str) -> None:
         text: new value as in XML.
 
     Raises:
-        InputError: the path leads nowhere.
+        InputError: the path does not exist.
 
     >>> from crowdbot.trials import Trial
     >>> root = Element("trial", {}, [Element("crowd", {"type": "orca", "time-horizon": "2"})])
@@ -68,7 +68,7 @@ def set_value(root: Element, kind: type, path: str, text: str) -> None:
 
 
 def text_of(value: Any) -> str:
-    """Return a value as XML writes it.
+    """Return the XML text of a value.
 
     >>> text_of(True), text_of(0.5), text_of("orca")
     ('true', '0.5', 'orca')
@@ -85,13 +85,13 @@ def _steps(path: str) -> list[str]:
 
 
 def _is_mounted(kind: Any) -> bool:
-    """Return whether the attributes of an element are those of the class that its ``type`` names."""
+    """Return whether the attributes of an element are those of the class of its ``type``."""
     return kind is None or any(part.role == "mounted" for part in outline(kind))
 
 
 def _check_attribute(here: Element, kind: Any, last: str) -> None:
     if WORD.fullmatch(last) is None:
-        raise InputError("is no path; write elements and an attribute, such as robot[NAME]/goal/x")
+        raise InputError("is not a path; write elements and an attribute, such as robot[NAME]/goal/x")
     if kind is None or _is_mounted(kind):
         return
     words = [part.word for part in outline(kind) if part.role == "attribute"]
@@ -101,12 +101,12 @@ def _check_attribute(here: Element, kind: Any, last: str) -> None:
 
 
 def _inner(here: Element, kind: Any, step: str) -> tuple[Element, Any]:
-    """Return the element that a step leads to, made when it is optional and missing, and its class."""
+    """Return the element of a step, created if it is optional and missing, and its class."""
     match = STEP.fullmatch(step)
     parts = {word: part for part in (outline(kind) if kind else ()) for word in part.words}
     if match is None or match[1] not in parts:
         near = did_you_mean(step, parts)
-        raise InputError(f"leads nowhere: <{here.tag}> has no element {step[:40]!r}{near}; it has {', '.join(parts)}")
+        raise InputError(f"does not exist: <{here.tag}> has no element {step[:40]!r}{near}; it has {', '.join(parts)}")
     part: FieldSpec = parts[match[1]]
     inner = None if part.role == "plugged" else part.elements[match[1]]
     there = [child for child in here.children if child.tag == match[1]]
@@ -122,20 +122,20 @@ def _chosen(here: Element, there: list[Element], kind: Any, tag: str, which: str
         if len(there) == 1:
             return there[0]
         if not there:
-            raise InputError(f"leads nowhere: there are 0 <{tag}>")
+            raise InputError(f"does not exist: there are 0 <{tag}>")
         choices = ", ".join(f"{tag}[{name or k}]" for k, name in enumerate(names, 1))
         raise InputError(f"is not clear: <{here.tag}> has {len(there)} <{tag}>; choose one: {choices}")
     if which in names:
         return there[names.index(which)]
     if not which.isdecimal():
-        raise InputError(f"leads nowhere: no <{tag}> has the name {which!r}{did_you_mean(which, names)}")
+        raise InputError(f"does not exist: no <{tag}> has the name {which!r}{did_you_mean(which, names)}")
     if not 1 <= int(which) <= len(there):
-        raise InputError(f"leads nowhere: there are {len(there)} <{tag}>, numbered from 1")
+        raise InputError(f"does not exist: there are {len(there)} <{tag}>, numbered from 1")
     return there[int(which) - 1]
 
 
 def _name(element: Element, kind: Any) -> str:
-    """Return the name of an element, its default when it is not written."""
+    """Return the name of an element, or its default name."""
     if "name" in element.attributes or kind is None:
         return element.attributes.get("name", "")
     return next((str(part.default) for part in outline(kind) if part.word == "name" and not part.required), "")

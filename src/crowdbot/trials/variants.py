@@ -1,4 +1,4 @@
-"""Variants: a trial with other values at some paths, and all variants of a trial with sweeps."""
+"""Variants: a trial with other values at some paths, and the variants of a trial with sweeps."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ __all__ = ["apply_values", "expand_sweeps"]
 
 
 def apply_values(trial: Trial, values: Mapping[str, Any], *, place: str = "variant", trust: bool = True) -> Trial:
-    """Return the trial with other values at some paths, read and checked like a file.
+    """Return a trial with other values at some paths, checked like a file.
 
     Args:
-        trial: the trial to begin with.
-        values: by path, as in :class:`Sweep`; texts, numbers or booleans.
+        trial: the original trial.
+        values: texts, numbers or booleans by path, as in :class:`Sweep`.
         place: name for messages.
         trust: whether code from outside the folder of the trial may be loaded.
 
     Raises:
-        TrialError: a path leads nowhere, or a value is not allowed.
+        TrialError: a path does not exist, or a value is not allowed.
 
     >>> from crowdbot.models import ORCA
     >>> from crowdbot.trials import Trial
@@ -48,12 +48,12 @@ def apply_values(trial: Trial, values: Mapping[str, Any], *, place: str = "varia
 
 
 def expand_sweeps(trial: Trial, trust: bool = True) -> tuple[Trial, ...]:
-    """Return a trial without sweeps for every combination of values; the trial itself when it has none.
+    """Return a trial without sweeps for every combination of values; the trial itself if it has none.
 
-    Their names tell the values: ``doors [door 1.2, seed 3]``.
+    The names contain the values: ``doors [door 1.2, seed 3]``.
 
     Raises:
-        TrialError: a path leads nowhere, a value is not allowed, there are too many combinations.
+        TrialError: a path does not exist, a value is not allowed, or there are too many combinations.
 
     >>> from crowdbot.models import ORCA
     >>> from crowdbot.trials import Sweep, Trial
@@ -65,11 +65,11 @@ def expand_sweeps(trial: Trial, trust: bool = True) -> tuple[Trial, ...]:
     """
     if not trial.sweeps:
         return (trial,)
-    rows = _combined(trial)
+    rows = _combinations(trial)
     return tuple(_variant(trial, row, trust) for row in rows)
 
 
-def _combined(trial: Trial) -> list[tuple[str, ...]]:
+def _combinations(trial: Trial) -> list[tuple[str, ...]]:
     count = math.prod(len(sweep.each) for sweep in trial.sweeps)
     if count > MOST_VARIANTS:
         raise TrialError(f"trial {trial.name!r}: its sweeps make {count} variants, at most {MOST_VARIANTS}")

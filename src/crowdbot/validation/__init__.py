@@ -1,4 +1,4 @@
-"""Validation: how the crowd models walk, against experiments with people and the RiMEA tests, as one page."""
+"""Validation of crowd models against experiments with people and the RiMEA tests."""
 
 from .page import write_page
 from .run import CHECKS, CheckOutcome, Validation, select_models, validate

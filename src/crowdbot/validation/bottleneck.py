@@ -1,4 +1,4 @@
-"""Bottleneck: flow out of a room over the width of its only way out."""
+"""Bottleneck test: flow out of a room by the width of its exit."""
 
 from __future__ import annotations
 
@@ -36,16 +36,16 @@ PEOPLE = 60
 ROOM, HALF = 8.0, 3.0
 """Length and half width of the room [m]."""
 LENGTH = 2.8
-"""Of the bottleneck [m], as in Seyfried et al. 2009."""
+"""Widths of the bottleneck [m], as in Seyfried et al. 2009."""
 WIDTHS = (0.8, 1.0, 1.2, 1.6, 2.0)
 SEEDS = 3
 SECONDS = 120.0
 TOLERANCE = 0.25
-"""Allowed mean relative distance of the flow to 1.9 persons per second and metre."""
+"""Allowed mean relative deviation of the flow from 1.9 persons per second and metre."""
 
 
 def run(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Measure the flow through every width; runs with other starts are along the axis E."""
+    """Measure the flow for each width; runs with different initial positions are environments."""
     widths, seeds, people, seconds = ((0.8, 1.2), 1, 20, 30.0) if quick else (WIDTHS, SEEDS, PEOPLE, SECONDS)
     flows, passed, outside, overlap = [], [], [], []
     for k, width in enumerate(widths):
@@ -70,7 +70,7 @@ def run(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
 
 
 def judge(result: dict[str, Any]) -> Verdict:
-    """Compare the specific flow with the published one, and look who got stuck."""
+    """Compare the specific flow with the published one, and count stuck people."""
     width, flow = np.asarray(result["width"]), np.mean(result["flows"], axis=1)
     stuck = np.asarray(result["passed"]) < result["people"]
     specific = flow / width
@@ -102,14 +102,14 @@ BOTTLENECK = Check(
 
 
 def crossings(walk: CrowdTracks, x: float, e: int = 0) -> Floats:
-    """Return the sorted times [s] at which people of environment ``e`` first get beyond ``x`` [m]."""
+    """Return the sorted times [s] at which people of environment ``e`` first pass ``x`` [m]."""
     beyond = (walk.position[:, e, :, 0] > x) & walk.present[:, e]
     some = np.any(beyond, axis=0)
     return np.sort(walk.times[np.argmax(beyond, axis=0)[some]])
 
 
 def _flow(times: Floats, people: int, seconds: float) -> tuple[float, int]:
-    """Return (n - 1) / (t_n - t_1), n who passed; t_n is the time limit when somebody is left behind."""
+    """Return (n - 1) / (t_n - t_1) for n people; t_n is the time limit if somebody does not pass."""
     if len(times) < 2:
         return 0.0, len(times)
     last = float(times[-1]) if len(times) == people else seconds

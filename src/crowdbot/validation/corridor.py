@@ -1,4 +1,4 @@
-"""Corridor: speed over density of a one-way crowd in a plane, between two walls, on a closed track."""
+"""Corridor test: speed by density of a one-way crowd on a periodic track between two walls."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ DENSITIES = (0.25, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0)
 QUICK = (0.5, 1.5, 3.0)
 WARM, MEASURED = 15.0, 15.0
 LIMIT = 0.25
-"""Allowed root mean square distance to Weidmann's curve [m/s]."""
+"""Allowed root mean square deviation from Weidmann's curve [m/s]."""
 SPREAD = 0.05
-"""Deviation of free speeds [m/s]: RiMEA test 4 asks for nearly equal ones, 1.2 to 1.4 m/s."""
+"""Standard deviation of free speeds [m/s]; RiMEA test 4 requires nearly equal ones, 1.2 to 1.4 m/s."""
 
 
 def run(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Measure the mean forward speed at every density, all at once along the axis E."""
+    """Measure the mean forward speed at each density; densities are environments."""
     densities = QUICK if quick else DENSITIES
     warm, measure_recordings = (4.0, 2.0) if quick else (WARM, MEASURED)
     crowd = corridor_crowd([("one-way", d, 0) for d in densities], LENGTH, WIDTH, two_way=False, spread=SPREAD)
@@ -57,7 +57,7 @@ def run(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
 
 
 def judge(result: dict[str, Any]) -> Verdict:
-    """Compare with Weidmann's curve, and look whether walls hold."""
+    """Compare with Weidmann's curve, and check for people in walls."""
     density, speed = np.asarray(result["density"]), np.asarray(result["speed"])
     curve = weidmann_speed(density)
     distance = float(np.sqrt(np.mean((speed - curve) ** 2)))
@@ -88,9 +88,9 @@ CORRIDOR = Check(
 def corridor_crowd(
     runs: list[tuple[str, float, int]], length: float, width: float, *, two_way: bool, spread: float
 ) -> Scene:
-    """Return crowds in a corridor, one run (name, density [1/m2], number) an environment; they walk from the start.
+    """Return crowds in a corridor, one environment per run (name, density [1/m2], number), initially walking.
 
-    When ``two_way``, half of the people, drawn at random, walk towards -x.
+    With ``two_way``, a random half of the people walks towards -x.
     """
     counts = [round(density * length * width) for _, density, _ in runs]
     E, A = len(counts), max(counts)

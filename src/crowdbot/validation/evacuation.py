@@ -1,4 +1,4 @@
-"""Evacuation: the RiMEA tests with a crowd: doors of a hall (9), a bottleneck between rooms (12), a corner (15)."""
+"""RiMEA tests with a crowd: doors of a hall (9), bottleneck between rooms (12), corner (15)."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ LIMIT = 240.0
 HALL, DEPTH = 15.0, 10.0
 DOOR = 1.0
 DOOR_PEOPLE = 250
-"""A quarter of the people of the guideline in a quarter of its hall of 30 x 20 m, with doors as wide as there."""
+"""A quarter of the people of the guideline in a quarter of its hall of 30 x 20 m, with doors of the same width."""
 LEAST, MOST = 1.6, 2.4
-"""Ratio of times that is about a doubling, as JuPedSim's system test reads it."""
+"""Range of time ratios that count as doubling, as in the system test of JuPedSim."""
 
 
 def run_doors(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Let a crowd leave a hall by four doors, then by two."""
+    """Simulate a crowd that leaves a hall by four doors, then by two."""
     people, limit = (40, 20.0) if quick else (DOOR_PEOPLE, LIMIT)
     seconds, out, outside, overlap = [], [], [], []
     for k, sides in enumerate(((-1.0, 1.0), (-1.0,))):
@@ -71,7 +71,7 @@ def run_doors(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
 
 
 def judge_doors(result: dict[str, Any]) -> Verdict:
-    """About twice the time with half of the doors."""
+    """Check that half of the doors takes about twice the time."""
     words, people = [], result["people"]
     if min(result["out"]) < people:
         stuck = people - min(result["out"])
@@ -99,13 +99,13 @@ DOORS = Check(
 
 ROOM_PEOPLE = 150
 SLOW = 0.3
-"""Who is slower than this [m/s] within 2 m before an opening is in a queue."""
+"""People slower than this [m/s] within 2 m before an opening are in a queue."""
 QUEUE = 5.0
-"""So many are a jam, fewer are none."""
+"""Minimum number of people in a jam."""
 
 
 def run_rooms(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Let a crowd walk from one room through a corridor into another and out of it."""
+    """Simulate a crowd that walks from a room through a corridor into a second room and out of it."""
     people, limit = (30, 25.0) if quick else (ROOM_PEOPLE, LIMIT)
     solids = _room_solids()
     rng = stream_of("rimea-12", people)
@@ -135,7 +135,7 @@ def run_rooms(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
 
 
 def judge_rooms(result: dict[str, Any]) -> Verdict:
-    """A queue in front of the corridor, and none in front of the exit."""
+    """Check for a queue in front of the corridor, and none in front of the exit."""
     first, second = result["queues"]
     words = []
     if result["out"] < result["people"]:
@@ -164,7 +164,7 @@ LONG, SHORT = 40.5, 25.0
 
 
 def run_long_corner(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Let a crowd walk down a wide corridor with a corner, and straight ones as long as its outer and inner walls."""
+    """Simulate a crowd in a wide corridor with a corner, and in straight ones as long as its outer and inner walls."""
     people, limit = (30, 50.0) if quick else (CORNER_CROWD, 120.0)
     seconds, out, outside = [], [], []
     for k, name in enumerate(("short", "corner", "long")):
@@ -180,7 +180,7 @@ def run_long_corner(model: CrowdModel, quick: bool, report: Report) -> dict[str,
 
 
 def judge_long_corner(result: dict[str, Any]) -> Verdict:
-    """The corner takes longer than the short corridor and less long than the long one."""
+    """Check that the time of the corner is between those of the short and the long corridor."""
     short, corner, long = result["seconds"]
     words = []
     if min(result["out"]) < result["people"]:
@@ -246,7 +246,7 @@ def _room_solids() -> list[Solid]:
 
 
 def _queue(walk: CrowdTracks, x: float) -> float:
-    """Return the 95th percentile over time of who is slow within 2 m before the opening at ``x``, middle y = 5 m."""
+    """Return the 95th percentile over time of slow people within 2 m before the opening at ``x``, y = 5 m."""
     second = round(1.0 / STEP)
     place, present = walk.position[::second, 0], walk.present[::second, 0]
     speed = np.hypot(*np.moveaxis(place[1:] - place[:-1], -1, 0))
@@ -258,7 +258,7 @@ def _queue(walk: CrowdTracks, x: float) -> float:
 
 
 def _corner_solids(name: str) -> list[Solid]:
-    """Return the walls; people start at the top and walk down, then to the right around the corner."""
+    """Return the walls; people start at the top, walk down, and turn right at the corner."""
     if name == "corner":
         return [
             (-0.5, -0.5, 0.0, 30.5),
@@ -272,7 +272,7 @@ def _corner_solids(name: str) -> list[Solid]:
 
 def _corner(model: CrowdModel, name: str, people: int, limit: float, report: Report) -> tuple[CrowdTracks, int]:
     top = {"corner": 30.0, "long": LONG, "short": SHORT}[name]
-    rng = stream_of("rimea-15", people)  # the same people at the same places of all three
+    rng = stream_of("rimea-15", people)  # same people at the same positions in all three
     place = starts(people, (0.3, -3.0), (9.7, -0.3), rng) + np.array([0.0, top])
     crowd = Scene.of(
         place, radius=RADIUS, preferred_speed=free_speeds((people,), rng), walls=rings(_corner_solids(name))

@@ -1,4 +1,4 @@
-"""Lanes: two-way flow in a wide corridor (do lanes form?) and in a narrow one (does it jam?)."""
+"""Lane tests: two-way flow in a wide corridor (lanes) and in a narrow one (jams)."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ NARROW_WIDTH = 2.0
 NARROW_DENSITIES = (0.5, 1.0, 1.5, 2.0)
 NARROW_SEEDS = 3
 BAND = 0.3
-"""People whose lateral distance is less than this [m] are in one band."""
+"""Width of the band of a person: lateral distance [m]."""
 SECONDS, LAST = 60.0, 20.0
 NARROW_SECONDS, NARROW_LAST = 90.0, 10.0
 ORDER = 0.5
-"""Lanes have formed above this; the recordings reach about 0.5 to 1."""
+"""Minimum order of lanes; recordings reach about 0.5 to 1."""
 JAM = 0.1
-"""Slower than this share of the free speed is a jam."""
+"""Speeds below this fraction of the free speed are a jam."""
 
 
 def lane_order(y: Floats, direction: Floats) -> float:
-    """Return how far two directions have sorted into lanes: 0 as by chance, 1 completely, NaN when nobody is near.
+    """Return the order of lanes of two directions: 0 random, 1 complete, NaN without neighbors.
 
     For each person i with m others in its band (lateral distance below 0.3 m, anywhere along the corridor), phi_i =
-    (like - unlike)^2 / m^2 (Rex & Löwen 2007). Small bands look ordered by chance, so the mean of phi is compared with
-    what it is expected to be when the same directions are dealt out at random (the reduced order parameter of Nowak &
+    (like - unlike)^2 / m^2 (Rex & Löwen 2007). Small bands are ordered by chance. The mean of phi is therefore compared
+    with its expectation for a random permutation of the directions (the reduced order parameter of Nowak &
     Schadschneider 2012): (mean phi - expected) / (1 - expected). For a band of m this is (1 + (m - 1) q) / m, with q =
     ((sum of directions)^2 - N) / (N (N - 1)).
 
@@ -61,7 +61,7 @@ def lane_order(y: Floats, direction: Floats) -> float:
 
 
 def run_lanes(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Measure the order over time, the mean of some runs."""
+    """Measure the order over time, mean over runs."""
     seconds, last, seeds = (8.0, 4.0, 1) if quick else (SECONDS, LAST, SEEDS)
     crowd = corridor_crowd([("two-way", DENSITY, k) for k in range(seeds)], LENGTH, WIDE, two_way=True, spread=0.26)
     walk = simulate_periodic(model, crowd, LENGTH, seconds, stream_of("lanes", "model"), report)
@@ -84,7 +84,7 @@ def run_lanes(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
 
 
 def judge_lanes(result: dict[str, Any]) -> Verdict:
-    """Look whether lanes have formed and people get on."""
+    """Check that lanes form and people keep moving."""
     words = []
     if result["last_order"] < ORDER:
         words.append(f"lanes hardly form in a two-way flow (order {result['last_order']:.2f})")
@@ -105,7 +105,7 @@ LANES = Check(
 
 
 def run_narrow(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Measure how fast people get on in a narrow corridor, over density and chance."""
+    """Measure the speed in a narrow corridor, by density and seed."""
     seconds, last = (10.0, 4.0) if quick else (NARROW_SECONDS, NARROW_LAST)
     densities, seeds = ((1.0, 2.0), 1) if quick else (NARROW_DENSITIES, NARROW_SEEDS)
     runs = [("narrow", density, k) for density in densities for k in range(seeds)]
@@ -151,6 +151,6 @@ NARROW = Check(
 
 
 def _forward(times: Floats, x: Floats, side: NDArray[np.float64], last: float) -> Floats:
-    """Return the speed ``[E, A]`` [m/s] in everyone's own direction over the last seconds."""
+    """Return the speed ``[E, A]`` [m/s] in the walking direction of each person over the last seconds."""
     first = int(np.searchsorted(times, times[-1] - last - 1e-9))
     return np.asarray(side * (x[-1] - x[first]) / (times[-1] - times[first]))

@@ -1,4 +1,4 @@
-"""Published numbers that the page compares with, each with its source."""
+"""Published reference values with their sources."""
 
 from __future__ import annotations
 
@@ -24,8 +24,9 @@ BOTTLENECK_FLOWS = (
     (2.2, 4.52),
     (2.5, 5.55),
 )
-"""Width [m] and flow [1/s] of Liddle et al. 2009: 150 people over the time from the first to the last of them; the
-numbers are those that the validation tests of JuPedSim compare with."""
+"""Width [m] and flow [1/s] of Liddle et al. 2009: 150 people, first to last; also used in the validation tests of
+JuPedSim.
+"""
 
 SOURCES = (
     "Weidmann 1993, Transporttechnik der Fussgänger, ETH Zürich, Schriftenreihe des IVT 90,"

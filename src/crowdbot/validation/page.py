@@ -138,7 +138,7 @@ def _cell(text: str) -> str:
 
 
 def _people(people: dict[str, Any], name: str) -> str:
-    """Return the table cell of real people, if measured."""
+    """Return the table cell of recorded people, if measured."""
     found = people.get(name)
     if not found:
         return ""

@@ -1,4 +1,4 @@
-"""Plots: one small picture a model, all on the same axes, with people in grey behind."""
+"""Plots of the validation page: one panel per model with equal axes, recorded people in grey."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ __all__ = ["PLOTS", "draw"]
 
 COLUMNS = 5
 MODEL, PEOPLE, CURVE, BAD = "#0072b2", "#9a9a9a", "#e69f00", "#d55e00"
-"""Colours that people with colour blindness can tell apart (Okabe & Ito)."""
+"""Colours that are distinguishable with colour blindness (Okabe & Ito)."""
 
 Panel = Callable[[Any, dict[str, Any], dict[str, Any] | None], None]
 
 
 def draw(done: Validation, folder: Path) -> list[str]:
-    """Write one PNG a check and return their names.
+    """Write one PNG per check and return their names.
 
     Args:
-        done: what is drawn; models whose check ended with an error are left empty.
-        folder: where the files go.
+        done: results; panels of failed checks stay empty.
+        folder: output folder.
     """
     names = []
     for name, (title, x, y, panel) in PLOTS.items():
@@ -56,7 +56,7 @@ def _grid(done: Validation, name: str, title: str, x: str, y: str, panel: Panel,
             panel(axis, checks[name].result, people)
     for axis in axes.flat[len(done.outcomes) :]:
         axis.set_visible(False)
-    for k in range(columns):  # the last row may be short: labels belong to the lowest picture of each column
+    for k in range(columns):  # the last row may be short: labels belong to the lowest panel of each column
         lowest = axes[(len(done.outcomes) - 1 - k) // columns, k]
         lowest.tick_params(labelbottom=True)
         lowest.set_xlabel(x, fontsize=9)
@@ -68,7 +68,7 @@ def _grid(done: Validation, name: str, title: str, x: str, y: str, panel: Panel,
 
 
 def _save(canvas: Any, file: Path) -> None:
-    """Write with a palette of 64 colours: a third of the bytes, no visible difference."""
+    """Save with a palette of 64 colours, a third of the size without visible difference."""
     from PIL import Image
 
     buffer = io.BytesIO()
@@ -141,4 +141,4 @@ PLOTS: dict[str, tuple[str, str, str, Any]] = {
     "narrow": ("Two-way flow, 2 m wide: forward speed after 80 s", "people per area [1/m²]", "speed [m/s]", _narrow),
     "bottleneck": ("Bottleneck: flow over width", "width [m]", "flow [people/s]", _bottleneck),
 }
-"""Check -> title, label of x, label of y, what draws one picture."""
+"""Title, axis labels and panel function of each check."""

@@ -1,6 +1,6 @@
-"""Recordings: the same quantities measured from tracks of real people, each by a stated method.
+"""Reference measurements from recordings of real people.
 
-Files are looked up by name below the folder, wherever they lie in it.
+Files are found by name anywhere below the folder.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .scenario import Floats, Report
 __all__ = ["METHODS", "measure_recordings"]
 
 LEAST = 20
-"""A mean over fewer values is not shown."""
+"""Minimum number of values of a mean."""
 
 METHODS = {
     "single-file": "n56_cam1.csv, a ring of 56 people seen on 3 m of it: density of a person is 2 / (distance from the"
@@ -35,7 +35,7 @@ METHODS = {
     " a second while at least five walk each way",
     "bottleneck": "(n - 1) / (t_n - t_1) of the first crossings of a line in the bottleneck, n people",
 }
-"""What is measured and how."""
+"""Measured quantities and methods."""
 
 
 class _Corridor(NamedTuple):
@@ -64,7 +64,7 @@ DOORS = (
     _Door("00_01a.h5", 0.8, 0.0, "Wuppertal 2014, pupils"),
     _Door("uo-180-180-120.txt", 1.2, -4.2, "HERMES 2009"),
 )
-"""People walk towards -y through all of them."""
+"""People walk towards -y in all of them."""
 
 
 class _Section(NamedTuple):
@@ -83,13 +83,13 @@ SECTIONS = (
 
 
 def measure_recordings(folder: Path, report: Report) -> dict[str, Any]:
-    """Return what the recordings in a folder say, and the names of those that are missing.
+    """Return the measurements of the recordings in a folder, and the names of missing files.
 
     Raises:
-        DataError: the folder does not exist or holds none of them.
+        DataError: the folder does not exist or contains none of the recordings.
     """
     if not folder.is_dir():
-        raise DataError(f"{folder} is no folder; --data names the one that holds the recordings")
+        raise DataError(f"--data {folder} is not a folder; give the folder of the recordings")
     missing: list[str] = []
 
     def found(file: str) -> Trajectories | None:
@@ -109,7 +109,7 @@ def measure_recordings(folder: Path, report: Report) -> dict[str, Any]:
         result[name] = part(found)
         report((k + 1) / len(parts))
     if not any(result.values()):
-        raise DataError(f"{folder} holds none of the recordings that are compared with: {', '.join(missing)}")
+        raise DataError(f"{folder} contains none of the reference recordings: {', '.join(missing)}")
     return {**result, "missing": sorted(set(missing))}
 
 
@@ -144,7 +144,7 @@ def _corridors(found: Callable[[str], Trajectories | None]) -> dict[str, Any] | 
 
 
 def _voronoi(tracks: Trajectories, width: float) -> Floats:
-    """Return density [1/m2] and speed [m/s] of everyone in the middle of a section, as rows ``[N, 2]``."""
+    """Return density [1/m2] and speed [m/s] of all people in the middle of a section, as rows ``[N, 2]``."""
     import shapely
 
     corridor = shapely.box(0.0, -4.0, width, 4.0)
@@ -210,7 +210,7 @@ def _doors(found: Callable[[str], Trajectories | None]) -> list[dict[str, Any]]:
 
 
 def _crossing(tracks: Trajectories, id: int, line: float) -> list[float]:
-    """Return the first time [s] at which a person gets below ``line`` [m], if ever."""
+    """Return the first time [s] at which a person passes ``line`` [m], or None."""
     mine = tracks.id == id
     y: NDArray[np.float64] = tracks.y[mine]
     over = np.flatnonzero((y[:-1] > line) & (y[1:] <= line))

@@ -1,4 +1,4 @@
-"""RiMEA: the verification tests of the guideline that are about walking people and a few of them at most."""
+"""RiMEA tests of single walkers and small groups."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ NOT_APPLICABLE = {
     13: "jam in front of stairs: as test 2",
     14: "choice of a long or a short route: as test 10",
 }
-"""Tests of the guideline that are not run, and why."""
+"""Tests of the guideline that are not run, with reasons."""
 
 SPEED = 1.33
 FASTEST, SLOWEST = 26.0, 34.0
@@ -50,7 +50,7 @@ FASTEST, SLOWEST = 26.0, 34.0
 
 
 def run_corridor(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Let one person walk 40 m in a corridor 2 m wide, from standing."""
+    """Simulate one person who walks 40 m in a corridor 2 m wide, from rest."""
     solids: list[Solid] = [(-2.0, 2.0, 44.0, 2.5), (-2.0, -0.5, 44.0, 0.0)]
     crowd = Scene.of([[0.0, 1.0]], radius=RADIUS, preferred_speed=SPEED, walls=rings(solids))
     distance = 40.0
@@ -65,7 +65,7 @@ def run_corridor(model: CrowdModel, quick: bool, report: Report) -> dict[str, An
 
 
 def judge_corridor(result: dict[str, Any]) -> Verdict:
-    """Look whether the time is in the range of the guideline."""
+    """Check that the time is in the range of the guideline."""
     if result["seconds"] is None:
         way = f"{result['way']:.0f} m in 60 s"
         return Verdict(way, False, f"alone in an empty corridor, people get only {way}")
@@ -90,11 +90,11 @@ CORNER_SOLIDS: list[Solid] = [
     (12.0, 0.0, 12.5, 18.0),
     (-2.0, 2.0, 10.0, 18.0),
 ]
-"""The corner of the guideline: two arms of a corridor 2 m wide, 12 m along their outer walls."""
+"""The corner of the guideline: a corridor 2 m wide with arms of 12 m along the outer walls."""
 
 
 def run_corner(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Let twenty people walk around a corner to the left."""
+    """Simulate twenty people who walk around a corner to the left."""
     rng = stream_of("rimea-6")
     place = starts(CORNER_PEOPLE, (0.3, 0.25), (6.3, 1.75), rng)
     speed = free_speeds((CORNER_PEOPLE,), rng)
@@ -119,7 +119,7 @@ def run_corner(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]
 
 
 def judge_corner(result: dict[str, Any]) -> Verdict:
-    """Nobody may go through a wall, and all have to arrive."""
+    """Check that nobody passes through a wall and all arrive."""
     words = []
     if result["outside"] > 0.0:
         words.append(f"{share(result['outside'])} of {CORNER_PEOPLE} people cut a corner through its walls")
@@ -147,7 +147,7 @@ SPEED_TOLERANCE = 0.05
 
 
 def run_speeds(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]:
-    """Let fifty people of different speeds walk, each alone in an environment, from standing."""
+    """Simulate fifty people with different speeds, each alone in an environment, from rest."""
     speed = free_speeds((WALKERS, 1), stream_of("rimea-7"))
     crowd = Scene.of(np.zeros((WALKERS, 1, 2)), radius=RADIUS, preferred_speed=speed)
     rng = stream_of("rimea-7", "model")
@@ -166,7 +166,7 @@ def run_speeds(model: CrowdModel, quick: bool, report: Report) -> dict[str, Any]
 
 
 def judge_speeds(result: dict[str, Any]) -> Verdict:
-    """Compare everyone's own speed with the one reached."""
+    """Compare the speed of each person with the free speed."""
     worst = float(np.max(np.abs(np.divide(result["reached"], result["wanted"]) - 1.0)))
     passed = worst <= SPEED_TOLERANCE
     words = "" if passed else f"who walks alone is up to {worst:.0%} off the own free speed after {WALKED:g} s"

@@ -41,20 +41,20 @@ CHECKS: tuple[Check, ...] = (
     TWO_ROOMS,
     LONG_CORNER,
 )
-"""In the order of the page."""
+"""Checks in the order of the page."""
 
 LEFT_OUT = {
     "cost-model": "skipped by default: its default configuration reproduces orca, in slower NumPy code (add"
     " `--models cost-model` to include it)",
 }
-"""Models that are skipped by default, and why."""
+"""Models that are skipped by default, with reasons."""
 
 Progress = Callable[[str, float], None]
 
 
 @dataclass(frozen=True)
 class CheckOutcome:
-    """What one check found about one model: numbers, verdict and the seconds that it took."""
+    """Result of one check for one model: numbers, verdict and computing time [s]."""
 
     result: dict[str, Any]
     verdict: Verdict
@@ -66,10 +66,10 @@ class Validation:
     """Results of all checks.
 
     Fields:
-        outcomes: by model and check.
-        skipped: models that were not run, and why.
-        people: what the recordings say, or None without recordings.
-        quick: whether runs were shortened: then verdicts mean little.
+        outcomes: results by model and check.
+        skipped: models that were not run, with reasons.
+        people: measurements of the recordings, or None.
+        quick: whether runs were shortened; verdicts are then unreliable.
     """
 
     outcomes: dict[str, dict[str, CheckOutcome]]
@@ -78,7 +78,7 @@ class Validation:
     quick: bool
 
     def as_dict(self) -> dict[str, Any]:
-        """Return what ``crowdbot validate --json`` prints."""
+        """Return the output of ``crowdbot validate --json``."""
         return {
             "quick": self.quick,
             "models": {
@@ -94,10 +94,10 @@ class Validation:
 
 
 def select_models(names: Sequence[str] = ()) -> tuple[dict[str, CrowdModel], dict[str, str]]:
-    """Return the named models, or all that are built in, with their default parameters; and who is left out, and why.
+    """Return the named models (default: all built-in ones) with default parameters, and skipped models with reasons.
 
     Raises:
-        UnknownName, InputError: a name means no model, or one that has no defaults.
+        UnknownName, InputError: a name is unknown, or the model has no defaults.
     """
     if names:
         classes = {kebab_case(cls.__name__): cls for cls in (find_class(name, room, CrowdModel) for name in names)}
@@ -130,18 +130,18 @@ def validate(
     progress: Progress | None = None,
     skipped: Mapping[str, str] | None = None,
 ) -> Validation:
-    """Run all checks with all models; what has been done before with the same code and settings is read, not run.
+    """Run all checks with all models. Stored results of the same code and settings are reused.
 
     Args:
-        models: by the name that the page calls them.
-        out: folder of the results, one JSON file a model, written after every check: an interrupted run goes on.
-        data: folder of the recordings; without it, the page compares with published curves only.
-        quick: few and short runs, to see that everything works.
-        progress: called with what is being done and the share that is done.
-        skipped: models that are not run, and why; they are named on the page.
+        models: models by name on the page.
+        out: output folder with one JSON file per model, written after each check for resuming.
+        data: folder of the recordings (default: published curves only).
+        quick: few and short runs, for a test of the installation.
+        progress: called with the name of the task and the completed fraction.
+        skipped: skipped models with reasons, listed on the page.
 
     Raises:
-        DataError: the folder of recordings holds none.
+        DataError: the folder contains no recordings.
     """
     report = progress or (lambda what, share: None)
     out.mkdir(parents=True, exist_ok=True)
@@ -195,7 +195,7 @@ def _judged(check: Check, result: dict[str, Any]) -> Verdict:
 
 
 def _key(quick: bool) -> str:
-    """Return a hash of all code that decides about results: the core, the models and the checks."""
+    """Return a hash of all code that affects results: the core, the models and the checks."""
     sum_ = hashlib.blake2b(b"quick" if quick else b"full", digest_size=8)
     package = Path(__file__).parents[1]
     telling = ("__init__", "page", "plots", "recording", "run")
@@ -209,7 +209,7 @@ def _read(file: Path) -> dict[str, Any]:
     try:
         kept = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError):
-        return {}  # nothing there, or half a file: begin anew
+        return {}  # missing or incomplete file: start again
     return kept if isinstance(kept, dict) and isinstance(kept.get("checks"), dict) else {}
 
 
@@ -220,7 +220,7 @@ def _write(file: Path, value: Any) -> None:
 
 
 def _rounded(value: Any) -> Any:
-    """Return numbers with four decimals, so that the first run and one that reads them say the same."""
+    """Return numbers rounded to four decimals, for equal results of first and resumed runs."""
     if isinstance(value, float):
         return round(value, 4)
     if isinstance(value, dict):

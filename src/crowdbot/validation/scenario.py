@@ -1,4 +1,4 @@
-"""What every test of the page shares: bodies and speeds, starting places, walls, closed tracks and open ways."""
+"""Shared parts of all checks: bodies, speeds, initial positions, walls, periodic and open tracks."""
 
 from __future__ import annotations
 
@@ -36,15 +36,15 @@ __all__ = [
 ]
 
 RADIUS = 0.2
-"""Of every body [m]; 0.2 m is JuPedSim's default, and shoulders are about 0.4 to 0.5 m wide."""
+"""Radius of all bodies [m]: the default of JuPedSim; shoulders are about 0.4 to 0.5 m wide."""
 FREE_SPEED = 1.34
 """Mean speed of free walking [m/s]: Weidmann 1993, Transporttechnik der Fussgaenger, ETH Zurich."""
 SPREAD = 0.26
-"""Its standard deviation [m/s], of the same source."""
+"""Standard deviation of free speeds [m/s], same source."""
 STEP = 0.05
-"""Time step of all runs [s]; models that need a shorter one cut it themselves."""
+"""Time step of all runs [s]; models that need shorter steps use substeps."""
 SEEN = 6.0
-"""On a closed track copies of people are seen up to so far [m] beyond its ends."""
+"""Range [m] of the copies of people beyond the ends of a periodic track."""
 SEED = 20250
 
 Floats = NDArray[np.float64]
@@ -52,11 +52,11 @@ Bools = NDArray[np.bool_]
 Solid = tuple[float, float, float, float]
 """A solid rectangle x0, y0, x1, y1 [m]."""
 Report = Callable[[float], None]
-"""Called with the share that is done, 0 to 1."""
+"""Progress callback: called with the completed fraction, 0 to 1."""
 
 
 class Verdict(NamedTuple):
-    """What a test says of a model: a short value, whether the criterion holds, and plain words about a failure."""
+    """Result of a check: a short value, whether the criterion holds, and a description of a failure."""
 
     value: str
     passed: bool
@@ -67,11 +67,11 @@ class Check(NamedTuple):
     """One test of the page.
 
     Fields:
-        name: on the command line and in the cache.
-        title: of its column and section.
-        criterion: one sentence, what must hold to pass.
-        run: from a model, whether to be quick, and a report of progress to numbers that JSON can hold.
-        judge: from these numbers to the verdict.
+        name: name on the command line and in the cache.
+        title: title of its column and section.
+        criterion: criterion of success, one sentence.
+        run: function of model, quick mode and progress callback that returns numbers for JSON.
+        judge: function of these numbers that returns the verdict.
     """
 
     name: str
@@ -82,11 +82,11 @@ class Check(NamedTuple):
 
 
 class CrowdTracks(NamedTuple):
-    """The ways of people.
+    """Tracks of people.
 
     Fields:
-        times: ``[T]`` [s].
-        position: ``[T, E, A, 2]`` [m]; on a closed track it goes on growing round by round.
+        times: times ``[T]`` [s].
+        position: ``[T, E, A, 2]`` [m]; on a periodic track, it increases with each round.
         present: ``[T, E, A]``; whether the person is there.
     """
 
@@ -96,17 +96,17 @@ class CrowdTracks(NamedTuple):
 
 
 def stream_of(*path: str | int | float) -> np.random.Generator:
-    """Return the stream of a part of the page; the page has one seed, so that all models meet the same crowds."""
+    """Return a random stream of the page; a fixed seed gives all models the same crowds."""
     return stream(SEED, "validation", *(p if isinstance(p, int) else str(p) for p in path))
 
 
 def free_speeds(shape: tuple[int, ...], rng: np.random.Generator, spread: float = SPREAD) -> Floats:
-    """Return speeds of free walking ``[...]`` [m/s], normal about 1.34 m/s and cut at two deviations."""
+    """Return free speeds ``[...]`` [m/s], normal around 1.34 m/s and clipped at two standard deviations."""
     return FREE_SPEED + spread * np.clip(rng.standard_normal(shape), -2.0, 2.0)
 
 
 def share(part: float) -> str:
-    """Return a share as a reader wants it.
+    """Return a share as text.
 
     >>> share(0.126), share(0.002)
     ('13 %', 'less than 1 %')
@@ -120,13 +120,13 @@ def rings(solids: Sequence[Solid]) -> list[list[tuple[float, float]]]:
 
 
 def corridor_walls(length: float, width: float) -> list[list[tuple[float, float]]]:
-    """Return the two walls of a corridor along x, ``0 < y < width``, longer than the track at both ends."""
+    """Return the two walls of a corridor along x, ``0 < y < width``, extended at both ends of the track."""
     x0, x1 = -2.0 * SEEN, length + 2.0 * SEEN
     return rings([(x0, -0.5, x1, 0.0), (x0, width, x1, width + 0.5)])
 
 
 def inside_solids(walk: CrowdTracks, solids: Sequence[Solid]) -> float:
-    """Return the share of people whose centre is ever inside of a solid: they walked through a wall."""
+    """Return the share of people whose centre is inside a solid at any time."""
     x, y = walk.position[..., 0], walk.position[..., 1]
     wrong = np.zeros(walk.present.shape, dtype=np.bool_)
     for x0, y0, x1, y1 in solids:
@@ -135,17 +135,17 @@ def inside_solids(walk: CrowdTracks, solids: Sequence[Solid]) -> float:
 
 
 def opening(place: Floats, x: float, middle: float, width: float) -> Floats:
-    """Return the nearest points ``[E, A, 2]`` [m] of an opening across x where a body fits, seen from places."""
+    """Return the nearest points ``[E, A, 2]`` [m] of an opening across x with room for a body."""
     half = max(0.5 * width - RADIUS - 0.05, 0.0)
     return np.stack([np.full(place.shape[:-1], x), np.clip(place[..., 1], middle - half, middle + half)], axis=-1)
 
 
 def gate(place: Floats, inner: Sequence[float], outer: Sequence[float]) -> tuple[Floats, Bools]:
-    """Return the nearest points of a gate around a corner, and who has passed it.
+    """Return the nearest points of a gate at a corner, and which people have passed it.
 
     Args:
         place: ``[E, A, 2]`` [m].
-        inner, outer: the two corners [m] that the gate lies between; people come with ``inner`` on their left.
+        inner, outer: the two ends [m] of the gate; approaching people have ``inner`` on their left.
     """
     start, along = np.asarray(inner, dtype=np.float64), np.subtract(outer, inner)
     length = float(np.hypot(*along))
@@ -157,10 +157,10 @@ def gate(place: Floats, inner: Sequence[float], outer: Sequence[float]) -> tuple
 
 
 def starts(count: int, low: Sequence[float], high: Sequence[float], rng: np.random.Generator) -> Floats:
-    """Return ``[count, 2]`` places [m] for centres between two corners: a lattice that is filled at random, shaken.
+    """Return positions ``[count, 2]`` [m] between two corners: a randomly filled, jittered lattice.
 
     Raises:
-        InputError: so many bodies do not fit without overlap.
+        InputError: the bodies do not fit without overlap.
     """
     width, height = high[0] - low[0], high[1] - low[1]
     columns = max(1, round(math.sqrt(count * (width + 0.5) / (height + 0.5))))

@@ -145,7 +145,7 @@ class PlanarWorld(World):
         self._delayed: dict[int, tuple[tuple[Pending, ...], Twist | Twists]] = {}
 
     def step_requests(self, commands: Mapping[int, Twist | Twists]) -> StepGenerator[Scene]:
-        """Go one time step on, and ask somebody else how the crowd walks; see :func:`crowdbot.world.run_step`."""
+        """Advance by one step and yield the steps of the crowd model; see :func:`crowdbot.world.run_step`."""
         asked = self._checked(commands)
         self._previous = self.scene
         before = self._with_replayed_external(self.scene)
@@ -167,17 +167,17 @@ class PlanarWorld(World):
         return self.scene
 
     def reconfigure(self, scene: Scene, sources: Sequence[PeopleSource], seed: int | None = None, **how: Any) -> None:
-        """Go on from here in another way: everybody stays where they are, chance goes on unless a seed is given.
+        """Change parameters of the running world. Positions are kept; random numbers continue unless a seed is given.
 
         Args:
-            scene: in the place of the one now, with the same agents; its time is taken as that of now.
-            sources: as many as before, with the same journeys.
-            seed: for new chance from now on.
+            scene: replaces the current scene, with the same agents; its time is the current time.
+            sources: new sources, same number and same journeys.
+            seed: new seed of the random numbers.
             how: new values of model, drives, latency, robot_margin, router, contact, limits, exits, heading_jitter or
                 substeps.
 
         Raises:
-            InputError: that cannot change while the world runs, or a value is not allowed.
+            InputError: the parameter cannot change in a running world, or a value is not allowed.
         """
         known = (
             "model",
@@ -193,9 +193,9 @@ class PlanarWorld(World):
         )
         for name in how:
             if name not in known:
-                raise InputError(f"{name} of a world cannot change while it runs; these can: {', '.join(known)}")
+                raise InputError(f"{name} cannot change in a running world; these can: {', '.join(known)}")
         if scene.shape != self.scene.shape or sorted(how.get("drives", self.drives)) != sorted(self.drives):
-            raise InputError("the number of agents and who is a robot cannot change while a world runs")
+            raise InputError("the number of agents and the robots cannot change in a running world")
         forgotten = set() if how.get("router", self.router) is self.router else {WAY}
         model = how.get("model", self.model)
         if type(model) is not type(self.model):
@@ -239,7 +239,7 @@ class PlanarWorld(World):
         )
 
     def plane_scene(self) -> Scene:
-        """Return the scene, see :class:`World`; the outlines of props are among its walls from the beginning."""
+        """Return the scene; see :class:`World`. The outlines of props are always among its walls."""
         return self.scene
 
     def body_scene(self, skins: int | None = None) -> Scene:
@@ -295,7 +295,7 @@ class PlanarWorld(World):
         )
 
     def _step_crowd(self, before: Scene) -> StepGenerator[tuple[Scene, Scene]]:
-        """Return the scene before the last substep of the crowd, and after it."""
+        """Return the scenes before and after the last substep of the crowd."""
         wide = before.radius.copy()
         wide[:, list(self.twists)] += self.robot_margin
         crowd = earlier = self._traffic.desired_motion(before, self.heading_jitter).replace(radius=wide)
@@ -311,7 +311,7 @@ class PlanarWorld(World):
         return earlier, crowd.replace(**own, memory={**earlier.memory, **crowd.memory})
 
     def _resolve_overlaps(self, earlier: Scene, after: Scene) -> Scene:
-        """Return the scene with bodies that overlap pushed apart."""
+        """Return the scene with overlaps of people resolved."""
         if self.contact is None:
             return after
         largest = float(after.radius[after.active].max(initial=0.0))
@@ -346,15 +346,17 @@ class PlanarWorld(World):
     def _checked(self, commands: Mapping[int, Twist | Twists]) -> dict[int, Twists]:
         for robot in commands:
             if robot not in self.drives:
-                raise InputError(f"a command is given for agent {robot}; robots are {sorted(self.drives) or 'none'}")
+                raise InputError(
+                    f"agent {robot} has a command but is not a robot; robots are {sorted(self.drives) or 'none'}"
+                )
         missing = [robot for robot in self.twists if robot not in commands]
         if missing:
-            raise InputError(f"robot {missing[0]} has no command; give one in every step, Twist() to stand")
+            raise InputError(f"robot {missing[0]} has no command; give one in every step, Twist() to stop")
         asked = {robot: Twists.of(commands[robot], self.scene.shape[0]) for robot in self.twists}
         return {robot: self._after_latency(robot, command) for robot, command in asked.items()}
 
     def _after_latency(self, robot: int, command: Twists) -> Twists:
-        """Return the command that is in force during the next step."""
+        """Return the command in force during the next step."""
         latency = self.latency.get(robot, 0.0)
         if latency == 0.0:
             return command

@@ -94,7 +94,7 @@ class World(ABC):
 
     @abstractmethod
     def sensor_pose(self, robot: int, mount: MountPlacement, spatial: bool) -> Pose | SpatialPose:
-        """Return the pose of a sensor: in space if ``spatial``, otherwise in the plane."""
+        """Return the pose of a sensor: ``spatial`` in space, otherwise in the plane."""
 
     @abstractmethod
     def wall_clearance(self, robot: int) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""Evaluation of predictors on degraded recordings: observations as a tracker sees them, ground truth as future."""
+"""Evaluation of predictors on degraded recordings: degraded observations, clean ground truth."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ class DegradedTask:
     """Evaluation settings of a degradation sweep.
 
     Fields:
-        observe, predict, protocol, near: as :meth:`Trajectories.windows` takes them, on the clean recording.
-        samples, best_of, seed: as :func:`evaluate` takes them; the seed is also that of the degradation.
-        carry: rows for which somebody who is not seen any more is walked on, see :func:`degraded_windows`.
-        draws: how often the degradation is drawn anew; scores are means over all draws.
-        every: only every such window is predicted.
+        observe, predict, protocol, near: see :meth:`Trajectories.windows`; applied to the clean recording.
+        samples, best_of, seed: see :func:`evaluate`; the seed is also used for the degradation.
+        carry: number of rows for which lost tracks are extrapolated, see :func:`degraded_windows`.
+        draws: number of random draws of the degradation; scores are means over all draws.
+        every: only every n-th window is predicted.
     """
 
     observe: int = 8
@@ -56,13 +56,13 @@ class DegradedScore:
     """The score of one predictor at one level of a degradation, over all recordings and draws.
 
     Fields:
-        degradation: at this level.
+        degradation: degradation at this level.
         predictor: name of the predictor.
-        level: value of the parameter that is varied.
+        level: value of the varied parameter.
         asked: number of scored persons of the clean protocol.
-        draws: how often the degradation was drawn.
-        score: errors of those who could be predicted, in all draws; None when there was nobody.
-        low, high: smallest and largest ADE [m] of the draws, NaN when there was nobody.
+        draws: number of random draws.
+        score: errors of all predicted persons in all draws; None if there are none.
+        low, high: smallest and largest ADE [m] of the draws; NaN without predicted persons.
     """
 
     degradation: Degradation | Chain
@@ -76,7 +76,7 @@ class DegradedScore:
 
     @property
     def coverage(self) -> float:
-        """Share of the scored persons who could be predicted."""
+        """Share of the scored persons that could be predicted."""
         return (self.score.persons if self.score else 0) / (self.asked * self.draws)
 
     def as_dict(self) -> dict[str, Any]:
@@ -95,21 +95,21 @@ def sweep_degradations(
     task: DegradedTask | None = None,
     progress: Callable[[str, float], None] | None = None,
 ) -> Iterator[list[DegradedScore]]:
-    """Yield, level by level, the score of every predictor, so that what is done stays when the rest is interrupted.
+    """Yield the scores of all predictors, level by level.
 
-    Who is scored, and where they go, is decided by the protocol on the clean recordings; what predictors see is the
-    degraded one. A level that changes nothing is :func:`evaluate`, and done once for all degradations.
+    The scored people and their ground truth come from the clean recordings, observations from the degraded ones. A
+    level without degradation equals :func:`evaluate` and is computed once for all degradations.
 
     Args:
-        recordings: clean ones.
-        degradations: what is done to them, each alone.
-        predictors: what is scored.
-        levels: of the degradations; None means those of each.
-        task: what is asked; None means ``DegradedTask()``.
-        progress: told the degradation and the share of it that is done, 0 to 1.
+        recordings: clean recordings.
+        degradations: degradations, applied separately.
+        predictors: predictors.
+        levels: levels of the degradations (default: those of each degradation).
+        task: settings (default: ``DegradedTask()``).
+        progress: called with the degradation and its completed fraction, 0 to 1.
 
     Raises:
-        InputError: a level is not allowed, or a recording cannot be cut or degraded so.
+        InputError: a level is not allowed, or does not apply to a recording.
     """
     task = task or DegradedTask()
     steps = [(one, [(v, one.at(v)) for v in (one.levels if levels is None else levels)]) for one in degradations]
@@ -149,7 +149,7 @@ def _level(
         for tracks, (past, future) in zip(recordings, cuts, strict=True):
             try:
                 degraded = degradation.apply(tracks, stream(task.seed, "degrade", draw))
-            except EmptyRecordingError:  # a score of nobody, not a mistake: the coverage says it
+            except EmptyRecordingError:  # not an error: the coverage is 0
                 continue
             seen = degraded_windows(past, future, degraded, task.carry)
             if seen.predictable == 0:

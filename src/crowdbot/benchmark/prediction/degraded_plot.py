@@ -1,4 +1,4 @@
-"""Plot of degraded input: error of every predictor over the level, one small picture a degradation."""
+"""Plot of degraded input: error of each predictor by level, one panel per degradation."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ STYLES = (
     ("#0072b2", "o"), ("#e69f00", "s"), ("#009e73", "^"), ("#cc79a7", "D"),
     ("#d55e00", "v"), ("#56b4e9", "P"), ("#000000", "X"), ("#9a9a9a", "*"),
 )  # fmt: skip
-"""Colours that people with colour blindness can tell apart (Okabe & Ito), and markers."""
+"""Colours that are distinguishable with colour blindness (Okabe & Ito), and markers."""
 COVERAGE = "#9a9a9a"
 FAR = 2.5
-"""A line that goes this many times higher than all others leaves the picture."""
+"""A line that exceeds all others by this factor is clipped."""
 SMALLEST = 1e-6
-"""Errors below this are none, nothing is measured against them."""
+"""Errors below this are treated as 0."""
 
 
 def plot_degradation(sweeps: Sequence[Sequence[DegradedScore]], folder: Path, title: str = "") -> list[Path]:
-    """Write ``degraded.png`` and ``degraded.svg`` and return them; nothing is left half-written.
+    """Write ``degraded.png`` and ``degraded.svg`` atomically and return them.
 
-    Each picture has the error (ADE) of every predictor over the level, the band from the lowest to the highest draw,
-    and below it the share of people who could be predicted.
+    Each panel shows the error (ADE) of each predictor by level, the range over the draws, and below it the share of
+    predicted people.
 
     Args:
-        sweeps: for each degradation the scores of all its levels and predictors; none may be empty.
-        folder: where the files go; it must exist.
-        title: stands above.
+        sweeps: scores of all levels and predictors for each degradation; not empty.
+        folder: existing output folder.
+        title: title of the plot.
     """
     from matplotlib import rc_context
 
@@ -76,14 +76,14 @@ def _figure(sweeps: Sequence[Sequence[DegradedScore]]) -> Any:
 
 
 def _panel(panel: Any, scores: Sequence[DegradedScore], styles: dict[str, tuple[str, str]], first: bool) -> None:
-    """Draw one degradation: errors above, the share of people who could be predicted below."""
+    """Draw one degradation: errors above, share of predicted people below."""
     above, below = panel.subplots(2, 1, sharex=True, height_ratios=(4, 1))
     tops: dict[str, float] = {}
     for number, (predictor, (color, marker)) in enumerate(styles.items()):
         own = [score for score in scores if score.predictor == predictor]
         level = [score.level for score in own]
         error = [score.score.ade if score.score else math.nan for score in own]
-        # later lines are thinner, so that lines that fall together are all seen
+        # later lines are thinner: coinciding lines stay visible
         above.plot(
             level,
             error,
@@ -115,7 +115,7 @@ def _panel(panel: Any, scores: Sequence[DegradedScore], styles: dict[str, tuple[
 
 
 def _limit(axis: Any, tops: dict[str, float], units: str) -> None:
-    """Begin at 0, and let one predictor that is far worse than all others leave the picture."""
+    """Start the axis at 0, and clip a predictor far worse than all others."""
     axis.set_ylim(bottom=0.0)
     high = sorted(((top, name) for name, top in tops.items() if math.isfinite(top)), reverse=True)
     if len(high) > 1 and high[1][0] > SMALLEST and high[0][0] > FAR * high[1][0]:

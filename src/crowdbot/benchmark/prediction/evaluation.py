@@ -107,7 +107,7 @@ class JobResult:
     @classmethod
     def load(cls, file: Path) -> JobResult:
         """Read a result from a file."""
-        with np.load(file, allow_pickle=False) as kept:
+        with file.open("rb") as stream_, np.load(stream_, allow_pickle=False) as kept:
             errors = PersonErrors(**{f.name: kept[f"errors.{f.name}"] for f in dataclasses.fields(PersonErrors)})
             frames = FrameResults(**{f.name: kept[f"frames.{f.name}"] for f in dataclasses.fields(FrameResults)})
             return cls(errors, frames, int(kept["samples"]))

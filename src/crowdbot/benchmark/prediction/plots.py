@@ -1,4 +1,4 @@
-"""Plots of a evaluation: errors of predictors, error and time frame by frame, one window in motion."""
+"""Plots of an evaluation: errors by predictor, error and time by frame, animation of a window."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from .evaluation import Evaluation, PredictorResult
 __all__ = ["animate_window", "plot_errors", "plot_frames"]
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c510a", "#525252")
-"""Colours that people with colour blindness can tell apart (Okabe & Ito), then brown and grey."""
+"""Colours that are distinguishable with colour blindness (Okabe & Ito), then brown and grey."""
 PEOPLE, TRUTH, ORACLE = "#9a9a9a", "#000000", "#f0c987"
 MOST_LINES = len(COLORS)
-"""More predictors than this are not drawn as lines: nobody could tell them apart."""
+"""Maximum number of predictors drawn as lines."""
 SHOWN_ROWS = 80
 FRAMES_A_ROW = 3
-"""An animation shows so many pictures a row of the recording."""
+"""Images per row of the recording in an animation."""
 
 
 def plot_errors(results: Sequence[PredictorResult], file: Path) -> None:
-    """Draw the ADE of every predictor with its 95 % interval, one panel a recording, the smallest on top."""
+    """Draw the ADE of each predictor with its 95 % interval, one panel per recording, sorted by error."""
     from matplotlib.patches import Patch
 
     panels = _by_recording(results)
@@ -61,7 +61,7 @@ def _color(result: PredictorResult) -> str:
 
 
 def plot_frames(results: Sequence[PredictorResult], file: Path) -> None:
-    """Draw error, minimum cost and time over the frames, a row of panels a recording; the first eight predictors."""
+    """Draw error, minimum cost and time by frame, one row of panels per recording, for the first eight predictors."""
     panels = _by_recording(results)
     figure, axes = _figure(len(panels), 3, (13, 0.8 + 2.5 * len(panels)))
     for row, (recording, own) in zip(axes, panels.items(), strict=True):
@@ -85,7 +85,7 @@ def plot_frames(results: Sequence[PredictorResult], file: Path) -> None:
 
 
 def animate_window(evaluation: Evaluation, frame: int, file: Path) -> Path:
-    """Write an animation of one window: people, what they truly did, and each predictor in its own colour.
+    """Write an animation of one window: observed and true tracks, and the forecasts of each predictor.
 
     Raises:
         InputError: no window of the recordings ends at this frame, or there are more than eight predictors.
@@ -123,7 +123,7 @@ def animate_window(evaluation: Evaluation, frame: int, file: Path) -> Path:
 def _paths(
     spec: PredictorSpec, recording: Recording, past: Windows, evaluation: Evaluation
 ) -> list[NDArray[np.float64]]:
-    """Return one line ``[T + 1, 2]`` for each person and future that has a weight, from the last observed row on."""
+    """Return one line ``[T + 1, 2]`` per person and future with a weight, from the last observed row on."""
     predictor = spec.build(recording)
     forecast = predictor.predict(past, recording.predict, evaluation.samples, stream(evaluation.seed, "animate"))
     who = np.flatnonzero(past.present[0, -1])
@@ -154,7 +154,7 @@ def _background(axis: Any, past: Windows, future: Windows, paths: dict[str, list
 
 
 def _at(past: Windows, future: Windows, reach: float) -> NDArray[np.float64]:
-    """Return where people truly are ``reach`` rows after the last observed one."""
+    """Return the true positions ``reach`` rows after the last observed one."""
     path = np.concatenate([past.position[0, -1:], future.position[0]])
     here = np.concatenate([past.present[0, -1:], future.present[0]])
     row = min(int(reach), len(path) - 1)
@@ -179,7 +179,7 @@ def _until(tracks: list[NDArray[np.float64]], reach: float) -> tuple[NDArray[np.
 
 
 def _broken(frame: NDArray[np.int64], values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return a line over the frames that has a gap where frames are missing."""
+    """Return a line by frame with gaps at missing frames."""
     jumps = np.flatnonzero(np.diff(frame) > 2 * np.median(np.diff(frame))) + 1 if len(frame) > 1 else np.zeros(0, int)
     return np.insert(frame.astype(float), jumps, np.nan), np.insert(values, jumps, np.nan)
 

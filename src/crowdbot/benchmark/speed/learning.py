@@ -28,7 +28,7 @@ __all__ = ["learning_measurements"]
 
 UPDATES = 4
 SIZES = (1, 1, 2, 2, 3, 3, 4, 5, 8, 20, 35)
-"""People in the synthetic scenes: most windows of recordings have a few people, those of a busy square dozens."""
+"""Number of people in synthetic scenes, as in recordings: mostly a few, in busy places dozens."""
 MEMORY = 2000.0
 """Maximum memory of training [MB]."""
 PEOPLE = 50

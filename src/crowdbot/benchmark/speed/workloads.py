@@ -1,4 +1,4 @@
-"""Workloads: what ``crowdbot bench`` times, and against what."""
+"""Workloads of ``crowdbot bench`` and their references."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ from .skinning import posing_and_skinning
 __all__ = ["crowd", "measurements"]
 
 DENSITY = 0.5
-"""People per square metre in the crowds that are timed."""
+"""People per square metre in timed crowds."""
 DT = 0.1
 NEIGHBORS, REACH = 10, 5.0
-"""Every model that looks for neighbours takes the 10 nearest within 5 m."""
+"""Neighbor settings of all models: the 10 nearest within 5 m."""
 LARGE = ("orca", "power-law", "social-force")
-"""Models that are timed with 100 000 people too."""
+"""Models that are also timed with 100 000 people."""
 COMPARED = ("collision-free-speed", "social-force", "power-law", "orca")
-"""Models that are timed against JuPedSim."""
+"""Models that are compared with JuPedSim."""
 JUPEDSIM_DT = 0.01
 
 
 def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
-    """Return name -> how to set the measurement up, in the order in which they are run.
+    """Return functions that prepare measurements, by name, in order of execution.
 
     >>> "orca-1000" in measurements()
     True
@@ -44,7 +44,7 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
 
     kinds = builtin_classes(models, models.CrowdModel)
     found: dict[str, Callable[[], Measurement | Gauge]] = {}
-    del kinds["mixture"]  # costs what its models cost
+    del kinds["mixture"]  # its cost is that of its models
     for name, kind in kinds.items():
         found[f"{name}-1000"] = functools.partial(_crowd_of, kind, 1000)
         if name != "cost-model":
@@ -62,7 +62,7 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
     )
     if "power-law" in kinds:
         found["power-law-numpy"] = functools.partial(_against_numpy, kinds["power-law"])
-    if sys.platform != "win32":  # which does not tell a process its peak
+    if sys.platform != "win32":  # Windows does not report the peak memory of a process
         found["orca-memory"] = _memory
     found |= {"orca-alone": _alone, "lidar-720": _lidar, "trial": _trial}
     found |= {f"physics-{people}": functools.partial(_physics, people) for people in (50, 200)}
@@ -76,7 +76,7 @@ def measurements() -> dict[str, Callable[[], Measurement | Gauge]]:
 
 
 def crowd(agents: int, environments: int = 1, seed: int = 0) -> Scene:
-    """Return people on a jittered grid at 0.5 per square metre with goals at random, walking at 1.3 m/s."""
+    """Return people on a jittered grid at 0.5 per square metre with random goals, walking at 1.3 m/s."""
     random = stream(seed, "speed")
     side = (agents / DENSITY) ** 0.5
     count = int(np.ceil(agents**0.5))
@@ -85,7 +85,7 @@ def crowd(agents: int, environments: int = 1, seed: int = 0) -> Scene:
     goal = random.uniform(0.0, side, (environments, agents, 2))
     away = goal - place
     velocity = 1.3 * away / np.linalg.norm(away, axis=-1, keepdims=True)
-    order = random.permutation(agents)  # as crowds come: the index says nothing about the place
+    order = random.permutation(agents)  # random order: the index does not depend on the position
     return Scene.of(place[:, order], velocity[:, order], goal=goal[:, order], max_speed=1.8)
 
 
@@ -118,7 +118,7 @@ def _growth(kind: type) -> Measurement:
 
 
 def _against_jupedsim(kind: type, theirs: str = JUPEDSIM[0], dt: float = DT) -> Measurement:
-    """Compare the simulated time of all agents: ours takes steps of ``dt``, JuPedSim its own of 0.01 s."""
+    """Compare the simulated time of all agents: ours with steps of ``dt``, JuPedSim with its own steps of 0.01 s."""
     model, scene = _made(kind), crowd(10_000)
     step = jupedsim_step(theirs, scene)
     words = f"JuPedSim {theirs}, 10000 people, step {JUPEDSIM_DT} s (ours {dt} s)"
@@ -153,7 +153,7 @@ def _alone() -> Measurement:
 
 
 def _memory() -> Gauge:
-    """Read the peak memory of a process of its own that steps 100 000 people three times."""
+    """Read the peak memory of a child process that simulates 100 000 people for three steps."""
     program = (
         "import re, resource, sys; from pathlib import Path;"
         "from crowdbot.benchmark.speed.workloads import crowd; from crowdbot.models import ORCA;"
@@ -164,7 +164,7 @@ def _memory() -> Gauge:
         "if not status.exists(): print(peak / (2**20 if sys.platform == 'darwin' else 2**10))"
     )
     said = ""
-    for _ in range(2):  # the first may have to compile, which takes more memory than the crowd
+    for _ in range(2):  # the first run may compile kernels, which needs more memory
         run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
         said = run.stdout
     return Gauge("MB", float(said), "500 MB for 100000 people", 500.0)
@@ -180,7 +180,7 @@ def _lidar() -> Measurement:
 
 
 def _rays_of_limbs(rings: int = 0) -> Measurement:
-    """Compare scans among 50 people of 15 limbs with MuJoCo's rays on the same capsules, walls and floor."""
+    """Compare scans among 50 people with 15 limbs with MuJoCo rays on the same capsules, walls and floor."""
     from crowdbot.core import Pose
     from crowdbot.sensors import Lidar2D, Lidar3D
 
@@ -188,7 +188,7 @@ def _rays_of_limbs(rings: int = 0) -> Measurement:
     sensor: Any = Lidar3D(columns=1800) if rings else Lidar2D(rays=1080, field_of_view=1.5 * np.pi, range_max=30.0)
     theirs = mujoco_rays(scene, sensor, pose)
     words = "mj_multiRay of MuJoCo, the same 750 capsules as moving bodies, 4 walls and the floor"
-    ours, others = (40, 1) if rings else (300, 10)  # about as long, so that the load of the machine meets both alike
+    ours, others = (40, 1) if rings else (300, 10)  # similar durations, so that changes of the load affect both
     return Measurement(
         "scans/s", ours, lambda: [sensor.read(scene, pose) for _ in range(ours)], words,
         other=lambda: [theirs() for _ in range(others)], other_amount=others,
@@ -206,7 +206,7 @@ def _predictor(name: str) -> Measurement:
 
 
 def _physics(people: int) -> Measurement:
-    """Time one robot among people in steps of 5 ms, with its odometry and a laser that sees limbs, both at 10 Hz."""
+    """Time one robot among people in steps of 5 ms, with odometry and a laser scanner of limbs, both at 10 Hz."""
     from crowdbot.core import Twist
     from crowdbot.sensors import Lidar2D, SensorView
 
@@ -226,7 +226,7 @@ def _physics(people: int) -> Measurement:
 
 
 def _camera() -> Measurement:
-    """Time images of 640 x 480 with depth."""
+    """Time images of 640 x 480 pixels with depth."""
     from crowdbot.world import SceneCamera
 
     world, _ = _bodies(50)
@@ -235,7 +235,7 @@ def _camera() -> Measurement:
 
 
 def _bodies(people: int) -> tuple[Any, int]:
-    """Return a physics world with a robot in the middle of a crowd, and the agent that it is."""
+    """Return a physics world with a robot in the middle of a crowd, and the agent index of the robot."""
     from crowdbot.models import ORCA
     from crowdbot.world import PhysicsWorld, Robot
 

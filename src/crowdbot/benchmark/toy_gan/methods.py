@@ -1,4 +1,4 @@
-"""Methods against mode collapse that are compared on the toy data."""
+"""GAN methods against mode collapse that are compared on the toy data."""
 
 from __future__ import annotations
 
@@ -28,5 +28,6 @@ METHODS: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 """Settings of each method that differ from a plain GAN with the settings of the report.
 
-The first seven are those of figures 17 and 18 of the report; ``info+rates-of-code`` has the settings of its published
-code; the others are new."""
+The first seven are in figures 17 and 18 of the report; ``info+rates-of-code`` has the settings of its published code;
+the others are new.
+"""

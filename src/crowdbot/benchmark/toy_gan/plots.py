@@ -1,4 +1,4 @@
-"""Pictures of the GAN study: what each method draws on the toy set, and its measures over the updates."""
+"""Plots of the GAN comparison: samples of each method, and metrics over the updates."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .study import GanComparison, GanRun
 __all__ = ["plot_measures", "plot_samples"]
 
 COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#000000")
-"""Colours that people with colour blindness can tell apart (Okabe & Ito)."""
+"""Colours that are distinguishable with colour blindness (Okabe & Ito)."""
 SEEN, REAL = "#0072b2", "#9a9a9a"
 PANELS = {
     "nearest_neighbor": "1-NN accuracy (0.5 is ideal)",
@@ -24,7 +24,7 @@ PANELS = {
 
 
 def plot_samples(study: GanComparison, runs: Sequence[GanRun], file: Path) -> Path:
-    """Write a picture of what every method draws with its first seed, beside the real set (figure 17)."""
+    """Plot samples of each method with its first seed beside the real data (figure 17)."""
     from matplotlib.figure import Figure
 
     toy = study.toy
@@ -47,7 +47,7 @@ def plot_samples(study: GanComparison, runs: Sequence[GanRun], file: Path) -> Pa
 
 
 def plot_measures(study: GanComparison, runs: Sequence[GanRun], ideal: Mapping[str, float], file: Path) -> Path:
-    """Write the measures over the updates, the mean over the seeds and their range (figure 18)."""
+    """Plot the metrics over the updates, mean and range over the seeds (figure 18)."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(7.0, 8.5), layout="constrained")

@@ -1,4 +1,4 @@
-"""The GAN study of the report: methods against mode collapse on the toy set, over updates and several seeds."""
+"""GanComparison: methods against mode collapse on the toy data, with several seeds."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from .toy_data import ToyData
 __all__ = ["MEASURES", "GanComparison", "GanRun", "with_settings"]
 
 MEASURES = ("nearest_neighbor", "emd", "modes", "coverage", "whole", "nearest_neighbor_20", "emd_20")
-"""What is measured, see :func:`~crowdbot.benchmark.toy_gan.training.compared`."""
+"""Metrics, see :func:`~crowdbot.benchmark.toy_gan.training.compare_distributions`."""
 SHOWN = 128
-"""Paths of each group that are kept for pictures."""
+"""Number of paths of each group stored for plots."""
 
 
 @dataclass(frozen=True)
@@ -30,10 +30,10 @@ class GanRun:
     """One method with one seed.
 
     Fields:
-        method, seed: which.
-        update: ``[C]`` the updates at which it was measured.
+        method, seed: the method and its seed.
+        update: updates of the measurements ``[C]``.
         measures: name -> ``[C]``, see ``MEASURES``.
-        drawn: ``[groups, draws, T, 2]`` [m] futures that the last weights draw.
+        drawn: ``[groups, draws, T, 2]`` [m] futures sampled with the final weights.
     """
 
     method: str
@@ -45,15 +45,15 @@ class GanRun:
 
 @dataclass(frozen=True)
 class GanComparison:
-    """Which methods are trained on the toy set, how long, and how often they are measured.
+    """Settings of a comparison of methods on the toy data.
 
     Fields:
-        methods: names, see ``METHODS``.
-        seeds: of weights, order, noise and set; each method is trained with each.
-        updates: of every training.
+        methods: names of methods, see ``METHODS``.
+        seeds: seeds of weights, order, noise and data; each method is trained with each seed.
+        updates: updates per training.
         check_every: updates between measurements.
-        toy: the set.
-        values: settings for all methods, such as learning rates or a smaller network.
+        toy: the toy data.
+        values: settings of all methods, such as learning rates or network size.
         device: ``cpu`` or ``cuda``.
 
     Raises:
@@ -73,7 +73,7 @@ class GanComparison:
             raise InputError("a GAN study needs at least one method and one seed")
 
     def run(self, folder: Path | None = None, workers: int = 1) -> Iterator[GanRun]:
-        """Yield the runs as they are done, seed by seed; what the folder holds of them is not done again."""
+        """Yield the runs seed by seed; runs stored in the folder are not repeated."""
         jobs = [
             (self, method, seed, None if folder is None else folder / f"{method}-{seed}")
             for seed in self.seeds
@@ -87,7 +87,7 @@ class GanComparison:
         return self._real(0)[:, :SHOWN]
 
     def ideal(self, repeats: int = 20) -> dict[str, float]:
-        """Return the measures of fresh real paths against real paths: what nothing can beat but by chance."""
+        """Return the metrics of new real paths against real paths, the best possible values except for chance."""
         from .training import compare_distributions
 
         found = [compare_distributions(self.toy, self._real(2 * n), self._real(2 * n + 1)) for n in range(repeats)]
@@ -100,7 +100,7 @@ class GanComparison:
 
     @staticmethod
     def rows(runs: Sequence[GanRun]) -> list[dict[str, Any]]:
-        """Return a line for each method: means over the last quarter of the measurements of each seed, and their sd."""
+        """Return one row per method: means over the last quarter of the measurements of each seed, and their sd."""
         found = []
         for method in dict.fromkeys(run.method for run in runs):
             own = [run for run in runs if run.method == method]
@@ -114,7 +114,7 @@ class GanComparison:
 
 
 def _trained(job: tuple[GanComparison, str, int, Path | None]) -> GanRun:
-    """Train one method with one seed, or go on where it stopped."""
+    """Train one method with one seed, or resume its training."""
 
     from .training import ToyTraining, gan_config, sample_futures
 

@@ -52,8 +52,9 @@ class ToyData:
             raise InputError("toy set: groups, modes and tracks must be at least 1")
         if not 2 <= self.observe < len(self.radii) or len(self.jitter) != len(self.radii) - self.observe:
             raise InputError(
-                f"toy set: {self.observe} of {len(self.radii)} rows are seen and {len(self.jitter)} later ones have a"
-                " jitter; at least two must be seen, and every later one needs its own"
+                f"toy set: {self.observe} of {len(self.radii)} rows are observed and {len(self.jitter)} later "
+                f"ones have a"
+                " jitter; at least two must be observed, and each later row needs a jitter"
             )
 
     @property
@@ -87,7 +88,7 @@ class ToyData:
         )
 
     def _turned(self, later: Floats) -> Floats:
-        """Return the tracks whose later rows are turned by angles ``[groups, modes, N, predict]`` [rad]."""
+        """Return the tracks with later rows rotated by angles ``[groups, modes, N, predict]`` [rad]."""
         begin = 2.0 * np.pi * np.arange(self.groups) / self.groups
         turn = np.concatenate([np.zeros((*later.shape[:3], self.observe)), later], axis=-1)
         angle = begin[:, None, None, None] + turn

@@ -35,6 +35,9 @@ def read(source: Source, options: ReadOptions) -> Trajectories:
     if missing:
         held = ", ".join(arrays) or "nothing"
         raise DataError(f"{source.name} lacks the arrays {', '.join(missing)} of Social Ways; it holds {held}")
+    wrong = next((name for name in NAMES if arrays[name].dtype.kind not in "fiub"), None)
+    if wrong is not None:
+        raise DataError(f"{source.name}: the array {wrong} must hold numbers, it holds {arrays[wrong].dtype}")
     past, future, times = (arrays[name] for name in NAMES)
     count = len(past)
     fits = (
@@ -63,7 +66,7 @@ def _arrays(source: Source) -> dict[str, NDArray[np.generic]]:
             size = sum(part.file_size for part in packed.infolist())
         if size > MAX_BYTES:
             raise DataError(f"{source.name} unpacks to {size} bytes, more than the limit of {MAX_BYTES}")
-        with np.load(source.path, allow_pickle=False) as unpacked:
+        with source.path.open("rb") as stream, np.load(stream, allow_pickle=False) as unpacked:
             return {name: np.asarray(unpacked[name]) for name in unpacked.files}
 
 

@@ -48,21 +48,21 @@ class CostModel(CrowdModel):
     Args:
         costs: the sum of costs, such as ``PreferredVelocity() + 0.3 * Inertia() + PowerLawEnergy()``; see
             :mod:`crowdbot.models.costs`.
-        optimiser: ``gradient`` (one step down the slope, from the present velocity), ``sampling`` (the best of some
-            velocities), ``closed-form`` (one cost that knows its best velocity), or ``natural`` (what suits the costs).
-        relaxation_time: in which the velocity follows the best one [s], not for ``gradient``; no less than the time
-            step counts.
-        contact_stiffness: acceleration per metre of overlap between bodies, and with walls [1/s^2]; it is not taken
-            higher than what ends the overlap in one time step. 62.5 is 5000 kg/s^2 at 80 kg.
-        neighbor_distance: neighbours are nearer than this [m].
+        optimiser: ``gradient`` (one gradient step from the current velocity), ``sampling`` (the best of sampled
+            velocities), ``closed-form`` (for a cost with a closed-form minimum), or ``natural`` (depends on the costs).
+        relaxation_time: time constant with which the velocity follows the best one [s], not for ``gradient``; at least
+            the time step.
+        contact_stiffness: acceleration per metre of overlap between bodies, and with walls [1/s^2]; limited to the
+            value that resolves the overlap in one time step. 62.5 is 5000 kg/s^2 at 80 kg.
+        neighbor_distance: maximum distance of neighbours [m].
         max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
-        max_acceleration: ``[E, A]`` [m/s^2], contacts apart; None has no limit.
+        max_acceleration: ``[E, A]`` [m/s^2], without contact forces; None: no limit.
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
-        samples: ``polar`` (desired, present and no velocity, and rings about the desired direction), ``umans`` (rings
-            from -x on, as in the UMANS library), ``random`` (evenly in the disc of possible speeds).
+        samples: ``polar`` (desired, current and zero velocity, and rings around the desired direction), ``umans``
+            (rings starting at -x, as in the UMANS library), ``random`` (uniform in the disc of possible speeds).
         speeds, angles: number of rings, and of velocities on each; their product for ``random``.
         refinements: number of local searches around the best sample, each half as wide as the one before.
-        seed: of ``random`` samples when the step has no stream; then they are the same for all and in every step.
+        seed: seed of ``random`` samples for steps without a generator; all agents and steps then use the same samples.
 
     Costs are evaluated in NumPy: easy to extend, but slower than the compiled models.
 

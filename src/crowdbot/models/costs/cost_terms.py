@@ -104,7 +104,7 @@ class GoalForce(Force):
     """The driving force, ``(p - v) / relaxation_time``.
 
     Args:
-        relaxation_time: [s]; no less than the time step counts.
+        relaxation_time: time constant [s]; at least the time step.
     """
 
     relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="Helbing and Molnar 1995")
@@ -137,7 +137,7 @@ class ModelForce(Force):
 class PowerLawForce(Force):
     """The negative gradient of ``strength t^-exponent exp(-t / time_horizon)``, t the time to collision.
 
-    The wall of the earliest contact counts too. Overlapping discs and collisions after ``time_horizon`` do not count.
+    The wall of the earliest contact is included. Overlapping discs and collisions after ``time_horizon`` do not count.
 
     Args:
         strength: of the energy, per mass [m^2 s^(exponent - 2)].
@@ -236,8 +236,8 @@ class HalfPlanes(VelocityCost):
     """ORCA as a cost: the distance to the desired velocity inside all half planes, a penalty outside.
 
     Args:
-        time_horizon: agents keep clear of each other for this long [s].
-        time_horizon_walls: and of walls for this long [s].
+        time_horizon: time horizon for agents [s].
+        time_horizon_walls: time horizon for walls [s].
 
     Outside of a half plane the cost is the deepest violation plus twice the maximum speed.
 
@@ -303,10 +303,10 @@ class Effort(VelocityCost):
     """Energy per mass to the goal [J/kg]; inf if a contact is too early.
 
     Args:
-        rest_power: of who stands [J/(kg s)].
-        walk_power: per squared speed [J s/(kg m^2)].
-        planning_time: effort is counted at the new velocity for this long [s], then at the cheapest speed.
-        safe_time: no contact may come before this [s].
+        rest_power: power at rest [J/(kg s)].
+        walk_power: power per squared speed [J s/(kg m^2)].
+        planning_time: time at the new velocity [s]; afterwards, the cheapest speed is assumed.
+        safe_time: minimum time to contact [s].
 
     Source: Guy et al. 2010, doi:10.2312/SCA/SCA10/119-128, with the contact rule of van Toll et al. 2020.
     """
@@ -333,8 +333,8 @@ class FreeWay(VelocityCost):
     """Distance between the end of the free path and the goal at sight distance, and deviation from the best speed.
 
     Args:
-        sight_distance: farther than this nothing matters [m].
-        relaxation_time: time kept to what is ahead [s].
+        sight_distance: range of vision [m].
+        relaxation_time: time gap to obstacles ahead [s].
 
     Source: Moussaid, Helbing, Theraulaz 2011, doi:10.1073/pnas.1016507108, as a cost by van Toll et al. 2020.
     """

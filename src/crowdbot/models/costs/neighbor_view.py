@@ -26,15 +26,15 @@ class NeighborView:
         row: ``[N]`` row ``e * A + a`` of each walker in the scene.
         position, velocity, wish, goal: ``[N, 2]`` [m] and [m/s]; ``wish`` is the desired velocity.
         radius, max_speed, preferred_speed: ``[N]`` [m] and [m/s].
-        offset: ``[N, K, 2]`` way from each neighbour to here [m].
+        offset: ``[N, K, 2]`` vector from each neighbour to the walker [m].
         motion: ``[N, K, 2]`` velocity of each neighbour [m/s].
         reach: ``[N, K]`` sum of the radii [m].
-        there, external, first: ``[N, K]`` whether there is a neighbour, whether it is moved from outside, and whether
-            this walker comes first in the scene.
+        there, external, first: ``[N, K]`` whether the slot has a neighbour, whether it is external, and whether the
+            walker comes first in the scene.
         segments: ``[M, 4]`` walls [m].
         dt: time step [s].
-        scene: all of it.
-        random: stream of chance, or None.
+        scene: the whole scene.
+        random: random generator, or None.
     """
 
     row: NDArray[np.int64]

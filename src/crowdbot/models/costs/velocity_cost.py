@@ -1,7 +1,7 @@
 """VelocityCost: contract of costs over velocities, their sums, and forces as costs.
 
-Most microscopic models are a cost over velocities and a way to make it small (van Toll et al. 2020,
-doi:10.1145/3384382.3384532). A force is a cost too: the squared distance to the velocity that it leads to.
+Most microscopic models are a cost over velocities with an optimiser (van Toll et al. 2020,
+doi:10.1145/3384382.3384532). A force is a cost, too: the squared distance to the resulting velocity.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ STEP = 1e-4
 class VelocityCost(abc.ABC):
     """Contract: the cost of velocities. Costs can be added and scaled: ``PreferredVelocity() + 0.5 * Inertia()``.
 
-    A cost is a frozen dataclass with one method, :meth:`value`. It may also know its :meth:`gradient`, and where it is
-    least (:meth:`best`); ``natural`` names the optimiser that suits it.
+    A cost is a frozen dataclass with one method, :meth:`value`. It may also define its :meth:`gradient` and its minimum
+    (:meth:`best`); ``natural`` is its preferred optimiser.
 
     Raises:
         InputError: a parameter is not finite or below its minimum.
@@ -67,7 +67,7 @@ class VelocityCost(abc.ABC):
         Raises:
             InputError: this cost has no closed form.
         """
-        raise InputError(f"{self} has no closed form; choose the optimiser sampling or gradient")
+        raise InputError(f"{self} has no closed form; use the optimiser sampling or gradient")
 
     def __str__(self) -> str:
         return repr(self)

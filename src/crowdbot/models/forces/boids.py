@@ -1,4 +1,4 @@
-"""Boids: people who steer by simple rules, of which keeping apart ahead of time is the main one (Reynolds 1987)."""
+"""Boids: steering rules with predictive separation (Reynolds 1987)."""
 
 from __future__ import annotations
 
@@ -44,15 +44,15 @@ Floats = NDArray[np.float64]
 
 VARIANTS = ("predictive", "crowdbot")
 WALL_REACH = math.sqrt(2.0)
-"""The CrowdBot simulator feels walls nearer than this many radii."""
+"""Range of walls in the CrowdBot simulator, in radii."""
 WALL_SHARE = 7.6
-"""Its push by walls over its push by people."""
+"""Ratio of wall push to agent push in the CrowdBot simulator."""
 SIMULATOR_SPEED = 2.5
-"""Its limit of speed [m/s]."""
+"""Speed limit of the CrowdBot simulator [m/s]."""
 TOUCH = 1e-6
-"""Nearer than this share of its reach a push has no direction of its own."""
+"""Below this fraction of its reach, a push has no direction of its own."""
 CANDIDATES = 32
-"""So many near agents are searched for the one whose body is nearest."""
+"""Number of near agents searched for the nearest body."""
 
 LAW = (
     "goal_gain",
@@ -69,7 +69,7 @@ LAW = (
 
 
 class _Crowd(NamedTuple):
-    """What the kernel reads of every agent, by row ``e * A + a``."""
+    """Data of every agent for the kernel, by row ``e * A + a``."""
 
     position: Floats
     velocity: Floats
@@ -83,7 +83,7 @@ class _Crowd(NamedTuple):
 
 @kernel
 def _away(x: float, y: float, vx: float, vy: float, time: float, reach: float) -> tuple[float, float]:
-    """Return the push away from the origin: 0 when x, y is ``reach`` away after ``time``, 1 when it is there."""
+    """Return the push away from the origin: 0 if x, y is at distance ``reach`` after ``time``, 1 at distance 0."""
     now = math.sqrt(x * x + y * y)
     tx, ty = x + vx * time, y + vy * time
     then = math.sqrt(tx * tx + ty * ty)
@@ -99,7 +99,7 @@ def _away(x: float, y: float, vx: float, vy: float, time: float, reach: float) -
 
 @kernel
 def _nearest_time(x: float, y: float, vx: float, vy: float, ahead: float) -> float:
-    """Return when x, y is nearest to the origin, from now to ``ahead``."""
+    """Return the time at which x, y is nearest to the origin, from now to ``ahead``."""
     closing, speed2 = -(x * vx + y * vy), vx * vx + vy * vy
     if closing <= 0.0:
         return 0.0
@@ -117,7 +117,7 @@ def _from_people(
     number: int,
     law: Floats,
 ) -> tuple[float, float]:
-    """Return the acceleration by neighbours: away from whom one would come near, and with the flock."""
+    """Return the acceleration by neighbours: separation from predicted positions, alignment and cohesion."""
     ahead, margin, separation, alignment, cohesion, flock = law[3], law[4], law[5], law[6], law[7], law[8]
     x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
     ax = ay = 0.0
@@ -144,7 +144,7 @@ def _from_walls(
     x: float, y: float, vx: float, vy: float, radius: float, ahead: float, margin: float, separation: float,
     face: Floats, corner: Floats, arm: Floats, first: NDArray[np.int64],
 ) -> tuple[float, float]:  # fmt: skip
-    """Return the acceleration by walls, away from where one would come near them."""
+    """Return the acceleration by walls, away from predicted positions near them."""
     ax = ay = 0.0
     reach = radius + margin
     for k in range(len(face)):
@@ -175,7 +175,7 @@ def _as_simulator(
     row: int, a: int, place: Floats, radius: Floats, agent: NDArray[np.int32], number: int, zone: float, gain: float,
     segment: Floats,
 ) -> tuple[float, float]:  # fmt: skip
-    """Return the push of the CrowdBot simulator: by one agent and one wall, the nearest."""
+    """Return the push in the CrowdBot simulator: by the nearest agent and the nearest wall."""
     x, y, own = place[row, 0], place[row, 1], radius[row]
     ax = ay = ox = oy = 0.0
     nearest_body = distance = math.inf
@@ -193,7 +193,7 @@ def _as_simulator(
             to_wall, wx, wy = length, x - fx, y - fy
     felt = distance
     if to_wall < WALL_REACH * own:
-        felt = to_wall  # sic: the distance of the wall takes the place of the neighbour's
+        felt = to_wall  # sic: the distance of the wall replaces that of the neighbour
         size = WALL_SHARE * gain * (1.0 - to_wall / zone) ** 2
         ax, ay = size * wx, size * wy
     if distance < zone:
@@ -248,16 +248,16 @@ class Boids(CrowdModel):
     """Boids with a goal: agents separate from the predicted positions of others; alignment and cohesion are optional.
 
     Args:
-        goal_gain: how fast the desired velocity is taken up [1/s], the inverse of a relaxation time.
-        look_ahead: positions are predicted for this long [s], at constant velocity; 0 acts on the present only.
+        goal_gain: inverse of the relaxation time to the desired velocity [1/s].
+        look_ahead: prediction time at constant velocity [s]; 0 uses current positions only.
         margin: clearance between bodies [m] below which they push apart.
-        separation: push [m/s^2] when a neighbour or wall would be where the agent is, falling linearly to 0 at a
-            clearance of ``margin``; the nearest place within ``look_ahead`` counts. Above twice ``goal_gain`` times
-            the speed it stops a walker before bodies of equal size and margin overlap.
+        separation: push [m/s^2] at a predicted distance of 0, falling linearly to 0 at a clearance of ``margin``; the
+            smallest distance within ``look_ahead`` counts. Above twice ``goal_gain`` times the speed, a walker stops
+            before bodies of equal size and margin overlap.
         alignment: pull to the mean velocity of the flock [1/s].
-        cohesion: pull to the mean place of the flock [1/s^2].
-        flock_distance: the flock are the neighbours nearer than this [m].
-        neighbor_distance: neighbours are nearer than this [m].
+        cohesion: pull to the mean position of the flock [1/s^2].
+        flock_distance: maximum distance of the flock [m].
+        neighbor_distance: maximum distance of neighbours [m].
         max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
         max_acceleration: limit of the sum of all rules [m/s^2].
         zone_factor: the zone of separation of the ``crowdbot`` variant in own radii [1].
@@ -271,7 +271,7 @@ class Boids(CrowdModel):
     to the goal is added; alignment and cohesion are off.
 
     Source: Reynolds 1987, doi:10.1145/37401.37406; goal and prediction as in Wolinski et al. 2014,
-    doi:10.1111/cgf.12328, whose constants are not public: ours keep 20 people who change places on a circle apart.
+    doi:10.1111/cgf.12328, whose constants are not public; ours separate 20 people who exchange positions on a circle.
 
     Raises:
         InputError: a parameter is not finite or below its minimum, or the variant is unknown.
@@ -314,7 +314,7 @@ class Boids(CrowdModel):
         check_limit(self, self.max_speed)
         if self.variant not in VARIANTS:
             near = did_you_mean(self.variant, VARIANTS)
-            raise InputError(f"Boids: variant {self.variant!r} is unknown{near}; choose {' or '.join(VARIANTS)}")
+            raise InputError(f"Boids: variant {self.variant!r} is unknown{near}; use {' or '.join(VARIANTS)}")
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
@@ -324,7 +324,7 @@ class Boids(CrowdModel):
         reach = per_agent(self.neighbor_distance, scene.shape, "neighbor_distance")
         most = np.rint(per_agent(self.max_neighbors, scene.shape, "max_neighbors"))
         top = self.max_speed
-        if simulator:  # whoever is in the zone, or has a body nearer than someone in it
+        if simulator:  # agents in the zone, or with a body nearer than one in it
             zone = per_agent(self.zone_factor, scene.shape, "zone_factor") * np.where(scene.active, scene.radius, 0.0)
             reach, most = zone + np.max(scene.radius, where=seen, initial=0.0), np.full(scene.shape, CANDIDATES)
             top = SIMULATOR_SPEED if top is None else top

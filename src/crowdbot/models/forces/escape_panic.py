@@ -1,4 +1,4 @@
-"""EscapePanic: people pressed together, with bodies and friction (Helbing, Farkas, Vicsek 2000)."""
+"""EscapePanic: social forces with body force and friction in contact (Helbing, Farkas, Vicsek 2000)."""
 
 from __future__ import annotations
 
@@ -45,21 +45,21 @@ Floats = NDArray[np.float64]
 
 VARIANTS = ("textbook", "crowdbot")
 WALL_REACH = math.sqrt(2.0)
-"""The CrowdBot simulator feels walls nearer than this many radii."""
+"""Range of walls in the CrowdBot simulator, in radii."""
 SIMULATOR_SPEED = 2.5
-"""Its limit of speed [m/s]."""
+"""Speed limit of the CrowdBot simulator [m/s]."""
 STEEPEST = 300.0
-"""Largest exponent of the repulsion, so that it stays a number however deep bodies overlap."""
+"""Upper limit of the exponent of the repulsion, against overflow for deep overlaps."""
 MOST_STEPS = 1000
-"""No more sub-steps than this in one step: a huge time step has longer ones."""
+"""Maximum number of substeps; very long steps have longer substeps."""
 
 MEMORY = "escape-panic"
-"""Under this name a scene remembers how much faster everyone was at the end of the last step than on average."""
+"""Name in the memory of a scene: difference of the velocity at the end of the last step from its mean."""
 LAW = ("strength", "body", "friction", "mass", "distance", "relaxation_time", "neighbor_distance")
 
 
 class _Crowd(NamedTuple):
-    """What the kernel reads of every agent, by row ``e * A + a``."""
+    """Data of every agent for the kernel, by row ``e * A + a``."""
 
     desired: Floats
     radius: Floats
@@ -81,7 +81,7 @@ class _Walls(NamedTuple):
 
 @kernel
 def _repulsion(overlap: float, strength: float, distance: float, body: float) -> float:
-    """Return repulsion and body force [m/s^2] of discs that overlap by ``overlap`` [m], below 0 when they do not."""
+    """Return repulsion and body force [m/s^2] of discs with an overlap [m], negative without contact."""
     return strength * math.exp(min(overlap / distance, STEEPEST)) + body * max(0.0, overlap)
 
 
@@ -90,7 +90,7 @@ def _next_velocity(
     row: int, a: int, agent: NDArray[np.int32], number: int, place: Floats, velocity: Floats, desired: Floats,
     radius: Floats, law: Floats, face: Floats, corner: Floats, arm: Floats, first: NDArray[np.int64], h: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """Return the velocity after a sub-step of ``h`` [s]; friction is taken at its end, so that it cannot overshoot."""
+    """Return the velocity after a substep of ``h`` [s]; friction is implicit, which avoids overshoot."""
     x, y, vx, vy, own = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1], radius[row]
     strength, body, friction, distance, relaxation = law[0] / law[3], law[1] / law[3], law[2] / law[3], law[4], law[5]
     ax, ay = (desired[row, 0] - vx) / relaxation, (desired[row, 1] - vy) / relaxation
@@ -138,7 +138,7 @@ def _next_as_simulator(
         overlap = own + radius[other] - gap
         if pressed and overlap <= 0.0:
             continue  # neighbours come nearest first, but not bodies
-        if overlap > 0.0 and not pressed:  # forget all who do not touch
+        if overlap > 0.0 and not pressed:  # ignore all agents without contact
             pressed = True
             ax, ay = (desired[row, 0] - vx) / relaxation, (desired[row, 1] - vy) / relaxation
         size = _repulsion(overlap, strength, distance, body)
@@ -164,10 +164,10 @@ def _walk(
     place: Floats, velocity: Floats, after: Floats, total: Floats, crowd: _Crowd, near: Neighbors, walls: _Walls,
     simulator: bool, steps: int, h: float,
 ) -> None:  # fmt: skip
-    """Move everyone by sub-steps of ``h`` [s], in place; ``total`` adds up the velocities."""
+    """Move all agents by substeps of ``h`` [s], in place; ``total`` is the sum of the velocities."""
     parts = (len(place) + CHUNK - 1) // CHUNK
     for _ in range(steps):
-        if len(place) <= SMALL:  # starting threads would take longer
+        if len(place) <= SMALL:  # threads would take longer
             _walk_part(0, len(place), place, velocity, after, crowd, near, walls, simulator, h)
         else:
             for part in prange(parts):
@@ -210,25 +210,25 @@ class EscapePanic(CrowdModel):
     """Social force model for panic: repulsion at a distance, body force and sliding friction in contact.
 
     Args:
-        strength: of the repulsion at contact [N].
-        distance: over which the repulsion falls off [m].
+        strength: repulsion at contact [N].
+        distance: range of the repulsion [m].
         body: force per overlap [kg/s^2].
         friction: force per overlap and sliding speed [kg/(m s)].
-        mass: [kg].
-        relaxation_time: time [s] in which the desired velocity is taken up again.
-        neighbor_distance: neighbours and walls are nearer than this [m], walls measured from the body.
+        mass: mass [kg].
+        relaxation_time: time constant to the desired velocity [s].
+        neighbor_distance: maximum distance of neighbours and walls [m], for walls measured from the body.
         max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene, in ``crowdbot`` 2.5 m/s.
-        longest_step: bodies are stiff, so that a longer time step is cut into equal parts [s], at most 1000.
+        longest_step: maximum substep [s]; a longer time step is divided into equal substeps, at most 1000.
         variant: ``textbook``, or ``crowdbot``, the law of the CrowdBot simulator's library: forces between agents grow
-            with the distance of their centres, agents in contact feel nobody else, every wall segment nearer than 1.4
-            radii pushes, and a time step is never cut.
+            with the distance of their centres, agents in contact ignore all others, every wall segment nearer than 1.4
+            radii pushes, and there are no substeps.
 
-    All people move in every part of a step, external agents go straight on; neighbours are searched once. The velocity
-    of a step is the mean of its parts, so that places are right; how much faster everyone was at the end is remembered
-    in ``scene.memory["escape-panic"]`` [m/s] for the next step, 0 at first. Friction uses the velocity at the end
-    of each part, which is the same law for short steps and cannot overshoot in long ones. A wall made of many segments
-    pushes like one wall; who stands inside of a solid wall does not feel it.
+    All people move in each substep, external agents at constant velocity; neighbours are searched once. The velocity of
+    a step is the mean of its substeps, consistent with the displacement. Its difference from the final velocity is
+    stored in ``scene.memory["escape-panic"]`` [m/s] for the next step, initially 0. Friction is implicit in the
+    velocity, which avoids overshoot in long steps. A wall of many segments pushes like one wall; agents inside a solid
+    wall do not interact with it.
 
     The default variant is ``textbook``, the force of the paper. Differences: substeps, implicit friction, limited
     neighbourhoods, and walls made of several segments that push once.
@@ -278,12 +278,12 @@ class EscapePanic(CrowdModel):
         return self._move_agents(scene, dt)[0]
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
-        """Return the scene ``dt`` [s] later, which remembers the last velocities; ``rng`` is not used."""
+        """Return the scene ``dt`` [s] later with the final velocities in its memory; ``rng`` is not used."""
         mean, last = self._move_agents(scene, dt)
         return scene.advance(mean, dt).replace(memory={**scene.memory, MEMORY: last - mean})
 
     def _move_agents(self, scene: Scene, dt: float) -> tuple[Floats, Floats]:
-        """Return the mean and the last velocities ``[E, A, 2]`` [m/s]."""
+        """Return the mean and the final velocities ``[E, A, 2]`` [m/s]."""
         wish, walking = desired_velocity(scene, dt), movable(scene)
         simulator = self.variant == "crowdbot"
         steps = 1 if simulator else min(MOST_STEPS, max(1, math.ceil(dt / self.longest_step - 1e-9)))
@@ -307,11 +307,11 @@ class EscapePanic(CrowdModel):
 
 
 def _memory(scene: Scene) -> Floats:
-    """Return ``[E, A, 2]`` [m/s], what the last step has left in the memory of the scene."""
+    """Return the velocity difference ``[E, A, 2]`` [m/s] in the memory of the scene."""
     excess = np.asarray(scene.memory.get(MEMORY, np.zeros_like(scene.velocity)), dtype=np.float64)
     if excess.shape != scene.velocity.shape or not np.all(np.isfinite(excess[scene.active])):
         raise InputError(
             f"scene: memory {MEMORY!r} has shape {list(excess.shape)} or is not finite, it must be finite and"
-            f" {list(scene.velocity.shape)}; leave it out to begin anew"
+            f" {list(scene.velocity.shape)}; omit it to start without memory"
         )
     return excess

@@ -1,4 +1,4 @@
-"""Groups: who walks with whom, and what holds them together (Moussaïd et al. 2010)."""
+"""Group cohesion: group membership and group forces (Moussaïd et al. 2010)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Ints = NDArray[np.int64]
 
 
 class Groups(NamedTuple):
-    """Who walks with whom: the group of a row are ``member[begin[row]:end[row]]``, with the row itself."""
+    """Members of groups: the group of a row is ``member[begin[row]:end[row]]``, including the row itself."""
 
     member: Ints
     begin: Ints

@@ -1,4 +1,4 @@
-"""Goals: estimated destinations of people in observed windows."""
+"""Goal estimators: predicted destinations of people in observed windows."""
 
 from .current_direction import CurrentDirection
 from .environment_layout import EnvironmentLayout

@@ -1,4 +1,4 @@
-"""CurrentDirection: people continue in their current direction."""
+"""CurrentDirection: goal estimator that assumes that people keep their current direction."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class CurrentDirection(Goal):
     """A point far ahead in the direction of the last steps.
 
     Args:
-        steps: velocity is averaged over this many last steps, or as many as there are without a gap.
-        horizon: how far ahead, in time at that velocity [s]; long enough not to be reached.
-        adaptive: average as much as the noise of the tracks asks for, see
-            :func:`crowdbot.data.motion.steady_velocity`; then ``steps`` stays 1.
+        steps: number of last steps over which the velocity is averaged; fewer after a gap.
+        horizon: distance of the goal as time at that velocity [s]; long enough that the goal is not reached.
+        adaptive: adapt the averaging to the noise of the tracks, see
+            :func:`crowdbot.data.motion.steady_velocity`; requires ``steps`` = 1.
 
     The goal of people observed only at the last step is their position.
 
@@ -43,7 +43,7 @@ class CurrentDirection(Goal):
         if self.steps < 1:
             raise InputError(f"current-direction: steps {self.steps} is not allowed, it must be at least 1")
         if self.adaptive and self.steps != 1:
-            raise InputError(f"current-direction: steps {self.steps} and adaptive exclude each other; pass only one")
+            raise InputError(f"current-direction: steps {self.steps} and adaptive cannot be combined; give one of them")
 
     def resolve(self, past: Windows) -> Floats:
         """Return the goals ``[W, A, 2]`` [m]; 0 for people who are not present at the last observed step."""

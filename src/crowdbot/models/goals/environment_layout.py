@@ -1,4 +1,4 @@
-"""EnvironmentLayout: destinations estimated from the layout of a place."""
+"""EnvironmentLayout: goal estimator based on walls and exits."""
 
 from __future__ import annotations
 
@@ -34,27 +34,27 @@ ZIEBART = Paper(
 class EnvironmentLayout(Goal):
     """The exits of a place, weighted by the progress of each person towards them.
 
-    The posterior of an exit is its prior times exp(``certainty`` x progress); progress [m] is by how much the way to
-    it has become shorter, averaged over the whole observed part and its later half. That is the probability of the
-    observed way under noisy shortest-way walking, up to what all exits share (Ziebart et al. 2009). An exit behind a
-    wall is reached by way of the corners between. Straight on is a candidate, too: it stands for all that the layout
-    does not know.
+    The posterior of an exit is its prior times exp(``certainty`` x progress). The progress [m] is the decrease of the
+    path length to the exit, averaged over the whole observation and its second half. This is the likelihood of the
+    observed path for noisy shortest-path walking, up to a common factor (Ziebart et al. 2009). Paths to exits lead
+    around walls. Walking straight on is an additional candidate for destinations that the layout does not contain.
 
-    People do not turn towards their exit at once: the heading to it is mixed with the current one. ``pull`` is the
-    share of the turn, more when what they walk towards is nearer than ``lookahead``. :meth:`resolve` is the median
-    direction of all candidates, :meth:`choices` has one for each; all lie ``horizon`` ahead, as crowd models walk
-    straight to a goal. :meth:`posterior` tells how probable each exit is.
+    People turn towards their exit gradually: the predicted heading is between the current one and that to the exit.
+    ``pull`` is the fraction of the turn, which increases if the next waypoint is closer than ``lookahead``.
+    :meth:`resolve` returns the median direction of all candidates, :meth:`choices` one direction for each,
+    :meth:`posterior` the probability of each exit. All goals are ``horizon`` ahead, since crowd models walk straight to
+    a goal.
 
     Args:
-        exits: points ``[G, 2]`` or segments ``[G, 2, 2]`` [m], or as text the points x y x y.
-        walls: rings or lines that block view and way, as :class:`~crowdbot.core.Walls` takes them.
-        prior: ``[G]`` weights of the exits before anything was observed; default all alike.
-        straight: prior probability that people keep their direction, against all exits.
-        certainty: how straight people walk to their exit [1/m].
-        pull: share of the turn to the exit that is made.
-        lookahead: time [s] within which the rest of the turn is made.
-        horizon: how far ahead the goals are, in time at the observed velocity [s].
-        pace: how velocities are taken from the last displacements, when the place was recorded.
+        exits: points ``[G, 2]`` or segments ``[G, 2, 2]`` [m], or points as text x y x y.
+        walls: rings or lines that block view and movement, see :class:`~crowdbot.core.Walls`.
+        prior: prior weights of the exits ``[G]`` (default: equal).
+        straight: prior probability that people keep their direction.
+        certainty: how directly people walk to their exit [1/m].
+        pull: fraction of the turn to the exit.
+        lookahead: time [s] within which the turn is completed.
+        horizon: distance of the goals as time at the observed velocity [s].
+        pace: learned velocity from the last displacements, for a recorded place.
 
     Raises:
         InputError: there is no exit, or a value is not allowed.
@@ -85,12 +85,12 @@ class EnvironmentLayout(Goal):
         exits = _segments(self.exits)
         for name in ("straight", "pull"):
             if getattr(self, name) > 1.0:
-                raise InputError(f"environment-layout: {name} = {getattr(self, name)} is a share, it is at most 1")
+                raise InputError(f"environment-layout: {name} = {getattr(self, name)} must be at most 1")
         weight = np.ones(len(exits)) if self.prior is None else np.asarray(self.prior, dtype=np.float64)
         if weight.shape != (len(exits),) or not (np.all(weight >= 0.0) and 0.0 < np.sum(weight) < np.inf):
             raise InputError(
                 f"environment-layout: prior has shape {list(weight.shape)} for {len(exits)} exits;"
-                " it holds one weight each, none below 0 and not all 0"
+                " it must have one weight for each exit, at least 0 and not all 0"
             )
         object.__setattr__(self, "exits", exits)
         object.__setattr__(self, "prior", weight / np.sum(weight))
@@ -102,9 +102,9 @@ class EnvironmentLayout(Goal):
         """Return the layout whose exits are the openings of the border of the walkable area.
 
         Args:
-            walls: as above.
-            area: the border: one ring ``[N, 2]`` [m] or a shapely polygon; default the convex hull of the walls.
-            width: openings are cut into pieces about so wide [m].
+            walls: see :class:`EnvironmentLayout`.
+            area: border as a ring ``[N, 2]`` [m] or shapely polygon (default: convex hull of the walls).
+            width: openings are divided into exits of about this width [m].
             values: other fields.
 
         Raises:
@@ -114,7 +114,7 @@ class EnvironmentLayout(Goal):
         if not (width > 0.0 and np.isfinite(width)):
             raise InputError(f"environment-layout: width = {width} m must be finite and above 0")
         if area is None and len(solid) < 2:
-            raise InputError("environment-layout: the place has no walls and no area; pass exits")
+            raise InputError("environment-layout: there are neither walls nor an area; give exits")
         border = hull(solid.start) if area is None else _ring(area)
         return cls(openings(border, solid, width), solid, **values)
 
@@ -122,13 +122,13 @@ class EnvironmentLayout(Goal):
     def learn(cls, *recordings: Trajectories, walls: Any = None, width: float = 2.0, **values: Any) -> Self:
         """Return the layout of a recorded place.
 
-        The walkable area is the convex hull of where people were, its openings are the exits, and how many people
-        left nearest to each is the prior, one added. The velocity is learned, too.
+        The walkable area is the convex hull of the recorded positions, and its openings are the exits. The prior of an
+        exit is the number of people who left there plus one. The velocity is learned, too.
 
         Args:
-            recordings: of the place, in metres.
-            walls: default those of the first recording.
-            width: of an exit [m].
+            recordings: recordings of the place, in metres.
+            walls: walls (default: those of the first recording).
+            width: width of an exit [m].
             values: other fields.
 
         Raises:
@@ -156,7 +156,7 @@ class EnvironmentLayout(Goal):
         return extrapolate(past.position[:, -1], here, rotate(velocity, median(turn, weight)), self.horizon)
 
     def choices(self, past: Windows) -> Choices:
-        """Return straight on (slot 0) and the way to each exit (slots 1 to G) with their posterior."""
+        """Return straight on (slot 0) and the direction to each exit (slots 1 to G) with their posterior."""
         velocity, turn, weight, here = self._candidates(past)
         place = np.where(here[..., None], past.position[:, -1], 0.0)
         way = np.where(here[..., None, None], rotate(velocity[:, :, None], turn), 0.0)
@@ -169,7 +169,7 @@ class EnvironmentLayout(Goal):
     def _candidates(self, past: Windows) -> tuple[Floats, Floats, Floats, NDArray[np.bool_]]:
         """Return velocity ``[W, A, 2]``, turn [rad] and weight ``[W, A, G + 1]`` of candidates, and presence."""
         if past.units != "m":
-            raise InputError(f"environment-layout: {past.source} is in {past.units}; turn it into metres first")
+            raise InputError(f"environment-layout: {past.source} is in {past.units}; convert it to metres first")
         velocity, here = self.velocity(past), past.present[:, -1]
         turn = np.zeros((*here.shape, len(self.routes.exits) + 1))
         weight = np.zeros(turn.shape)
@@ -201,7 +201,9 @@ class EnvironmentLayout(Goal):
         weight /= np.sum(weight, axis=1, keepdims=True)
         off = aim - place[:, None]
         soon = self.lookahead * length(velocity)[:, None] / np.maximum(length(off), 1e-9)
-        part = np.where(length(off) > 0.5, np.clip(soon, self.pull, 1.0), 0.0)  # nearer, a heading is meaningless
+        part = np.where(
+            length(off) > 0.5, np.clip(soon, self.pull, 1.0), 0.0
+        )  # very close to the exit, a heading is meaningless
         turn = np.zeros_like(weight)
         turn[:, 1:] = part * angle_between(heading[:, None], off)
         return turn, weight
@@ -216,12 +218,12 @@ def _segments(exits: Any) -> Floats:
         found = np.stack([found, found], axis=1)
     if found.size == 0:
         raise InputError(
-            "environment-layout: the layout has no exit; give exits as points, or an area whose border is not walled"
-            " all around"
+            "environment-layout: the layout has no exit; give exits as points, or an area with an open border"
         )
     if found.ndim != 3 or found.shape[1:] != (2, 2) or not np.all(np.isfinite(found)):
         raise InputError(
-            f"environment-layout: exits have shape {list(found.shape)}; they are finite points [G, 2] or segments"
+            f"environment-layout: exits have shape {list(found.shape)}; they must be finite points [G, 2] or "
+            f"segments"
             " [G, 2, 2] in metres"
         )
     return found
@@ -230,5 +232,5 @@ def _segments(exits: Any) -> Floats:
 def _ring(area: Any) -> Floats:
     points = np.asarray(area.exterior.coords if hasattr(area, "exterior") else area, dtype=np.float64)
     if points.ndim != 2 or len(points) < 3 or points.shape[1] < 2 or not np.all(np.isfinite(points)):
-        raise InputError("environment-layout: area is one ring of at least three finite points [N, 2]")
+        raise InputError("environment-layout: area must be one ring of at least three finite points [N, 2]")
     return points[:, :2]

@@ -1,4 +1,4 @@
-"""Exits of a place: where tracks end, and where the border of the walkable area is open."""
+"""Exit detection: ends of tracks, and openings in the border of the walkable area."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 MOST_ENDS = 3000
-"""Maximum number of end points to group; of more points every k-th is used."""
+"""Maximum number of end points to cluster; above it, every k-th point is used."""
 STEP = 0.1
 """Sampling distance along the border [m]."""
 NEAR_WALL = 0.3
-"""A wall nearer than this [m] closes the border."""
+"""A wall closer than this [m] closes the border."""
 NARROWEST = 0.5
-"""Minimum width of an opening [m]: a person fits through."""
+"""Minimum width of an opening [m], wide enough for a person."""
 
 
 def track_ends(tracks: Trajectories) -> tuple[Integers, Floats, NDArray[np.bool_]]:
-    """Return the ids of people ``[P]``, where their tracks end ``[P, 2]``, and whether they end before the recording.
+    """Return the ids of people ``[P]``, the ends of their tracks ``[P, 2]``, and whether they end before the recording.
 
-    Tracks that reach the last row are cut off and do not show a destination.
+    Tracks that reach the last row are truncated and have no destination.
     """
     order = np.lexsort((tracks.frame, tracks.id))
     last = np.append(tracks.id[order][1:] != tracks.id[order][:-1], True)
@@ -41,9 +41,9 @@ def track_ends(tracks: Trajectories) -> tuple[Integers, Floats, NDArray[np.bool_
 
 
 def clusters(points: Floats, width: float, fewest: int) -> Floats:
-    """Return the centres ``[G, 2]`` [m] of groups of points no wider than ``width`` [m], with at least ``fewest``.
+    """Return the centres ``[G, 2]`` [m] of clusters of at least ``fewest`` points within ``width`` [m].
 
-    Complete linkage does not depend on the axes: a rotated place has rotated groups.
+    Complete linkage is invariant to rotation.
     """
     from scipy.cluster.hierarchy import fcluster, linkage
 
@@ -71,7 +71,7 @@ def openings(border: Floats, walls: Walls, width: float) -> Floats:
     open_ = ~_covered(place, walls)
     if not np.any(open_):
         return np.zeros((0, 2, 2))
-    if not np.all(open_):  # begin at a wall, so that no opening is cut in two
+    if not np.all(open_):  # start at a wall so that no opening is divided
         first = int(np.argmin(open_))
         place, open_ = np.roll(place, -first, axis=0), np.roll(open_, -first)
     else:
@@ -90,7 +90,7 @@ def openings(border: Floats, walls: Walls, width: float) -> Floats:
 
 
 def _along(border: Floats) -> Floats:
-    """Return points along a ring at distances of about one step."""
+    """Return points along a ring at equal distances."""
     parts = []
     for start, end in zip(border, np.roll(border, -1, axis=0), strict=True):
         count = max(1, round(float(length(end - start)) / STEP))

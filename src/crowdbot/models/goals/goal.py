@@ -22,12 +22,12 @@ class Choices:
     """Possible destinations: G slots for each person, in an order defined by the goal.
 
     Fields:
-        position: ``[W, A, G, 2]`` [m], what to walk towards.
-        weight: ``[W, A, G]`` probability; sums to 1 for who is present at the last observed row, else 0. A slot that
-            is not used has weight 0.
+        position: destinations ``[W, A, G, 2]`` [m].
+        weight: probabilities ``[W, A, G]``, which sum to 1 for people present at the last observed row, otherwise 0.
+            Unused slots have weight 0.
 
     Raises:
-        InputError: the shapes do not fit.
+        InputError: the shapes do not match.
     """
 
     position: Floats
@@ -63,14 +63,14 @@ class Choices:
 class Goal(abc.ABC):
     """Contract: estimate the goals of people from observed windows.
 
-    A new goal is one class with :meth:`resolve`; it may look at ``past`` only, everyone's goal may use everyone's past
-    of the same window, and absent people get 0.
+    A new estimator is a class with :meth:`resolve`. It may use only ``past``: for each person, the past of all people
+    in the same window. Absent people get 0.
     """
 
     knows_future: ClassVar[bool] = False
     """Whether the goal uses the future, for evaluation only."""
     learns: ClassVar[bool] = False
-    """Whether the goal belongs to a place and must be made with :meth:`learn` or with values, not by its name."""
+    """Whether the goal belongs to a place and must be created with :meth:`learn` or with values, not by name."""
 
     @abc.abstractmethod
     def resolve(self, past: Windows) -> Floats:
@@ -93,7 +93,7 @@ class Goal(abc.ABC):
         """Return the goal learned from recordings of one place; ``values`` are fields.
 
         Raises:
-            InputError: this goal does not learn, or the recordings do not fit.
+            InputError: the estimator does not learn, or the recordings do not match.
             DataError: a recording is too short to learn from.
         """
         name = kebab_case(cls.__name__)

@@ -23,10 +23,10 @@ Floats = NDArray[np.float64]
 class GroundTruth(Goal):
     """The last recorded position of each person in the future, for evaluation only.
 
-    It measures the share of an error that comes from unknown goals. People without a future keep their position.
+    It measures the part of an error caused by unknown goals. People without a future keep their position.
 
     Args:
-        past, future: windows from one call; any of them, or their first observed rows, can be resolved.
+        past, future: windows from one call; all of them, or their first observed rows, can be resolved.
 
     Raises:
         InputError: past and future have different people; on resolving, a window is unknown.
@@ -64,8 +64,9 @@ class GroundTruth(Goal):
         missing = next((number for number, name in enumerate(names) if name not in self._known), None)
         if missing is not None:
             raise InputError(
-                f"ground-truth: window {missing} of {past.source}, from frame {past.frame[missing, 0]} on, is none of"
-                f" the {len(self.past)} windows whose future is known"
+                f"ground-truth: window {missing} of {past.source}, from frame {past.frame[missing, 0]}, is not "
+                f"one of"
+                f" the {len(self.past)} windows with a known future"
             )
         return np.array([self._known[name] for name in names], dtype=np.int64)
 

@@ -1,4 +1,4 @@
-"""Headings: unit vectors, turns, and points far ahead."""
+"""Functions for headings: unit vectors, turns, extrapolation and the weighted median."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["MOVING", "angle_between", "extrapolate", "length", "median", "rotate
 Floats = NDArray[np.float64]
 
 MOVING = 0.2
-"""Minimum speed [m/s] of a meaningful heading; standing people sway."""
+"""Minimum speed [m/s] of a meaningful heading, above the sway of standing people."""
 
 
 def length(vector: Floats) -> Floats:
@@ -51,7 +51,7 @@ def extrapolate(place: Floats, here: NDArray[np.bool_], velocity: Floats, second
 def median(value: Floats, weight: Floats) -> Floats:
     """Return the interpolated weighted median ``[...]`` of values ``[..., N]``; 0 without weight.
 
-    A value lies at the middle of its share of the weight: the median is continuous in the weights.
+    Each value is at the centre of its weight, which makes the median continuous in the weights.
 
     >>> import numpy as np
     >>> float(median(np.array([0.0, 4.0, 2.0]), np.array([1.0, 1.0, 2.0])))

@@ -1,4 +1,4 @@
-"""LearnedDestinations: destinations learned from recordings of the place."""
+"""LearnedDestinations: goal estimator learned from recordings of the same place."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ STRAIGHT = np.radians(15.0)
 RAREST = 0.02
 """Minimum share of all track ends at an exit, and at least two."""
 MOST_VOTERS = 20_000
-"""Maximum number of stored rows; of more rows every k-th is stored."""
+"""Maximum number of stored rows; above it, every k-th row is stored."""
 CHUNK_PEOPLE = 512
 """People processed at the same time."""
 
@@ -41,30 +41,28 @@ CHUNK_PEOPLE = 512
 class LearnedDestinations(Goal):
     """Destinations of earlier people at the same position with the same heading.
 
-    Made by :meth:`learned` from recordings of the same place. The ends of their tracks are grouped into exits. Every
-    row of the recordings is a voter: it knows where somebody was, the heading, by how much they had turned
-    ``lookahead`` later, and at which exit they left. People are polled by voters near their place and heading: the
-    votes for each exit (and for straight on) are the weights of :meth:`choices`, the median turn of these voters is
-    the direction in which each is left for. :meth:`resolve` takes the median turn of all voters, with some votes for
-    no turn, so that where nobody has walked before people go straight on. The velocity itself is learned, too: how
-    much of a longer mean is in the next seconds.
+    Created by :meth:`learn`. The ends of the recorded tracks are clustered into exits. Each recorded row is a sample
+    with position, heading, turn after ``lookahead`` and exit. Samples with similar position and heading vote: their
+    weights for each exit (and for straight on) are the weights of :meth:`choices`, and their median turn is the
+    direction to that exit. :meth:`resolve` returns the median turn of all samples plus some votes for no turn; where
+    nobody was recorded, people walk straight on. The velocity is learned, too, as a weighted mean of displacements.
 
-    All goals lie ``horizon`` ahead, in the direction in which people set out, as crowd models walk straight to a goal:
-    the places of the exits are in ``exits``.
+    All goals are ``horizon`` ahead in the predicted direction, since crowd models walk straight to a goal. Positions of
+    exits are in ``exits``.
 
     Fields:
-        exits: ``[G, 2]`` [m].
-        voters: rows of the recordings.
+        exits: positions of exits ``[G, 2]`` [m].
+        samples: rows of the recordings.
         pace: learned velocity.
-        reach: how far away others are asked [m], as a standard deviation.
-        spread: difference of headings, likewise [rad].
-        doubt: so many votes (times m/s) for no turn are added.
-        horizon: how far ahead the goals are, in time at the learned velocity [s].
+        reach: standard deviation of the distance of samples [m].
+        spread: standard deviation of the heading difference [rad].
+        doubt: number of votes (times m/s) for no turn.
+        horizon: distance of the goals as time at the learned velocity [s].
 
     Raises:
-        InputError: a value is not allowed; on use, windows have another time step or are in pixels.
+        InputError: a value is not allowed; on use, windows have a different time step or are in pixels.
 
-    Paper: after Bennewitz et al. (2005), who group whole tracks.
+    Source: after Bennewitz et al. (2005), who cluster whole tracks.
     """
 
     exits: Floats
@@ -93,11 +91,11 @@ class LearnedDestinations(Goal):
         """Return the goal learned from recordings of one place.
 
         Args:
-            recordings: of the place, in metres, with one time step; not what is to be predicted.
-            observe: most rows that the learned velocity looks at.
-            lookahead: how far ahead the direction should be right [s]; from a third of what will be predicted to all
-                of it.
-            width: of an exit [m].
+            recordings: recordings of the place, in metres, with one time step; exclude the test data.
+            observe: maximum number of rows for the learned velocity.
+            lookahead: time for which the direction is learned [s]; between a third of the prediction time and all of
+                it.
+            width: width of an exit [m].
             values: fields ``reach``, ``spread``, ``doubt`` and ``horizon``.
 
         Raises:
@@ -136,7 +134,7 @@ class LearnedDestinations(Goal):
         return extrapolate(past.position[:, -1], here, rotate(velocity, turn), self.horizon)
 
     def choices(self, past: Windows) -> Choices:
-        """Return straight on (slot 0) and one way for each exit (slots 1 to G) with the share of votes for it."""
+        """Return straight on (slot 0) and the direction to each exit (slots 1 to G) with its share of the votes."""
         velocity, here = self.velocity(past), past.present[:, -1]
         weight = np.zeros((*here.shape, len(self.exits) + 1))
         turn = np.zeros(weight.shape)
@@ -149,7 +147,7 @@ class LearnedDestinations(Goal):
         return Choices(place[:, :, None] + self.horizon * way, weight)
 
     def _turn_histograms(self, place: Floats, velocity: Floats, by_exit: bool) -> tuple[Floats, Floats, Floats]:
-        """Return the median turn ``[P]``, and by way ``[P, G + 1]`` its weight and turn, of people ``[P, 2]``."""
+        """Return the median turn ``[P]``, and weight and turn by exit ``[P, G + 1]``, of people ``[P, 2]``."""
         count, ways = len(place), len(self.exits) + 1
         heading = unit(velocity)
         middle, weight, turn = np.zeros(count), np.zeros((count, ways)), np.zeros((count, ways))

@@ -1,4 +1,4 @@
-"""LearnedVelocity: weights of the last displacements in the velocity of the next seconds."""
+"""LearnedVelocity: learned weights of the last displacements for predicting the velocity."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ SMALLEST = 0.05
 class LearnedVelocity:
     """A weighted mean of displacements around :func:`~crowdbot.data.motion.steady_velocity`.
 
-    The weights minimise the summed distance (not its square: who turns does not outweigh who goes straight) between
-    the velocity and the mean velocity of the seconds that followed. They are the same for x and y, so a place can be
-    turned. One row of weights for every length of history.
+    The weights minimise the sum of distances between the predicted and the mean future velocity. Distances are not
+    squared, which limits the influence of people who turn. The weights are equal for x and y, hence invariant to
+    rotation. There is one row of weights for each length of history.
 
     Fields:
         weight: ``[N, N]``: row n - 1 holds the weights of the last n displacements, oldest first, at its end.
-        dt: time step of the recordings [s]; windows must have the same.
+        dt: time step of the recordings [s]; windows must have the same time step.
     """
 
     weight: Floats
@@ -44,9 +44,9 @@ class LearnedVelocity:
         """Return the weights learned from recordings of one place.
 
         Args:
-            recordings: in metres, with one time step.
-            observe: most rows that are looked at.
-            lookahead: the seconds that are to be foretold.
+            recordings: recordings in metres, with one time step.
+            observe: maximum number of observed rows.
+            lookahead: prediction time [s].
 
         Raises:
             InputError: no recording is given, they are in pixels or differ in time step, or a value is not allowed.
@@ -68,15 +68,15 @@ class LearnedVelocity:
         """Return ``[W, A, 2]`` [m/s]; 0 for people observed only at the last row or absent there.
 
         Raises:
-            InputError: the windows are in pixels, or have another time step.
+            InputError: the windows are in pixels, or have a different time step.
         """
         if past.units != "m":
             raise InputError(
-                f"goals: {past.source} is in {past.units}, the place was learned in m; turn it into metres"
+                f"goals: {past.source} is in {past.units}, the goal was learned in m; convert it to metres"
             )
         if not abs(past.dt - self.dt) <= 0.01 * self.dt:
             raise InputError(
-                f"goals: {past.source} has steps of {past.dt:.4g} s, but the place was learned at steps of"
+                f"goals: {past.source} has steps of {past.dt:.4g} s, but the goal was learned with steps of"
                 f" {self.dt:.4g} s; resample one of them"
             )
         most = len(self.weight)
@@ -93,18 +93,19 @@ class LearnedVelocity:
 
 
 def pairs_of(recordings: tuple[Trajectories, ...], observe: int, lookahead: float) -> list[tuple[Windows, Windows]]:
-    """Return past and future windows of recordings to learn from; futures need at least two rows."""
+    """Return past and future windows for learning; futures need at least two rows."""
     if not recordings:
-        raise InputError("goals: there is no recording to learn from; pass at least one of the place")
+        raise InputError("goals: there is no recording to learn from; give at least one of the place")
     if not 0.0 < lookahead < np.inf:
         raise InputError(f"goals: lookahead = {lookahead} s must be finite and above 0")
     dt = recordings[0].dt
     for tracks in recordings:
         if tracks.units != "m":
-            raise InputError(f"goals: {tracks.name} is in pixels; turn it into metres to learn from it")
+            raise InputError(f"goals: {tracks.name} is in pixels; convert it to metres to learn from it")
         if not abs(tracks.dt - dt) <= 0.01 * dt:
             raise InputError(
-                f"goals: {recordings[0].name} has steps of {dt:.4g} s and {tracks.name} of {tracks.dt:.4g} s;"
+                f"goals: {recordings[0].name} has steps of {dt:.4g} s and {tracks.name} has steps of "
+                f"{tracks.dt:.4g} s;"
                 " resample one of them"
             )
     steps = max(1, round(lookahead / dt))
@@ -112,14 +113,16 @@ def pairs_of(recordings: tuple[Trajectories, ...], observe: int, lookahead: floa
 
 
 def _offs(known: Windows, steady: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return how velocities of displacements differ from the steady one ``[W, n, A, 2]`` [m/s], and which there are."""
+    """Return the differences of displacement velocities from the steady one ``[W, n, A, 2]`` [m/s], and their
+    presence.
+    """
     both = known.present[:, 1:] & known.present[:, :-1]
     off = np.diff(known.position, axis=1) / known.dt - steady[:, None]
     return np.where(both[..., None], off, 0.0), both
 
 
 def _sample(past: Windows, future: Windows, count: int) -> tuple[Floats, Floats]:
-    """Return differences ``[P, count, 2]`` and what the steady velocity missed ``[P, 2]`` [m/s] of scored people."""
+    """Return differences ``[P, count, 2]`` and errors of the steady velocity ``[P, 2]`` [m/s] of scored people."""
     rows = past.position.shape[1]
     known = slice_rows(past, rows - 1 - count, rows)
     steady = steady_velocity(known)
@@ -129,7 +132,7 @@ def _sample(past: Windows, future: Windows, count: int) -> tuple[Floats, Floats]
 
 
 def mean_velocity(past: Windows, future: Windows) -> Floats:
-    """Return the mean velocity ``[W, A, 2]`` [m/s] until the last future row at which each person is there."""
+    """Return the mean velocity ``[W, A, 2]`` [m/s] until the last future row of each person."""
     steps = future.present.shape[1]
     last = steps - 1 - np.argmax(future.present[:, ::-1], axis=1)
     end = np.take_along_axis(future.position, last[:, None, :, None], axis=1)[:, 0]
@@ -139,7 +142,7 @@ def mean_velocity(past: Windows, future: Windows) -> Floats:
 def _least_distance(off: Floats, miss: Floats) -> Floats:
     """Return weights ``[n]`` that minimise the sum of ``|miss - weights off|`` by re-weighted least squares.
 
-    Sums are written out: the order in which a matrix product adds depends on the number of threads.
+    Sums are explicit, since the order of additions in a matrix product depends on the number of threads.
     """
     count = off.shape[1]
     x, y = off.reshape(len(off), count, 2), miss
@@ -152,7 +155,7 @@ def _least_distance(off: Floats, miss: Floats) -> Floats:
         right = np.array([np.sum(scaled[:, i] * y) for i in range(count)])
         scale = np.trace(gram) / count
         if not scale > 1e-12 * len(y):
-            return weight  # everyone walked at constant velocity: nothing to fit
+            return weight  # all velocities are constant: nothing to fit
         weight = np.linalg.solve(gram + RIDGE * scale * np.eye(count), right)
         left = y - np.sum(x * weight[:, None], axis=1)
         worth = 1.0 / np.maximum(np.sqrt(np.sum(left * left, axis=-1)), floor)

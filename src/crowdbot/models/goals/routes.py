@@ -51,10 +51,10 @@ class Routes:
     """Shortest paths to exits along lines of sight.
 
     Fields:
-        exits: ``[G, 2, 2]`` [m] start and end of each.
+        exits: ``[G, 2, 2]`` [m] start and end of each exit.
         segments: ``[S, 4]`` [m] walls.
-        corners: ``[N, 2]`` [m] waypoints at convex corners and ends of walls, a step away from the wall.
-        rest: ``[N, G]`` [m] from each corner to each exit; inf when there is no way.
+        corners: ``[N, 2]`` [m] waypoints at convex corners and ends of walls, offset from the wall.
+        rest: ``[N, G]`` [m] path length from each corner to each exit; inf without a path.
     """
 
     exits: Floats
@@ -113,7 +113,7 @@ def _on_exits(place: Floats, exits: Floats) -> Floats:
 
 
 def _corners(walls: Walls, segments: Floats) -> Floats:
-    """Return points ``[N, 2]`` [m] near convex corners, except those that touch another wall."""
+    """Return points ``[N, 2]`` [m] near convex corners, without those that touch another wall."""
     here = walls.start[walls.convex]
     arriving = unit(here - walls.start[walls.previous[walls.convex]])
     leaving = unit(walls.end[walls.convex] - here)

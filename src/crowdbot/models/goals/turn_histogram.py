@@ -1,4 +1,4 @@
-"""TurnHistogram: turns of earlier people at the same position with the same heading."""
+"""TurnHistogram: turns of recorded people with similar position and heading."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ Integers = NDArray[np.int64]
 WIDEST = math.pi / 2
 """Largest turn in the histogram [rad]."""
 BINS = 61
-"""Nodes of the histogram, 3 degrees apart; a vote is split between the two nearest nodes."""
+"""Number of bins, 3 degrees apart; a vote is split between the two nearest bins."""
 
 
 class TurnSamples(NamedTuple):
     """M rows of recordings as samples of the histogram.
 
     Fields:
-        place: ``[M, 2]`` [m] where somebody was.
-        heading: ``[M, 2]`` unit vector of the velocity there.
-        turn: ``[M]`` [rad] by which they had turned some seconds later.
-        worth: ``[M]`` weight of the vote.
-        straight: ``[M]`` share of the vote that counts as straight on.
-        exit: ``[M]`` index of the exit where the track ended, or the number of exits when it is not known.
+        place: position ``[M, 2]`` [m].
+        heading: unit vector of the velocity ``[M, 2]``.
+        turn: turn after ``lookahead`` ``[M]`` [rad].
+        worth: weight of the sample ``[M]``.
+        straight: fraction of the sample that counts as straight on ``[M]``.
+        exit: index of the exit at the end of the track ``[M]``, or the number of exits if unknown.
     """
 
     place: Floats
@@ -47,8 +47,8 @@ def accumulate(
 ) -> None:
     """Fill ``votes [P, exits + 2, NODES]``: straight on, each exit, exit unknown; for people ``[P, 2]``.
 
-    A vote counts by (1 - d/8)^4, d the squared distance in units of ``reach`` [m] plus the squared difference of
-    headings in units of ``spread``: nearly a Gaussian, and nothing beyond d = 8.
+    A sample has the weight (1 - d/8)^4, d the squared distance in units of ``reach`` [m] plus the squared difference of
+    headings in units of ``spread``. This is close to a Gaussian, and 0 beyond d = 8.
     """
     step = 2.0 * WIDEST / (BINS - 1)
     farthest = 8.0 * reach * reach
@@ -88,7 +88,7 @@ def median_turn(histogram: Floats, doubt: float = 0.0) -> Floats:
     counted = histogram.copy()
     counted[..., BINS // 2] += doubt
     total = np.cumsum(counted, axis=-1)
-    # votes at a node are spread uniformly around it: the median is continuous in the votes
+    # votes are spread uniformly within a bin, which makes the median continuous in the votes
     middle = total - 0.5 * counted
     half = 0.5 * total[..., -1:]
     above = np.clip(np.sum(middle < half, axis=-1, keepdims=True), 1, BINS - 1)

@@ -1,6 +1,6 @@
-"""Linear programs of ORCA (van den Berg et al. 2011): the best velocity that keeps to the left of some lines.
+"""Linear programs of ORCA (van den Berg et al. 2011): the best velocity on the left of all lines.
 
-A line is a row ``x, y, ux, uy``: a point and a unit direction in velocity space; what lies on its left is allowed.
+A line is a row ``x, y, ux, uy``: a point and a unit direction in velocity space; velocities on its left are permitted.
 """
 
 from __future__ import annotations

@@ -94,15 +94,15 @@ class ORCA(CrowdModel):
     """Optimal reciprocal collision avoidance: each pair shares the smallest velocity change that avoids a collision.
 
     Args:
-        neighbor_distance: neighbours are nearer than this [m].
+        neighbor_distance: maximum distance of neighbours [m].
         max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
-        time_horizon: agents keep clear of each other for this long [s].
-        time_horizon_walls: and of walls for this long [s].
+        time_horizon: time horizon for agents [s].
+        time_horizon_walls: time horizon for walls [s].
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
 
-    External agents do not give way, so that the others take the whole change. A velocity on the right side of all lines
-    that is nearest to the desired one is chosen; when there is none, the deepest violation becomes as small as possible
-    (walls never give way). Velocities may jump: real robots need a limit of acceleration after it.
+    External agents do not give way; the others take the whole change. The chosen velocity is the permitted one nearest
+    to the desired velocity. If none is permitted, the largest violation is minimised (walls are never violated).
+    Velocities may be discontinuous: real robots need an acceleration limit.
 
     The default reproduces the RVO2 library. Differences: external agents take no share of the avoidance, and
     overlapping walls and degenerate scenes give bounded velocities.

@@ -1,6 +1,6 @@
-"""Lines of ORCA: which velocities keep clear of a neighbour, and of a wall (van den Berg et al. 2011).
+"""ORCA lines: permitted velocities with respect to neighbours and walls (van den Berg et al. 2011).
 
-A line is a row ``x, y, ux, uy``: a point and a unit direction in velocity space; what lies on its left is allowed.
+A line is a row ``x, y, ux, uy``: a point and a unit direction in velocity space; velocities on its left are permitted.
 """
 
 from __future__ import annotations

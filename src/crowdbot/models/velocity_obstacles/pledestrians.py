@@ -32,7 +32,7 @@ Floats = NDArray[np.float64]
 SHORTEST = 1e-3
 """Shortest horizon [s]: a horizon of 0 has no line."""
 ROUNDS = 30
-"""The search for the least effort ends after so many rounds; it hardly ever needs them."""
+"""Maximum number of iterations of the search for the least effort; it rarely needs them."""
 SETTLED = 1e-9
 """It has ended when the way left to the goal changes by less than this share."""
 
@@ -131,20 +131,20 @@ class PLEdestrians(CrowdModel):
     """Least-effort model: agents minimise the energy to the goal among the velocities that ORCA permits.
 
     Args:
-        planning_time: effort is counted at the new velocity for this long [s], and at the preferred speed on the
-            straight way that is left then; the plan ends at the goal at the latest.
-        neighbor_distance: neighbours are nearer than this [m].
+        planning_time: time at the new velocity [s]; the remaining straight path is walked at the preferred speed. The
+            plan ends at the goal at the latest.
+        neighbor_distance: maximum distance of neighbours [m].
         max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
-        time_horizon: agents keep clear of each other for this long [s].
-        time_horizon_walls: and of walls for this long [s].
+        time_horizon: time horizon for agents [s].
+        time_horizon_walls: time horizon for walls [s].
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
 
     Walking at speed v costs e_s + e_w v^2 per second and kilogram; over a planning time t that is
-    E(v) = t (e_s + e_w |v|^2) + 2 |g - t v| sqrt(e_s e_w) to a goal at g. Only sqrt(e_s / e_w) decides which velocity
-    is best: it is the speed of a free walk, so the preferred speed of the scene takes its place (the paper's 2.23
-    J/(kg s) and 1.26 J s/(kg m^2) give 1.33 m/s). E is convex, and so are the permitted velocities: what is chosen is
-    the true minimum. Against ORCA, who is hindered near the goal rather slows down than turns. Scenes with preferred
-    velocities in place of goals have goals infinitely far away, and there both models agree.
+    E(v) = t (e_s + e_w |v|^2) + 2 |g - t v| sqrt(e_s e_w) to a goal at g. The best velocity depends only on sqrt(e_s /
+    e_w), the free walking speed, which is replaced by the preferred speed of the scene (the paper's 2.23 J/(kg s) and
+    1.26 J s/(kg m^2) give 1.33 m/s). E and the set of permitted velocities are convex; the result is the global
+    minimum. Compared with ORCA, agents hindered near the goal slow down rather than turn. Scenes with preferred
+    velocities instead of goals have goals at infinity; both models then agree.
 
     The default follows the paper. Differences: the minimum is exact, and the preferred speed of the scene
     replaces the ratio of the energy coefficients.

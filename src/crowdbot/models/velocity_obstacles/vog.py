@@ -1,4 +1,4 @@
-"""VOG: velocity obstacles and groups, people who avoid others and keep together, all in velocity space."""
+"""VOG: velocity obstacles with groups (Ren et al. 2017)."""
 
 from __future__ import annotations
 
@@ -175,27 +175,28 @@ class VOG(CrowdModel):
     """Velocity obstacles with groups: agents choose the best sampled velocity for avoidance, group and goal.
 
     The cost of a velocity is its depth in the worst velocity obstacle of neighbours and walls, plus the mean violation
-    of the constraints to stay with the fellows of the own group (and abreast of them), plus what it lacks to the
-    desired velocity, plus a dislike of turning that fades while an agent is calm: the scene remembers as ``vog_calm``
-    how long ago and how little it last changed its mind. Groups are those of the scene; -1 walks alone.
+    of the constraints to stay with (and abreast of) the members of the group, plus the deviation from the desired
+    velocity, plus a penalty on turning that decreases while an agent is calm. The memory ``vog_calm`` of the scene
+    contains the time since the last change of mind and its size. Groups are those of the scene; -1 is no group.
 
     Args:
-        neighbor_distance: neighbours are nearer than this [m].
+        neighbor_distance: maximum distance of neighbours [m].
         max_neighbors: maximum number of neighbours, the nearest first.
-        time_horizon: no contact with them before this [s].
-        wall_horizon: walls are not touched before this [s].
-        preference_weight: of the desired velocity.
-        group_weight: of the group.
-        group_neighbors: only so many fellows count, near ones ahead who walk the same way; at most 16.
-        group_radius: fellows are to be within this [m] a second from now.
-        group_distance: fellows farther than this [m] are lost.
-        group_horizon: fellows out of range are to be within it after this [s].
-        formation: fellows walk abreast, no more than this [m] ahead or behind; 0 for no formation.
-        closeness: how much the group means to an agent, 0 to 1.
+        time_horizon: time horizon for neighbours [s].
+        wall_horizon: time horizon for walls [s].
+        preference_weight: weight of the desired velocity.
+        group_weight: weight of the group.
+        group_neighbors: maximum number of group members considered, near ones ahead with the same direction first; at
+            most 16.
+        group_radius: target distance of group members after one second [m].
+        group_distance: group members farther than this [m] are ignored.
+        group_horizon: time to return into the range of the group [s].
+        formation: maximum offset ahead or behind when walking abreast [m]; 0 for no formation.
+        closeness: importance of the group for an agent, 0 to 1.
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
 
-    External agents do not give way. Walls are our own law: a velocity that would touch one within the horizon costs the
-    speed that is too much. Use :meth:`step`; velocities alone do not remember.
+    External agents do not give way. The cost of walls is our own: the excess speed of a velocity that touches a wall
+    within the horizon. Use :meth:`step`; :meth:`velocity` does not update the memory.
 
     The default follows the implementation in the CrowdBot simulator; the cost of walls is our own.
 
@@ -245,7 +246,7 @@ class VOG(CrowdModel):
 
     @property
     def memory_at_start(self) -> Mapping[str, float]:
-        """A person who has just come in is calm."""
+        """A person who has just entered is calm."""
         return {MEMORY: CALM}
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
@@ -289,7 +290,7 @@ class VOG(CrowdModel):
 
 
 def _groups(group: Rows, seen: NDArray[np.bool_]) -> _Groups:
-    """Return who is in whose group, environment by environment; nobody is in a group below 0."""
+    """Return the members of each group, by environment; negative numbers are no group."""
     E, A = group.shape
     first, last = np.zeros(E * A, dtype=np.int64), np.zeros(E * A, dtype=np.int64)
     flat = rows(group)

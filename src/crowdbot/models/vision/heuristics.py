@@ -1,4 +1,4 @@
-"""Heuristics: look for the most direct free way, keep a time to what is ahead, and be pushed only by contact."""
+"""Heuristics: vision-based choice of direction and speed, with contact forces (Moussaid et al. 2011)."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Rows = NDArray[np.int64]
 ANGLES = 61
 """Directions that are looked at, the desired one and as many on each side."""
 EQUAL = 1e-9
-"""A direction must be better by this share of the largest cost, so that rounding does not choose between equal ones."""
+"""Relative advantage [share of the largest cost] required of another direction, against rounding."""
 
 
 class _Crowd(NamedTuple):
@@ -126,7 +126,7 @@ def _free_ways(
 
 @kernel
 def _most_direct(sight: float, fan: Floats, free: Floats) -> int:
-    """Return the direction whose free way ends nearest to the point at ``sight`` in the desired direction."""
+    """Return the direction whose free path ends nearest to the point at ``sight`` in the desired direction."""
     best, least = 0, math.inf
     for k in range(len(fan)):
         cost = sight * sight + free[k] * free[k] - 2.0 * sight * free[k] * fan[k, 2]
@@ -137,7 +137,7 @@ def _most_direct(sight: float, fan: Floats, free: Floats) -> int:
 
 @kernel
 def _ahead(row: int, others: Rows, place: Floats, radius: Floats, walls: Floats, ux: float, uy: float) -> float:
-    """Return how far one could walk along u if everybody stood still."""
+    """Return the free distance along u if all others stand still."""
     x, y, r = place[row, 0], place[row, 1], radius[row]
     way = math.inf
     for o in others:
@@ -211,21 +211,19 @@ class Heuristics(CrowdModel):
     """Two heuristics: the direction that leads closest to the goal, and a speed that leaves a fixed time to stop.
 
     Args:
-        field_of_view: directions up to this angle [rad] to each side of the desired one are looked at.
-        sight_distance: farther than this nothing matters [m].
-        relaxation_time: the time kept to what is ahead, and in which the velocity follows the choice [s]; no less than
-            the time step counts.
-        contact_stiffness: acceleration per metre of overlap between bodies, and with walls [1/s^2]; it is not taken
-            higher than what ends the overlap in one time step.
-        neighbor_distance: neighbours are nearer than this [m].
+        field_of_view: half field of view around the desired direction [rad].
+        sight_distance: range of vision [m].
+        relaxation_time: time gap to obstacles ahead, and time constant of the velocity [s]; at least the time step.
+        contact_stiffness: acceleration per metre of overlap between bodies, and with walls [1/s^2]; limited to the
+            value that resolves the overlap in one time step.
+        neighbor_distance: maximum distance of neighbours [m].
         max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
 
-    In direction a, the free way f(a) is what one can walk at the desired speed before touching a wall, or somebody who
-    keeps walking. Among 61 directions the one is chosen whose free way ends nearest to the point at sight distance in
-    the desired direction (equal ones: on the side of the present velocity, else on the right), then the speed
-    min(desired, free way as all stand now / relaxation time). Chosen here: the field of view is about the desired
-    direction, and who touches somebody is hindered only from going nearer.
+    In direction a, the free path f(a) is the distance at the desired speed to the first contact with a wall or a moving
+    neighbour. Of 61 directions, the model chooses the one whose free path ends nearest to the point at sight distance
+    in the desired direction (ties: on the side of the current velocity, otherwise on the right). The speed is
+    min(desired, free path with all others at rest / relaxation time).
 
     The default follows the paper. Differences: the field of view is centred on the desired direction, and agents in
     contact are blocked only in the direction of contact.

@@ -1,4 +1,4 @@
-"""Tangent: walkers who see a crossing too close coming change their velocity as little as passes it."""
+"""Tangent: vision-based avoidance with the smallest change of velocity (Pettré et al. 2009)."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Fl
 def _first_inside(
     row: int, first: int, x: float, y: float, place: Floats, area: Floats, others: NDArray[np.int32], count: int
 ) -> int:
-    """Return the row of the nearest neighbour whose personal area overlaps the own one, or -1."""
+    """Return the row of the nearest neighbour whose personal area overlaps that of the agent, or -1."""
     for n in range(count):
         other = first + others[n]
         dx, dy, reach = place[other, 0] - x, place[other, 1] - y, area[row] + area[other]
@@ -137,27 +137,25 @@ def _change_velocity(
 class Tangent(CrowdModel):
     """Vision-based model: agents that would pass too close choose the smallest velocity change that avoids it.
 
-    Velocities that only just pass a neighbour lie on two tangents in velocity space. Who would arrive second at the
-    crossing gives way early and passes behind; the first reacts only shortly before contact. Who meets nearly head on,
-    walks nearly the same way, or faces something that does not give way (external agents, standing ones) passes on the
-    nearer side. Of all velocities that pass everyone the least change is chosen, at the corners if need be; when there
-    is none, the velocity that is safe the longest. Whose personal area is entered steps straight away from the nearest
-    one, a little faster than it walks. Velocity changes by no more than the comfort speed in a second.
+    Velocities that just avoid a neighbour are on two tangents in velocity space. The agent that would arrive second at
+    a crossing gives way early and passes behind; the first one reacts only shortly before contact. In nearly head-on or
+    parallel encounters, and with agents that do not give way (external or at rest), agents pass on the nearer side. The
+    smallest velocity change that avoids all neighbours is chosen; if there is none, the velocity that is safe the
+    longest. An agent whose personal area is entered moves straight away from the nearest neighbour, slightly faster
+    than it. The velocity changes by at most the comfort speed per second.
 
     Args:
-        personal_area: radius [m] of the area that others are kept out of; the body's, where that is larger.
-        direction_error: of perceiving others (g_beta); the larger, the later a walker reacts; 0 reacts at once.
-        speed_error: of perceiving others (g_gamma), likewise.
-        time_horizon: no reaction earlier than this before contact [s].
-        wall_horizon: walls are not touched before this [s].
-        neighbor_distance: neighbours are nearer than this [m].
+        personal_area: radius of the personal area [m]; at least the radius of the body.
+        direction_error: error of perceived directions (g_beta); larger values delay the reaction, 0 gives no delay.
+        speed_error: error of perceived speeds (g_gamma), with the same effect.
+        time_horizon: maximum time before contact at which an agent reacts [s].
+        wall_horizon: time horizon for walls [s].
+        neighbor_distance: maximum distance of neighbours [m].
         max_neighbors: maximum number of neighbours, the nearest first.
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
 
-    The comfort speed is the preferred speed of the scene, or the length of the preferred velocity. The paper's own law
-    of errors is not reproduced: the time of reaction and how much who gives way brakes are fitted to the behaviour of
-    the implementation in the CrowdBot simulator. Walls are our own law: towards a wall that would be touched within the
-    horizon a walker goes no faster than it takes to reach it just then.
+    The comfort speed is the preferred speed of the scene, or the length of the preferred velocity. The cost of walls is
+    our own: the speed towards a wall is limited to reaching it at the end of the horizon.
 
     The default has the geometry of the paper. The reaction time and the braking are fitted to the implementation in the
     CrowdBot simulator; the paper's law of perception errors is not reproduced.
@@ -203,7 +201,7 @@ class Tangent(CrowdModel):
         most = np.rint(each("max_neighbors"))
         near = nearest(scene.position, each("neighbor_distance"), most, scene.active & scene.visible, walking)
         comfort, remaining = _pace(scene, wish)
-        with np.errstate(divide="ignore"):  # without errors walkers react at once
+        with np.errstate(divide="ignore"):  # without errors, walkers react immediately
             errors = (each("direction_error") / 0.5) ** 0.62 * (each("speed_error") / 0.25) ** 0.38
             reaction = REACTION / errors
         crowd = _Crowd(

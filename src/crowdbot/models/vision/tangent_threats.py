@@ -1,6 +1,6 @@
-"""Threats of Tangent (Pettré et al. 2009): what neighbours and walls forbid, and the least change that passes them all.
+"""Threats of Tangent (Pettré et al. 2009): constraints by neighbours and walls, and the smallest velocity change.
 
-A threat is a row of numbers: kind, apex (2), first tangent (2), second tangent or best velocity (2), where it is (2),
+A threat is a row of numbers: kind, apex (2), first tangent (2), second tangent or best velocity (2), position (2),
 allowed side, clearance, time to contact. Tangents are rays in velocity space that begin at the apex.
 """
 
@@ -21,13 +21,13 @@ Floats = NDArray[np.float64]
 CONTACT = 0.5
 """Who passes first reacts only when contact is this near [s] (measured on the original)."""
 STILL = 0.1
-"""Who is slower than this [m/s] is in nobody's way by walking: one passes on the nearer side."""
+"""Agents slower than this [m/s] count as at rest; others pass on the nearer side."""
 ALONG, AGAINST = math.cos(math.radians(15.0)), math.cos(math.radians(165.0))
-"""Beyond these crossing angles there is no first and second."""
+"""Crossing angles beyond these have no first and second agent."""
 FACING = math.cos(math.radians(112.5))
 """Beyond this crossing angle both react early."""
 CROSSING = np.radians(np.array([45.0, 90.0, 135.0]))
-"""Crossing angles [rad] at which the strategies of who gives way were measured:"""
+"""Crossing angles [rad] at which the reactions of the agent that gives way were measured:"""
 CLEARANCE = np.array([1.35, 0.92, 0.94])
 """share of the clearance that is kept,"""
 BRAKING = np.array([0.5, 0.0, 0.35])
@@ -37,7 +37,7 @@ RETREAT = 1.0
 HASTE = 0.1
 """Whoever steps out of another's personal area goes so much faster [m/s] than it walks (measured on the original)."""
 MOST = 8
-"""Only so many neighbours are avoided at a time, the most urgent, and as many walls."""
+"""Maximum number of neighbours avoided at a time, the most urgent first; the same for walls."""
 THREAT = 12
 """Numbers of a threat."""
 CONE, LINE, WALL = 0.0, 1.0, 2.0
@@ -60,7 +60,7 @@ def threat_of_neighbor(
     out: Floats, x: float, y: float, bx: float, by: float, ox: float, oy: float, clearance: float, reaction: float,
     horizon: float, external: bool, top: float,
 ) -> bool:  # fmt: skip
-    """Write what a neighbour at x, y (relative) with velocity o means for a walker with velocity b; False: nothing."""
+    """Write the constraint by a neighbour at x, y (relative) with velocity o; False if there is none."""
     wx, wy = bx - ox, by - oy
     w2, closing = wx * wx + wy * wy, x * wx + y * wy
     if closing <= 0.0 or x * bx + y * by < 0.0:
@@ -142,7 +142,7 @@ def _line(out: Floats, px: float, py: float, nx: float, ny: float, gap: float, c
 def threat_of_wall(
     out: Floats, wall: Floats, x: float, y: float, bx: float, by: float, radius: float, horizon: float
 ) -> bool:
-    """Write what a wall means for a walker at x, y with velocity b; False: nothing."""
+    """Write the constraint by a wall on a walker at x, y with velocity b; False if none."""
     nx, ny = nearest_on_segment(x, y, wall[0], wall[1], wall[2], wall[3])
     nx, ny = nx - x, ny - y
     distance = math.sqrt(nx * nx + ny * ny)
@@ -182,7 +182,7 @@ def _is_free(threats: Floats, count: int, vx: float, vy: float) -> bool:
 
 @kernel
 def _offer(best: Floats, threats: Floats, count: int, vx: float, vy: float, bx: float, by: float, top: float) -> None:
-    """Take a velocity as the best when it is a smaller change than the best so far and passes all threats."""
+    """Accept a velocity as the best if it is a smaller change than the current best and satisfies all constraints."""
     change2 = (vx - bx) ** 2 + (vy - by) ** 2
     if change2 < best[0] and vx * vx + vy * vy <= top * top and _is_free(threats, count, vx, vy):
         best[0], best[1], best[2] = change2, vx, vy

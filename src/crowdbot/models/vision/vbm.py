@@ -127,30 +127,30 @@ def _choose_part(
 class VBM(CrowdModel):
     """Vision-based model: agents follow the gradient of a cost over time and distance of closest approach.
 
-    The cost of a thing in view that comes closest in t [s] at distance c [m] is exp(-((t / time_scale)^2 +
-    (c / distance_scale)^2) / 2). Direction and speed go down the mean of it over what is in view (150 degrees), plus a
-    weak cost of not walking as desired: it takes several seconds to regain speed, as published. Acceleration is
-    limited, braking is not. A standing agent looks along its heading. The model has no contacts: bodies may overlap in
-    a dense crowd.
+    The cost of a visible object with closest approach in t [s] at distance c [m] is exp(-((t / time_scale)^2 +
+    (c / distance_scale)^2) / 2). Direction and speed follow the gradient of its mean over the field of view (150
+    degrees), plus a weak cost of deviations from the desired velocity: agents need several seconds to regain speed, as
+    published. Acceleration is limited, braking is not. A standing agent looks along its heading. The model has no
+    contacts: bodies may overlap in a dense crowd.
 
     Args:
-        neighbor_distance: agents are seen nearer than this [m].
+        neighbor_distance: maximum distance of visible agents [m].
         max_neighbors: maximum number of visible agents, the nearest first.
-        wall_distance: walls are seen nearer than this [m].
+        wall_distance: maximum distance of visible walls [m].
         time_scale: spread of the cost over the time of closest approach [s].
         distance_scale: spread of the cost over the distance of closest approach [m].
         speed_scale: spread of the desire for the desired speed [m/s].
         angle_scale: spread of the desire for the desired direction [rad].
-        max_acceleration: of speeding up [m/s^2].
-        max_turn: sideways acceleration of turning [m/s^2]; standing agents turn at once.
-        gain: of the step down the slope; higher walks back to the desired way sooner.
-        ridge: closest approaches nearer than this [m] push aside as if they were as far; exact hits push to the right.
+        max_acceleration: maximum forward acceleration [m/s^2].
+        max_turn: maximum lateral acceleration [m/s^2]; agents at rest turn immediately.
+        gain: gain of the gradient step; larger values return to the desired path sooner.
+        ridge: minimum distance of closest approach [m] for sideways pushes; exact hits push to the right.
         max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
         variant: ``agents``: every agent counts by the angle that it fills, distances run from body to body, walls are
             seen along 15 rays. ``crowdbot``: the field of view is an array of rays in which the nearest thing hides the
             others; distances run from the own centre to the other's; ``ridge`` has no effect (agents who walk exactly
             into each other do not turn).
-        rays: of the field of view of ``crowdbot``.
+        rays: number of rays of the ``crowdbot`` variant.
 
     With ``rng`` the push aside varies by a quarter; without, it has its mean.
 
@@ -195,7 +195,7 @@ class VBM(CrowdModel):
         check_limit(self, self.max_speed)
         if self.variant not in VARIANTS:
             near = did_you_mean(self.variant, VARIANTS)
-            raise InputError(f"VBM: there is no variant {self.variant!r}{near}; choose {' or '.join(VARIANTS)}")
+            raise InputError(f"VBM: variant {self.variant!r} is unknown{near}; use {' or '.join(VARIANTS)}")
         if isinstance(self.rays, bool) or not isinstance(self.rays, int) or not 2 <= self.rays <= MOST_RAYS:
             raise InputError(f"VBM: rays = {self.rays!r} is not allowed, it must be a whole number, 2 to {MOST_RAYS}")
 

@@ -1,4 +1,4 @@
-"""Slopes of the cost of VBM: what an agent sees in its field of view, and what it desires."""
+"""Gradients of the cost of VBM: visible objects and desired velocity."""
 
 from __future__ import annotations
 

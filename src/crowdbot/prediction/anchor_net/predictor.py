@@ -31,10 +31,7 @@ from crowdbot.prediction.pretrained_weights import (
 from crowdbot.prediction.training.checkpoint import load_checkpoint
 
 from .agent_frame import (
-    AGENT_FEATURES,
-    NEIGHBOR_FEATURES,
     PREDICTED_ROWS,
-    SPEED_CLASSES,
     agent_features,
     agent_histories,
     heading_vectors,
@@ -43,6 +40,7 @@ from .agent_frame import (
 )
 from .anchors import CHAI, resample_paths, scatter_to_slots
 from .layers import attend, dense
+from .network_shapes import wrong_array
 
 __all__ = ["AnchorNet", "Modes", "network_output"]
 
@@ -50,11 +48,6 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 SAMPLES = ("set", "draws")
-NEEDED = ("basis", "centres", "spread", "width", "temperature", "widening", "nobody", "alone", *(
-    f"{layer}_{part}"
-    for layer in ("own_1", "own_2", "query", "near_1", "near_2", "both_1", "both_2", "out")
-    for part in ("weight", "bias")
-))  # fmt: skip
 MOST_AT_ONCE = 2048
 """Number of people per network evaluation."""
 WALL = 0.02
@@ -244,23 +237,28 @@ def _own(file: str, changed: int) -> Numbers:
     if known is None or known[0] != changed:
         numbers = read_weights(Path(file))
         if "content" in numbers:  # a checkpoint of crowdbot train
-            weights = load_checkpoint(file, "anchor-net")["weights"]
-            numbers = {name: np.asarray(values, dtype=np.float64) for name, values in weights.items()}
-        missing = [name for name in NEEDED if name not in numbers]
-        shapes = {
-            "own_1_weight": AGENT_FEATURES,
-            "near_1_weight": NEIGHBOR_FEATURES,
-            "temperature": len(SPEED_CLASSES) + 1,
-        }
-        wrong = [name for name, rows in shapes.items() if not missing and numbers[name].shape[:1] != (rows,)]
-        if missing or wrong:
-            what = f"{missing[0]} is missing" if missing else f"{wrong[0]} has another shape"
-            raise DataError(f"{file} is not a file of AnchorNet weights: {what}")
+            numbers = _checkpoint_weights(file)
+        wrong = wrong_array(numbers)
+        if wrong:
+            raise DataError(f"{file} is not a file of AnchorNet weights: {wrong}")
         _OWN[file] = known = changed, numbers
     return known[1]
 
 
 _OWN: dict[str, tuple[int, Numbers]] = {}
+
+
+def _checkpoint_weights(file: str) -> Numbers:
+    """Return the weights in a checkpoint."""
+    try:
+        weights = load_checkpoint(file, "anchor-net")["weights"]
+        numbers = {name: np.asarray(values, dtype=np.float64) for name, values in weights.items()}
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise DataError(f"{file} has no AnchorNet weights; train again") from None
+    bad = next((name for name, values in numbers.items() if not np.all(np.isfinite(values))), None)
+    if bad is not None:
+        raise DataError(f"{file}: {bad} has values that are not finite; the file is damaged")
+    return numbers
 
 
 def _bends(numbers: Numbers, past: Windows) -> _Bends:

@@ -1,1 +1,1 @@
-"""Files beside a trial: maps, areas, recordings and code that it refers to."""
+"""Files of a trial: maps, areas, recordings and code."""

@@ -1,4 +1,4 @@
-"""Named code: the Python files that the trial of an episode would run, found without running any."""
+"""Code references: the Python files that the trial of an episode would run, found without running any."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ ADDRESS = re.compile(r"([^\s,;|\"':=]+):[A-Za-z_]")
 
 
 def is_code(name: str) -> bool:
-    """Whether Python may take a file of this name for code, on any system.
+    """Return whether Python loads a file of this name as code, on any system.
 
     >>> is_code("shy.py"), is_code("mine/SHY.PY"), is_code("__pycache__/shy.cpython-312.pyc"), is_code("hall.pgm")
     (True, True, True, False)
     """
-    plain = name.lower().rstrip(". ")  # as Windows reads names
+    plain = name.lower().rstrip(". ")  # Windows ignores case and trailing dots and blanks
     return plain.endswith(ENDINGS) or "__pycache__" in PurePosixPath(plain).parts
 
 
 def code_references(known: Mapping[str, str], folder: Path) -> list[str]:
-    """Return the Python files that the trials of an episode name, and those that their robot folders name.
+    """Return the Python files named by the trials of an episode and by their robot folders.
 
     Args:
         known: metadata of the episode.
-        folder: where the trial lies; robot folders are looked up there.
+        folder: folder of the trial and of its robot folders.
     """
     found: list[str] = []
     for text in _trials(known):
@@ -46,7 +46,7 @@ def code_references(known: Mapping[str, str], folder: Path) -> list[str]:
                         f"{element.attributes['type']}/{name}" for part in parts for name in _files(part, robot.parent)
                     ]
         except (InputError, OSError, ValueError):
-            continue  # so nothing of it runs, and who reads it next says why
+            continue  # nothing of it runs; the parser reports the error
     return sorted(set(found))
 
 
@@ -55,7 +55,7 @@ def _trials(known: Mapping[str, str]) -> Iterator[str]:
     try:
         yield from (str(one["trial"]) for one in json.loads(known.get("origin", "[]")))
     except (ValueError, TypeError, KeyError):
-        return  # who reads it next says that it is damaged
+        return  # the loader reports the damaged file
 
 
 def _all(element: Element) -> Iterator[Element]:
@@ -65,7 +65,7 @@ def _all(element: Element) -> Iterator[Element]:
 
 
 def _files(element: Element, folder: Path) -> list[str]:
-    """Return the Python files of the addresses of an element, or of the values of a sweep."""
+    """Return the Python files in the addresses of an element or in the values of a sweep."""
     if element.tag == "sweep":
         places = [name for text in element.attributes.values() for name in ADDRESS.findall(text)]
     else:

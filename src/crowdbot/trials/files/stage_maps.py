@@ -1,4 +1,4 @@
-"""Ground: areas as WKT or GeoJSON, and maps of ROS, as polygons of bounded size."""
+"""Stage maps: areas from WKT or GeoJSON and ROS maps, as polygons of limited size."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ def area_of(text: str, folder: Path | None, trust: bool) -> shapely.Geometry:
     """Return the polygon or polygons of an area.
 
     Args:
-        text: WKT, or the name of a file of WKT or GeoJSON in the folder.
-        folder: of the trial.
-        trust: whether the file may lie outside.
+        text: WKT, or the name of a WKT or GeoJSON file in the folder.
+        folder: folder of the trial.
+        trust: whether the file may lie outside the folder.
 
     Raises:
-        InputError: it is neither, holds no valid polygon, or too many corners.
+        InputError: the text is neither, or has no valid polygon or too many corners.
 
     >>> area_of("POLYGON ((0 0, 4 0, 4 3, 0 3, 0 0))", None, False).area
     12.0
@@ -52,12 +52,12 @@ def area_of(text: str, folder: Path | None, trust: bool) -> shapely.Geometry:
     try:
         shape = shapely.from_wkt(text)
     except (shapely.errors.ShapelyError, ValueError) as error:
-        raise InputError(f"is no WKT: {_first(error)}") from None
+        raise InputError(f"is not WKT: {_first(error)}") from None
     return _checked(shape, "the WKT")
 
 
 def is_area_file(text: str) -> bool:
-    """Return whether an area is the name of a file, not WKT.
+    """Return whether an area is a file name and not WKT.
 
     >>> is_area_file("hall.geojson"), is_area_file("POLYGON ((0 0, 4 0, 4 3, 0 0))")
     (True, False)
@@ -74,7 +74,7 @@ def _from_file(path: Path, changed: int, size: int) -> shapely.Geometry:
         text = data.decode("utf-8-sig")
         shape = shapely.from_wkt(text) if WKT.match(text) else shapely.from_geojson(text)
     except UnicodeDecodeError:
-        raise InputError(f"{path.name} is no text; an area is a file of WKT or GeoJSON") from None
+        raise InputError(f"{path.name} is not text; an area is a file of WKT or GeoJSON") from None
     except (shapely.errors.ShapelyError, ValueError) as error:
         raise InputError(f"{path.name} is neither WKT nor GeoJSON of an area: {_first(error)}") from None
     return _checked(shape, path.name)
@@ -88,7 +88,7 @@ def _checked(shape: Any, what: str) -> shapely.Geometry:
     import shapely
 
     if shape is None:
-        raise InputError(f"{what} holds no polygon")
+        raise InputError(f"{what} contains no polygon")
     found = [part for part in _parts(shape) if not part.is_empty]
     parts = [part for part in found if part.geom_type == "Polygon"]
     if not parts:
@@ -109,13 +109,13 @@ def _checked(shape: Any, what: str) -> shapely.Geometry:
 
 
 def _parts(shape: Any) -> list[Any]:
-    """Return the single geometries of a collection, however deep."""
+    """Return the geometries of a collection, nested ones included."""
     inner = getattr(shape, "geoms", None)
     return [shape] if inner is None else [part for one in inner for part in _parts(one)]
 
 
 class _Map(NamedTuple):
-    """What the ``.yaml`` of a map says."""
+    """Content of the ``.yaml`` file of a map."""
 
     image: str
     resolution: float
@@ -126,18 +126,18 @@ class _Map(NamedTuple):
 
 
 def map_of(name: str, unknown: str, folder: Path | None, trust: bool) -> tuple[shapely.Polygon, ...]:
-    """Return what is solid in a map of ROS (map_server, ``.yaml`` with ``.pgm``) as polygons.
+    """Return the occupied cells of a ROS map (map_server, ``.yaml`` with ``.pgm``) as polygons.
 
-    Corners of cells are cut so far that no border is off by more than one cell.
+    Borders are simplified by at most one cell.
 
     Args:
-        name: of the ``.yaml`` in the folder.
-        unknown: whether cells of which nothing is known are ``occupied`` or ``free``.
-        folder: of the trial.
-        trust: whether the files may lie outside.
+        name: name of the ``.yaml`` file in the folder.
+        unknown: treatment of unknown cells, ``occupied`` or ``free``.
+        folder: folder of the trial.
+        trust: whether the files may lie outside the folder.
 
     Raises:
-        InputError: a file is missing, too large or no map.
+        InputError: a file is missing, too large or not a map.
     """
     _, row, image = _map_of(name, folder, trust)
     stamp = image.stat()
@@ -145,7 +145,7 @@ def map_of(name: str, unknown: str, folder: Path | None, trust: bool) -> tuple[s
 
 
 def map_files(name: str, folder: Path | None, trust: bool) -> dict[str, Path]:
-    """Return the files of a map by their names in the folder: the ``.yaml`` and its image; see :func:`map_of`."""
+    """Return the files of a map by name, the ``.yaml`` file and its image; arguments as in :func:`map_of`."""
     path, row, image = _map_of(name, folder, trust)
     return {name: path, (PurePosixPath(name).parent / row.image).as_posix(): image}
 
@@ -160,7 +160,7 @@ def _map_of(name: str, folder: Path | None, trust: bool) -> tuple[Path, _Map, Pa
 
 
 def _yaml(data: bytes, name: str) -> _Map:
-    """Read the flat list of keys that a map has."""
+    """Read the flat keys and values of a map file."""
     rows = {}
     for line in data.decode("utf-8", "replace").splitlines():
         key, colon, value = line.partition(":")
@@ -168,14 +168,14 @@ def _yaml(data: bytes, name: str) -> _Map:
             rows[key.strip()] = value.split(" #")[0].strip().strip("\"'")
     missing = [key for key in ("image", "resolution", "origin") if not rows.get(key)]
     if missing:
-        raise InputError(f"{name} is no map of ROS: it does not say {' and '.join(missing)}")
+        raise InputError(f"{name} is not a ROS map: it does not say {' and '.join(missing)}")
     try:
         resolution = float(rows["resolution"])
         origin = [float(part) for part in rows["origin"].strip("[]").split(",")]
         negate = rows.get("negate", "0") in ("1", "true", "True")
         occupied, free = float(rows.get("occupied_thresh", "0.65")), float(rows.get("free_thresh", "0.196"))
     except ValueError as error:
-        raise InputError(f"{name} is no map of ROS: {error}") from None
+        raise InputError(f"{name} is not a ROS map: {error}") from None
     numbers = (resolution, *origin, occupied, free)
     if not all(math.isfinite(one) and abs(one) <= LARGEST for one in numbers) or resolution <= 0.0:
         raise InputError(f"{name} has a resolution or an origin that is not finite, too large, or not above 0")
@@ -219,11 +219,11 @@ def _check_detail(image: Path, count: int, what: str) -> None:
 
 
 def _pgm(data: bytes, name: str) -> NDArray[np.float64]:
-    """Return the grey values ``[H, W]`` from 0 to 1 of a PGM image, of bytes (P5) or of text (P2)."""
+    """Return the grey values ``[H, W]`` from 0 to 1 of a PGM image, binary (P5) or text (P2)."""
     head = re.match(rb"(P[25])(?:\s+(?:#[^\n]*\n\s*)*)(\d{1,6})(?:\s+(?:#[^\n]*\n\s*)*)(\d{1,6})"
                     rb"(?:\s+(?:#[^\n]*\n\s*)*)(\d{1,5})\s", data)  # fmt: skip
     if head is None:
-        raise InputError(f"{name} is no PGM image (P5 or P2); save the map as .pgm")
+        raise InputError(f"{name} is not a PGM image (P5 or P2); save the map as .pgm")
     width, height, top = (int(head[k]) for k in (2, 3, 4))
     if not (0 < width * height <= MOST_CELLS and 0 < top < 65_536):
         raise InputError(f"{name} has {width} x {height} cells of up to {top}; at most {MOST_CELLS} cells are read")
@@ -236,7 +236,7 @@ def _pgm(data: bytes, name: str) -> NDArray[np.float64]:
     else:
         words = body.split()
         if len(words) < width * height or not all(word.isdigit() and len(word) < 6 for word in words):
-            raise InputError(f"{name} is cut off, or holds something that is no number")
+            raise InputError(f"{name} is cut off, or holds something that is not a number")
         cells = np.array(words[: width * height], dtype=np.int64)
     grey: NDArray[np.float64] = cells.reshape(height, width).astype(np.float64) / top
     return np.minimum(grey, 1.0)

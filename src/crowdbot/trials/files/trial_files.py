@@ -1,4 +1,4 @@
-"""Files beside a trial: maps, areas and recordings that it names, and nothing outside its folder."""
+"""Trial files: maps, areas and recordings in the folder of a trial."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ def resolve_file(name: str, folder: Path | None, trust: bool) -> Path:
     """Return the path of a file that a trial names.
 
     Args:
-        name: as it stands in the trial, relative to its folder.
-        folder: of the trial; None is the working folder.
+        name: path in the trial file, relative to its folder.
+        folder: folder of the trial (default: the working folder).
         trust: whether the file may lie outside the folder.
 
     Raises:
-        InputError: it lies outside, or there is none.
+        InputError: the file lies outside the folder or does not exist.
     """
     root = folder or Path.cwd()
     try:
         path = (root / name).resolve()
         there = path.is_file()
     except (OSError, ValueError, RuntimeError):
-        raise InputError(f"{name[:80]!r} is no name of a file") from None
+        raise InputError(f"{name[:80]!r} is not a file name") from None
     if not trust and not path.is_relative_to(root.resolve()):
         raise InputError(f"the file {name[:80]!r} lies outside {root}; move it there, or pass --trust to allow it")
     if not there:
@@ -34,10 +34,10 @@ def resolve_file(name: str, folder: Path | None, trust: bool) -> Path:
 
 
 def read_beside(path: Path, most: int) -> bytes:
-    """Return the bytes of a file of at most so many.
+    """Return the bytes of a file of limited size.
 
     Raises:
-        InputError: it is larger, or cannot be read.
+        InputError: the file is larger or cannot be read.
     """
     try:
         with path.open("rb") as stream:

@@ -1,7 +1,7 @@
-"""Import: trials, orders and configurations of the CrowdBot simulator of 2021, with a list of what cannot be kept.
+"""Import of trials, orders and configurations of the CrowdBot simulator of 2021, with a list of what is not imported.
 
-Its files have x and y on the ground in a left-handed frame and headings in degrees, 0 along its +y, clockwise seen from
-above in the engine. Here x stays, y changes its sign, and headings are radians counter-clockwise from +x.
+Its files have x and y on the ground in a left-handed frame, and headings in degrees, clockwise from +y. The import
+keeps x, changes the sign of y, and converts headings to radians, counter-clockwise from +x.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from .original_order import DEFAULT, Plan
 __all__ = ["Imported", "import_original", "plan_of", "trials_of"]
 
 NEVER = 600.0
-"""Duration [s] of a trial that never ended."""
+"""Duration [s] of a trial without an end."""
 ROOTS = ("Trial", "Config")
 
 
@@ -36,8 +36,8 @@ class Imported:
     """Trials of an original file.
 
     Fields:
-        trials: by the name of their file, in the order of the experiment.
-        left_out: a sentence about everything that could not be carried over.
+        trials: trials by file name, in the order of the experiment.
+        left_out: one sentence for everything that is not imported.
     """
 
     trials: tuple[tuple[str, Trial], ...]
@@ -49,12 +49,12 @@ def import_original(path: str | Path, *, participant: int | None = None, root: s
 
     Args:
         path: file with the root element ``Trial`` or ``Config``, or an order file (one trial per line).
-        participant: participant whose order is read (default: the one that the configuration names).
-        root: folder of the simulator's project, which the paths in the file begin at; it is searched for their ends
-            (default: the folder of the file and the three folders above it).
+        participant: participant whose order is read (default: from the configuration).
+        root: root folder of the simulator's project; paths in the file are relative to it, and files are searched by
+            the ends of their paths (default: the folder of the file and the three folders above it).
 
     Raises:
-        TrialError: the file is missing, hostile, or none of these.
+        TrialError: the file is missing, malformed or of another kind.
     """
     path = Path(path)
     data = read_trial_bytes(path)
@@ -75,7 +75,7 @@ def plan_of(path: str | Path, root: str | Path | None = None) -> Plan:
         root: as in :func:`import_original`.
 
     Raises:
-        TrialError: the file is missing, malformed or of another kind, or the root is no folder.
+        TrialError: the file is missing, malformed or of another kind, or the root is not a folder.
     """
     path = Path(path)
     base = None if root is None else Path(root)
@@ -91,12 +91,12 @@ def plan_of(path: str | Path, root: str | Path | None = None) -> Plan:
         )
     experience = _find(tree, "experience") or Element("experience")
     notes = {
-        f"<{element.tag}> of the configuration: recording and plug-ins are chosen anew": None
+        f"<{element.tag}> of the configuration: recording and plug-ins are not imported": None
         for element in tree.children
         if element.tag in ("log", "Recording", "AddOns")
     }
     if _text(experience, "userHeight"):
-        notes["userHeight of the configuration: the height of eyes is that of whoever takes part"] = None
+        notes["userHeight of the configuration: the eye height is that of the participant"] = None
     return Plan(
         path,
         path.parent,
@@ -109,10 +109,10 @@ def plan_of(path: str | Path, root: str | Path | None = None) -> Plan:
 
 
 def trials_of(plan: Plan, user: int) -> tuple[list[tuple[str, Trial]], tuple[str, ...]]:
-    """Return the trials of a participant by their entries in the order, and what could not be carried over.
+    """Return the trials of a participant by their entries in the order, and what is not imported.
 
     Raises:
-        TrialError: not one can be read.
+        TrialError: none of the trials can be read.
     """
     rows: list[tuple[str, Trial]] = []
     notes = dict.fromkeys(plan.notes)
@@ -128,7 +128,7 @@ def trials_of(plan: Plan, user: int) -> tuple[list[tuple[str, Trial]], tuple[str
     if not rows:
         said = "; ".join(notes)
         raise TrialError(
-            f"{plan.path}: no trial of the order {plan.fill_in(plan.pattern, user)[:80]!r} is read: {said}"
+            f"{plan.path}: no trial of the order {plan.fill_in(plan.pattern, user)[:80]!r} can be read: {said}"
         )
     return rows, tuple(notes)
 
@@ -143,7 +143,7 @@ def _one(root: Element, path: Path) -> Imported:
 
 @dataclass
 class _Reader:
-    """Makes a trial of an original one, and notes what is left out."""
+    """Converts an original trial, and notes what is not imported."""
 
     name: str
     notes: dict[str, None] = field(default_factory=dict)
@@ -181,7 +181,7 @@ class _Reader:
         scene = _find(root, "scene")
         mesh = scene.attributes.get("meshName", "") if scene else ""
         if mesh:
-            self.note(f"stage {mesh[:40]!r}: only the walls and pillars that the trial lists are carried over")
+            self.note(f"stage {mesh[:40]!r}: only the walls and pillars in the trial are imported")
         walls: list[Wall] = []
         solids: list[Obstacle] = []
         for one in _kinds(root, "obstacles", "obstacle"):
@@ -208,7 +208,7 @@ class _Reader:
             solids.append(Obstacle(Points.of(corners)))
 
     def _end(self, root: Element) -> tuple[list[EndCondition], float]:
-        """Return conditions of the end and the duration."""
+        """Return the end conditions and the duration."""
         when, duration = [], math.inf
         for one in _all(root, "condition"):
             what, test = one.attributes.get("parameter", "time"), one.attributes.get("test", "less")
@@ -250,7 +250,7 @@ class _Reader:
                 lx, ly = _place(look)
                 heading = math.atan2(ly - y, lx - x)
         else:
-            self.note(f"agents steered by {law.tag} stand still: they were moved from outside, or from a table")
+            self.note(f"agents steered by {law.tag} stand still: they were moved externally or from a table")
         return Agent(
             name=f"agent{k + 1}",
             x=x,
@@ -284,7 +284,7 @@ class _Reader:
         else:
             goal = RobotGoal(x + 10.0 * math.cos(heading), y + 10.0 * math.sin(heading), 0.5)
             self.note("robots had no goal: it is set 10 m ahead of each")
-        self.note("robots were steered from outside and had bodies: they are now discs with a differential drive, ORCA")
+        self.note("robots were controlled externally: they are now discs with a differential drive and ORCA")
         return RobotSpec(
             name=f"robot{k + 1}" if k else "robot",
             x=x,
@@ -298,7 +298,7 @@ class _Reader:
         )
 
     def _rest(self, root: Element) -> None:
-        """Note what else there is."""
+        """Note the elements that are not imported."""
         player = _find(root, "player")
         for one in player.children if player else ():
             walks = one.tag == "TrialRegularPlayer"
@@ -335,7 +335,7 @@ def _find(element: Element, tag: str) -> Element | None:
 
 
 def _inner(element: Element, tag: str) -> Element | None:
-    """Return the one child of a child: its tag tells the kind."""
+    """Return the only child of a child; its tag is the kind."""
     outer = _find(element, tag)
     return outer.children[0] if outer and outer.children else None
 
@@ -347,7 +347,7 @@ def _kinds(root: Element, several: str, one: str) -> list[Element]:
 
 
 def _text(element: Element, key: str) -> str:
-    """Return a value that is an attribute or a child element."""
+    """Return the text of a value, which is an attribute or a child element."""
     if key in element.attributes:
         return element.attributes[key]
     inner = _find(element, key)
@@ -368,14 +368,14 @@ def _number(element: Element, key: str, otherwise: float) -> float:
 
 
 def _place(element: Element | None) -> tuple[float, float]:
-    """Return a place on the ground in our frame."""
+    """Return a position on the ground in the frame of crowdbot."""
     if element is None:
         return 0.0, 0.0
     return _number(element, "x", 0.0), -_number(element, "y", 0.0)
 
 
 def _heading(element: Element | None) -> float:
-    """Return a heading [rad] of a rotation about z in degrees: 0 looks along +y of the file, which is our -y."""
+    """Return the heading [rad] of a rotation about z [degrees]: 0 is along +y of the file, which is -y here."""
     turn = math.radians(_number(element, "z", 0.0)) if element else 0.0
     return math.atan2(-math.cos(turn), -math.sin(turn))
 

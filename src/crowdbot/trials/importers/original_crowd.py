@@ -1,4 +1,4 @@
-"""The crowd simulators of the original files as models of ours, with everybody's own parameters."""
+"""Crowd models of the original files, with the parameters of each person."""
 
 from __future__ import annotations
 
@@ -65,9 +65,9 @@ KINDS: dict[str, tuple[type[CrowdModel], dict[str, str]]] = {
 }
 KINDS["RosSimConfig"] = KINDS["RVOconfig"]
 CLOSED = {
-    "HelbingConfig": "its binary is closed: the social force model stands in",
-    "TangentConfig": "its binary is closed: the tangent model stands in",
-    "UMANSconfig": "its policies are in another file: ORCA stands in",
+    "HelbingConfig": "its binary is closed: the social force model replaces it",
+    "TangentConfig": "its binary is closed: the tangent model replaces it",
+    "UMANSconfig": "its policies are in another file: ORCA replaces it",
 }
 
 
@@ -82,17 +82,17 @@ class Walker:
 
     @property
     def kind(self) -> str:
-        """The type of its simulator."""
+        """Type of its simulator."""
         return self.sim.tag if self.sim is not None and self.sim.tag in KINDS else "RVOconfig"
 
     @property
     def crowd(self) -> str:
-        """The name of its crowd."""
+        """Name of its crowd."""
         return self.kind.removesuffix("onfig").removesuffix("C").removesuffix("c")
 
     @property
     def speed(self) -> float:
-        """Preferred speed [m/s]: of the simulator when it has one, of the law otherwise."""
+        """Preferred speed [m/s], from the simulator if it has one, otherwise from the control law."""
         return max(
             0.05,
             _value(self.sim, "prefered_speed")
@@ -103,13 +103,13 @@ class Walker:
 
     @property
     def group(self) -> int:
-        """The number of its group, -1 alone."""
+        """Number of its group, -1 without a group."""
         inner = [one for one in self.sim.children if one.tag == "group"] if self.sim else []
         found = _value(inner[0], "groupID") if inner else _value(self.sim, "groupID")
         return int(found) if found is not None and found >= 0.0 else -1
 
     def parameters(self) -> dict[str, float]:
-        """Return the parameters of the model that the file gives."""
+        """Return the parameters of the model in the file."""
         if self.sim is None:
             return {}
         model, words = KINDS[self.kind]
@@ -125,7 +125,7 @@ class Walker:
 
 
 def crowds_of(walkers: Sequence[Walker], note: Callable[[str], None]) -> tuple[CrowdModel, list[dict[str, Any]]]:
-    """Return the crowd model of all, and what each agent has of its own as fields of an agent."""
+    """Return the crowd model of all agents, and the individual fields of each :class:`Agent`."""
     kinds = list(dict.fromkeys(walker.kind for walker in walkers)) or ["RVOconfig"]
     rows = [walker.parameters() for walker in walkers]
     made: dict[str, CrowdModel] = {}
@@ -136,7 +136,7 @@ def crowds_of(walkers: Sequence[Walker], note: Callable[[str], None]) -> tuple[C
         made[kind] = _model(KINDS[kind][0], first, note)
     for walker in walkers:
         if walker.sim is not None and walker.sim.tag not in KINDS:
-            note(f"the simulator {walker.sim.tag}: ORCA stands in")
+            note(f"the simulator {walker.sim.tag}: ORCA replaces it")
     own = []
     for row, walker in zip(rows, walkers, strict=True):
         model = made[walker.kind]

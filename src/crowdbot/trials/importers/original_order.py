@@ -30,7 +30,7 @@ class Plan:
         pattern: name of the order files; ``{USER}`` is the participant, ``{TWO}`` the participant modulo 2.
         user: participant that the configuration names.
         first: first line of the order, counted from 0.
-        notes: sentences about everything that is not imported.
+        notes: one sentence for everything that is not imported.
         root: folder that is searched for files instead of ``folder``, None for none.
     """
 
@@ -50,7 +50,7 @@ class Plan:
         """Return the names of the trials of a participant in their order.
 
         Raises:
-            TrialError: there is no order file, or it is no text.
+            TrialError: the order file does not exist or is not text.
         """
         order = self.fill_in(self.pattern, user)
         try:
@@ -62,21 +62,21 @@ class Plan:
         return tuple(self.fill_in(line.split(";")[0].split(",")[0].strip(), user) for line in chosen)
 
     def users(self) -> tuple[int, ...]:
-        """Return the participants, from 0, who have an order file of their own; only that of the file without any."""
+        """Return the participants, from 0, with an order file; without any, the one of the configuration."""
         if "{USER}" not in self.pattern and "{TWO}" not in self.pattern:
             return (self.user,)
         most = MOST_USERS if "{USER}" in self.pattern else 2
         return tuple(user for user in range(most) if self._is_there(user)) or (self.user,)
 
     def find(self, name: str) -> Path:
-        """Return the file that a configuration or an order names.
+        """Return the path of a file named in a configuration or an order.
 
         Names begin at the root of the simulator's project, such as ``./Assets/Scenario/a.xml``. Leading folders that
         do not exist here are dropped. A file in ``folder`` comes first. With a ``root``, the file in it that shares
         most of the end of the name is next; otherwise the three folders above ``folder`` are searched.
 
         Raises:
-            InputError: there is no such file, or two fit equally well.
+            InputError: the file does not exist, or two files match equally well.
         """
         with contextlib.suppress(InputError):
             return resolve_file(name, self.folder, trust=False)

@@ -1,4 +1,4 @@
-"""From a recording to a trial: its people as the crowd, and the robot in the place of one of them."""
+"""Trials from recordings: the recorded people are the crowd, and a robot may replace one of them."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 __all__ = ["recorded_trial"]
 
 TICK = 0.05
-"""Steps of a world are no longer than this [s], and a whole number of them lies between two rows of a recording."""
+"""Longest time step [s]; the time between two rows of a recording is a whole number of steps."""
 SHORTEST = 0.01
-"""No step is made shorter than this [s] to hit frames of a counter that is finer."""
+"""Shortest time step [s]."""
 SLOWER = 2.0
-"""A robot has at least this many times as long as the person whom it replaces."""
+"""Time limit of the robot, as a multiple of the time of the person whom it replaces."""
 AHEAD = 1.0
 
 
@@ -42,19 +42,19 @@ def recorded_trial(
     replace: int | None = None,
     name: str = "",
 ) -> Trial:
-    """Return a trial whose crowd are the people of a recording.
+    """Return a trial with the people of a recording.
 
-    The trial lasts as long as the recording. With ``replace`` it begins when that person appears, and lasts to the end
-    of the recording, or twice as long as the person walked if that is longer: a robot may be slower than a person.
+    The trial lasts as long as the recording. With ``replace`` it begins when that person appears, and lasts until the
+    end of the recording, or twice as long as the person walked if that is longer, since a robot may be slower.
 
     Args:
-        path: recording. The trial refers to it by its file name, so it must lie in the folder of the trial file.
-        fps, format, units: of the file, as in :func:`crowdbot.load` (default: from the file).
+        path: recording. The trial refers to it by file name, so it must be in the folder of the trial file.
+        fps, format, units: as in :func:`crowdbot.load` (default: from the file).
         mode: ``scripted`` (people follow the recording) or ``reactive`` (people nearer to the robot than ``near``
             follow a model).
         near: distance to the robot below which people react [m].
         replace: id of the person that a robot replaces; it has the person's start, goal and starting time.
-        name: of the trial (default: the name of the file).
+        name: name of the trial (default: the file name).
 
     Raises:
         InputError: no person has this id, or the person stands still.
@@ -92,7 +92,7 @@ def recorded_trial(
 
 
 def _step(tracks: Trajectories) -> float:
-    """Return a time step [s] of which a whole number passes between any two frames, also across gaps of any length."""
+    """Return a time step [s] that divides the time between any two frames, also across gaps."""
     shared = int(np.gcd.reduce(np.diff(np.unique(tracks.frame)), initial=tracks.frame_step))
     base = tracks.dt * shared / tracks.frame_step
     base = base if base >= SHORTEST else tracks.dt
@@ -106,12 +106,12 @@ def _walk_of(crowd: RecordedPeople, person: int, duration: float) -> Walk:
         raise InputError(f"nobody in {crowd.data} has the id {person}; ids go from {ids[0]} to {ids[-1]}")
     walk = max(walks, key=lambda one: float(one.time[-1] - one.time[0]))
     if float(np.hypot(*(walk.position[-1] - walk.position[0]))) < 1.0:
-        raise InputError(f"person {person} of {crowd.data} ends less than 1 m from the start, which is no way to go")
+        raise InputError(f"person {person} of {crowd.data} ends less than 1 m from the start, which is too short")
     return walk
 
 
 def _robot(walk: Walk, step: float) -> RobotSpec:
-    """Return a robot from the start to the end of a walk, about as fast."""
+    """Return a robot that goes from the start to the end of a walk, at about the same speed."""
     way = np.hypot(*np.diff(walk.position, axis=0).T)
     speed = float(np.clip(way.sum() / (walk.time[-1] - walk.time[0]), 0.3, 3.0))
     later = walk.position[min(int(np.searchsorted(walk.time, walk.time[0] + AHEAD)), len(walk.time) - 1)]

@@ -1,1 +1,1 @@
-"""Placement: who stands where at the beginning, with which body."""
+"""Placement: positions and bodies of people at the beginning of a trial."""

@@ -1,4 +1,4 @@
-"""Figures: who people are and what they do beside walking, as their elements say it."""
+"""Appearance of people: bodies, outfits and activities."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ OUTFITS = 1000
 
 
 class PersonAppearance(NamedTuple):
-    """One person: name of the body, number of the outfit, and activity; empty and -1 for what was not said."""
+    """Body, outfit and activity of one person; empty or -1 if not given."""
 
     body: str
     outfit: int
@@ -31,11 +31,12 @@ class PersonAppearance(NamedTuple):
 
 
 class PeopleAppearance(NamedTuple):
-    """Everybody who has a place, robots apart, then who rides in a robot.
+    """Appearance of all people of a trial, followed by the riders of robots.
 
     Fields:
-        people: bodies of them all; activity: of those who do not ride.
-        riders: the agents of the robots in which somebody sits.
+        people: bodies of people and riders.
+        activity: activities of people, without riders.
+        riders: indices of the robots with a rider.
     """
 
     people: humans.People
@@ -44,7 +45,7 @@ class PeopleAppearance(NamedTuple):
 
 
 def body_names(text: str) -> tuple[str, ...]:
-    """Return the names of the bodies that ``body`` names, one by one or by kind.
+    """Return the names of the bodies in ``body``, which lists bodies and kinds of bodies.
 
     >>> len(body_names("man")), body_names("woman-36 mannequin")
     (20, ('woman-36', 'mannequin'))
@@ -58,7 +59,7 @@ def body_names(text: str) -> tuple[str, ...]:
 
 
 def draw_appearances(people: InitialPeople, seed: int) -> list[PersonAppearance]:
-    """Return who the people at the beginning are, in the order of their places."""
+    """Return the appearance of the people at the beginning, in the order of their indices."""
     found: list[PersonAppearance] = []
     agents = sum(isinstance(one, Agent) for one in people.owners)
     counts = np.bincount(people.owner, minlength=len(people.owners)).tolist()
@@ -66,17 +67,17 @@ def draw_appearances(people: InitialPeople, seed: int) -> list[PersonAppearance]
         keys: tuple[Any, ...] = ("agent", k) if k < agents else ("spawner", k - agents)
         if isinstance(owner, Agent | Spawner):
             outfit = getattr(owner, "outfit", None)
-            found += _some(owner.body, owner.activity, count, (seed, *keys), outfit)
+            found += _draw(owner.body, owner.activity, count, (seed, *keys), outfit)
         else:
             found += [PersonAppearance("", -1, "")] * count
     return found
 
 
 def people_appearance(trial: Trial, people: InitialPeople, agents: int, seed: int) -> PeopleAppearance:
-    """Return bodies and activities of everybody of ``agents`` who is no robot, and of riders.
+    """Return bodies and activities of all ``agents`` except robots, and of riders.
 
-    Who is not told of is an adult, drawn as a world draws people. People of sources take free places in any order, so
-    what several sources say of bodies and activities is mixed.
+    The default is a random adult, drawn as in a world. People of sources take free indices in any order, so the bodies
+    and activities of several sources are mixed.
     """
     count = agents - len(trial.robots)
     default = humans.People.sample(count, stream(seed, "people"))
@@ -84,32 +85,32 @@ def people_appearance(trial: Trial, people: InitialPeople, agents: int, seed: in
     bodies = " ".join(source.body for source in trial.sources)
     busy = " ".join(source.activity or "walk" for source in trial.sources) if any(
         source.activity for source in trial.sources) else ""  # fmt: skip
-    said += _some(bodies, busy, count - len(said), (seed, "sources"), None)
+    said += _draw(bodies, busy, count - len(said), (seed, "sources"), None)
     names = [figure.body or one.name for figure, one in zip(said, default.persons, strict=True)]
     outfits = [
         figure.outfit if figure.outfit >= 0 else int(own) for figure, own in zip(said, default.variation, strict=True)
     ]
     carriers = [k for k, robot in enumerate(trial.robots) if robot.rider]
     for k in carriers:
-        (figure,) = _some(trial.robots[k].rider, "", 1, (seed, "rider", k), None)
+        (figure,) = _draw(trial.robots[k].rider, "", 1, (seed, "rider", k), None)
         names.append(figure.body)
         outfits.append(figure.outfit)
     busy_with = tuple(figure.activity or "walk" for figure in said)
     return PeopleAppearance(humans.People.of(names, outfits), busy_with, tuple(len(people) + k for k in carriers))
 
 
-def _some(body: str, activity: str, count: int, keys: tuple[Any, ...], outfit: int | None) -> list[PersonAppearance]:
-    """Draw ``count`` figures; each kind of draw has a stream of its own."""
+def _draw(body: str, activity: str, count: int, keys: tuple[Any, ...], outfit: int | None) -> list[PersonAppearance]:
+    """Draw ``count`` appearances; bodies and activities have separate random streams."""
     names, busy = body_names(body), activity.split()
     seed, *rest = keys
     clothes = stream(seed, *rest, "body")
     who = clothes.integers(len(names), size=count).tolist() if names else [-1] * count
-    worn = clothes.integers(OUTFITS, size=count).tolist() if names else [-1] * count
+    outfits = clothes.integers(OUTFITS, size=count).tolist() if names else [-1] * count
     doing = stream(seed, *rest, "activity").integers(len(busy), size=count).tolist() if busy else [-1] * count
     return [
         PersonAppearance(
             names[who[k]] if names else "",
-            (worn[k] if outfit is None else outfit) if names else (-1 if outfit is None else outfit),
+            (outfits[k] if outfit is None else outfit) if names else (-1 if outfit is None else outfit),
             busy[doing[k]] if busy else "",
         )
         for k in range(count)

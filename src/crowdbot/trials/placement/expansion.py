@@ -1,4 +1,4 @@
-"""Explicit: a trial in which everybody who is there at the beginning stands as an agent that can be edited."""
+"""Expansion of spawners: every person at the beginning of a trial becomes an agent that can be edited."""
 
 from __future__ import annotations
 
@@ -25,14 +25,13 @@ __all__ = ["expand_spawners"]
 
 
 def expand_spawners(trial: Trial, seed: int | None = None) -> Trial:
-    """Return the trial with everybody of its spawners as an agent, as this seed places them.
+    """Return a trial whose spawners are replaced by agents at the places drawn with a seed.
 
-    It runs exactly as the trial does with this seed, which becomes its own. Sources and recorded people stay as they
-    are, for they come in while the trial runs.
+    The result has this seed and runs exactly like the trial with it. Sources and recorded people are kept.
 
     Args:
-        trial: without sweeps.
-        seed: places people; None is the trial's own.
+        trial: a trial without sweeps.
+        seed: seed of the placement (default: the seed of the trial).
 
     Raises:
         TrialError: people do not fit with this seed, or the trial has sweeps.
@@ -54,8 +53,8 @@ def expand_spawners(trial: Trial, seed: int | None = None) -> Trial:
     agents = []
     for a, figure in enumerate(draw_appearances(people, chosen)):
         owner = people.owners[int(people.owner[a])]
-        agent = _dressed(owner if isinstance(owner, Agent) else _agent(people, a, owner), figure)
-        agents.append(_with_own(trial, agent, a, chosen))
+        agent = _with_appearance(owner if isinstance(owner, Agent) else _agent(people, a, owner), figure)
+        agents.append(_with_parameters(trial, agent, a, chosen))
     return dataclasses.replace(trial, agents=tuple(agents), spawners=(), seed=chosen)
 
 
@@ -79,13 +78,13 @@ def _agent(people: Any, a: int, spawner: Any) -> Agent:
     )
 
 
-def _dressed(agent: Agent, figure: PersonAppearance) -> Agent:
+def _with_appearance(agent: Agent, figure: PersonAppearance) -> Agent:
     outfit = figure.outfit if figure.outfit >= 0 else None
     return dataclasses.replace(agent, body=figure.body, outfit=outfit, activity=figure.activity)
 
 
-def _with_own(trial: Trial, agent: Agent, a: int, seed: int) -> Agent:
-    """Return the agent with the values that are drawn for it from the distributions of its crowd."""
+def _with_parameters(trial: Trial, agent: Agent, a: int, seed: int) -> Agent:
+    """Return the agent with the parameters that are drawn for it from the distributions of its crowd."""
     names = crowd_names(trial.crowd)
     k = names.index(agent.crowd) if agent.crowd else 0
     model: CrowdModel = trial.crowd.models[k] if isinstance(trial.crowd, Crowds) else trial.crowd

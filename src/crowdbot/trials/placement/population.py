@@ -1,4 +1,4 @@
-"""Placing people: at random in a zone, clear of walls, robots and each other."""
+"""Placement of people at random in zones, clear of walls, robots and each other."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ def place(
     agents: Sequence[Agent] = (),
     recorded: Sequence[tuple[RecordedPeople, Sequence[Walk]]] = (),
 ) -> tuple[InitialPeople, list[tuple[Any, str]]]:
-    """Return the people of a trial at its beginning, and whatever could not be placed with a sentence each.
+    """Return the people at the beginning of a trial, and the elements that cannot be placed, each with a sentence.
 
-    Spawner k draws from ``stream(seed, "spawner", k, ...)`` only: places, goals, speeds and radii have a stream each.
-    Later spawners keep clear of the people of earlier ones, all of them of agents, robots and recorded people.
+    Spawner k draws from ``stream(seed, "spawner", k, ...)`` only, with separate streams for positions, goals, speeds
+    and radii. People keep clear of agents, robots, recorded people and the people of earlier spawners.
 
     >>> zone = [(0, 0), (2, 0), (2, 2), (0, 2)]
     >>> people, problems = place(Stage(), [Spawner(count=50, zone=zone, goal=zone, radius=0.3)], [], seed=0)
@@ -45,13 +45,13 @@ def place(
     taken = OccupiedDiscs(2.0 * max(widest, default=1.0))
     for robot in robots:
         taken.add(robot.x, robot.y, robot.radius)
-    problems: list[tuple[Any, str]] = [*_standing(stage, agents, taken)]
-    replayed = [_replayed(one, walks, k, seed) for k, (one, walks) in enumerate(recorded)]
+    problems: list[tuple[Any, str]] = [*_place_agents(stage, agents, taken)]
+    replayed = [_recorded_people(one, walks, k, seed) for k, (one, walks) in enumerate(recorded)]
     for _, walks in recorded:
         for walk in walks:
             if walk.time[0] <= 0.0:
                 taken.add(*_begin(walk), 0.3)
-    groups = [_explicit(agents)]
+    groups = [_agents(agents)]
     for index, spawner in enumerate(spawners):
         if len(problems) >= MOST_PROBLEMS:
             break
@@ -66,8 +66,8 @@ def place(
     return InitialPeople.concatenate([*groups, *replayed], sizes, owners, walks), problems
 
 
-def _standing(stage: Stage, agents: Sequence[Agent], taken: OccupiedDiscs) -> Iterator[tuple[Agent, str]]:
-    """Yield agents that stand in something, and take the places of the others."""
+def _place_agents(stage: Stage, agents: Sequence[Agent], taken: OccupiedDiscs) -> Iterator[tuple[Agent, str]]:
+    """Yield agents that overlap something, and add all agents to the occupied discs."""
     if not agents:
         return
     room = stage.clearance([agent.position for agent in agents])
@@ -76,11 +76,11 @@ def _standing(stage: Stage, agents: Sequence[Agent], taken: OccupiedDiscs) -> It
         if free < agent.radius - EXACT:
             yield agent, f"stands {where}, {free:.2f} m from a wall, and the radius is {agent.radius:g} m"
         elif not taken.free(agent.x, agent.y, agent.radius - EXACT, gap=0.0):
-            yield agent, f"stands {where} in somebody else; move one of them"
+            yield agent, f"stands {where} and overlaps a person or a robot; move one of them"
         taken.add(agent.x, agent.y, agent.radius)
 
 
-def _explicit(agents: Sequence[Agent]) -> InitialPeople:
+def _agents(agents: Sequence[Agent]) -> InitialPeople:
     place = np.array([agent.position for agent in agents], dtype=np.float64).reshape(-1, 2)
     goal = np.array([agent.goal[0] if agent.goal else agent.position for agent in agents], dtype=np.float64)
     return InitialPeople(
@@ -94,7 +94,7 @@ def _explicit(agents: Sequence[Agent]) -> InitialPeople:
     )
 
 
-def _replayed(one: RecordedPeople, walks: Sequence[Walk], index: int, seed: int) -> InitialPeople:
+def _recorded_people(one: RecordedPeople, walks: Sequence[Walk], index: int, seed: int) -> InitialPeople:
     count = len(walks)
     last = np.array([walk.position[-1] for walk in walks], dtype=np.float64).reshape(-1, 2)
     return InitialPeople(
@@ -109,7 +109,7 @@ def _replayed(one: RecordedPeople, walks: Sequence[Walk], index: int, seed: int)
 
 
 def _begin(walk: Walk) -> tuple[float, float]:
-    """Return where somebody is at the beginning of the trial, or comes in later."""
+    """Return the position of a recorded person at the beginning of the trial, or at the first appearance."""
     return tuple(float(np.interp(max(0.0, walk.time[0]), walk.time, walk.position[:, k])) for k in (0, 1))  # type: ignore[return-value]
 
 

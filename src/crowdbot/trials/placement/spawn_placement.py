@@ -1,4 +1,4 @@
-"""Company: the people of one spawner, each at a random place of its zone, clear of walls and of each other."""
+"""Spawn placement: the people of a spawner at random places of its zone, clear of walls and of each other."""
 
 from __future__ import annotations
 
@@ -22,31 +22,31 @@ __all__ = ["InitialPeople", "OccupiedDiscs", "SpawnPlacement", "points_in"]
 Floats = NDArray[np.float64]
 
 GAP = 0.01
-"""Two discs begin at least this far apart [m]."""
+"""Smallest gap [m] between two people at the beginning."""
 TRIES = 2000
-"""A zone is full when a person finds no place in this many points of it."""
+"""Number of random points per person after which a zone is full."""
 BATCH = 64
 EMPTY_BATCHES = 5000
-"""A zone of which this many batches of points in its bounding box hit nothing is too thin to stand in."""
+"""Number of batches of points in the bounding box without a hit after which a zone is too thin."""
 MEMBERS = 200
-"""A place for a group is given up when a member finds none near it in this many tries."""
+"""Number of tries per member of a group near one place."""
 PLACES = 50
-"""And the zone is full when so many places for a group were given up."""
+"""Number of places tried per group after which a zone is full."""
 
 
 @dataclass(frozen=True)
 class InitialPeople:
-    """Where N people begin and want to go: agents, then the people of spawners, then recorded ones.
+    """Start, goal and body of N people: agents, people of spawners, recorded people.
 
     Fields:
-        position, goal: ``[N, 2]`` [m]; who goes on a journey has no goal yet but the own place.
+        position, goal: ``[N, 2]`` [m]; with a journey, the goal is the position.
         radius: ``[N]`` [m].
         speed: ``[N]`` preferred speed [m/s].
-        heading: ``[N]`` [rad], NaN for who looks where he goes.
-        group: ``[N]`` number of the group, -1 alone.
-        owner: ``[N]`` index of the one of ``owners`` they belong to.
+        heading: ``[N]`` [rad], NaN for the walking direction.
+        group: ``[N]`` number of the group, -1 without a group.
+        owner: ``[N]`` index in ``owners``.
         owners: agents, spawners, recorded people.
-        walks: of the recorded people, who are the last of all.
+        walks: walks of the recorded people, which are the last rows.
     """
 
     position: Floats
@@ -65,7 +65,7 @@ class InitialPeople:
 
     @property
     def spawner(self) -> NDArray[np.int64]:
-        """``[N]`` index of the spawner, below 0 for who has none."""
+        """``[N]`` index of the spawner, below 0 without a spawner."""
         first = sum(isinstance(one, Agent) for one in self.owners)
         last = first + sum(isinstance(one, Spawner) for one in self.owners)
         return np.where(self.owner < last, self.owner - first, -1)
@@ -74,7 +74,7 @@ class InitialPeople:
     def concatenate(
         cls, groups: Sequence[InitialPeople], owners_of: Sequence[int], owners: tuple[Any, ...], walks: tuple[Walk, ...]
     ) -> InitialPeople:
-        """Return the people of all groups, of which each has so many owners."""
+        """Return the people of all groups; ``owners_of`` is the number of owners of each group."""
         first = np.cumsum([0, *owners_of]).tolist()
 
         def whole(name: str, empty: Any) -> Any:
@@ -95,7 +95,7 @@ class InitialPeople:
 
 
 def points_in(zone: Points, rng: np.random.Generator) -> Iterator[Floats]:
-    """Yield uniformly distributed points of a zone, ``[N, 2]`` at a time, until the zone turns out too thin."""
+    """Yield batches ``[N, 2]`` of uniformly distributed points of a zone; end if the zone is too thin."""
     import shapely
 
     polygon = area(zone)
@@ -112,7 +112,7 @@ def points_in(zone: Points, rng: np.random.Generator) -> Iterator[Floats]:
 
 
 class SpawnPlacement(NamedTuple):
-    """Who draws the people of a spawner: number ``number`` of a trial, among those whose places are ``taken``."""
+    """Places the people of spawner ``number`` of a trial, clear of the discs in ``taken``."""
 
     stage: Stage
     spawner: Spawner
@@ -121,16 +121,16 @@ class SpawnPlacement(NamedTuple):
     seed: int
 
     def stream(self, word: str) -> np.random.Generator:
-        """Return the randomness of one thing that is drawn."""
+        """Return the random stream of one quantity."""
         return stream(self.seed, "spawner", self.number, word)
 
     def people(self, first_group: int) -> InitialPeople:
-        """Return the people of whom a place was found; their groups are numbered from ``first_group``."""
+        """Return the people who fit; their groups are numbered from ``first_group``."""
         spawner = self.spawner
         radius = spawner.radius.draw(self.stream("radius"), spawner.count)
         speed = spawner.speed.draw(self.stream("speed"), spawner.count)
         sizes = self._sizes()
-        position = self._together(radius, sizes) if sizes else self._scattered(radius)
+        position = self._place_groups(radius, sizes) if sizes else self._place_singles(radius)
         count = len(position)
         where = np.array(position, dtype=np.float64).reshape(-1, 2)
         goal = _goals(self.stage, spawner, radius[:count], self.stream("goal")) if spawner.goal else where.copy()
@@ -155,7 +155,7 @@ class SpawnPlacement(NamedTuple):
         return np.full(count, np.nan)
 
     def _sizes(self) -> list[int]:
-        """Return the sizes of groups, the largest first, as the shares have it; none when nobody walks in a group."""
+        """Return group sizes drawn from the shares, largest first; empty without groups."""
         spawner, sizes, left = self.spawner, [], self.spawner.count
         shares = np.array([group.share for group in spawner.groups])
         rng = self.stream("groups")
@@ -165,7 +165,7 @@ class SpawnPlacement(NamedTuple):
             left -= sizes[-1]
         return sorted(sizes, reverse=True)
 
-    def _scattered(self, radius: Floats) -> list[tuple[float, float]]:
+    def _place_singles(self, radius: Floats) -> list[tuple[float, float]]:
         places = _clear_points(self.stage, self.spawner.zone, self.stream("place"))
         position: list[tuple[float, float]] = []
         for r in radius:
@@ -176,7 +176,7 @@ class SpawnPlacement(NamedTuple):
             position.append(found)
         return position
 
-    def _together(self, radius: Floats, sizes: Sequence[int]) -> list[tuple[float, float]]:
+    def _place_groups(self, radius: Floats, sizes: Sequence[int]) -> list[tuple[float, float]]:
         places = _clear_points(self.stage, self.spawner.zone, self.stream("place"))
         rng, position = self.stream("member"), list[tuple[float, float]]()
         for size in sizes:
@@ -190,7 +190,7 @@ class SpawnPlacement(NamedTuple):
         return position
 
     def _group(self, bodies: Sequence[float], places: Any, rng: np.random.Generator) -> list[tuple[float, float]]:
-        """Return places of a group near each other, none when nowhere is room for all."""
+        """Return positions of a group near each other, empty if there is no room."""
         free = self.taken.free
         for _ in range(PLACES):
             begin = next(((x, y) for x, y, room in _some(places) if room >= bodies[0] and free(x, y, bodies[0])), None)
@@ -214,7 +214,7 @@ class SpawnPlacement(NamedTuple):
         radius: float,
         rng: np.random.Generator,
     ) -> tuple[float, float] | None:
-        """Return a place near the first of a group, in a disc that grows a little with every try."""
+        """Return a position near the first member of a group, in a disc that grows with every try."""
         import shapely
 
         zone = area(self.spawner.zone)
@@ -233,7 +233,7 @@ class SpawnPlacement(NamedTuple):
 
 
 def _clear_points(stage: Stage, zone: Points, rng: np.random.Generator) -> Iterator[tuple[float, float, float]]:
-    """Yield points of the zone x, y [m] with the room around them up to the next wall [m]."""
+    """Yield batches of points x, y [m] of the zone with their distance to the nearest wall [m]."""
     for points in points_in(zone, rng):
         for (x, y), room in zip(points.tolist(), stage.clearance(points).tolist(), strict=True):
             yield x, y, room
@@ -248,7 +248,7 @@ def _some(points: Iterator[tuple[float, float, float]]) -> Iterator[tuple[float,
 
 
 def _goals(stage: Stage, spawner: Spawner, radius: Floats, rng: np.random.Generator) -> Floats:
-    """Return a point ``[N, 2]`` of the goal zone for everyone, clear of walls where there is room for that."""
+    """Return ``[N, 2]`` random points of the goal zone, clear of walls if possible."""
     places = _clear_points(stage, spawner.goal, rng)
     goals = []
     for r in radius:
@@ -263,17 +263,17 @@ def _goals(stage: Stage, spawner: Spawner, radius: Floats, rng: np.random.Genera
 
 @dataclass
 class OccupiedDiscs:
-    """Discs that stand already, in a grid of cells that are as wide as the largest disc."""
+    """Occupied discs in a grid with cells as wide as the largest disc."""
 
     cell: float
     discs: dict[tuple[int, int], list[tuple[float, float, float]]] = field(default_factory=dict)
 
     def add(self, x: float, y: float, radius: float) -> None:
-        """Put a disc somewhere."""
+        """Add a disc."""
         self.discs.setdefault(self._at(x, y), []).append((x, y, radius))
 
     def free(self, x: float, y: float, radius: float, gap: float = GAP) -> bool:
-        """Return whether a disc has room, with a gap around it [m]."""
+        """Return whether a disc with a gap [m] around it is free."""
         i, j = self._at(x, y)
         near = (self.discs.get((i + di, j + dj), ()) for di in (-1, 0, 1) for dj in (-1, 0, 1))
         return all((x - a) ** 2 + (y - b) ** 2 >= (radius + r + gap) ** 2 for cell in near for a, b, r in cell)

@@ -1,4 +1,4 @@
-"""Scenarios: the built-in trials that are made from parameters."""
+"""Scenarios: built-in trials with parameters."""
 
 from .arenas import ARENAS
 from .challenge import CHALLENGE, FLOWS, SIZES
@@ -10,4 +10,4 @@ from .shared_ways import SHARED_WAYS
 __all__ = ["DENSITIES", "FLOWS", "PRESETS", "SIZES", "Preset", "PresetOption"]
 
 PRESETS = {preset.name: preset for preset in (*MEETINGS, *SHARED_WAYS, *CROWDS, *ARENAS, *CHALLENGE)}
-"""Every preset by name."""
+"""Presets by name."""

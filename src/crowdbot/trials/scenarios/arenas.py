@@ -5,7 +5,7 @@ their sizes (a circle of 7 m; delays up to 5 s; three people of 1 m +- 0.2 m on 
 7 m that are 3 m wide; 5 people) are those of social-jym, https://github.com/TommasoVandermeer/social-jym; "1 to 10",
 "25 to 25", "block" and "four blocks" are names of examples of UMANS, van Toll et al. 2020,
 doi:10.1145/3384382.3384532, whose numbers we could not read. People in the corners of four blocks are an example of
-RVO2, van den Berg et al. 2011, doi:10.1007/978-3-642-19457-3_1. Other numbers are ours.
+RVO2, van den Berg et al. 2011, doi:10.1007/978-3-642-19457-3_1. Other numbers are our own.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from .preset import Preset, PresetOption
 __all__ = ["ARENAS"]
 
 GOLDEN = 0.6180339887498949
-"""Multiples of it, without their whole parts, are spread evenly however many there are."""
-RADIUS = PresetOption(7.0, "of the circle", "m", 4.0, 30.0)
+"""Golden ratio: the fractional parts of its multiples are spread evenly."""
+RADIUS = PresetOption(7.0, "radius of the circle", "m", 4.0, 30.0)
 
 
 def _seen(robots: tuple[RobotSpec, ...]) -> tuple[RobotSpec, ...]:
@@ -37,7 +37,7 @@ def _seen(robots: tuple[RobotSpec, ...]) -> tuple[RobotSpec, ...]:
 
 
 def delayed_circle(people: int, radius: float, delay: float) -> Trial:
-    """A circle crossing for which people come one after the other."""
+    """A circle crossing with delayed arrivals."""
     plain = circle_crossing(people, radius, 0.35, 40.0, 5.0)
     sources = [
         SourceSpec(
@@ -73,7 +73,7 @@ def circle_with_standing(people: int, standing: int, radius: float, size: float)
 
 
 def corner_traffic(people: int, width: float, length: float) -> Trial:
-    """People come round a corner, the robot goes round it the other way."""
+    """People turn a corner, and the robot turns it in the opposite direction."""
     h, far = width / 2.0, length
     ground = Points.of([(-far, -h), (-h, -h), (-h, -far), (h, -far), (h, h), (-far, h)])
     turn, inside = box(-h + 0.3, -h + 0.3, h - 0.3, h - 0.3), h - 0.35
@@ -94,8 +94,8 @@ def corner_traffic(people: int, width: float, length: float) -> Trial:
 
 
 def block(people: int, size: float) -> Trial:
-    """A block stands in the way of a robot and of people who come towards it."""
-    # robots have no map: one that looks past the edge of the block slides along it, one that looks at its middle waits
+    """A block obstructs a robot and people who walk towards it."""
+    # robots have no map: off the centre of the block they slide along it, at the centre they wait
     goal = (7.0, -min(size / 2.0 + 1.0, 4.3))
     return scenario(
         "block",
@@ -109,7 +109,7 @@ def block(people: int, size: float) -> Trial:
 
 
 def four_blocks(people: int, passage: float) -> Trial:
-    """People in four corners go to the opposite ones, between four blocks, and a robot crosses."""
+    """People in four corners walk to the opposite corners between four blocks, and a robot crosses."""
     near, far = passage / 2.0, passage / 2.0 + 4.0
     end = far + 4.0
     corners = {"low_left": (-1, -1), "low_right": (1, -1), "high_right": (1, 1), "high_left": (-1, 1)}
@@ -139,8 +139,8 @@ def four_blocks(people: int, passage: float) -> Trial:
     )
 
 
-def _turned(points: Points, angle: float) -> Points:
-    """Return points turned about the origin."""
+def _rotate(points: Points, angle: float) -> Points:
+    """Return points rotated about the origin."""
     along, across = math.cos(angle), math.sin(angle)
     return Points.of(
         [(round(x * along - y * across, 6), round(x * across + y * along, 6)) for x, y in points],
@@ -152,11 +152,11 @@ def _crowd(name: str, people: int, away: float, angle: float, speed: float) -> S
     half = max(0.8, math.sqrt(people) / 2.0)
     zone = box(-away - half, -half, -away + half, half)
     goal = box(away - half, -half, away + half, half)
-    return Spawner(name=name, count=people, zone=_turned(zone, angle), goal=_turned(goal, angle), speed=number(speed))
+    return Spawner(name=name, count=people, zone=_rotate(zone, angle), goal=_rotate(goal, angle), speed=number(speed))
 
 
 def one_against_ten(people: int, angle: float, speed: float) -> Trial:
-    """A crowd crosses the way of the robot."""
+    """A crowd crosses the path of the robot."""
     away = 6.0 * speed
     return scenario(
         "one-against-ten",
@@ -168,7 +168,7 @@ def one_against_ten(people: int, angle: float, speed: float) -> Trial:
 
 
 def crowd_against_crowd(people: int, angle: float, formation: bool) -> Trial:
-    """Two crowds meet, and a robot goes through where they do."""
+    """Two crowds meet, and a robot crosses the place where they do."""
     turn, away = math.radians(angle), 6.0 + math.sqrt(people) / 2.0
     ways = {"first": 0.0, "second": turn}
     x, y = -away * math.cos(turn / 2.0), -away * math.sin(turn / 2.0)
@@ -186,11 +186,11 @@ def crowd_against_crowd(people: int, angle: float, formation: bool) -> Trial:
 
 
 def _formation(name: str, people: int, away: float, angle: float) -> list[Agent]:
-    """Return people in ranks, 1 m from each other, each with an own goal as far on the other side."""
+    """Return people in ranks, 1 m apart, each with a goal mirrored at the centre."""
     wide = math.ceil(math.sqrt(people))
     places = [(-away - k // wide + (wide - 1) / 2.0, k % wide - (wide - 1) / 2.0) for k in range(people)]
-    starts = _turned(Points.of(places), angle)
-    goals = _turned(Points.of([(x + 2.0 * away, y) for x, y in places]), angle)
+    starts = _rotate(Points.of(places), angle)
+    goals = _rotate(Points.of([(x + 2.0 * away, y) for x, y in places]), angle)
     return [
         Agent(name=f"{name}{k + 1}", x=x, y=y, goal=Points.of([goal]), speed=1.3)
         for k, ((x, y), goal) in enumerate(zip(starts, goals, strict=True))
@@ -200,51 +200,51 @@ def _formation(name: str, people: int, away: float, angle: float) -> list[Agent]
 ARENAS = (
     Preset(
         "delayed-circle",
-        "A circle crossing in which people come in one after the other within a few seconds.",
+        "A circle crossing in which people enter one after another within a few seconds.",
         delayed_circle,
         {
             "people": PresetOption(5, "people", "", 1, 60),
             "radius": RADIUS,
-            "delay": PresetOption(5.0, "largest time after which somebody comes in", "s", 0.0, 60.0),
+            "delay": PresetOption(5.0, "maximum delay of a person", "s", 0.0, 60.0),
         },
         "social-jym: delayed circular crossing",
     ),
     Preset(
         "circle-with-standing",
-        "A circle crossing around people who stand in the circle and take much room.",
+        "A circle crossing around people who stand in the circle and need much room.",
         circle_with_standing,
         {
             "people": PresetOption(2, "people who walk", "", 1, 60),
             "standing": PresetOption(3, "people who stand", "", 0, 8),
             "radius": RADIUS,
-            "size": PresetOption(1.0, "radius of the room that standing people take, +- 20 %", "m", 0.2, 1.5),
+            "size": PresetOption(1.0, "radius of standing people, +- 20 %", "m", 0.2, 1.5),
         },
         "social-jym: circular crossing with static obstacles",
     ),
     Preset(
         "corner-traffic",
-        "People come round a corner of a corridor, and the robot goes round it the other way.",
+        "People turn the corner of a corridor, and the robot turns it in the opposite direction.",
         corner_traffic,
         {
             "people": PresetOption(5, "people", "", 1, 40),
             "width": PresetOption(3.0, "width of the corridor", "m", 1.6, 6.0),
-            "length": PresetOption(7.0, "of both arms, from the middle of the corner", "m", 5.0, 30.0),
+            "length": PresetOption(7.0, "length of both arms, from the centre of the corner", "m", 5.0, 30.0),
         },
         "social-jym: corner traffic",
     ),
     Preset(
         "block",
-        "A block stands in the middle of a hall; people go around it, and a robot comes towards them.",
+        "People walk around a block in the middle of a hall, and a robot comes towards them.",
         block,
         {
             "people": PresetOption(12, "people", "", 0, 40),
-            "size": PresetOption(4.0, "size of the block across the way", "m", 1.0, 7.0),
+            "size": PresetOption(4.0, "width of the block", "m", 1.0, 7.0),
         },
         "UMANS: block",
     ),
     Preset(
         "four-blocks",
-        "People in four corners go to the opposite ones between four blocks; a robot crosses in their midst.",
+        "People in four corners walk to the opposite corners between four blocks; a robot crosses the centre.",
         four_blocks,
         {
             "people": PresetOption(5, "people in each corner", "", 0, 12),
@@ -254,23 +254,23 @@ ARENAS = (
     ),
     Preset(
         "one-against-ten",
-        "A crowd of ten crosses the way of the robot at an angle, or comes towards it.",
+        "A crowd of ten crosses the path of the robot at an angle, or walks towards it.",
         one_against_ten,
         {
             "people": PresetOption(10, "people in the crowd", "", 1, 60),
-            "angle": PresetOption(90.0, "between the ways, 180 for head-on", "deg", 45.0, 180.0),
+            "angle": PresetOption(90.0, "angle between the paths, 180 for head-on", "deg", 45.0, 180.0),
             "speed": PresetOption(1.2, "speed of the people", "m/s", 0.5, 2.5),
         },
         "UMANS: 1 to 10 at 45, 90 and 180 degrees",
     ),
     Preset(
         "crowd-against-crowd",
-        "Two crowds meet, scattered or in ranks, and a robot goes through where they do.",
+        "Two crowds meet, scattered or in ranks, and a robot crosses the place where they do.",
         crowd_against_crowd,
         {
             "people": PresetOption(25, "people in each crowd", "", 1, 100),
-            "angle": PresetOption(180.0, "between the ways of the crowds", "deg", 60.0, 180.0),
-            "formation": PresetOption(False, "whether they walk in ranks"),
+            "angle": PresetOption(180.0, "angle between the paths of the crowds", "deg", 60.0, 180.0),
+            "formation": PresetOption(False, "whether people walk in ranks"),
         },
         "UMANS: 25 to 25, 50 to 50 in formation, 100 to 100",
     ),

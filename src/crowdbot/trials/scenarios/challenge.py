@@ -1,10 +1,10 @@
 """Challenge: the 21 scenarios of the challenge "Crowd against the machine" of the CrowdBot project (ICRA 2021).
 
-A corridor of 50 m by 10 m; nobody, or one of five flows of 50, 100, 200 or 350 people (0.1 to 0.7 people/m2), each of
-whom comes in at one end, or side, after leaving at the other. The robot goes 40 m along the middle. Parameters are
-those of the public scenario files: preferred speeds of 1.33 +- 0.30 m/s, bodies of 0.33 m, a Turtlebot that the crowd
-takes for a disc of 0.5 m: in the plane it is that disc, in the physics world it has the body of a TurtleBot 2. As in
-the challenge a contact does not end the run: it does after 180 s or at the goal.
+A corridor of 50 m by 10 m, empty or with one of five flows of 50, 100, 200 or 350 people (0.1 to 0.7 people/m2), who
+enter at one end or side after leaving at the other. The robot goes 40 m along the middle. Parameters are those of the
+public scenario files: preferred speeds of 1.33 +- 0.30 m/s, bodies of 0.33 m, and a Turtlebot that is a disc of 0.5 m
+for the crowd. It is that disc in the planar world, and has the body of a TurtleBot 2 in the physics world. As in the
+challenge, a contact does not end the trial; the goal or 180 s do.
 Accelerations are limited to 5 m/s2 by default, as in the examples of UMANS; the files have 0.8 m/s2.
 """
 
@@ -31,10 +31,10 @@ FLOWS = {
     "with": ("1D+", "with the robot", ("east",)),
     "against": ("1D-", "against the robot", ("west",)),
     "both": ("1Dx", "with and against the robot", ("east", "west")),
-    "cross": ("2D", "across its way, from one side", ("south",)),
-    "cross-both": ("2Dx", "across its way, from both sides", ("south", "north")),
+    "cross": ("2D", "across the path of the robot, from one side", ("south",)),
+    "cross-both": ("2Dx", "across the path of the robot, from both sides", ("south", "north")),
 }
-"""Flows by name: what the challenge calls them, a few words, the journeys of people."""
+"""Flows by name: name in the challenge, description, journeys of people."""
 
 FAR = LENGTH / 2.0 + 5.0
 JOURNEYS = {
@@ -43,11 +43,11 @@ JOURNEYS = {
     "south": Zone(box(-24.0, -11.0, 24.0, -10.0), aim="nearest"),
     "north": Zone(box(-24.0, 10.0, 24.0, 11.0), aim="nearest"),
 }
-"""Goals lie beyond the portals, where nobody arrives."""
+"""Goals of people, beyond the portals, so nobody reaches them."""
 
 
 def turtlebot() -> RobotSpec:
-    """Return the robot: it moves at once as commanded, as in the challenge, and carries the laser of all presets."""
+    """Return the robot: as in the challenge it follows commands at once; it has the laser scanner of all presets."""
     plain = robot((-20.0, 0.0), (20.0, 0.0), 0.65, radius=0.5)
     return RobotSpec(
         type="turtlebot2",
@@ -93,7 +93,7 @@ def challenge(kind: str, people: int, acceleration: float) -> Trial:
 
 
 def _presets() -> tuple[Preset, ...]:
-    braking = PresetOption(5.0, "largest change of velocity of people", "m/s2", 0.1, 100.0)
+    braking = PresetOption(5.0, "maximum acceleration of people", "m/s2", 0.1, 100.0)
     found = [
         Preset(
             "challenge-alone",

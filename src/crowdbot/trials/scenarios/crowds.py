@@ -2,7 +2,7 @@
 
 Sources: Chen et al. 2019, Crowd-robot interaction, doi:10.1109/ICRA.2019.8794134 (circle and square crossing); Liu et
 al. 2023, Intention aware robot crowd navigation, doi:10.1109/ICRA48891.2023.10160660 (dense circle); Fruin 1971,
-Pedestrian planning and design (levels of service behind the densities); other numbers are ours.
+Pedestrian planning and design (levels of service behind the densities); other numbers are our own.
 """
 
 from __future__ import annotations
@@ -25,22 +25,22 @@ from .preset import Preset, PresetOption
 __all__ = ["CROWDS", "DENSITIES"]
 
 DENSITIES = (0.05, 0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0)
-"""The ladder of densities [people/m2]; the last one is for stress."""
+"""Densities of the density ladder [people/m2]; the last one is a stress test."""
 
 LENGTH, HALF = 40.0, 20.0
 DEEP = 4.0
-"""Of portals [m]."""
+"""Depth of portals [m]."""
 EAST = Journey(name="east", stops=(Direction(0.0),))
 WEST = Journey(name="west", stops=(Direction(math.pi),))
 SOUTH = Journey(name="south", stops=(Direction(-math.pi / 2.0),))
 NORTH = Journey(name="north", stops=(Direction(math.pi / 2.0),))
-DENSITY = PresetOption(0.3, "people", "1/m2", 0.0, 3.0)
+DENSITY = PresetOption(0.3, "density of people", "1/m2", 0.0, 3.0)
 GROUPS = PresetOption(0.0, "share of people in groups of two and three", "", 0.0, 1.0)
 WIDTH = PresetOption(6.0, "width of the corridor", "m", 2.0, 20.0)
 
 
 def ends(length: float, width: float) -> tuple[Portal, Portal]:
-    """Return portals at both ends of a corridor: who leaves at one end comes in at the other."""
+    """Return portals at both ends of a corridor: people who leave at one end enter at the other."""
     x, y = length / 2.0, width / 2.0
     return (
         Portal(name="right", zone=box(x, -y, x + DEEP, y), dx=-length),
@@ -52,7 +52,7 @@ def _count(density: float, length: float, width: float) -> int:
     return round(density * length * width)
 
 
-def _flowing(name: str, width: float, flows: dict[str, float], groups: float, gap: float = 12.0) -> Trial:
+def _flow_corridor(name: str, width: float, flows: dict[str, float], groups: float, gap: float = 12.0) -> Trial:
     """Return a corridor in which people walk east and west at densities [1/m2], and a robot goes east."""
     y = width / 2.0 - 0.35
     zone = box(-HALF + 0.5, -y, HALF - 0.5, y)
@@ -75,22 +75,22 @@ def _fields(one: Spawner) -> dict[str, Any]:
 
 
 def one_way_with(density: float, width: float, groups: float) -> Trial:
-    """People walk where the robot goes."""
-    return _flowing("one-way-with", width, {"east": density}, groups)
+    """People walk in the direction of the robot."""
+    return _flow_corridor("one-way-with", width, {"east": density}, groups)
 
 
 def one_way_against(density: float, width: float, groups: float) -> Trial:
     """People walk against the robot."""
-    return _flowing("one-way-against", width, {"west": density}, groups)
+    return _flow_corridor("one-way-against", width, {"west": density}, groups)
 
 
 def two_way(density: float, width: float, groups: float) -> Trial:
-    """People walk both ways."""
-    return _flowing("two-way", width, {"east": density / 2.0, "west": density / 2.0}, groups)
+    """People walk in both directions."""
+    return _flow_corridor("two-way", width, {"east": density / 2.0, "west": density / 2.0}, groups)
 
 
 def density_ladder(density: float) -> Trial:
-    """A corridor of 20 m by 5 m without ends."""
+    """An endless corridor of 20 m by 5 m."""
     y, count = 2.5 - 0.35, _count(density, 20.0, 5.0)
     zone = box(-9.7, -y, 9.7, y)
     body = 0.25 if density < 1.75 else 0.2
@@ -112,7 +112,7 @@ def density_ladder(density: float) -> Trial:
 
 
 def crossing(density: float, both: bool) -> Trial:
-    """People cross the way of the robot."""
+    """People cross the path of the robot."""
     side = 12.0
     ways = ("south", "north") if both else ("south",)
     count = _count(density, side, side) // len(ways)
@@ -132,11 +132,11 @@ def crossing(density: float, both: bool) -> Trial:
 
 
 def circle_crossing(people: int, radius: float, noise: float, limit: float, horizon: float) -> Trial:
-    """Everybody on a circle goes to the other side, the robot too."""
+    """People on a circle and a robot go to the opposite side."""
     spawners, r = [], radius
     right = (people + 1) // 2
     for k in range(people):
-        # the robot goes from the lowest point to the highest, so nobody begins at either
+        # the robot goes from the lowest to the highest point, so nobody starts there
         side, place, of = (0.0, k, right) if k < right else (math.pi, k - right, people - right)
         angle = side - math.pi / 2.0 + math.pi * (place + 1) / (of + 1)
         x, y = r * math.cos(angle), r * math.sin(angle)
@@ -192,7 +192,7 @@ def square_crossing(people: int, side: float) -> Trial:
 
 
 def static_crowd(density: float, groups: float) -> Trial:
-    """People stand about."""
+    """Standing people."""
     return scenario(
         "static-crowd",
         60.0,
@@ -211,7 +211,7 @@ def static_crowd(density: float, groups: float) -> Trial:
 
 
 def random_goals(people: int, side: float) -> Trial:
-    """People go about: whoever has arrived goes somewhere else."""
+    """People walk between random goals."""
     h = side / 2.0
     inside = box(-h + 0.5, -h + 0.5, h - 0.5, h - 0.5)
     return scenario(
@@ -226,7 +226,7 @@ def random_goals(people: int, side: float) -> Trial:
 
 
 def bottleneck(door: float, rate: float) -> Trial:
-    """People come in on the left and go out through a door; a robot crosses the hall behind it."""
+    """People enter on the left and leave through a door; a robot crosses the hall behind it."""
     half = door / 2.0
     near = half - 0.1 if half > 0.4 else half
     return scenario(
@@ -259,46 +259,46 @@ def bottleneck(door: float, rate: float) -> Trial:
 CROWDS = (
     Preset(
         "one-way-with",
-        "People walk down a corridor without ends, the robot with them.",
+        "People walk along an endless corridor in the direction of the robot.",
         one_way_with,
         {"density": DENSITY, "width": WIDTH, "groups": GROUPS},
         "UMANS: one-way flow; CrowdBot: 1-D, with the flow",
     ),
     Preset(
         "one-way-against",
-        "People walk down a corridor without ends, the robot against them.",
+        "People walk along an endless corridor against the robot.",
         one_way_against,
         {"density": DENSITY, "width": WIDTH, "groups": GROUPS},
         "social-jym: parallel traffic (14 m by 3 m: `width=3`); CrowdBot: 1-D, against the flow",
     ),
     Preset(
         "two-way",
-        "People walk both ways down a corridor without ends.",
+        "People walk along an endless corridor in both directions.",
         two_way,
         {"density": DENSITY, "width": WIDTH, "groups": GROUPS},
         "UMANS: corridor; CrowdBot: bi-directional",
     ),
     Preset(
         "density-ladder",
-        "A two-way corridor of 20 m by 5 m without ends, from 0.05 to 3 people/m2.",
+        "An endless two-way corridor of 20 m by 5 m, from 0.05 to 3 people/m2.",
         density_ladder,
-        {"density": PresetOption(0.5, f"people: {', '.join(f'{d:g}' for d in DENSITIES)}", "1/m2", 0.0, 3.0)},
+        {"density": PresetOption(0.5, f"density: {', '.join(f'{d:g}' for d in DENSITIES)}", "1/m2", 0.0, 3.0)},
     ),
     Preset(
         "perpendicular-flow",
-        "People without end cross the way of the robot, from one side or from both.",
+        "An endless flow of people crosses the path of the robot, from one side or both.",
         crossing,
         {"density": DENSITY, "both": PresetOption(False, "whether people come from both sides")},
         "social-jym: perpendicular traffic; CrowdBot: 2-D crossing",
     ),
     Preset(
         "circle-crossing",
-        "Everybody on a circle goes to the other side, and so does a robot that people do not see.",
+        "People on a circle and a robot that they do not see go to the opposite side.",
         circle_crossing,
         {
             "people": PresetOption(5, "people", "", 1, 60),
-            "radius": PresetOption(4.0, "of the circle", "m", 2.0, 30.0),
-            "noise": PresetOption(0.35, "half width of the square in which somebody begins", "m", 0.05, 2.0),
+            "radius": PresetOption(4.0, "radius of the circle", "m", 2.0, 30.0),
+            "noise": PresetOption(0.35, "half width of the square in which a person starts", "m", 0.05, 2.0),
             "limit": PresetOption(25.0, "duration", "s", 5.0, 600.0),
             "horizon": PresetOption(5.0, "time horizon of people", "s", 0.5, 10.0),
         },
@@ -306,45 +306,48 @@ CROWDS = (
     ),
     Preset(
         "dense-circle",
-        "Twenty people on a larger circle go to the other side, and so does a robot that they do not see.",
+        "Twenty people on a larger circle and a robot that they do not see go to the opposite side.",
         dense_circle,
         {
             "people": PresetOption(20, "people", "", 1, 60),
-            "radius": PresetOption(8.49, "of the circle", "m", 2.0, 30.0),
+            "radius": PresetOption(8.49, "radius of the circle", "m", 2.0, 30.0),
         },
         "CrowdNav_Prediction_AttnGraph: 20 people",
     ),
     Preset(
         "square-crossing",
-        "People on two sides of a square swap sides, the robot crosses their way.",
+        "People on two sides of a square swap sides, and the robot crosses their paths.",
         square_crossing,
-        {"people": PresetOption(10, "people", "", 1, 60), "side": PresetOption(10.0, "of the square", "m", 5.0, 40.0)},
+        {
+            "people": PresetOption(10, "people", "", 1, 60),
+            "side": PresetOption(10.0, "side of the square", "m", 5.0, 40.0),
+        },
         "CrowdNav: square crossing",
     ),
     Preset(
         "static-crowd",
-        "People stand about, alone or in groups; the robot goes through.",
+        "People stand alone or in groups, and the robot passes between them.",
         static_crowd,
-        {"density": PresetOption(0.25, "people", "1/m2", 0.0, 1.5), "groups": GROUPS},
+        {"density": PresetOption(0.25, "density of people", "1/m2", 0.0, 1.5), "groups": GROUPS},
         "social-jym: robot crowding; CrowdBot: static crowd",
     ),
     Preset(
         "random-goals",
-        "People go about a square, each to one random place after the other.",
+        "People walk between random goals in a square.",
         random_goals,
         {
             "people": PresetOption(30, "people", "", 1, 400),
-            "side": PresetOption(20.0, "of the square", "m", 6.0, 100.0),
+            "side": PresetOption(20.0, "side of the square", "m", 6.0, 100.0),
         },
         "social-jym: crowd navigation; MengeROS, ir-sim: wandering",
     ),
     Preset(
         "bottleneck",
-        "People come in on the left and go out through a door; a robot crosses the hall behind it.",
+        "People enter on the left and leave through a door; a robot crosses the hall behind it.",
         bottleneck,
         {
             "door": PresetOption(1.4, "width of the door", "m", 0.7, 6.0),
-            "rate": PresetOption(0.7, "people who come in", "1/s", 0.01, 10.0),
+            "rate": PresetOption(0.7, "arrivals", "1/s", 0.01, 10.0),
         },
         "Seyfried, Juelich: doors of 0.8 to 5 m (`door`)",
     ),

@@ -1,7 +1,7 @@
 """Meetings: one robot and a few people, the base cases of social navigation.
 
 Sources: Francis et al. 2025, Principles and guidelines for evaluating social robot navigation algorithms,
-doi:10.1145/3700599 (the list of scenarios); numbers are ours where none is given there.
+doi:10.1145/3700599 (the list of scenarios); numbers that are not given there are our own.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def intersection(angle: float, delay: float, width: float, density: float, speed
 
 
 def blind_corner(width: float, speed: float, distance: float) -> Trial:
-    """An L of corridors hides a person until the last moment."""
+    """An L-shaped corridor hides a person until the last moment."""
     w = width
     ground = Points.of([(-9, 0), (w, 0), (w, -9), (0, -9), (0, -w), (-9, -w)]).shift(-w / 2.0, w / 2.0)
     return scenario(
@@ -100,7 +100,7 @@ def blind_corner(width: float, speed: float, distance: float) -> Trial:
 
 
 def doorway(door: float, speed: float) -> Trial:
-    """A robot and a person want through a door from both sides."""
+    """A robot and a person go through a door from opposite sides."""
     half = door / 2.0
     return scenario(
         "doorway",
@@ -143,7 +143,7 @@ def elevator(door: float, people: int) -> Trial:
 
 
 def overtaking(width: float, speed: float, robot_speed: float) -> Trial:
-    """A robot comes up behind a slow person."""
+    """A robot approaches a slow person from behind."""
     return scenario(
         "overtaking",
         60.0,
@@ -154,7 +154,7 @@ def overtaking(width: float, speed: float, robot_speed: float) -> Trial:
 
 
 def being_overtaken(width: float, speed: float, robot_speed: float) -> Trial:
-    """A person comes up behind a slow robot."""
+    """A person approaches a slow robot from behind."""
     return scenario(
         "being-overtaken",
         60.0,
@@ -165,7 +165,7 @@ def being_overtaken(width: float, speed: float, robot_speed: float) -> Trial:
 
 
 def following(gap: float, speed: float, robot_speed: float) -> Trial:
-    """A person walks ahead of the robot, where the robot has to go too."""
+    """A person walks ahead of the robot in the same direction."""
     return scenario(
         "following",
         60.0,
@@ -176,7 +176,7 @@ def following(gap: float, speed: float, robot_speed: float) -> Trial:
 
 
 def _formation(people: int, radius: float) -> list[Agent]:
-    """Return people who stand on a circle and look to its middle; one place, on the left, is free."""
+    """Return people who stand on a circle and face its centre; one place, on the left, is free."""
     agents = []
     for k in range(1, people + 1):
         angle = math.pi + 2.0 * math.pi * k / (people + 1)
@@ -216,7 +216,7 @@ def leaving_group(people: int, radius: float) -> Trial:
 
 
 def passing_group(gap: float) -> Trial:
-    """Two people talk across the way of the robot."""
+    """Two people who talk stand on both sides of the robot's path."""
     half = gap / 2.0
     agents = [
         Agent(name="left", x=0.0, y=half, heading=-math.pi / 2.0, group=0),
@@ -232,7 +232,7 @@ def passing_group(gap: float) -> Trial:
 
 
 PEOPLE = PresetOption(4, "people in the group", "", 1, 8)
-CIRCLE = PresetOption(1.2, "radius of their circle", "m", 0.6, 3.0)
+CIRCLE = PresetOption(1.2, "radius of the circle", "m", 0.6, 3.0)
 
 MEETINGS = (
     Preset(
@@ -249,11 +249,11 @@ MEETINGS = (
     ),
     Preset(
         "intersection",
-        "Two corridors cross; a person, or with a density a flow, crosses the way of the robot.",
+        "Two corridors cross; a person (or a flow, with a density) crosses the path of the robot.",
         intersection,
         {
-            "angle": PresetOption(90.0, "between the ways", "deg", 30.0, 150.0),
-            "delay": PresetOption(0.0, "of the person at the crossing", "s", -2.0, 2.0),
+            "angle": PresetOption(90.0, "angle between the paths", "deg", 30.0, 150.0),
+            "delay": PresetOption(0.0, "delay of the person at the crossing", "s", -2.0, 2.0),
             "width": PresetOption(3.0, "width of the corridors", "m", 1.2, 6.0),
             "density": PresetOption(0.0, "people in the side corridor, 0 for one person", "1/m2", 0.0, 2.0),
             "speed": PERSON,
@@ -263,18 +263,18 @@ MEETINGS = (
     ),
     Preset(
         "blind-corner",
-        "An L of corridors hides a person until they are near.",
+        "An L-shaped corridor hides a person until they are near.",
         blind_corner,
         {
             "width": PresetOption(1.8, "width of the corridors", "m", 1.4, 4.0),
             "speed": PERSON,
-            "distance": PresetOption(7.0, "of the person from the corner", "m", 1.0, 7.5),
+            "distance": PresetOption(7.0, "distance of the person from the corner", "m", 1.0, 7.5),
         },
         "P&G: blind corner",
     ),
     Preset(
         "doorway",
-        "A robot and a person want through a narrow door from both sides.",
+        "A robot and a person go through a narrow door from opposite sides.",
         doorway,
         {"door": PresetOption(0.95, "width of the door", "m", 0.7, 3.0), "speed": PERSON},
         "P&G: narrow doorway",
@@ -291,7 +291,7 @@ MEETINGS = (
     ),
     Preset(
         "overtaking",
-        "A robot comes up behind a slow person in a corridor.",
+        "A robot approaches a slow person from behind in a corridor.",
         overtaking,
         {
             "width": WIDTH,
@@ -302,7 +302,7 @@ MEETINGS = (
     ),
     Preset(
         "being-overtaken",
-        "A person comes up behind a slow robot in a corridor.",
+        "A person approaches a slow robot from behind in a corridor.",
         being_overtaken,
         {
             "width": WIDTH,
@@ -313,7 +313,7 @@ MEETINGS = (
     ),
     Preset(
         "following",
-        "A person walks ahead of the robot where the robot has to go too.",
+        "A person walks ahead of the robot in the same direction.",
         following,
         {
             "gap": PresetOption(1.75, "distance between their centres at the beginning", "m", 0.6, 10.0),
@@ -338,7 +338,7 @@ MEETINGS = (
     ),
     Preset(
         "passing-group",
-        "Two people talk across the way of the robot.",
+        "Two people who talk stand on both sides of the robot's path.",
         passing_group,
         {"gap": PresetOption(2.0, "distance between their centres", "m", 0.8, 5.0)},
     ),

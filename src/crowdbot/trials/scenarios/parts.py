@@ -1,4 +1,4 @@
-"""Parts that scenarios are made of: boxes, corridors, robots, people in them."""
+"""Parts of scenarios: boxes, corridors, robots, flows of people."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ __all__ = ["CROWD", "STILL", "box", "corridor", "flow", "number", "pairs", "robo
 CROWD = ORCA(neighbor_distance=5.0, max_neighbors=10.0, time_horizon=2.0, time_horizon_walls=1.0)
 
 STILL = 0.01
-"""The speed of who stands and does not step aside for anybody [m/s]; people have to have some."""
+"""Speed [m/s] of people who stand and do not step aside; speeds must be above 0."""
 
 
 def box(left: float, low: float, right: float, high: float) -> Points:
@@ -33,7 +33,7 @@ def box(left: float, low: float, right: float, high: float) -> Points:
 
 
 def corridor(length: float, width: float) -> Stage:
-    """Return two walls along x, about the origin."""
+    """Return two walls along x, centred at the origin."""
     x, y = length / 2.0, width / 2.0
     return Stage(walls=(Wall(Points.of([(-x, -y), (x, -y)])), Wall(Points.of([(-x, y), (x, y)]))))
 
@@ -48,7 +48,7 @@ def robot(
     drive: Drive | None = None,
     visible: bool = True,
 ) -> RobotSpec:
-    """Return a robot with a laser scanner that looks to its goal."""
+    """Return a robot with a laser scanner that faces its goal."""
     return RobotSpec(
         x=start[0],
         y=start[1],
@@ -63,30 +63,30 @@ def robot(
 
 
 def scenario(name: str, duration: float, stage: Stage, **parts: Any) -> Trial:
-    """Return a trial with the usual crowd, in which nobody stops face to face."""
+    """Return a trial with the default crowd, and with heading jitter against symmetric deadlocks."""
     whole: dict[str, Any] = {"crowd": CROWD, "heading_jitter": 0.001} | parts
     return Trial(name=name, duration=duration, stage=stage, **whole)
 
 
 def pairs(share: float) -> tuple[Group, ...]:
-    """Return the groups of people of whom about this share is in pairs and threes; none for 0."""
+    """Return group sizes such that about this share of people is in pairs and threes; none for 0."""
     if share <= 0.0:
         return ()
-    # of n draws a pair has 2 people and a three 3: weights by people
+    # shares of people, divided by the group size, are shares of groups
     alone = (Group(1, 1.0 - share),) if share < 1.0 else ()
     return (Group(3, share * 0.25 / 3.0), Group(2, share * 0.75 / 2.0), *alone)
 
 
 def flow(name: str, count: int, zone: Points, journey: str, **more: Any) -> Spawner:
-    """Return people in a zone who go on a journey."""
+    """Return people in a zone who follow a journey."""
     return Spawner(name=name, count=count, zone=zone, journey=journey, **more)
 
 
 def uniform(low: float, high: float) -> Distribution:
-    """Return a distribution, or the number when there is one only."""
+    """Return a uniform distribution, a constant if ``low`` equals ``high``."""
     return Distribution("uniform", (low, high)) if low < high else Distribution("number", (low,))
 
 
 def number(value: float) -> Distribution:
-    """Return the distribution of one number only."""
+    """Return a constant as a distribution."""
     return Distribution("number", (value,))

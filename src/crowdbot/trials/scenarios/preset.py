@@ -1,4 +1,4 @@
-"""Preset: a trial that is made from parameters."""
+"""Preset: a built-in trial with parameters."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["Preset", "PresetOption"]
 
 @dataclass(frozen=True)
 class PresetOption:
-    """A parameter of a preset: what it is when nothing is said, what it means, and what it may be."""
+    """A parameter of a preset: default, description and allowed values."""
 
     default: float | int | str | bool
     about: str
@@ -28,10 +28,10 @@ class PresetOption:
     choices: tuple[str, ...] = ()
 
     def value(self, given: Any) -> Any:
-        """Return a value of the type of the default, from Python or from a text.
+        """Return a value with the type of the default, from a Python value or a text.
 
         Raises:
-            InputError: it is none, or not allowed.
+            InputError: the value has another type or is not allowed.
         """
         if isinstance(self.default, str):
             text = str(given)
@@ -50,7 +50,7 @@ class PresetOption:
         return int(value) if isinstance(self.default, int) else value
 
     def __str__(self) -> str:
-        """Return a line about it."""
+        """Return a one-line description."""
         reach = f" [{self.low:g} to {self.high:g} {self.unit}]" if math.isfinite(self.high) else ""
         words = f" [{', '.join(self.choices)}]" if self.choices else ""
         plain = str(self.default).lower() if isinstance(self.default, bool) else self.default
@@ -59,7 +59,7 @@ class PresetOption:
 
 COMMON = {
     "model": PresetOption("orca", "crowd model of the people"),
-    "navigator": PresetOption("orca", "who steers the robot"),
+    "navigator": PresetOption("orca", "navigator of the robot"),
     "robot": PresetOption(True, "whether there is a robot"),
     "reactive": PresetOption(True, "whether people see the robot"),
     "seed": PresetOption(1, "seed of everything random", "", -(2**53), 2**53),
@@ -72,11 +72,11 @@ class Preset:
     """A built-in trial with parameters.
 
     Fields:
-        name: on the command line.
-        about: one line for people.
-        make: a function of the own parameters that returns the trial without what all have in common.
-        own: its parameters, those in common apart.
-        also: what others call it, and with which parameters.
+        name: name on the command line.
+        about: description, one line.
+        make: function of the parameters in ``own`` that returns the trial.
+        own: parameters of this preset, without those of every preset.
+        also: names of the scenario in other simulators and benchmarks, with the parameters.
     """
 
     name: str
@@ -94,10 +94,10 @@ class Preset:
         """Return the trial.
 
         Args:
-            given: parameters, the others have their defaults.
+            given: parameters (default: the defaults of the preset).
 
         Raises:
-            TrialError: one is unknown or not allowed, each in a sentence; or the trial is impossible with them.
+            TrialError: a parameter is unknown or not allowed, or the trial is impossible with the parameters.
         """
         options = self.options
         values, problems = {name: option.default for name, option in options.items()}, []
@@ -124,7 +124,7 @@ class Preset:
 
 
 def _with_common_options(trial: Trial, preset: Preset, values: Mapping[str, Any]) -> Trial:
-    """Return a trial with what all presets have in common: model, navigator, robot, seed."""
+    """Return a trial with the parameters of every preset: model, navigator, robot, seed."""
     changes: dict[str, Any] = {"name": preset.name, "about": preset.about, "seed": values["seed"]}
     if values["model"] != "orca":
         changes["crowd"] = find_class(values["model"], models, models.CrowdModel, trust=False)()

@@ -1,8 +1,8 @@
-"""Shared ways: base cases of one robot and a few people who use the same way, or wait for the robot.
+"""Shared paths: base cases of one robot and a few people on the same path, or waiting for the robot.
 
 Names are those of Francis et al. 2025, Principles and guidelines for evaluating social robot navigation algorithms,
-doi:10.1145/3700599; geometry and numbers are ours. People cannot follow a robot or take anything from it: where a
-scenario asks for that, what its description says is what happens.
+doi:10.1145/3700599; geometry and numbers are our own. People cannot follow a robot or take anything from it; the
+descriptions of such scenarios say what happens instead.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ __all__ = ["SHARED_WAYS"]
 WIDTH = PresetOption(3.0, "width of the corridor", "m", 1.6, 20.0)
 ROBOT = PresetOption(1.0, "speed of the robot", "m/s", 0.1, 3.0)
 BACK = math.pi
-"""The heading of who looks to where the robot comes from [rad]."""
+"""Heading [rad] towards the start of the robot."""
 
 
 def robot_ahead(gap: float, speed: float, robot_speed: float) -> Trial:
-    """A robot goes ahead of a person to where the person wants to go."""
+    """A robot goes ahead of a person to the goal of the person."""
     return scenario(
         "leading",
         60.0,
@@ -37,7 +37,7 @@ def robot_ahead(gap: float, speed: float, robot_speed: float) -> Trial:
 
 
 def pedestrian_obstruction(width: float, people: int, gives_way: bool) -> Trial:
-    """People stand in the way of the robot."""
+    """People stand in the path of the robot."""
     speed = 1.34 if gives_way else STILL
     across = [0.6 * (k - (people - 1) / 2.0) for k in range(people)]
     return scenario(
@@ -50,7 +50,7 @@ def pedestrian_obstruction(width: float, people: int, gives_way: bool) -> Trial:
 
 
 def down_path(width: float, people: int, against: int, speed: float) -> Trial:
-    """People walk along the path of the robot, both ways."""
+    """People walk along the path of the robot in both directions."""
     side = width / 2.0 - 0.6
     agents = [
         Agent(
@@ -76,7 +76,7 @@ def down_path(width: float, people: int, against: int, speed: float) -> Trial:
 
 
 def parallel_walk(gap: float, speed: float, robot_speed: float) -> Trial:
-    """A robot and a person walk side by side."""
+    """A robot and a person go side by side."""
     side = gap / 2.0
     return scenario(
         "parallel-walk",
@@ -88,7 +88,7 @@ def parallel_walk(gap: float, speed: float, robot_speed: float) -> Trial:
 
 
 def object_handover(reach: float, approach: float) -> Trial:
-    """A robot comes to a person who waits, and stops within reach."""
+    """A robot approaches a waiting person and stops within reach."""
     turn = math.radians(approach)
     x, y = -6.0 * math.cos(turn), -6.0 * math.sin(turn)
     return scenario(
@@ -103,7 +103,7 @@ def object_handover(reach: float, approach: float) -> Trial:
 SHARED_WAYS = (
     Preset(
         "leading",
-        "A robot goes ahead of a person who walks behind it at the own pace, and waits for nobody.",
+        "A robot goes ahead of a person, who walks behind it at their own pace; the robot does not wait.",
         robot_ahead,
         {
             "gap": PresetOption(1.75, "distance between their centres at the beginning", "m", 0.6, 8.0),
@@ -118,18 +118,18 @@ SHARED_WAYS = (
         pedestrian_obstruction,
         {
             "width": WIDTH,
-            "people": PresetOption(1, "people who stand in the way", "", 1, 20),
+            "people": PresetOption(1, "people who stand in the path", "", 1, 20),
             "gives_way": PresetOption(False, "whether they step aside"),
         },
         "P&G: pedestrian obstruction",
     ),
     Preset(
         "down-path",
-        "The robot goes down a corridor along which people walk, some the same way and some towards it.",
+        "The robot goes along a corridor in which people walk, some in its direction and some towards it.",
         down_path,
         {
             "width": WIDTH,
-            "people": PresetOption(2, "people who walk the same way", "", 0, 4),
+            "people": PresetOption(2, "people who walk in the direction of the robot", "", 0, 4),
             "against": PresetOption(1, "people who walk towards the robot", "", 0, 3),
             "speed": PresetOption(0.8, "speed of the people", "m/s", 0.1, 2.5),
         },
@@ -137,10 +137,10 @@ SHARED_WAYS = (
     ),
     Preset(
         "parallel-walk",
-        "A robot and a person walk side by side down a corridor.",
+        "A robot and a person go side by side along a corridor.",
         parallel_walk,
         {
-            "gap": PresetOption(1.2, "distance between their ways", "m", 0.6, 5.0),
+            "gap": PresetOption(1.2, "distance between their paths", "m", 0.6, 5.0),
             "speed": PresetOption(1.0, "speed of the person", "m/s", 0.1, 2.5),
             "robot_speed": ROBOT,
         },
@@ -148,13 +148,12 @@ SHARED_WAYS = (
     ),
     Preset(
         "object-handover",
-        "The robot comes to a person who stands and waits, and stops in front of them within reach; that is where it"
-        " ends: nothing is handed over, as robots have no hands here.",
+        "The robot approaches a waiting person and stops within reach. The trial ends there; nothing is handed over.",
         object_handover,
         {
             "reach": PresetOption(0.9, "distance between their centres at which the robot stops", "m", 0.6, 2.0),
             "approach": PresetOption(
-                30.0, "between where the person looks and where the robot begins", "deg", -90.0, 90.0
+                30.0, "angle between the heading of the person and the start of the robot", "deg", -90.0, 90.0
             ),
         },
         "P&G: object handover",

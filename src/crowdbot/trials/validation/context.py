@@ -1,4 +1,4 @@
-"""The parts of a trial that checks look at, whether it was made in Python or could be read only in part."""
+"""Validation context: the elements of a trial, complete or partial, for its checks."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crowdbot.core import InputError, UnreadableValue, nearest_name
 from crowdbot.trials.agent import Agent
 from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import outline
-from crowdbot.trials.partial import kind_of, make_partial, readable, rest
+from crowdbot.trials.partial_element import PartialElement, fill_defaults, kind_of, readable
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
@@ -21,15 +21,15 @@ from crowdbot.world import Router
 __all__ = ["DeclaredNames", "Problems", "ValidationContext"]
 
 Problems = Iterator[tuple[Any, str]]
-"""Elements that have a problem, each with the end of a sentence about it."""
+"""Elements with a problem, each with the end of a sentence about it."""
 
 
 class DeclaredNames(NamedTuple):
-    """The names of all elements of a kind, readable or not.
+    """The names of all elements of a kind.
 
     Fields:
-        known: as they stand there.
-        doubtful: those that have to change, and None for each that is missing.
+        known: the readable names.
+        doubtful: the names that are invalid or duplicate, and None for each name that is missing.
     """
 
     known: list[str]
@@ -48,14 +48,14 @@ class DeclaredNames(NamedTuple):
         return cls(known, doubtful)
 
     def lack(self, name: str) -> bool:
-        """Whether nothing has a name, and nothing that has to change its own can be what it means."""
+        """Return whether no element has a name, and none with a doubtful name can be meant."""
         sure = [one for one in self.known if one not in self.doubtful]
         return name not in self.known and (not self.doubtful or bool(nearest_name(name, sure)))
 
 
 @dataclass(frozen=True)
 class ValidationContext:
-    """A trial, partial if something in it could not be read, and its crowds as they stand in its file."""
+    """A trial, partial if it has a problem, and the crowds in its file."""
 
     trial: Trial
     crowds: Sequence[Crowd]
@@ -63,34 +63,35 @@ class ValidationContext:
 
     @property
     def seed(self) -> int:
-        """Seed of what is drawn, 0 for one that could not be read."""
+        """Random seed, 0 if it could not be read."""
         if self.given_seed is not None:
             return self.given_seed
         return next((seed for _, seed in readable([self.trial], "seed")), 0)
 
     @property
     def people(self) -> tuple[Agent | Spawner | SourceSpec, ...]:
-        """Where people come from."""
+        """Agents, spawners and sources."""
         return (*self.trial.agents, *self.trial.spawners, *self.trial.sources)
 
     @property
     def crowd_names(self) -> DeclaredNames:
-        """Names of the crowds; a single one needs none."""
+        """Names of the crowds; a single crowd needs none."""
         if len(self.crowds) == 1 and not self.crowds[0].name:
             return DeclaredNames([], [])
         return DeclaredNames.of(self.crowds) if self.crowds else DeclaredNames([], [None])
 
     @functools.cached_property
     def stage(self) -> Stage:
-        """The stage without what could not be read of it: whatever is wrong there is wrong on the whole one, too."""
-        return rest(self.trial.stage)
+        """The stage without its unreadable parts, which can only add problems of places."""
+        stage: Stage = fill_defaults(self.trial.stage)
+        return stage
 
     @property
     def router(self) -> Router | None:
-        """Who leads people around the walls of the stage, None without routing.
+        """The router of the stage, None without routing.
 
         Raises:
-            Unread: nobody can.
+            UnreadableValue: routing is impossible.
         """
         if self.trial.routing is None:
             return None
@@ -100,7 +101,7 @@ class ValidationContext:
 
     @property
     def no_routing(self) -> str:
-        """Why nobody can lead people around the walls of the stage, empty when somebody can."""
+        """Why routing on this stage is impossible, empty if it is possible."""
         return self._routing if self.trial.routing is not None and isinstance(self._routing, str) else ""
 
     @functools.cached_property
@@ -112,12 +113,12 @@ class ValidationContext:
             return str(error).removeprefix("Router: ")
 
     def without(self, wrong: Mapping[int, set[str]]) -> ValidationContext:
-        """Return what is left when fields of elements, given by their ``id``, turn out wrong."""
+        """Return a context in which wrong fields of elements, given by their ``id``, are unreadable."""
         return dataclasses.replace(self, trial=_without(self.trial, wrong)) if wrong else self
 
 
 def _without(thing: Any, wrong: Mapping[int, set[str]]) -> Any:
-    """Return an element, or a partial copy of it if something in it is wrong."""
+    """Return an element, or a partial copy without its wrong fields."""
     if isinstance(thing, tuple):
         new = tuple(_without(one, wrong) for one in thing)
         return thing if all(a is b for a, b in zip(thing, new, strict=True)) else new
@@ -130,4 +131,4 @@ def _without(thing: Any, wrong: Mapping[int, set[str]]) -> Any:
     if not lost and all(values[name] is value for name, value in inner.items()):
         return thing
     kept = {name: value for name, value in (values | inner).items() if name not in lost}
-    return make_partial(cls, kept, {field.name for field in dataclasses.fields(cls)} - {*kept}, origin=thing)
+    return PartialElement(cls, kept, {field.name for field in dataclasses.fields(cls)} - {*kept}, origin=thing)

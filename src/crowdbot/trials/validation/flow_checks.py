@@ -1,4 +1,4 @@
-"""What makes the ways of people impossible: names that nothing has, goals nobody reaches, zones without room."""
+"""Checks of flows of people: unknown names, unreachable goals, zones without room."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import InputError, did_you_mean, stream
+from crowdbot.core import InputError, did_you_mean, stream, unread_fields
 from crowdbot.trials.agent import Agent, AgentParameter
 from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.fields import quote_value
 from crowdbot.trials.journey import Direction, Exit, Point, Zone
 from crowdbot.trials.notation import Points
-from crowdbot.trials.partial import readable, whole
+from crowdbot.trials.partial_element import has_kind, plugin_with_defaults, readable
 from crowdbot.trials.people import SourceSpec, Spawner
 from crowdbot.trials.placement.spawn_placement import points_in
 from crowdbot.trials.randomized_model import RandomizedModel
@@ -25,43 +25,43 @@ from crowdbot.world import Router
 
 from .context import DeclaredNames, Problems, ValidationContext
 
-__all__ = ["arrival_count", "astray", "duplicate_names", "flows", "names"]
+__all__ = ["arrival_count", "duplicate_names", "flows", "inaccessible_stops", "names"]
 
 Floats = NDArray[np.float64]
 
 BATCHES = 30
-"""So many batches of points of a zone are tried for one where a body has room."""
+"""Number of batches of points in which a place with room for a body is searched."""
 SPOTS = 6
-"""So many points of a zone stand for all."""
+"""Number of points that represent a zone."""
 OVERLAP = 1e-9
-"""Zones that share less than this [m2] touch only."""
+"""Largest overlap [m2] of zones that only touch."""
 
 
 def arrival_count(trial: Trial) -> int:
-    """Return about how many people come in."""
+    """Return the approximate number of people who enter."""
     return round(sum(source.arrival_count(trial.duration) for source in trial.sources))
 
 
 def names(checked: ValidationContext) -> Iterator[Problems]:
-    """Yield checks of names that are taken or that nothing has, and of people who have no way to go or two."""
+    """Yield checks of duplicate and unknown names, and of people with no goal or two."""
     trial = checked.trial
     yield duplicate_names(trial.journeys, "journey")
-    yield from (_endless(stops) for _, stops in readable(trial.journeys, "stops"))
+    yield from (_endless_stops(stops) for _, stops in readable(trial.journeys, "stops"))
     yield _more_than_fit(trial)
     for one in checked.people:
         yield _goals(one)
         yield _arrival(one)
-        yield _named(one, "journey", DeclaredNames.of(trial.journeys))
-        yield _named(one, "crowd", checked.crowd_names)
-        if isinstance(one, SourceSpec):
-            yield _begins(one)
-        if isinstance(one, Agent):
-            yield from (_own(checked, one, parameter) for parameter in one.parameters)
-    yield from (_named(one, "crowd", checked.crowd_names) for one in trial.recorded)
+        yield _unknown_name(one, "journey", DeclaredNames.of(trial.journeys))
+        yield _unknown_name(one, "crowd", checked.crowd_names)
+        if has_kind(one, SourceSpec):
+            yield _arrival_times(one)
+        if has_kind(one, Agent):
+            yield from (_parameter(checked, one, parameter) for parameter in one.parameters)
+    yield from (_unknown_name(one, "crowd", checked.crowd_names) for one in trial.recorded)
 
 
 def duplicate_names(things: Sequence[Any], others: str) -> Problems:
-    """Yield everything whose name an earlier one has."""
+    """Yield every element with the name of an earlier one."""
     known: set[str] = set()
     for k, name in readable(things, "name"):
         if name in known:
@@ -70,47 +70,47 @@ def duplicate_names(things: Sequence[Any], others: str) -> Problems:
 
 
 def flows(checked: ValidationContext) -> Iterator[Problems]:
-    """Yield checks of zones without room and of ways that lead nowhere."""
+    """Yield checks of zones without room and of unreachable stops."""
     trial = checked.trial
-    yield _routed(checked)
+    yield _routing(checked)
     yield from (_entrance(checked.stage, source) for source in trial.sources)
     for _, stops in readable(trial.journeys, "stops"):
         yield from (_stop(checked, stop) for stop in stops)
     coming: tuple[Spawner | SourceSpec, ...] = (*trial.spawners, *trial.sources)
-    yield from (_straight_out(one, k, way) for one in coming for k, way in enumerate(trial.exits, 1))
+    yield from (_exit_overlap(one, k, way) for one in coming for k, way in enumerate(trial.exits, 1))
     yield from (_first_leg(checked, one) for one in checked.people)
     for _, stops in readable(trial.journeys, "stops"):
         yield from (_leg(checked, k, *pair) for k, pair in enumerate(itertools.pairwise(stops), 2))
 
 
-def _routed(checked: ValidationContext) -> Problems:
+def _routing(checked: ValidationContext) -> Problems:
     if why := checked.no_routing:
         yield checked.trial.routing, f"is impossible on this stage: {why}"
 
 
-def _named(one: Any, word: str, names: DeclaredNames) -> Problems:
-    """Yield a name that nothing has."""
+def _unknown_name(one: Any, word: str, names: DeclaredNames) -> Problems:
+    """Yield an element that refers to an unknown name."""
     if (name := getattr(one, word)) and names.lack(name):
-        there = f"there are {', '.join(names.known)}" if names.known else f"no {word} has a name here"
+        there = f"there are {', '.join(names.known)}" if names.known else f"no {word} has a name"
         yield one, f"{word}={quote_value(name)} is not the name of a {word}{did_you_mean(name, names.known)}; {there}"
 
 
-def _goals(one: Agent | Spawner | SourceSpec) -> Problems:
-    stands = isinstance(one, Agent) or getattr(one, "stands", False)
+def _goals(one: Any) -> Problems:
+    stands = has_kind(one, Agent) or getattr(one, "stands", False)
     if one.goal and one.journey:
         yield one, 'has both a goal and a journey; give one of them: goal="x,y x,y x,y" or journey="name"'
-    elif stands and isinstance(one, Spawner) and (one.goal or one.journey):
-        yield one, 'has people who stand, and a goal or a journey; leave out stands="true", or where they go'
+    elif stands and has_kind(one, Spawner) and (one.goal or one.journey):
+        yield one, 'has stands="true" and a goal or a journey; leave out one of them'
     elif not (one.goal or one.journey or stands):
         yield one, 'needs a goal zone or a journey: goal="x,y x,y x,y" or journey="name"'
 
 
 def _arrival(one: Agent | Spawner | SourceSpec) -> Problems:
     if one.journey and one.arrival != "leave" and not one.goal and not getattr(one, "stands", False):
-        yield one, f'arrival="{one.arrival}" goes with a goal zone; for a journey say then="{one.arrival}" in it'
+        yield one, f'arrival="{one.arrival}" needs a goal zone; for a journey write then="{one.arrival}" in it'
 
 
-def _begins(source: SourceSpec) -> Problems:
+def _arrival_times(source: SourceSpec) -> Problems:
     if source.begin >= source.end:
         yield source, f"begin {source.begin:g} s must be before end {source.end:g} s"
 
@@ -124,20 +124,23 @@ def _more_than_fit(trial: Trial) -> Problems:
         yield last, f"makes {first} people at the beginning, more than the capacity {trial.capacity}"
 
 
-def _own(checked: ValidationContext, agent: Agent, parameter: AgentParameter) -> Problems:
-    """Yield a parameter that the model of a person does not have, or cannot take."""
+def _parameter(checked: ValidationContext, agent: Agent, parameter: AgentParameter) -> Problems:
+    """Yield a parameter that the model of a person does not have or allow."""
     crowds = [crowd for crowd in checked.crowds if crowd.name == agent.crowd or not agent.crowd]
     if not crowds:
         return
-    model = whole(crowds[0].model)
+    model = plugin_with_defaults(crowds[0].model)
+    model = model.model if isinstance(model, RandomizedModel) else model
+    if unread_fields(type(model)):  # defaults that are known only when code runs
+        return
     draws = {parameter.name.replace("-", "_"): Distribution.of(parameter.value)}
-    for sentence in RandomizedModel.problems(model.model if isinstance(model, RandomizedModel) else model, draws):
+    for sentence in RandomizedModel.problems(model, draws):
         yield parameter, sentence.replace("drawn", "given", 1)
 
 
-def _endless(stops: Sequence[Any]) -> Problems:
+def _endless_stops(stops: Sequence[Any]) -> Problems:
     for k, stop in enumerate(stops[:-1]):
-        if isinstance(stop, Direction):
+        if has_kind(stop, Direction):
             yield stop, f"is stop {k + 1} of {len(stops)} and has no end; a direction must be the last stop"
 
 
@@ -157,11 +160,11 @@ def _entrance(stage: Stage, source: SourceSpec) -> Problems:
         )
 
 
-def astray(checked: ValidationContext, stop: Point | Direction | Zone) -> Iterator[tuple[Any, str, str]]:
-    """Yield a stop at a point where nobody can be: the stop, its field, and the end of a sentence."""
+def inaccessible_stops(checked: ValidationContext, stop: Point | Direction | Zone) -> Iterator[tuple[Any, str, str]]:
+    """Yield a stop at an inaccessible point: the stop, its field, and the end of a sentence."""
     import shapely
 
-    if isinstance(stop, Point):
+    if has_kind(stop, Point):
         point = shapely.Point(stop.x, stop.y)
         if not checked.stage.holds(point):
             yield stop, "x", f"at {stop.x:g},{stop.y:g} lies outside the walkable area"
@@ -171,70 +174,70 @@ def astray(checked: ValidationContext, stop: Point | Direction | Zone) -> Iterat
 
 def _stop(checked: ValidationContext, stop: Point | Direction | Zone) -> Problems:
     stage = checked.stage
-    if isinstance(stop, Zone):
+    if has_kind(stop, Zone):
         if stop.aim == "nearest" or checked.router is None:
             if block := stage.block_in(area(stop.points), OVERLAP):
                 yield stop, f"zone reaches into {block}; move it, or cut it there"
         elif not len(_spots(checked.router, stop.points)):
             radius = checked.router.radius
-            yield stop, f"zone leaves no room for a body of radius {radius:g} m, which routing asks for"
+            yield stop, f"zone leaves no room for a body of radius {radius:g} m, which routing requires"
 
 
-def _straight_out(one: Spawner | SourceSpec, number: int, way: Exit) -> Problems:
-    """Yield those who would leave where they come in."""
+def _exit_overlap(one: Spawner | SourceSpec, number: int, way: Exit) -> Problems:
+    """Yield spawners and sources in an exit."""
     if area(one.zone).intersection(area(way.zone)).area > OVERLAP:
         called = repr(way.name) if way.name else str(number)
         yield one, f"zone overlaps exit {called}, where people would leave at once; move one of them"
 
 
 class _Place(NamedTuple):
-    """Where a way begins or ends; ``anywhere`` in it, or where it suits the person best."""
+    """Begin or end of a path: any point of it (``anywhere``), or the best one."""
 
     points: Points
     anywhere: bool = True
 
     @classmethod
     def of(cls, stop: Point | Direction | Zone) -> _Place | None:
-        """Return the place of a stop; None of a direction."""
-        if isinstance(stop, Point):
+        """Return the place of a stop; None for a direction."""
+        if has_kind(stop, Point):
             return cls(Points.of([(stop.x, stop.y)]))
-        return cls(stop.points, stop.aim == "random") if isinstance(stop, Zone) else None
+        return cls(stop.points, stop.aim == "random") if has_kind(stop, Zone) else None
 
 
-def _first_leg(checked: ValidationContext, one: Agent | Spawner | SourceSpec) -> Problems:
-    """Yield who finds no way around walls into the own journey or to the own goal."""
+def _first_leg(checked: ValidationContext, one: Any) -> Problems:
+    """Yield people without a path to their goal or to the first stop of their journey."""
     router = checked.router
     if router is None or router.unreachable != "error" or not (one.goal or one.journey):
         return
     journey = next((journey for journey in checked.trial.journeys if journey.name == one.journey), None)
     first = _Place(one.goal) if one.goal else journey and _Place.of(journey.stops[0])
     what = (
-        ("the goal" if isinstance(one, Agent) else "the goal zone")
+        ("the goal" if has_kind(one, Agent) else "the goal zone")
         if one.goal
         else f"the first stop of journey {one.journey!r}"
     )
-    start, word = (one.zone, "zone") if not isinstance(one, Agent) else (Points.of([one.position]), "place")
-    if first and not _leads(router, _Place(start), first):
-        yield one, f"no way leads from its {word} to {what} for a body of radius {router.radius:g} m"
+    start, word = (one.zone, "zone") if not has_kind(one, Agent) else (Points.of([one.position]), "place")
+    if first and not _is_path(router, _Place(start), first):
+        yield one, f"there is no path from its {word} to {what} for a body of radius {router.radius:g} m"
 
 
 def _leg(checked: ValidationContext, number: int, here: Any, there: Any) -> Problems:
-    """Yield a stop to which no way around walls leads from the one before."""
+    """Yield a stop without a path from the previous one."""
     router = checked.router
     if router is None or router.unreachable != "error":
         return
     begin, end = _Place.of(here), _Place.of(there)
-    if begin and end and not _leads(router, begin, end):
-        yield there, f"no way leads to stop {number} from the one before for a body of radius {router.radius:g} m"
+    if begin and end and not _is_path(router, begin, end):
+        yield there, f"there is no path to stop {number} from the one before for a body of radius {router.radius:g} m"
 
 
-def _leads(router: Router, begin: _Place, end: _Place) -> bool:
-    begins, ends = _any(router, begin.points), _any(router, end.points)
+def _is_path(router: Router, begin: _Place, end: _Place) -> bool:
+    begins, ends = _sample_points(router, begin.points), _sample_points(router, end.points)
     every, last = (all if begin.anywhere else any), (all if end.anywhere else any)
-    return every(last(_reached(router, here, there) for there in ends) for here in begins)
+    return every(last(_is_reachable(router, here, there) for there in ends) for here in begins)
 
 
-def _reached(router: Router, here: Floats, there: Floats) -> bool:
+def _is_reachable(router: Router, here: Floats, there: Floats) -> bool:
     try:
         router.towards(here, there)
     except InputError:
@@ -242,15 +245,15 @@ def _reached(router: Router, here: Floats, there: Floats) -> bool:
     return True
 
 
-def _any(router: Router, points: Points) -> Sequence[Floats]:
-    """Return a few points of a zone, where a body has room if there are any; the point itself of a single one."""
+def _sample_points(router: Router, points: Points) -> Sequence[Floats]:
+    """Return a few points of a zone, with room for a body if possible; a single point is returned as it is."""
     if len(points) == 1:
         return [np.array(points[0])]
     return _spots(router, points) or [*itertools.islice(_points(points), SPOTS)]
 
 
 def _spots(router: Router, points: Points) -> Sequence[Floats]:
-    """Return a few points of a zone at which a body has room."""
+    """Return a few points of a zone with room for a body."""
     return [*itertools.islice((point for point in _points(points) if router.holds(point[None])[0]), SPOTS)]
 
 

@@ -1,4 +1,4 @@
-"""Rates: which sensors of a type of robot do not fit the time step of a trial, and what becomes of them."""
+"""Rates: sensors of robot types whose rates do not fit the time step of a trial."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["fitting", "misfits", "trial_remarks"]
 
 
 def fitting(periods: Sequence[float]) -> float:
-    """Return a time step of at most 0.1 s [s] of which all periods [s] are whole numbers, 0 when it would be too short.
+    """Return a time step [s] of at most 0.1 s that divides all periods [s], 0 if it would be below 0.005 s.
 
     >>> fitting([0.16, 0.1, 0.02]), fitting([0.1, 0.0123])
     (0.02, 0.0)
@@ -31,7 +31,7 @@ def misfits(robot: RobotSpec, step: float) -> list[Mount]:
     clock, found = FreeClock(step), []
     carried = robot.type_sensors
     for mount in robot.sensors:
-        if mount in carried:
+        if mount in carried and not math.isnan(mount.sensor.rate):  # a NaN rate is known only when code runs
             try:
                 for period in _periods(mount):
                     clock.every(period)
@@ -41,14 +41,14 @@ def misfits(robot: RobotSpec, step: float) -> list[Mount]:
 
 
 def trial_remarks(trial: Trial) -> list[str]:
-    """Return a sentence for every robot whose sensors measure at other times than its type says.
+    """Return a sentence for every robot whose sensors measure at other rates than those of its type.
 
     >>> from crowdbot.models import ORCA
     >>> from crowdbot.navigation import Straight
     >>> from crowdbot.trials import RobotGoal
     >>> pepper = RobotSpec(type="pepper", x=0, y=0, goal=RobotGoal(5, 0), navigator=Straight())
-    >>> [sentence[-36:] for sentence in trial_remarks(Trial(name="t", duration=1, crowd=ORCA(), robots=[pepper]))]
-    ['step="0.01" all would be as they are']
+    >>> [sentence[-32:] for sentence in trial_remarks(Trial(name="t", duration=1, crowd=ORCA(), robots=[pepper]))]
+    ['step="0.01" no period is rounded']
     """
     found = []
     clock = FreeClock(trial.step)
@@ -63,10 +63,10 @@ def trial_remarks(trial: Trial) -> list[str]:
         if others:
             words = "; ".join(f"{' and '.join(names)} {row}" for row, names in rows.items())
             step = fitting([period for mount in others for period in _periods(mount)])
-            exact = f'; with step="{step:g}" all would be as they are' if step else ""
+            exact = f'; with step="{step:g}" no period is rounded' if step else ""
             found.append(
-                f"robot {robot.name!r} of type {robot.type!r} measures as often as the time step of {trial.step:g} s"
-                f" allows: {words}{exact}"
+                f"robot {robot.name!r} of type {robot.type!r} rounds the periods of its sensors to the time step of"
+                f" {trial.step:g} s: {words}{exact}"
             )
     return found
 

@@ -1,4 +1,4 @@
-"""What makes a trial impossible although every value is allowed: places, overlaps, people who do not fit, periods."""
+"""Checks of a trial whose values are allowed one by one: places, overlaps, room for people, periods."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from crowdbot.trials.camera import Camera
 from crowdbot.trials.crowd import Crowd
 from crowdbot.trials.fields import quote_value
 from crowdbot.trials.notation import Points
-from crowdbot.trials.partial import origin, readable, rest, skip_unreadable
+from crowdbot.trials.partial_element import fill_defaults, has_kind, original_element, readable, skip_unreadable
 from crowdbot.trials.people import Spawner
 from crowdbot.trials.placement.population import place
 from crowdbot.trials.recorded_people import RecordedPeople
@@ -23,45 +23,48 @@ from crowdbot.trials.stage import Stage
 from crowdbot.trials.trial import Trial
 
 from .context import DeclaredNames, Problems, ValidationContext
-from .flow_checks import arrival_count, astray, duplicate_names, flows, names
+from .flow_checks import arrival_count, duplicate_names, flows, inaccessible_stops, names
 from .rates import fitting, misfits
-from .zones import areas, crooked
+from .zones import areas, shape_problem
 
 __all__ = ["problems_of"]
 
 MOST_VALUES = 100_000_000
-"""An episode is held in memory: recorded scenes times agents must not exceed this."""
+"""Largest number of recorded scenes times agents; an episode is kept in memory."""
 MOST_ARRIVALS = 100_000
 NOBODY = Spawner(count=0, zone=Points.parse("0,0 1,0 0,1"))
-"""Stands in for a spawner whose people cannot be placed, so that those of others are drawn as ever."""
+"""Replaces a spawner that could not be read; the random streams of the other spawners stay the same."""
 WALKING = 1.6
-"""About how fast [m/s] people go from portal to portal."""
+"""Assumed speed [m/s] of people between portals."""
 
 
 def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) -> list[tuple[Any, str]]:
-    """Return every problem: the element that has it, and the end of a sentence about it.
+    """Return every problem: the element, and the end of a sentence.
 
     Args:
-        trial: partial if something in it could not be read.
-        crowds: as they stand in its file.
-        seed: places people with it; None is the trial's own.
+        trial: the trial, partial if it has a problem.
+        crowds: the crowds in its file.
+        seed: seed of the placement of people (default: the seed of the trial).
     """
     checked = ValidationContext(trial, crowds, seed)
     too_large = [*skip_unreadable(*_size(checked))]
     found = [
         *skip_unreadable(
-            _periods(checked), *(_exact(trial, robot) for robot in trial.robots), *_names(checked), *names(checked)
+            _periods(checked),
+            *(_exact_rates(trial, robot) for robot in trial.robots),
+            *_names(checked),
+            *names(checked),
         ),
         *too_large,
     ]
-    shapes = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.crooked())]
+    shapes = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.shape_problem())]
     shapes += _stage_shapes(trial.stage)
     checked = checked.without(_by_thing(shapes))
     lost = [(one.element, one.name, wrong) for one in areas(checked) if (wrong := one.place_problem(checked.stage))]
     lost += [
         row
         for _, stops in readable(trial.journeys, "stops")
-        for row in skip_unreadable(*(astray(checked, s) for s in stops))
+        for row in skip_unreadable(*(inaccessible_stops(checked, s) for s in stops))
     ]
     checked = checked.without(_by_thing(lost))
     found += [(thing, sentence) for thing, _, sentence in (*shapes, *lost)]
@@ -69,11 +72,11 @@ def problems_of(trial: Any, crowds: Sequence[Crowd], seed: int | None = None) ->
     found += [*skip_unreadable(*(_recording(checked, one) for one in trial.recorded))]
     if not too_large:
         found += _places(checked)
-    return [(origin(thing), sentence) for thing, sentence in found]
+    return [(original_element(thing), sentence) for thing, sentence in found]
 
 
 def _by_thing(rows: Sequence[tuple[Any, str, str]]) -> dict[int, set[str]]:
-    """Return the fields of elements that have a problem, by the ``id`` of the element."""
+    """Return the fields with a problem by the ``id`` of their element."""
     found: dict[int, set[str]] = {}
     for thing, name, _ in rows:
         found.setdefault(id(thing), set()).add(name)
@@ -81,23 +84,23 @@ def _by_thing(rows: Sequence[tuple[Any, str, str]]) -> dict[int, set[str]]:
 
 
 def _places(checked: ValidationContext) -> list[tuple[Any, str]]:
-    """Return who finds no place: without those who could not be read, and without groups, there is only more room."""
+    """Return the people who do not fit. Without unreadable people and groups there is only more room."""
     trial = checked.trial
-    spawners = [_or(spawner, NOBODY, "zone", "count", "radius", groups=()) for spawner in trial.spawners]
-    agents = [_or(agent, None, "x", "y", "radius") for agent in trial.agents]
+    spawners = [_filled_or(spawner, NOBODY, "zone", "count", "radius", groups=()) for spawner in trial.spawners]
+    agents = [_filled_or(agent, None, "x", "y", "radius") for agent in trial.agents]
     robots = [robot for robot in trial.robots if all(readable([robot], name) for name in ("x", "y", "radius"))]
     walks = []
     for one in trial.recorded:
         with contextlib.suppress(UnreadableValue, InputError):
-            walks.append((rest(one, "data"), one.walks(trial.duration)))
+            walks.append((fill_defaults(one, "data"), one.walks(trial.duration)))
     there = [agent for agent in agents if agent is not None]
     return place(checked.stage, spawners, robots, checked.seed, there, walks)[1]
 
 
-def _or(thing: Any, other: Any, *needs: str, **instead: Any) -> Any:
-    """Return what :func:`rest` does, something other when what is needed could not be read."""
+def _filled_or(thing: Any, other: Any, *required: str, **replacements: Any) -> Any:
+    """Return what :func:`fill_defaults` does, ``other`` if a required field could not be read."""
     try:
-        return rest(thing, *needs, **instead)
+        return fill_defaults(thing, *required, **replacements)
     except UnreadableValue:
         return other
 
@@ -111,15 +114,15 @@ def _recording(checked: ValidationContext, one: RecordedPeople) -> Problems:
         yield one, f"data={quote_value(one.data)} {error}"
         return
     if not walks:
-        yield one, f"data={quote_value(one.data)} has nobody from {one.begin:g} s on; take an earlier begin"
+        yield one, f"data={quote_value(one.data)} contains nobody after {one.begin:g} s; use an earlier begin"
 
 
 def _periods(checked: ValidationContext) -> Problems:
     trial = checked.trial
     clock = FreeClock(trial.step)
-    periods = [*skip_unreadable(*_due(trial))]
+    periods = [*skip_unreadable(*_all_periods(trial))]
     step = fitting([period for _, _, period in periods])
-    fits = f'; with step="{step:g}" all are' if step else ""
+    fits = f'; step="{step:g}" divides all periods' if step else ""
     for thing, name, period in periods:
         try:
             clock.every(period)
@@ -127,29 +130,30 @@ def _periods(checked: ValidationContext) -> Problems:
             yield thing, f"{name} {period:g} s is not a whole number of time steps of {trial.step:g} s{fits}"
 
 
-def _due(trial: Trial) -> Iterator[Iterator[tuple[Any, str, float]]]:
-    """Yield what happens again and again: whose it is, what it is called, and after how long [s]."""
+def _all_periods(trial: Trial) -> Iterator[Iterator[tuple[Any, str, float]]]:
+    """Yield all periods: the element, a name, and the period [s]."""
     yield _period(trial.recording, "period", "recording period")
     yield _period(trial.recording, "markers", "recording markers")
     for robot in trial.robots:
         yield _period(robot, "control_period", "control-period")
-        yield from (_measuring(robot, mount) for _, mounts in readable([robot], "sensors") for mount in mounts)
+        yield from (_sensor_periods(robot, mount) for _, mounts in readable([robot], "sensors") for mount in mounts)
 
 
 def _period(thing: Any, name: str, called: str) -> Iterator[tuple[Any, str, float]]:
     yield thing, called, getattr(thing, name)
 
 
-def _measuring(robot: RobotSpec, mount: Mount) -> Iterator[tuple[Any, str, float]]:
+def _sensor_periods(robot: RobotSpec, mount: Mount) -> Iterator[tuple[Any, str, float]]:
     if mount in robot.type_sensors:
         return
-    yield mount, f"rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate
+    if not math.isnan(mount.sensor.rate):  # known only when code runs
+        yield mount, f"rate {mount.sensor.rate:g} Hz:", 1.0 / mount.sensor.rate
     if mount.sensor.delay > 0.0:
         yield mount, "delay", mount.sensor.delay
 
 
-def _exact(trial: Trial, robot: RobotSpec) -> Problems:
-    """Yield a robot with sensors of its type that do not fit the time step although they must."""
+def _exact_rates(trial: Trial, robot: RobotSpec) -> Problems:
+    """Yield a robot with ``sensor-rates="exact"`` and sensors that do not fit the time step."""
     if robot.sensor_rates == "exact" and (others := misfits(robot, trial.step)):
         rates = ", ".join(f"{mount.name} {mount.sensor.rate:g} Hz" for mount in others)
         step = fitting([trial.recording.period, robot.control_period, *(1.0 / mount.sensor.rate for mount in others)])
@@ -178,12 +182,12 @@ def _camera(robots: Sequence[RobotSpec], camera: Camera) -> Problems:
     bodies = {name: robots[k] for k, name in readable(robots, "name")}
     if names.lack(camera.robot):
         near = did_you_mean(camera.robot, bodies)
-        yield camera, f"robot={quote_value(camera.robot)} is no robot{near}; there are {', '.join(bodies) or 'none'}"
+        yield camera, f"robot={quote_value(camera.robot)} is not a robot{near}; there are {', '.join(bodies) or 'none'}"
     elif camera.robot not in bodies:
         return
     elif camera.link and camera.link not in (links := bodies[camera.robot].body.model.links):
         near = did_you_mean(camera.link, links)
-        yield camera, f"link={quote_value(camera.link)} is no link of robot {camera.robot!r}{near}"
+        yield camera, f"link={quote_value(camera.link)} is not a link of robot {camera.robot!r}{near}"
 
 
 def _size(checked: ValidationContext) -> Iterator[Problems]:
@@ -205,7 +209,7 @@ def _too_many(checked: ValidationContext) -> Problems:
     if coming > MOST_ARRIVALS:
         yield (
             checked.trial.sources[0],
-            f"lets people in, about {coming} together with other sources, more than {MOST_ARRIVALS}; take a lower rate,"
+            f"produces about {coming} people together with other sources, more than {MOST_ARRIVALS}; take a lower rate,"
             " an earlier end or fewer at most",
         )
 
@@ -220,12 +224,12 @@ def _too_large(checked: ValidationContext) -> Problems:
         yield (
             trial.recording,
             f"recording period {trial.recording.period:g} s makes {scenes:.0f} scenes of {agents} agents, more than"
-            f" {MOST_VALUES} places together; take a longer period, a shorter duration or fewer people",
+            f" {MOST_VALUES} positions in total; use a longer period, a shorter duration or fewer people",
         )
 
 
 def _through(trial: Trial, people: int) -> int:
-    """Return about how many people at most come out of portals as new ones."""
+    """Return the approximate maximum number of new people from portals."""
     if not trial.portals:
         return 0
     shortest = min(math.hypot(portal.dx, portal.dy) for portal in trial.portals)
@@ -233,23 +237,25 @@ def _through(trial: Trial, people: int) -> int:
 
 
 def _stage_shapes(stage: Stage) -> list[tuple[Any, str, str]]:
-    """Return what of a stage has no shape: the element, the field, and why as the end of a sentence."""
-    obstacles = [(stage.obstacles[k], "points", crooked(points)) for k, points in readable(stage.obstacles, "points")]
-    ground = [(stage, "walkable", crooked(points)) for _, points in readable([stage], "walkable") if points]
+    """Return the parts of a stage with an invalid shape: the element, the field, and the end of a sentence."""
+    obstacles = [
+        (stage.obstacles[k], "points", shape_problem(points)) for k, points in readable(stage.obstacles, "points")
+    ]
+    ground = [(stage, "walkable", shape_problem(points)) for _, points in readable([stage], "walkable") if points]
     return [(thing, name, f"{name} {wrong}") for thing, name, wrong in (*obstacles, *ground) if wrong]
 
 
 def _robots(stage: Stage, robots: Sequence[RobotSpec]) -> Iterator[Problems]:
     for k, robot in enumerate(robots):
-        yield _standing(stage, robot, "starts", robot)
-        yield from (_standing(stage, robot, "has its goal", goal) for _, goal in readable([robot], "goal"))
-        yield from (_apart(robot, other) for other in robots[:k])
+        yield _robot_place(stage, robot, "starts", robot)
+        yield from (_robot_place(stage, robot, "has its goal", goal) for _, goal in readable([robot], "goal"))
+        yield from (_robot_overlap(robot, other) for other in robots[:k])
 
 
-def _standing(stage: Stage, robot: RobotSpec, word: str, there: RobotSpec | RobotGoal) -> Problems:
+def _robot_place(stage: Stage, robot: RobotSpec, word: str, there: RobotSpec | RobotGoal) -> Problems:
     import shapely
 
-    spot, reach = there.position, there.tolerance if isinstance(there, RobotGoal) else 0.0
+    spot, reach = there.position, there.tolerance if has_kind(there, RobotGoal) else 0.0
     room = float(stage.clearance([spot])[0])
     block = stage.block_around(shapely.Point(spot))
     if not stage.holds(shapely.Point(spot)):
@@ -260,7 +266,7 @@ def _standing(stage: Stage, robot: RobotSpec, word: str, there: RobotSpec | Robo
         yield robot, f"{word} {room:.2f} m from a wall, and its radius is {robot.radius:g} m"
 
 
-def _apart(robot: RobotSpec, other: RobotSpec) -> Problems:
+def _robot_overlap(robot: RobotSpec, other: RobotSpec) -> Problems:
     away = float(np.hypot(robot.x - other.x, robot.y - other.y))
     if away < robot.radius + other.radius:
         yield (

@@ -1,4 +1,4 @@
-"""Zones of a trial, whoever has them: their shapes, and whether anybody can be there."""
+"""Zones of a trial: their shapes, and whether they are accessible."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import Any
 
 from crowdbot.trials.journey import Zone
 from crowdbot.trials.notation import Points
-from crowdbot.trials.partial import readable
+from crowdbot.trials.partial_element import has_kind, readable
 from crowdbot.trials.stage import Stage, area
 
 from .context import ValidationContext
 
-__all__ = ["Area", "areas", "crooked"]
+__all__ = ["Area", "areas", "shape_problem"]
 
 SMALLEST = 1e-6
-"""A zone that people come in by, go to or leave by is at least this large [m2]."""
+"""Smallest area [m2] of a zone where people enter, go or leave."""
 
 
 @dataclass(frozen=True)
@@ -24,12 +24,12 @@ class Area:
     """A zone of an element.
 
     Fields:
-        element: whose it is.
-        name: of its field.
-        label: what it is called.
-        points: its corners.
-        smallest: area that it must have [m2].
-        border: whether it may reach out of the walkable area, as an exit in a door does.
+        element: element of the zone.
+        name: name of its field.
+        label: name of the zone in messages.
+        points: corners.
+        smallest: smallest area [m2].
+        border: whether it may extend beyond the walkable area, like an exit in a door.
     """
 
     element: Any
@@ -39,29 +39,29 @@ class Area:
     smallest: float = 0.0
     border: bool = False
 
-    def crooked(self) -> str:
-        """Return what is wrong with the shape as the end of a sentence, empty when it is right."""
-        wrong = crooked(self.points, self.smallest)
+    def shape_problem(self) -> str:
+        """Return the problem of the shape as the end of a sentence, empty if there is none."""
+        wrong = shape_problem(self.points, self.smallest)
         return wrong and f"{self.name.replace('_', '-')} {wrong}"
 
     def place_problem(self, stage: Stage) -> str:
-        """Return why nobody can be there as the end of a sentence, empty when somebody can."""
+        """Return why the zone is not accessible as the end of a sentence, empty if it is."""
         zone = area(self.points)
         if not (stage.meets(zone) if self.border else stage.holds(zone)):
             where = "lies" if self.border else "reaches"
             return f"{self.label} {where} outside the walkable area; move it, or make the area larger"
         block = stage.block_around(zone)
-        return block and f"{self.label} lies inside {block}; nobody can be there, move it"
+        return block and f"{self.label} lies inside {block}; it is not accessible, move it"
 
 
 def areas(checked: ValidationContext) -> list[Area]:
-    """Return every zone of a trial that could be read."""
+    """Return the readable zones of a trial."""
     trial, found = checked.trial, list[Area]()
     for group, label, smallest in ((trial.spawners, "spawn zone", 0.0), (trial.sources, "zone", SMALLEST)):
         found += _zones(group, "zone", label, smallest)
         found += _zones(group, "goal", "goal zone", smallest)
     for _, stops in readable(trial.journeys, "stops"):
-        found += _zones([stop for stop in stops if isinstance(stop, Zone)], "points", "zone", SMALLEST)
+        found += _zones([stop for stop in stops if has_kind(stop, Zone)], "points", "zone", SMALLEST)
     found += _zones(trial.portals, "zone", "zone", SMALLEST, border=True)
     found += _zones(trial.agents, "goal_zone", "goal zone", 0.0)
     return found + _zones(trial.exits, "zone", "zone", SMALLEST, border=True)
@@ -71,15 +71,15 @@ def _zones(things: Sequence[Any], name: str, label: str, smallest: float, border
     return [Area(things[k], name, label, points, smallest, border) for k, points in readable(things, name) if points]
 
 
-def crooked(points: Points, smallest: float = 0.0) -> str:
-    """Return why points are not the corners of a polygon, as the end of a sentence; empty when they are."""
+def shape_problem(points: Points, smallest: float = 0.0) -> str:
+    """Return why points are not the corners of a polygon as the end of a sentence, empty if they are."""
     import shapely
 
     if len(set(points)) < 3:
         return "must be at least 3 different points"
     polygon = area(points)
     if not polygon.is_valid:
-        return f"is no simple polygon: {shapely.is_valid_reason(polygon).lower()}; list its corners in order"
+        return f"is not a simple polygon: {shapely.is_valid_reason(polygon).lower()}; list its corners in order"
     if polygon.area > smallest:
         return ""
     return f"has {polygon.area:g} m2, it must have more than {smallest:g} m2" if polygon.area > 0.0 else "has no area"

@@ -1,12 +1,12 @@
-"""Old names of attributes: files written by earlier versions load, with one warning that says what to write now."""
+"""Old names of attributes: files of earlier versions load, with one warning that lists the current names."""
 
 from __future__ import annotations
 
 import warnings
 
-from crowdbot.core import Element
+from crowdbot.core import Element, format_xml, parse_xml
 
-__all__ = ["OLD_ATTRIBUTES", "OldNameWarning", "current_name", "update_names"]
+__all__ = ["OLD_ATTRIBUTES", "OldNameWarning", "current_name", "restore_old_names", "update_names"]
 
 OLD_ATTRIBUTES = {
     ("trial", "berth"): "robot-margin",
@@ -23,6 +23,9 @@ OLD_ATTRIBUTES = {
     ("free-text", "at-most"): "max-length",
 }
 """Element and attribute as version 0.1 writes them, and the name of the attribute now."""
+
+
+NEW_ATTRIBUTES = {(tag, new): old for (tag, old), new in OLD_ATTRIBUTES.items()}
 
 
 class OldNameWarning(UserWarning):
@@ -60,6 +63,24 @@ def update_names(root: Element, place: str, *, quiet: bool = False) -> None:
     first = _update(root, found)
     if found and not quiet:
         warnings.warn(f"{place}:{first}: old names of attributes: {'; '.join(found)}", OldNameWarning, stacklevel=3)
+
+
+def restore_old_names(text: str) -> str:
+    """Return XML as version 0.1 writes it, for hashes that were made of its text.
+
+    >>> print(restore_old_names('<trial name="hall" robot-margin="0.2"/>').splitlines()[-1])
+    <trial name="hall" berth="0.2"/>
+    """
+    root = parse_xml(text.encode(), "text", what="file")
+    _restore(root)
+    return format_xml(root)
+
+
+def _restore(element: Element) -> None:
+    old = {NEW_ATTRIBUTES.get((element.tag, key), key): value for key, value in element.attributes.items()}
+    element.attributes = old
+    for inner in element.children:
+        _restore(inner)
 
 
 def _update(element: Element, found: dict[str, None]) -> int:

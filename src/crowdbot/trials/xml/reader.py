@@ -1,7 +1,7 @@
-"""From XML to a trial: every problem at once, each with its file and line.
+"""Reader: from XML to frozen dataclasses, with every problem and its line.
 
-The reader knows no element by name. It walks over the outline of the dataclasses, so that a new element is a new
-dataclass and nothing more.
+The reader knows no element by name: it follows the outline of the dataclasses, so a new element only needs a new
+dataclass.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from typing import Any
 from crowdbot.core import (
     Element,
     InputError,
-    TrialError,
     attribute_names,
     attribute_problems,
     builtin_classes,
@@ -24,128 +23,106 @@ from crowdbot.core import (
     nearest_name,
     parse_number,
     required_fields,
-    unread_fields,
 )
 from crowdbot.trials.distribution import Distribution
 from crowdbot.trials.fields import FieldSpec, PluginSpec, outline, quote_value
-from crowdbot.trials.partial import EVERYTHING, begin_partial, is_partial, make_partial, readable
+from crowdbot.trials.partial_element import PartialElement, is_partial, post_init_problem, readable
 from crowdbot.trials.randomized_model import RandomizedModel, is_drawn
+
+from .reader_result import ReaderResult
 
 __all__ = ["ROOT", "XmlReader"]
 
-MOST_PROBLEMS = 100
 ROOT = "trial"
 
 
 class XmlReader:
-    """Makes a tree of frozen dataclasses of XML elements, and collects every problem meanwhile.
+    """Reads a tree of XML elements as frozen dataclasses, and collects every problem.
 
-    A misspelt name is read as the nearest known name, and an element with a problem becomes a partial one, so that one
-    problem hides no other.
+    A misspelt name is read as the nearest known name. An element with a problem is read as a
+    :class:`~crowdbot.trials.partial_element.PartialElement`, so no problem hides another.
 
     Args:
         place: name of the file for messages.
-        folder: where code and files that the tree names lie.
-        trust: whether they may lie elsewhere.
-        seed: places people with it; None is that of the trial.
-
-    Attributes:
-        made: everything that was made, partial elements included.
-        lines, words: line and tag of it, by its ``id``.
+        folder: folder of the code and files that the tree names.
+        trust: whether they may lie outside the folder.
     """
 
-    def __init__(self, place: str, folder: Path, trust: bool, seed: int | None = None) -> None:
-        self.place, self.folder, self.trust, self.seed = place, folder, trust, seed
-        self.found: list[tuple[int, str, str]] = []
-        self.lines: dict[int, int] = {}
-        self.words: dict[int, str] = {}
-        self.made: list[Any] = []
+    def __init__(self, place: str, folder: Path, trust: bool) -> None:
+        self.place, self.folder, self.trust = place, folder, trust
+        self._result = ReaderResult(place, Element(ROOT))
 
-    def say(self, line: int, tag: str, sentence: str) -> None:
-        """Add a problem of an element."""
-        self.found.append((line, tag[:40], sentence))
+    def read(self, cls: type, root: Element) -> ReaderResult:
+        """Return the object of the root element, the objects of all elements, and every problem."""
+        self._result = ReaderResult(self.place, root)
+        self._result.value = self._element(cls, root)
+        return self._result
 
-    def finish(self) -> None:
-        """Raise when anything was said."""
-        rows = sorted(self.found, key=lambda row: row[0])
-        sentences = [f"{self.place}:{line}: <{tag}> {sentence}" for line, tag, sentence in rows]
-        if len(sentences) > MOST_PROBLEMS:
-            more = len(sentences) - MOST_PROBLEMS
-            sentences = [*sentences[:MOST_PROBLEMS], f"{self.place}: and {more} more problems"]
-        if sentences:
-            raise TrialError(*sentences)
+    def _report(self, element: Element, sentence: str) -> None:
+        self._result.add_problem(element, sentence)
 
-    def element(self, cls: type, element: Element) -> Any:
+    def _element(self, cls: type, element: Element) -> Any:
         """Return the object of an element, a partial one if the element or one in it has a problem."""
-        before = len(self.found)
+        before = len(self._result.problems)
         parts = outline(cls)
-        kind = self._names(element, parts)
+        kind = self._check_names(element, parts)
         values = self._attributes(element, parts, kind)
         values |= self._children(element, parts)
-        lost = set()
+        unreadable = set()
         for part in parts:
             if part.name in values:
                 continue
-            if not self._tried(element, part) and not part.required:
+            if not _is_present(element, part) and not part.required:
                 values[part.name] = part.default
                 continue
-            lost.add(part.name)
-            if not self._tried(element, part):
-                self.say(element.line, element.tag, f"needs {_kind(part)}")
+            unreadable.add(part.name)
+            if not _is_present(element, part):
+                self._report(element, f"needs {_describe(part)}")
         values |= self._files(cls)
         if hasattr(cls, "mistakes"):
             for names, sentence in cls.mistakes(values):
-                self.say(element.line, element.tag, sentence)
-                lost |= set(names)
-        return self._made(cls, element, values, lost, self.found[before:])
+                self._report(element, sentence)
+                unreadable |= set(names)
+        made = self._build(cls, element, values, unreadable, before)
+        self._result.add_element(made, element)
+        return made
 
     def _files(self, cls: type) -> dict[str, Any]:
-        """Return where the files lie that an element names, as fields of it."""
+        """Return the fields of an element that say where its files are."""
         named = any(field.name == "trust" for field in dataclasses.fields(cls))
         return {"folder": self.folder, "trust": self.trust} if named else {}
 
-    def _made(self, cls: type, element: Element, values: dict[str, Any], lost: set[str], said: list[Any]) -> Any:
-        made = None
-        if not said:
+    def _build(self, cls: type, element: Element, values: dict[str, Any], unreadable: set[str], before: int) -> Any:
+        """Return the object of an element; a partial one if there are more problems than ``before``, or one now."""
+        known = [problem.sentence for problem in self._result.problems[before:]]
+        if not known:
             try:
-                made = cls(**values)
+                return cls(**values)
             except InputError as error:
-                self.say(element.line, element.tag, str(error))
-        if made is None:
-            made = make_partial(cls, values, lost)
-            sentence = begin_partial(made)
-            if said and sentence and all(sentence != known for _, _, known in said):
-                self.say(element.line, element.tag, sentence)
-            lost |= {p.name for p in outline(cls) if not p.optional and (0, None) in readable([made], p.name)}
-        self.lines[id(made)] = element.line
-        self.words[id(made)] = element.tag
-        self.made.append(made)  # keeps it alive, so that its id stays its own
+                self._report(element, str(error))
+        made = PartialElement(cls, values, unreadable)
+        sentence = post_init_problem(made)
+        if known and sentence and sentence not in known:
+            self._report(element, sentence)
+        made.mark_unreadable({p.name for p in outline(cls) if not p.optional and (0, None) in readable([made], p.name)})
         return made
 
-    def _tried(self, element: Element, part: FieldSpec) -> bool:
-        """Whether the field was given, however wrong; that was said already."""
-        if part.role == "attribute":
-            return any(key.replace("_", "-") == part.word for key in element.attributes)
-        if part.role == "mounted":
-            return True
-        return any(inner.tag in part.words for inner in element.children)
-
-    def _names(self, element: Element, parts: tuple[FieldSpec, ...]) -> type | None:
-        """Bring misspelt attributes to what they mean; return the class of what the element mounts, if it is known."""
+    def _check_names(self, element: Element, parts: tuple[FieldSpec, ...]) -> type | None:
+        """Correct misspelt attributes; return the class of the plugin in the element, None if unknown."""
         own = [part.word for part in parts if part.role == "attribute"]
         mount = next((part.plug for part in parts if part.role == "mounted"), None)
         kind = self._type(mount, element) if mount else None
         if not mount or kind:
-            self._meant(element, [*(attribute_names(kind) if kind else ()), *own], ["type"] if mount else [])
+            self._correct(element, [*(attribute_names(kind) if kind else ()), *own], ["type"] if mount else [])
         return kind
 
-    def _meant(self, element: Element, known: list[str], also: list[str]) -> None:
-        """Say which attributes are unknown, and read them as those that were meant."""
+    def _correct(self, element: Element, known: list[str], also: list[str]) -> None:
+        """Report unknown attributes, and rename those with a similar known name."""
         given = {key.replace("_", "-") for key in element.attributes}
         for key in [key for key in element.attributes if key.replace("_", "-") not in (*known, *also)]:
             takes = ", ".join(known) or "none"
             meant = did_you_mean(key, known)
-            self.say(element.line, element.tag, f"has no attribute {key[:40]!r}{meant}; it takes {takes}")
+            self._report(element, f"has no attribute {key[:40]!r}{meant}; it takes {takes}")
             text = element.attributes.pop(key)
             if meant and nearest_name(key, known) not in given:
                 element.attributes[nearest_name(key, known)] = text
@@ -161,16 +138,16 @@ class XmlReader:
                 rest[key] = text
                 continue
             if part.name in values:
-                self.say(element.line, element.tag, f"has the attribute {part.word} twice")
+                self._report(element, f"has the attribute {part.word} twice")
             value = None
             try:
-                value = _converted(text, part.kind)
+                value = _convert(text, part.kind)
                 wrong = part.wrong(value)
             except InputError as error:
                 wrong = str(error)
             if wrong:
-                self.say(element.line, element.tag, f"{part.word}={quote_value(text)} {wrong}")
-            if not wrong or (part.word == "name" and value is not None):  # a wrong name is still what others say
+                self._report(element, f"{part.word}={quote_value(text)} {wrong}")
+            if not wrong or (part.word == "name" and value is not None):  # other elements may refer to a wrong name
                 values[part.name] = value
         mount = next((part for part in parts if part.role == "mounted"), None)
         if mount is not None and mount.plug is not None:
@@ -180,13 +157,13 @@ class XmlReader:
     def _children(self, element: Element, parts: tuple[FieldSpec, ...]) -> dict[str, Any]:
         known = {word: part for part in parts for word in part.words}
         found: dict[str, list[Any]] = {part.name: [] for part in known.values()}
-        self._stray(element)
+        self._check_text(element)
         count: Counter[str] = Counter()
         for inner in element.children:
             if inner.tag not in known:
                 words = ", ".join(f"<{word}>" for word in known) or "none"
                 meant = did_you_mean(inner.tag, known)
-                self.say(inner.line, inner.tag, f"is no element of <{element.tag}>{meant}; it takes {words}")
+                self._report(inner, f"is not an element of <{element.tag}>{meant}; it takes {words}")
                 if not meant:
                     continue
                 inner.tag = nearest_name(inner.tag, known)
@@ -196,125 +173,132 @@ class XmlReader:
             count[part.name] += 1
             if count[part.name] > part.max:
                 often = "twice; one is allowed" if part.max == 1 else f"more than {part.max} times"
-                self.say(inner.line, inner.tag, f"stands in <{element.tag}> {often}")
+                self._report(inner, f"occurs in <{element.tag}> {often}")
                 continue
             found[part.name].append(self._child(part, inner))
         gathered = {part.name: self._gather(part, found[part.name]) for part in known.values()}
         return {name: value for name, value in gathered.items() if value is not None}
 
-    def _stray(self, element: Element) -> None:
+    def _check_text(self, element: Element) -> None:
         if element.stray:
-            self.say(
-                element.line, element.tag, f"holds the text {element.stray[:40]!r}; values are written as attributes"
-            )
+            self._report(element, f"contains the text {element.stray[:40]!r}; values are written as attributes")
 
     def _gather(self, part: FieldSpec, made: list[Any]) -> Any:
-        """Return the value of a field of which these are the child elements, None when there is none."""
+        """Return the value of a field with these child elements, None if there are none."""
         if part.role != "children":
             return made[0] if made else None
         if part.into is None:
             return tuple(made) if made or not part.required else None
         problems = list(part.into.problems(made))
         for k, sentence in problems:
-            self.say(self.lines[id(made[k])], self.words[id(made[k])], sentence)
+            self._result.report(made[k], sentence)
         right = made and not problems and not any(is_partial(one) for one in made)
         return part.into.gather(made) if right else None
 
     def _child(self, part: FieldSpec, inner: Element) -> Any:
         if part.plug is None:
-            return self.element(part.elements[inner.tag], inner)
+            return self._element(part.elements[inner.tag], inner)
         for deeper in inner.children:
-            self.say(deeper.line, deeper.tag, f"is no element of <{inner.tag}>; it takes none")
-        self._stray(inner)
+            self._report(deeper, f"is not an element of <{inner.tag}>; it takes none")
+        self._check_text(inner)
         kind = self._type(part.plug, inner)
         if kind is not None:
-            self._meant(inner, attribute_names(kind), ["type"])
+            self._correct(inner, attribute_names(kind), ["type"])
         return self._plug(part.plug, kind, inner, dict(inner.attributes))
 
     def _type(self, what: PluginSpec, element: Element) -> type | None:
-        """Return the class that ``type`` names, or means most likely; None when nobody knows."""
+        """Return the class of ``type`` or of the most similar name, None if there is none."""
         room, contract = what.places()
         known = builtin_classes(room, contract)
         name = element.attributes.get("type")
         if name is None:
-            self.say(element.line, element.tag, f"needs the attribute 'type': {', '.join(known)} or an address")
+            self._report(element, f"needs the attribute 'type': {', '.join(known)} or an address")
             return None
         try:
             return find_class(name, room, contract, folder=self.folder, trust=self.trust)
         except InputError as error:
-            self.say(element.line, element.tag, str(error))
+            self._report(element, str(error))
             return known.get(nearest_name(name, known))
 
     def _plug(self, what: PluginSpec, cls: type | None, element: Element, attributes: dict[str, str]) -> Any:
-        """Return the plugin that the attributes make, a partial one if they make none."""
+        """Return the plugin with these attributes, a partial one if there is a problem."""
         if cls is None:
-            return make_partial(what.places()[1], {}, EVERYTHING)
+            return PartialElement(what.places()[1], {}, None)
         texts = {key: text for key, text in attributes.items() if key != "type"}
         draws = {key: text for key, text in texts.items() if what.drawn and is_drawn(text)}
         fixed = {key: text for key, text in texts.items() if key not in draws}
         wrong = attribute_problems(cls, fixed)
-        made, more = _made(cls, {key: text for key, text in fixed.items() if key not in wrong})
+        made, more = _build_plugin(cls, {key: text for key, text in fixed.items() if key not in wrong})
         wrong |= more
         if made is not None and draws:
-            drawn, more = _drawn(made, draws)
+            randomized, more = _randomize(made, draws)
             wrong |= more
-            made = made if wrong else drawn
+            made = made if wrong else randomized
         for sentence in wrong.values():
-            self.say(element.line, element.tag, sentence)
+            self._report(element, sentence)
         if not wrong and made is not None:
-            unread = {name for name in unread_fields(cls) if name.replace("_", "-") not in texts and name not in texts}
-            return made if not unread else make_partial(cls, vars(made), unread)
-        lost = {key.replace("-", "_") for key in wrong}
+            return made
+        unreadable = {key.replace("-", "_") for key in wrong}
         values = {} if made is None else {field.name: getattr(made, field.name) for field in dataclasses.fields(cls)}
-        lost |= {field.name for field in dataclasses.fields(cls) if field.name not in values}
-        return make_partial(cls, values, lost, whole=made)
+        unreadable |= {field.name for field in dataclasses.fields(cls) if field.name not in values}
+        return PartialElement(cls, values, unreadable, default=made)
 
 
-def _made(cls: type, attributes: dict[str, str]) -> tuple[Any, dict[str, str]]:
-    """Return what the attributes make, None when it needs others; and what is wrong with each that has to be left out.
+def _is_present(element: Element, part: FieldSpec) -> bool:
+    """Return whether an element has the attribute or child of a field, even a wrong one."""
+    if part.role == "attribute":
+        return any(key.replace("_", "-") == part.word for key in element.attributes)
+    if part.role == "mounted":
+        return True
+    return any(inner.tag in part.words for inner in element.children)
 
-    What a class says of its values it says one at a time. So an attribute without which the same is not said again
-    is the one that it is about; it is left out, and the others are judged.
+
+def _build_plugin(cls: type, attributes: dict[str, str]) -> tuple[Any, dict[str, str]]:
+    """Return the plugin with these attributes, None if it needs others, and a problem for each attribute left out.
+
+    A class reports one problem at a time. The attribute without which the same problem is not reported again is the
+    cause: it is left out, and the others are checked.
     """
     if attribute_problems(cls, attributes):
         return None, {}
-    said: dict[str, str] = {}
+    problems: dict[str, str] = {}
     while True:
-        made, sentence = _tried(cls, attributes)
+        made, sentence = _from_attributes(cls, attributes)
         if not sentence:
-            return made, said
+            return made, problems
         needed = {name.replace("_", "-") for name in required_fields(cls)}
-        for left in attributes:
-            fewer = {key: text for key, text in attributes.items() if key != left}
-            if left.replace("_", "-") not in needed and _tried(cls, fewer)[1] != sentence:
+        for cause in attributes:
+            fewer = {key: text for key, text in attributes.items() if key != cause}
+            if cause.replace("_", "-") not in needed and _from_attributes(cls, fewer)[1] != sentence:
                 break
         else:
-            return None, said | {"": sentence}
-        said[left], attributes = sentence, fewer
+            return None, problems | {"": sentence}
+        problems[cause], attributes = sentence, fewer
 
 
-def _tried(cls: type, attributes: dict[str, str]) -> tuple[Any, str]:
+def _from_attributes(cls: type, attributes: dict[str, str]) -> tuple[Any, str]:
+    """Return the plugin with these attributes, or None and the problem."""
     try:
         return from_attributes(cls, attributes), ""
     except InputError as error:
         return None, str(error)
 
 
-def _drawn(model: Any, draws: dict[str, str]) -> tuple[Any, dict[str, str]]:
-    """Return a model some of whose parameters are distributions, or why they cannot be."""
-    found, wrong = {}, {}
+def _randomize(model: Any, draws: dict[str, str]) -> tuple[Any, dict[str, str]]:
+    """Return a model with distributions for some of its parameters, or None and a problem for each parameter."""
+    distributions, wrong = {}, {}
     for key, text in draws.items():
         try:
             one = Distribution.parse(text)
-            found[key.replace("-", "_")] = one
+            distributions[key.replace("-", "_")] = one
             if sentences := [*RandomizedModel.problems(model, {key.replace("-", "_"): one})]:
                 wrong[key] = sentences[0]
         except InputError as error:
             wrong[key] = f"{key[:40]}={quote_value(text)} {error}"
-    return (None, wrong) if wrong else (RandomizedModel(model, tuple(found.items())), {})
+    return (None, wrong) if wrong else (RandomizedModel(model, tuple(distributions.items())), {})
 
 
-def _converted(text: str, kind: Any) -> Any:
+def _convert(text: str, kind: Any) -> Any:
     if hasattr(kind, "parse"):
         return kind.parse(text)
     if kind is str:
@@ -331,7 +315,7 @@ def _converted(text: str, kind: Any) -> Any:
     return value
 
 
-def _kind(part: FieldSpec) -> str:
+def _describe(part: FieldSpec) -> str:
     if part.role == "attribute":
         unit = f" [{part.rule.unit}]" if part.rule and part.rule.unit else ""
         return f"the attribute {part.word!r}: {part.about}{unit}"

@@ -1,4 +1,4 @@
-"""The XML of trials: :mod:`crowdbot.core.markup.xml_tree` with the words and the error of trials."""
+"""XML text of trials: :mod:`crowdbot.core.markup.xml_tree` with the errors of trials."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ __all__ = ["parse_trial_xml", "read_trial_bytes"]
 
 
 def read_trial_bytes(path: Path) -> bytes:
-    """Return what a trial file holds.
+    """Return the content of a trial file.
 
     Raises:
-        TrialError: the file is missing, no file, unreadable or too large.
+        TrialError: the file is missing, not a file, unreadable or too large.
     """
     return read_bytes(path, "trial", TrialError)
 
@@ -22,7 +22,7 @@ def parse_trial_xml(data: bytes, place: str, encoding: str | None = None) -> Ele
     """Return the root element of a trial; see :func:`crowdbot.core.parse_xml`.
 
     Raises:
-        TrialError: the text is not XML, or uses what a trial has no need of (DOCTYPE, entities, great depth or size).
+        TrialError: the text is not XML, or uses unsupported features (DOCTYPE, entities, excessive depth or size).
 
     >>> parse_trial_xml(b"<trial><robot name='r'/></trial>", "t.xml").children[0].attributes
     {'name': 'r'}

@@ -1,4 +1,4 @@
-"""From a trial to XML: reading the text gives an equal trial."""
+"""Writer: from a trial to XML; parsing the text gives an equal trial."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ def trial_xml(trial: Any) -> str:
 
 
 def element_of(trial: Any) -> Element:
-    """Return the tree that :func:`xml` writes."""
+    """Return the XML tree of a trial."""
     return element_from("trial", trial, trial.folder)
 
 
 def element_from(tag: str, thing: Any, folder: Path | None) -> Element:
-    """Return the element of a tree of attributes and children; addresses are as seen from ``folder``."""
+    """Return the XML tree of an object; addresses of code are relative to ``folder``."""
     element = Element(tag)
     cls: type = type(thing)
     usual = getattr(thing, "usual", {})
@@ -81,7 +81,7 @@ def _plug(part: FieldSpec, value: Any, folder: Path | None) -> dict[str, str]:
 
 
 def _type(part: FieldSpec, value: Any, folder: Path | None) -> str:
-    """Return the built-in name of a part, or the address of its class as seen from the folder of the trial."""
+    """Return the built-in name of a part, or the address of its class relative to the folder of the trial."""
     assert part.plug is not None
     cls = type(value)
     room, contract = part.plug.places()

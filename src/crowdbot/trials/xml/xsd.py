@@ -1,7 +1,7 @@
-"""Schema: the XSD of trial files, made from the same outline as the reader, so that editors can help to write them.
+"""Schema: the XSD of trial files for editors, made from the same outline as the reader.
 
-It knows every element, attribute, unit and range. Elements may stand in any order, as the reader takes them; what only
-a look at the whole file can tell (names that exist, people who fit) is left to ``crowdbot check``.
+It contains every element, attribute, unit and range. Elements may be in any order, as in the reader. Checks of the
+whole file (references to names, room for people) need ``crowdbot check``.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def schema() -> str:
 
 
 def _add_type(cls: type, known: dict[str, Element]) -> str:
-    """Add the type of an element, and those of the elements in it, and return its name."""
+    """Add the type of an element and the types of its child elements, and return its name."""
     name = cls.__name__
     if name in known:
         return name
@@ -79,7 +79,7 @@ def _elements(part: FieldSpec, known: dict[str, Element]) -> list[Element]:
 
 
 def _plug_attributes(what: PluginSpec, taken: set[str]) -> list[Element]:
-    """Return the attributes of everything that may be plugged in; those of a user's own part have no limits."""
+    """Return the attributes of all built-in plugins; plugins of users may have any attributes."""
     room, contract = what.places()
     classes = builtin_classes(room, contract)
     words = [("enumeration", name) for name in classes]
@@ -115,7 +115,7 @@ def _values(kind: Any, rule: Constraint) -> Element:
         return _simple({}, "truth", [])
     if kind is str:
         rows = [("enumeration", choice) for choice in rule.choices]
-        return _simple({}, "xs:string", rows or ([("pattern", _translated(rule.pattern))] if rule.pattern else []))
+        return _simple({}, "xs:string", rows or ([("pattern", _translate(rule.pattern))] if rule.pattern else []))
     rows = [("pattern", NUMBER)]
     if rule.exclusive_min is not None:
         rows.append(("minExclusive", f"{rule.exclusive_min:g}"))
@@ -125,8 +125,8 @@ def _values(kind: Any, rule: Constraint) -> Element:
     return _simple({}, "xs:double", rows)
 
 
-def _translated(pattern: str) -> str:
-    """Return a pattern without what schemas do not know."""
+def _translate(pattern: str) -> str:
+    """Return a pattern without the syntax that XSD does not support."""
     return pattern.replace(r"[^\x00]", ".").replace("\\S", "[^\\s]")
 
 

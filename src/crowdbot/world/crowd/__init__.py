@@ -1,1 +1,1 @@
-"""People: routing, journeys, sources, speed limits, contacts between discs and replay of recordings."""
+"""Crowd: routing, journeys, sources, portals, speed limits, contacts between people, and replay of recorded tracks."""

@@ -1,4 +1,4 @@
-"""Contacts of bodies: people who overlap after a step are pushed apart, and nobody ends up in a wall."""
+"""Contact model of the crowd: resolves overlaps between people, and between people and walls, after a step."""
 
 from __future__ import annotations
 
@@ -24,26 +24,26 @@ Rows = NDArray[np.int32]
 
 VARIANTS = ("position", "force")
 MOST = 24
-"""So many neighbours can push at a time, the nearest."""
+"""Maximum number of neighbors that push a person at the same time, nearest first."""
 SPARE = 0.25
-"""Margin of the neighbour search in radii, since pushes move people."""
+"""Margin of the neighbor search, in radii; pushes change positions."""
 TOUCH = 1.0 - 1e-4
-"""Share of the contact distance at which bodies and walls count as separated."""
+"""Fraction of the contact distance at which two bodies, or a body and a wall, count as separated."""
 PASSES = 4
-"""So many walls can push one after the other."""
+"""Maximum number of walls that push a person one after the other."""
 REACH = 0.5
-"""Steps up to this length [m] are searched for crossed walls in the cells of the grid, longer ones among all walls."""
+"""Steps up to this length [m] are tested for wall crossings in grid cells, longer ones against all walls."""
 GOLDEN = math.pi * (3.0 - math.sqrt(5.0))
 
 
 class _Bodies(NamedTuple):
-    """What the kernel reads of every agent, by row ``e * A + a``."""
+    """Data of every agent for the kernel, by row ``e * A + a``."""
 
     before: Floats
     chosen: Floats
     radius: Floats
     pushed: Bools
-    """Whether it gives way."""
+    """Whether a push can move the agent."""
 
 
 @kernel(parallel=True)
@@ -51,7 +51,10 @@ def _push(
     bodies: _Bodies, near: Neighbors, cells: WallCells, solid: Bools, gain: float, place: Floats, moved: Bools,
     out: Floats, moves: Bools,
 ) -> None:  # fmt: skip
-    """Push everybody once, from ``place`` to ``out``; ``moved`` says who was pushed the last time, ``moves`` who is."""
+    """Push all agents once, from ``place`` to ``out``.
+
+    ``moved`` marks the agents pushed in the last iteration, ``moves`` in this one.
+    """
     for part in prange((len(out) + CHUNK - 1) // CHUNK):
         begin, end = part * CHUNK, min((part + 1) * CHUNK, len(out))
         _push_part(begin, end, bodies, near, cells, solid, gain, place, moved, out, moves)
@@ -74,11 +77,11 @@ def _push_part(
         anew = moved[row]
         for n in range(number[e, a]):
             anew = anew or moved[row - a + agent[e, a, n]]
-        if not pushed[row] or not anew:  # nothing has changed here since the last time
+        if not pushed[row] or not anew:  # unchanged since the last iteration
             continue
-        px, py, count = _pressed(row, agent[e, a, : number[e, a]], row - a, place, before, radius, pushed, gain)
+        px, py, count = _push_sum(row, agent[e, a, : number[e, a]], row - a, place, before, radius, pushed, gain)
         if count > 0:
-            x, y = _shifted(x, y, px, py, count, gain, chosen[row, 0], chosen[row, 1], r)
+            x, y = _apply_push(x, y, px, py, count, gain, chosen[row, 0], chosen[row, 1], r)
         if len(wall) > 0:
             x, y = _out_of_walls(wall, first, member, frame, solid, before[row, 0], before[row, 1], x, y, r)
         moves[row] = x != place[row, 0] or y != place[row, 1]
@@ -86,10 +89,10 @@ def _push_part(
 
 
 @kernel
-def _pressed(
+def _push_sum(
     row: int, near: Rows, begin: int, place: Floats, before: Floats, radius: Floats, pushed: Bools, gain: float
 ) -> tuple[float, float, int]:
-    """Return the sum of what neighbours push one by, and how many do."""
+    """Return the sum of the pushes of the neighbors, and their number."""
     px, py, count = 0.0, 0.0, 0
     for n in range(len(near)):
         other = begin + near[n]
@@ -100,7 +103,7 @@ def _pressed(
             continue
         distance = math.sqrt(d2)
         if d2 == 0.0:
-            dx, dy = _apart(before, row, other)
+            dx, dy = _separation_direction(before, row, other)
         length = math.sqrt(dx * dx + dy * dy)
         share = 0.5 if pushed[other] or gain > 0.0 else 1.0
         px += share * (reach - distance) * dx / length
@@ -110,8 +113,8 @@ def _pressed(
 
 
 @kernel
-def _apart(before: Floats, row: int, other: int) -> tuple[float, float]:
-    """Return a direction for two who are at the same place: where they came from, else one by their numbers."""
+def _separation_direction(before: Floats, row: int, other: int) -> tuple[float, float]:
+    """Return a direction that separates two agents at the same position, from previous positions or index."""
     dx, dy = before[row, 0] - before[other, 0], before[row, 1] - before[other, 1]
     if dx != 0.0 or dy != 0.0:
         return dx, dy
@@ -121,13 +124,13 @@ def _apart(before: Floats, row: int, other: int) -> tuple[float, float]:
 
 
 @kernel
-def _shifted(
+def _apply_push(
     x: float, y: float, px: float, py: float, count: int, gain: float, cx: float, cy: float, r: float
 ) -> tuple[float, float]:
-    """Return x, y after a push p of ``count`` bodies, no farther than r from where one had chosen to go, c.
+    """Return x, y after a push p of ``count`` bodies, at most r from c, the position chosen by the model.
 
-    By position (``gain`` 0) pushes of many are averaged, a little too far; by force they are added, and damped so that
-    they cannot overshoot.
+    Position-based pushes (``gain`` 0) are averaged, with slight over-relaxation. Force-based pushes are added and
+    damped to avoid overshoot.
     """
     share = 1.5 / (count + 0.5) if gain == 0.0 else 2.0 * gain / (1.0 + 2.0 * count * gain)
     x, y = x + share * px, y + share * py
@@ -142,22 +145,22 @@ def _out_of_walls(
     wall: Floats, first: Rows, member: Rows, frame: Floats, solid: Bools,
     bx: float, by: float, x: float, y: float, r: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """Return x, y moved out of walls by a body of radius r that was at b before; it stays on its side of them."""
+    """Return x, y moved out of walls. The body of radius r was at b before and stays on that side of the walls."""
     for _ in range(PASSES):
-        m = _crossed(wall, first, member, frame, solid, bx, by, x, y)
+        m = _first_crossing(wall, first, member, frame, solid, bx, by, x, y)
         if m < 0:
             m = _nearest_wall(wall, first, member, frame, x, y, r)
             if m < 0:
                 return x, y
-            x, y = _off(wall[m], solid[m], False, bx, by, x, y, r)
+            x, y = _project_off_wall(wall[m], solid[m], False, bx, by, x, y, r)
         else:
-            x, y = _off(wall[m], solid[m], True, bx, by, x, y, r)
-    return (x, y) if _crossed(wall, first, member, frame, solid, bx, by, x, y) < 0 else (bx, by)
+            x, y = _project_off_wall(wall[m], solid[m], True, bx, by, x, y, r)
+    return (x, y) if _first_crossing(wall, first, member, frame, solid, bx, by, x, y) < 0 else (bx, by)
 
 
 @kernel
 def _cell(frame: Floats, x: float, y: float) -> int:
-    """Return the cell of x, y; -1 outside."""
+    """Return the grid cell of x, y; -1 outside the grid."""
     i, j = math.floor((x - frame[0]) / frame[2]), math.floor((y - frame[1]) / frame[2])
     if i < 0.0 or j < 0.0 or i >= frame[3] or j >= frame[4]:
         return -1
@@ -165,10 +168,10 @@ def _cell(frame: Floats, x: float, y: float) -> int:
 
 
 @kernel
-def _crossed(
+def _first_crossing(
     wall: Floats, first: Rows, member: Rows, frame: Floats, solid: Bools, bx: float, by: float, x: float, y: float
 ) -> int:
-    """Return the first wall that the way from b to x, y goes through, -1 for none; out of a solid one may go."""
+    """Return the first wall crossed from b to x, y; -1 for none. Leaving a solid is allowed."""
     dx, dy = x - bx, y - by
     if dx == 0.0 and dy == 0.0:
         return -1
@@ -195,7 +198,7 @@ def _crossed(
 
 @kernel
 def _nearest_wall(wall: Floats, first: Rows, member: Rows, frame: Floats, x: float, y: float, r: float) -> int:
-    """Return the nearest wall that is nearer than r, -1 for none."""
+    """Return the nearest wall with a distance below r, -1 for none."""
     cell = _cell(frame, x, y)
     found, least = -1, (r * TOUCH) ** 2
     if cell >= 0:
@@ -209,10 +212,13 @@ def _nearest_wall(wall: Floats, first: Rows, member: Rows, frame: Floats, x: flo
 
 
 @kernel
-def _off(
+def _project_off_wall(
     wall: Floats, solid: bool, crossed: bool, bx: float, by: float, x: float, y: float, r: float
 ) -> tuple[float, float]:
-    """Return x, y moved to the distance r from one wall: on the side of b, or where it is; out of a solid."""
+    """Return x, y moved to distance r from a wall.
+
+    The side is that of b if the wall was crossed, otherwise the current one, and always outside a solid.
+    """
     ax, ay, ex, ey = wall[0], wall[1], wall[2] - wall[0], wall[3] - wall[1]
     nx, ny = nearest_on_segment(x, y, ax, ay, wall[2], wall[3])
     dx, dy = x - nx, y - ny
@@ -229,13 +235,13 @@ def _off(
 
 
 class ContactSurfaces(NamedTuple):
-    """Walls as bodies meet them.
+    """Walls, prepared for contact with bodies.
 
     Fields:
-        walls: what they are made of.
-        cells: sorted into a grid.
+        walls: the walls.
+        cells: the walls sorted into a grid.
         solid: ``[M]`` whether the left side of a wall is solid.
-        reach: largest radius of a body [m] that they serve.
+        reach: largest supported radius of a body [m].
     """
 
     walls: Walls
@@ -245,7 +251,7 @@ class ContactSurfaces(NamedTuple):
 
     @classmethod
     def of(cls, walls: Walls, reach: float) -> ContactSurfaces:
-        """Sort walls for bodies up to a radius of ``reach`` [m]."""
+        """Prepare walls for bodies up to a radius of ``reach`` [m]."""
         thin = walls.previous == walls.next
         once = ~thin | (np.arange(len(walls)) < walls.next)
         wide = max(REACH, float(reach))
@@ -254,17 +260,16 @@ class ContactSurfaces(NamedTuple):
 
 @dataclass(frozen=True)
 class ContactModel:
-    """What bodies do when they overlap after a step of the crowd: they are pushed apart, and out of walls.
+    """Resolution of overlaps after a step of the crowd: people are pushed apart and out of walls.
 
-    Agents that are moved from outside push others and are not pushed; who is invisible pushes nobody. Nobody is pushed
-    farther than the own radius in a step, and nobody goes through a wall, at any time step. Velocities change with the
-    push, up to the maximum speed.
+    External agents push others but are not pushed. Invisible agents do not push. A person is moved by at most their
+    radius per step and never through a wall, at any time step. The push changes the velocity, up to the maximum speed.
 
     Fields:
-        variant: ``position`` ends overlaps at once, as far as there is room; ``force`` is an acceleration of
-            ``stiffness`` times the overlap, as in UMANS (van Toll et al. 2020), damped where it would overshoot.
-        stiffness: acceleration for each metre of overlap [1/s^2], of ``force``.
-        iterations: how often ``position`` looks at all contacts in a step.
+        variant: ``position`` resolves overlaps immediately, as far as there is space; ``force`` applies an acceleration
+            of ``stiffness`` times the overlap, as in UMANS (van Toll et al. 2020), damped to avoid overshoot.
+        stiffness: acceleration per metre of overlap [1/s^2], for ``force``.
+        iterations: number of passes over all contacts per step, for ``position``.
 
     Raises:
         InputError: a value is not allowed.
@@ -281,16 +286,16 @@ class ContactModel:
     def __post_init__(self) -> None:
         if self.variant not in VARIANTS:
             near = did_you_mean(str(self.variant), VARIANTS)
-            raise InputError(f"ContactModel: variant {self.variant!r} is unknown{near}; choose {' or '.join(VARIANTS)}")
+            raise InputError(f"ContactModel: variant {self.variant!r} is unknown{near}; use {' or '.join(VARIANTS)}")
         if not 0.0 < self.stiffness <= 1e9:
-            raise InputError(f"ContactModel: stiffness {self.stiffness} 1/s^2 must be above 0 and at most 1e9")
+            raise InputError(f"ContactModel: stiffness {self.stiffness} 1/s^2 must be above 0 and at most 1e9 1/s^2")
         if not 1 <= self.iterations <= 1000:
-            raise InputError(f"ContactModel: iterations = {self.iterations}, it must be from 1 to 1000")
+            raise InputError(f"ContactModel: iterations = {self.iterations} must be from 1 to 1000")
 
     def resolve_overlaps(
         self, before: Scene, after: Scene, dt: float, surfaces: ContactSurfaces | None = None
     ) -> Scene:
-        """Return the scene ``after`` a step of ``dt`` [s] from ``before``, with people pushed apart."""
+        """Return the scene ``after`` a step of ``dt`` [s] from ``before``, with overlaps resolved."""
         here = after.active
         radius = np.where(here, after.radius, 0.0)
         largest = radius.max(axis=1, initial=0.0)
@@ -314,11 +319,11 @@ class ContactModel:
             now, then, moved, moves = then, now, moves, moved
             if not np.any(moved):
                 break
-        return _moved(after, now.reshape(place.shape), pushed, dt)
+        return _displace(after, now.reshape(place.shape), pushed, dt)
 
 
-def _moved(scene: Scene, place: Floats, pushed: Bools, dt: float) -> Scene:
-    """Return the scene with people at other places, and velocities to match."""
+def _displace(scene: Scene, place: Floats, pushed: Bools, dt: float) -> Scene:
+    """Return the scene with people at new positions and with matching velocities."""
     shift = np.where(pushed[..., None], place - np.where(pushed[..., None], scene.position, 0.0), 0.0)
     changed = pushed & np.any(shift != 0.0, axis=-1)
     velocity = scene.velocity + shift / dt

@@ -1,4 +1,4 @@
-"""Free space: where a body of some radius has room between walls, and the corners that shortest ways bend around."""
+"""Free space between walls for a body of a given radius, and the corners of shortest paths."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ __all__ = ["corners", "inside", "room_for"]
 Floats = NDArray[np.float64]
 
 SHARPEST = math.pi / 4.0
-"""Ways around a corner bend no more than this [rad] at one point."""
+"""Largest turn [rad] at one point of a path around a corner."""
 FLAT = 1e-6
-"""Less than this [rad] is no corner."""
+"""Corners below this angle [rad] are ignored."""
 ROUND = 8
-"""Segments of a quarter circle in the outline of free space."""
+"""Segments per quarter circle in the outline of free space."""
 MARGIN = 100.0
-"""Free space without a border ends this far [m] from the last wall."""
+"""Distance [m] from the last wall at which unbounded free space ends."""
 EXACT = 1.0 - 1e-9
 
 
 def inside(walls: Walls) -> shapely.Geometry:
-    """Return where people can be, bodies apart: outside solid polygons, inside of rooms when there is one around all.
+    """Return the area open to people of radius 0: outside solid polygons, and inside a room if one encloses everything.
 
-    Later rings go before larger ones: an obstacle in a room, a courtyard in a house.
+    Inner rings take precedence over outer ones: an obstacle in a room, a courtyard in a building.
 
     >>> inside(Walls.of([[(0, 0), (2, 0), (2, 2), (0, 2)]])).area == 202 * 202 - 4
     True
@@ -51,7 +51,7 @@ def inside(walls: Walls) -> shapely.Geometry:
 
 
 def room_for(walls: Walls, radius: float) -> list[Any]:
-    """Return the connected parts, shapely polygons, in which the centre of a body of this radius [m] has room."""
+    """Return the connected parts (shapely polygons) of the free space of a body of this radius [m]."""
     import shapely
 
     lines = shapely.multilinestrings(shapely.linestrings(walls.segments().reshape(-1, 2, 2)))
@@ -60,9 +60,9 @@ def room_for(walls: Walls, radius: float) -> list[Any]:
 
 
 def corners(walls: Walls, radius: float) -> Floats:
-    """Return the points ``[N, 2]`` [m] that shortest ways of a body of this radius [m] bend at.
+    """Return the points ``[N, 2]`` [m] at which shortest paths of a body of this radius [m] bend.
 
-    They are the corners of the outline about each wall corner: its tangents are ``radius`` away from the corner.
+    These are the corners of an outline around each wall corner whose tangents have the distance ``radius`` from it.
 
     >>> corners(Walls.of([[(0, 0), (4, 0)]]), 1.0).round(2).tolist()[:2]
     [[-1.0, -0.41], [-1.0, 0.41]]
@@ -74,7 +74,7 @@ def corners(walls: Walls, radius: float) -> Floats:
         return np.zeros((0, 2))
     found = []
     for corner, directions in _incident(segments):
-        for begin, width in _fans(directions):
+        for begin, width in _corner_sectors(directions):
             count = math.ceil(width / SHARPEST - FLAT)
             angle = begin + (np.arange(count) + 0.5) * (width / count)
             far = radius / math.cos(0.5 * width / count)
@@ -91,7 +91,7 @@ def corners(walls: Walls, radius: float) -> Floats:
 
 
 def _incident(segments: Floats) -> list[tuple[Floats, Floats]]:
-    """Return every end of walls with the directions [rad], sorted, in which walls leave it."""
+    """Return each wall end with the sorted directions [rad] of the walls that leave it."""
     ends = np.concatenate([segments[:, :2], segments[:, 2:]])
     away = np.concatenate([segments[:, 2:], segments[:, :2]]) - ends
     points, which = np.unique(ends, axis=0, return_inverse=True)
@@ -101,8 +101,8 @@ def _incident(segments: Floats) -> list[tuple[Floats, Floats]]:
     return [(points[k], angle[order[borders[k] : borders[k + 1]]]) for k in range(len(points))]
 
 
-def _fans(directions: Floats) -> list[tuple[float, float]]:
-    """Return begin and width [rad] of the sectors in which the corner itself is what is nearest."""
+def _corner_sectors(directions: Floats) -> list[tuple[float, float]]:
+    """Return start and width [rad] of the sectors in which the corner itself is the nearest point."""
     following = np.append(directions[1:], directions[0] + 2.0 * math.pi)
     gaps = following - directions
     return [
@@ -113,7 +113,7 @@ def _fans(directions: Floats) -> list[tuple[float, float]]:
 
 
 def _rings(walls: Walls) -> list[Floats]:
-    """Return the rings ``[N, 2]`` of walls, thin ones apart."""
+    """Return the rings ``[N, 2]`` of the walls, without thin walls."""
     rings, begin = [], 0
     while begin < len(walls):
         end = int(walls.previous[begin]) + 1

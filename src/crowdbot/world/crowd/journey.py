@@ -1,4 +1,4 @@
-"""JourneyAssignment: where people go, one stop after the other, and what they do at the end."""
+"""Journeys: sequences of waypoints and their assignment to people."""
 
 from __future__ import annotations
 
@@ -19,21 +19,22 @@ Numbers = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 JOURNEY, STOP = "journey", "stop"
-"""Names in the memory of a scene ``[E, A]``: the index of the journey, -1 for none, and the number of the stop one
-goes to; on a journey that begins again it counts on."""
+"""Names in the memory of a scene ``[E, A]``: index of the journey (-1 for none) and number of the current waypoint,
+which keeps counting on a repeated journey.
+"""
 THENS = ("leave", "stay", "again")
 
 
 @dataclass(frozen=True)
 class WaypointSequence:
-    """Stops that one person after the other goes to, in order.
+    """A sequence of waypoints that a person visits in order.
 
     Fields:
-        stops: at least one.
-        then: at the last one people ``leave`` or ``stay``, or begin ``again``.
+        stops: waypoints, at least one.
+        then: action at the last waypoint: ``leave``, ``stay`` or start ``again``.
 
     Raises:
-        InputError: there is no stop, or something is none.
+        InputError: there is no waypoint, or a value is not a waypoint.
 
     >>> from crowdbot.world import PointWaypoint, PolygonZone
     >>> WaypointSequence((PointWaypoint(5.0, 0.0), PolygonZone(((9, 0), (11, 0), (10, 1)))), then="stay").then
@@ -46,15 +47,15 @@ class WaypointSequence:
     def __post_init__(self) -> None:
         object.__setattr__(self, "stops", tuple(self.stops))
         if not self.stops or not all(isinstance(stop, Waypoint) for stop in self.stops):
-            raise InputError(f"WaypointSequence: stops = {self.stops!r}, it must be one or more waypoints")
+            raise InputError(f"WaypointSequence: stops = {self.stops!r} must be one or more waypoints")
         if self.then not in THENS:
             raise InputError(
-                f"WaypointSequence: then = {self.then!r}{did_you_mean(str(self.then), THENS)};"
-                " choose leave, stay or again"
+                f"WaypointSequence: then = {self.then!r}{did_you_mean(str(self.then), THENS)} must be leave, stay "
+                f"or again"
             )
 
     def stop(self, number: int) -> Waypoint | None:
-        """Return the stop that is this many stops after the first; None when there is none."""
+        """Return the waypoint with this number, or None if the journey is over."""
         if self.then == "again":
             return self.stops[number % len(self.stops)]
         return self.stops[number] if number < len(self.stops) else None
@@ -62,14 +63,14 @@ class WaypointSequence:
 
 @dataclass(frozen=True)
 class JourneyAssignment:
-    """The journeys of a crowd.
+    """The journey of each person in a crowd.
 
     Fields:
-        journeys: on one of which people are.
-        which: ``[A]`` or ``[E, A]`` int: its index, -1 for whoever keeps the goal of the scene.
+        journeys: the available journeys.
+        which: ``[A]`` or ``[E, A]`` int: index of the journey, -1 to keep the goal of the scene.
 
     Raises:
-        InputError: an index is not that of a journey.
+        InputError: an index is out of range.
 
     >>> from crowdbot.world import PointWaypoint
     >>> paths = [WaypointSequence((PointWaypoint(x, 5.0),)) for x in (0.0, 9.0)]
@@ -87,25 +88,25 @@ class JourneyAssignment:
         if which.dtype.kind not in "iu" or np.any((which < -1) | (which >= len(self.journeys))):
             raise InputError(
                 f"JourneyAssignment: which = {which.tolist()} must be from 0 to {len(self.journeys) - 1},"
-                " or -1 for none"
+                " or -1 for no journey"
             )
 
     def start(
         self, scene: Scene, seeds: Numbers, ids: Numbers, holds: Callable[[Floats], Bools] | None = None
     ) -> Scene:
-        """Return the scene in which everybody is on the way to the first stop.
+        """Return the scene with the first waypoint of each person as the goal.
 
         Args:
-            scene: at the beginning.
-            seeds: ``[E]``.
-            ids: ``[E, A]`` who people are.
-            holds: whether a body has room at points ``[N, 2]``.
+            scene: initial scene.
+            seeds: ``[E]`` seeds of the environments.
+            ids: ``[E, A]`` identities.
+            holds: returns whether points ``[N, 2]`` have room for a body.
         """
         try:
             which = np.broadcast_to(np.asarray(self.which, dtype=np.float64), scene.shape).copy()
         except ValueError:
             raise InputError(
-                f"JourneyAssignment: which has shape {list(np.shape(self.which))}, it must fit {list(scene.shape)}"
+                f"JourneyAssignment: which has shape {list(np.shape(self.which))}, expected {list(scene.shape)}"
             ) from None
         memory = {**scene.memory, JOURNEY: which, STOP: np.zeros(scene.shape)}
         return self.aim(scene.replace(memory=memory), which >= 0, seeds, ids, holds)
@@ -113,7 +114,7 @@ class JourneyAssignment:
     def advance(
         self, scene: Scene, seeds: Numbers, ids: Numbers, holds: Callable[[Floats], Bools] | None = None
     ) -> Scene:
-        """Return the scene in which whoever has reached a stop is on the way to the next, or has left."""
+        """Return the scene after people who reached a waypoint have switched to the next one or left."""
         stop, active = scene.memory[STOP].copy(), scene.active.copy()
         renewed = np.zeros(scene.shape, dtype=np.bool_)
         for number, k, at, rows in self._parties(scene):
@@ -138,7 +139,7 @@ class JourneyAssignment:
         ids: Numbers,
         holds: Callable[[Floats], Bools] | None = None,
     ) -> Scene:
-        """Return the scene in which those ``who`` ``[E, A]`` have the goal of their stop."""
+        """Return the scene in which the agents ``who`` ``[E, A]`` have their current waypoint as the goal."""
         if not np.any(who):
             return scene
         goal = scene.goal.copy()
@@ -151,7 +152,7 @@ class JourneyAssignment:
         return scene.replace(goal=goal)
 
     def uses_routing(self, scene: Scene) -> Bools:
-        """Return ``[E, A]`` whom a router may lead."""
+        """Return ``[E, A]`` whether routing applies to the goal of an agent."""
         out = np.ones(scene.shape, dtype=np.bool_)
         for _, _, at, rows in self._parties(scene):
             if not at.uses_routing:
@@ -159,7 +160,7 @@ class JourneyAssignment:
         return out
 
     def _parties(self, scene: Scene) -> list[tuple[int, int, Waypoint, Bools]]:
-        """Return for every journey and stop who is on the way there, where somebody is."""
+        """Return the people on the way to each waypoint of each journey; empty groups are left out."""
         walking = scene.active & ~scene.external
         found = []
         for number, journey in enumerate(self.journeys):

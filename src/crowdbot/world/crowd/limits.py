@@ -1,4 +1,4 @@
-"""Limits of what people can do, whatever their model asks for."""
+"""Limits of the speed and acceleration of people, applied after the crowd model."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class CrowdLimits:
-    """Speeds and accelerations that people cannot go beyond, after the step of any model.
+    """Maximum speed and acceleration of people, applied after the step of a crowd model.
 
-    First the change of velocity is cut to the acceleration times the step, then the velocity to the speed. Who is cut
-    walks straight with the new velocity for the whole step.
+    The velocity change is clipped to the acceleration times the step, then the velocity to the speed. A person whose
+    velocity is clipped moves straight at the new velocity for the whole step.
 
     Fields:
-        max_speed: [m/s], for all or ``[E, A]``; None: as the model has it.
-        max_acceleration: speeding up, braking and turning [m/s2], for all or ``[E, A]``; None: no limit.
+        max_speed: [m/s], for all or ``[E, A]``; None: the limit of the model.
+        max_acceleration: limit of the velocity change [m/s2], for all or ``[E, A]``; None: no limit.
 
     Raises:
         InputError: a limit is not above 0, or not finite.
@@ -53,9 +53,9 @@ class CrowdLimits:
         old = np.where(walking[..., None], before.velocity, 0.0)
         if self.max_acceleration is not None:
             most = per_agent(self.max_acceleration, after.shape, "max_acceleration") * dt
-            velocity = _cut(velocity - old, most, velocity, old)
+            velocity = _clip(velocity - old, most, velocity, old)
         if self.max_speed is not None:
-            velocity = _cut(velocity, per_agent(self.max_speed, after.shape, "max_speed"), velocity, 0.0)
+            velocity = _clip(velocity, per_agent(self.max_speed, after.shape, "max_speed"), velocity, 0.0)
         cut = walking & np.any(velocity != after.velocity, axis=-1)
         along = after.heading == np.arctan2(after.velocity[..., 1], after.velocity[..., 0])
         turned = np.where(along, np.arctan2(velocity[..., 1], velocity[..., 0]), after.heading)
@@ -66,8 +66,8 @@ class CrowdLimits:
         )
 
 
-def _cut(change: Floats, most: Floats, whole: Floats, start: Floats | float) -> Floats:
-    """Return ``start`` plus the change, shortened to ``most``; ``whole`` where it is short enough."""
+def _clip(change: Floats, most: Floats, whole: Floats, start: Floats | float) -> Floats:
+    """Return ``start`` plus the change, shortened to length ``most``; ``whole`` if it is short enough."""
     length = np.sqrt(change[..., 0] ** 2 + change[..., 1] ** 2)
     shorter = start + change * (most / np.maximum(length, 1e-300))[..., None]
     return np.where((length > most)[..., None], shorter, whole)

@@ -1,4 +1,4 @@
-"""PeopleFlow: where everybody in a world wants to go next, who comes in, and who goes out."""
+"""People flow of a world: goals, routes, arrivals and departures of people."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ class PeopleFlow:
     """Routes, journeys and arrivals of one world.
 
     Attributes:
-        seeds: ``[E]``.
-        ids: ``[E, A]`` who is who.
-        following: ``[E]`` identity of the next who comes in.
-        router: leads around walls.
-        journeys: of all, those of the sources last.
-        arrivals: who comes in.
+        seeds: ``[E]`` seeds of the environments.
+        ids: ``[E, A]`` identities.
+        following: ``[E]`` identity of the next person to enter.
+        router: guides people around walls.
+        journeys: journeys of all people; those of sources come last.
+        arrivals: people who enter through sources.
     """
 
     seeds: Numbers
@@ -56,13 +56,15 @@ class PeopleFlow:
         journeys: JourneyAssignment | None,
         sources: Sequence[PeopleSource],
     ) -> PeopleFlow:
-        """Make the traffic of a world that begins with this scene.
+        """Create the people flow of a world with this initial scene.
 
         Raises:
-            InputError: identities are not different, or goals do not fit to preferred velocities or to the model.
+            InputError: identities are not unique, or goals do not match preferred velocities or the model.
         """
         if scene.preferred_velocity is not None and (router or journeys or sources):
-            raise InputError("a scene with preferred velocities has no goals: routers, journeys and sources need goals")
+            raise InputError(
+                "the scene has preferred velocities instead of goals; routers, journeys and sources need goals"
+            )
         seeds = np.array([(int(seed) + e) % 2**63 for e in range(scene.shape[0])], dtype=np.int64)
         who = _identities(ids, scene.shape)
         following = who.max(axis=1, initial=-1) + 1
@@ -70,7 +72,7 @@ class PeopleFlow:
         for source in sources:
             if not 0 <= source.model < (1 if mixture is None else len(mixture.models)):
                 raise InputError(
-                    f"PeopleSource: model = {source.model}, but the crowd is no mixture that has a model of this number"
+                    f"PeopleSource: model = {source.model}, but the crowd has no mixture with a model of this index"
                 )
         if sources:
             first = journeys or JourneyAssignment((), -1)
@@ -81,14 +83,14 @@ class PeopleFlow:
         return cls(seeds, who, following, router, journeys, None, mixture)
 
     def reconfigure(self, router: Router | None, sources: Sequence[PeopleSource], seed: int | None) -> None:
-        """Go on with another router, other sources in the places of these, and new chance when a seed is given."""
+        """Change the router and the sources. A seed restarts the random numbers."""
         self.router = router
         if seed is not None:
             self.seeds = np.array([(int(seed) + e) % 2**63 for e in range(len(self.seeds))], dtype=np.int64)
         if self.arrivals is not None:
             self.arrivals.reconfigure(sources, None if seed is None else self.seeds.tolist())
         elif sources:
-            raise InputError("sources cannot be added while a world runs")
+            raise InputError("sources cannot be added to a running world")
 
     @property
     def waiting_count(self) -> Numbers:
@@ -106,13 +108,13 @@ class PeopleFlow:
         return scene
 
     def desired_motion(self, scene: Scene, heading_jitter: float) -> Scene:
-        """Return the scene with goals as people walk to them: straight ahead on their ways, a little to one side."""
+        """Return the scene with the next point of each path as the goal, rotated by the heading jitter."""
         if self.router is not None:
             scene = self.router.guide(scene, self._routed(scene))
-        return _turned(scene, heading_jitter * (2.0 * self._luck() - 1.0)) if heading_jitter > 0.0 else scene
+        return _rotate_goals(scene, heading_jitter * (2.0 * self._luck() - 1.0)) if heading_jitter > 0.0 else scene
 
     def advance(self, scene: Scene, time: float) -> Scene:
-        """Return the scene with the next goals of those who arrived, and with those who have come in by a time [s]."""
+        """Return the scene at a time [s] after journeys have advanced and new people have entered."""
         if self.journeys is not None:
             scene = self.journeys.advance(scene, self.seeds, self.ids, self._holds)
         if self.arrivals is None or self.journeys is None:
@@ -120,10 +122,10 @@ class PeopleFlow:
         scene, new = self.arrivals.let_in(scene, time, self.ids, self.following)
         if not np.any(new):
             return scene
-        return self._sent_off(self.journeys.aim(scene, new, self.seeds, self.ids, self._holds), new)
+        return self._launch(self.journeys.aim(scene, new, self.seeds, self.ids, self._holds), new)
 
-    def _sent_off(self, scene: Scene, new: NDArray[np.bool_]) -> Scene:
-        """Return the scene in which those who are new walk at their preferred speed."""
+    def _launch(self, scene: Scene, new: NDArray[np.bool_]) -> Scene:
+        """Return the scene in which the new people walk at their preferred speed."""
         aim = scene.goal
         if self.router is not None:
             aim = self.router.follow(scene.position, aim, None, new & self._routed(scene)).subgoal
@@ -150,15 +152,15 @@ def _identities(ids: Any, shape: tuple[int, int]) -> Numbers:
     try:
         who = np.broadcast_to(np.arange(shape[1]) if ids is None else np.asarray(ids), shape)
     except ValueError:
-        raise InputError(f"ids have shape {list(np.shape(ids))}, they must fit [E, A] = {list(shape)}") from None
+        raise InputError(f"ids have shape {list(np.shape(ids))}, expected [E, A] = {list(shape)}") from None
     different = np.sort(who, axis=1)
     if who.dtype.kind not in "iu" or np.any(different[:, 1:] == different[:, :-1]):
-        raise InputError("ids must be whole numbers, no two the same in one environment")
+        raise InputError("ids must be integers, unique in each environment")
     return who.astype(np.int64)
 
 
-def _turned(scene: Scene, angle: Floats) -> Scene:
-    """Return the scene with goals, or preferred velocities, turned about everyone by an angle ``[E, A]`` [rad]."""
+def _rotate_goals(scene: Scene, angle: Floats) -> Scene:
+    """Return the scene with goals, or preferred velocities, rotated around each agent by an angle ``[E, A]`` [rad]."""
     cos, sin = np.cos(angle), np.sin(angle)
 
     def turned(way: Floats) -> Floats:

@@ -1,4 +1,4 @@
-"""Chance that depends on who one is, not on where one stands in an array: the same alone, in a batch, renumbered."""
+"""Random numbers that depend only on seed, identity and purpose, not on the position in an array or batch."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ MIX2 = np.uint64(0x94D049BB133111EB)
 
 
 def uniform(seed: ArrayLike, person: ArrayLike, *path: str | int) -> NDArray[np.float64]:
-    """Return a number in [0, 1) for every person, evenly distributed (SplitMix64 of all that it depends on).
+    """Return a uniform random number in [0, 1) for each person (SplitMix64 hash of the arguments).
 
     Args:
-        seed: ``[E, 1]`` or a number, of each environment.
-        person: ``[E, A]`` identity numbers.
-        path: what the number is for.
+        seed: seed of each environment, ``[E, 1]`` or a number.
+        person: identities ``[E, A]``.
+        path: purpose of the number.
 
     >>> bool(uniform(7, [[3, 4]], "side")[0, 0] == uniform([[7]], [[5, 3]], "side")[0, 1])
     True

@@ -1,4 +1,4 @@
-"""Portals: who leaves at one end of a place comes in at the other."""
+"""Portals, which transfer people from one zone to another."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ __all__ = ["PortalTransfer", "apply_portals"]
 Floats = NDArray[np.float64]
 
 GAP = 0.01
-"""Bodies come out at least this far from others [m]."""
+"""Minimum clearance [m] to other bodies at the exit."""
 
 
 @dataclass(frozen=True)
 class PortalTransfer:
-    """Whoever is in the zone comes out elsewhere, as soon as there is room; robots do not.
+    """A portal: people in the zone are moved by (dx, dy) as soon as there is room. Robots are not moved.
 
-    Who finds no room waits in the zone. Others who wait in a portal take no room where somebody comes out.
+    A person without room at the exit waits in the zone. People who wait in a portal do not block an exit.
 
-    Those who come out are new people, with an identity of their own, so that no track jumps. They keep their velocity
-    and go on to where they wanted to go.
+    A transferred person counts as a new person with a new identity, so tracks have no jumps. The person keeps velocity
+    and goal.
 
     Fields:
-        zone: where people go in.
-        dx, dy: from there to where they come out [m].
+        zone: entrance of the portal.
+        dx, dy: displacement [m].
 
     Raises:
-        InputError: the way is not finite, or 0.
+        InputError: the displacement is not finite, or 0.
 
     >>> PortalTransfer(PolygonZone(((24, -5), (26, -5), (26, 5), (24, 5))), dx=-48.0).dy
     0.0
@@ -52,14 +52,14 @@ class PortalTransfer:
 
 
 def apply_portals(before: Scene, scene: Scene, portals: Sequence[PortalTransfer], ids: Any, following: Any) -> Scene:
-    """Return the scene in which whoever is in a portal has come out where there is room.
+    """Return the scene after people in portals have been transferred where there is room.
 
     Args:
-        before: a step ago.
-        scene: now.
-        portals: the first in which somebody is takes that person.
-        ids: ``[E, A]`` who is who; is written to.
-        following: ``[E]`` the next identities; is written to.
+        before: scene one step ago.
+        scene: current scene.
+        portals: portals; if zones overlap, the first one applies.
+        ids: ``[E, A]`` identities; modified in place.
+        following: ``[E]`` next identities; modified in place.
     """
     if not portals:
         return scene

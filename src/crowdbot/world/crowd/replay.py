@@ -1,4 +1,4 @@
-"""Scripts: people who go where they were recorded, until a robot comes near if they are to react to it."""
+"""Replay of recorded tracks, with optional release of people when a robot comes near."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ SCRIPT = "script"
 """Name in the memory of a scene ``[E, A]``: one of the states below."""
 NONE, FOLLOWS, FREE, GONE = 0.0, 1.0, 2.0, 3.0
 AHEAD = 1.5
-"""Who is free walks to where the recording will be so much later [s]."""
+"""A released person walks to the recorded position this much later [s]."""
 HURRY = 1.5
-"""Who is free walks at most so many times as fast as the fastest in the own recording, to make up for time lost."""
+"""Speed limit of a released person, as a multiple of the largest speed in the track."""
 SLOWEST = 0.5
-"""But this fast [m/s] at least."""
+"""Lower bound of this speed limit [m/s]."""
 ARRIVED = 0.3
-"""Who is free leaves this near [m] to the end of the own recording."""
+"""A released person leaves within this distance [m] of the end of the track."""
 MOVING = 0.05
-"""Headings follow velocities above this [m/s]."""
+"""The heading follows the velocity above this speed [m/s]."""
 EARLY = 1e-4
-"""Clocks whose step is rounded to nanoseconds are early or late by less than this [s]."""
+"""Tolerance [s] for clocks whose step is rounded to nanoseconds."""
 
 
 class ReplayedTrack(NamedTuple):
-    """Where one agent was recorded: its index, ``[T]`` times [s] that rise, and ``[T, 2]`` places [m]."""
+    """A recorded track: index of the agent, ascending times ``[T]`` [s] and positions ``[T, 2]`` [m]."""
 
     agent: int
     time: Floats
@@ -45,18 +45,18 @@ class ReplayedTrack(NamedTuple):
 
 @dataclass(frozen=True)
 class ReplayedPeople:
-    """Tracks of agents that are moved along them, straight from one recorded place to the next.
+    """Agents that follow recorded tracks, interpolated linearly between recorded positions.
 
-    An agent is there from the first to the last instant of its track. With ``release`` it becomes free once a robot
-    that people see is nearer than that, bodies between them not counted: it then walks by the crowd model to where its
-    recording will be 1.5 s later, and leaves where the recording ends.
+    An agent is present from the first to the last time of its track. With ``release``, an agent is released when a
+    robot visible to people comes closer than this distance (occlusion is ignored). The crowd model then moves it
+    towards the recorded position 1.5 s ahead, and it leaves at the end of the track.
 
     Fields:
-        tracks: of agents, each at most once.
-        release: distance between centres [m], for all or of each track; 0: that one never becomes free.
+        tracks: recorded tracks, at most one per agent.
+        release: distance between centres [m], for all or for each track; 0: no release.
 
     Raises:
-        InputError: times of a track do not rise, or something is not finite.
+        InputError: times of a track do not increase, or a value is not finite.
 
     >>> script = ReplayedPeople([ReplayedTrack(0, np.array([0.0, 2.0]), np.array([[0.0, 0.0], [2.0, 1.0]]))])
     >>> start = script.start(Scene.of([[9.0, 9.0]]), 1.0)
@@ -74,18 +74,20 @@ class ReplayedPeople:
         far = np.asarray(self.release, dtype=np.float64)
         if far.shape not in ((), (len(tracks),)) or not np.all((far >= 0.0) & (far < math.inf)):
             raise InputError(
-                f"ReplayedPeople: release = {self.release} m must be finite and at least 0, one or one a track"
+                f"ReplayedPeople: release = {self.release} m must be finite and at least 0; give one value, or "
+                f"one per track"
             )
         if len({track.agent for track in tracks}) < len(tracks):
-            raise InputError("ReplayedPeople: an agent has two tracks; give each one")
+            raise InputError("ReplayedPeople: an agent has two tracks; at most one is allowed")
         for track in tracks:
             if len(track.time) == 0 or track.position.shape != (len(track.time), 2):
                 raise InputError(
-                    f"ReplayedPeople: the track of agent {track.agent} must have places [T, 2] for times [T]"
+                    f"ReplayedPeople: the track of agent {track.agent} must have positions [T, 2] for times [T]"
                 )
             if not (np.all(np.isfinite(track.position)) and np.all(np.diff(track.time) > 0.0)):
                 raise InputError(
-                    f"ReplayedPeople: the track of agent {track.agent} is not finite, or its times do not rise"
+                    f"ReplayedPeople: the track of agent {track.agent} has values that are not finite, or times "
+                    f"that do not increase"
                 )
         object.__setattr__(self, "_rows", _Rows.of(tracks))
 
@@ -152,7 +154,7 @@ class ReplayedPeople:
 
 
 class _Rows(NamedTuple):
-    """All tracks in one table: ``[M]`` rows sorted by track and time; the other arrays are by track ``[N]``."""
+    """All tracks in one table: ``[M]`` rows sorted by track and time, and ``[N]`` values by track."""
 
     time: Floats
     position: Floats
@@ -178,12 +180,14 @@ class _Rows(NamedTuple):
             np.array([track.time[0] for track in tracks]),
             np.array([track.time[-1] for track in tracks]),
             np.array([track.position[-1] for track in tracks]),
-            np.array([max(SLOWEST, _fastest(track)) for track in tracks]),
+            np.array([max(SLOWEST, _max_speed(track)) for track in tracks]),
         )
 
     def at(self, time: float) -> tuple[Floats, Floats]:
-        """Return where everybody is ``[N, 2]`` [m] and how fast [m/s]; before and after a track at its ends, still."""
-        # the number of rows up to the time, by track: a running count over the whole table
+        """Return positions ``[N, 2]`` [m] and velocities [m/s] at a time; before and after a track, its ends at
+        rest.
+        """
+        # number of rows up to this time, by track: a cumulative count over the whole table
         seen = np.concatenate([[0], np.cumsum(self.time <= time + EARLY)])
         k = self.first[:-1] + seen[self.first[1:]] - seen[self.first[:-1]] - 1
         here = np.clip(k, self.first[:-1], self.first[1:] - 1)
@@ -196,8 +200,8 @@ class _Rows(NamedTuple):
         return self.position[here] + step * np.maximum(share, 0.0)[:, None], pace
 
 
-def _fastest(track: ReplayedTrack) -> float:
-    """Return the largest speed [m/s] over at least a second of a track, 0 when it is shorter."""
+def _max_speed(track: ReplayedTrack) -> float:
+    """Return the largest speed [m/s] over at least one second of a track; 0 for shorter tracks."""
     step = np.searchsorted(track.time, track.time + 1.0 - EARLY)
     whole = step < len(track.time)
     if not np.any(whole):

@@ -1,4 +1,4 @@
-"""Router: the shortest way around walls, for a whole crowd at once."""
+"""Router: shortest paths around walls for a whole crowd."""
 
 from __future__ import annotations
 
@@ -21,24 +21,25 @@ Floats = NDArray[np.float64]
 Rows = NDArray[np.int32]
 
 WAY = "way"
-"""Name in the memory of a scene ``[E, A, 9]``: the way that each agent follows."""
+"""Name in the memory of a scene ``[E, A, 9]``: the path of each agent."""
 CUT = 0.5
-"""Who comes as near as this share of the radius to the next leg of the way may take it, before it is in sight."""
+"""An agent within this share of the radius of the next leg may take it before it is in sight."""
 MOVED = 1.0
-"""A goal that moves farther than this [m] asks for a new way, though it be in sight of the last corner."""
+"""A goal that moves farther than this [m] triggers a new plan, even if it is in sight of the last corner."""
 MOST_CORNERS = 3000
 CHOICES = ("error", "nearest")
 
 ASKED, AIM, FROM, CORNER, LAST, BENT = 0, 2, 4, 6, 7, 8
 COLUMNS = 9
-"""Columns of a way: goal that was asked for x, y; where the way ends x, y; where the present leg begins x, y; the next
-corner; the last one; whether the way ends elsewhere than was asked for."""
+"""Columns of a path: requested goal x, y; end of the path x, y; start of the current leg x, y; next corner; last
+corner; whether the path ends elsewhere than requested.
+"""
 STRAIGHT, UNPLANNED, LOST = -1, -2, -3
-"""Instead of the next corner: the end is in sight; there is no plan yet; none was found."""
+"""Special values of the next corner: the end is in sight; not planned; no path found."""
 
 
 class _Map(NamedTuple):
-    """What kernels read of a router."""
+    """Data of a router for kernels."""
 
     wall: Floats
     first: Rows
@@ -50,12 +51,12 @@ class _Map(NamedTuple):
 
 
 class Ways(NamedTuple):
-    """Where to walk next.
+    """Next points and paths of a crowd.
 
     Fields:
-        subgoal: ``[E, A, 2]`` [m], in sight.
-        length: ``[E, A]`` of the whole way to the goal [m].
-        way: ``[E, A, 9]``, to be handed back in the next step.
+        subgoal: ``[E, A, 2]`` next point of the path, in sight [m].
+        length: ``[E, A]`` length of the path to the goal [m].
+        way: ``[E, A, 9]`` paths, an argument of the next step.
     """
 
     subgoal: Floats
@@ -65,7 +66,7 @@ class Ways(NamedTuple):
 
 @kernel(parallel=True)
 def _connect(wall: Floats, first: Rows, member: Rows, frame: Floats, node: Floats, length: Floats) -> None:
-    """Measure the way between corners that are in sight of each other."""
+    """Compute the distances between corners in sight of each other."""
     for i in prange(len(node)):
         for j in range(i):
             x, y, tx, ty = node[i, 0], node[i, 1], node[j, 0], node[j, 1]
@@ -75,7 +76,7 @@ def _connect(wall: Floats, first: Rows, member: Rows, frame: Floats, node: Float
 
 @kernel
 def _shorten(length: Floats, after: Rows) -> None:
-    """Turn lengths of single legs into those of shortest ways, and find the corner after i on the way to j (Floyd)."""
+    """Compute shortest path lengths from leg lengths, and the corner after i on the path to j (Floyd-Warshall)."""
     N = len(length)
     for k in range(N):
         for i in range(N):
@@ -99,7 +100,7 @@ def _far(ax: float, ay: float, bx: float, by: float) -> float:
 def _plan(
     map_: _Map, x: float, y: float, gx: float, gy: float, seen: NDArray[np.int64], reach: Floats
 ) -> tuple[int, int]:
-    """Return the first and the last corner of the shortest way from x, y to g; STRAIGHT twice, or LOST twice."""
+    """Return the first and last corner of the shortest path from x, y to g; STRAIGHT twice, or LOST twice."""
     wall, first, member, frame, node, length, _after = map_
     if sees(wall, first, member, frame, x, y, gx, gy, 1.0):
         return STRAIGHT, STRAIGHT
@@ -124,10 +125,10 @@ def _plan(
 
 @kernel
 def _keep(map_: _Map, x: float, y: float, way: Floats) -> int:
-    """Go on along a way, as far as is in sight, and return the next corner; UNPLANNED when the way is lost.
+    """Advance along a path as far as it is in sight and return the next corner; UNPLANNED if the path is lost.
 
-    Between corners walls are no nearer than the radius to a leg of the way: who is nearer to it than that can walk
-    straight to its end, though a wall may come nearer than the radius then.
+    Between corners, walls are at least one radius from a leg of the path. An agent closer to the leg than this can walk
+    straight to its end, although its own line may pass a wall at less than the radius.
     """
     wall, first, member, frame, node, _length, after = map_
     gx, gy = way[AIM], way[AIM + 1]
@@ -153,7 +154,7 @@ def _keep(map_: _Map, x: float, y: float, way: Floats) -> int:
 
 @kernel(parallel=True)
 def _follow(map_: _Map, place: Floats, goal: Floats, asking: NDArray[np.bool_], way: Floats) -> None:
-    """Follow or plan the ways of all rows."""
+    """Follow or plan the paths of all rows."""
     for part in prange((len(way) + CHUNK - 1) // CHUNK):
         _follow_part(part * CHUNK, min((part + 1) * CHUNK, len(way)), map_, place, goal, asking, way)
 
@@ -188,17 +189,17 @@ def _follow_part(
 
 @dataclass(frozen=True, eq=False)
 class Router:
-    """The shortest ways around walls for bodies of one size, made once for a stage; see :meth:`of`.
+    """Shortest paths around walls for bodies of one size, computed once for a stage; see :meth:`of`.
 
-    Ways bend at corners (visibility graph). Everybody walks to the farthest corner of the own way that is in sight, and
-    plans anew when pushed so far off the way that the next one is out of sight. Who is nearer to a wall than the radius
-    still finds the way, and corners may be cut to half of it, so that nobody has to stand on one point.
+    Paths bend at corners (visibility graph). Each person walks to the farthest visible corner of their path, and
+    replans if pushed so far from the path that the next corner is out of sight. A person closer to a wall than the
+    radius still finds a path. Corners may be cut to half the radius; people therefore do not queue at a single point.
 
     Fields:
-        radius: ways keep this far [m] from walls; the largest radius of a body is a good choice.
-        unreachable: what is done about a goal in or behind walls: ``error``, or ``nearest`` to walk to the nearest
-            place that can be reached.
-        walls: around which ways lead.
+        radius: distance of paths to walls [m]; typically the largest radius of a body.
+        unreachable: handling of a goal inside or behind walls: ``error``, or ``nearest`` to walk to the nearest
+            reachable point.
+        walls: the walls.
 
     >>> router = Router.of([[(2.0, -3.0), (2.0, 1.0)]], radius=0.25)
     >>> router.towards([[0.0, 0.0], [0.0, 2.0]], [[4.0, 0.0], [4.0, 2.0]]).round(2).tolist()
@@ -213,31 +214,31 @@ class Router:
 
     @classmethod
     def of(cls, walls: Any, radius: float = 0.3, unreachable: str = "error") -> Router:
-        """Make the router of some walls (anything that :meth:`crowdbot.core.Walls.of` takes).
+        """Create a router from walls (anything that :meth:`crowdbot.core.Walls.of` takes).
 
         Raises:
-            InputError: a value is not allowed, there is no room at all, or there are too many corners.
+            InputError: a value is not allowed, there is no free space, or there are too many corners.
         """
         walls = Walls.of(walls)
         if not 0.0 < radius < math.inf:
             raise InputError(f"Router: radius {radius} m must be finite and above 0")
         if unreachable not in CHOICES:
             near = did_you_mean(str(unreachable), CHOICES)
-            raise InputError(f"Router: unreachable = {unreachable!r} is unknown{near}; choose {' or '.join(CHOICES)}")
+            raise InputError(f"Router: unreachable = {unreachable!r} is unknown{near}; use {' or '.join(CHOICES)}")
         node, parts = corners(walls, radius), room_for(walls, radius)
         if len(node) > MOST_CORNERS:
             raise InputError(
-                f"Router: ways may bend at {len(node)} points, {MOST_CORNERS} are the most;"
-                " give walls fewer corners (shapely.simplify)"
+                f"Router: the walls have {len(node)} corners, at most {MOST_CORNERS} are allowed;"
+                " simplify the walls (shapely.simplify)"
             )
         if not parts:
-            raise InputError(f"Router: nowhere between the walls is room for a body of radius {radius} m")
+            raise InputError(f"Router: no space between the walls is wide enough for a body of radius {radius} m")
         cells = wall_cells(walls.segments(), radius)
         length, after = _graph(cells, node)
         return cls(radius, unreachable, walls, _Map(*cells, node, length, after), parts)
 
     def towards(self, position: ArrayLike, goal: ArrayLike) -> Floats:
-        """Return for each position ``[..., 2]`` [m] where to walk next on the shortest way to its goal ``[..., 2]``.
+        """Return the next point of the shortest path from each position ``[..., 2]`` [m] to its goal ``[..., 2]``.
 
         Raises:
             InputError: a goal cannot be reached, or a number is not finite.
@@ -252,12 +253,12 @@ class Router:
     def follow(
         self, position: Floats, goal: Floats, way: Floats | None = None, asking: NDArray[np.bool_] | None = None
     ) -> Ways:
-        """Return where to walk next, which is fast for who has a way already.
+        """Return the next point of each path. Following an existing path is fast.
 
         Args:
             position, goal: ``[E, A, 2]`` [m].
-            way: ``[E, A, 9]`` of the step before; None plans anew.
-            asking: ``[E, A]`` who needs a way; None: all.
+            way: ``[E, A, 9]`` paths of the previous step; None plans new ones.
+            asking: ``[E, A]`` agents that need a path; None: all.
 
         Raises:
             InputError: a goal cannot be reached.
@@ -272,7 +273,7 @@ class Router:
         stray = np.flatnonzero(asks.reshape(-1) & (rows[:, CORNER] == LOST))
         for k in stray:
             next_[k] = self._rescue(rows[k], place[k], divmod(int(k), A))
-        length = np.hypot(*(next_ - place).T) + self._rest(rows)
+        length = np.hypot(*(next_ - place).T) + self._remaining_length(rows)
         subgoal = np.where(asks[..., None], next_.reshape(E, A, 2), position)
         return Ways(subgoal, np.where(asks, length.reshape(E, A), 0.0), new)
 
@@ -281,7 +282,7 @@ class Router:
 
         Args:
             scene: its memory contains the paths of the previous step.
-            asking: ``[E, A]``, whom to guide (default: everybody who walks).
+            asking: ``[E, A]``, agents to guide (default: all who walk).
 
         Raises:
             InputError: a goal cannot be reached.
@@ -297,7 +298,7 @@ class Router:
         return scene.replace(goal=aim, memory={**scene.memory, WAY: way})
 
     def holds(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """Return ``[N]`` whether a body has room at points ``[N, 2]`` [m]."""
+        """Return ``[N]`` whether points ``[N, 2]`` [m] have room for a body."""
         import shapely
 
         places = shapely.points(np.asarray(points, dtype=np.float64))
@@ -310,8 +311,8 @@ class Router:
         out[turning] = self._map.node[corner[turning]]
         return out
 
-    def _rest(self, rows: Floats) -> Floats:
-        """Return how long the ways are from the next corner on."""
+    def _remaining_length(self, rows: Floats) -> Floats:
+        """Return the path lengths from the next corner to the end."""
         out = np.zeros(len(rows))
         turning = np.flatnonzero(rows[:, CORNER] >= 0)
         corner, last = rows[turning, CORNER].astype(np.int64), rows[turning, LAST].astype(np.int64)
@@ -320,9 +321,10 @@ class Router:
         return out
 
     def _rescue(self, way: Floats, place: Floats, who: tuple[int, int]) -> Floats:
-        """Fill the way of somebody for whom none was found, and return where to walk next.
+        """Fill the path of an agent for which planning failed, and return its next point.
 
-        Either the goal cannot be reached, or the place is so narrow that no corner is in sight: then out of there.
+        Either the goal is unreachable, or the agent is in a space so narrow that no corner is in sight; then it leaves
+        that space.
         """
         import shapely
 
@@ -331,9 +333,10 @@ class Router:
         if not self._reaches(part, goal):
             if self.unreachable == "error":
                 raise InputError(
-                    f"Router: the goal ({goal[0]:g}, {goal[1]:g}) of agent {who[1]} in environment {who[0]} cannot be"
-                    f" reached from ({place[0]:g}, {place[1]:g}) by a body of radius {self.radius} m: it lies in a wall"
-                    " or beyond walls; move it, or choose unreachable='nearest'"
+                    f"Router: the goal ({goal[0]:g}, {goal[1]:g}) of agent {who[1]} in environment {who[0]} "
+                    f"cannot be"
+                    f" reached from ({place[0]:g}, {place[1]:g}) by a body of radius {self.radius} m: it lies in or"
+                    " behind walls; move it, or set unreachable='nearest'"
                 )
             way[AIM : AIM + 2], way[BENT] = self._nearest(part, goal), 1.0
         seen, reach = np.empty(len(self._map.node), dtype=np.int64), np.empty(len(self._map.node))
@@ -360,7 +363,7 @@ class Router:
 
 
 def fresh(shape: tuple[int, int]) -> Floats:
-    """Return ways ``[E, A, 9]`` of which none is planned yet."""
+    """Return unplanned paths ``[E, A, 9]``."""
     way = np.full((*shape, COLUMNS), np.nan)
     way[..., CORNER] = UNPLANNED
     way[..., BENT] = 0.0
@@ -368,7 +371,7 @@ def fresh(shape: tuple[int, int]) -> Floats:
 
 
 def _graph(cells: WallCells, node: Floats) -> tuple[Floats, Rows]:
-    """Return the lengths of shortest ways between all corners, and the corner after i on the way to j."""
+    """Return the lengths of shortest paths between all corners, and the corner after i on the path to j."""
     N = len(node)
     length = np.full((N, N), np.inf)
     _connect(*cells, node, length)

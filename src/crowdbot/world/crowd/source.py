@@ -33,7 +33,7 @@ MOST_RATE = 1e4
 
 
 class Sampler(Protocol):
-    """A distribution."""
+    """A probability distribution."""
 
     def draw(self, rng: np.random.Generator, count: int) -> Floats:
         """Return ``count`` samples, ``[count]``."""
@@ -108,7 +108,7 @@ class PeopleSource:
 
 @dataclass
 class _Queue:
-    """Who comes in by one source in one environment."""
+    """Queue of one source in one environment."""
 
     source: PeopleSource
     times: np.random.Generator
@@ -118,7 +118,7 @@ class _Queue:
     come: int = 0
     waiting: int = 0
     body: tuple[float, float] | None = None
-    """Preferred speed [m/s] and radius [m] of the first who waits."""
+    """Preferred speed [m/s] and radius [m] of the first person in the queue."""
 
     @classmethod
     def of(cls, source: PeopleSource, seed: int, number: int) -> _Queue:
@@ -129,19 +129,19 @@ class _Queue:
         return queue
 
     def reconfigure(self, source: PeopleSource) -> None:
-        """Go on as another source; whoever comes evenly goes on from the next who is due."""
+        """Change the source. With regular timing, the next arrival stays as planned."""
         begin = self.due - self.come / source.rate
         if source.timing == "regular" and source != self.source and self.come and begin < source.end:
             source = dataclasses.replace(source, begin=begin)
         self.source = source
 
     def pause(self) -> float:
-        """Return the time until the next one comes [s]."""
+        """Return the time until the next arrival [s]."""
         regular = self.source.timing == "regular"
         return 1.0 / self.source.rate if regular else float(self.times.exponential(1.0 / self.source.rate))
 
     def fill(self, time: float) -> None:
-        """Count those who have come up to a time [s]."""
+        """Add all arrivals up to a time [s] to the queue."""
         most = math.inf if self.source.most is None else self.source.most
         while self.due <= time + 1e-9 and self.due < self.source.end and self.come < most:
             self.come += 1
@@ -153,7 +153,7 @@ class _Queue:
             )
 
     def first(self) -> tuple[float, float]:
-        """Return preferred speed [m/s] and radius [m] of the first who waits."""
+        """Return preferred speed [m/s] and radius [m] of the first person in the queue."""
         if self.body is None:
             self.body = (self._drawn("speed"), self._drawn("radius"))
         return self.body
@@ -162,14 +162,14 @@ class _Queue:
         value = getattr(self.source, name)
         number = float(value if isinstance(value, int | float) else np.asarray(value.draw(self.bodies, 1))[0])
         if not 0.0 < number < math.inf:
-            raise InputError(f"PeopleSource: a {name} of {number} was drawn, it must be finite and above 0")
+            raise InputError(f"PeopleSource: the sampled {name} {number} must be finite and above 0")
         return number
 
     def place(self, taken: Floats, walls: Floats) -> tuple[float, float] | None:
-        """Return a free place x, y [m] for the first who waits, None when none was found.
+        """Return a free position x, y [m] for the first person in the queue, or None if none was found.
 
         Args:
-            taken: ``[N, 3]`` x, y, radius of who is there.
+            taken: ``[N, 3]`` x, y, radius of the people present.
             walls: ``[M, 4]``.
         """
         radius = self.first()[1]
@@ -184,7 +184,7 @@ class _Queue:
 
 
 class _Entry(NamedTuple):
-    """Somebody who comes in: environment, place in the arrays, source, and what is known of the person."""
+    """A person who enters: environment, index in the arrays, source, speed and radius."""
 
     e: int
     a: int
@@ -196,13 +196,13 @@ class _Entry(NamedTuple):
 
 
 class Arrivals:
-    """Everybody who comes in by some sources.
+    """Queues and entries of a set of sources.
 
     Args:
-        sources: by which people come.
-        seeds: of each environment.
+        sources: the sources.
+        seeds: seed of each environment.
         first_journey: index of the journey of the first source; the others follow.
-        fresh: what the memory of a scene holds for somebody new, by name; 0 under other names.
+        fresh: initial values in the memory of the scene for a new person, by name (default: 0).
 
     >>> from crowdbot.world import PointWaypoint
     >>> door = PolygonZone(((0, 0), (1, 0), (1, 2), (0, 2)))
@@ -232,17 +232,17 @@ class Arrivals:
         return np.array([sum(queue.waiting for queue in queues) for queues in self._queues], dtype=np.int64)
 
     def reconfigure(self, sources: Sequence[PeopleSource], seeds: Sequence[int] | None = None) -> None:
-        """Replace the sources; people who are due or wait are kept.
+        """Replace the sources; queues and planned arrivals are kept.
 
         Args:
             sources: as many as before, with the same journeys.
-            seeds: of each environment, for new chance from now on; None: chance goes on.
+            seeds: new seed of each environment; None: the random numbers continue.
 
         Raises:
-            InputError: the number or a journey of the sources is another.
+            InputError: the number or the journeys of the sources differ.
         """
         if [source.journey for source in sources] != [source.journey for source in self._sources]:
-            raise InputError("sources cannot change their number or their journeys while a world runs")
+            raise InputError("the number and the journeys of sources cannot change in a running world")
         self._sources = tuple(sources)
         for e, queues in enumerate(self._queues):
             for number, queue in enumerate(queues):
@@ -252,22 +252,22 @@ class Arrivals:
                     queue.times, queue.bodies, queue.places = new.times, new.bodies, new.places
 
     def let_in(self, scene: Scene, time: float, ids: Numbers, following: Numbers) -> tuple[Scene, NDArray[np.bool_]]:
-        """Return the scene with those who have come up to a time, and who they are ``[E, A]``.
+        """Return the scene with the people who have arrived up to a time, and who they are ``[E, A]``.
 
-        They stand, and have no goal of their own yet.
+        New people are at rest and have no goal yet.
 
         Args:
-            scene: now.
-            time: since the beginning [s].
-            ids: ``[E, A]`` who is who; is written to.
-            following: ``[E]`` the next identities; is written to.
+            scene: current scene.
+            time: time since the start [s].
+            ids: ``[E, A]`` identities; modified in place.
+            following: ``[E]`` next identities; modified in place.
         """
         entries, walls = [], scene.walls.segments()
         for e, queues in enumerate(self._queues):
             for queue in queues:
                 queue.fill(time)
             if any(queue.waiting for queue in queues):
-                entries += self._into(scene, e, walls)
+                entries += self._entries(scene, e, walls)
         new = np.zeros(scene.shape, dtype=np.bool_)
         for entry in entries:
             ids[entry.e, entry.a] = following[entry.e]
@@ -275,8 +275,8 @@ class Arrivals:
             new[entry.e, entry.a] = True
         return (self._with(scene, entries) if entries else scene), new
 
-    def _into(self, scene: Scene, e: int, walls: Floats) -> list[_Entry]:
-        """Return who comes into one environment now."""
+    def _entries(self, scene: Scene, e: int, walls: Floats) -> list[_Entry]:
+        """Return the people who enter an environment now."""
         places = np.flatnonzero(~scene.active[e] & ~scene.external[e]).tolist()
         here = scene.active[e]
         taken = np.column_stack([scene.position[e][here], scene.radius[e][here]])

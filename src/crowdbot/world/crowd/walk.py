@@ -1,4 +1,4 @@
-"""CrowdStepRequest: what a world asks of its crowd model in a step, so that many worlds can ask together."""
+"""Requests for steps of a crowd model, which allow several worlds to be computed together."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ T = TypeVar("T")
 
 
 class CrowdStepRequest(NamedTuple):
-    """A question: where are people ``dt`` [s] later? The answer is ``model.step(scene, dt, rng)``."""
+    """Request for the scene ``dt`` [s] later; the result is ``model.step(scene, dt, rng)``."""
 
     model: CrowdModel
     scene: Scene
@@ -26,16 +26,16 @@ class CrowdStepRequest(NamedTuple):
     rng: np.random.Generator
 
     def compute(self) -> Scene:
-        """Return the answer."""
+        """Return the result of the request."""
         return self.model.step(self.scene, self.dt, self.rng)
 
 
 StepGenerator = Generator[CrowdStepRequest, Scene, T]
-"""A step that asks, once for each substep of the crowd, and returns a ``T``."""
+"""Generator of a step: yields a request for each substep of the crowd and returns a ``T``."""
 
 
 def run_step(step_requests: StepGenerator[T]) -> T:
-    """Go a step; each request is computed on its own. An exception of the model is raised in the generator."""
+    """Run a step, computing each request separately. An exception of the model is raised in the generator."""
     try:
         walk = next(step_requests)
         while True:
@@ -51,10 +51,11 @@ def run_step(step_requests: StepGenerator[T]) -> T:
 
 
 def compute_together(walks: Sequence[CrowdStepRequest]) -> list[Scene]:
-    """Return the answers to several questions, E = 1 each, of worlds with the same walls.
+    """Return the results of several requests, E = 1 each, of worlds with the same walls.
 
-    Built-in models, which draw nothing, are asked once for all, with every question as an environment; the bytes are
-    those of one after the other. Other models may draw, or keep something to themselves: they are asked one by one.
+    Built-in models draw no random numbers and are computed once, with each request as an environment. The results are
+    bit-identical to separate computation. Other models may draw random numbers or have state; they are computed one by
+    one.
 
     >>> from crowdbot.models import ORCA
     >>> rng = np.random.default_rng(0)
@@ -63,20 +64,20 @@ def compute_together(walks: Sequence[CrowdStepRequest]) -> list[Scene]:
     >>> [scene.digest() for scene in compute_together(walks)] == [walk.compute().digest() for walk in walks]
     True
     """
-    if len(walks) < 2 or not all(_fits(walks[0], walk) for walk in walks):
+    if len(walks) < 2 or not all(_same_batch(walks[0], walk) for walk in walks):
         return [walk.compute() for walk in walks]
     agents = max(walk.scene.shape[1] for walk in walks)
-    model = _joined([walk.model for walk in walks], [walk.scene.shape[1] for walk in walks], agents)
-    whole = _stacked([walk.scene for walk in walks], agents)
+    model = _join_models([walk.model for walk in walks], [walk.scene.shape[1] for walk in walks], agents)
+    whole = _stack_scenes([walk.scene for walk in walks], agents)
     after = model.step(whole, walks[0].dt, walks[0].rng)
     return [_row(after, e, walk.scene) for e, walk in enumerate(walks)]
 
 
-def _fits(first: CrowdStepRequest, other: CrowdStepRequest) -> bool:
-    """Whether both can be asked as environments of one scene."""
+def _same_batch(first: CrowdStepRequest, other: CrowdStepRequest) -> bool:
+    """Return whether two requests can be environments of one scene."""
     a, b = first.scene, other.scene
     return (
-        _alike(first.model, other.model)
+        _same_model(first.model, other.model)
         and first.dt == other.dt
         and a.time == b.time
         and a.bodies is b.bodies is None
@@ -87,12 +88,12 @@ def _fits(first: CrowdStepRequest, other: CrowdStepRequest) -> bool:
     )
 
 
-def _alike(first: CrowdModel, other: CrowdModel) -> bool:
-    """Whether two models are of one built-in kind and differ in numbers at most."""
+def _same_model(first: CrowdModel, other: CrowdModel) -> bool:
+    """Return whether two models are of the same built-in class and differ only in numbers."""
     if type(first) is not type(other) or not type(first).__module__.startswith("crowdbot.models."):
         return False
     if isinstance(first, Mixture) and isinstance(other, Mixture):
-        return len(first.models) == len(other.models) and all(map(_alike, first.models, other.models))
+        return len(first.models) == len(other.models) and all(map(_same_model, first.models, other.models))
     values = ((getattr(one, part.name) for one in (first, other)) for part in dataclasses.fields(first))
     return all((_number(a) and _number(b)) or _same(a, b) for a, b in values)
 
@@ -105,29 +106,29 @@ def _same(a: Any, b: Any) -> bool:
     return type(a) is type(b) and (np.array_equal(a, b) if isinstance(a, np.ndarray) else bool(a == b))
 
 
-def _joined(models: Sequence[CrowdModel], counts: Sequence[int], agents: int) -> CrowdModel:
-    """Return one model with a row of its parameters for every environment, where they differ."""
+def _join_models(models: Sequence[CrowdModel], counts: Sequence[int], agents: int) -> CrowdModel:
+    """Return one model, with a row per environment for each parameter that differs."""
     first: Any = models[0]
     changes: dict[str, Any] = {}
     for part in dataclasses.fields(first):
         values = [getattr(model, part.name) for model in models]
         if part.name == "models" and isinstance(first, Mixture):
-            changes["models"] = tuple(_joined(ones, counts, agents) for ones in zip(*values, strict=True))
+            changes["models"] = tuple(_join_models(ones, counts, agents) for ones in zip(*values, strict=True))
         elif any(isinstance(value, np.ndarray) for value in values) or not all(_same(values[0], v) for v in values):
             changes[part.name] = np.stack(
-                [_widened(np.broadcast_to(np.asarray(v), (n,)), agents) for v, n in zip(values, counts, strict=True)]
+                [_pad_row(np.broadcast_to(np.asarray(v), (n,)), agents) for v, n in zip(values, counts, strict=True)]
             )
     found: CrowdModel = dataclasses.replace(first, **changes) if changes else first
     return found
 
 
-def _widened(row: NDArray[Any], agents: int) -> NDArray[Any]:
-    """Return ``[agents]`` of ``[A]``: who is not there has the value of the last, or 1."""
+def _pad_row(row: NDArray[Any], agents: int) -> NDArray[Any]:
+    """Return ``[A]`` extended to ``[agents]``; absent agents get the last value, or 1."""
     return np.concatenate([row, np.full(agents - len(row), row[-1] if len(row) else 1, dtype=row.dtype)])
 
 
-def _stacked(scenes: Sequence[Scene], agents: int) -> Scene:
-    """Return the scenes as environments of one, in which absent agents fill the shorter ones."""
+def _stack_scenes(scenes: Sequence[Scene], agents: int) -> Scene:
+    """Return the scenes as environments of one scene; shorter ones are padded with absent agents."""
     rows = [_filled(scene, agents) for scene in scenes]
     first = rows[0]
     arrays: dict[str, Any] = {
@@ -157,7 +158,7 @@ def _filled(scene: Scene, agents: int) -> Scene:
 
 
 def _row(whole: Scene, e: int, before: Scene) -> Scene:
-    """Return environment ``e`` as the answer to the scene ``before``."""
+    """Return environment ``e`` as the result for the scene ``before``."""
     agents = before.shape[1]
     arrays: dict[str, Any] = {
         part.name: getattr(whole, part.name)[e : e + 1, :agents].copy()

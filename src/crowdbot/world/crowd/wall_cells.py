@@ -1,4 +1,4 @@
-"""Walls sorted into the cells of a grid, and what is in sight of what between them."""
+"""Grid of walls for fast visibility and distance queries."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ Rows = NDArray[np.int32]
 CELLS_A_WALL = 8
 MOST_CELLS = 1 << 18
 SLACK = 1.001
-"""Walls are listed in cells a little farther away than needed, so that rounding loses none."""
+"""Rounding margin: walls are listed in cells slightly farther away than needed."""
 EXACT = 1.0 - 1e-6
-"""Share of a clearance that counts as all of it."""
+"""Fraction of a clearance that counts as the full clearance."""
 
 
 class WallCells(NamedTuple):
-    """Walls by the cells of a grid that they come near.
+    """Walls by grid cell.
 
     Fields:
         wall: ``[M, 4]`` x, y, x, y [m].
-        first: ``[C + 1]`` where the walls of a cell begin in ``member``.
+        first: ``[C + 1]`` start of each cell in ``member``.
         member: indices of walls.
-        frame: lower left corner x, y [m], width of a cell [m], columns, rows, reach [m]: a wall is listed in every cell
-            that has a point nearer to it than the reach.
+        frame: lower left corner x, y [m], width of a cell [m], columns, rows, reach [m]: a wall is listed in each cell
+            with a point closer than the reach.
     """
 
     wall: Floats
@@ -42,7 +42,7 @@ class WallCells(NamedTuple):
 
 
 def wall_cells(segments: Floats, reach: float) -> WallCells:
-    """Sort walls ``[M, 4]`` into cells, each into those nearer than ``reach`` [m].
+    """Sort walls ``[M, 4]`` into all grid cells within ``reach`` [m].
 
     >>> cells = wall_cells(np.array([[0.0, 0.0, 4.0, 0.0]]), reach=0.5)
     >>> sees(*cells, 2.0, 1.0, 2.0, -1.0, 1.0), sees(*cells, 2.0, 1.0, 9.0, 0.6, 1.0)
@@ -67,7 +67,7 @@ def wall_cells(segments: Floats, reach: float) -> WallCells:
 
 @kernel
 def _list(wall: Floats, frame: Floats, first: Rows, member: Rows) -> None:
-    """Count the walls of each cell when there is no room for members yet, else list them."""
+    """Count the walls of each cell if ``member`` is empty, otherwise list them."""
     size, columns, rows, reach = frame[2], int(frame[3]), int(frame[4]), SLACK * frame[5]
     near2 = (reach + 0.7072 * size) ** 2
     place = first[:-1].copy()
@@ -103,14 +103,14 @@ def distance2(x: float, y: float, ax: float, ay: float, bx: float, by: float) ->
 def sees(
     wall: Floats, first: Rows, member: Rows, frame: Floats, x: float, y: float, tx: float, ty: float, share: float
 ) -> bool:  # fmt: skip
-    """Return whether one can walk straight from x, y to t: no wall is crossed, or nearer than a share of the reach.
+    """Return whether the segment from x, y to t is free: it crosses no wall and keeps a share of the reach from walls.
 
-    A wall that is nearer at one of the two ends may be as near on the way.
+    A wall closer than that to one of the ends may be as close along the segment.
     """
     dx, dy = tx - x, ty - y
     size, columns, rows, reach = frame[2], int(frame[3]), int(frame[4]), share * frame[5]
-    begin, end = _inside(x - frame[0], dx, columns * size, 0.0, 1.0)
-    begin, end = _inside(y - frame[1], dy, rows * size, begin, end)
+    begin, end = _clip_interval(x - frame[0], dx, columns * size, 0.0, 1.0)
+    begin, end = _clip_interval(y - frame[1], dy, rows * size, begin, end)
     if begin > end:
         return True
     i = min(columns - 1, max(0, math.floor((x + begin * dx - frame[0]) / size)))
@@ -126,7 +126,7 @@ def sees(
         cell = j * columns + i
         for k in range(first[cell], first[cell + 1]):
             m = member[k]
-            if _hinders(wall[m, 0], wall[m, 1], wall[m, 2], wall[m, 3], x, y, tx, ty, reach):
+            if _blocks(wall[m, 0], wall[m, 1], wall[m, 2], wall[m, 3], x, y, tx, ty, reach):
                 return False
         if i == last_i and j == last_j:
             break
@@ -142,8 +142,8 @@ def sees(
 
 
 @kernel
-def _inside(place: float, way: float, width: float, begin: float, end: float) -> tuple[float, float]:
-    """Shorten the part of a way, 0 to 1, to what lies from 0 to ``width`` along one axis; begin > end: nothing."""
+def _clip_interval(place: float, way: float, width: float, begin: float, end: float) -> tuple[float, float]:
+    """Clip an interval of a segment to coordinates from 0 to ``width`` along one axis; begin > end if empty."""
     if way == 0.0:
         return (begin, end) if 0.0 <= place <= width else (1.0, 0.0)
     enter, leave = -place / way, (width - place) / way
@@ -151,10 +151,10 @@ def _inside(place: float, way: float, width: float, begin: float, end: float) ->
 
 
 @kernel
-def _hinders(
+def _blocks(
     ax: float, ay: float, bx: float, by: float, px: float, py: float, qx: float, qy: float, reach: float
 ) -> bool:  # fmt: skip
-    """Return whether wall a-b is in the way from p to q, crossed or nearer than the reach or than at p and q."""
+    """Return whether wall a-b blocks segment p-q: crossed, or closer than the reach and than at p and q."""
     dx, dy = qx - px, qy - py
     left_a, left_b = dx * (ay - py) - dy * (ax - px), dx * (by - py) - dy * (bx - px)
     if (left_a < 0.0 < left_b) or (left_b < 0.0 < left_a):

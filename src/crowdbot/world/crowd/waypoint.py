@@ -91,13 +91,13 @@ class PointWaypoint(Waypoint):
         return np.tile([float(self.x), float(self.y)], (len(place), 1))
 
     def is_reached(self, place: Floats, goal: Floats) -> Bools:
-        """Return ``[N]`` who is nearer than the tolerance."""
+        """Return ``[N]`` whether each person is within the tolerance."""
         return _within(place, goal, self.tolerance)
 
 
 @dataclass(frozen=True)
 class HeadingWaypoint(Waypoint):
-    """A direction [rad] to walk in for ever, counter-clockwise from +x; no router leads there.
+    """A constant walking direction [rad], counter-clockwise from +x; never reached, and without routing.
 
     >>> HeadingWaypoint(0.0).is_reached(np.zeros((1, 2)), np.ones((1, 2))).tolist()
     [False]
@@ -115,11 +115,11 @@ class HeadingWaypoint(Waypoint):
         return True
 
     def goal(self, place: Floats, luck: PersonRandom) -> Floats:
-        """Return a point far ahead of everyone."""
+        """Return a point far ahead of each person."""
         return place + AHEAD * np.array([math.cos(self.heading), math.sin(self.heading)])
 
     def is_reached(self, place: Floats, goal: Floats) -> Bools:
-        """Return False for everybody."""
+        """Return False for all."""
         return np.zeros(len(place), dtype=np.bool_)
 
 
@@ -128,12 +128,12 @@ class PolygonZone(Waypoint):
     """A polygon, reached inside it or within the tolerance [m] of the goal of the person in it.
 
     Fields:
-        corners: ``x, y`` [m], three or more, either way round.
-        aim: where in it one goes to: the ``nearest`` point, or a ``random`` one of one's own.
-        tolerance: [m].
+        corners: ``x, y`` [m], three or more, in either orientation.
+        aim: goal in the zone: the ``nearest`` point, or a ``random`` point for each person.
+        tolerance: tolerance [m].
 
     Raises:
-        InputError: it has no area, or a value is not allowed.
+        InputError: the area is 0, or a value is not allowed.
 
     >>> hall = PolygonZone(((4.0, 0.0), (6.0, 0.0), (6.0, 3.0), (4.0, 3.0)))
     >>> hall.goal(np.array([[0.0, 1.0], [5.0, 2.0]]), PersonRandom(np.zeros(2, int), np.arange(2))).tolist()
@@ -151,10 +151,10 @@ class PolygonZone(Waypoint):
             raise InputError(f"PolygonZone: corners {ring.tolist()} must be three or more finite points x, y")
         area = 0.5 * abs(float(np.sum(ring[:, 0] * np.roll(ring[:, 1], -1) - np.roll(ring[:, 0], -1) * ring[:, 1])))
         if area < 1e-6:
-            raise InputError(f"PolygonZone: corners {ring.tolist()} enclose {area:g} m2, which is no area")
+            raise InputError(f"PolygonZone: corners {ring.tolist()} enclose {area:g} m2, the area must be above 0")
         if self.aim not in AIMS:
             raise InputError(
-                f"PolygonZone: aim {self.aim!r} is unknown{did_you_mean(self.aim, AIMS)}; choose nearest or random"
+                f"PolygonZone: aim {self.aim!r} is unknown{did_you_mean(self.aim, AIMS)}; use nearest or random"
             )
         _check_tolerance("PolygonZone", self.tolerance)
         object.__setattr__(self, "corners", tuple(map(tuple, ring.tolist())))
@@ -172,11 +172,11 @@ class PolygonZone(Waypoint):
         return np.where(self.contains(place)[:, None], place, _on_border(self._ring, place))
 
     def is_reached(self, place: Floats, goal: Floats) -> Bools:
-        """Return ``[N]`` who is in the zone, or near the own goal."""
+        """Return ``[N]`` whether each person is in the zone or near their goal."""
         return self.contains(place) | _within(place, goal, self.tolerance)
 
     def contains(self, place: Floats) -> Bools:
-        """Return ``[N]`` which points ``[N, 2]`` [m] lie in the zone."""
+        """Return ``[N]`` whether points ``[N, 2]`` [m] lie in the zone."""
         x, y = place[:, 0], place[:, 1]
         inside = np.zeros(len(place), dtype=np.bool_)
         for (ax, ay), (bx, by) in zip(self._ring, np.roll(self._ring, -1, axis=0), strict=True):
@@ -188,7 +188,7 @@ class PolygonZone(Waypoint):
         """Return a random free point of the zone for each person, ``[N, 2]`` [m].
 
         Raises:
-            InputError: there is none.
+            InputError: no free point was found.
         """
         low = self._ring.min(axis=0)
         size = self._ring.max(axis=0) - low
@@ -204,11 +204,13 @@ class PolygonZone(Waypoint):
                 good[good] = luck.holds(found[good])
             points[missing[good]] = found[good]
             missing = missing[~good]
-        raise InputError(f"PolygonZone: no place for a body was found in the zone with corners {list(self.corners)}")
+        raise InputError(
+            f"PolygonZone: no free position for a body was found in the zone with corners {list(self.corners)}"
+        )
 
 
 def _on_border(ring: Floats, place: Floats) -> Floats:
-    """Return the point ``[N, 2]`` on the border of a polygon that is nearest to each place."""
+    """Return the point ``[N, 2]`` on the border of a polygon nearest to each position."""
     x, y = place[:, 0], place[:, 1]
     best, found = np.full(len(place), np.inf), place.copy()
     for (ax, ay), (bx, by) in zip(ring, np.roll(ring, -1, axis=0), strict=True):

@@ -1,1 +1,1 @@
-"""The physics world: bodies with mass, and the forces between them, simulated by MuJoCo."""
+"""Physics world: rigid bodies and contact forces, simulated by MuJoCo."""

@@ -62,7 +62,9 @@ BODY_REGION_LIMITS: dict[str, BodyRegionLimits] = {
     "thigh": BodyRegionLimits(50e3, 75.0, 220.0),
     "lower leg": BodyRegionLimits(60e3, 75.0, 130.0),
 }
-"""Regions of :data:`SOURCE`; for certification buy the standard. Limits are for adults; those of children are lower."""
+"""Regions of :data:`SOURCE`; for certification, use the standard itself. Limits are for adults; limits for children are
+lower.
+"""
 
 DAMPING = 0.3
 """Damping ratio of a contact: bodies separate at 37 % of the impact speed (assumed)."""
@@ -87,23 +89,23 @@ AHEAD = {"skull": "face"}
 
 
 def region_of(limb: str, ahead: bool = True) -> str:
-    """Return the region of :data:`BODY_REGION_LIMITS` of a limb that is touched from ahead or from behind.
+    """Return the region of :data:`BODY_REGION_LIMITS` of a limb, for contact from ahead or from behind.
 
     Raises:
-        InputError: there is no such limb.
+        InputError: the limb is unknown.
 
     >>> region_of("chest"), region_of("chest", ahead=False), region_of("shank_l"), region_of("head")
     ('chest', 'back', 'lower leg', 'face')
     """
     stem = limb.removesuffix("_l").removesuffix("_r")
     if stem not in LIMB_REGIONS:
-        raise InputError(f"there is no limb {limb!r}; there are {', '.join(LIMB_REGIONS)}")
+        raise InputError(f"unknown limb {limb!r}; use one of {', '.join(LIMB_REGIONS)}")
     region = LIMB_REGIONS[stem]
     return (AHEAD if ahead else BEHIND).get(region, region)
 
 
 def reduced_mass(one: float, other: float) -> float:
-    """Return the mass [kg] that two masses [kg] have against each other; either may be infinite.
+    """Return the reduced mass [kg] of two masses [kg]; either may be infinite.
 
     >>> reduced_mass(60.0, 40.0), reduced_mass(math.inf, 40.0)
     (24.0, 40.0)
@@ -118,9 +120,9 @@ def two_body_force(speed: float, mass: float, region: str, person_mass: float = 
 
     Args:
         speed: closing speed along the normal [m/s].
-        mass: of what hits [kg]; of a mobile robot its whole moving mass.
+        mass: mass of the moving object [kg]; for a mobile robot, its total moving mass.
         region: one of :data:`BODY_REGION_LIMITS`.
-        person_mass: mass of the whole person [kg]; no region is heavier.
+        person_mass: mass of the person [kg], an upper limit of the mass of a region.
 
     >>> round(two_body_force(1.0, 60.0, "chest"), 1)
     774.6
@@ -130,7 +132,7 @@ def two_body_force(speed: float, mass: float, region: str, person_mass: float = 
 
 
 def permitted_speed(mass: float, region: str) -> float:
-    """Return the largest closing speed [m/s] whose impact stays at the limit of the region, 0 when none is allowed.
+    """Return the largest closing speed [m/s] within the limit of the region; 0 if no impact is allowed.
 
     >>> round(permitted_speed(60.0, "chest"), 2)
     0.36
@@ -140,14 +142,14 @@ def permitted_speed(mass: float, region: str) -> float:
 
 
 def softness(region: str, person: float, mass: float, dt: float) -> tuple[float, float]:
-    """Return stiffness and damping of a touch per reduced mass [1/s2, 1/s], for the solver.
+    """Return stiffness and damping of a contact per reduced mass [1/s2, 1/s], for the solver.
 
-    In the solver the whole person (``person`` [kg]) is behind every limb. The touch is so soft that its peak force is
-    nevertheless that of :func:`two_body_force`, whatever the ratio of the masses, and so long that the steps ``dt`` [s]
-    can follow it.
+    In the solver, each limb has the mass of the whole person (``person`` [kg]). The contact is therefore softened to
+    give the peak force of :func:`two_body_force` at any ratio of the masses. It lasts long enough to be resolved by
+    steps of ``dt`` [s].
 
     >>> stiffness, _ = softness("chest", 40.0, 60.0, 0.005)
-    >>> round(math.sqrt(stiffness / (25e3 / 24.0)), 3)  # stiffer by what damping takes from the peak
+    >>> round(math.sqrt(stiffness / (25e3 / 24.0)), 3)  # stiffer, since damping lowers the peak
     1.229
     """
     tissue = BODY_REGION_LIMITS[region]
@@ -158,7 +160,7 @@ def softness(region: str, person: float, mass: float, dt: float) -> tuple[float,
 
 
 def _peak(damping: float) -> float:
-    """Return the largest force of a damped spring that is hit, over that of an undamped one."""
+    """Return the ratio of peak forces of a damped to an undamped spring in an impact."""
     root = math.sqrt(1.0 - damping**2)
     angle = math.atan2(root * (1.0 - 4.0 * damping**2), damping * (3.0 - 4.0 * damping**2))
     return math.exp(-damping / root * angle)

@@ -1,4 +1,4 @@
-"""What range sensors see of people, robots and props, in a world of any kind: their bodies as simple shapes."""
+"""Simple shapes of people, robots and props for range sensors, in any world."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ __all__ = ["scene_bodies"]
 Floats = NDArray[np.float64]
 Frames = Mapping[str, Floats]
 UPRIGHT = math.cos(math.radians(5.0))
-"""Cylinders that lean by less than this are upright."""
+"""Cylinders tilted by less than this are upright."""
 SLICES = 12
-"""An ellipsoid is a stack of so many discs."""
+"""Number of discs that approximate an ellipsoid."""
 
 
 class _Rows(NamedTuple):
-    """Shapes of one kind in the frame of a link: ``place [N, 4, 4]`` and sizes ``[N, 3]``."""
+    """Shapes of one kind in the frame of a link: frames ``[N, 4, 4]`` and sizes ``[N, 3]``."""
 
     links: list[str]
     place: Floats
@@ -47,30 +47,30 @@ def scene_bodies(
     props: Mapping[int, Floats] | None = None,
     skins: int | None = None,
 ) -> Bodies:
-    """Return the bodies of everyone and everything in a scene, E = 1, to be given to range sensors.
+    """Return the bodies of all people, robots and props in a scene, E = 1, for range sensors.
 
-    People are 17 capsules, robots what touches of them, props what is seen of them. Boxes, balls, capsules and upright
-    cylinders are exact. A cylinder that lies is a box as wide, or a capsule when it is longer than wide; a mesh is the
-    bounding boxes of its convex pieces; an ellipsoid is a stack of discs. Who neither walks nor is among ``robots`` has
-    no body and is seen as the cylinder of the own radius. The carrier of a sensor is left out by
-    :meth:`Scene.without`.
+    People consist of 17 capsules, robots of their colliders, and props of their visual shapes. Boxes, spheres, capsules
+    and upright cylinders are exact. A tilted cylinder becomes a box of equal width, or a capsule if it is longer than
+    wide. A mesh becomes the bounding boxes of its convex pieces, an ellipsoid a stack of discs. An agent that is
+    neither in ``motion`` nor in ``robots`` has no body and is a cylinder with its radius. :meth:`Scene.without` removes
+    the robot that carries the sensor.
 
     Args:
-        scene: places and headings of robots; who is active.
-        walkers: people as they stand now.
-        robots: by agent.
-        stage: for its props.
-        joints: positions of joints of robots [rad, m], by agent and name; those left out are as in the posture.
-        frames: of the links of robots in the world ``[4, 4]``, by agent and link, if they are known better.
-        props: frames in the world ``[4, 4]`` of props that were moved, by number.
-        skins: level of detail of people's skins, 0 (finest) to 2, for rays that are true to the mesh; None: none.
+        scene: positions and headings of robots, and which agents are active.
+        motion: current poses of people.
+        robots: robots by agent index.
+        stage: stage with props.
+        joints: joint positions of robots [rad, m] by agent and name (default: the posture).
+        frames: frames ``[4, 4]`` of robot links in the world, by agent and link; they replace ``joints``.
+        props: frames ``[4, 4]`` in the world of moved props, by number.
+        skins: level of detail of people's skins, 0 (finest) to 2, for rays that hit the mesh; None: no skins.
 
     Raises:
         InputError: the scene has several environments.
 
     >>> scene = Scene.of([[0.0, 0.0], [3.0, 0.0]], external=[True, False])
     >>> found = scene_bodies(scene, PeopleMotion(scene, np.array([1])), {0: Robot.load("turtlebot2")})
-    >>> found.start.shape, sorted(set(found.post_owner.tolist()))  # a castor is a ball, that is a short capsule
+    >>> found.start.shape, sorted(set(found.post_owner.tolist()))  # a castor is a sphere, stored as a short capsule
     ((1, 19, 3), [0])
     """
     if scene.shape[0] != 1:
@@ -102,7 +102,7 @@ class _Found:
         self.posts: list[tuple[NDArray[Any], ...]] = []
 
     def add(self, kind: str, place: Floats, size: Floats, owner: int) -> None:
-        """Add shapes of a kind with the frames ``[N, 4, 4]`` and sizes ``[N, 3]`` of an agent or the stage."""
+        """Add shapes of a kind with frames ``[N, 4, 4]`` and sizes ``[N, 3]`` for an agent or the stage."""
         middle, axis = place[:, :3, 3], place[:, :3, 2]
         if kind == "box":
             turn = np.array([quaternion(one[:3, :3]) for one in place])
@@ -131,7 +131,7 @@ class _Found:
             self.add("capsule", place[long], np.stack([radius, half - radius, half], axis=1)[long], owner)
 
     def _ellipsoids(self, middle: Floats, size: Floats, owner: int) -> None:
-        """Stack discs of the mean radius that an upright ellipsoid has at their heights."""
+        """Add discs with the mean radius of an upright ellipsoid at their heights."""
         edge = np.linspace(-1.0, 1.0, SLICES + 1)
         low, high = edge[:-1], edge[1:]
         across = np.sqrt(1.0 - (low**2 + low * high + high**2) / 3.0)
@@ -140,7 +140,7 @@ class _Found:
             self.posts.append((foot, wide * across, tall * (high - low), np.full(SLICES, owner)))
 
     def bodies(self, parts: tuple[str, ...], skins: Skins | None) -> Bodies:
-        """Return all of them."""
+        """Return all shapes."""
         named = (
             (self.capsules, ("start", "end", "radius", "owner", "part")),
             (self.boxes, ("box_centre", "box_half", "box_turn", "box_owner")),
@@ -156,7 +156,7 @@ class _Found:
 
 
 def _standing(scene: Scene, agent: int, robot: Robot, joints: Mapping[str, ArrayLike]) -> Frames:
-    """Return the frames of the links of a robot that stands on the floor."""
+    """Return the frames of the links of a robot on the floor."""
     x, y = scene.position[0, agent].tolist()
     base = frame((x, y, robot.lift), axis_rotation((0.0, 0.0, 1.0), float(scene.heading[0, agent])))
     poses = _posture(robot) if not joints else robot.model.poses({**robot.posture, **joints})
@@ -195,7 +195,7 @@ def _rows_of(robot: Robot) -> dict[str, _Rows]:
 
 
 def _of_prop(prop: PropBody, moved: Floats | None) -> list[tuple[str, Floats, Floats]]:
-    """Return kind, frame and size of the shapes of a prop, as its body of MJCF says."""
+    """Return kind, frame and size of the shapes of a prop, from its MJCF body."""
     body = prop.body("prop")
     place = moved
     if place is None:
@@ -207,7 +207,9 @@ def _of_prop(prop: PropBody, moved: Floats | None) -> list[tuple[str, Floats, Fl
         kind = geom.attributes.get("type", "sphere")
         kind = "capsule" if kind == "sphere" else kind
         if kind not in ("box", "capsule", "cylinder", "ellipsoid"):
-            raise InputError(f"bodies: {type(prop).__name__} has a shape of the type {kind!r}, which rays cannot meet")
+            raise InputError(
+                f"bodies: {type(prop).__name__} has a shape of type {kind!r}, which ray casting does not support"
+            )
         found.append((kind, place @ frame(_numbers(geom, "pos")), size))
     return found
 
@@ -217,7 +219,7 @@ def _numbers(element: Element, key: str) -> Floats:
 
 
 def _skins(scene: Scene, motion: PeopleMotion, level: int) -> Skins:
-    """Return the skins of everyone who is there, what they do not wear left out."""
+    """Return the skins of all people present, without hidden parts."""
     points = motion.gait.skin(motion.state, level)
     points[~scene.active[0, motion.agents]] = np.nan
     worn, faces = motion.people.clothing_mask(level), motion.people.faces(level)

@@ -118,7 +118,7 @@ class BodyContactEvent:
 
 @dataclass
 class _Pressed:
-    """A limb, or the whole, during a collision; pressed since ``since``, the last time at ``last``."""
+    """Force on a limb or on all limbs in a contact event; under pressure since ``since``, last at ``last``."""
 
     since: float
     last: float
@@ -127,7 +127,7 @@ class _Pressed:
 
 @dataclass
 class _Running:
-    """A collision that is not over."""
+    """An open contact event."""
 
     begin: float
     cause: str
@@ -184,7 +184,7 @@ class BodyContactTracker:
                 self._over.append(_closed(pair, self._running.pop(pair)))
 
     def forces(self, steps: int) -> tuple[ContactForce, ...]:
-        """Return the means over the last ``steps`` steps of the engine, and begin anew."""
+        """Return the mean forces of the last ``steps`` engine steps, and reset them."""
         found = []
         for (first, second, one, limb), (force, depth, point) in self._sums.items():
             mean = force / steps
@@ -218,7 +218,7 @@ class BodyContactTracker:
                 self._hit(running, contact, time)
 
     def _hit(self, running: _Running, contact: EngineContact, time: float) -> None:
-        """Judge an impact on a limb by the two-body model."""
+        """Evaluate an impact on a limb by the two-body model."""
         first = contact.first.kind == "person"
         person, limb = (contact.first, contact.first_part) if first else (contact.second, contact.second_part)
         known = running.pressed.get(limb)
@@ -232,7 +232,7 @@ class BodyContactTracker:
         mass = self._mass_of(contact.second if first else contact.first)
         swing = float(contact.swing @ contact.normal) * (1.0 if first else -1.0)
         surface = _closing(contact)
-        body = min(surface, max(0.0, surface - swing))  # what swings carries its own mass, not that of the body
+        body = min(surface, max(0.0, surface - swing))  # a swinging limb moves its own mass, not that of the body
         force = max(
             two_body_force(body, mass, region, self._mass_of(person)),
             two_body_force(surface, mass, region, self._limb_mass_of(person.number, limb)),
@@ -242,7 +242,7 @@ class BodyContactTracker:
             running.hardest = (force, limb, region)
 
     def _pressed(self, running: _Running, rows: list[EngineContact], time: float) -> None:
-        """Follow the force on each limb."""
+        """Update the force on each limb."""
         sums: dict[str, Floats] = {}
         for contact in rows:
             limb = contact.first_part if contact.first.kind == "person" else contact.second_part
@@ -266,9 +266,9 @@ class BodyContactTracker:
 
 
 def _borne(push: Floats) -> Floats:
-    """Return what of a push on a person counts: not what bears the own weight and step from below.
+    """Return the part of a contact force that counts, without support from below.
 
-    People here cannot be lifted, so the upward part of a force would be that of somebody who is immovable.
+    Bodies of people cannot be lifted; an upward force would be that of an immovable person.
     """
     return push * (1.0, 1.0, 0.0) if push[2] > 0.0 else push
 

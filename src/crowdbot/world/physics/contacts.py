@@ -59,7 +59,7 @@ class EngineContact(NamedTuple):
 
 
 class _ContactPoint(NamedTuple):
-    """One point where the geom ``one`` meets ``other``, with velocities there."""
+    """A contact point between the geoms ``one`` and ``other``, with their velocities."""
 
     row: int
     one: int
@@ -70,13 +70,13 @@ class _ContactPoint(NamedTuple):
 
 
 class ContactReader:
-    """Reads the contacts of the engine.
+    """Reads the contacts of an engine step.
 
     Args:
-        model, data: of the engine.
-        prefixes: names of robots, by agent.
-        agent_of: which agent has the body of a slot.
-        swing: velocities of the ends of limbs ``[S, L, 6]`` [m/s] against their bodies.
+        model, data: model and data of the engine.
+        prefixes: name prefixes of robots, by agent.
+        agent_of: returns the agent of a body slot.
+        swing: velocities of the limb ends ``[S, L, 6]`` [m/s] relative to their bodies.
     """
 
     def __init__(
@@ -93,7 +93,7 @@ class ContactReader:
         self._found: list[_ContactPoint] = []
 
     def look(self) -> None:
-        """Note the contacts that matter and how fast the surfaces are: between both halves of a step of the engine."""
+        """Record active contacts and their surface velocities, between the two halves of an engine step."""
         self._found = []
         if self._data.ncon == 0:
             return
@@ -114,7 +114,7 @@ class ContactReader:
         self._share()
 
     def _share(self) -> None:
-        """Let the points in which a limb is touched share its stiffness: to the engine each is a spring of its own."""
+        """Divide the stiffness of a limb by its number of contact points, which are separate springs in the engine."""
         points: dict[tuple[int, int], list[int]] = {}
         for found in self._found:
             if PERSON in (self._kind[found.one], self._kind[found.other]):
@@ -127,7 +127,7 @@ class ContactReader:
                 self._data.efc_D[rows] /= len(indices)
 
     def read(self) -> tuple[EngineContact, ...]:
-        """Return who presses on whom, after the second half of the step; points of the same parts are together."""
+        """Return the contacts after the second half of the step; points between the same parts are merged."""
         if not self._found:
             return ()
         together: dict[tuple[ContactBody, ContactBody, str, str], list[_ContactPoint]] = {}
@@ -169,7 +169,7 @@ class ContactReader:
         return np.asarray(move + np.cross(spin, point - center))
 
     def _swung(self, geom: int, point: Floats) -> Floats:
-        """Return how fast a limb swings, where it is nearest to a point."""
+        """Return the swing velocity of a limb at the position nearest to a point."""
         limb = LIMB_NAMES.index(self._part[geom])
         ends = self._swing()[self._number[geom], limb]
         axis = self._data.geom_xmat[geom].reshape(3, 3)[:, 2]
@@ -179,7 +179,7 @@ class ContactReader:
 
 
 def _sorted_out(name: str, prefixes: dict[int, str]) -> tuple[int, int, str]:
-    """Return kind, number and part of a geom by its name."""
+    """Return kind, number and part of a geom from its name."""
     if name.startswith("person"):
         slot, limb = name.removeprefix("person").split("/")
         return PERSON, int(slot), limb

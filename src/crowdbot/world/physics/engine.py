@@ -1,4 +1,4 @@
-"""The physics engine, loaded when the first physics world is made."""
+"""Lazy import of MuJoCo."""
 
 from __future__ import annotations
 

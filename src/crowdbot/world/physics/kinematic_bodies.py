@@ -19,16 +19,16 @@ __all__ = ["KinematicBodies"]
 
 
 class KinematicBodies:
-    """Bodies that follow a planar scene: nothing pushes them.
+    """Bodies that follow a planar scene; contacts do not move them.
 
     Args:
-        scene: at the beginning, E = 1.
-        robots: by agent.
+        scene: initial scene, E = 1.
+        robots: robots by agent index.
         stage: wall height, props and lights.
         people: bodies of all agents that are not robots, then of riders.
         riders: agents of the robots that carry a rider.
         walls: walls without the outlines of props; None: the walls of the scene.
-        seed: of the gaits.
+        seed: seed of the gaits.
 
     Attributes:
         people: bodies of people.
@@ -56,7 +56,7 @@ class KinematicBodies:
         return scene.replace(bodies=found, walls=self._walls(scene), wall_height=self.stage.wall_height)
 
     def renderer(self, scene: Scene) -> Renderer:
-        """Return the renderer, set to a scene."""
+        """Return the renderer for a scene."""
         now = scene.replace(walls=self._walls(scene))
         if self._renderer is None:
             self._renderer = Renderer(now, self.robots, self.stage, self.people)

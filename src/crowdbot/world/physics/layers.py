@@ -1,7 +1,8 @@
-"""Who can touch whom in a physics world: bits of MuJoCo's ``contype`` and ``conaffinity``.
+"""Collision filters of the physics world: values of MuJoCo's ``contype`` and ``conaffinity``.
 
-Two shapes touch when one's type is in the other's affinity. People do not touch each other (their crowd model keeps
-them apart) nor the floor (their feet are placed on it); of a person only the trunk touches walls and what stands fast.
+Two geoms collide if the type of one is in the affinity of the other. People do not collide with each other (the crowd
+model separates them) or with the floor (their feet are placed on it). Of the limbs of a person, only the trunk collides
+with walls and fixed objects.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ def _bits(kind: int, touches: int) -> dict[str, str]:
 
 
 PULLED = (_ROBOT, _ROBOT | _STAGE | _PERSON | _MOVED)
-"""Robots whose base is pulled along: what of them would rub on the floor does not."""
+"""Robots with a pulled base; parts that would rub on the floor do not collide with it."""
 ROBOT = (_ROBOT, PULLED[1] | _FLOOR)
 GROUND = _bits(_FLOOR, 0)
 STANDING = _bits(_STAGE, _ROBOT | _MOVED)

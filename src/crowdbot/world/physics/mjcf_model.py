@@ -1,4 +1,4 @@
-"""The whole world as one MuJoCo model: stage, robots, and bodies that people take when something is near them."""
+"""MJCF model of a world: stage, robots, and a pool of bodies for people near robots."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ from .stage import PhysicsStage
 __all__ = ["PARKED", "MjcfModel", "build_mjcf_model"]
 
 PARKED = 60.0
-"""Height [m] at which limbs that nobody has wait."""
+"""Height [m] of the limbs of unused bodies."""
 PULL, SPIN = 4.0, 1.5
-"""Largest force [N] and torque [N m] of a base that is pulled, per kg of the robot."""
+"""Maximum force [N] and torque [N m] of a pulled base, per kg of the robot."""
 ROTOR = 1e-4
-"""Least inertia [kg m2] about the axis of a hinge (assumed, that of a small geared motor)."""
+"""Minimum inertia [kg m2] about the axis of a hinge (assumed: a small geared motor)."""
 QUICKEST = 0.5
-"""Motors of joints take at least two steps of the engine to follow."""
+"""Minimum response time of joint motors, in engine steps."""
 SKIN = "0.85 0.70 0.60 1"
 ARENA = "64M"
 SPRING = "0.5 0.5 0.001 0.5 2"
-"""Of the touch of a limb: so the engine solves it as a spring and a damper, whose force two limbs cannot drive up."""
+"""Solver parameters of limb contacts: a spring and a damper whose force does not depend on the number of limbs."""
 
 
 class MjcfModel(NamedTuple):
-    """A model as XML tree with its mesh files; ``prefixes`` of the names of each robot; joints of all ``wheels``."""
+    """A world model: XML tree, mesh files, name ``prefixes`` of the robots, and joints of all ``wheels``."""
 
     root: Element
     files: dict[str, bytes]
@@ -59,18 +59,18 @@ def build_mjcf_model(
     motors: Mapping[int, Mapping[str, str]] | None = None,
     posed: bool = False,
 ) -> MjcfModel:
-    """Return the model of a world.
+    """Return the MJCF model of a world.
 
     Args:
-        scene: with walls, and robots where they begin.
-        stage: what else stands there.
-        robots: by agent.
-        slots: how many people can have a body at a time.
-        motors: how joints of robots are commanded, by agent and joint, see :func:`crowdbot.world.urdf.mjcf`.
-        posed: robots are not moved by the engine but put where they are.
+        scene: initial scene with walls and robots.
+        stage: props and lights.
+        robots: robots by agent index.
+        slots: number of people that can have a body at the same time.
+        motors: command types of robot joints by agent and joint, see :func:`crowdbot.world.urdf.mjcf`.
+        posed: robots are placed from outside instead of simulated.
 
     Raises:
-        InputError: a robot has no wheels to drive or to steer with.
+        InputError: a robot has no driven or steered wheels.
     """
     assets, world = scenery(scene.walls, stage)
     sections: dict[str, list[Element]] = {"contact": [], "equality": [], "actuator": []}
@@ -99,10 +99,10 @@ def build_mjcf_model(
 
 
 def _steadied(model: Any, wheels: Collection[str]) -> None:
-    """Make light joints such that the steps of the engine can follow them; those of wheels carry the whole robot.
+    """Increase the inertia of light joints for a stable simulation; joints of wheels carry the whole robot.
 
-    Hinges get a rotor as motors have one where next to nothing turns. Motors are as soft as their joint is light: a
-    stiff one would swing to and fro between its largest forces.
+    Hinges of light links get the rotor inertia of a motor. The stiffness of a motor is reduced with the inertia of its
+    joint, since a stiff motor would oscillate between its force limits.
     """
     mj = engine()
     hinge = model.jnt_type == mj.mjtJoint.mjJNT_HINGE
@@ -127,7 +127,7 @@ def _steadied(model: Any, wheels: Collection[str]) -> None:
 
 def _settings() -> list[Element]:
     compiler = {"angle": "radian", "autolimits": "false", "inertiafromgeom": "false", "balanceinertia": "false"}
-    # limbs move on their bodies, which the boxes of the mid-phase would not notice; islands would copy what is shared
+    # the mid-phase would miss limbs that move on their bodies; islands would copy shared data
     flags = Element("flag", {"midphase": "disable", "island": "disable"})
     looks = Element("global", {"offwidth": "1920", "offheight": "1200"})
     near = Element("map", {"znear": "0.005", "zfar": "60", "shadowclip": "0.7"})
@@ -147,11 +147,11 @@ def _robot(scene: Scene, agent: int, robot: Robot, prefix: str, motors: Mapping[
     steers = any(wheel.steering for wheel in robot.wheels)
     who = f"robot {robot.name} of agent {agent}"
     if not planar and not any(wheel.driven for wheel in robot.wheels):
-        raise InputError(f"{who} has no wheels that a motor turns; name them in its file")
+        raise InputError(f"{who} has no driven wheels; list them in its robot.xml")
     if not planar and steers != isinstance(robot.drive, AckermannDrive):
         raise InputError(
-            f"{who} drives as {type(robot.drive).__name__} and has {'' if steers else 'no '}wheels that steer; give it"
-            ' base="planar", or an AckermannDrive and wheels with steering joints'
+            f"{who} has a drive {type(robot.drive).__name__} and {'' if steers else 'no '}steered wheels; use"
+            ' base="planar", or an AckermannDrive with steered wheels'
         )
     kinds = {wheel.joint: "velocity" for wheel in robot.wheels if wheel.driven and not planar}
     kinds |= {wheel.steering: "position" for wheel in robot.wheels if wheel.steering and not planar}
@@ -171,7 +171,7 @@ def _robot(scene: Scene, agent: int, robot: Robot, prefix: str, motors: Mapping[
 
 
 def _person(slot: int) -> Element:
-    """Return a body of 17 limbs that glides on the floor; who takes it gives it mass, limbs and softness."""
+    """Return a body with 17 limbs that slides on the floor; mass, limbs and stiffness are set when it is assigned."""
     name = f"person{slot}"
     body = Element("body", {"name": name})
     body.children.append(Element("inertial", {"pos": "0 0 1", "mass": "70", "diaginertia": "5 5 1"}))
@@ -180,7 +180,7 @@ def _person(slot: int) -> Element:
     for limb in LIMBS:
         layer = TRUNK if limb.region == "torso" else LIMB
         values = {"name": f"{name}/{limb.name}", "type": "capsule", "size": "0.05 0.1", "pos": f"0 0 {PARKED}"}
-        values["quat"] = "0.5 0.5 0.5 0.5"  # were they upright now, the engine would keep them so for good
+        values["quat"] = "0.5 0.5 0.5 0.5"  # an upright capsule in the model would be kept upright by the engine
         soft = {"priority": "2", "friction": row((0.4, 0.005, 0.0001)), "solimp": SPRING}
         body.children.append(Element("geom", {**values, **soft, **layer, "group": "4", "rgba": SKIN}))
     return body

@@ -1,4 +1,4 @@
-"""People near robots and movable props, who need a body in the engine."""
+"""Selection of people near robots and movable props, for whom bodies are simulated."""
 
 from __future__ import annotations
 

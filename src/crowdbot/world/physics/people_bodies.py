@@ -81,17 +81,17 @@ class PeopleBodies:
         self._fresh = np.ones(slots, dtype=np.bool_)
         self._hold = round(HOLD / step)
         self.swing = np.zeros((slots, LIMB_COUNT, 6))
-        """Velocities [m/s] of both ends of the limbs against the body."""
+        """Velocities [m/s] of both ends of the limbs relative to the body."""
         self._park(np.arange(slots))
 
     def take(self, wanted: Ints, mass: Floats, radius: Floats, other: Floats, ahead: Bools) -> int:
-        """Give bodies to those who want one, and return how many got none.
+        """Assign bodies to people and return the number of people without a free body.
 
         Args:
-            wanted: agents, the most urgent first.
-            mass, radius: ``[W]`` [kg] and ``[W, L]`` [m] of their bodies and limbs.
-            other: ``[W]`` [kg], mass of what is near them.
-            ahead: ``[W]``, whether that is in front of them.
+            wanted: agents, by decreasing priority.
+            mass, radius: masses ``[W]`` [kg] and limb radii ``[W, L]`` [m].
+            other: mass of the nearest mover ``[W]`` [kg].
+            ahead: whether it is ahead of the person ``[W]``.
         """
         rank = {int(agent): k for k, agent in enumerate(wanted[: len(self.agent)])}
         gone = np.array([s for s, agent in enumerate(self.agent) if agent >= 0 and int(agent) not in rank], dtype=int)
@@ -107,18 +107,18 @@ class PeopleBodies:
         return max(0, len(wanted) - len(self.agent))
 
     def begin(self, place: Floats, way: Floats, before: Floats, after: Floats, duration: float) -> None:
-        """Set everyone who has a body on the way of the next step of the world.
+        """Set the targets of all bodies for the next step of the world.
 
         Args:
-            place: ``[A, 2]`` where everyone is [m].
-            way: ``[A, 2]`` velocity that leads to where the crowd model wants everyone [m/s].
-            before, after: ``[A, L, 6]`` both ends of the limbs at the begin and the end of the step, against the body.
-            duration: of the step [s].
+            place: positions ``[A, 2]`` [m].
+            way: velocities ``[A, 2]`` [m/s] towards the positions of the crowd model.
+            before, after: both limb ends ``[A, L, 6]`` at the start and the end of the step, relative to the body.
+            duration: duration of the step [s].
         """
         here = self._here
         agents = self.agent[here]
         self._way[here] = way[agents]
-        held = here[self._touched[here] > 0]  # who is touched cannot change the own velocity at once
+        held = here[self._touched[here] > 0]  # a person in contact cannot change velocity immediately
         self._off[held] = self._velocity(held) - self._way[held]
         self.pushed[:] = np.any(self._off != 0.0, axis=1)
         self._limbs = (before[agents], after[agents])
@@ -128,7 +128,7 @@ class PeopleBodies:
             self._data.qvel[self._speed[here] + axis] = way[agents, axis] + self._off[here, axis]
 
     def go(self, share: float) -> None:
-        """Pose the limbs of this share of the step, and brace those who were pushed."""
+        """Pose the limbs at this fraction of the step, and apply the resistance of pushed people."""
         here = self._here
         if not len(here):
             return
@@ -140,7 +140,7 @@ class PeopleBodies:
             self._data.qfrc_applied[self._speed[here] + axis] = force[:, axis]
 
     def register_contacts(self, contacts: Iterable[EngineContact]) -> None:
-        """Notice who was pushed during the last step of the engine, and let limbs give way that are pressed."""
+        """Record people pushed in the last engine step, and let pressed limbs yield."""
         self._touched = np.maximum(self._touched - 1, 0)
         fresh = self.step / REACTION
         self._load *= 1.0 - fresh
@@ -164,7 +164,7 @@ class PeopleBodies:
         self._since[self.pushed] += 1
 
     def _lift(self, slot: int, limb: str, upwards: float, depth: float) -> None:
-        """Take the arm or leg that a limb belongs to up from what it treads on."""
+        """Raise the arm or leg of a limb off the object below it."""
         rows = _chain(limb)
         if upwards < TREAD or not rows:
             return
@@ -174,7 +174,7 @@ class PeopleBodies:
             self._limbs_now[slot, rows] += (0.0, 0.0, up, 0.0, 0.0, up)
 
     def _give_way(self, slot: int, limb: str, force: Floats) -> None:
-        """Move the arm or leg that a limb belongs to the way it is pressed, when that is more than it can hold."""
+        """Move the arm or leg of a limb in the direction of the force if the force is too large to resist."""
         size = float(np.sqrt(force @ force))
         rows = _chain(limb)
         if size <= BRACE or not rows:
@@ -187,7 +187,7 @@ class PeopleBodies:
             self._limbs_now[slot, rows] = moved
 
     def end(self) -> tuple[Ints, Floats, Floats]:
-        """Return who was pushed off the own way, with their places ``[P, 2]`` [m] and velocities ``[P, 2]`` [m/s]."""
+        """Return the people pushed off their path, with positions ``[P, 2]`` [m] and velocities ``[P, 2]`` [m/s]."""
         slots = np.flatnonzero(self.pushed & (self.agent >= 0))
         velocity = self._velocity(slots)
         off = velocity - self._way[slots]
@@ -213,7 +213,7 @@ class PeopleBodies:
         return np.where((self._since[here] >= REACTION / self.step)[:, None], force, 0.0)
 
     def _park(self, slots: Ints) -> None:
-        """Lift bodies that nobody has out of the way."""
+        """Move unused bodies out of the way."""
         self.agent[slots] = -1
         self._off[slots], self._load[slots] = 0.0, 0.0
         self._touched[slots], self._since[slots] = 0, 0
@@ -238,9 +238,9 @@ class PeopleBodies:
             model.geom_solref[geom] = (-stiffness, -damping)
 
     def _move(self, here: Ints, walk: Floats) -> None:
-        """Let limbs follow the walk; those of who is touched stay as they are, and then go back without haste.
+        """Move limbs according to the gait. Limbs of people in contact keep their pose and return slowly afterwards.
 
-        A limb that walked on inside of what holds it would press without end.
+        A limb that continued its gait while blocked would press without limit.
         """
         held = (self._touched[here] > 0) & ~self._fresh[here]
         late = held | self._late[here]
@@ -260,7 +260,7 @@ class PeopleBodies:
         self._pose(here, now)
 
     def _pose(self, here: Ints, limbs: Floats) -> None:
-        """Put the capsules where the limbs are, against their bodies."""
+        """Set the poses of the capsules relative to their bodies."""
         model = self._model
         geoms = self.geoms[here].ravel()
         ends = limbs.reshape(-1, 6)
@@ -273,16 +273,16 @@ class PeopleBodies:
 
 
 STEADY = 1e-4
-"""Who is off the own velocity by less [m/s] has got over the push."""
+"""A pushed person with a velocity error below this [m/s] has recovered."""
 
 
 def _chain(limb: str) -> list[int]:
-    """Return the rows of the arm or leg that a limb belongs to; of the trunk, none."""
+    """Return the rows of the arm or leg of a limb; empty for the trunk."""
     return [LIMB_NAMES.index(f"{name}_{limb[-1]}") for name in CHAINS.get(limb.split("_", maxsplit=1)[0], ())]
 
 
 def _upright_to(direction: Floats) -> Floats:
-    """Return quaternions ``[N, 4]`` that turn the z axis into unit vectors ``[N, 3]``."""
+    """Return quaternions ``[N, 4]`` that rotate the z axis to unit vectors ``[N, 3]``."""
     x, y, z = direction.T
     turn = np.stack([1.0 + z, -y, x, np.zeros_like(x)], axis=-1)
     turn[z < -1.0 + 1e-9] = (0.0, 1.0, 0.0, 0.0)

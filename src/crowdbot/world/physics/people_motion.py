@@ -1,4 +1,4 @@
-"""The people of a scene as bodies: who they are, how they walk, and where their limbs are."""
+"""PeopleMotion: bodies, gaits and limb poses of the people in a scene."""
 
 from __future__ import annotations
 
@@ -24,16 +24,18 @@ BELOW = {
     "forearm": ("forearm", "hand"),
 }
 FASTEST = 11.9
-"""Speeds [m/s] that models give are cut to this for the legs."""
+"""Upper limit of the walking speed [m/s] for gaits."""
 
 
 class LimbCapsules(NamedTuple):
-    """Capsules of the limbs of people, E = 1; the names are those of bodies in a scene.
+    """Capsules of the limbs of people, E = 1; the field names are those of bodies in a scene.
 
     Fields:
-        start, end: ``[1, B, 3]`` [m]; radius: ``[1, B]`` [m], 0 for who is absent.
-        owner: ``[B]`` the agent; part: ``[B]`` index into ``parts``.
-        parts: the names of the limbs.
+        start, end: ends ``[1, B, 3]`` [m].
+        radius: ``[1, B]`` [m], 0 for absent people.
+        owner: agent of each capsule ``[B]``.
+        part: index into ``parts`` ``[B]``.
+        parts: names of the limbs.
     """
 
     start: Floats
@@ -45,21 +47,21 @@ class LimbCapsules(NamedTuple):
 
 
 class PeopleMotion:
-    """People who walk along in a scene.
+    """Bodies and gaits of the people in a scene.
 
     Args:
-        scene: E = 1.
-        agents: which agents are people.
-        people: their bodies, one for each of ``agents``, then of ``riders``; None draws adults.
-        seed: of bodies and of ways to walk.
-        riders: agents that are robots ``wheelchair`` in which somebody sits: a part of the robot for whoever sees it.
+        scene: initial scene, E = 1.
+        agents: indices of the agents that are people.
+        people: bodies of ``agents``, followed by ``riders``; None samples adults.
+        seed: seed of bodies and gaits.
+        riders: agents of type ``wheelchair`` with a rider; sensors see the rider as part of the robot.
 
     Attributes:
-        agents: people, then the robots of those who ride; afoot: without these.
-        people: their bodies; state: how they stand now.
+        agents: agents of people, then of wheelchairs with riders; afoot: without wheelchairs.
+        people: bodies; state: current poses.
 
     Raises:
-        InputError: there are not as many people as agents.
+        InputError: the number of bodies is wrong.
     """
 
     def __init__(
@@ -70,8 +72,8 @@ class PeopleMotion:
         self.people = People.sample(len(agents), stream(seed, "people")) if people is None else people
         if len(self.people) != len(agents):
             raise InputError(
-                f"people: {len(self.people)} bodies are given for {len(agents)} agents that are no robots;"
-                " give one each"
+                f"people: {len(self.people)} bodies are given for {len(agents)} agents that are not robots;"
+                " give one for each"
             )
         self.row = np.full(scene.shape[1], -1, dtype=np.int64)
         self.row[agents] = np.arange(len(agents))
@@ -82,9 +84,9 @@ class PeopleMotion:
         self.ends, self.radius = self._measured(self.state)
 
     def begin(self, scene: Scene, activity: str | Sequence[str]) -> None:
-        """Begin anew where everyone is in ``scene``, in one activity or each in the own, which they keep.
+        """Restart at the poses in ``scene``, with one activity for all or one for each person.
 
-        Who rides sits: activities are those of ``afoot``.
+        Riders always sit; activities are those of ``afoot``.
         """
         place, velocity, heading = self._of(scene)
         self.take(self.gait.start(place, heading, velocity, self._busy(activity)))
@@ -94,16 +96,16 @@ class PeopleMotion:
         return [*own, *["sit"] * (len(self.agents) - len(self.afoot))]
 
     def walk(self, scene: Scene, dt: float) -> None:
-        """Walk on for ``dt`` [s] to where everyone is in ``scene``: what a world in the plane does after each step."""
+        """Walk to the positions in ``scene`` within ``dt`` [s]."""
         self.take(self.next_state(scene, dt))
 
     def next_state(self, scene: Scene, dt: float) -> Gaits:
-        """Return how everyone stands ``dt`` [s] later, when they have come to where they are in ``scene``."""
+        """Return the body states after ``dt`` [s] at the positions in ``scene``."""
         place, velocity, heading = self._of(scene)
         return self.gait.step(self.state, place, velocity, heading, dt)
 
     def take(self, state: Gaits, ends: Floats | None = None) -> None:
-        """Go on with this state; ``ends`` are its limbs if they are known."""
+        """Set the state; ``ends`` are its limb ends, if known."""
         self.state = state
         self.ends = self._measured(state)[0] if ends is None else ends
 
@@ -112,17 +114,17 @@ class PeopleMotion:
         return self._measured(state)[0]
 
     def limb_mass(self, agent: int, limb: str) -> float:
-        """Return the mass [kg] that swings with a limb of a person: from there to fingers or toes."""
+        """Return the mass [kg] that swings with a limb of a person: the limb and all limbs attached to it."""
         own = self.people.limb_mass[self.row[agent]]
         stem, _, side = limb.partition("_")
         below = BELOW.get(stem, (stem,))
         return float(sum(own[NAMES.index(f"{name}_{side}" if side else name)] for name in below))
 
     def limbs(self, active: NDArray[np.bool_]) -> LimbCapsules:
-        """Return the capsules of everyone.
+        """Return the capsules of all people.
 
         Args:
-            active: ``[A]`` who is there.
+            active: ``[A]`` which agents are present.
         """
         count = len(self.agents) * len(LIMBS)
         there = np.where(active[self.agents, None], self.radius, 0.0)

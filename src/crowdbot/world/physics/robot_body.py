@@ -51,7 +51,7 @@ class RobotBody:
         units = [robot.wheel_speeds(Twist(*row)) for row in np.eye(3).tolist()]
         self._step_robots = [joint for joint in units[0] if joint in self._wheels]
         self._rolling = np.array([[unit[joint] for unit in units] for joint in self._step_robots]).reshape(-1, 3)
-        if self._servo:  # the engine takes the mean over three directions, one of which the base does not have
+        if self._servo:  # the engine takes the mean over three directions; a planar base lacks one
             model.body_invweight0[self.body, 0] = 1.0 / robot.model.mass
         self._delay = CommandDelay(robot.latency)
         self._pending: tuple[Pending, ...] = ()
@@ -68,24 +68,26 @@ class RobotBody:
 
     @property
     def pose(self) -> Pose:
-        """Where it is, E = 1."""
+        """Current pose, E = 1."""
         place, turn = self._data.xpos[self.body], self._data.xmat[self.body]
         return Pose(place[None, :2].copy(), np.array([math.atan2(turn[3], turn[0])]))
 
     @property
     def tilt(self) -> float:
-        """Angle between its own upward axis and the vertical [rad]; above about 1 it lies on the floor."""
+        """Angle between the upward axis of the robot and the vertical [rad]; above about 1, the robot has fallen
+        over.
+        """
         return math.acos(min(1.0, max(-1.0, float(self._data.xmat[self.body][8]))))
 
     @property
     def twist(self) -> Twists:
-        """How it moves in its own frame."""
+        """Current twist in the frame of the robot."""
         speed = np.zeros(6)
         self._mj.mj_objectVelocity(self._model, self._data, self._mj.mjtObj.mjOBJ_XBODY, self.body, speed, 1)
         return Twists(speed[3:4].copy(), speed[2:3].copy(), speed[4:5].copy())
 
     def put(self, x: float, y: float, heading: float) -> None:
-        """Set it down somewhere, at rest and upright; joints and height stay as they are."""
+        """Place the robot upright and at rest; joint positions and height are unchanged."""
         model, data = self._model, self._data
         if self._servo:
             for name, value in (("base_x", x), ("base_y", y), ("base_yaw", heading)):
@@ -109,7 +111,7 @@ class RobotBody:
         if self.robot.latency > 0.0:
             self._pending, now = self._delay.step(self._pending, self._current, self._asked, self.step)
             self._current = now
-        if now is self._forced:  # nothing has changed since the aim was reached
+        if now is self._forced:  # unchanged since the command was reached
             return
         old = self._aim
         _, self._aim = self.robot.drive.step(NOWHERE, old, now, self.step)
@@ -124,7 +126,7 @@ class RobotBody:
             self._data.ctrl[[self._wheels[joint] for joint in self._step_robots]] = self._rolling @ aim
 
     def _steered(self, aim: Twists) -> None:
-        """Turn the wheels of a car; at rest they stay turned."""
+        """Steer the wheels of a car; at rest they keep their angle."""
         drive = self.robot.drive
         assert isinstance(drive, AckermannDrive)
         bend = math.tan(float(aim.steering[0])) / drive.wheelbase if isinstance(aim, SteeredTwists) else 0.0
@@ -135,20 +137,20 @@ class RobotBody:
             self._data.ctrl[self._wheels[joint]] = value
 
     def command(self, joints: Mapping[str, float]) -> None:
-        """Send values to motors of joints: positions, speeds or forces, as each motor is commanded.
+        """Set the commands of joint motors: position, velocity or effort, depending on the motor.
 
         Raises:
-            InputError: a joint has no motor, is a wheel of the base, or a value is not finite.
+            InputError: a joint has no motor or is a wheel of the base, or a value is not finite.
         """
         for name, value in joints.items():
             if name in self._wheels:
-                raise InputError(f"the joint {name!r} of {self.robot.name} is a wheel; drive it by a Twist")
+                raise InputError(f"the joint {name!r} of {self.robot.name} is a wheel; use a Twist command")
             if not math.isfinite(value):
                 raise InputError(f"the command {value} for joint {name!r} of {self.robot.name} is not finite")
             self._data.ctrl[self._motor(name)] = value
 
     def joints(self) -> dict[str, tuple[float, float]]:
-        """Return position and speed of every joint with one number."""
+        """Return position and velocity of each joint with one coordinate."""
         found = {}
         for joint in self.robot.model.joints.values():
             index = self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_JOINT, self.prefix + joint.name)
@@ -161,7 +163,7 @@ class RobotBody:
         """Return the frame ``[4, 4]`` of a link in the world.
 
         Raises:
-            InputError: there is no such link.
+            InputError: the link is unknown.
         """
         if link not in self.robot.model.links:
             raise InputError(f"{self.robot.name} has no link {link!r}{did_you_mean(link, self.robot.model.links)}")
@@ -181,7 +183,7 @@ class RobotBody:
         """Return the current pose of a sensor, including joint positions and tilt, E = 1.
 
         Raises:
-            InputError: the robot has no sensor of this name.
+            InputError: the sensor is unknown.
         """
         mount = self.robot.mount(sensor)
         return spatial(self.frame(mount.link) @ mount.origin)
@@ -191,11 +193,11 @@ class RobotBody:
         if index < 0:
             named = [self._model.actuator(k).name for k in range(self._model.nu)]
             own = [name.removeprefix(self.prefix) for name in named if name.startswith(self.prefix)]
-            raise InputError(f"{self.robot.name} has no motor on a joint {joint!r}{did_you_mean(joint, own)}")
+            raise InputError(f"{self.robot.name} has no motor on joint {joint!r}{did_you_mean(joint, own)}")
         return int(index)
 
     def _posed(self) -> None:
-        """Put the joints into the posture and let the motors hold it."""
+        """Set the joints to the posture of the robot, held by their motors."""
         model = self.robot.model
         for name, value in model.positions(self.robot.posture).items():
             index = self._mj.mj_name2id(self._model, self._mj.mjtObj.mjOBJ_JOINT, self.prefix + name)
@@ -213,4 +215,4 @@ def _same(one: Twists, other: Twists) -> bool:
 
 
 NOWHERE = Pose(np.zeros((1, 2)), np.zeros(1))
-"""Drives limit the twist, whatever the pose."""
+"""Pose used where drives only limit the twist."""

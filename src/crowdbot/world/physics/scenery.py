@@ -1,4 +1,4 @@
-"""The floor, the walls, the props and the lights of a world as MJCF."""
+"""MJCF elements of the floor, walls, props and lights."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ __all__ = ["add_rings", "outline_props", "scenery"]
 
 Floats = NDArray[np.float64]
 THIN, THICK = 0.01, 0.025
-"""Half the thickness [m] of a thin wall, and of the skin of a solid that is not convex."""
+"""Half thickness [m] of thin walls and of the surfaces of non-convex solids."""
 SLIVER = 1e-3
-"""Solids of a smaller area [m2] are boards."""
+"""Solids with a smaller area [m2] become thin walls."""
 
 
 def scenery(walls: Walls, stage: PhysicsStage) -> tuple[list[Element], list[Element]]:
-    """Return the assets and what belongs into the world: solids, thin walls, props and lights.
+    """Return the assets and world elements for solids, thin walls, props and lights.
 
-    Convex solids become prisms, every other edge a board on the solid side of it.
+    Convex solids become prisms. Each edge of other solids becomes a board on its solid side.
     """
     assets, world = _ground(stage)
     rgba = row((*stage.wall_color, 1.0))
@@ -48,7 +48,7 @@ def scenery(walls: Walls, stage: PhysicsStage) -> tuple[list[Element], list[Elem
 
 
 def add_rings(walls: Walls, rings: tuple[Floats, ...]) -> Walls:
-    """Return walls with more rings.
+    """Return walls with additional rings.
 
     >>> len(add_rings(Walls.of([[(0, 0), (1, 0)]]), (np.array([[2.0, 0.0], [3.0, 0.0], [3.0, 1.0]]),)))
     5
@@ -65,7 +65,7 @@ def add_rings(walls: Walls, rings: tuple[Floats, ...]) -> Walls:
 
 
 def outline_props(walls: Walls, stage: PhysicsStage, frames: Mapping[int, Floats]) -> Walls:
-    """Return walls and the outlines of all props; movable props have the frames ``[4, 4]`` given by their number."""
+    """Return walls with the outlines of all props; ``frames`` ``[4, 4]`` are those of movable props by number."""
     rings = []
     for number, prop in enumerate(stage.props):
         ring = prop.outline()
@@ -100,7 +100,7 @@ def _ground(stage: PhysicsStage) -> tuple[list[Element], list[Element]]:
 
 
 def _rings(walls: Walls) -> list[NDArray[np.int64]]:
-    """Return the indices of the edges of each ring, in order."""
+    """Return the edge indices of each ring, in order."""
     found, known = [], np.zeros(len(walls), dtype=np.bool_)
     for first in range(len(walls)):
         if known[first]:

@@ -1,4 +1,4 @@
-"""What stands on a stage beside people and robots: the height of its walls, its floor, and props."""
+"""PhysicsStage: wall height, floor, props and lights of a physics world."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LEAF = "0.33 0.52 0.27 1"
 
 @dataclass(frozen=True)
 class PropBody(ABC):
-    """Something that stands on the floor at ``x``, ``y`` [m], turned by ``heading`` [rad]."""
+    """An object on the floor at ``x``, ``y`` [m] with a ``heading`` [rad]."""
 
     x: float
     y: float
@@ -49,16 +49,16 @@ class PropBody(ABC):
 
     @property
     def weight(self) -> float:
-        """Mass against who runs into it [kg]; infinite when it stands fast."""
+        """Mass in a collision [kg]; infinite for a fixed object."""
         return math.inf
 
     @abstractmethod
     def body(self, name: str) -> Element:
-        """Return it as a body of MJCF."""
+        """Return the object as an MJCF body."""
 
     @abstractmethod
     def outline(self) -> Floats | None:
-        """Return the ring ``[N, 2]`` [m] that people walk around, counter-clockwise; None: they do not see it."""
+        """Return the outline ``[N, 2]`` [m] that people avoid, counter-clockwise; None: people do not avoid it."""
 
     def _standing(self, name: str, height: float) -> Element:
         place = {"pos": row((self.x, self.y, height)), "euler": row((0.0, 0.0, self.heading))}
@@ -94,11 +94,11 @@ class CubeBody(PropBody):
 
     @property
     def weight(self) -> float:
-        """Mass against who runs into it [kg]."""
+        """Mass in a collision [kg]."""
         return math.inf if self.fixed else self.mass
 
     def body(self, name: str) -> Element:
-        """Return it as a body of MJCF."""
+        """Return the object as an MJCF body."""
         half = 0.5 * self.size
         found = self._standing(name, half)
         if not self.fixed:
@@ -109,25 +109,28 @@ class CubeBody(PropBody):
             ]
         layer = DYNAMIC if not self.fixed else STANDING
         values = {"type": "box", "size": row([half] * 3), "rgba": row((*self.color, 1.0)), "group": "0"}
-        rub = {"friction": row((self.friction, 0.005, 0.0001)), "priority": "1"}  # its own friction, not the floor's
+        rub = {
+            "friction": row((self.friction, 0.005, 0.0001)),
+            "priority": "1",
+        }  # its own friction instead of that of the floor
         found.children.append(Element("geom", {"name": f"{name}/0", **values, **rub, **layer}))
         return found
 
     def outline(self) -> Floats | None:
-        """Return the ring that people walk around; nobody sees what can be pushed."""
+        """Return the outline that people avoid; None for a movable box."""
         return self._ring(self.size, self.size) if self.fixed else None
 
 
 @dataclass(frozen=True)
 class TableBody(PropBody):
-    """A table that stands fast: a top of ``length``, ``width`` at ``height`` [m] on four legs."""
+    """A fixed table: a top of ``length``, ``width`` at ``height`` [m] on four legs."""
 
     length: float = 1.6
     width: float = 0.8
     height: float = 0.74
 
     def body(self, name: str) -> Element:
-        """Return it as a body of MJCF."""
+        """Return the object as an MJCF body."""
         found = self._standing(name, 0.0)
         shared = {"type": "box", "rgba": "0.62 0.44 0.30 1", "group": "0", **STANDING}
         top = {"pos": row((0.0, 0.0, self.height - LEG / 2)), "size": row((self.length / 2, self.width / 2, LEG / 2))}
@@ -140,20 +143,20 @@ class TableBody(PropBody):
         return found
 
     def outline(self) -> Floats | None:
-        """Return the ring that people walk around."""
+        """Return the outline that people avoid."""
         return self._ring(self.length, self.width)
 
 
 @dataclass(frozen=True)
 class TreeBody(PropBody):
-    """A tree of ``height`` [m] with a trunk of ``trunk`` and a crown of ``crown`` [m] radius."""
+    """A tree of ``height`` [m]; ``trunk`` and ``crown`` are radii [m]."""
 
     height: float = 5.0
     trunk: float = 0.15
     crown: float = 1.4
 
     def body(self, name: str) -> Element:
-        """Return it as a body of MJCF."""
+        """Return the object as an MJCF body."""
         found = self._standing(name, 0.0)
         stem = max(0.3 * self.height, self.height - 1.6 * self.crown)
         wood = {"type": "cylinder", "size": row((self.trunk, stem / 2)), "pos": row((0.0, 0.0, stem / 2))}
@@ -165,13 +168,13 @@ class TreeBody(PropBody):
         return found
 
     def outline(self) -> Floats | None:
-        """Return the ring that people walk around."""
+        """Return the outline that people avoid."""
         return self._ring(2.0 * self.trunk, 2.0 * self.trunk)
 
 
 @dataclass(frozen=True)
 class LightSource:
-    """A lamp at ``x``, ``y``, ``z`` [m] that shines down, with a brightness from 0 to 1.
+    """A downward light at ``x``, ``y``, ``z`` [m] with a brightness from 0 to 1.
 
     Raises:
         InputError: a number is not finite, or the brightness is outside 0 to 1.
@@ -191,7 +194,7 @@ class LightSource:
             raise InputError(f"LightSource: brightness = {self.brightness} must be from 0 to 1")
 
     def element(self, name: str) -> Element:
-        """Return it as MJCF."""
+        """Return the light as an MJCF element."""
         values = {"name": name, "pos": row((self.x, self.y, self.z)), "dir": "0 0 -1", "cutoff": "85"}
         values |= {"diffuse": row([self.brightness] * 3), "specular": row([0.2 * self.brightness] * 3)}
         return Element("light", values | {"castshadow": str(self.shadows).lower()})
@@ -199,13 +202,13 @@ class LightSource:
 
 @dataclass(frozen=True)
 class PhysicsStage:
-    """What a stage is made of, beside the walls of its scene.
+    """Properties of a stage besides the walls of its scene.
 
     Fields:
-        wall_height: of all walls [m].
-        friction: coefficient of the floor.
-        props: what stands on it.
-        lights: lamps; none: daylight.
+        wall_height: height of all walls [m].
+        friction: friction coefficient of the floor.
+        props: objects on the floor.
+        lights: lights (default: daylight).
         floor_color, wall_color: red, green, blue from 0 to 1.
 
     Raises:
@@ -228,5 +231,5 @@ class PhysicsStage:
                 raise InputError(f"PhysicsStage: {name} = {getattr(self, name)} must be finite and above 0")
 
     def outlines(self) -> tuple[Floats, ...]:
-        """Return the rings of what people walk around."""
+        """Return the outlines of props that people avoid."""
         return tuple(ring for prop in self.props if (ring := prop.outline()) is not None)

@@ -129,14 +129,14 @@ class PhysicsWorld(PlanarWorld):
 
     @property
     def contact_events(self) -> tuple[BodyContactEvent, ...]:
-        """Every collision so far, by first contact."""
+        """All contact events so far, ordered by start time."""
         return self._contact_tracker.contact_events
 
     def command(self, robot: int, joints: Mapping[str, float]) -> None:
-        """Send values to the motors of a robot's joints; they hold until the next ones.
+        """Set the commands of joint motors of a robot; they stay in force until changed.
 
         Raises:
-            InputError: the agent is no robot, a joint has no motor or is a wheel, or a value is not finite.
+            InputError: the agent is not a robot, a joint has no motor or is a wheel, or a value is not finite.
         """
         self.robot_body(robot).command(joints)
 
@@ -144,25 +144,25 @@ class PhysicsWorld(PlanarWorld):
         """Return the body of a robot.
 
         Raises:
-            InputError: the agent is no robot.
+            InputError: the agent is not a robot.
         """
         if robot not in self.robot_bodies:
-            raise InputError(f"agent {robot} is no robot; robots are {sorted(self.robot_bodies) or 'none'}")
+            raise InputError(f"agent {robot} is not a robot; robots are {sorted(self.robot_bodies) or 'none'}")
         return self.robot_bodies[robot]
 
     def render(
         self, camera: SceneCamera, *, rgb: bool = True, depth: bool = False, segmentation: bool = False
     ) -> CameraImages:
-        """Return what a camera sees now, people with their skins; no screen is needed.
+        """Return the current images of a camera, with the skins of people. No display is needed.
 
         Raises:
-            InputError: there is no way to draw here, or the camera is on no robot or no link.
+            InputError: no OpenGL backend works, or the robot or link of the camera is unknown.
         """
         return self.renderer.images(camera, rgb=rgb, depth=depth, segmentation=segmentation)
 
     @property
     def renderer(self) -> Renderer:
-        """Draws the world as it is now; of use for cameras of :mod:`crowdbot.sensors`, see :meth:`Renderer.render`."""
+        """Renderer of the current state, also for cameras of :mod:`crowdbot.sensors`; see :meth:`Renderer.render`."""
         if self._renderer is None:
             robots = {agent: robot_bodies.robot for agent, robot_bodies in self.robot_bodies.items()}
             self._renderer = Renderer.of_physics(self.built, robots, self.stage, self.people, self.scene)
@@ -170,7 +170,7 @@ class PhysicsWorld(PlanarWorld):
         return self._renderer
 
     def limbs(self) -> LimbCapsules:
-        """Return the capsules of all people as they stand now."""
+        """Return the current limb capsules of all people."""
         return self.people.limbs(self.scene.active[0])
 
     def sensor_pose(self, robot: int, mount: MountPlacement, spatial: bool) -> Pose | SpatialPose:
@@ -190,7 +190,7 @@ class PhysicsWorld(PlanarWorld):
         return np.array([-max(*depth, 1e-9) if depth else math.inf])
 
     def plane_scene(self) -> Scene:
-        """Return the scene with the outlines of props, where they are, among the walls; see :class:`World`."""
+        """Return the scene with the current outlines of props among the walls; see :class:`World`."""
         if self._plane is None or self._plane[0] is not self.scene:
             self._plane = (self.scene, self.scene.replace(walls=self._outlines()))
         return self._plane[1]
@@ -218,14 +218,14 @@ class PhysicsWorld(PlanarWorld):
         """Do nothing: a step moves the bodies of people."""
 
     def bodies(self, skins: int | None = None) -> Bodies:
-        """Return what range sensors see, as it is now; ``skins`` is a level of detail, see :func:`scene_bodies`."""
+        """Return the current shapes for range sensors; ``skins`` is a level of detail, see :func:`scene_bodies`."""
         frames = {agent: robot_bodies.frames() for agent, robot_bodies in self.robot_bodies.items()}
         robots = {agent: robot_bodies.robot for agent, robot_bodies in self.robot_bodies.items()}
         moved = {number: self.prop(number) for number in self._movable}
         return scene_bodies(self.scene, self.people, robots, self.stage, frames=frames, props=moved, skins=skins)
 
     def body_scene(self, skins: int | None = None) -> Scene:
-        """Return the scene with the bodies and the height of the walls, for range sensors.
+        """Return the scene with bodies and wall height, for range sensors.
 
         >>> start = Scene.of([[0.0, 0.0], [2.0, 0.0]], heading=[0.0, 0.0], external=[True, False])
         >>> from crowdbot.models import ORCA
@@ -238,7 +238,7 @@ class PhysicsWorld(PlanarWorld):
         return self.scene.replace(bodies=self.bodies(skins), wall_height=self.stage.wall_height)
 
     def prop(self, number: int) -> Floats:
-        """Return the frame ``[4, 4]`` of a prop of the stage in the world."""
+        """Return the frame ``[4, 4]`` of a prop in the world."""
         body = self.data.body(f"prop{number}")
         found = np.eye(4)
         found[:3, :3], found[:3, 3] = body.xmat.reshape(3, 3), body.xpos
@@ -276,7 +276,7 @@ class PhysicsWorld(PlanarWorld):
         self._settle()
 
     def _settle(self) -> None:
-        """Let robots come to rest on the floor, and put them where they begin."""
+        """Let robots come to rest on the floor, at their initial poses."""
         for agent in self.robot_bodies:
             self._put(agent, self.scene)
         self._mj.mj_step(self.engine_model, self.data, round(SETTLING / self.physics_dt))
@@ -295,7 +295,7 @@ class PhysicsWorld(PlanarWorld):
         return earlier.replace(walls=before.walls), crowd.replace(walls=before.walls)
 
     def _resolve_overlaps(self, earlier: Scene, after: Scene) -> Scene:
-        """Push people apart as the plane does, but leave robots to the engine."""
+        """Resolve overlaps of people as in the plane; robots are left to the engine."""
         if self.contact is None:
             return after
         present = after.active.copy()
@@ -305,25 +305,25 @@ class PhysicsWorld(PlanarWorld):
         return resolve_overlaps.replace(active=robots, walls=walls)
 
     def _step_robots(self, before: Scene, after: Scene, asked: Mapping[int, Twists]) -> Scene:
-        """Run the engine for a step of the world, and return the scene with what it moved."""
+        """Run the engine for a step of the world, and return the scene with the moved bodies."""
         for agent, robot_bodies in self.robot_bodies.items():
             if self._at[agent] != (*before.position[0, agent].tolist(), float(before.heading[0, agent])):
                 self._put(agent, before)
             robot_bodies.ask(asked[agent])
         gait, ends = self._prepared(before, after)
-        end = self.clock.time  # the clock is at the end of this step already
+        end = self.clock.time  # the clock is already at the end of this step
         self._touched = {}
         for k in range(self._steps):
             self._substep((k + 1) / self._steps, end - (self._steps - 1 - k) * self.physics_dt)
         self.forces = self._contact_tracker.forces(self._steps)
         scene, moved = self._read(before, after)
-        if moved or len(self.people.agents) > len(self.people.afoot):  # who rides is where the robot came to
+        if moved or len(self.people.agents) > len(self.people.afoot):  # riders follow their robots
             gait, ends = self.people.next_state(scene, self.dt), None
         self.people.take(gait, ends)
         return scene
 
     def _prepared(self, before: Scene, after: Scene) -> tuple[Any, Floats | None]:
-        """Give bodies to those near something, and return how everyone stands after the step."""
+        """Assign bodies to people near movers, and return the states of people after the step."""
         gait = self.people.next_state(after, self.dt)
         ends = self.people.ends_of(gait)
         if len(self._people_bodies.agent):
@@ -347,7 +347,7 @@ class PhysicsWorld(PlanarWorld):
         )
 
     def _movers(self) -> list[tuple[float, float, float, float]]:
-        """Return x, y, radius [m] and mass [kg] of what people can run into."""
+        """Return x, y, radius [m] and mass [kg] of robots and movable props."""
         found = []
         for robot_bodies in self.robot_bodies.values():
             ((x, y),) = robot_bodies.pose.position.tolist()
@@ -374,7 +374,7 @@ class PhysicsWorld(PlanarWorld):
                 self._touched[pair] = max(self._touched.get(pair, 0.0), contact.depth)
 
     def _read(self, before: Scene, after: Scene) -> tuple[Scene, bool]:
-        """Return the scene with robots as they are and people where they were pushed, and whether anyone was."""
+        """Return the scene with simulated robots and pushed people, and whether anyone was pushed."""
         position, velocity, heading = after.position.copy(), after.velocity.copy(), after.heading.copy()
         self._mj.mj_kinematics(self.engine_model, self.data)
         self._mj.mj_comPos(self.engine_model, self.data)

@@ -1,4 +1,4 @@
-"""Cameras that look at a physics world, and the images they give."""
+"""Cameras of a scene and their images."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ PointWaypoint = tuple[float, float, float]
 
 
 class CameraImages(NamedTuple):
-    """What a camera saw; what was not asked for is None.
+    """Images of a camera; images that were not requested are None.
 
     Fields:
         rgb: ``[H, W, 3]`` red, green, blue from 0 to 255.
-        depth: ``[H, W]`` [m] along the camera's axis, infinite where there is nothing.
-        segmentation: ``[H, W]`` index of the agent; -1 nothing, -2 wall, -3 floor, -4 prop.
+        depth: ``[H, W]`` [m] along the camera's axis, infinite without a surface.
+        segmentation: ``[H, W]`` index of the agent; -1 background, -2 wall, -3 floor, -4 prop.
     """
 
     rgb: NDArray[np.uint8] | None
@@ -34,13 +34,13 @@ class CameraImages(NamedTuple):
 
 
 class CameraView(NamedTuple):
-    """Where an ideal camera is, and what of the world goes through it.
+    """Pose and view frustum of an ideal camera.
 
     Fields:
-        place, forward, up: ``[3]`` in the world.
-        left, right, bottom, top: edges of the image at the distance 1 along the axis.
-        near, far: what is nearer or farther is not seen [m].
-        width, height: of the image [pixels].
+        place, forward, up: position and axes ``[3]`` in the world.
+        left, right, bottom, top: edges of the image at distance 1 along the axis.
+        near, far: clipping distances [m].
+        width, height: size of the image [pixels].
     """
 
     place: Floats
@@ -57,18 +57,16 @@ class CameraView(NamedTuple):
 
     @classmethod
     def through(cls, lens: Lens, pose: SpatialPose, near: float, far: float) -> CameraView:
-        """Return what a lens without its distortion sees along the x axis of a pose, E = 1; z is up in the image.
+        """Return the view of a lens without distortion along the x axis of a pose, E = 1; z is up in the image.
 
         Raises:
-            InputError: the image is larger than can be drawn, or there are several poses.
+            InputError: the image is too large, or there are several poses.
 
         >>> CameraView.through(Lens.of(4, 2, math.pi / 2.0), SpatialPose.of((0.0, 0.0, 1.0)), 0.1, 9.0)[3:7]
         (-1.0, 1.0, -0.5, 0.5)
         """
         if len(pose.position) != 1:
-            raise InputError(
-                f"camera: there are poses in {len(pose.position)} environments; one can be drawn at a time"
-            )
+            raise InputError(f"camera: the pose has {len(pose.position)} environments; one can be rendered at a time")
         _checked_size("camera", lens.width, lens.height)
         matrix = pose.matrix[0]
         left, right = (round(edge / lens.fx, 12) for edge in (-0.5 - lens.cx, lens.width - 0.5 - lens.cx))
@@ -82,17 +80,18 @@ class SceneCamera:
     """A camera without distortion.
 
     Fields:
-        position, target: where it is and what it looks at [m]: in the world, or in the frame of a link of a robot.
-        width, height: of the image [pixels].
+        position, target: position of the camera and the point it looks at [m], in the world or in the frame of a robot
+            link.
+        width, height: size of the image [pixels].
         view: vertical angle of view [rad].
-        robot: the agent that carries it; None: it stands in the world.
-        link: of the robot that carries it; empty: its root.
-        near, far: what is nearer or farther is not seen [m].
-        detail: of people's skins, 0 (finest) to 2.
-        shadows: whether lights throw shadows, which is slow without a graphics card.
+        robot: agent that carries the camera; None: fixed in the world.
+        link: link of the robot (default: its root).
+        near, far: clipping distances [m].
+        detail: level of detail of people's skins, 0 (finest) to 2.
+        shadows: whether shadows are rendered, which is slow without a GPU.
 
     Raises:
-        InputError: a number is not allowed, or the camera looks nowhere.
+        InputError: a value is not allowed, or position and target are equal.
 
     >>> SceneCamera((0.0, -5.0, 2.0), (0.0, 0.0, 1.0)).focal_length
     415.69...
@@ -126,22 +125,22 @@ class SceneCamera:
 
     @property
     def focal_length(self) -> float:
-        """Focal length [pixels]; the principal point is in the middle of the image."""
+        """Focal length [pixels]; the principal point is the image centre."""
         return 0.5 * self.height / math.tan(0.5 * self.view)
 
     def axes(self, robot_body: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return place, forward and up axis ``[3]`` in the world, on a carrier with the frame ``[4, 4]``."""
+        """Return position, forward and up axis ``[3]`` in the world, for a robot link with the frame ``[4, 4]``."""
         place, aim = (
             robot_body[:3, :3] @ np.asarray(point) + robot_body[:3, 3] for point in (self.position, self.target)
         )
         forward = (aim - place) / np.linalg.norm(aim - place)
         up = robot_body[:3, 2] - (robot_body[:3, 2] @ forward) * forward
-        if np.linalg.norm(up) < 1e-6:  # straight up or down: the top of the image is ahead
+        if np.linalg.norm(up) < 1e-6:  # looking straight up or down: the top of the image is ahead
             up = robot_body[:3, 0] - (robot_body[:3, 0] @ forward) * forward
         return place, forward, up / np.linalg.norm(up)
 
     def on(self, robot_body: Floats) -> CameraView:
-        """Return what it sees on a carrier with the frame ``[4, 4]``."""
+        """Return the view for a robot link with the frame ``[4, 4]``."""
         high = math.tan(0.5 * self.view)
         wide = high * self.width / self.height
         return CameraView(

@@ -1,4 +1,4 @@
-"""A place to draw without a screen: EGL where it works, otherwise OSMesa."""
+"""OpenGL contexts without a display: EGL if it works, otherwise OSMesa."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ __all__ = ["backend", "close_gl_context", "create_gl_context"]
 KNOWN = ("egl", "osmesa", "glfw", "cgl")
 PROBE = "import mujoco.{name} as way; context = way.GLContext(16, 16); context.make_current(); context.free()"
 OPEN: list[Any] = []
-"""Contexts that are in use."""
+"""Contexts in use."""
 LONGEST = 60.0
-"""Seconds that a trial of a way to draw may take."""
+"""Timeout of the test of a backend [s]."""
 
 
 @functools.cache
 def backend() -> str:
-    """Return the way to draw: what ``MUJOCO_GL`` asks for, otherwise the first of EGL and OSMesa that works.
+    """Return the OpenGL backend: ``MUJOCO_GL`` if set, otherwise the first of EGL and OSMesa that works.
 
     Raises:
-        InputError: neither works, or ``MUJOCO_GL`` asks for something unknown.
+        InputError: no backend works, or ``MUJOCO_GL`` is unknown.
         MissingExtra: mujoco is not installed.
     """
     engine()
     asked = os.environ.get("MUJOCO_GL", "").lower() or os.environ.get("PYOPENGL_PLATFORM", "").lower()
     if asked:
         if asked not in KNOWN:
-            raise InputError(f"MUJOCO_GL = {asked!r} must be one of {', '.join(KNOWN)} to draw, or unset")
+            raise InputError(f"MUJOCO_GL = {asked!r} must be one of {', '.join(KNOWN)}, or unset")
         return asked
     if sys.platform == "darwin":
         return "cgl"
@@ -45,33 +45,33 @@ def backend() -> str:
         if _works(name):
             return name
     raise InputError(
-        "there is no way to draw here: neither EGL nor OSMesa works; install one (Debian: apt install libosmesa6)"
+        "rendering is not available: neither EGL nor OSMesa works; install one (Debian: apt install libosmesa6)"
     )
 
 
 def create_gl_context(width: int, height: int) -> Any:
-    """Return a context of OpenGL of this size, made current.
+    """Create an OpenGL context of this size and make it current.
 
     Raises:
-        InputError: there is no way to draw.
+        InputError: no backend works.
     """
     name = backend()
     try:
         made = importlib.import_module(f"mujoco.{name}").GLContext(width, height)
         made.make_current()
-    except Exception as error:  # each way to draw has errors of its own
+    except Exception as error:  # each backend raises its own errors
         raise InputError(
-            f"drawing through {name} does not work here ({str(error).strip() or type(error).__name__});"
+            f"rendering with {name} does not work ({str(error).strip() or type(error).__name__});"
             " set MUJOCO_GL to egl or osmesa before Python starts"
         ) from error
     if not OPEN:
-        atexit.register(_closed)  # after the way to draw was loaded, so that it is closed before that is
+        atexit.register(_closed)  # registered after the backend is loaded, to be closed before the backend
     OPEN.append(made)
     return made
 
 
 def close_gl_context(context: Any, drawn_by: Any) -> None:
-    """Give a context back, and what draws in it."""
+    """Free a context and the renderer that uses it."""
     if context in OPEN:
         OPEN.remove(context)
         context.make_current()
@@ -85,7 +85,7 @@ def _closed() -> None:
 
 
 def _works(name: str) -> bool:
-    """Try in a process of its own: a way that failed would spoil the next one."""
+    """Return whether a backend works, tested in a separate process: a failure would affect later backends."""
     program = PROBE.format(name=name)
     try:
         run = subprocess.run([sys.executable, "-c", program], capture_output=True, timeout=LONGEST, check=False)  # noqa: S603

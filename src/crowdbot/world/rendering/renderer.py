@@ -1,4 +1,4 @@
-"""Renderer: draws scenes of any world, robots and people with their bodies; no screen is needed."""
+"""Renderer: offscreen images of a scene with walls, props, robots and people."""
 
 from __future__ import annotations
 
@@ -26,44 +26,44 @@ Floats = NDArray[np.float64]
 
 
 class LensCamera(Protocol):
-    """What a camera of :mod:`crowdbot.sensors` has: a lens, and the limits of what is drawn [m]."""
+    """Camera model of :mod:`crowdbot.sensors`: a lens and clipping distances [m]."""
 
     @property
     def lens(self) -> Lens:
-        """Its intrinsics."""
+        """Intrinsics of the camera."""
 
     @property
     def near(self) -> float:
-        """What is nearer is not drawn [m]."""
+        """Near clipping distance [m]."""
 
     @property
     def far(self) -> float:
-        """What is farther is not drawn [m]."""
+        """Far clipping distance [m]."""
 
 
 class Renderer:
-    """Draws what is in a scene, E = 1: floor, walls, props, robots, and people with their skins.
+    """Renders a scene, E = 1: floor, walls, props, robots, and people with skins.
 
-    In the plane, robots stand in their posture where the scene has them, and people as their walkers stand. A physics
-    world has a studio of its own, in which everything is as the engine has it: :attr:`PhysicsWorld.studio`.
+    In the plane, robots have the poses of the scene and their default posture, and people the poses of ``motion``. The
+    renderer of a physics world shows the state of the engine: :attr:`PhysicsWorld.renderer`.
 
     Args:
-        scene: with the walls; it is what is drawn until :meth:`show` gives another.
-        robots: by agent. :meth:`Robot.disc` makes a robot of which only the size is known.
-        stage: height of walls, props and lights.
-        walkers: people; None: all agents that are no robots, with bodies that are drawn for them. The caller lets them
-            walk (:meth:`PeopleMotion.walk`).
-        detail: of people's skins in :meth:`render`, 0 (finest) to 2.
+        scene: initial scene with walls; :meth:`show` replaces it.
+        robots: robots by agent index. :meth:`Robot.disc` creates a robot of given size.
+        stage: wall height, props and lights.
+        motion: people; None: all agents except robots, with sampled bodies. The caller advances it
+            (:meth:`PeopleMotion.walk`).
+        detail: level of detail of people's skins in :meth:`render`, 0 (finest) to 2.
 
     Raises:
-        InputError: the scene has several environments, or a robot is no agent.
+        InputError: the scene has several environments, or a robot is not an agent of the scene.
         MissingExtra: mujoco is not installed.
 
     >>> scene = Scene.of([[0.0, 0.0], [3.0, 0.0]], external=[True, False])
-    >>> studio = Renderer(scene, {0: Robot.load("turtlebot2")})
+    >>> renderer = Renderer(scene, {0: Robot.load("turtlebot2")})
     >>> camera = SceneCamera((0.0, 0.0, 1.0), (1.0, 0.0, 0.9), width=64, height=48, robot=0, detail=2)
-    >>> seen = studio.images(camera, rgb=False, segmentation=True)
-    >>> sorted(set(seen.segmentation.ravel().tolist()))  # nothing, floor, the person
+    >>> images = renderer.images(camera, rgb=False, segmentation=True)
+    >>> sorted(set(images.segmentation.ravel().tolist()))  # background, floor, person
     [-3, -1, 1]
     """
 
@@ -92,7 +92,7 @@ class Renderer:
     def of_physics(
         cls, whole: MjcfModel, robots: Mapping[int, Robot], stage: PhysicsStage, motion: PeopleMotion, scene: Scene
     ) -> Renderer:
-        """Return the studio of a world that the engine moves."""
+        """Return the renderer of a physics world."""
         found = cls.__new__(cls)
         found._made(whole, robots, stage, motion, 1)
         found._scene = scene
@@ -108,45 +108,45 @@ class Renderer:
         self._visuals: Visuals | None = None
 
     def show(self, scene: Scene, joints: Mapping[int, Mapping[str, float]] | None = None) -> None:
-        """Take what is drawn from now on.
+        """Set the scene for the following images.
 
         Args:
-            scene: E = 1, with the agents and walls of the first one.
-            joints: positions of joints of robots, by agent and name [rad, m]; those left out are as in the posture.
+            scene: E = 1, with the agents and walls of the initial scene.
+            joints: joint positions of robots by agent and name [rad, m] (default: the posture).
 
         Raises:
             InputError: the scene has several environments or other agents.
         """
         _checked(scene)
         if scene.shape[1] != len(self.people.row):
-            raise InputError(f"studio: the scene has {scene.shape[1]} agents, it was made for {len(self.people.row)}")
+            raise InputError(f"renderer: the scene has {scene.shape[1]} agents, expected {len(self.people.row)}")
         self._scene, self._joints, self._coordinates = scene, joints or {}, None
 
     def show_engine(self, scene: Scene, coordinates: Floats) -> None:
-        """Take the scene and the coordinates of the engine."""
+        """Set the scene and the coordinates of the engine."""
         self._scene, self._coordinates = scene, coordinates.copy()
 
     def images(
         self, camera: SceneCamera, *, rgb: bool = True, depth: bool = False, segmentation: bool = False
     ) -> CameraImages:
-        """Return what a camera sees, without distortion.
+        """Return images of a camera, without distortion.
 
         Raises:
-            InputError: there is no way to draw here, or the camera is on no robot or no link.
+            InputError: no OpenGL backend works, or the robot or link of the camera is unknown.
         """
         looks = self._arranged(camera.detail)
         view = camera.on(self._carrier(camera, looks))
         return looks.images(view, self._scene.active[0], rgb, depth, segmentation, camera.shadows)
 
     def render(self, camera: LensCamera, pose: SpatialPose) -> Mapping[str, NDArray[Any]]:
-        """Return images of a camera of :mod:`crowdbot.sensors`, as its ``ImageSource``: without distortion.
+        """Return images of a camera of :mod:`crowdbot.sensors`, without distortion; implements ``ImageSource``.
 
         Args:
-            camera: with a lens, near and far.
-            pose: E = 1; it looks along x, z is up in the image. The carrier is drawn too where it is in view.
+            camera: camera model with lens and clipping distances.
+            pose: E = 1; the camera looks along x, z is up in the image. The robot that carries it is visible.
 
         Raises:
-            InputError: there is no way to draw here, the image is too large, or there are several poses.
+            InputError: no OpenGL backend works, the image is too large, or there are several poses.
         """
         view = CameraView.through(camera.lens, pose, camera.near, camera.far)
         seen = self._arranged(self.detail).images(view, self._scene.active[0], True, True, True, False)
@@ -157,9 +157,9 @@ class Renderer:
         return {"rgb": seen.rgb[None], "depth": seen.depth[None].astype(np.float64), "hit": who, "part": 0 * who - 1}
 
     def _arranged(self, detail: int) -> Visuals:
-        """Put everything where it is now."""
+        """Return the visuals with current poses."""
         if self._visuals is None or self._visuals.detail != detail:
-            self._visuals = None  # one is given back before the next is made
+            self._visuals = None  # free the old context before creating a new one
             self._visuals = Visuals(self._whole, self.people, self.stage, detail)
         model, data = self._visuals.model, self._visuals.data
         if self._coordinates is not None:
@@ -188,7 +188,7 @@ class Renderer:
         if camera.robot is None:
             return found
         if camera.robot not in self.robots:
-            raise InputError(f"agent {camera.robot} is no robot; robots are {sorted(self.robots) or 'none'}")
+            raise InputError(f"agent {camera.robot} is not a robot; robots are {sorted(self.robots) or 'none'}")
         robot = self.robots[camera.robot]
         link = camera.link or robot.model.root
         if link not in robot.model.links:
@@ -200,4 +200,4 @@ class Renderer:
 
 def _checked(scene: Scene) -> None:
     if scene.shape[0] != 1:
-        raise InputError(f"studio: the scene has {scene.shape[0]} environments; give one: scene.environments([0])")
+        raise InputError(f"renderer: the scene has {scene.shape[0]} environments; give one: scene.environments([0])")

@@ -1,4 +1,4 @@
-"""How a world looks: its shapes and the skins of its people, drawn by MuJoCo."""
+"""Visual model of a world: shapes and skins, rendered by MuJoCo."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ __all__ = ["Visuals"]
 Floats = NDArray[np.float64]
 SHAPES_MOST = 20_000
 SHADED = 10.0
-"""The middle of the shadows is at most so far along the axis of the camera [m]."""
+"""Largest distance [m] along the camera axis of the centre of the shadow map."""
 NOTHING, WALL, FLOOR, PROP = -1, -2, -3, -4
 
 
 class Visuals:
-    """Draws a world at one level of detail.
+    """Renders a world at one level of detail.
 
     Args:
-        built: the world as the engine knows it.
-        walkers: its people.
-        stage: for its lights.
-        detail: level of the skins, 0 (finest) to 2.
+        built: the MJCF model of the world.
+        walkers: people.
+        stage: stage with lights.
+        detail: level of detail of the skins, 0 (finest) to 2.
 
     Attributes:
-        model, data: what is drawn; who asks for an image has put ``data`` as it shall be.
-        joints: where in ``data.qpos`` the position of each joint begins, by name.
+        model, data: model and state for rendering; the caller sets ``data`` before requesting an image.
+        joints: start of each joint in ``data.qpos``, by name.
     """
 
     def __init__(self, built: MjcfModel, motion: PeopleMotion, stage: PhysicsStage, detail: int) -> None:
@@ -62,7 +62,7 @@ class Visuals:
     def images(
         self, view: CameraView, active: NDArray[np.bool_], rgb: bool, depth: bool, segmentation: bool, shadows: bool
     ) -> CameraImages:
-        """Return what is seen now, with the people who are ``active`` ``[A]``."""
+        """Return images of the current state, with the people in ``active`` ``[A]``."""
         mj = self._mj
         self._canvas.make_current()
         codes = self._arranged(view, active)
@@ -90,7 +90,7 @@ class Visuals:
         return CameraImages(*found)
 
     def _painted(self, built: MjcfModel) -> Any:
-        """Return the model of the world with a skin, and its colours, for every person."""
+        """Return the model with a skin and its colours for each person."""
         mj, motion = self._mj, self._walkers
         spec = mj.MjSpec.from_string(format_xml(built.root), assets=built.files)
         names = shapes().regions
@@ -120,13 +120,13 @@ class Visuals:
         self._cloths = [model.material(f"cloth{k}").id for k in range(len(motion.people))]
         shown = {int(b) for b in model.geom_bodyid[model.geom_group == 2]}
         bare = (model.geom_group == 3) & ~np.isin(model.geom_bodyid, list(shown))
-        model.geom_group[bare] = 2  # robots without anything to be seen show what touches
+        model.geom_group[bare] = 2  # show the colliders of robots without visuals
         return model
 
     def _arranged(self, view: CameraView, active: NDArray[np.bool_]) -> NDArray[np.int64]:
-        """Gather everything where it is now, and return what the numbers in an image of numbers stand for."""
+        """Update all poses, and return the meaning of the numbers in a segmentation image."""
         mj, model, data, scene = self._mj, self.model, self.data, self._scene
-        if self._sunny:  # the shadows of the sun are sharp about where the middle of the image meets the floor
+        if self._sunny:  # the shadows of the sun are sharpest where the image centre meets the floor
             fall = -view.forward[2]
             reach = min(SHADED, view.place[2] / fall) if fall > 1e-6 else SHADED
             model.light_pos[0, :2] = (view.place + reach * view.forward)[:2]
@@ -147,7 +147,7 @@ class Visuals:
         return codes
 
     def _people(self, codes: NDArray[np.int64], view: CameraView, active: NDArray[np.bool_]) -> None:
-        """Add the skins of those who are there and not behind the camera."""
+        """Add the skins of people who are present and not behind the camera."""
         mj, model, scene, motion = self._mj, self.model, self._scene, self._walkers
         here = active[motion.agents]
         if not np.any(here):
@@ -179,7 +179,7 @@ class Visuals:
 
 
 def _metric(raw: NDArray[np.float32], view: CameraView) -> NDArray[np.float32]:
-    """Return distances along the axis [m] from a depth buffer that is 0 far away."""
+    """Return distances along the axis [m] from a reversed depth buffer (0 is far)."""
     near, far = view.near, view.far
     value = raw.astype(np.float64)
     with np.errstate(divide="ignore"):
@@ -188,7 +188,7 @@ def _metric(raw: NDArray[np.float32], view: CameraView) -> NDArray[np.float32]:
 
 
 def _normals(points: Floats, faces: NDArray[np.int64]) -> Floats:
-    """Return unit normals ``[V, 3]`` of vertices, up where no face has the vertex."""
+    """Return unit normals ``[V, 3]`` of vertices; up for vertices without faces."""
     a, b, c = (points[faces[:, k]] for k in range(3))
     flat = np.cross(b - a, c - a)
     found = np.zeros_like(points)

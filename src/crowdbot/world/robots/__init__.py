@@ -1,1 +1,1 @@
-"""Robots: drives, wheels, sensor mounts, and the files that describe them."""
+"""Robots: drives, wheels, sensor mounts, and robot files."""

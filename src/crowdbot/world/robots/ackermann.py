@@ -1,4 +1,4 @@
-"""A drive that steers: front wheels turn, rear wheels roll, as a car's do."""
+"""Ackermann drive: steered front wheels, as in a car."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ __all__ = ["AckermannDrive", "SteeredTwists"]
 
 @dataclass(frozen=True)
 class SteeredTwists(Twists):
-    """The twist of a car and how far its front wheels are turned: ``steering`` ``[E]`` [rad], left is positive."""
+    """Twist of a car with its steering angle: ``steering`` ``[E]`` [rad], left is positive."""
 
     steering: Floats
 
 
 @dataclass(frozen=True)
 class AckermannDrive(Drive):
-    """A car, as its bicycle: the middle of the rear axle is the robot's origin and never moves sideways.
+    """Bicycle model of a car. The origin is the centre of the rear axle, which does not move sideways.
 
-    A command asks for a speed and a turn rate; the wheels steer to ``atan(wheelbase * turn / forward)``, as fast as
-    they can, and stay as they are when the command asks for neither. So the car cannot turn on the spot; the turn rate
-    that it reaches follows from speed and steering. The steering, which nobody observes, is carried along in the twist
-    that :meth:`step` returns; a plain :class:`Twists` stands for wheels that fit it.
+    The wheels steer towards ``atan(wheelbase * turn / forward)`` of the command, limited by the steering rate, and keep
+    their angle if the command is zero. The turn rate follows from speed and steering angle; the car cannot turn on the
+    spot. The twist returned by :meth:`step` contains the steering angle; for a plain :class:`Twists`, the angle is
+    computed from the twist.
 
     Fields:
-        max_speed: forwards and backwards [m/s].
-        max_acceleration: speeding up and braking [m/s2].
-        max_steering: largest angle of the (middle of the) front wheels [rad].
-        max_steering_rate: [rad/s].
-        wheelbase: from rear to front axle [m].
+        max_speed: maximum speed, forwards and backwards [m/s].
+        max_acceleration: maximum acceleration and deceleration [m/s2].
+        max_steering: maximum steering angle of the (virtual central) front wheel [rad].
+        max_steering_rate: maximum steering rate [rad/s].
+        wheelbase: distance between the axles [m].
 
     Raises:
-        InputError: a limit is not finite or not above 0, or the steering is not below a right angle.
+        InputError: a limit is not finite or not above 0, or ``max_steering`` is not below pi / 2.
 
     >>> drive = AckermannDrive(max_acceleration=10.0, max_steering_rate=10.0)
     >>> _, twist = drive.step(Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(), 1), Twist(1.0, 9.0), dt=0.1)
@@ -61,12 +61,12 @@ class AckermannDrive(Drive):
 
     @property
     def turning_radius(self) -> float:
-        """Smallest radius of the circle of its origin [m]."""
+        """Minimum turning radius of the origin [m]."""
         return self.wheelbase / math.tan(self.max_steering)
 
     @property
     def max_turn_rate(self) -> float:
-        """Largest turn rate, at full speed and steering [rad/s]."""
+        """Maximum turn rate [rad/s], at maximum speed and steering angle."""
         return self.max_speed / self.turning_radius
 
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
@@ -85,6 +85,6 @@ class AckermannDrive(Drive):
         return integrate_twist(pose, after, dt), after
 
     def _fitting(self, twist: Twists) -> Floats:
-        """Return the steering ``[E]`` [rad] that gives this turn rate at this speed; backwards, it mirrors."""
+        """Return the steering angle ``[E]`` [rad] of a twist; mirrored for backward motion."""
         backwards = np.where(twist.forward < 0.0, -1.0, 1.0)
         return np.asarray(np.arctan2(self.wheelbase * twist.turn * backwards, np.abs(twist.forward)))

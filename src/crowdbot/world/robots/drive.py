@@ -1,4 +1,4 @@
-"""Drives: how a robot's base follows a commanded twist. Limits first, then exact motion along a circle arc."""
+"""Drives: motion models of robot bases with limits of speed and acceleration."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 @kernel
 def _arc(place: Floats, heading: Floats, forward: Floats, left: Floats, turn: Floats, dt: float) -> None:
-    """Move every pose along its arc: the chord lies half the turn away from the heading."""
+    """Move each pose along a circular arc; the direction of the chord is the heading plus half the turn."""
     for e in range(len(heading)):
         half = 0.5 * turn[e] * dt
         shrink = math.sin(half) / half if abs(half) > 1e-4 else 1.0 - half * half / 6.0
@@ -40,11 +40,11 @@ def _world_velocity(heading: Floats, forward: Floats, left: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Twists:
-    """The twist of one robot in every environment, in its own frame.
+    """Twist of one robot in every environment, in the frame of the robot.
 
     Fields:
-        forward, left: ``[E]`` [m/s].
-        turn: ``[E]`` counter-clockwise [rad/s].
+        forward, left: linear velocity ``[E]`` [m/s].
+        turn: turn rate ``[E]``, counter-clockwise [rad/s].
 
     >>> Twists.of(Twist(0.5, 0.1), 2).forward.tolist()
     [0.5, 0.5]
@@ -56,10 +56,10 @@ class Twists:
 
     @classmethod
     def of(cls, twist: Twist | Twists, count: int) -> Twists:
-        """Make twists for ``count`` environments, from one for all or from one each.
+        """Create twists for ``count`` environments from one twist, or from one per environment.
 
         Raises:
-            InputError: a number is not finite, or there is neither one twist nor one for each environment.
+            InputError: a value is not finite, or the number of twists is wrong.
         """
         return cls(*(_each(name, getattr(twist, name), count) for name in ("forward", "turn", "left")))
 
@@ -68,22 +68,22 @@ class Twists:
         return Twist(float(self.forward[environment]), float(self.turn[environment]), float(self.left[environment]))
 
     def velocity(self, heading: Floats) -> Floats:
-        """Return the velocity ``[E, 2]`` [m/s] in the world of robots with these headings ``[E]`` [rad]."""
+        """Return the velocity ``[E, 2]`` [m/s] in the world for headings ``[E]`` [rad]."""
         return _world_velocity(np.ascontiguousarray(heading), self.forward, self.left)
 
 
 @dataclass(frozen=True)
 class Drive(ABC):
-    """What a robot's base can do with a command."""
+    """Contract of the motion model of a base."""
 
     @abstractmethod
     def step(self, pose: Pose, twist: Twists, command: Twist | Twists, dt: float) -> tuple[Pose, Twists]:
         """Return pose and twist ``dt`` [s] later.
 
         Args:
-            pose: positions ``[E, 2]`` [m] and headings ``[E]`` [rad] now.
-            twist: how the robot moves now.
-            command: how it is asked to move.
+            pose: current positions ``[E, 2]`` [m] and headings ``[E]`` [rad].
+            twist: current twist.
+            command: commanded twist.
             dt: time step [s].
 
         Raises:
@@ -93,16 +93,16 @@ class Drive(ABC):
 
 @dataclass(frozen=True)
 class DifferentialDrive(Drive):
-    """Two driven wheels: forward and turn, never sideways (the ``left`` part of a command is not followed).
+    """Differential drive: forward and turn; the ``left`` part of a command is ignored.
 
-    The command is cut to the speed limits, the change of the twist to the accelerations times ``dt``; the new twist
-    then holds for the whole step, along the exact circle arc.
+    The command is clipped to the speed limits, and the change of the twist to the accelerations times ``dt``. The new
+    twist is constant during the step; the path is an exact circular arc.
 
     Fields:
-        max_speed: forwards and backwards [m/s].
-        max_turn_rate: [rad/s].
-        max_acceleration: speeding up and braking [m/s2].
-        max_turn_acceleration: [rad/s2].
+        max_speed: maximum speed, forwards and backwards [m/s].
+        max_turn_rate: maximum turn rate [rad/s].
+        max_acceleration: maximum acceleration and deceleration [m/s2].
+        max_turn_acceleration: maximum angular acceleration [rad/s2].
 
     Raises:
         InputError: a limit is not finite or not above 0.
@@ -133,7 +133,7 @@ class DifferentialDrive(Drive):
 
 @dataclass(frozen=True)
 class Omnidirectional(Drive):
-    """Wheels that also roll sideways, as Pepper's: the velocity is limited as a vector, the turn on its own.
+    """Omnidirectional drive, as in Pepper: limits apply to the velocity vector, and separately to the turn rate.
 
     Fields and errors as in :class:`DifferentialDrive`.
 
@@ -163,7 +163,7 @@ class Omnidirectional(Drive):
 
 
 def integrate_twist(pose: Pose, twist: Twists, dt: float) -> Pose:
-    """Return the pose after ``dt`` [s] at a constant twist, exactly: a circle arc, or a line when it does not turn.
+    """Return the exact pose after ``dt`` [s] at a constant twist: a circular arc, or a line without turning.
 
     >>> quarter = integrate_twist(Pose.of((0.0, 0.0), 0.0), Twists.of(Twist(1.0, math.pi / 2), 1), 1.0)
     >>> (quarter.position * math.pi / 2).round(9).tolist(), float(quarter.heading[0]) == math.pi / 2
@@ -179,7 +179,7 @@ def _each(name: str, value: ArrayLike, count: int) -> Floats:
     if array.shape not in ((), (count,)):
         raise InputError(f"twist: {name} has shape {list(array.shape)}, it must be one number or [{count}]")
     if not np.all(np.isfinite(array)):
-        raise InputError(f"twist: {name} = {array.tolist()} is not finite; a robot needs finite numbers [m/s], [rad/s]")
+        raise InputError(f"twist: {name} = {array.tolist()} must be finite [m/s], [rad/s]")
     return np.ascontiguousarray(np.broadcast_to(array, (count,)))
 
 
@@ -194,13 +194,13 @@ def _shortened(x: Floats, y: Floats, limit: float) -> tuple[Floats, Floats]:
 
 
 def check_limits(drive: Drive) -> None:
-    """Raise :class:`InputError` unless a drive's speeds and accelerations are finite and above 0."""
+    """Raise :class:`InputError` if a speed or acceleration limit of a drive is not finite and above 0."""
     for name in ("max_speed", "max_turn_rate", "max_acceleration", "max_turn_acceleration"):
         unit = ("rad" if "turn" in name else "m") + ("/s2" if "acceleration" in name else "/s")
         check_number(type(drive).__name__, name, getattr(drive, name), unit, exclusive_min=0.0)
 
 
 def check_step(dt: float) -> None:
-    """Raise :class:`InputError` unless a time step [s] is finite and above 0."""
+    """Raise :class:`InputError` if a time step [s] is not finite and above 0."""
     if not 0.0 < dt < math.inf:
         raise InputError(f"time step {dt} s of a drive must be finite and above 0")

@@ -1,4 +1,4 @@
-"""Where a sensor is mounted on a robot."""
+"""Mounting positions of sensors on a robot."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ Floats = NDArray[np.float64]
 
 
 class MountPlacement(NamedTuple):
-    """Where a sensor is mounted, in two frames.
+    """Mounting pose of a sensor in two frames.
 
     Fields:
-        link: name of the link that carries it; empty for the root.
+        link: name of the link; empty for the root.
         origin: ``[4, 4]`` frame of the sensor in the frame of the link.
         placed: x, y, z [m], roll, pitch, yaw [rad] in the frame of the robot in its posture.
     """
@@ -34,7 +34,7 @@ class MountPlacement(NamedTuple):
 
 @dataclass(frozen=True)
 class SensorMount:
-    """A sensor and where it sits in the frame of a link: x, y, z [m]; roll, pitch, yaw [rad] as in URDF."""
+    """A sensor with its pose in the frame of a link: x, y, z [m]; roll, pitch, yaw [rad] as in URDF."""
 
     name: str
     sensor: Sensor
@@ -53,5 +53,5 @@ class SensorMount:
 
     @property
     def origin(self) -> Floats:
-        """Its frame ``[4, 4]`` in the link's frame."""
+        """Frame ``[4, 4]`` of the sensor in the frame of the link."""
         return frame((self.x, self.y, self.z), roll_pitch_yaw(self.roll, self.pitch, self.yaw))

@@ -84,13 +84,15 @@ class Robot:
                 raise InputError(f"Robot: two sensors of {self.name} have the name {mount.name!r}; names must differ")
             if mount.link not in self.model.links:
                 meant = did_you_mean(mount.link, self.model.links)
-                raise InputError(f"Robot: the sensor {mount.name!r} sits on {mount.link!r}, which is no link{meant}")
+                raise InputError(
+                    f"Robot: the sensor {mount.name!r} is mounted on {mount.link!r}, which is not a link{meant}"
+                )
         turning_joints = {joint.name for joint in self.model.movable if joint.size == 1}
         for wheel in self.wheels:
             for what, name in (("wheel", wheel.joint), ("steering", wheel.steering or wheel.joint)):
                 if name not in turning_joints:
                     meant = did_you_mean(name, self.model.joints)
-                    raise InputError(f"Robot: the {what} joint {name!r} is no joint that turns{meant}")
+                    raise InputError(f"Robot: the {what} joint {name!r} is not a rotating joint{meant}")
 
     @classmethod
     def load(cls, source: str | Path, *, trust: bool = False) -> Robot:
@@ -139,18 +141,18 @@ class Robot:
 
     @property
     def radius(self) -> float:
-        """Radius [m] of the disc about its origin that holds the footprint."""
+        """Radius [m] of the disc around the origin that contains the footprint."""
         return float(np.hypot(self.footprint[:, 0], self.footprint[:, 1]).max())
 
     @functools.cached_property
     def height(self) -> float:
-        """Height [m] of its highest collider above its root, in its posture."""
+        """Height [m] of the highest collider above the root, in the default posture."""
         points = self.model.points(self.posture)
         return float(points[:, 2].max()) if len(points) else 0.0
 
     @property
     def lift(self) -> float:
-        """How far its root is above the floor when it stands in its posture [m]; 0 for a root on the ground."""
+        """Height of the root above the floor in the default posture [m]; 0 for a root on the ground."""
         points = self.model.points(self.posture)
         lowest = float(points[:, 2].min()) if len(points) else 0.0
         return -lowest if lowest < -SUNK else 0.0
@@ -159,7 +161,7 @@ class Robot:
         """Return the sensor of this name.
 
         Raises:
-            InputError: there is none.
+            InputError: there is no such sensor.
         """
         for mount in self.mounts:
             if mount.name == name:
@@ -175,7 +177,7 @@ class Robot:
         return np.asarray(self.model.poses({**self.posture, **(positions or {})})[mount.link] @ mount.origin)
 
     def planar_mount(self, name: str) -> tuple[float, float, float]:
-        """Return where a sensor sits, seen from above: x, y [m], heading [rad], as :meth:`Pose.offset` takes it.
+        """Return the planar pose of a sensor: x, y [m], heading [rad], as arguments of :meth:`Pose.offset`.
 
         >>> Robot.load("qolo").planar_mount("lidar_rear")
         (-0.516, 0.0, 3.141592654)
@@ -185,7 +187,7 @@ class Robot:
         return round(float(matrix[0, 3]), 12), round(float(matrix[1, 3]), 12), round(heading, 9)
 
     def sensor_pose(self, name: str, pose: Pose, positions: Mapping[str, float] | None = None) -> SpatialPose:
-        """Return where a sensor is in space when the robot stands on the floor at ``pose`` ``[E]``.
+        """Return the spatial pose of a sensor for a robot on the floor at ``pose`` ``[E]``.
 
         >>> Robot.load("qolo").sensor_pose("lidar_rear", Pose.of((1.0, 0.0), 0.0)).position.round(3).tolist()
         [[0.484, 0.0, 0.364]]
@@ -198,9 +200,9 @@ class Robot:
         )
 
     def wheel_speeds(self, twist: Twist) -> dict[str, float]:
-        """Return how fast the wheels must turn [rad/s], by joint, so that none slips along its rolling direction.
+        """Return the wheel speeds [rad/s] by joint without slip along the rolling directions.
 
-        It holds for plain wheels and for those whose rollers let them slide along the axle.
+        Valid for plain wheels and for wheels with rollers that slide along the axle.
 
         >>> Robot.load("turtlebot2").wheel_speeds(Twist(0.35, 0.0))
         {'wheel_left_joint': 10.0, 'wheel_right_joint': 10.0}
@@ -218,9 +220,9 @@ class Robot:
         return speeds
 
     def steering(self, twist: Twist) -> dict[str, float]:
-        """Return how far wheels that steer are turned [rad], by joint, so that all roll about the same point.
+        """Return the steering angles [rad] by joint for which all wheels roll around the same point.
 
-        At rest, where every direction does, they look ahead. Backwards they are turned as ahead on the same circle.
+        The angles are 0 at rest. Backwards, they are those of forward motion on the same circle.
         """
         poses = self.model.poses(self.posture)
         angles = {}
@@ -235,13 +237,13 @@ class Robot:
 
 
 def _carried(twist: Twist, matrix: Floats) -> Floats:
-    """Return how fast the origin of a frame ``[4, 4]`` of the robot moves over the floor, ``[2]`` [m/s]."""
+    """Return the velocity ``[2]`` [m/s] over the floor of the origin of a frame ``[4, 4]`` of the robot."""
     x, y = matrix[:2, 3].tolist()
     return np.array([twist.forward - twist.turn * y, twist.left + twist.turn * x])
 
 
 def spatial(matrix: Floats) -> SpatialPose:
-    """Return a frame ``[4, 4]`` of the world as a pose, E = 1."""
+    """Return a frame ``[4, 4]`` in the world as a pose, E = 1."""
     return SpatialPose(matrix[None, :3, 3].copy(), np.asarray(quaternion(matrix[:3, :3]))[None])
 
 
@@ -259,21 +261,21 @@ def _assets() -> Path:
 
 
 def _folder(source: str | Path) -> Path:
-    """Return the folder that holds the robot's file."""
+    """Return the folder that contains the robot file."""
     path = Path(source)
     known = builtin_robots()
     if path.is_dir():
         if (path / FILE).is_file():
             return path
         if str(source) not in known:
-            raise RobotError(f"the folder {path} holds no {FILE}; a robot is a folder with a URDF and a {FILE}")
+            raise RobotError(f"the folder {path} has no {FILE}; a robot is a folder with a URDF and a {FILE}")
     if str(source) in known:
         return _assets() / str(source)
     if path.name == FILE and path.is_file():
         return path.parent
     if path.suffix == ".urdf":
-        raise RobotError(f"{path} says nothing of drive and sensors; give the folder with its {FILE}")
+        raise RobotError(f"{path} does not define drive and sensors; give the folder with its {FILE}")
     raise RobotError(
-        f"there is no robot {str(source)!r}{did_you_mean(str(source), known)}: no folder has this name,"
-        f" and built in are {', '.join(known)}"
+        f"there is no robot {str(source)!r}{did_you_mean(str(source), known)}: it is neither a folder"
+        f" nor a built-in robot ({', '.join(known)})"
     )

@@ -1,4 +1,4 @@
-"""The small file of a robot, ``robot.xml``: every problem at once, each with its line."""
+"""Parser of ``robot.xml``: reports all errors, each with its line."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def read_robot_file(folder: Path, *, trust: bool = False) -> dict[str, Any]:
 
 
 class _Reader:
-    """Collects problems while it reads."""
+    """Collects problems while parsing."""
 
     def __init__(self, place: str, folder: Path, trust: bool) -> None:
         self.place, self.folder, self.trust = place, folder, trust
@@ -111,14 +111,14 @@ class _Reader:
         }
 
     def tag(self, element: Element, known: tuple[str, ...]) -> None:
-        """Say that an element is unknown, and read it as the one that was meant."""
+        """Record an unknown element and return the tag that was probably meant."""
         if element.tag not in known:
             meant = did_you_mean(element.tag, known)
-            self.say(element, f"is no element of <robot>{meant}; it takes {', '.join(known)}")
+            self.say(element, f"is not an element of <robot>{meant}; it accepts {', '.join(known)}")
             element.tag = nearest_name(element.tag, known) or element.tag
 
     def check_names(self, root: Element, model: RobotModel) -> None:
-        """Say which names of links and joints the model does not have, and which names of sensors come twice."""
+        """Record unknown names of links and joints, and duplicate names of sensors."""
         turning = [joint.name for joint in model.movable if joint.size == 1]
         names = [inner.attributes.get("name", "") for inner in root.each("sensor")]
         base = root.attributes.get("base", "wheels")
@@ -127,22 +127,22 @@ class _Reader:
         for k, inner in enumerate(root.each("sensor")):
             link = inner.attributes.get("link", "")
             if link and link not in model.links:
-                self.say(inner, f"link={link[:60]!r} is no link of the robot{did_you_mean(link, model.links)}")
+                self.say(inner, f"link={link[:60]!r} is not a link of the robot{did_you_mean(link, model.links)}")
             if names[k] and names[k] in names[:k]:
-                self.say(inner, f"name {names[k][:60]!r} is taken by another sensor; give each its own")
+                self.say(inner, f"name {names[k][:60]!r} is already used by another sensor; names must differ")
         for inner in root.each("wheel"):
             for key in ("joint", "steering"):
                 name = inner.attributes.get(key, "")
                 if name and name not in turning:
-                    self.say(inner, f"{key}={name[:60]!r} is no joint that turns{did_you_mean(name, model.joints)}")
+                    self.say(inner, f"{key}={name[:60]!r} is not a rotating joint{did_you_mean(name, model.joints)}")
         for inner in root.each("posture"):
             name = inner.attributes.get("joint", "")
             if name and name not in model.joints:
-                self.say(inner, f"joint={name[:60]!r} is no joint of the robot{did_you_mean(name, model.joints)}")
+                self.say(inner, f"joint={name[:60]!r} is not a joint of the robot{did_you_mean(name, model.joints)}")
 
     def model(self, root: Element, name: str) -> Any:
         if not name:
-            self.say(root, "needs the attribute 'urdf': the file with its links and joints, beside this one")
+            self.say(root, "needs the attribute 'urdf': the URDF file in the same folder")
             return None
         path = self.folder / name
         try:
@@ -150,7 +150,7 @@ class _Reader:
         except (OSError, RuntimeError, ValueError):
             inside = False
         if not inside:
-            self.say(root, f"urdf={name[:80]!r} leaves the robot's folder {self.folder}")
+            self.say(root, f"urdf={name[:80]!r} is outside the robot folder {self.folder}")
             return None
         try:
             return read_urdf(path, folder=self.folder)
@@ -159,18 +159,18 @@ class _Reader:
             return None
 
     def words(self, element: Element) -> dict[str, str]:
-        """Return the attributes, after saying which are unknown and reading them as those that were meant."""
+        """Return the attributes; unknown ones are recorded and replaced by those that were probably meant."""
         known = KNOWN[element.tag]
         for key in [key for key in element.attributes if key not in known]:
             meant = did_you_mean(key, known)
-            self.say(element, f"has no attribute {key[:40]!r}{meant}; it takes {', '.join(known)}")
+            self.say(element, f"has no attribute {key[:40]!r}{meant}; it accepts {', '.join(known)}")
             text = element.attributes.pop(key)
             if meant:
                 element.attributes.setdefault(nearest_name(key, known), text)
         return element.attributes
 
     def number(self, element: Element, key: str) -> float:
-        """Return a number that must be there; 1 when it is wrong."""
+        """Return a required number; 1 if it is invalid."""
         text = element.attributes.get(key)
         if text is None:
             self.say(element, f"needs the attribute {key!r}, a number")
@@ -226,7 +226,7 @@ class _Reader:
         return {"footprint": np.array(points)}
 
     def drive(self, element: Element) -> dict[str, Any]:
-        """Return the drive and its latency."""
+        """Return the drive and the latency of commands."""
         import crowdbot.world as room
 
         row = dict(element.attributes)
@@ -240,7 +240,7 @@ class _Reader:
         return values | ({"drive": made} if made is not None else {})
 
     def sensor(self, element: Element) -> Any:
-        """Return a mount, or a function that makes it once the root is known."""
+        """Return a mount, or a function that creates it once the root is known."""
         row = dict(element.attributes)
         name, link = row.pop("name", ""), row.pop("link", "")
         if not name:
@@ -257,11 +257,11 @@ class _Reader:
         return lambda root: SensorMount(name, made, link or root, **place)
 
     def product(self, element: Element, row: Mapping[str, str], also: tuple[str, ...]) -> Sensor | None:
-        """Return the sensor that ``preset`` names, with what else the attributes say; None when that is impossible."""
+        """Return the sensor named by ``preset`` with the other attributes applied; None after an error."""
         rest = dict(row)
         name = rest.pop("preset")
         if "type" in rest:
-            self.say(element, "has a preset and a type; one says what it is")
+            self.say(element, "has both preset and type; give one of them")
             return None
         try:
             made = preset(name)
@@ -284,7 +284,7 @@ class _Reader:
     def plugged(
         self, element: Element, row: Mapping[str, str], room: types.ModuleType, contract: type, also: tuple[str, ...]
     ) -> Any:
-        """Return the part that ``type`` names, made of the attributes; None when that is impossible."""
+        """Return the plug-in named by ``type``, created from the attributes; None after an error."""
         rest = dict(row)
         name = rest.pop("type", None)
         if name is None:

@@ -1,4 +1,4 @@
-"""A base whose controller follows commands with a lag, and the dead time before a command arrives."""
+"""Velocity servo with lag, and the delay of commands."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from .drive import Drive, Twists, check_limits, check_step, integrate_twist
 __all__ = ["CommandDelay", "Pending", "VelocityServo"]
 
 NEAR = 1e-9
-"""[m/s, rad/s]; what is so near to its command has reached it."""
+"""Tolerance [m/s, rad/s] within which a velocity has reached its command."""
 
 
 @dataclass(frozen=True)
 class VelocityServo(Drive):
-    """A base under a velocity controller: it nears the command exponentially, within the limits of its motors.
+    """A base with a velocity controller: the twist approaches the command exponentially, within limits.
 
     Fields:
-        max_speed: in any direction [m/s].
-        max_turn_rate: [rad/s].
-        max_acceleration: of the velocity as a vector [m/s2].
-        max_turn_acceleration: [rad/s2].
-        time_constant: of the lag [s]; an error shrinks to 37 % in it.
-        sideways: whether it follows the ``left`` part of a command.
+        max_speed: maximum speed in any direction [m/s].
+        max_turn_rate: maximum turn rate [rad/s].
+        max_acceleration: maximum acceleration vector length [m/s2].
+        max_turn_acceleration: maximum angular acceleration [rad/s2].
+        time_constant: time constant of the lag [s], in which an error falls to 37 %.
+        sideways: whether the ``left`` part of a command is applied.
 
     Raises:
         InputError: a limit is not finite or not above 0.
@@ -74,7 +74,7 @@ class VelocityServo(Drive):
 
 
 class Pending(NamedTuple):
-    """A command on its way: seconds until it is in force."""
+    """A delayed command and the time [s] until it takes effect."""
 
     wait: float
     command: Twist | Twists
@@ -82,13 +82,13 @@ class Pending(NamedTuple):
 
 @dataclass(frozen=True)
 class CommandDelay:
-    """The dead time between a command and the wheels.
+    """Delay between a command and the wheels.
 
-    A step is taken with the last command that was in force when the step began; so a latency counts as so many whole
-    steps, rounded up. Who owns the drive keeps what is pending.
+    A step uses the command in force at its start; the latency is therefore rounded up to whole steps. The caller stores
+    the pending commands.
 
     Fields:
-        latency: [s]; 0 for none.
+        latency: delay [s].
 
     >>> delay, pending, now = CommandDelay(0.2), (), Twist()
     >>> for _ in range(3):
@@ -108,12 +108,12 @@ class CommandDelay:
     def step(
         self, pending: tuple[Pending, ...], now: Twist | Twists, command: Twist | Twists, dt: float
     ) -> tuple[tuple[Pending, ...], Twist | Twists]:
-        """Return what is pending after a step of ``dt`` [s], and the command that is in force during it.
+        """Return the pending commands after a step of ``dt`` [s], and the command in force during the step.
 
         Args:
-            pending: as the last step returned it, at first empty.
-            now: the command in force until now, at first ``Twist()``.
-            command: what is asked for at the beginning of this step.
+            pending: result of the previous step, initially empty.
+            now: command in force before the step, initially ``Twist()``.
+            command: new command at the start of the step.
             dt: time step [s].
 
         Raises:

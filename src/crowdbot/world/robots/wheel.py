@@ -1,4 +1,4 @@
-"""Wheel: what a robot drives and steers with."""
+"""Wheel: a driven or steered wheel of a robot."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ __all__ = ["Wheel"]
 
 @dataclass(frozen=True)
 class Wheel:
-    """A wheel that a motor turns, or that steers.
+    """A driven or steered wheel.
 
     Fields:
-        joint: whose axis is the axle.
-        radius: [m].
-        steering: the joint that steers it, whose axis is upright; empty when it does not steer.
-        driven: whether a motor turns it.
+        joint: joint of the axle.
+        radius: radius [m].
+        steering: joint with a vertical axis that steers the wheel; empty without steering.
+        driven: whether the wheel has a motor.
 
     Raises:
         InputError: the radius is not finite and above 0, or the wheel neither steers nor drives.
@@ -36,4 +36,4 @@ class Wheel:
         if not 0.0 < self.radius < math.inf:
             raise InputError(f"Wheel: radius = {self.radius} m must be finite and above 0")
         if not (self.driven or self.steering):
-            raise InputError(f"Wheel: {self.joint!r} neither drives nor steers; name the joint that steers it")
+            raise InputError(f"Wheel: {self.joint!r} is neither driven nor steered; give its steering joint")

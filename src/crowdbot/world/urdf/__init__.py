@@ -1,4 +1,4 @@
-"""Robots from URDF: what is read, cured and refused before anything else sees it."""
+"""URDF robots: parsing, repair, checks and conversion to MJCF."""
 
 from .folders import robot_folder
 from .meshes import with_pieces

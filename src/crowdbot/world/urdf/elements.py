@@ -1,4 +1,4 @@
-"""What every part of the URDF reader shares: problems with their lines, numbers, frames, meshes."""
+"""UrdfReader: shared parts of the URDF parser for problems with line numbers, numbers, frames and meshes."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ Color = tuple[float, float, float, float]
 
 
 class UrdfReader:
-    """Collects problems and remarks while a URDF is read.
+    """Collects problems and remarks while parsing a URDF.
 
     Args:
-        place: name of the file for messages.
-        folders: where files may lie.
-        colliders: how meshes become convex.
+        place: file name for messages.
+        folders: folders from which files may be read.
+        colliders: conversion of meshes to convex shapes.
     """
 
     def __init__(self, place: str, folders: Folders, colliders: str) -> None:
@@ -45,11 +45,11 @@ class UrdfReader:
         self._read: dict[tuple[str, tuple[float, float, float]], Mesh | str] = {}
 
     def say(self, element: Element, sentence: str) -> None:
-        """Note a problem that makes the robot wrong."""
+        """Record an error."""
         self.found.append((element.line, f"{self._where(element)} {sentence}"))
 
     def remark(self, kind: str, element: Element, sentence: str) -> None:
-        """Note something that was ``replaced``, ``repaired`` or ``ignored``."""
+        """Record something that was ``replaced``, ``repaired`` or ``ignored``."""
         self.remarks.append(Remark(kind, f"{self._where(element)} {sentence}"))
 
     def _where(self, element: Element) -> str:
@@ -58,7 +58,7 @@ class UrdfReader:
         return f"{self.place}:{element.line}: <{element.tag[:40]}>{named}"
 
     def finish(self) -> None:
-        """Raise :class:`RobotError` when there was a problem."""
+        """Raise :class:`RobotError` if there are errors."""
         sentences = [sentence for _, sentence in sorted(self.found, key=lambda row: row[0])]
         if len(sentences) > MOST_PROBLEMS:
             more = len(sentences) - MOST_PROBLEMS
@@ -67,21 +67,21 @@ class UrdfReader:
             raise RobotError(*sentences)
 
     def new(self, element: Element, name: str, known: Iterable[str]) -> bool:
-        """Return whether a name is new; say so when it is not."""
+        """Return whether a name is new; record an error if it is not."""
         if name in known:
             self.say(element, "has a name that is already in use; names must be unique")
             return False
         return True
 
     def one(self, element: Element, tag: str) -> Element | None:
-        """Return the child of this name, None when there is none; say so when there are more."""
+        """Return the child with this tag, or None; record an error if there is more than one."""
         found = element.each(tag)
         if len(found) > 1:
             self.say(found[1], f"occurs more than once in <{element.tag}>; at most one is allowed")
         return found[0] if found else None
 
     def value(self, element: Element, key: str, default: float | None = None, least: float = -np.inf) -> float | None:
-        """Return a finite number that is an attribute, the default without it; say so when it is wrong."""
+        """Return a finite number from an attribute, or the default; record an error if it is invalid."""
         text = element.attributes.get(key)
         if text is None:
             return default
@@ -96,13 +96,13 @@ class UrdfReader:
         return found
 
     def required_value(self, element: Element, key: str, least: float = -np.inf) -> float | None:
-        """Return a number that must be there, None when it is wrong or missing."""
+        """Return a required number; record an error and return None if it is invalid or missing."""
         if key not in element.attributes:
             self.say(element, f"needs the attribute {key!r}, a number")
         return self.value(element, key, None, least)
 
     def row(self, element: Element, key: str, count: int, default: tuple[float, ...] | None) -> Floats | None:
-        """Return ``count`` finite numbers of an attribute, the default without it; None when they are wrong."""
+        """Return ``count`` finite numbers from an attribute, or the default; None if they are invalid."""
         text = element.attributes.get(key)
         if text is None:
             return None if default is None else np.array(default)
@@ -116,12 +116,12 @@ class UrdfReader:
             self.say(element, f'{key}="{text[:60]}" {error}')
             return None
         if np.abs(values).max() > LARGEST:
-            self.say(element, f'{key}="{text[:60]}" holds a number above {LARGEST:g}')
+            self.say(element, f'{key}="{text[:60]}" contains a number above {LARGEST:g}')
             return None
         return values
 
     def origin(self, element: Element) -> Floats:
-        """Return the frame ``[4, 4]`` of <origin xyz rpy>; the same frame without one."""
+        """Return the frame ``[4, 4]`` of <origin xyz rpy>; the identity without one."""
         origin = self.one(element, "origin")
         if origin is None:
             return np.eye(4)
@@ -131,7 +131,7 @@ class UrdfReader:
         return frame(place, roll_pitch_yaw(*angles))
 
     def mesh(self, element: Element, touching: bool) -> Mesh | str | None:
-        """Return the mesh of <mesh filename scale>, why it cannot be had, or None when that is a problem.
+        """Return the mesh of <mesh filename scale>, the reason why it is unavailable, or None after an error.
 
         Raises:
             MissingExtra: trimesh is not installed.
@@ -152,13 +152,13 @@ class UrdfReader:
             self.say(element, str(error))
             return None
         factors = (float(scale[0]), float(scale[1]), float(scale[2]))
-        return self._loaded(element, source, path, factors, touching)
+        return self._load_trimesh(element, source, path, factors, touching)
 
-    def _loaded(
+    def _load_trimesh(
         self, element: Element, source: str, path: Path | None, scale: tuple[float, float, float], touching: bool
     ) -> Mesh | str:
         if path is None:
-            return f"the mesh {source[:200]} is missing"
+            return f"the mesh file {source[:200]} is missing"
         key = (str(path), scale)
         if key not in self._read:
             try:
@@ -176,7 +176,7 @@ class UrdfReader:
         return whole
 
     def notes(self, root: Element) -> None:
-        """Read what stands beside links and joints: friction and springs of Gazebo, motors of transmissions."""
+        """Read the elements beside links and joints: friction and springs of Gazebo, motors of transmissions."""
         for gazebo in root.each("gazebo"):
             name = gazebo.attributes.get("reference", "")
             for tag in ("mu1", "mu"):
@@ -200,10 +200,10 @@ class UrdfReader:
             self.motors.setdefault(joint.attributes.get("name", ""), kind)
 
     def _text(self, element: Element, default: float) -> float:
-        """Return the number between the tags; these are extensions, so that a wrong one is only remarked."""
+        """Return the number between the tags. In these extensions an invalid number gives only a remark."""
         text = element.stray or element.attributes.get("value", "")
         try:
             return max(0.0, parse_number(text)) if element.tag != "springReference" else parse_number(text)
         except InputError:
-            self.remark("ignored", element, f"holds {text[:40]!r}, which is no number; it is ignored")
+            self.remark("ignored", element, f"contains {text[:40]!r}, which is not a number; it is ignored")
             return default

@@ -1,4 +1,4 @@
-"""Where the files of a robot may lie: in its own folder or in a package folder that was given, nowhere else."""
+"""Folders from which the files of a robot may be read: its own folder and the given package folders."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from crowdbot.core import InputError, parse_xml
 __all__ = ["Folders", "robot_folder"]
 
 INNER = ("urdf", "robots")
-"""Folders inside a robot's folder that hold the URDF, beside one with the meshes, as ROS packages have them."""
+"""Subfolders of a robot folder that contain the URDF, as in ROS packages."""
 MOST_PACKAGE_BYTES = 100_000
 
 
 def robot_folder(urdf: Path) -> Path:
-    """Return the folder of the robot whose URDF this is.
+    """Return the robot folder of a URDF file.
 
-    It is the nearest folder above, at most two up, that holds a ``package.xml``; otherwise the folder of the URDF, or
-    the one above when it is called ``urdf`` or ``robots``.
+    This is the nearest parent folder, at most two levels up, with a ``package.xml``; otherwise the folder of the URDF,
+    or its parent if that folder is named ``urdf`` or ``robots``.
     """
     here = urdf.resolve().parent
     for folder in (here, *list(here.parents)[:2]):
@@ -29,12 +29,12 @@ def robot_folder(urdf: Path) -> Path:
 
 
 class Folders:
-    """Finds the files that a URDF names.
+    """Finds the files referenced by a URDF.
 
     Args:
-        root: folder of the robot.
-        packages: folders of ROS packages by their names.
-        beside: folder from which relative paths are counted (default: the root).
+        root: the robot folder.
+        packages: ROS package folders by name.
+        beside: base folder of relative paths (default: the root).
     """
 
     def __init__(self, root: Path, packages: Mapping[str, Path] | None = None, beside: Path | None = None) -> None:
@@ -44,10 +44,10 @@ class Folders:
         self.name = _package_name(self.root)
 
     def find(self, reference: str) -> Path | None:
-        """Return the file that ``package://``, ``file://`` or a relative path means, None when it is not there.
+        """Return the file of a ``package://`` or ``file://`` URI or a relative path, or None if it does not exist.
 
         Raises:
-            InputError: the reference is of another kind, or leaves the folders.
+            InputError: the scheme is not supported, or the path leaves the folders.
         """
         scheme, _, rest = reference.partition("://")
         if not rest and "://" not in reference:
@@ -57,11 +57,9 @@ class Folders:
         elif scheme == "file":
             candidates = [Path(unquote(rest))]
         else:
-            raise InputError(
-                f"{_cut(reference)} is not read: a file is named by package://, file:// or a relative path"
-            )
+            raise InputError(f"{_cut(reference)} is not supported; use package://, file:// or a relative path")
         if len(reference) > 1000 or any(len(part.encode()) > 255 for part in reference.split("/")):
-            raise InputError(f"{_cut(reference)} is too long for the name of a file")
+            raise InputError(f"{_cut(reference)} is too long for a file name")
         for candidate in candidates:
             place = self._inside(candidate, reference)
             if place.is_file():
@@ -69,10 +67,10 @@ class Folders:
         return None
 
     def _in_packages(self, rest: str) -> list[Path]:
-        """Return where a package's file may lie, the likeliest first.
+        """Return the candidate paths of a file in a package, the most likely first.
 
-        A robot's folder that was copied out of its package keeps the end of the path: ``robots/arm/meshes/a.stl`` may
-        lie at ``meshes/a.stl``.
+        A robot folder copied out of its package keeps the end of the path: ``robots/arm/meshes/a.stl`` may be at
+        ``meshes/a.stl``.
         """
         name, _, path = rest.partition("/")
         if name in self.packages:
@@ -89,17 +87,17 @@ class Folders:
         try:
             place = candidate.resolve()
         except (OSError, RuntimeError, ValueError) as error:
-            raise InputError(f"{_cut(reference)} names no file: {error}") from None
+            raise InputError(f"{_cut(reference)} is not a valid file name: {error}") from None
         if not any(place.is_relative_to(folder) for folder in (self.root, *self.packages.values())):
             raise InputError(
-                f"{_cut(reference)} leaves the robot's folder {self.root};"
-                " put the file inside, or name its package folder"
+                f"{_cut(reference)} is outside the robot folder {self.root};"
+                " move the file into it, or give its package folder"
             )
         return place
 
 
 def _package_name(folder: Path) -> str:
-    """Return the name in the folder's ``package.xml``, or the folder's own."""
+    """Return the name in the ``package.xml`` of the folder, or the folder name."""
     file = folder / "package.xml"
     try:
         if file.is_file() and file.stat().st_size < MOST_PACKAGE_BYTES:

@@ -18,17 +18,17 @@ __all__ = ["Geoms", "row"]
 Floats = NDArray[np.float64]
 GREY = (0.7, 0.7, 0.72, 1.0)
 SMOOTH = 1e-3
-"""Coefficients of friction below this are none."""
+"""Friction coefficients below this are treated as 0."""
 MOST_FACES = 150_000
-"""MuJoCo reads at most 200 000 triangles from one STL file."""
+"""MuJoCo supports at most 200 000 triangles per STL file."""
 MOST_CORNERS = 64
-"""Corners of a convex body in contacts; finer ones are slower and no more exact on a floor."""
+"""Maximum number of vertices of a convex body in contacts; more are slower and not more accurate on a floor."""
 NOTHING = 1e-30
-"""Smaller numbers are 0: MuJoCo refuses those that a number of its kind cannot hold in full."""
+"""Smaller numbers are written as 0: MuJoCo rejects denormal numbers."""
 
 
 def row(values: Iterable[float]) -> str:
-    """Return numbers as they stand in MJCF.
+    """Return numbers in MJCF format.
 
     >>> row((1.0, -0.5, 1e-9, 1e-320))
     '1 -0.5 1e-09 0'
@@ -38,12 +38,12 @@ def row(values: Iterable[float]) -> str:
 
 
 class Geoms:
-    """Makes geoms of links, and remembers the meshes that they need.
+    """Creates the geoms of links and collects their meshes.
 
     Args:
         model: the robot.
-        prefix: before every name.
-        contact: contype and conaffinity of what touches.
+        prefix: prefix of all names.
+        contact: contype and conaffinity of colliders.
     """
 
     def __init__(self, model: RobotModel, prefix: str, contact: tuple[int, int]) -> None:
@@ -55,28 +55,29 @@ class Geoms:
     def of(self, link: Link, matrix: Floats, axle: Floats | None = None) -> list[Element]:
         """Return the geoms of a link.
 
-        A cylinder that turns about its own axis, or glides without friction, is a wheel: it becomes an ellipsoid, which
-        touches the floor in one point below its middle. The two points of a cylinder flicker: it slips on the spot.
+        A cylinder that turns about its own axis, or has no friction, is a wheel and becomes an ellipsoid, which touches
+        the floor in one point below its centre. The two contact points of a cylinder alternate, and a turning robot
+        slips.
 
         Args:
-            link: whose shapes are wanted.
-            matrix: its frame ``[4, 4]`` in the body.
-            axle: axis ``[3]`` through the body's origin about which the body turns, None when it does not.
+            link: the link.
+            matrix: frame ``[4, 4]`` of the link in the body.
+            axle: rotation axis ``[3]`` of the body through its origin, or None.
         """
         gliding = link.friction is not None and link.friction < SMOOTH
         geoms = []
         for number, part in enumerate(link.collisions):
             values = {"group": "3", "contype": str(self.contact[0]), "conaffinity": str(self.contact[1])}
-            values |= {"rgba": "0.3 0.6 0.9 0.4", **_rubbing(link.friction)}
-            geoms += self._shape(
+            values |= {"rgba": "0.3 0.6 0.9 0.4", **_friction_attributes(link.friction)}
+            geoms += self._parse_shape(
                 part, matrix, f"{self.prefix}{link.name}/{number}", values, gliding or _rolls(part, matrix, axle)
             )
         for number, part in enumerate(link.visuals):
             values = {"group": "2", "contype": "0", "conaffinity": "0", "rgba": row(part.color or GREY)}
-            geoms += self._shape(part, matrix, f"{self.prefix}{link.name}/seen/{number}", values)
+            geoms += self._parse_shape(part, matrix, f"{self.prefix}{link.name}/seen/{number}", values)
         return geoms
 
-    def _shape(
+    def _parse_shape(
         self, part: LinkShape, matrix: Floats, name: str, values: dict[str, str], wheel: bool = False
     ) -> list[Element]:
         place = matrix @ part.origin
@@ -113,7 +114,7 @@ class Geoms:
 
 
 def _rolls(part: LinkShape, matrix: Floats, axle: Floats | None) -> bool:
-    """Return whether a shape is a cylinder about the axle."""
+    """Return whether a shape is a cylinder around the axle."""
     if axle is None or not isinstance(part.shape, Cylinder):
         return False
     place = matrix @ part.origin
@@ -133,10 +134,11 @@ def _sized(shape: Shape, wheel: bool) -> dict[str, str]:
     return {"type": kind, "size": row((shape.radius, shape.length / 2.0))}
 
 
-def _rubbing(friction: float | None) -> dict[str, str]:
+def _friction_attributes(friction: float | None) -> dict[str, str]:
     """Return the friction of a geom.
 
-    MuJoCo takes the larger friction of two surfaces; only with a higher priority a castor glides on a rough floor.
+    MuJoCo uses the larger friction of two surfaces. A frictionless castor on a rough floor therefore needs a higher
+    priority.
     """
     if friction is None:
         return {}

@@ -1,4 +1,4 @@
-"""Mass and inertia of links: what is physical, and what takes the place of what is not."""
+"""Mass and inertia of links: validation, and replacement of missing or unphysical values."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ __all__ = ["DENSITY", "default_inertia", "find_inertia_problems", "repair_inerti
 
 Floats = NDArray[np.float64]
 DENSITY = 1000.0
-"""Density [kg/m3] of links that have a shape but no mass: that of water, as MuJoCo takes it."""
+"""Density [kg/m3] of links with a shape but without mass: water, the default of MuJoCo."""
 SMALLEST = 1e-12
 TOO_LARGE = 3.0
-"""An inertia is doubtful when it belongs to a body so many times the size of the shape."""
+"""An inertia is reported if it fits a body larger than the shape by this factor."""
 SLACK = 1e-6
-"""Principal moments may miss the triangle inequality by so much of the largest: rounding in the file."""
+"""Relative tolerance of the triangle inequality of principal moments, for rounding in the file."""
 
 
 def unphysical(tensor: Floats) -> str:
-    """Return what is wrong with an inertia ``[3, 3]`` [kg m2] as the end of a sentence, empty when it can exist.
+    """Return what is wrong with an inertia ``[3, 3]`` [kg m2] as the end of a sentence; empty if it is physical.
 
     >>> unphysical(np.diag([1.0, 1.0, 3.0]))
     'its principal moments 1, 1, 3 kg m2 break the triangle inequality'
@@ -32,30 +32,30 @@ def unphysical(tensor: Floats) -> str:
     moments = np.linalg.eigvalsh(tensor)
     words = ", ".join(f"{value:.3g}" for value in moments)
     if moments[0] <= 0.0:
-        return f"its principal moments {words} kg m2 are not all above 0"
+        return f"its principal moments {words} kg m2 must all be above 0"
     if moments[2] > (moments[0] + moments[1]) + SLACK * moments[2]:
-        return f"its principal moments {words} kg m2 break the triangle inequality"
+        return f"its principal moments {words} kg m2 violate the triangle inequality"
     return ""
 
 
 def solid_of(parts: Sequence[LinkShape]) -> Solid | None:
-    """Return the shapes of a link as one solid of density 1, None when there are none."""
+    """Return the shapes of a link as one solid of density 1, or None without shapes."""
     return together([(part.shape.solid(), part.origin) for part in parts])
 
 
 def repair_inertia(
     mass: float | None, center: Floats | None, tensor: Floats | None, shapes: Sequence[LinkShape]
 ) -> tuple[LinkInertia | None, str]:
-    """Return a physical inertial, and what was done to get it as the end of a sentence; empty when nothing was.
+    """Return a physical inertial, and the repair as the end of a sentence; empty if nothing was repaired.
 
-    A missing mass is that of the shapes at the density of water; a missing or unphysical inertia is that of the shapes,
-    homogeneous, at the mass given; without shapes it is that of a ball of water of this mass.
+    A missing mass is computed from the shapes at the density of water. A missing or unphysical inertia is replaced by
+    that of the homogeneous shapes at the given mass, or without shapes by that of a ball of water of this mass.
 
     Args:
-        mass: as given [kg], None or 0 when missing.
-        center: as given, in the link's frame.
-        tensor: as given, about the centre in the axes of the link.
-        shapes: colliders of the link; what is seen, when it has none.
+        mass: given mass [kg]; None or 0 if missing.
+        center: given centre of mass in the frame of the link.
+        tensor: given inertia about the centre, in the axes of the link.
+        shapes: colliders of the link, or its visuals if it has none.
     """
     solid = solid_of(shapes)
     if not mass:
@@ -64,25 +64,25 @@ def repair_inertia(
         weight = DENSITY * solid.volume
         why = "has no inertial" if mass is None else "has no mass"
         found = LinkInertia(weight, solid.center, solid.inertia(weight))
-        return found, f"{why}; it got {weight:.3g} kg and its inertia from its shape at {DENSITY:g} kg/m3"
-    wrong = "it has none" if tensor is None else unphysical(tensor)
+        return found, f"{why}; mass {weight:.3g} kg and inertia are computed from its shape at {DENSITY:g} kg/m3"
+    wrong = "it has no inertia" if tensor is None else unphysical(tensor)
     place = np.zeros(3) if center is None else center
     if not wrong:
         assert tensor is not None
-        return LinkInertia(mass, place, _exact(tensor)), ""
+        return LinkInertia(mass, place, _round_tensor(tensor)), ""
     source = "its shape" if solid is not None else "a ball of water"
     if solid is None:
         solid = Sphere((mass / DENSITY * 3.0 / (4.0 * np.pi)) ** (1.0 / 3.0)).solid()
     return LinkInertia(
         mass, place, solid.inertia(mass)
-    ), f"got a new inertia, from {source} at its {mass:g} kg: {wrong}"
+    ), f"its inertia is replaced by that of {source} with a mass of {mass:g} kg: {wrong}"
 
 
 def default_inertia(inertial: LinkInertia) -> tuple[LinkShape, str]:
-    """Return what stands for a link whose shape is lost, and what it is.
+    """Return a replacement shape for a link whose shape is missing, and its description.
 
-    It is the homogeneous box that has this inertial; but a cube at the density of water when that box would be lighter
-    than a tenth of it, because its inertia is no more than a placeholder then.
+    The shape is the homogeneous box with this inertial. If that box has less than a tenth of the density of water, the
+    inertia is taken as a placeholder and the shape is a cube at the density of water.
 
     >>> default_inertia(LinkInertia(6000.0, np.zeros(3), 1000.0 * np.eye(3)))[0].shape
     Box(size=(1.0, 1.0, 1.0))
@@ -101,7 +101,7 @@ def default_inertia(inertial: LinkInertia) -> tuple[LinkShape, str]:
 
 
 def find_inertia_problems(inertial: LinkInertia, shapes: Sequence[LinkShape]) -> str:
-    """Return the end of a sentence when an inertia belongs to a body several times the size of the shapes."""
+    """Return the end of a sentence if an inertia fits a body several times the size of the shapes, otherwise ""."""
     if not shapes:
         return ""
     points = np.concatenate([transform_points(part.origin, part.shape.points()) for part in shapes])
@@ -110,7 +110,8 @@ def find_inertia_problems(inertial: LinkInertia, shapes: Sequence[LinkShape]) ->
     if needed <= TOO_LARGE * there:
         return ""
     return (
-        f"has the inertia of a body {needed:.2g} m across, but its shape is {there:.2g} m; check units or placeholders"
+        f"has the inertia of a body {needed:.2g} m across, but its shape is {there:.2g} m across; check units or "
+        f"placeholders"
     )
 
 
@@ -119,8 +120,8 @@ def _sides(mass: float, moments: Floats) -> Floats:
     return np.asarray(np.sqrt(np.maximum(6.0 / mass * (moments.sum() - 2.0 * moments), 1e-6)).round(12))
 
 
-def _exact(tensor: Floats) -> Floats:
-    """Return a tensor that misses the triangle inequality by no rounding error, otherwise as it was."""
+def _round_tensor(tensor: Floats) -> Floats:
+    """Return a tensor without rounding errors in the triangle inequality."""
     moments, axes = np.linalg.eigh(tensor)
     lack = moments[2] - moments[0] - moments[1]
     if lack < -SMALLEST * moments[2]:

@@ -1,4 +1,4 @@
-"""Joints of a URDF."""
+"""Parser of URDF joints."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["read_joint"]
 
 
 def read_joint(reader: UrdfReader, element: Element) -> Joint | None:
-    """Return the joint that the element describes, None when it has a problem."""
+    """Return the joint that an element describes, or None after an error."""
     before = len(reader.found)
     name, kind = element.attributes.get("name", ""), element.attributes.get("type", "")
     if not name:
@@ -25,7 +25,7 @@ def read_joint(reader: UrdfReader, element: Element) -> Joint | None:
         return None
     parent, child = _link(reader, element, "parent"), _link(reader, element, "child")
     if parent and parent == child:
-        reader.say(element, f"joins the link {parent!r} to itself")
+        reader.say(element, f"connects the link {parent!r} to itself")
     origin, axis = reader.origin(element), _axis(reader, element, kind)
     lower, upper, motor = _limits(reader, element, name, kind)
     spring = reader.springs.get(name, {})
@@ -62,14 +62,14 @@ def _axis(reader: UrdfReader, element: Element, kind: str) -> np.ndarray:
         return np.array([1.0, 0.0, 0.0])
     length = float(np.linalg.norm(values))
     if length < 1e-9:
-        if kind not in ("fixed", "floating"):  # exporters write a zero axis for joints that have none
+        if kind not in ("fixed", "floating"):  # exporters write a zero axis for joints without an axis
             reader.say(inner, f'xyz="{inner.attributes["xyz"][:40]}" has no direction')
         return np.array([1.0, 0.0, 0.0])
     return np.asarray(values / length)
 
 
 def _limits(reader: UrdfReader, element: Element, name: str, kind: str) -> tuple[float, float, Motor]:
-    """Return the lowest and highest position, and what its motor can do."""
+    """Return the lower and upper limit of the position, and the motor."""
     inner = reader.one(element, "limit")
     commanded = reader.motors.get(name, "")
     if inner is None:
@@ -84,7 +84,7 @@ def _limits(reader: UrdfReader, element: Element, name: str, kind: str) -> tuple
     if kind not in ("revolute", "prismatic"):
         return -math.inf, math.inf, motor
     if lower > upper:
-        reader.say(inner, f"lower = {lower:g} lies above upper = {upper:g}")
+        reader.say(inner, f"lower = {lower:g} is above upper = {upper:g}")
     elif lower == upper:
         reader.remark("noted", element, f"has the limits {lower:g} to {upper:g}, which allow no motion")
     return lower, upper, motor

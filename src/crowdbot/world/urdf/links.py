@@ -1,4 +1,4 @@
-"""Links of a URDF: shapes, colours, mass."""
+"""Parser of URDF links: shapes, colours and inertial."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")
 
 
 def read_link(reader: UrdfReader, element: Element) -> Link | None:
-    """Return the link that the element describes, None when it has a problem."""
+    """Return the link that an element describes, or None after an error."""
     before = len(reader.found)
     name = element.attributes.get("name", "")
     if not name:
@@ -36,14 +36,14 @@ def read_link(reader: UrdfReader, element: Element) -> Link | None:
         if doubt:
             reader.remark("noted", element, doubt)
     if untouched:
-        collisions = _colliders(reader, element, untouched, collisions, visuals, inertial)
+        collisions = _replace_colliders(reader, element, untouched, collisions, visuals, inertial)
     if unseen:
-        visuals = _seen(reader, element, unseen, visuals, collisions)
+        visuals = _replace_visuals(reader, element, unseen, visuals, collisions)
     return Link(name, inertial, tuple(visuals), tuple(collisions), reader.friction.get(name))
 
 
 def _parts(reader: UrdfReader, element: Element, tag: str) -> tuple[list[LinkShape], list[str]]:
-    """Return the shapes, and why others cannot be had."""
+    """Return the shapes, and the reasons why other shapes are unavailable."""
     parts: list[LinkShape] = []
     lost: list[str] = []
     for inner in element.each(tag):
@@ -51,7 +51,7 @@ def _parts(reader: UrdfReader, element: Element, tag: str) -> tuple[list[LinkSha
         if geometry is None:
             reader.say(inner, "needs <geometry>")
             continue
-        shape = _shape(reader, geometry, touching=tag == "collision")
+        shape = _parse_shape(reader, geometry, touching=tag == "collision")
         origin = reader.origin(inner)
         color = read_color(reader, inner) if tag == "visual" else None
         if isinstance(shape, str):
@@ -61,11 +61,13 @@ def _parts(reader: UrdfReader, element: Element, tag: str) -> tuple[list[LinkSha
     return parts, lost
 
 
-def _shape(reader: UrdfReader, geometry: Element, touching: bool) -> Shape | str | None:
-    """Return the shape, why its mesh cannot be had, or None after saying a problem."""
+def _parse_shape(reader: UrdfReader, geometry: Element, touching: bool) -> Shape | str | None:
+    """Return the shape, the reason why its mesh is unavailable, or None after an error."""
     inner = [child for child in geometry.children if child.tag in SHAPES]
     if len(inner) != 1:
-        reader.say(geometry, f"must hold one of {', '.join(f'<{word}>' for word in SHAPES)}, it holds {len(inner)}")
+        reader.say(
+            geometry, f"must contain one of {', '.join(f'<{word}>' for word in SHAPES)}, it contains {len(inner)}"
+        )
         return None
     element = inner[0]
     if element.tag == "mesh":
@@ -98,7 +100,7 @@ def _length(reader: UrdfReader, element: Element, key: str) -> float | None:
 
 
 def _inertial(reader: UrdfReader, element: Element) -> tuple[float | None, Floats | None, Floats | None]:
-    """Return mass, centre and inertia in the axes of the link, None for what is missing."""
+    """Return mass, centre and inertia in the axes of the link; None for missing values."""
     inner = reader.one(element, "inertial")
     if inner is None:
         return None, None, None
@@ -115,7 +117,7 @@ def _inertial(reader: UrdfReader, element: Element) -> tuple[float | None, Float
     return mass, origin[:3, 3], origin[:3, :3] @ tensor @ origin[:3, :3].T
 
 
-def _colliders(
+def _replace_colliders(
     reader: UrdfReader,
     element: Element,
     lost: list[str],
@@ -123,28 +125,28 @@ def _colliders(
     visuals: list[LinkShape],
     inertial: LinkInertia | None,
 ) -> list[LinkShape]:
-    """Return the colliders of a link that has lost a mesh, and say what takes its place."""
+    """Return the colliders of a link with a missing mesh, and record the replacement."""
     if collisions:
-        place = "its other colliders stand alone"
+        place = "only its other colliders are used"
     elif visuals:
-        collisions, place = [_find_contacts(reader, part) for part in visuals], "what is seen of it takes its place"
+        collisions, place = [_find_contacts(reader, part) for part in visuals], "its visuals are used"
     elif inertial is not None:
         part, what = default_inertia(inertial)
-        collisions, place = [part], f"{what} takes its place"
+        collisions, place = [part], f"{what} is used"
     else:
-        place = "nothing takes its place, the link cannot be touched"
-    reader.remark("replaced", element, f"{_listed(lost)}; in contacts {place}")
+        place = "the link has no colliders"
+    reader.remark("replaced", element, f"{_listed(lost)}; for contacts, {place}")
     return collisions
 
 
-def _seen(
+def _replace_visuals(
     reader: UrdfReader, element: Element, lost: list[str], visuals: list[LinkShape], collisions: list[LinkShape]
 ) -> list[LinkShape]:
-    """Return what is seen of a link that has lost a mesh, and say what takes its place."""
+    """Return the visuals of a link with a missing mesh, and record the replacement."""
     if collisions:
         place = "its colliders are shown instead"
     else:
-        place = "it has no colliders to show instead" + ("" if visuals else ", the link cannot be seen")
+        place = "it has no colliders to show instead" + ("" if visuals else " and the link is invisible")
     reader.remark("replaced", element, f"{_listed(lost)}; {place}")
     return [*visuals, *collisions]
 

@@ -1,4 +1,4 @@
-"""Colours of links."""
+"""Parser of URDF materials."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["read_color", "read_materials"]
 
 
 def read_materials(reader: UrdfReader, root: Element) -> dict[str, Color]:
-    """Return the colours of the materials of the robot, and of those that visuals define with a name, by name."""
+    """Return the colours of the materials of the robot and of named materials in visuals, by name."""
     inside = [m for link in root.each("link") for visual in link.each("visual") for m in visual.each("material")]
     found: dict[str, Color] = {}
     for element in [*root.each("material"), *inside]:
@@ -23,7 +23,7 @@ def read_materials(reader: UrdfReader, root: Element) -> dict[str, Color]:
 
 
 def read_color(reader: UrdfReader, visual: Element) -> Color | None:
-    """Return the colour of a visual; None when it has none, or a texture, which is not read."""
+    """Return the colour of a visual; None without a colour, or with a texture (not supported)."""
     material = reader.one(visual, "material")
     if material is None:
         return None
@@ -34,9 +34,9 @@ def read_color(reader: UrdfReader, visual: Element) -> Color | None:
     if name in reader.materials:
         return reader.materials[name]
     if material.each("texture"):
-        reader.remark("ignored", material, "has a texture, which is not read")
+        reader.remark("ignored", material, "has a texture; textures are not supported")
     elif name:
-        reader.remark("ignored", material, f"names the colour {name[:40]!r}, which is not defined; it stays grey")
+        reader.remark("ignored", material, f"uses the colour {name[:40]!r}, which is not defined; grey is used")
     return None
 
 
@@ -46,6 +46,6 @@ def _color(reader: UrdfReader, material: Element) -> Color | None:
     if element is None or values is None:
         return None
     if values.min() < 0.0 or values.max() > 1.0:
-        reader.remark("repaired", element, f'rgba="{element.attributes["rgba"][:40]}" was cut to numbers from 0 to 1')
+        reader.remark("repaired", element, f'rgba="{element.attributes["rgba"][:40]}" was clipped to 0 to 1')
     red, green, blue, alpha = (min(1.0, max(0.0, float(value))) for value in values)
     return red, green, blue, alpha

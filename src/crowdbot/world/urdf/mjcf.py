@@ -1,7 +1,7 @@
-"""From a robot to MJCF, the XML of MuJoCo.
+"""Conversion of a robot to MJCF, the XML format of MuJoCo.
 
-Links that are fixed to each other become one body; each keeps a site with its name, and its shapes carry its name:
-``link/0``, ``link/1`` touch (geom group 3), ``link/seen/0`` are only seen (group 2).
+Links fixed to each other become one body. Each link has a site with its name; its geoms are named ``link/0``,
+``link/1`` (colliders, geom group 3) and ``link/seen/0`` (visuals, group 2).
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ Floats = NDArray[np.float64]
 BASES = ("free", "planar", "fixed", "kinematic")
 KINDS = ("position", "velocity", "effort")
 REACHED = 0.1
-"""A velocity motor uses its whole force at an error of this share of its largest speed.
+"""A velocity motor reaches its maximum force at an error of this share of its maximum speed.
 
-A stiffer one would follow no better: MuJoCo's ``implicitfast`` corrects velocities for a stiff motor after the contacts
-were solved, so that wheels with a gain of 0.02 run ahead of a growing command by a third and slip (at 5 ms steps).
+A stiffer motor does not follow better: MuJoCo's ``implicitfast`` integrator corrects velocities for stiff motors after
+solving contacts. With a gain of 0.02 and 5 ms steps, wheels run ahead of an increasing command by a third and slip.
 """
 BENT = 0.05
-"""A position motor uses its whole force at this error [rad or m]."""
+"""A position motor reaches its maximum force at this error [rad or m]."""
 
 
 class Mjcf(NamedTuple):
-    """The XML of a robot, the mesh files that it names, and the XML as a tree."""
+    """The MJCF of a robot as text and as a tree, and its mesh files."""
 
     xml: str
     assets: dict[str, bytes]
@@ -56,13 +56,13 @@ class Mjcf(NamedTuple):
 
 @dataclass(frozen=True)
 class BaseServo:
-    """Pulls the base to a twist in its own frame, as drives do; three velocity actuators at the centre of mass.
+    """Actuators of a planar base: three velocity actuators at the centre of mass, in the frame of the base.
 
     Fields:
-        max_force: [N] of ``base_forward`` and ``base_left``.
-        max_torque: [N m] of ``base_turn``.
-        time_constant: in which an error of the velocity shrinks to a third [s]; on a curve the base lags behind by this
-            time times turn rate times speed.
+        max_force: maximum force [N] of ``base_forward`` and ``base_left``.
+        max_torque: maximum torque [N m] of ``base_turn``.
+        time_constant: time in which a velocity error falls to a third [s]. On a curve, the velocity lags by this time
+            times turn rate times speed.
     """
 
     max_force: float
@@ -77,7 +77,7 @@ class BaseServo:
 
 @dataclass
 class _Build:
-    """What the functions below share while they write."""
+    """State shared by the functions below."""
 
     model: RobotModel
     base: str
@@ -106,23 +106,23 @@ def mjcf(
 
     Args:
         model: the robot.
-        base: how its root moves: ``free``; ``planar`` (joints ``base_x``, ``base_y``, ``base_yaw`` in the world);
-            ``fixed``; ``kinematic`` (a mocap body, moved from outside).
-        place: of the root [m].
-        heading: of the root about z [rad].
-        prefix: before every name, so that several robots fit in one world.
-        motors: how joints are commanded, by name: ``position``, ``velocity``, ``effort``, or empty for no motor. Those
-            left out take what the URDF says, otherwise none. Their actuators have the names of the joints.
-        servo: pulls the base to a commanded twist.
+        base: motion of the root: ``free``; ``planar`` (joints ``base_x``, ``base_y``, ``base_yaw`` in the world);
+            ``fixed``; ``kinematic`` (a mocap body).
+        place: position of the root [m].
+        heading: heading of the root about z [rad].
+        prefix: prefix of all names, for several robots in one world.
+        motors: command type of joints by name: ``position``, ``velocity``, ``effort``, or empty for no motor (default:
+            as in the URDF, otherwise no motor). Actuators have the names of their joints.
+        servo: actuators that move the base at a commanded twist.
         contact: MuJoCo's contype and conaffinity of the colliders.
-        inside: whether the robot's own parts collide with each other.
-        floor: add a floor, a light and gravity, to look at the robot alone.
+        inside: whether self-collisions are enabled.
+        floor: add a floor, a light and gravity, to view the robot alone.
 
     Raises:
-        InputError: a word is unknown, or a base that moves has no mass.
+        InputError: an option is unknown, or a moving base has no mass.
     """
     if base not in BASES:
-        raise InputError(f"base = {base!r} must be {', '.join(BASES)}{did_you_mean(base, BASES)}")
+        raise InputError(f"base = {base!r} must be one of {', '.join(BASES)}{did_you_mean(base, BASES)}")
     kinds = _motor_kinds(model, motors or {})
     build = _Build(model, base, prefix, Geoms(model, prefix, contact), [])
     body = _body(build, model.root, frame(place, axis_rotation((0.0, 0.0, 1.0), heading)))
@@ -148,25 +148,25 @@ def mjcf(
 
 def _motor_kinds(model: RobotModel, given: Mapping[str, str]) -> dict[str, str]:
     free = {joint.name: joint for joint in model.movable}
-    kinds = {name: joint.motor.kind for name, joint in free.items() if joint.size == 1 and not _stuck(joint)}
+    kinds = {name: joint.motor.kind for name, joint in free.items() if joint.size == 1 and not _is_locked(joint)}
     for name, kind in given.items():
         if name not in kinds:
-            raise InputError(f"{model.name} has no joint {name!r} that a motor could move{did_you_mean(name, kinds)}")
+            raise InputError(f"{model.name} has no movable joint {name!r}{did_you_mean(name, kinds)}")
         if kind and kind not in KINDS:
-            raise InputError(f"motor of {name!r}: {kind!r} must be {', '.join(KINDS)}, or empty for none")
+            raise InputError(f"motor of {name!r}: {kind!r} must be {', '.join(KINDS)}, or empty for no motor")
         kinds[name] = kind
     return kinds
 
 
-def _stuck(joint: Joint) -> bool:
-    """Whether limits leave a joint no way to move."""
+def _is_locked(joint: Joint) -> bool:
+    """Return whether the limits of a joint allow no motion."""
     return joint.upper - joint.lower < 1e-9
 
 
 def _body(build: _Build, link: str, origin: Floats, joint: Joint | None = None) -> Element:
-    """Return the body of a link with all that is fixed to it, and the bodies that move on it."""
+    """Return the body of a link, including the links fixed to it, and its child bodies."""
     body = Element("body", {"name": build.called(link), **_placed(origin)})
-    fixed, moving = _gathered(build.model, link)
+    fixed, moving = _fixed_links(build.model, link)
     if joint is not None:
         body.children += _joints(build, joint)
     elif build.base == "kinematic":
@@ -193,8 +193,8 @@ def _body(build: _Build, link: str, origin: Floats, joint: Joint | None = None) 
     return body
 
 
-def _gathered(model: RobotModel, link: str) -> tuple[dict[str, Floats], list[tuple[Joint, Floats]]]:
-    """Return the links that are fixed to a link with their frames in it, and the joints that move on them."""
+def _fixed_links(model: RobotModel, link: str) -> tuple[dict[str, Floats], list[tuple[Joint, Floats]]]:
+    """Return the links fixed to a link with their frames in it, and the joints that move relative to them."""
     below: dict[str, list[Joint]] = {}
     for joint in model.joints.values():
         below.setdefault(joint.parent, []).append(joint)
@@ -244,7 +244,7 @@ def _joints(build: _Build, joint: Joint) -> list[Element]:
             for k, w in enumerate("xy")
         ]
         return [*rows, Element("joint", {"name": name, "type": "hinge", "axis": row(joint.axis), **shared})]
-    if _stuck(joint):
+    if _is_locked(joint):
         return []
     kind = "slide" if joint.kind == "prismatic" else "hinge"
     values = {"name": name, "type": kind, "axis": row(joint.axis), **_dynamics(joint)}
@@ -261,7 +261,7 @@ def _dynamics(joint: Joint) -> dict[str, str]:
 
 
 def _mass(build: _Build, fixed: Mapping[str, Floats], joint: Joint | None) -> list[Element]:
-    """Return the inertial of a body: of its links together."""
+    """Return the inertial of a body, from all its links."""
     links = {name: build.model.links[name] for name in fixed}
     part = dataclasses.replace(
         build.model,
@@ -273,7 +273,7 @@ def _mass(build: _Build, fixed: Mapping[str, Floats], joint: Joint | None) -> li
     if whole.mass <= 0.0:
         if joint is None and build.base in ("free", "planar"):
             raise InputError(
-                f"the base {part.root!r} of {build.model.name} has no mass; it can only be fixed or kinematic"
+                f"the base {part.root!r} of {build.model.name} has no mass; use base='fixed' or base='kinematic'"
             )
         return []
     tensor = whole.tensor
@@ -292,7 +292,7 @@ def _excluded(build: _Build) -> list[Element]:
 def _equalities(build: _Build) -> list[Element]:
     rows = []
     for joint in build.model.joints.values():
-        if joint.mimic is None or _stuck(joint) or _stuck(build.model.joints[joint.mimic.joint]):
+        if joint.mimic is None or _is_locked(joint) or _is_locked(build.model.joints[joint.mimic.joint]):
             continue
         line = (joint.mimic.offset, joint.mimic.multiplier, 0.0, 0.0, 0.0)
         names = {"joint1": build.called(joint.name), "joint2": build.called(joint.mimic.joint)}
@@ -304,7 +304,7 @@ def _servo(build: _Build, servo: BaseServo | None) -> list[Element]:
     if servo is None:
         return []
     if build.base not in ("free", "planar"):
-        raise InputError(f"a base servo needs a base that is free or planar, not {build.base}")
+        raise InputError(f"a base servo needs base='free' or base='planar', not {build.base!r}")
     whole = build.model.inertial()
     rows = []
     for name, gear, force, load in (
@@ -334,7 +334,7 @@ def _motors(build: _Build, kinds: Mapping[str, str]) -> list[Element]:
         elif kind == "position":
             stiff = {"kp": row((motor.effort / BENT if finite else 100.0,)), "dampratio": "1"}
             joint = build.model.joints[name]
-            if joint.upper - joint.lower < 1e5:  # a servo does not press against its own stops
+            if joint.upper - joint.lower < 1e5:  # a servo does not push against its own limits
                 stiff |= {"ctrllimited": "true", "ctrlrange": row((joint.lower, joint.upper))}
             rows.append(Element("position", named | stiff))
         else:

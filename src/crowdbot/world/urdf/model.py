@@ -1,4 +1,4 @@
-"""A robot as URDF describes it: links, joints, where everything is, and how heavy it is."""
+"""RobotModel: links and joints of a robot, forward kinematics and mass properties."""
 
 from __future__ import annotations
 
@@ -20,12 +20,14 @@ __all__ = ["JOINT_KINDS", "Joint", "Link", "LinkInertia", "LinkShape", "Mimic", 
 
 Floats = NDArray[np.float64]
 JOINT_KINDS = {"fixed": 0, "revolute": 1, "continuous": 1, "prismatic": 1, "planar": 3, "floating": 7}
-"""Kinds of joints and how many numbers say their position."""
+"""Joint types and their number of position coordinates."""
 
 
 @dataclass(frozen=True, eq=False)
 class LinkInertia:
-    """Mass [kg], its centre ``[3]`` [m], and inertia ``[3, 3]`` [kg m2] about that centre, in the axes of a frame."""
+    """Mass [kg], centre of mass ``[3]`` [m], and inertia ``[3, 3]`` [kg m2] about the centre, in the axes of a
+    frame.
+    """
 
     mass: float
     center: Floats
@@ -34,7 +36,7 @@ class LinkInertia:
 
 @dataclass(frozen=True, eq=False)
 class LinkShape:
-    """A shape of a link: where it is in the link's frame ``[4, 4]``, and its colour (red, green, blue, alpha)."""
+    """A shape of a link: its pose ``[4, 4]`` in the frame of the link, and its colour (red, green, blue, alpha)."""
 
     shape: Shape
     origin: Floats
@@ -44,9 +46,9 @@ class LinkShape:
 
 @dataclass(frozen=True, eq=False)
 class Link:
-    """A rigid part of a robot; what is seen (``visuals``) and what touches (``collisions``) are kept apart.
+    """A rigid part of a robot, with visual shapes (``visuals``) and colliders (``collisions``).
 
-    ``inertial`` is None for a mere frame. ``friction`` is the coefficient of sliding, None when nothing was said.
+    ``inertial`` is None for a link without mass. ``friction`` is the coefficient of sliding friction, or None.
     """
 
     name: str
@@ -58,7 +60,7 @@ class Link:
 
 @dataclass(frozen=True)
 class Mimic:
-    """A joint that follows another: ``multiplier * position + offset``."""
+    """A joint whose position follows another joint: ``multiplier * position + offset``."""
 
     joint: str
     multiplier: float = 1.0
@@ -67,9 +69,9 @@ class Mimic:
 
 @dataclass(frozen=True)
 class Motor:
-    """What drives a joint: largest force [N or N m] and speed [m/s or rad/s], and how it is commanded.
+    """Motor of a joint: maximum force [N or N m], maximum speed [m/s or rad/s] and command type.
 
-    ``kind`` is ``position``, ``velocity`` or ``effort``; empty when the URDF does not say.
+    ``kind`` is ``position``, ``velocity`` or ``effort``; empty if the URDF does not define it.
     """
 
     effort: float = math.inf
@@ -79,19 +81,19 @@ class Motor:
 
 @dataclass(frozen=True, eq=False)
 class Joint:
-    """How a child link moves on its parent.
+    """A joint between a parent and a child link.
 
     Fields:
-        name, kind: see :data:`JOINT_KINDS`.
+        name, kind: name and type, see :data:`JOINT_KINDS`.
         parent, child: names of links.
-        origin: frame ``[4, 4]`` of the joint in the parent; the child's frame at position 0.
-        axis: ``[3]`` unit vector in the joint's frame; the normal of a planar joint.
-        lower, upper: of the position [rad or m]; infinite for joints without limits.
-        motor: its largest force and speed.
-        damping: [N s/m or N m s/rad].
+        origin: frame ``[4, 4]`` of the joint in the parent, which is the frame of the child at position 0.
+        axis: unit vector ``[3]`` in the frame of the joint; the normal of a planar joint.
+        lower, upper: limits of the position [rad or m]; infinite without limits.
+        motor: motor with maximum force and speed.
+        damping: viscous damping [N s/m or N m s/rad].
         friction: dry friction [N or N m].
-        stiffness, rest: of a spring [N/m or N m/rad], and the position where it is relaxed.
-        mimic: the joint it follows.
+        stiffness, rest: spring stiffness [N/m or N m/rad] and equilibrium position.
+        mimic: the joint that this joint follows, or None.
     """
 
     name: str
@@ -111,18 +113,18 @@ class Joint:
 
     @property
     def size(self) -> int:
-        """How many numbers say its position."""
+        """Number of position coordinates."""
         return JOINT_KINDS[self.kind]
 
     def motion(self, position: ArrayLike) -> Floats:
-        """Return the child's frame ``[4, 4]`` in the joint's frame.
+        """Return the frame ``[4, 4]`` of the child in the frame of the joint.
 
         Args:
             position: a number [rad or m]; planar: x, y [m] in the plane and the angle [rad]; floating: x, y, z [m] and
                 the quaternion w, x, y, z.
 
         Raises:
-            InputError: these are not as many finite numbers.
+            InputError: the number of values is wrong, or a value is not finite.
         """
         values = np.atleast_1d(np.asarray(position, dtype=np.float64))
         if values.shape != (max(self.size, 1),) or not np.all(np.isfinite(values)):
@@ -139,12 +141,12 @@ class Joint:
         return np.eye(4) if self.kind == "fixed" else frame(rotation=axis_rotation(self.axis, float(values[0])))
 
     def rest_position(self) -> Floats:
-        """Return the position ``[size]`` in which the child's frame lies on the joint's frame."""
+        """Return the position ``[size]`` at which the frame of the child equals the frame of the joint."""
         return np.array([0.0] * 3 + [1.0] + [0.0] * 3) if self.kind == "floating" else np.zeros(max(self.size, 1))
 
 
 class Remark(NamedTuple):
-    """Something not as it should be: ``replaced``, ``repaired``, ``ignored`` or only ``noted``; and a sentence."""
+    """A remark of the parser: something was ``replaced``, ``repaired``, ``ignored`` or ``noted``."""
 
     kind: str
     text: str
@@ -152,14 +154,14 @@ class Remark(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class RobotModel:
-    """A robot's links and joints, from the root outwards.
+    """Links and joints of a robot as a kinematic tree.
 
     Fields:
-        name: of the robot.
-        links, joints: by name; a parent comes before its children.
-        root: name of the link that is no child.
+        name: name of the robot.
+        links, joints: by name; parents come before their children.
+        root: name of the root link.
         remarks: what was replaced, repaired or ignored.
-        meshes: the files that were read, as the URDF names them, and where they lie.
+        meshes: paths of the mesh files, by their name in the URDF.
 
     >>> from crowdbot.world import read_urdf
     >>> arm = read_urdf(\"\"\"<robot name="arm"><link name="foot"/><link name="arm"><inertial><mass value="2"/>
@@ -179,24 +181,24 @@ class RobotModel:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Every sentence of :attr:`remarks`."""
+        """Sentences of :attr:`remarks`."""
         return tuple(remark.text for remark in self.remarks)
 
     @property
     def mass(self) -> float:
-        """Mass of all links [kg]."""
+        """Total mass [kg]."""
         return sum(link.inertial.mass for link in self.links.values() if link.inertial)
 
     @property
     def movable(self) -> tuple[Joint, ...]:
-        """The joints that are free to move: neither fixed nor following another."""
+        """Joints that move freely, excluding fixed and mimic joints."""
         return tuple(joint for joint in self.joints.values() if joint.kind != "fixed" and joint.mimic is None)
 
     def positions(self, given: Mapping[str, ArrayLike] | None = None) -> dict[str, Floats]:
-        """Return the position of every joint: as given, following, or at rest.
+        """Return the positions of all joints: given, following another joint, or at rest.
 
         Raises:
-            InputError: a name is no joint, or is one that follows another or is fixed.
+            InputError: a name is not a joint, or the joint is fixed or follows another.
         """
         given = given or {}
         for name in given:
@@ -205,7 +207,7 @@ class RobotModel:
             leader = self.joints[name].mimic
             if leader or self.joints[name].kind == "fixed":
                 why = f"follows {leader.joint!r}" if leader else "is fixed"
-                raise InputError(f"the joint {name!r} of {self.name} {why}; its position cannot be given")
+                raise InputError(f"the joint {name!r} of {self.name} {why}; its position cannot be set")
         found: dict[str, Floats] = {}
 
         def resolve(name: str) -> Floats:
@@ -222,13 +224,13 @@ class RobotModel:
         return found
 
     def poses(self, positions: Mapping[str, ArrayLike] | None = None) -> dict[str, Floats]:
-        """Return the frame ``[4, 4]`` of every link in the root's frame.
+        """Return the frames ``[4, 4]`` of all links in the frame of the root.
 
         Args:
-            positions: of joints by name, see :meth:`Joint.motion`; those left out are at rest.
+            positions: joint positions by name, see :meth:`Joint.motion` (default: at rest).
 
         Raises:
-            InputError: a name is no joint that moves, or a position is not finite. Limits are not checked.
+            InputError: a name is not a movable joint, or a position is not finite. Limits are not checked.
         """
         places = self.positions(positions)
         found = {self.root: np.eye(4)}
@@ -237,13 +239,13 @@ class RobotModel:
         return found
 
     def inertial(self, positions: Mapping[str, ArrayLike] | None = None) -> LinkInertia:
-        """Return mass, centre of mass and inertia of the whole in the root's frame."""
+        """Return total mass, centre of mass and inertia in the frame of the root."""
         poses = self.poses(positions)
         bodies = [(link.inertial, poses[name]) for name, link in self.links.items() if link.inertial]
         return _joined(bodies)
 
     def points(self, positions: Mapping[str, ArrayLike] | None = None) -> Floats:
-        """Return points ``[N, 3]`` [m] in the root's frame whose hull holds all colliders; ``[0, 3]`` without any."""
+        """Return points ``[N, 3]`` [m] in the frame of the root whose convex hull contains all colliders."""
         poses = self.poses(positions)
         rows = [
             transform_points(poses[name] @ part.origin, part.shape.points())
@@ -253,7 +255,7 @@ class RobotModel:
         return np.concatenate(rows) if rows else np.zeros((0, 3))
 
     def footprint(self, positions: Mapping[str, ArrayLike] | None = None) -> Floats:
-        """Return the corners ``[N, 2]`` [m] of the convex outline of all colliders from above, in the root's frame.
+        """Return the corners ``[N, 2]`` [m] of the convex outline of all colliders from above, in the root frame.
 
         >>> from crowdbot.world import read_urdf
         >>> box = '<collision><geometry><box size="2 1 1"/></geometry></collision>'
@@ -278,7 +280,7 @@ def _joined(bodies: list[tuple[LinkInertia, Floats]]) -> LinkInertia:
 
 
 def outline(points: Floats) -> Floats:
-    """Return the corners ``[M, 2]`` of the convex hull of points ``[N, 2]``, counter-clockwise from the lowest left."""
+    """Return the convex hull ``[M, 2]`` of points ``[N, 2]``, counter-clockwise from the lowest leftmost point."""
     rows = sorted({(round(float(x), 9), round(float(y), 9)) for x, y in points})
     if len(rows) < 3:
         return np.array(rows).reshape(-1, 2)

@@ -1,4 +1,4 @@
-"""From URDF to a robot: every problem at once, each with its file and line; no robot unless all is right."""
+"""URDF parser: reports all errors with file and line, and returns a robot only if there are none."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["read_urdf"]
 
 MOST_LINKS = 2000
 TOKEN = LinkInertia(0.001, np.zeros(3), np.eye(3) * 1e-7)
-"""Of a link that moves but has neither mass nor shape: a gram, as a ball of 16 mm."""
+"""Inertial of a moving link without mass and shape: a ball of 1 gram with a diameter of 16 mm."""
 
 
 def read_urdf(
@@ -31,27 +31,27 @@ def read_urdf(
     packages: Mapping[str, Path] | None = None,
     colliders: str = "auto",
 ) -> RobotModel:
-    """Read a robot from URDF.
+    """Read a robot from a URDF.
 
-    What can be cured is cured and said in ``remarks``: a mesh that is missing or broken is replaced by the link's other
-    colliders, otherwise by what is seen of the link, otherwise by the box of equal inertia; a missing or unphysical
-    inertia is made of mass and shape.
+    Repairs are listed in ``remarks``. A missing or broken mesh is replaced by the other colliders of the link,
+    otherwise by its visuals, otherwise by the box of equal inertia. A missing or unphysical inertia is computed from
+    mass and shape.
 
     Args:
         source: the path of a URDF file, or the XML text itself (it begins with ``<``).
-        folder: of the robot; no file outside it is read. Default: see :func:`crowdbot.world.urdf.robot_folder`.
-        packages: folders of ROS packages by name, for ``package://name/...``; files in them may be read too.
-        colliders: how meshes become convex: ``auto``, ``hull`` or ``pieces``, see
+        folder: robot folder; files outside it are not read (default: :func:`crowdbot.world.urdf.robot_folder`).
+        packages: ROS package folders by name, for ``package://name/...``; files in them may be read, too.
+        colliders: conversion of meshes to convex shapes: ``auto``, ``hull`` or ``pieces``, see
             :func:`crowdbot.world.urdf.with_pieces`.
 
     Raises:
-        RobotError: with every problem found, one sentence each, in the order of the lines.
+        RobotError: the URDF has errors; the exception lists all of them in line order.
         MissingExtra: the URDF names meshes and trimesh is not installed.
 
     >>> read_urdf("<robot name='r'><link name='a'/><link name='b'/></robot>")
     Traceback (most recent call last):
     crowdbot.core.errors.RobotError: urdf:1: <robot> the links 'a' and 'b' are both the root: no joint has them as a \
-child; exactly one link must be the root
+    child; exactly one link must be the root
     """
     if colliders not in ("auto", "hull", "pieces"):
         raise InputError(f"colliders = {colliders!r} must be auto, hull or pieces")
@@ -79,7 +79,7 @@ def _check_kind(reader: UrdfReader, root: Element) -> None:
 
 
 def _xacro_line(root: Element) -> int | None:
-    """Return the line of the first xacro element or expression, None in a file without one."""
+    """Return the line of the first xacro element or expression, or None."""
     waiting = [root]
     while waiting:
         element = waiting.pop()
@@ -107,31 +107,31 @@ def _robot(reader: UrdfReader, root: Element) -> RobotModel:
         if joint is not None and reader.new(element, joint.name, joints):
             joints[joint.name], lines[joint.name] = joint, element.line
     if not root.each("link"):
-        reader.say(root, "contains no <link>; a robot has at least one")
+        reader.say(root, "contains no <link>; a robot needs at least one")
     if not reader.found:
         _check_tree(reader, root, links, joints, lines)
         _check_mimics(reader, joints, lines)
     reader.finish()
     first = next(iter(links.keys() - {joint.child for joint in joints.values()}))
-    ordered = _outwards(first, joints)
+    ordered = _sort_outwards(first, joints)
     chain = [first, *(joint.child for joint in ordered.values())]
-    kept = _weighed(reader, {key: links[key] for key in chain}, ordered)
+    kept = _add_missing_mass(reader, {key: links[key] for key in chain}, ordered)
     return RobotModel(name, kept, ordered, first, tuple(reader.remarks), dict(reader.files))
 
 
 def _check_tree(
     reader: UrdfReader, root: Element, links: dict[str, Link], joints: dict[str, Joint], lines: dict[str, int]
 ) -> None:
-    """Say what keeps links and joints from being one tree."""
+    """Record errors if links and joints do not form one tree."""
     above: dict[str, Joint] = {}
     for joint in joints.values():
         at = Element("joint", {"name": joint.name}, line=lines[joint.name])
         for role, name in (("parent", joint.parent), ("child", joint.child)):
             if name not in links:
-                reader.say(at, f"has the {role} {name!r}, which is no link{did_you_mean(name, links)}")
+                reader.say(at, f"has the {role} {name!r}, which is not a link{did_you_mean(name, links)}")
         if joint.child in above:
             other = above[joint.child].name
-            reader.say(at, f"moves the link {joint.child!r}, which {other!r} already moves: the links form a loop")
+            reader.say(at, f"moves the link {joint.child!r}, which is also moved by {other!r}: the links form a loop")
         above[joint.child] = joint
     if reader.found:
         return
@@ -161,7 +161,7 @@ def _check_mimics(reader: UrdfReader, joints: dict[str, Joint], lines: dict[str,
         while leader.mimic:
             name = leader.mimic.joint
             if name not in joints:
-                reader.say(at, f"mimics {name!r}, which is no joint{did_you_mean(name, joints)}")
+                reader.say(at, f"mimics {name!r}, which is not a joint{did_you_mean(name, joints)}")
                 break
             if name in seen:
                 reader.say(at, f"mimics itself through {name!r}")
@@ -169,11 +169,13 @@ def _check_mimics(reader: UrdfReader, joints: dict[str, Joint], lines: dict[str,
             leader = joints[name]
             seen.add(name)
         if joint.mimic and not leader.mimic and (leader.size != 1 or joint.size != 1):
-            reader.say(at, f"mimics {leader.name!r}, but only revolute, continuous and prismatic joints can")
+            reader.say(
+                at, f"mimics {leader.name!r}; only revolute, continuous and prismatic joints can mimic each other"
+            )
 
 
-def _weighed(reader: UrdfReader, links: dict[str, Link], joints: dict[str, Joint]) -> dict[str, Link]:
-    """Return the links, where what moves on a joint and has no mass at all, nor anything fixed to it, got a little."""
+def _add_missing_mass(reader: UrdfReader, links: dict[str, Link], joints: dict[str, Joint]) -> dict[str, Link]:
+    """Return the links, with a small inertial for moving links that have no mass and no fixed links with mass."""
     robot_body: dict[str, str] = {}
     heavy: set[str] = set()
     for name, link in links.items():
@@ -186,13 +188,16 @@ def _weighed(reader: UrdfReader, links: dict[str, Link], joints: dict[str, Joint
         name = joint.child
         if joint.kind != "fixed" and name not in heavy:
             found[name] = dataclasses.replace(links[name], inertial=TOKEN)
-            text = f"{reader.place}: <link> {name!r} moves but has neither mass nor shape; it got {TOKEN.mass:g} kg"
+            text = (
+                f"{reader.place}: <link> {name!r} moves but has neither mass nor shape; its mass is set to "
+                f"{TOKEN.mass:g} kg"
+            )
             reader.remarks.append(Remark("repaired", text))
     return found
 
 
-def _outwards(first: str, joints: dict[str, Joint]) -> dict[str, Joint]:
-    """Return the joints so that a parent comes before its children."""
+def _sort_outwards(first: str, joints: dict[str, Joint]) -> dict[str, Joint]:
+    """Return the joints sorted from the root outwards."""
     below: dict[str, list[Joint]] = {}
     for joint in joints.values():
         below.setdefault(joint.parent, []).append(joint)

@@ -1,4 +1,4 @@
-"""What a robot's URDF holds and what had to be done to it, as plain values for people and programs."""
+"""Report of the content and the remarks of a URDF as plain values."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def describe(model: RobotModel, positions: Mapping[str, float] | None = None) ->
 
     Args:
         model: the robot.
-        positions: of joints, for footprint and inertia; those left out are at rest.
+        positions: joint positions for footprint and inertia (default: at rest).
 
     >>> from crowdbot.world import read_urdf
     >>> found = describe(read_urdf("<robot name='r'><link name='a'><visual><geometry><sphere radius='1'/></geometry>"

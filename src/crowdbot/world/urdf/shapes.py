@@ -29,7 +29,7 @@ class Solid(NamedTuple):
     moments: Floats
 
     def inertia(self, mass: float) -> Floats:
-        """Return the inertia ``[3, 3]`` [kg m2] about the centre when the whole has ``mass`` [kg].
+        """Return the inertia ``[3, 3]`` [kg m2] about the centre for a total ``mass`` [kg].
 
         >>> Box((1.0, 1.0, 1.0)).solid().inertia(6.0).tolist()
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
@@ -38,7 +38,7 @@ class Solid(NamedTuple):
 
 
 def together(parts: Sequence[tuple[Solid, Floats]]) -> Solid | None:
-    """Return solids in frames ``[4, 4]`` as one, None when they have no volume; where they overlap, both count."""
+    """Return solids in frames ``[4, 4]`` as one solid, or None without volume; overlaps count twice."""
     volume = sum(solid.volume for solid, _ in parts)
     if volume <= 0.0:
         return None
@@ -64,7 +64,7 @@ class Box:
         return Solid(volume, np.zeros(3), np.diag([x * x, y * y, z * z]) * (volume / 12.0))
 
     def points(self) -> Floats:
-        """Return points ``[N, 3]`` whose convex hull holds the shape."""
+        """Return points ``[N, 3]`` whose convex hull contains the shape."""
         signs = np.array([[a, b, c] for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)])
         return np.asarray(signs * np.array(self.size) / 2.0)
 
@@ -91,7 +91,7 @@ class Cylinder:
 
 @dataclass(frozen=True)
 class Sphere:
-    """A ball around its origin; radius in m."""
+    """A sphere around its origin; radius in m."""
 
     radius: float
 
@@ -101,13 +101,13 @@ class Sphere:
         return Solid(volume, np.zeros(3), np.eye(3) * (volume * self.radius**2 / 5.0))
 
     def points(self) -> Floats:
-        """Return points ``[N, 3]`` on the ball."""
+        """Return points ``[N, 3]`` whose convex hull approximates the sphere."""
         return _ball(self.radius)
 
 
 @dataclass(frozen=True)
 class Capsule:
-    """A cylinder along z with half balls at its ends; ``length`` [m] is that of the cylinder alone."""
+    """A cylinder along z with hemispheres at its ends; ``length`` [m] excludes the hemispheres."""
 
     radius: float
     length: float
@@ -115,26 +115,26 @@ class Capsule:
     def solid(self) -> Solid:
         """Return volume, centre and moments."""
         tube, ball = Cylinder(self.radius, self.length).solid(), Sphere(self.radius).solid()
-        # a half ball has its centre 3/8 r from the flat side; both halves moved apart by the length
+        # the centre of a hemisphere is 3/8 r from its flat side; both are offset by half the length
         reach = self.length / 2.0
         along = ball.moments[2, 2] + ball.volume * (reach * reach + 2.0 * reach * 3.0 / 8.0 * self.radius)
         side = tube.moments[0, 0] + ball.moments[0, 0]
         return Solid(tube.volume + ball.volume, np.zeros(3), np.diag([side, side, tube.moments[2, 2] + along]))
 
     def points(self) -> Floats:
-        """Return points ``[N, 3]`` on the two end balls."""
+        """Return points ``[N, 3]`` on the two hemispheres."""
         ball = _ball(self.radius)
         return np.concatenate([ball + (0.0, 0.0, z) for z in (-self.length / 2.0, self.length / 2.0)])
 
 
 class ConvexPiece(NamedTuple):
-    """A closed convex body: vertices ``[N, 3]`` [m] and triangles ``[M, 3]`` seen counter-clockwise from outside."""
+    """A closed convex body: vertices ``[N, 3]`` [m] and triangles ``[M, 3]``, counter-clockwise from outside."""
 
     vertices: Floats
     faces: NDArray[np.int64]
 
     def solid(self) -> Solid:
-        """Return volume, centre and moments, from the tetrahedra between the triangles and the middle."""
+        """Return volume, centre and moments, from the tetrahedra between the triangles and the centre."""
         middle = self.vertices.mean(axis=0)
         a, b, c = (self.vertices[self.faces[:, k]] - middle for k in range(3))
         volumes = np.einsum("ni,ni->n", a, np.cross(b, c)) / 6.0
@@ -149,13 +149,13 @@ class ConvexPiece(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """A mesh that was read from a file, scaled to metres.
+    """A mesh from a file, scaled to metres.
 
     Fields:
-        source: the file as the URDF names it.
-        vertices: ``[N, 3]`` [m].
-        faces: ``[M, 3]`` int.
-        pieces: the convex bodies that stand for it in contacts; empty for a mesh that is only seen.
+        source: file name in the URDF.
+        vertices: vertices ``[N, 3]`` [m].
+        faces: triangles ``[M, 3]`` (int).
+        pieces: convex bodies for contacts; empty for a visual mesh.
     """
 
     source: str
@@ -164,7 +164,7 @@ class Mesh:
     pieces: tuple[ConvexPiece, ...] = ()
 
     def solid(self) -> Solid:
-        """Return volume, centre and moments of its convex pieces; of none, those of its bounding box."""
+        """Return volume, centre and moments of its convex pieces, or of its bounding box without pieces."""
         found = together([(piece.solid(), np.eye(4)) for piece in self.pieces])
         if found is not None:
             return found
@@ -174,7 +174,7 @@ class Mesh:
         return Solid(box.volume, (low + high) / 2.0, box.moments)
 
     def points(self) -> Floats:
-        """Return the vertices ``[N, 3]`` of the convex pieces, or of the mesh when it has none."""
+        """Return the vertices ``[N, 3]`` of the convex pieces, or of the mesh without pieces."""
         return np.concatenate([piece.vertices for piece in self.pieces]) if self.pieces else self.vertices
 
 

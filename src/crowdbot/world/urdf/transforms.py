@@ -1,4 +1,4 @@
-"""Rotations and frames: 4 x 4 matrices that take points of a frame into its parent."""
+"""Rotations and frames; a frame is a 4 x 4 matrix that transforms points to its parent frame."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 
 
 def roll_pitch_yaw(roll: float, pitch: float, yaw: float) -> Floats:
-    """Return the rotation ``[3, 3]`` of URDF: about the fixed x, then y, then z axis [rad].
+    """Return the rotation ``[3, 3]`` of URDF angles [rad]: about the fixed x, then y, then z axis.
 
     >>> roll_pitch_yaw(0.0, 0.0, math.pi / 2).round(3).tolist()
     [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [-0.0, 0.0, 1.0]]
@@ -29,7 +29,7 @@ def roll_pitch_yaw(roll: float, pitch: float, yaw: float) -> Floats:
 
 
 def frame(place: ArrayLike = (0.0, 0.0, 0.0), rotation: Floats | None = None) -> Floats:
-    """Return the frame ``[4, 4]`` at ``place`` ``[3]`` [m] with a rotation ``[3, 3]``.
+    """Return the frame ``[4, 4]`` with position ``place`` ``[3]`` [m] and a rotation ``[3, 3]``.
 
     >>> frame((1.0, 2.0, 3.0))[:3, 3].tolist()
     [1.0, 2.0, 3.0]
@@ -53,13 +53,14 @@ def axis_rotation(axis: ArrayLike, angle: float) -> Floats:
 
 
 def transform_points(matrix: Floats, points: Floats) -> Floats:
-    """Return points ``[N, 3]`` of a frame ``[4, 4]`` in its parent."""
+    """Transform points ``[N, 3]`` from a frame ``[4, 4]`` to its parent."""
     return np.asarray(points @ matrix[:3, :3].T + matrix[:3, 3])
 
 
 def across(axis: ArrayLike) -> Floats:
-    """Return the rotation ``[3, 3]`` that brings z to a unit ``axis`` the shortest way; its columns x and y span the
-    plane of a planar joint.
+    """Return the shortest rotation ``[3, 3]`` from z to a unit ``axis``.
+
+    Its columns x and y span the plane of a planar joint.
 
     >>> across((0.0, 0.0, 1.0)).tolist()
     [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
@@ -93,7 +94,7 @@ def quaternion(rotation: Floats) -> Floats:
 
 
 def from_quaternion(wxyz: ArrayLike) -> Floats:
-    """Return the rotation ``[3, 3]`` of a quaternion ``[w, x, y, z]`` of any length above 0."""
+    """Return the rotation ``[3, 3]`` of a quaternion ``[w, x, y, z]`` of any positive norm."""
     w, x, y, z = np.asarray(wxyz, dtype=np.float64) / np.linalg.norm(wxyz)
     return np.array(
         [

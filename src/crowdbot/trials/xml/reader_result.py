@@ -1,0 +1,68 @@
+"""Reader result: the elements that were read from an XML file, and every problem that was found."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any, NamedTuple
+
+from crowdbot.core import Element, TrialError
+
+__all__ = ["ReaderProblem", "ReaderResult"]
+
+MOST_PROBLEMS = 100
+
+
+class ReaderProblem(NamedTuple):
+    """A problem of an XML element: its line, its tag, and the end of a sentence about it."""
+
+    line: int
+    tag: str
+    sentence: str
+
+
+class ReaderResult:
+    """The elements that were read from an XML file, and every problem that was found.
+
+    Args:
+        place: name of the file for messages.
+        root: root of the XML tree; problems of unknown elements are reported there.
+
+    Attributes:
+        value: the object of the root element, partial if there is a problem in it.
+        elements: all objects, inner ones before outer ones.
+        problems: of the elements, in the order in which they were found.
+    """
+
+    def __init__(self, place: str, root: Element) -> None:
+        self.place, self.root = place, root
+        self.value: Any = None
+        self.elements: list[Any] = []
+        self.problems: list[ReaderProblem] = []
+        self._sources: dict[int, Element] = {}
+
+    def add_element(self, made: Any, source: Element) -> None:
+        """Add the object that was made of an XML element."""
+        self.elements.append(made)  # keeps the object alive, so its id stays unique
+        self._sources[id(made)] = source
+
+    def add_problem(self, source: Element, sentence: str) -> None:
+        """Add a problem of an XML element."""
+        self.problems.append(ReaderProblem(source.line, source.tag[:40], sentence))
+
+    def report(self, made: Any, sentence: str) -> None:
+        """Add a problem of an object."""
+        self.add_problem(self._sources.get(id(made), self.root), sentence)
+
+    def new_sentences(self, known: Collection[ReaderProblem]) -> list[str]:
+        """Return a sentence for every problem that is not known."""
+        return [f"<{one.tag}> {one.sentence}" for one in self.problems if one not in known]
+
+    def raise_problems(self) -> None:
+        """Raise :class:`TrialError` with every problem in the order of the lines; return if there is none."""
+        rows = sorted(self.problems, key=lambda row: row.line)
+        sentences = [f"{self.place}:{line}: <{tag}> {sentence}" for line, tag, sentence in rows]
+        if len(sentences) > MOST_PROBLEMS:
+            more = len(sentences) - MOST_PROBLEMS
+            sentences = [*sentences[:MOST_PROBLEMS], f"{self.place}: and {more} more problems"]
+        if sentences:
+            raise TrialError(*sentences)
