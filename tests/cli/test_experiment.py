@@ -235,7 +235,7 @@ def test_a_session_that_is_killed_and_left_comes_to_the_same_end(tmp_path, capsy
     time.sleep(0.2)
     program.process.send_signal(signal.SIGINT)
     assert program.over() == 130
-    assert "go on with --resume" in program.said.read_text()
+    assert "continue with --resume" in program.said.read_text()
     words = ["experiment", "run", folder, "--participant", 1, "--out", out, "--answers", path, "--resume"]
     status, said = _json(capsys, *words)
     assert (status, said["session"]) == (0, "done")

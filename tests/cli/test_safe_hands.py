@@ -61,7 +61,8 @@ def written(folder):
 def test_new_on_a_full_disk_is_one_sentence_and_leaves_no_file(words, tmp_path):
     done = run_limited(tmp_path, 200, "new", *words)
     assert done.returncode == 2
-    assert done.stderr.endswith("cannot be written: File too large\n")
+    assert done.stderr.startswith("crowdbot: cannot write ")
+    assert done.stderr.endswith(": File too large\n")
     assert done.stderr.count("\n") == 1
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
 
@@ -79,15 +80,15 @@ def test_a_full_disk_is_one_sentence_that_names_the_file(folder, command):
     limit, words, what = FULL[command]
     done = run_limited(folder, limit, *words, "--out", "out")
     line = last_line(done)
-    assert line.startswith(f"crowdbot: {what}")
-    assert line.endswith(" cannot be written: File too large")
+    assert line.startswith(f"crowdbot: cannot write {what}")
+    assert line.endswith(": File too large")
     assert written(folder) == set()
 
 
 @pytest.mark.sweep
 def test_a_full_disk_at_the_last_plot_names_the_folder(folder):
     assert last_line(run_limited(folder, 20_000, *PREDICT, "--out", "out")) == (
-        "crowdbot: out cannot be written: File too large"
+        "crowdbot: cannot write out: File too large"
     )
     assert not any(name.endswith(".part") for name in written(folder))
 
@@ -104,8 +105,7 @@ def test_a_place_that_cannot_be_written_is_one_sentence(folder, monkeypatch, cap
     before = (folder / "walk.txt").read_bytes()
     assert main([*words, "--out", place]) == 2
     line = capsys.readouterr().err.splitlines()[-1]
-    assert line.startswith(f"crowdbot: {place}")
-    assert "written" in line
+    assert line.startswith((f"crowdbot: cannot write {place}", f"crowdbot: {place} is a file"))
     assert written(folder) == set()
     assert (folder / "walk.txt").read_bytes() == before
 
@@ -126,9 +126,7 @@ def test_an_experiment_without_an_input_waits_in_one_sentence(folder, streams):
     done = subprocess.run(
         command, shell=True, cwd=folder, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(SOURCES)}
     )
-    assert last_line(done).endswith(
-        "crowdbot: the input has ended where welcome.age was waited for; go on later with --resume"
-    )
+    assert last_line(done).endswith("crowdbot: the input ended before welcome.age; continue later with --resume")
     assert "session.jsonl" in written(folder)
 
 
@@ -146,7 +144,7 @@ def test_commands_end_well_with_closed_streams(folder, words, closed):
 def test_questions_are_printed_to_an_output_of_ascii(folder):
     words = ("experiment", "run", "robot-speed", "--participant", "1", "--out", "out")
     done = run(folder, "-m", "crowdbot", *words, text="30\n", PYTHONIOENCODING="ascii")
-    assert last_line(done).startswith("crowdbot: the input has ended where ")
+    assert last_line(done).startswith("crowdbot: the input ended before ")
     assert done.stdout.isascii()
     assert "How often do you meet robots?" in done.stdout
 

@@ -36,6 +36,6 @@ def test_a_damaged_result_is_named(tmp_path):
 
 
 def test_a_full_disk_leaves_no_half_written_result(tmp_path):
-    with pytest.raises(InputError, match=r"0\.npz cannot be written: No space left on device"):
+    with pytest.raises(InputError, match=r"cannot write .*0\.npz: No space left on device"):
         run(tmp_path, full)
     assert list((tmp_path / "deep").iterdir()) == []

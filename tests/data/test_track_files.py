@@ -120,17 +120,17 @@ def test_writing_is_all_or_nothing(tmp_path, monkeypatch):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setitem(save.__globals__["_WRITERS"], "csv", broken)
-    with pytest.raises(DataError, match="cannot be written: No space left on device"):
+    with pytest.raises(DataError, match="cannot write .*: No space left on device"):
         save(rich(), path)
     assert path.read_text() == "precious"
     assert [file.name for file in tmp_path.iterdir()] == ["tracks.csv"]
 
 
 def test_where_nothing_can_be_written(tmp_path):
-    with pytest.raises(DataError, match="cannot be written: No such file or directory"):
+    with pytest.raises(DataError, match="cannot write .*: No such file or directory"):
         save(rich(), tmp_path / "missing" / "tracks.csv")
     (tmp_path / "folder.csv").mkdir()
-    with pytest.raises(DataError, match="cannot be written"):
+    with pytest.raises(DataError, match="cannot write"):
         save(rich(), tmp_path / "folder.csv")
     with pytest.raises(InputError, match=r"no format has the suffix '\.xls'; suffixes are \.txt, \.csv"):
         save(rich(), tmp_path / "tracks.xls")

@@ -137,9 +137,9 @@ def _wrong(tmp_path: Path) -> list[str]:
         "e.xml:10: <trial> has no attribute 'sead', did you mean 'seed'?",
         "e.xml:11: <trial> source='broken.xml': broken.xml:1: <trial> duration=\"-1\" must be above 0 s",
         "e.xml:11: <trial> source='broken.xml': broken.xml:2: <crowd> unknown crowd model 'orka', did you mean 'orca'?",
-        "e.xml:12: <trial> source='../outside.xml': the trial '../outside.xml' lies outside the folder",
+        "e.xml:12: <trial> source='../outside.xml': the trial '../outside.xml'",
         "e.xml:15: <before> has both a text and a file; give one of them",
-        "e.xml:17: <trial> name 'x' is taken by another trial of this block; give each its own",
+        "e.xml:17: <trial> name 'x' is already used by another trial of this block; names must differ",
         "e.xml:18: <after> is empty; it needs a text, a file or a question",
     ],
 )
@@ -163,10 +163,10 @@ def test_what_is_wrong_with_the_whole_is_said_too(tmp_path: Path) -> None:
         load_experiment(tmp_path / "e.xml")
     words = "\n".join(found.value.problems)
     assert "e.xml:2: <instructions> file='helo.txt' does not exist" in words
-    assert "e.xml:4: <block> name 'main' is taken by another block" in words
+    assert "e.xml:4: <block> name 'main' is already used by another block" in words
     assert "e.xml:5: <after> name 'hello' is already used by a screen outside this trial" in words
-    assert "e.xml:6: <after> name 'b' is taken by another screen of this trial" in words
-    assert "e.xml:8: <ending> name 'hello' is taken by another screen" in words
+    assert "e.xml:6: <after> name 'b' is already used by another screen of this trial" in words
+    assert "e.xml:8: <ending> name 'hello' is already used by another screen" in words
     assert len(found.value.problems) == 5
     many = [TrialEntry(name=f"t{k}", source="frontal") for k in range(11)]
     with pytest.raises(TrialError, match="has 11000 trials per participant, the maximum is 10000"):

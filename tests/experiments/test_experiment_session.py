@@ -365,7 +365,7 @@ def test_nothing_is_written_for_a_wrong_experiment_or_participant(tmp_path: Path
         SessionRunner(EXPERIMENT, 0, tmp_path, Ticking())
     file = tmp_path / "file"
     file.write_text("x")
-    with pytest.raises(EpisodeError, match="cannot be written"):
+    with pytest.raises(EpisodeError, match="cannot write"):
         SessionRunner(EXPERIMENT, 1, file, Ticking())
     assert sorted(tmp_path.iterdir()) == [file]
 

@@ -83,7 +83,9 @@ def test_participants_are_numbered_from_1_to_the_last() -> None:
     made, block = experiment("fixed", 2, participants=3)
     assert orders(made, block, 1) == orders(made, block, 3) == [[0, 1]]
     for nobody in (0, 4):
-        with pytest.raises(InputError, match=f"participant {nobody} is not one of the experiment 'made', 1 to 3"):
+        with pytest.raises(
+            InputError, match=f"no participant {nobody} in the experiment 'made'; participants are 1 to 3"
+        ):
             orders(made, block, nobody)
     endless, block = experiment("fixed", 2)
     assert orders(endless, block, 100_000) == [[0, 1]]
@@ -92,7 +94,7 @@ def test_participants_are_numbered_from_1_to_the_last() -> None:
 
 
 def test_a_square_of_nothing_is_refused() -> None:
-    with pytest.raises(InputError, match="a square of 0 conditions is none"):
+    with pytest.raises(InputError, match="a Latin square of 0 conditions is not possible"):
         williams(0)
 
 

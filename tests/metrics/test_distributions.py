@@ -85,5 +85,5 @@ def test_wrong_shapes_are_said() -> None:
         earth_mover_distance(np.zeros((2, 1, 2)), np.zeros((3, 1, 2)))
     with pytest.raises(InputError, match="at least one"):
         nearest_neighbor_accuracy(np.zeros((0, 1, 2)), np.zeros((0, 1, 2)))
-    with pytest.raises(InputError, match="do not fit"):
+    with pytest.raises(InputError, match="do not match"):
         mode_shares(np.zeros((2, 1, 2)), np.zeros((2, 2, 2)))

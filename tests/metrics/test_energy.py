@@ -117,5 +117,5 @@ def test_who_knows_the_distribution_scores_best(over: str) -> None:
 
 
 def test_an_unknown_choice_is_refused() -> None:
-    with pytest.raises(InputError, match="energy score over 'pathe', did you mean 'path'.: it is steps or path"):
+    with pytest.raises(InputError, match="energy score: over = 'pathe' must be steps or path, did you mean 'path'"):
         energy_score(*case(0), over="pathe")

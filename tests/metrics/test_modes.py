@@ -43,5 +43,5 @@ def test_a_batch_is_each_alone() -> None:
     ],
 )  # fmt: skip
 def test_shapes_that_do_not_fit_are_refused(drawn: tuple[int, ...], modes: tuple[int, ...]) -> None:
-    with pytest.raises(InputError, match="do not fit"):
+    with pytest.raises(InputError, match="do not match"):
         mode_shares(np.zeros(drawn), np.zeros(modes))

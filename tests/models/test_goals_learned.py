@@ -183,7 +183,10 @@ def slow_clock():
     ("make", "says"),
     [
         (LearnedDestinations.learn, "there is no recording to learn from"),
-        (lambda: LearnedDestinations.learn(street(), slow_clock()), "street has steps of 0.4 s and slow of 1 s"),
+        (
+            lambda: LearnedDestinations.learn(street(), slow_clock()),
+            "street has steps of 0.4 s and slow has steps of 1 s",
+        ),
         (lambda: LearnedDestinations.learn(dataclasses.replace(street(), units="px")), "street is in pixels"),
         (lambda: LearnedDestinations.learn(street(), lookahead=0.0), "lookahead = 0.0 s must be finite"),
         (lambda: LearnedDestinations.learn(street(), width=-1.0), "width = -1.0 m must be finite"),

@@ -76,7 +76,7 @@ def test_run_refuses_to_overwrite(tmp_path: Path, capsys: pytest.CaptureFixture[
     capsys.readouterr()
     assert main([*words, "--seed", "7"]) == 2
     said = capsys.readouterr().err
-    assert said == f"crowdbot: {file} already exists; give another place, or --force (force=True) to overwrite it\n"
+    assert said == f"crowdbot: {file} already exists; use another path, or --force (force=True) to overwrite it\n"
     assert file.read_bytes() == before
     assert main([*words, "--seed", "7", "--force"]) == 0
     assert read_episode(file).seed == 7
@@ -92,7 +92,7 @@ def test_branch_and_export_refuse_to_overwrite(tmp_path: Path, capsys: pytest.Ca
     ):
         assert main(words) == 0
         assert main(words) == 2
-        assert "already exists; give another place, or --force" in capsys.readouterr().err
+        assert "already exists; use another path, or --force" in capsys.readouterr().err
         assert main([*words, "--force"]) == 0
     assert sorted(os.listdir(tmp_path)) == ["a", "b", "people.csv"]
 
@@ -102,7 +102,7 @@ def test_images_are_not_overwritten(tmp_path: Path, name: str) -> None:
     image = RenderedImage(0.0, np.zeros((16, 16, 3), np.uint8))
     files, _ = ImageWriter(tmp_path / name, film=False).write([image])
     before = files[0].read_bytes()
-    with pytest.raises(InputError, match="already exists; give another place, or --force"):
+    with pytest.raises(InputError, match="already exists; use another path, or --force"):
         ImageWriter(tmp_path / name, film=False)
     assert files[0].read_bytes() == before
     again, _ = ImageWriter(tmp_path / name, film=False, force=True).write([image])

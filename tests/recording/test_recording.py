@@ -136,7 +136,7 @@ def test_the_same_run_writes_the_same_file_over_an_old_one(recorded: tuple[Path,
     target = tmp_path / "a" / "b" / "mine.mcap"
     target.parent.mkdir(parents=True)
     target.write_text("old")
-    with pytest.raises(InputError, match=r"mine\.mcap already exists; give another place, or --force"):
+    with pytest.raises(InputError, match=r"mine\.mcap already exists; use another path, or --force"):
         run(TRIAL, out=target)
     assert (target.read_text(), os.listdir(target.parent)) == ("old", ["mine.mcap"])
     run(TRIAL, out=target, force=True)
@@ -233,7 +233,7 @@ def test_a_place_that_cannot_be_written_is_said(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("x")
     with pytest.raises(InputError, match=r"file is a file; give a folder for the episode"):
         run(TRIAL, out=tmp_path / "file")
-    with pytest.raises(EpisodeError, match=r"episode.mcap cannot be written: Not a directory; give another place"):
+    with pytest.raises(EpisodeError, match=r"cannot write .*episode.mcap: Not a directory; use another file"):
         run(TRIAL, out=tmp_path / "file" / "deeper")
     (tmp_path / "folder.mcap").mkdir()
     with pytest.raises(InputError, match=r"folder.mcap is a folder; give a file name"):

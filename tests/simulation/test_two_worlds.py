@@ -257,7 +257,7 @@ WRONG = {
         r"link=\"head\" is not a link of robot 'pepper', did you mean 'Head'",
     ),
     "a link of nobody": ('robot="pepper" link="Head"', 'link="Head"', r"link=\"Head\" needs robot"),
-    "a camera twice": ('camera name="head"', 'camera name="door"', r"name 'door' is taken by another camera"),
+    "a camera twice": ('camera name="head"', 'camera name="door"', r"name 'door' is already used by another camera"),
     "a rate of a type": (
         'sensor-rates="nearest" ',
         'sensor-rates="exact" ',

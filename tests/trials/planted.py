@@ -158,7 +158,9 @@ KINDS = (
         "<camera> link=.Haed. is not a link .*'Head'",
         ("pepper", 'robot="pep"'),
     ),
-    Kind('camera name="above"', 'camera name="head"', "<camera> name 'head' is taken by another camera", back=-1),
+    Kind(
+        'camera name="above"', 'camera name="head"', "<camera> name 'head' is already used by another camera", back=-1
+    ),
     # places
     Kind('points="-1,4 1,4 1,5 -1,5"', 'points="-1,4 1,5 1,4 -1,5"', "<obstacle> points is not a simple polygon"),
     Kind('<point x="-2" y="0"', '<point x="-20" y="0"', "<point> at -20,0 lies outside the walkable area", (GROUND,)),

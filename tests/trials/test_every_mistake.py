@@ -132,7 +132,7 @@ def test_a_reference_waits_for_a_name_that_is_missing_but_not_a_misspelt_one() -
     assert "needs the attribute 'name'" in problems(nameless)[0]
     twice = FLOW.replace('<crowd name="hurried"', '<crowd name="calm"')
     assert [one.partition("> ")[2] for one in problems(twice)] == [
-        "name 'calm' is taken by another crowd; give each its own"
+        "name 'calm' is already used by another crowd; names must differ"
     ]
     misspelt = FLOW.replace('<journey name="in"', "<journey").replace('3" journey="through"', '3" journey="throug"', 1)
     assert [one.split(":")[1] for one in problems(misspelt)] == ["17", "20"]

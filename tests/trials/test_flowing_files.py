@@ -136,7 +136,11 @@ MISTAKES = {
         'raduis="0.25"',
         r":7: <routing> has no attribute 'raduis', did you",
     ),
-    "name of a crowd taken": ('"hurried" type', '"calm" type', r":9: <crowd> name 'calm' is taken by another crowd"),
+    "name of a crowd taken": (
+        '"hurried" type',
+        '"calm" type',
+        r":9: <crowd> name 'calm' is already used by another crowd",
+    ),
     "crowd without a name": (
         'name="hurried" type',
         "type",
@@ -202,7 +206,7 @@ MISTAKES = {
     "name of a journey taken": (
         '"in" then',
         '"through" then',
-        r":17: <journey> name 'through' is taken by another journey",
+        r":17: <journey> name 'through' is already used by another journey",
     ),
     "unknown journey": (
         'journey="through" rate',
@@ -345,7 +349,7 @@ def test_crowds_need_names_of_their_own() -> None:
     for names, sentence in (
         ((), r"Crowds: 2 models and the names none; give each model a name"),
         (("a", ""), r"Crowds: crowd 2 needs the attribute 'name'"),
-        (("a", "a"), r"Crowds: crowd 2 name 'a' is taken by another crowd"),
+        (("a", "a"), r"Crowds: crowd 2 name 'a' is already used by another crowd"),
         (("a", "b b"), r'Crowd: name="b b" must match'),
     ):
         with pytest.raises(InputError, match=sentence):

@@ -373,7 +373,7 @@ def test_two_robots_must_not_overlap_nor_share_a_name() -> None:
     text = GOOD.replace("<end ", GOOD[GOOD.index("<robot") : GOOD.index("<end")] + "<end ")
     with pytest.raises(TrialError, match=r"starts 0.00 m from robot 'robot'") as found:
         parse_trial(text)
-    assert any("name 'robot' is taken by another robot" in problem for problem in found.value.problems)
+    assert any("name 'robot' is already used by another robot" in problem for problem in found.value.problems)
 
 
 def test_a_trial_made_in_python_is_checked_too() -> None:

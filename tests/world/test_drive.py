@@ -147,8 +147,8 @@ def test_wrong_limits_are_explained(kind, values, message):
 @pytest.mark.parametrize(
     ("command", "message"),
     [
-        (Twist(math.nan, 0.0), "twist: forward = nan is not finite"),
-        (Twist(0.0, math.inf), "twist: turn = inf is not finite"),
+        (Twist(math.nan, 0.0), "twist: forward = nan must be finite"),
+        (Twist(0.0, math.inf), "twist: turn = inf must be finite"),
         (Twists(np.zeros(3), np.zeros(3), np.zeros(3)), "forward has shape \\[3\\], it must be one number or \\[2\\]"),
     ],
 )

@@ -135,7 +135,7 @@ def test_a_batch_gives_the_bytes_of_each_alone(drive):
         (lambda: VelocityServo(max_speed=-1.0), "VelocityServo: max_speed = -1.0"),
         (lambda: CommandDelay(-0.1), "CommandDelay: latency = -0.1 s must be finite and at least 0"),
         (lambda: CommandDelay(0.1).step((), Twist(), Twist(), 0.0), "time step 0.0 s of a drive"),
-        (lambda: AckermannDrive().step(ORIGIN, STILL, Twist(math.inf), 0.1), "twist: forward = inf is not finite"),
+        (lambda: AckermannDrive().step(ORIGIN, STILL, Twist(math.inf), 0.1), "twist: forward = inf must be finite"),
         (lambda: VelocityServo().step(ORIGIN, STILL, Twist(), math.nan), "time step nan s of a drive"),
     ],
 )

@@ -215,7 +215,7 @@ def test_a_wrong_world_is_explained(changes, message):
     [
         ({}, "robot 0 has no command"),
         ({0: Twist(), 3: Twist()}, "agent 3 has a command but is not a robot; robots are \\[0\\]"),
-        ({0: Twist(math.nan, 0.0)}, "forward = nan is not finite"),
+        ({0: Twist(math.nan, 0.0)}, "forward = nan must be finite"),
     ],
 )
 def test_wrong_commands_are_explained_and_change_nothing(commands, message):

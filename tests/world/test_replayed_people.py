@@ -68,7 +68,7 @@ def test_a_robot_frees_who_is_near_and_only_those_who_may():
         ([ReplayedTrack(0, np.array([1.0, 1.0]), np.zeros((2, 2)))], 0.0, "times that do not increase"),
         ([ReplayedTrack(0, np.array([1.0]), np.zeros((2, 2)))], 0.0, "must have positions"),
         ([ReplayedTrack(0, TIME, PLACE), ReplayedTrack(0, TIME, PLACE)], 0.0, "an agent has two tracks"),
-        ([ReplayedTrack(0, TIME, PLACE * np.nan)], 0.0, "is not finite"),
+        ([ReplayedTrack(0, TIME, PLACE * np.nan)], 0.0, "not finite"),
         ([ReplayedTrack(0, TIME, PLACE)], -1.0, "release = -1.0 m must be finite and at least 0"),
         ([ReplayedTrack(0, TIME, PLACE)], [1.0, 2.0], "give one value, or one per track"),
     ],

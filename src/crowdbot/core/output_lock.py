@@ -46,7 +46,7 @@ def lock_output(path: Path, force: bool = False) -> Iterator[None]:
     _acquire(path, lock)
     try:
         if path.exists() and not force:
-            raise InputError(f"{path} already exists; give another place, or --force (force=True) to overwrite it")
+            raise InputError(f"{path} already exists; use another path, or --force (force=True) to overwrite it")
         yield
     finally:
         _held.discard(str(lock))

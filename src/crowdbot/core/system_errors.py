@@ -24,11 +24,11 @@ def write_errors(path: Path) -> Iterator[None]:
     >>> with write_errors(Path("nowhere")):
     ...     raise OSError(28, "No space left on device")
     Traceback (most recent call last):
-    crowdbot.core.errors.InputError: nowhere cannot be written: No space left on device
+    crowdbot.core.errors.InputError: cannot write nowhere: No space left on device
     """
     try:
         yield
     except (CrowdbotError, BrokenPipeError):
         raise
     except OSError as error:
-        raise InputError(f"{error.filename or path} cannot be written: {error.strerror or error}") from None
+        raise InputError(f"cannot write {error.filename or path}: {error.strerror or error}") from None

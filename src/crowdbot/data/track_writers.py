@@ -53,7 +53,7 @@ def save(tracks: Trajectories, path: str | PathLike[str], format: str | None = N
             _WRITERS[name](tracks, file)
         part.replace(path)
     except OSError as error:
-        raise DataError(f"{path} cannot be written: {error.strerror or error}") from None
+        raise DataError(f"cannot write {path}: {error.strerror or error}") from None
     finally:
         part.unlink(missing_ok=True)
 

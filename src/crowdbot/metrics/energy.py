@@ -90,7 +90,7 @@ def energy_score(forecast: Forecast, future: Windows, over: str = "steps") -> Fl
     """
     check(forecast, future)
     if over not in OVER:
-        raise InputError(f"energy score: over {over!r}{did_you_mean(over, OVER)} must be {' or '.join(OVER)}")
+        raise InputError(f"energy score: over = {over!r} must be {' or '.join(OVER)}{did_you_mean(over, OVER)}")
     if forecast.samples == 1 and over == "steps":
         return ade(forecast, future)[:, 0]  # equal to the ADE; avoids loading a kernel
     found = np.full(future.scored.shape, np.nan)

@@ -81,7 +81,7 @@ class Crowds(Mixture):
             if not name and len(names) > 1:
                 yield k, "needs the attribute 'name': each of several crowds has its own"
             elif name in names[:k]:
-                yield k, f"name {name!r} is taken by another crowd; give each its own"
+                yield k, f"name {name!r} is already used by another crowd; names must differ"
 
 
 def crowd_names(model: Any) -> tuple[str, ...]:

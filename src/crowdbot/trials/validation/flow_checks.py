@@ -65,7 +65,7 @@ def duplicate_names(things: Sequence[Any], others: str) -> Problems:
     known: set[str] = set()
     for k, name in readable(things, "name"):
         if name in known:
-            yield things[k], f"name {name!r} is taken by another {others}; give each its own"
+            yield things[k], f"name {name!r} is already used by another {others}; names must differ"
         known.add(name)
 
 

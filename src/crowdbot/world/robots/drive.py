@@ -179,7 +179,7 @@ def _each(name: str, value: ArrayLike, count: int) -> Floats:
     if array.shape not in ((), (count,)):
         raise InputError(f"twist: {name} has shape {list(array.shape)}, it must be one number or [{count}]")
     if not np.all(np.isfinite(array)):
-        raise InputError(f"twist: {name} = {array.tolist()} must be finite [m/s], [rad/s]")
+        raise InputError(f"twist: {name} = {array.tolist()} must be finite")
     return np.ascontiguousarray(np.broadcast_to(array, (count,)))
 
 
