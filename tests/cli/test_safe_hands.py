@@ -156,6 +156,11 @@ def test_scores_are_printed_to_an_output_of_ascii(folder):
     assert "walk.txt" in done.stdout
 
 
+def hear_ctrl_c():
+    """Undo what a shell does to programs in its background, whose children ignore Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.parametrize("workers", sample(["1", "2"], 1))
 def test_predict_ends_soon_on_ctrl_c(folder, workers):
     rows = (f"{10 * k}\t{who}\t{0.5 * k + 0.01 * who}\t{0.7 * who}\n" for k in range(2000) for who in range(1, 40))
@@ -164,7 +169,7 @@ def test_predict_ends_soon_on_ctrl_c(folder, workers):
     process = subprocess.Popen(
         [sys.executable, "-m", "crowdbot", *words, "--workers", workers, "--out", "out"],
         cwd=folder, env={**os.environ, "PYTHONPATH": str(SOURCES)},
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=hear_ctrl_c,  # noqa: PLW1509
     )  # fmt: skip
     for line in process.stderr:
         if line.endswith("...\n"):

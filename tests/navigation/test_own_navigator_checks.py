@@ -32,8 +32,8 @@ def spoil(observation: Observation) -> Twist:
 @pytest.mark.parametrize(
     ("rule", "message"),
     [
-        (lambda seen: Twist(math.inf), "Own gave .*; its values must be finite"),
-        (lambda seen: Twist(0.0, math.nan), "Own gave .*; its values must be finite"),
+        (lambda seen: Twist(math.inf), "Own returned .*; its values must be finite"),
+        (lambda seen: Twist(0.0, math.nan), "Own returned .*; its values must be finite"),
         (lambda seen: Twist(float(Chance.rng.random())), "Own is not deterministic"),
         (spoil, "Own.act changes the observation; it must only read it"),
     ],

@@ -105,7 +105,7 @@ def plain(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("at", [-0.1, 1.1, 9.0])
 def test_a_branch_begins_within_the_episode(plain: Path, tmp_path: Path, at: float) -> None:
-    with pytest.raises(EpisodeError, match=f"has no instant at {at:g} s; it lasts from 0 s to 1 s"):
+    with pytest.raises(EpisodeError, match=f"has no step at {at:g} s; it lasts from 0 s to 1 s"):
         branch(plain, at, out=tmp_path)
 
 

@@ -199,7 +199,7 @@ def test_skins_are_met_as_every_triangle_would_be():
     faces = np.concatenate([f + k * len(pieces[0][0]) for k, (_, f) in enumerate(pieces)])
     skins = Skins.of(vertices, faces, owner=np.repeat([0, 1, 2], len(pieces[0][1])))
     scene = scene.replace(bodies=Bodies(**{**vars(scene.bodies), "skins": skins}))
-    directions = FANS["all"]()[::4]
+    directions = FANS["all"]()
     hits = cast_rays(scene, pose, sort_beams(directions), 50.0, skins=True)
     distance, hit = brute_force(scene, pose, directions, skins=True)
     same = np.isclose(hits.distance, distance, rtol=0, atol=1e-9) | (hits.distance == distance)

@@ -9,7 +9,7 @@ import pytest
 from crowdbot.core import TrialError
 from crowdbot.sensors import IMU, GroundTruthPeople, Lidar2D
 from crowdbot.trials import Mount, check_trial, is_code, parse_trial
-from crowdbot.trials.robot import _merged
+from crowdbot.trials.robot import _merge_sensors
 
 
 @pytest.mark.parametrize(
@@ -27,12 +27,12 @@ def test_names_of_code_on_any_system(name: str, code: bool) -> None:
 def test_own_sensors_replace_those_of_the_type_by_name_and_others_follow() -> None:
     carried = tuple(Mount(name=name, sensor=Lidar2D()) for name in ("front", "back"))
     own = (Mount(name="people", sensor=GroundTruthPeople()), Mount(name="back", sensor=IMU()))
-    merged = _merged(carried, own)
+    merged = _merge_sensors(carried, own)
     assert [(mount.name, type(mount.sensor).__name__) for mount in merged] == [
         ("front", "Lidar2D"), ("back", "IMU"), ("people", "GroundTruthPeople"),
     ]  # fmt: skip
-    assert _merged((), own) == own
-    assert _merged(carried, ()) == carried
+    assert _merge_sensors((), own) == own
+    assert _merge_sensors(carried, ()) == carried
 
 
 HALL = """<trial name="hall" duration="4" step="0.05">
@@ -61,7 +61,7 @@ def test_a_goal_zone_of_a_single_person_is_a_polygon_in_the_hall() -> None:
 
 def test_a_way_that_a_wall_blocks_is_named_by_who_would_walk_it() -> None:
     person = '<agent x="-4" y="0" goal="3,0"/>'
-    assert "no way leads from its place to the goal for a body of radius 0.25 m" in problems(person, WALL, ROUTING)
+    assert "there is no path from its place to the goal for a body of radius 0.25 m" in problems(person, WALL, ROUTING)
     crowd = '<spawner count="1" zone="-5,-1 -4,-1 -4,1" goal="3,-1 4,-1 4,1"/>'
     assert "no way leads from its zone to the goal zone" in problems(crowd, WALL, ROUTING)
     door = '<wall points="0,-3 0,-1"/><wall points="0,1 0,3"/>'

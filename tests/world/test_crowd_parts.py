@@ -41,7 +41,7 @@ def test_journeys_are_named_by_their_number_or_minus_one(which: object) -> None:
 
 @pytest.mark.parametrize("which", [2, -2, [0, 2], [-2, 0], [1, 0, 2], 0.5, [0.0, 1.0]])
 def test_one_wrong_number_of_a_journey_is_refused(which: object) -> None:
-    with pytest.raises(InputError, match="must be from 0 to 1, or -1 for none"):
+    with pytest.raises(InputError, match="must be from 0 to 1, or -1 for no journey"):
         JourneyAssignment(PATHS, which)  # type: ignore[arg-type]
 
 
@@ -89,7 +89,7 @@ def run(world: PlanarWorld, steps: int) -> None:
 def test_a_source_that_draws_an_impossible_person_is_named(word: str, value: float) -> None:
     source = PeopleSource(DOOR, PATHS[0], rate=10.0, timing="regular", **{word: Always(value)})
     world = PlanarWorld(Scene.of(np.zeros((3, 2)), active=False), ORCA(), {}, 0.1, sources=[source])
-    with pytest.raises(InputError, match=f"a {word} of {value} was drawn, it must be finite and above 0"):
+    with pytest.raises(InputError, match=f"the sampled {word} {value} must be finite and above 0"):
         run(world, 3)
 
 
@@ -193,5 +193,5 @@ def test_drives_belong_to_robots_of_the_scene() -> None:
         with pytest.raises(InputError, match=message):
             PlanarWorld(scene, ORCA(), {agent: DifferentialDrive()}, 0.1)
     world = PlanarWorld(scene, ORCA(), {0: DifferentialDrive()}, 0.1)
-    with pytest.raises(InputError, match="a command is given for agent 1; robots are"):
+    with pytest.raises(InputError, match="agent 1 has a command but is not a robot; robots are"):
         world.step({0: Twist(), 1: Twist()})

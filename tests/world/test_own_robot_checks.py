@@ -36,7 +36,7 @@ def test_a_robot_that_goes_ahead_passes(ahead: float, left: float) -> None:
 
 @pytest.mark.parametrize(("ahead", "left"), [(0.0, 0.0), (-0.5, 0.0), (0.51, 0.0), (0.5, 0.06), (0.5, -0.06)])
 def test_a_robot_that_does_not_go_ahead_is_told_where_it_is(ahead: float, left: float) -> None:
-    with pytest.raises(InputError, match=rf"after 5 s forward at 0.5 m/s it is at x = {5.0 * ahead:.3f}, y = "):
+    with pytest.raises(InputError, match=rf"after 5 s forward at 0.5 m/s, the position is x = {5.0 * ahead:.3f}, y = "):
         check_robot(dataclasses.replace(Robot.load("turtlebot2"), drive=Turned(ahead, left)))
 
 
@@ -55,5 +55,5 @@ def test_sensors_sit_on_the_robot(x: float, z: float, is_on: bool) -> None:
     if is_on:
         assert check_robot(moved) is None
     else:
-        with pytest.raises(InputError, match=f"the sensor '{mount.name}' is off the robot, at x, y, z = "):
+        with pytest.raises(InputError, match=f"the sensor '{mount.name}' is not on the robot: x, y, z = "):
             check_robot(moved)

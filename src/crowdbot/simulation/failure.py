@@ -65,4 +65,5 @@ def _place(error: Exception, folder: Path | None) -> str:
 
 def _is_library(path: Path) -> bool:
     """Return whether a file belongs to crowdbot, Python or an installed package."""
-    return path.name.startswith("<frozen") or any(path.is_relative_to(place) for place in (PACKAGE, *INSTALLED))
+    real = path.resolve()  # an environment may be a symbolic link
+    return path.name.startswith("<frozen") or any(real.is_relative_to(place) for place in (PACKAGE, *INSTALLED))
