@@ -63,7 +63,7 @@ def test_a_way_that_a_wall_blocks_is_named_by_who_would_walk_it() -> None:
     person = '<agent x="-4" y="0" goal="3,0"/>'
     assert "there is no path from its place to the goal for a body of radius 0.25 m" in problems(person, WALL, ROUTING)
     crowd = '<spawner count="1" zone="-5,-1 -4,-1 -4,1" goal="3,-1 4,-1 4,1"/>'
-    assert "no way leads from its zone to the goal zone" in problems(crowd, WALL, ROUTING)
+    assert "there is no path from its zone to the goal zone" in problems(crowd, WALL, ROUTING)
     door = '<wall points="0,-3 0,-1"/><wall points="0,1 0,3"/>'
     for people in (person, crowd):
         assert check_trial(parse_trial(HALL.format(people=people, inside=door, routing=ROUTING))) is None
