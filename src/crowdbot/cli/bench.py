@@ -24,13 +24,13 @@ def main(options: argparse.Namespace) -> int:
     import json
 
     from crowdbot.benchmark import measure
-    from crowdbot.core import write_errors
+    from crowdbot.core import explain_write_errors
 
     with progress(options.json) as report:
         rows = measure(options.names, repeats=options.repeats, progress=report, recording=options.data)
     table = [row.as_dict() for row in rows]
     if options.out is not None:
-        with write_errors(options.out):
+        with explain_write_errors(options.out):
             options.out.write_text(json.dumps(table, indent=2) + "\n", encoding="utf-8")
     if options.json:
         print_json({"rows": table})

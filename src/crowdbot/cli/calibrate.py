@@ -171,11 +171,11 @@ def as_json(fit: Fit) -> dict[str, Any]:
 def _written(folder: Path, fits: dict[str, Fit], shared: bool) -> None:
     """Write the summary and, for individual parameters, the table of parameters and the population prior."""
     from crowdbot.calibration import PopulationPrior
-    from crowdbot.core import write_errors
+    from crowdbot.core import explain_write_errors
 
     text = json_text({name: as_json(fit) for name, fit in fits.items()})
     names = ["calibration.json"]
-    with write_errors(folder):
+    with explain_write_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "calibration.json").write_text(text + "\n", encoding="utf-8")
         if not shared:

@@ -21,10 +21,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Run a trial, predict its people, write the report."""
     from crowdbot.benchmark import run_demo
-    from crowdbot.core import write_errors
+    from crowdbot.core import explain_write_errors
 
     begin = time.perf_counter()
-    with progress(options.json) as report, write_errors(options.out):
+    with progress(options.json) as report, explain_write_errors(options.out):
         done = run_demo(options.out, seed=options.seed, progress=report)
     seconds = time.perf_counter() - begin
     if options.json:

@@ -55,7 +55,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> int:
     """Evaluate every predictor on every recording."""
     from crowdbot.benchmark import Evaluation
-    from crowdbot.core import InputError, write_errors
+    from crowdbot.core import InputError, explain_write_errors
 
     if options.animate is not None and options.out is None:
         raise InputError("--animate requires --out DIR")
@@ -75,7 +75,7 @@ def main(options: argparse.Namespace) -> int:
             raise
     results = evaluation.results(done)
     if options.out is not None:
-        with write_errors(options.out):
+        with explain_write_errors(options.out):
             _written(options, evaluation, results)
     if options.json:
         print_json(as_json(evaluation, results))

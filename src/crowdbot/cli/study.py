@@ -67,7 +67,7 @@ def main(options: argparse.Namespace) -> int:
 
 def _said(options: argparse.Namespace, study: GanComparison, runs: list[GanRun]) -> int:
     from crowdbot.benchmark import plot_measures, plot_samples
-    from crowdbot.core import write_errors
+    from crowdbot.core import explain_write_errors
 
     ideal = study.ideal()
     found: dict[str, Any] = {
@@ -79,7 +79,7 @@ def _said(options: argparse.Namespace, study: GanComparison, runs: list[GanRun])
             for run in runs
         ],
     }  # fmt: skip
-    with write_errors(options.out):
+    with explain_write_errors(options.out):
         (options.out / "study.json").write_text(json_text(found) + "\n", encoding="utf-8")
         plot_samples(study, runs, options.out / "samples.png")
         plot_measures(study, runs, ideal, options.out / "measures.png")

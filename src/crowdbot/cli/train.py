@@ -62,7 +62,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Train and print the path of the weights."""
-    from crowdbot.core import InputError, UnknownName, write_errors
+    from crowdbot.core import InputError, UnknownName, explain_write_errors
     from crowdbot.prediction import (
         BEST,
         LAST,
@@ -99,7 +99,7 @@ def main(options: argparse.Namespace) -> int:
         note(
             f"training {options.what} on {samples.people} futures in {len(samples)} windows, {len(learned)} recordings"
         )
-    with torch_threads(options.threads), write_errors(options.out), _events(options) as written:
+    with torch_threads(options.threads), explain_write_errors(options.out), _events(options) as written:
         done = train(model, schedule, options.out, options.resume, _told(options.json, written))
     _said(options, done, options.out / BEST, left)
     return 0

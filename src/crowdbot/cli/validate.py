@@ -23,18 +23,18 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(options: argparse.Namespace) -> int:
     """Run the checks, write the page and print the table."""
-    from crowdbot.core import write_errors
+    from crowdbot.core import explain_write_errors
     from crowdbot.validation import CHECKS, select_models, validate, write_page
 
     models, skipped = select_models([name for name in (options.models or "").split(",") if name])
     kept = options.out / "validation"
     try:
-        with progress(options.json) as report, write_errors(options.out):
+        with progress(options.json) as report, explain_write_errors(options.out):
             done = validate(models, kept, options.data, options.quick, report, skipped)
     except KeyboardInterrupt:
         note(f"results are stored in {kept}; run the same command again to resume")
         raise
-    with write_errors(options.out):
+    with explain_write_errors(options.out):
         page = write_page(done, options.out, _command(options))
     if options.json:
         print_json({**done.as_dict(), "page": str(page)})

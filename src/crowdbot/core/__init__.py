@@ -41,7 +41,7 @@ from .plugins.plugin_module import plugin_address, plugin_sources, relative_name
 from .pose import MOUNT_HEIGHT, Pose, SpatialPose, Twist, product, wrap_angle
 from .random import stream
 from .scene import PERSON_HEIGHT, Scene
-from .system_errors import write_errors
+from .system_errors import explain_write_errors
 from .version import source_digest
 from .walls import Walls
 from .workers import each, run_saved_jobs
@@ -109,6 +109,7 @@ __all__ = [
     "did_you_mean",
     "draw_svg",
     "each",
+    "explain_write_errors",
     "find_class",
     "format_xml",
     "from_attributes",
@@ -140,5 +141,4 @@ __all__ = [
     "unread_fields",
     "without_running_code",
     "wrap_angle",
-    "write_errors",
 ]

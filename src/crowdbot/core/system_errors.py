@@ -1,4 +1,4 @@
-"""Errors of the system at writing, as sentences."""
+"""Messages for errors of the operating system."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from pathlib import Path
 
 from .errors import CrowdbotError, InputError
 
-__all__ = ["write_errors"]
+__all__ = ["explain_write_errors"]
 
 
 @contextlib.contextmanager
-def write_errors(path: Path) -> Iterator[None]:
-    """Turn an error of the system inside the block into a sentence, such as on a full disk.
+def explain_write_errors(path: Path) -> Iterator[None]:
+    """Replace an ``OSError`` inside the block, such as a full disk, by an ``InputError`` that names the file.
 
     Args:
-        path: file or folder that is written; named in the sentence if the error names no file.
+        path: file or folder that is written; named if the error names no file.
 
     Raises:
-        InputError: something cannot be written.
+        InputError: a file cannot be written.
 
-    >>> with write_errors(Path("nowhere")):
+    >>> with explain_write_errors(Path("nowhere")):
     ...     raise OSError(28, "No space left on device")
     Traceback (most recent call last):
     crowdbot.core.errors.InputError: cannot write nowhere: No space left on device

@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 
 from .errors import CrowdbotError, InputError
 from .optional_imports import import_optional
-from .system_errors import write_errors
+from .system_errors import explain_write_errors
 
 __all__ = ["Job", "Result", "each", "run_saved_jobs"]
 
@@ -95,7 +95,7 @@ def _load_saved(file: Path, load: Callable[[Path], Result]) -> Result:
 def _save_whole(file: Path, result: Result, save: Callable[[Result, Path], None]) -> None:
     """Write a whole file or none."""
     draft = file.with_suffix(".part")
-    with write_errors(file):
+    with explain_write_errors(file):
         try:
             draft.parent.mkdir(parents=True, exist_ok=True)
             save(result, draft)
