@@ -31,10 +31,9 @@ def parse_experiment(
     Raises:
         TrialError: the experiment has errors; the exception lists all of them in line order.
 
-    >>> parse_experiment('<experiment name="e"><block name="b" ordr="random"/></experiment>')
+    >>> parse_experiment('<experiment name="e"><block name="b" ordr="random"/></experiment>')  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    crowdbot.core.errors.TrialError: experiment:1: <block> has no attribute 'ordr', did you mean 'order'?; it takes \
-    name, order, repetitions, seeds
+    crowdbot.core.errors.TrialError: experiment:1: <block> has no attribute 'ordr', did you mean 'order'?; ...
     experiment:1: <block> needs the element <trial>: the trials
     """
     try:

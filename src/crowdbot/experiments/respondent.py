@@ -84,10 +84,9 @@ class ScriptedRespondent(Respondent):
 
     >>> from crowdbot.experiments import load_experiment
     >>> person = ScriptedRespondent({"age": 30, "opinion.comfort": 5}, load_experiment("robot-speed"))
-    >>> ScriptedRespondent({"aged": 30}, load_experiment("robot-speed"))
+    >>> ScriptedRespondent({"aged": 30}, load_experiment("robot-speed"))  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    crowdbot.core.errors.InputError: there is no question 'aged', did you mean 'age'?; questions are welcome.age, \
-    welcome.robots, opinion.comfort, opinion.remarks
+    crowdbot.core.errors.InputError: there is no question 'aged', did you mean 'age'?; questions are ...
     """
 
     def __init__(self, answers: Mapping[str, Any], experiment: Experiment) -> None:

@@ -27,7 +27,7 @@ def unphysical(tensor: Floats) -> str:
     """Return what is wrong with an inertia ``[3, 3]`` [kg m2] as the end of a sentence; empty if it is physical.
 
     >>> unphysical(np.diag([1.0, 1.0, 3.0]))
-    'its principal moments 1, 1, 3 kg m2 break the triangle inequality'
+    'its principal moments 1, 1, 3 kg m2 violate the triangle inequality'
     """
     moments = np.linalg.eigvalsh(tensor)
     words = ", ".join(f"{value:.3g}" for value in moments)

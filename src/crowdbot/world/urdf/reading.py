@@ -48,10 +48,9 @@ def read_urdf(
         RobotError: the URDF has errors; the exception lists all of them in line order.
         MissingExtra: the URDF names meshes and trimesh is not installed.
 
-    >>> read_urdf("<robot name='r'><link name='a'/><link name='b'/></robot>")
+    >>> read_urdf("<robot name='r'><link name='a'/><link name='b'/></robot>")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    crowdbot.core.errors.RobotError: urdf:1: <robot> the links 'a' and 'b' are both the root: no joint has them as a \
-    child; exactly one link must be the root
+    crowdbot.core.errors.RobotError: urdf:1: <robot> the links 'a' and 'b' are both the root: no joint has them as ...
     """
     if colliders not in ("auto", "hull", "pieces"):
         raise InputError(f"colliders = {colliders!r} must be auto, hull or pieces")
