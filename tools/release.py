@@ -21,6 +21,8 @@ import venv
 import zipfile
 from pathlib import Path
 
+from packaging.requirements import Requirement
+
 ROOT = Path(__file__).parents[1]
 LARGEST_WHEEL = 25e6
 WEIGHTS = ROOT / "src" / "crowdbot" / "assets" / "predictors"
@@ -31,6 +33,12 @@ PLATFORMS = {
     "macOS": [f"macosx_{major}_0_{chip}" for major in (14, 13, 12, 11) for chip in ("arm64", "universal2")],
 }
 """Names of platforms that pip matches exactly; macOS means Apple silicon."""
+MARKERS = {
+    "Linux": {"sys_platform": "linux", "platform_machine": "x86_64"},
+    "Windows": {"sys_platform": "win32", "platform_machine": "AMD64"},
+    "macOS": {"sys_platform": "darwin", "platform_machine": "arm64"},
+}
+"""Environment of each system in the markers of dependencies."""
 PYTHONS = ("3.11", "3.12", "3.13")
 SOURCE_ONLY = {"rosbags", "pycollada"}
 """Pure Python packages that may lack a wheel; they build without a compiler."""
@@ -162,11 +170,13 @@ def make_index(folder: Path, dist: Path) -> Path:
 
 def check_dependencies() -> int:
     """Ask the index for a wheel of every pinned dependency, for each system and Python version."""
-    wanted = {re.split(r"[<>=\[]", line)[0].lower() for line in dependencies()}
+    needs = [Requirement(line) for line in dependencies()]
     lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
-    pins = [line for line in lines if line.partition("==")[0].lower() in wanted]
     missing = 0
     for system, platforms in PLATFORMS.items():
+        here = [need for need in needs if need.marker is None or need.marker.evaluate(MARKERS[system])]
+        wanted = {need.name.lower() for need in here}
+        pins = [line for line in lines if line.partition("==")[0].lower() in wanted]
         for python in PYTHONS:
             lacking = [pin for pin in pins if not has_wheel(pin, platforms, python)]
             missing += len([pin for pin in lacking if pin.partition("==")[0] not in SOURCE_ONLY])
