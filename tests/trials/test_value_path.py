@@ -106,6 +106,10 @@ def test_a_new_type_drops_the_old_parameters_and_comes_first(trial: Trial) -> No
     assert same.crowd == ORCA(time_horizon=3, max_neighbors=6)  # the same type keeps its parameters
 
 
+def test_dots_and_slashes_mix(trial: Trial) -> None:
+    assert apply_values(trial, {"robot[1]/goal.x": 2.5}).robots[0].goal.x == 2.5
+
+
 def test_a_robot_is_set_by_the_name_that_is_its_default(trial: Trial) -> None:
     changed = apply_values(trial, {"robot[robot]/navigator/speed": 0.4, "robot[1].control_period": 0.1})
     assert changed.robots[0].navigator.speed == 0.4  # type: ignore[attr-defined]

@@ -80,7 +80,7 @@ def text_of(value: Any) -> str:
 
 def _steps(path: str) -> list[str]:
     """Return the steps of a path; underscores outside of brackets become hyphens."""
-    parts = re.split(r"/(?![^\[]*\])" if "/" in path else r"\.(?![^\[]*\])", path.strip().strip("/"))
+    parts = re.split(r"[/.](?![^\[]*\])", path.strip().strip("/"))
     return [part.partition("[")[0].replace("_", "-") + "".join(part.partition("[")[1:]) for part in parts]
 
 
