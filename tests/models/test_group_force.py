@@ -43,7 +43,7 @@ def test_one_step_agrees_with_pysocialforce(reference, capsys, name):
                 f"\n{name}, {who}: {np.mean(some < 1e-4):.2%} of {some.size} within 1e-4,"
                 f" median {np.median(some):.0e}, worst {some.max():.0e}"
             )
-    assert np.sum(walking) > 500
+    assert np.sum(walking) > 300
     assert np.mean(error[walking] < 1e-4) >= 0.99
     assert np.all(error[~walking] < 1e-4)
 

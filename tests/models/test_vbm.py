@@ -181,7 +181,7 @@ def test_the_difference_to_umans_is_explained(reference):
     scene = Scene.of(x, v, preferred_velocity=wish, radius=0.25, max_speed=1.8)
     ours = VBM(time_scale=1.0, speed_scale=2.0, neighbor_distance=10.0, max_neighbors=60.0).velocity(scene, 0.1)
     law, own, same_way = [], [], []
-    for f in range(1, 75, 8):
+    for f in range(1, min(75, len(x)), 8):  # the shipped sample has fewer steps
         gaps = np.linalg.norm(x[f][:, None] - x[f][None], axis=-1) + 9.0 * np.eye(60)
         for i in np.flatnonzero(
             (np.linalg.norm(v[f], axis=-1) > 0.1) & (distance[f, :, 0] > 0.5) & (gaps.min(1) > 0.5)
