@@ -147,8 +147,7 @@ class SessionRunner:
         path = self.folder / LOG
         if path.exists():
             raise EpisodeError(
-                f"participant {self.participant} already has a session in {self.folder}; continue it with "
-                f"--resume, or"
+                f"participant {self.participant} already has a session in {self.folder}; continue it with --resume, or"
                 " use another participant or folder"
             )
         self.log = SessionLog.create(path, head)
