@@ -22,8 +22,7 @@ demo: $(VENV)/installed
 test: $(VENV)/installed-dev
 	tests/system-packages
 	$(MAKE) lint
-	$(PYTEST) $(PARALLEL)
-	$(PYTEST) --doctest-modules src/crowdbot
+	$(PYTEST) $(PARALLEL) --doctest-modules src/crowdbot tests
 
 test-room: $(VENV)/installed-dev
 	$(PYTEST) $(PARALLEL) --doctest-modules src/crowdbot/$(ROOM) $(wildcard tests/$(ROOM))

@@ -84,13 +84,17 @@ def _flatten(path: Path) -> None:
     (flat / path.name).write_bytes(flatten_mcap(path.read_bytes()))
 
 
+def _other_trials(folder: str, names: list[str]) -> list[str]:
+    return [name for name in names if name.endswith(".xml")] if Path(folder) == OLD / "trials" else []
+
+
 def make_trials(folder: Path) -> None:
     """Write trials with all elements; the main file is trial.xml."""
     texts = {"extra": EXTRA, "new": NEW, "physics": NEW.replace("planar", "physics")}
     for path in sorted((OLD / "trials").glob("*.xml")):
         texts[path.stem] = path.read_text(encoding="utf-8")
     for name, text in texts.items():
-        shutil.copytree(OLD / "trials", folder / name, ignore=shutil.ignore_patterns("*.xml"))
+        shutil.copytree(OLD / "trials", folder / name, ignore=_other_trials)
         (folder / name / "trial.xml").write_text(text, encoding="utf-8")
 
 

@@ -89,5 +89,6 @@ STEPS = {
     "layer": numba.threading_layer,
 }
 
-for word in sys.argv[1:]:
-    print(f"result {word} {STEPS[word]()}", flush=True)
+if __name__ == "__main__":
+    for word in sys.argv[1:]:
+        print(f"result {word} {STEPS[word]()}", flush=True)

@@ -122,7 +122,11 @@ def test_without_the_compiler_a_kernel_is_the_function_itself(tmp_path):
 @pytest.mark.parametrize("given", sample(["omp workqueue tbb", None], 1))
 def test_an_order_of_layers_given_by_the_user_stays(given, tmp_path):
     program = tmp_path / "order.py"
-    program.write_text("import crowdbot.core.kernels, numba; print(*numba.config.THREADING_LAYER_PRIORITY)")
+    program.write_text(
+        "import numba; from crowdbot.core.geometry import time_to_contact\n"
+        "time_to_contact(2.0, 0.0, 1.0, 0.0, 1.0)\n"
+        "print(*numba.config.THREADING_LAYER_PRIORITY)"
+    )
     settings = {} if given is None else {"NUMBA_THREADING_LAYER_PRIORITY": given}
     assert run(program, **settings).strip() == (given or "tbb workqueue omp")
 

@@ -15,6 +15,7 @@ from crowdbot.core import EpisodeError, InputError
 from crowdbot.recording import RecordedEpisode, export, read_episode, record
 from crowdbot.sensors import RgbImage
 from crowdbot.trials import parse_trial
+from episode_copies import copy_episode
 from space_trials import ROOM, room
 from trial_texts import FLOW
 
@@ -31,6 +32,14 @@ def table(path: Path, to: Path, name: str) -> pd.DataFrame:
     found = pd.read_parquet(to) if to.suffix == ".parquet" else pd.read_csv(to, keep_default_na=False)
     assert len(found) == rows
     return found
+
+
+def test_commands_that_the_file_does_not_have_are_nan(recorded: tuple[Path, RecordedEpisode], tmp_path: Path) -> None:
+    path = copy_episode(recorded[0], tmp_path / "part.mcap", without=["/robot/cmd_vel"])
+    robots = table(path, tmp_path / "robots.parquet", "robots")
+    assert len(robots) == len(recorded[1].times)
+    assert robots[["command_forward", "command_turn", "command_left"]].isna().all(axis=None)
+    assert robots["forward"].notna().all()
 
 
 @pytest.mark.parametrize("ending", ["parquet", "csv"])

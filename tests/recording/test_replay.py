@@ -6,37 +6,14 @@ import signal
 from pathlib import Path
 
 import pytest
-from mcap.reader import make_reader
-from mcap.writer import Writer
 
 import crowdbot
 from crowdbot import data
 from crowdbot.core import EpisodeError, TrialError
 from crowdbot.recording import read_episode, replay, run
 from crowdbot.trials import load_trial, parse_trial
+from episode_copies import copy_episode
 from trial_texts import GOOD, SHY, changed, written
-
-
-def rewritten(source: Path, target: Path, **changes: str) -> Path:
-    """Copy an episode with other metadata."""
-    with source.open("rb") as old, target.open("wb") as new:
-        reader, writer = make_reader(old), Writer(new)
-        writer.start(profile="ros2")
-        schemas: dict[int, int] = {}
-        channels: dict[int, int] = {}
-        records = list(reader.iter_metadata())
-        for schema, channel, message in reader.iter_messages(log_time_order=False):
-            assert schema is not None
-            if schema.id not in schemas:
-                schemas[schema.id] = writer.register_schema(schema.name, schema.encoding, schema.data)
-            if channel.id not in channels:
-                channels[channel.id] = writer.register_channel(channel.topic, "cdr", schemas[schema.id])
-            writer.add_message(channels[channel.id], message.log_time, message.data, message.publish_time)
-        for record in records:
-            own = {key: value for key, value in changes.items() if key in record.metadata}
-            writer.add_metadata(record.name, record.metadata | own)
-        writer.finish()
-    return target
 
 
 def test_a_replay_gives_the_same_digest(tmp_path: Path) -> None:
@@ -70,13 +47,15 @@ def test_an_interrupted_episode_replays_as_far_as_it_went(tmp_path: Path) -> Non
 
 def test_a_difference_is_said_with_the_versions(tmp_path: Path) -> None:
     run(parse_trial(GOOD), out=tmp_path)
-    other = replay(rewritten(tmp_path / "episode.mcap", tmp_path / "seed.mcap", seed="4"))
+    other = replay(copy_episode(tmp_path / "episode.mcap", tmp_path / "seed.mcap", {"seed": "4"}))
     assert not other.equal
     assert str(other).endswith("the versions are equal")
-    old = replay(rewritten(tmp_path / "episode.mcap", tmp_path / "old.mcap", digest="0" * 32, version="0.0.9"))
+    old = replay(
+        copy_episode(tmp_path / "episode.mcap", tmp_path / "old.mcap", {"digest": "0" * 32, "version": "0.0.9"})
+    )
     assert not old.equal
     assert f"it was recorded with other versions: version 0.0.9 then, {crowdbot.__version__} now" in str(old)
-    new = replay(rewritten(tmp_path / "episode.mcap", tmp_path / "new.mcap", version="0.0.9"))
+    new = replay(copy_episode(tmp_path / "episode.mcap", tmp_path / "new.mcap", {"version": "0.0.9"}))
     assert new.equal
     assert "(made with crowdbot 0.0.9) replays with the same digest" in str(new)
     assert read_episode(tmp_path / "new.mcap").software == new.software == "crowdbot 0.0.9"
@@ -85,7 +64,7 @@ def test_a_difference_is_said_with_the_versions(tmp_path: Path) -> None:
 def test_a_trial_of_another_version_that_cannot_be_read_is_said(tmp_path: Path) -> None:
     run(parse_trial(GOOD), out=tmp_path)
     strange = GOOD.replace("<crowd ", "<weather/><crowd ")
-    path = rewritten(tmp_path / "episode.mcap", tmp_path / "x.mcap", trial=strange, version="9.9")
+    path = copy_episode(tmp_path / "episode.mcap", tmp_path / "x.mcap", {"trial": strange, "version": "9.9"})
     with pytest.raises(TrialError, match=r"x.mcap \(trial, written by crowdbot 9.9\):7: <weather> is not an element"):
         replay(path)
 
@@ -118,7 +97,7 @@ def test_a_replay_says_from_where_on_it_differs(tmp_path: Path) -> None:
     run(parse_trial(GOOD), out=tmp_path)
     assert replay(tmp_path / "episode.mcap").differs is None
     other = changed('tolerance="0.3"', 'tolerance="0.3" ').replace('navigator type="straight"', 'navigator type="orca"')
-    path = rewritten(tmp_path / "episode.mcap", tmp_path / "other.mcap", trial=other)
+    path = copy_episode(tmp_path / "episode.mcap", tmp_path / "other.mcap", {"trial": other})
     done = replay(path)
     assert not done.equal
     assert done.differs is not None
@@ -128,24 +107,7 @@ def test_a_replay_says_from_where_on_it_differs(tmp_path: Path) -> None:
 def test_an_episode_of_format_1_is_read_and_replayed(tmp_path: Path) -> None:
     episode = run(parse_trial(GOOD), out=tmp_path)
     source, target = tmp_path / "episode.mcap", tmp_path / "old.mcap"
-    with source.open("rb") as old, target.open("wb") as new:
-        reader, writer = make_reader(old), Writer(new)
-        writer.start(profile="ros2")
-        channels: dict[int, int] = {}
-        known: dict[str, str] = {}
-        for record in reader.iter_metadata():
-            known |= record.metadata
-        for schema, channel, message in reader.iter_messages(log_time_order=False):
-            assert schema is not None
-            if channel.topic == "/crowdbot/digest":
-                continue
-            if channel.id not in channels:
-                number = writer.register_schema(schema.name, schema.encoding, schema.data)
-                channels[channel.id] = writer.register_channel(channel.topic, "cdr", number)
-            writer.add_message(channels[channel.id], message.log_time, message.data, message.publish_time)
-        del known["step_ns"]
-        writer.add_metadata("crowdbot", known | {"format": "1"})
-        writer.finish()
+    copy_episode(source, target, {"format": "1", "step_ns": None}, without=["/crowdbot/digest"])
     read = read_episode(target)
     assert (read.complete, read.digest, read.outcome) == (True, episode.digest, episode.outcome)
     assert replay(target).equal

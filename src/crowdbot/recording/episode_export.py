@@ -22,6 +22,7 @@ __all__ = ["TABLES", "export"]
 Columns = dict[str, Any]
 ROWS = 100_000
 """Rows per write."""
+_UNKNOWN = (np.nan, np.nan, np.nan)
 
 
 def export(path: Path | str, to: Path | str, table: str = "people", force: bool = False) -> int:
@@ -32,7 +33,7 @@ def export(path: Path | str, to: Path | str, table: str = "people", force: bool 
     * ``people``: person or robot: id, robot (its name or empty), x, y [m], vx, vy [m/s], heading [rad] and
       radius [m];
     * ``robots``: robot: name, x, y, heading, twist forward [m/s], turn [rad/s] and left [m/s], and command
-      (command_forward, ...);
+      (command_forward, ...; NaN if the file has none for this step);
     * ``scans``: beam: sensor, its x, y, heading in the world, angle [rad], range [m], and hit: id of the person or
       robot, -1 nothing, -2 a wall;
     * ``contacts``: contact: robot, other, clearance [m];
@@ -158,6 +159,7 @@ def _nobody(moment: RecordedStep) -> RecordedStep:
 def _robots(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Columns:
     there = [name for name in bodies if name in moment.robots]
     states = [moment.robots[name] for name in there]
+    commands = [moment.commands.get(name, _UNKNOWN) for name in there]
     words = ("forward", "turn", "left")
     return {
         "time": np.full(len(there), moment.time),
@@ -165,8 +167,7 @@ def _robots(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Colum
         **{name: np.array([getattr(state, name) for state in states], float) for name in ("x", "y", "heading")},
         **{word: np.array([state.twist[k] for state in states], float) for k, word in enumerate(words)},
         **{
-            f"command_{word}": np.array([moment.commands[name][k] for name in there], float)
-            for k, word in enumerate(words)
+            f"command_{word}": np.array([command[k] for command in commands], float) for k, word in enumerate(words)
         },
     }
 
