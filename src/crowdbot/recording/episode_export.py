@@ -166,9 +166,7 @@ def _robots(moment: RecordedStep, bodies: dict[str, tuple[int, float]]) -> Colum
         "robot": np.array(there, dtype=object),
         **{name: np.array([getattr(state, name) for state in states], float) for name in ("x", "y", "heading")},
         **{word: np.array([state.twist[k] for state in states], float) for k, word in enumerate(words)},
-        **{
-            f"command_{word}": np.array([command[k] for command in commands], float) for k, word in enumerate(words)
-        },
+        **{f"command_{word}": np.array([command[k] for command in commands], float) for k, word in enumerate(words)},
     }
 
 
