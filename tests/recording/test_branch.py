@@ -15,6 +15,7 @@ from crowdbot.core import EpisodeError, InputError, TrialError
 from crowdbot.data import McapReader
 from crowdbot.recording import branch, read_episode, record, replay, run
 from crowdbot.trials import apply_values, parse_trial
+from episode_copies import copy_episode
 from space_trials import LEAN, room
 from trial_texts import BRIEF_FLOW, GOOD
 
@@ -170,9 +171,7 @@ def test_what_cannot_be_branched_is_said_in_a_sentence(small: Path, flowing: Pat
 
 
 def test_an_episode_that_does_not_replay_is_not_branched(small: Path, tmp_path: Path) -> None:
-    from test_replay import rewritten
-
-    path = rewritten(small, tmp_path / "other.mcap", seed="4")
+    path = copy_episode(small, tmp_path / "other.mcap", {"seed": "4"})
     with pytest.raises(EpisodeError, match=r"differs from its replay from 0 s on"):
         branch(path, 2.0)
 
