@@ -2,6 +2,7 @@
 
 import io
 import json
+import os
 import re
 import signal
 import subprocess
@@ -20,17 +21,18 @@ from crowdbot.trials import load_trial
 ROOT = Path(__file__).parents[2]
 ANSWERS = {"age": 30, "robots": "never", "comfort": 5, "remarks": '=1+1, "quoted"\nand ünïcode'}
 
-SLOW = """import time
+SLOW = """import os
+import time
 from dataclasses import dataclass
 from crowdbot.navigation import Straight
 
 
 @dataclass(frozen=True)
 class Slow(Straight):
-    \"\"\"Takes its time, so that a test can come in between.\"\"\"
+    \"\"\"Takes its time where a test wants to come in between.\"\"\"
 
     def act(self, observation):
-        time.sleep(0.02)
+        time.sleep(float(os.environ.get("DELAY", 0.0)))
         return super().act(observation)
 """
 
@@ -163,7 +165,12 @@ class Program:
         command = [sys.executable, "-m", "crowdbot", "experiment", "run", folder, "--participant", "1", "--out", out]
         with self.said.open("wb") as stream:
             self.process = subprocess.Popen(
-                [*map(str, command), *words], stdin=subprocess.PIPE, stdout=stream, stderr=stream, text=True
+                [*map(str, command), *words],
+                stdin=subprocess.PIPE,
+                stdout=stream,
+                stderr=stream,
+                text=True,
+                env={**os.environ, "DELAY": "0.01"},
             )
 
     def type(self, line):
@@ -192,7 +199,7 @@ def test_ctrl_c_holds_a_trial_and_lets_it_go_on_unchanged(tmp_path):
     folder, out = _slow_experiment(tmp_path), tmp_path / "out"
     program = Program(folder, out)
     program.until(program.log, '"begin"')
-    time.sleep(0.5)
+    time.sleep(0.3)
     program.process.send_signal(signal.SIGINT)
     program.until(program.said, "PAUSE (Ctrl-C)")
     program.type("resume")
