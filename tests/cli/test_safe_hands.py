@@ -67,6 +67,14 @@ def test_new_on_a_full_disk_is_one_sentence_and_leaves_no_file(words, tmp_path):
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
 
 
+def test_a_copy_of_a_recording_on_a_full_disk_is_one_sentence_and_leaves_no_file(folder):
+    (folder / "trials").mkdir()
+    done = run_limited(folder, 200, "new", "trial", "trials/t.xml", "--recorded", "walk.txt")
+    assert last_line(done) == f"crowdbot: cannot write {Path('trials/walk.txt')}: File too large"
+    assert written(folder) == set()
+    assert not (folder / "trials" / "walk.txt").exists()
+
+
 FULL = {
     "predict": (200, PREDICT, "out/parts/"),
     "run": (3000, ("run", "frontal", *SHORT), "out/episode.mcap"),

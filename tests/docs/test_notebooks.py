@@ -66,6 +66,17 @@ def test_every_builtin_trial_shows_itself() -> None:
         assert "nan" not in ElementTree.fromstring(drawing).attrib["viewBox"]
 
 
+@pytest.mark.parametrize("name", ["frontal", "branch", "killed"])
+def test_a_recorded_episode_shows_itself(name: str) -> None:
+    file = ROOT / "tests" / "compatibility" / "files" / "episodes" / f"{name}.mcap"
+    episode = cb.read_episode(file)
+    drawing = episode._repr_svg_()
+    assert f"{episode.name}, seed {episode.seed}" in drawing
+    tracks = episode.tracks(0.2)
+    assert len(np.unique(tracks.frame)) == (len(episode.times) + 1) // 2
+    assert "nan" not in ElementTree.fromstring(drawing).attrib["viewBox"]
+
+
 def test_a_drawing_keeps_to_its_axes() -> None:
     drawing = ElementTree.fromstring(draw_svg([Path2D(np.array([[0.0, 0.0], [4.0, 2.0]]))], [Disc(4.0, 2.0, 0.0)]))
     path, disc = drawing

@@ -414,6 +414,7 @@ def test_turning_shifting_and_renumbering_change_nothing(seed, angle):
         ({"times": np.zeros(31)}, "times must increase"),
         ({"velocity": np.zeros((31, 2))}, "velocity has shape \\[31, 2\\], it must be \\[31, 2, 2\\]"),
         ({"radius": np.ones(3)}, "radius has shape \\[3\\]"),
+        ({"heading": np.zeros((31, 2))}, "heading has shape \\[31, 2\\], it must be \\[31\\]"),
         ({"robot": 7}, "robot = 7 is not an index of 2 agents"),
         ({"active": np.zeros((31, 2), bool)}, "robot 0 is absent at 0.0 s"),
         ({"position": np.full((31, 2, 2), np.nan)}, "is not finite"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import errno
 import json
 import os
 import subprocess
@@ -141,6 +142,16 @@ def test_a_lock_is_taken_over_when_its_process_is_gone(tmp_path: Path) -> None:
     pid = lock.read_text()
     with lock_output(path):
         assert lock.read_text() != pid
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_lock_that_cannot_be_written_leaves_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full() -> str:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("socket.gethostname", full)
+    with pytest.raises(OSError, match="No space left"), lock_output(tmp_path / "episode.mcap"):
+        pass
     assert os.listdir(tmp_path) == []
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -117,7 +116,7 @@ def _place(trial: Trial, options: argparse.Namespace) -> Trial:
 
 
 def _recorded_trial(options: argparse.Namespace) -> Trial:
-    from crowdbot.core import InputError
+    from crowdbot.core import InputError, explain_write_errors
     from crowdbot.trials import recorded_trial
 
     trial = recorded_trial(
@@ -130,7 +129,13 @@ def _recorded_trial(options: argparse.Namespace) -> Trial:
     beside = options.file.parent / options.recorded.name
     if beside.resolve() != options.recorded.resolve():
         if not beside.exists():
-            shutil.copyfile(options.recorded, beside)
+            data = options.recorded.read_bytes()
+            try:
+                with explain_write_errors(beside):
+                    beside.write_bytes(data)
+            except InputError:
+                beside.unlink(missing_ok=True)
+                raise
             note(
                 f"copied {options.recorded.name} to the folder of the trial, since a trial reads only files in "
                 f"its folder"

@@ -78,8 +78,12 @@ def _acquire(path: Path, lock: Path) -> None:
         except FileExistsError:
             _remove_stale(path, lock)
             continue
-        with os.fdopen(number, "w", encoding="utf-8") as stream:
-            stream.write(f"{os.getpid()} {socket.gethostname()}\n")
+        try:
+            with os.fdopen(number, "w", encoding="utf-8") as stream:
+                stream.write(f"{os.getpid()} {socket.gethostname()}\n")
+        except OSError:  # a full disk
+            lock.unlink(missing_ok=True)
+            raise
         _held.add(str(lock))
         return
     raise InputError(f"{path} is being written by another run; wait until it ends, or give another place")

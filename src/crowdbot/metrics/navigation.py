@@ -114,7 +114,7 @@ def navigation_metrics(
     Raises:
         InputError: shapes do not match, times do not increase, the robot is absent at some sample or a value is NaN.
     """
-    _check(times, position, velocity, radius, active, robot)
+    _check(times, position, velocity, radius, active, robot, heading)
     return _metrics(
         times, position, velocity, radius, active, robot, goal, tolerance, heading, walls, time_limit
     ).result()
@@ -144,7 +144,15 @@ def _metrics(
     return metrics
 
 
-def _check(times: Floats, position: Floats, velocity: Floats, radius: Floats, active: Bools, robot: int) -> None:
+def _check(
+    times: Floats,
+    position: Floats,
+    velocity: Floats,
+    radius: Floats,
+    active: Bools,
+    robot: int,
+    heading: Floats | None = None,
+) -> None:
     count, agents = position.shape[:2]
     wanted = {
         "times": (times, (count,)),
@@ -152,6 +160,7 @@ def _check(times: Floats, position: Floats, velocity: Floats, radius: Floats, ac
         "velocity": (velocity, (count, agents, 2)),
         "radius": (radius, (agents,)),
         "active": (active, (count, agents)),
+        "heading": (np.zeros(count) if heading is None else heading, (count,)),
     }
     for name, (value, shape) in wanted.items():
         if np.shape(value) != shape:

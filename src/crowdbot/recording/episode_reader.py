@@ -130,6 +130,11 @@ class RecordedEpisode:
         """Return people and robots every ``dt`` [s] as trajectories, see :meth:`Episode.tracks`."""
         return tracks_of(self, self.name, dt)
 
+    def _repr_svg_(self) -> str:
+        """Return a drawing of walls and paths for notebooks."""
+        period = float(self.times[1] - self.times[0]) if len(self.times) > 1 else 1.0
+        return tracks_of(self, f"{self.name}, seed {self.seed}, {self.outcome}", period)._repr_svg_()
+
 
 def read_episode(path: Path | str) -> RecordedEpisode:
     """Read an episode file, also of a killed or running simulation.

@@ -103,7 +103,7 @@ class Episode:
         return ()
 
     def tracks(self, dt: float = 0.4) -> Trajectories:
-        """Return people and robots every ``dt`` [s] as trajectories; frame k is at k times ``dt``.
+        """Return people and robots every ``dt`` [s] as trajectories; frame k is k times ``dt`` after the first.
 
         Raises:
             InputError: ``dt`` is not a multiple of the recording period.
@@ -118,7 +118,8 @@ class Episode:
 
 def tracks_of(view: Any, name: str, dt: float) -> Trajectories:
     """Return the trajectories of an episode."""
-    wanted = np.arange(math.floor(float(view.times[-1]) / dt + 1e-9) + 1) * dt
+    begin = float(view.times[0])  # above 0 if it continues another episode
+    wanted = begin + np.arange(math.floor((float(view.times[-1]) - begin) / dt + 1e-9) + 1) * dt
     rows = np.clip(np.searchsorted(view.times, wanted - 1e-6), 0, len(view.times) - 1)
     if np.any(np.abs(view.times[rows] - wanted) > 1e-6):
         period = float(view.times[1] - view.times[0])

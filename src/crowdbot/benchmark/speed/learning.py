@@ -63,7 +63,7 @@ def synthetic_samples(scenes: int = 440) -> Samples:
     return Samples(place, yes, yes[:, 0], first, np.zeros(scenes, dtype=np.int64), ("made",), 8, 0.4)
 
 
-def untrained(name: str, samples: Samples) -> Trainable:
+def untrained_network(name: str, samples: Samples) -> Trainable:
     """Return a network ready to train with the settings of the shipped weights."""
     settings: tuple[str | None, dict[str, str]] = (None, {})
     if name == "social-ways":
@@ -73,7 +73,7 @@ def untrained(name: str, samples: Samples) -> Trainable:
 
 def _learning(name: str) -> Measurement:
     samples = synthetic_samples()
-    model = untrained(name, samples)
+    model = untrained_network(name, samples)
     share = UPDATES / len(model.batches(stream(0, "order")))
     words = f"an epoch of 3000 windows a minute; one torch thread, {len(samples)} windows of 1 to {max(SIZES)} people"
     return Measurement("windows/s", share * len(samples), functools.partial(_updates, model, UPDATES), words, 50.0)
@@ -84,7 +84,7 @@ def _epoch(name: str) -> Gauge:
     import time
 
     samples = synthetic_samples()
-    model = untrained(name, samples)
+    model = untrained_network(name, samples)
     _updates(model, 1)
     begin = time.perf_counter()
     _updates(model, len(model.batches(stream(0, "order"))))
@@ -123,13 +123,10 @@ def _memory() -> Gauge:
     """Read the peak memory of a child process that trains Social Ways."""
     synthetic_samples(1)
     program = (
-        "import re, resource, sys; from pathlib import Path;"
-        "from crowdbot.benchmark.speed.learning import synthetic_samples, untrained, _updates\n"
-        "_updates(untrained('social-ways', synthetic_samples()), 12)\n"
-        "status = Path('/proc/self/status')\n"  # getrusage would count the parent's memory at the fork
-        "if status.exists(): print(int(re.search(r'VmHWM:\\s+(\\d+)', status.read_text())[1]) / 2**10)\n"
-        "peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
-        "if not status.exists(): print(peak / (2**20 if sys.platform == 'darwin' else 2**10))"
+        "from crowdbot.benchmark.speed.learning import synthetic_samples, untrained_network, _updates\n"
+        "from crowdbot.benchmark.speed.measurement import peak_memory\n"
+        "_updates(untrained_network('social-ways', synthetic_samples()), 12)\n"
+        "print(peak_memory())"
     )
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)  # noqa: S603
     if run.returncode:

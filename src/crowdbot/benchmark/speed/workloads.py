@@ -155,13 +155,11 @@ def _alone() -> Measurement:
 def _memory() -> Gauge:
     """Read the peak memory of a child process that simulates 100 000 people for three steps."""
     program = (
-        "import re, resource, sys; from pathlib import Path;"
-        "from crowdbot.benchmark.speed.workloads import crowd; from crowdbot.models import ORCA;"
+        "from crowdbot.benchmark.speed.measurement import peak_memory\n"
+        "from crowdbot.benchmark.speed.workloads import crowd\n"
+        "from crowdbot.models import ORCA\n"
         "scene = crowd(100_000)\nfor _ in range(3): scene = ORCA().step(scene, 0.1)\n"
-        "status = Path('/proc/self/status')\n"  # getrusage would count the parent's memory at the fork
-        "if status.exists(): print(int(re.search(r'VmHWM:\\s+(\\d+)', status.read_text())[1]) / 2**10)\n"
-        "peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
-        "if not status.exists(): print(peak / (2**20 if sys.platform == 'darwin' else 2**10))"
+        "print(peak_memory())"
     )
     said = ""
     for _ in range(2):  # the first run may compile kernels, which needs more memory
