@@ -17,7 +17,7 @@ PARALLEL := -n $(WORKERS) --maxprocesses 4
 .PHONY: demo test test-room sweeps soak lint docs picture dist smoke rehearse clean
 
 demo: $(VENV)/installed
-	$(BIN)/crowdbot demo --out $(OUT)
+	$(BIN)/crowdbot demo --out $(OUT) --force
 
 test: $(VENV)/installed-dev
 	tests/system-packages

@@ -89,3 +89,13 @@ def test_the_command_prints_one_object(tmp_path, capsys):
     found = json.loads(capsys.readouterr().out)
     assert found["seed"] == 4
     assert set(found["prediction"]) == {"constant-velocity", "constant-acceleration", "kalman", "simulated"}
+
+
+@pytest.mark.parametrize("name", ["episode.mcap", "report.html"])
+def test_results_are_not_overwritten_unasked(name, tmp_path, capsys):
+    (tmp_path / name).write_text("mine")
+    assert main(["demo", "--out", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert f"{tmp_path / name} already exists; use another path, or --force" in said
+    assert (tmp_path / name).read_text() == "mine"
+    assert [path.name for path in tmp_path.iterdir()] == [name]

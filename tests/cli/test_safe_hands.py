@@ -2,6 +2,7 @@
 
 import os
 import signal
+import stat
 import subprocess
 import sys
 from pathlib import Path
@@ -10,6 +11,7 @@ import pytest
 
 import crowdbot as cb
 from crowdbot.cli import main
+from crowdbot.core import InputError, lock_output
 from samples import sample
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="limits and permissions of POSIX")
@@ -65,6 +67,17 @@ def test_new_on_a_full_disk_is_one_sentence_and_leaves_no_file(words, tmp_path):
     assert done.stderr.endswith(": File too large\n")
     assert done.stderr.count("\n") == 1
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
+
+
+def test_a_device_is_not_replaced(tmp_path):
+    device = tmp_path / "device"
+    os.mkfifo(device)
+    done = run_limited(tmp_path, 3000, "new", "trial", str(device), "--force")
+    assert last_line(done) == f"crowdbot: {device} is a device; give the path of a file"
+    with pytest.raises(InputError, match="is a device; give the path of a file"), lock_output(device, force=True):
+        pass
+    assert [path.name for path in tmp_path.iterdir()] == ["device"]
+    assert stat.S_ISFIFO(device.stat().st_mode)
 
 
 def test_a_copy_of_a_recording_on_a_full_disk_is_one_sentence_and_leaves_no_file(folder):

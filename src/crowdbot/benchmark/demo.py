@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from crowdbot.core import kebab_case
+from crowdbot.core import InputError, kebab_case
 from crowdbot.recording import run
 
 from .report import Predicted, write_report
@@ -57,28 +57,39 @@ class Demo:
         }
 
 
-def run_demo(out: Path, seed: int | None = None, progress: Callable[[str, float], None] | None = None) -> Demo:
+def run_demo(
+    out: Path,
+    seed: int | None = None,
+    progress: Callable[[str, float], None] | None = None,
+    force: bool = False,
+) -> Demo:
     """Run ``crossing-flows``, predict the people near its robot and write ``episode.mcap`` and ``report.html``.
 
     Args:
         out: folder of the results; created if missing.
         seed: random seed (default: the seed of the trial).
         progress: called with the name of the current task and the completed fraction.
+        force: whether existing files may be overwritten.
+
+    Raises:
+        InputError: the folder has one of the files and ``force`` is false.
     """
     from crowdbot.trials import load_trial
 
     report = progress or (lambda what, share: None)
     trial = load_trial(TRIAL)
     out.mkdir(parents=True, exist_ok=True)
-    file = out / "episode.mcap"
-    episode = run(trial, seed=seed, out=file, progress=lambda share: report("1 run the trial", share), force=True)
+    file, page = out / "episode.mcap", out / "report.html"
+    if page.exists() and not force:
+        raise InputError(f"{page} already exists; use another path, or --force (force=True) to overwrite it")
+    episode = run(trial, seed=seed, out=file, progress=lambda share: report("1 run the trial", share), force=force)
     report("1 run the trial", 1.0)
     fit = _calibrated(trial, episode.seed + OTHER_SEED, lambda share: report("2 calibrate the simulated crowd", share))
     past, future = episode.tracks(STEP).windows(OBSERVE, PREDICT, near=NEAR)
     predicted = _predicted(fit, past, future, episode.seed, lambda share: report("3 predict the people", share))
     report("4 write the report", 0.0)
     commands = _commands(out, episode, fit)
-    page = write_report(out / "report.html", episode, past, future, predicted, commands, _seen(trial, fit))
+    page = write_report(page, episode, past, future, predicted, commands, _seen(trial, fit))
     report("4 write the report", 1.0)
     scores = tuple(one.score for one in predicted)
     caption = f"protocol {scores[0].protocol}; people within {NEAR:g} m of the robot; means over persons"

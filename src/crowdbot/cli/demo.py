@@ -15,6 +15,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--out", type=Path, default=Path("demo"), metavar="DIR", help="folder of the results (default: demo)"
     )
     parser.add_argument("--seed", type=int, help="random seed (default: from the trial)")
+    parser.add_argument("--force", action="store_true", help="overwrite the results of an earlier run")
     add_json(parser)
 
 
@@ -25,7 +26,7 @@ def main(options: argparse.Namespace) -> int:
 
     begin = time.perf_counter()
     with progress(options.json) as report, explain_write_errors(options.out):
-        done = run_demo(options.out, seed=options.seed, progress=report)
+        done = run_demo(options.out, seed=options.seed, progress=report, force=options.force)
     seconds = time.perf_counter() - begin
     if options.json:
         print_json({**done.as_dict(), "wall_seconds": seconds})

@@ -34,7 +34,7 @@ def lock_output(path: Path, force: bool = False) -> Iterator[None]:
         force: whether an existing file may be overwritten.
 
     Raises:
-        InputError: the file exists and ``force`` is false, or another run is writing it.
+        InputError: the file exists and ``force`` is false, is a folder or device, or another run is writing it.
         OSError: the lock cannot be created.
 
     >>> import tempfile
@@ -42,6 +42,8 @@ def lock_output(path: Path, force: bool = False) -> Iterator[None]:
     ...     os.listdir(folder)
     ['.episode.mcap.lock']
     """
+    if path.exists() and not path.is_file():
+        raise InputError(f"{path} is a {'folder' if path.is_dir() else 'device'}; give the path of a file")
     lock = _lock_of(path)
     _acquire(path, lock)
     try:
