@@ -12,7 +12,7 @@ import pytest
 from old_files import EXPECTED, FILES, SAME_MACHINE, array_hash, copy, describe
 
 from crowdbot.cli import main
-from crowdbot.recording import branch, export, read_episode, record, repair, replay, run
+from crowdbot.recording import RecordedEpisode, branch, export, read_episode, record, repair, replay, run
 from crowdbot.sensors import RgbImage
 from crowdbot.trials import parse_trial
 
@@ -102,14 +102,27 @@ def test_replay_prints_the_version_that_made_the_episode(capsys: pytest.CaptureF
     assert printed["recorded_versions"] == EPISODES["own-code"]["versions"]
 
 
+def make_again(old: RecordedEpisode, folder: Path) -> Path:
+    """Run the trial of an episode, and branch where the episode did."""
+    rows = json.loads(old.metadata.get("origin", "[]"))
+    rows.append({"tick": old.metadata.get("begin", 0), "trial": old.xml, "seed": old.seed})
+    trials = [parse_trial(row["trial"], folder=FILES / "trials", quiet=True) for row in rows]
+    path = folder / "again.mcap"
+    record(trials[0], int(rows[0]["seed"]), path)
+    for row, trial in zip(rows[1:], trials[1:], strict=True):
+        at = int(row["tick"]) * int(old.metadata["step_ns"]) * 1e-9
+        before, path = path, folder / f"again-{row['tick']}.mcap"
+        branch(before, at, seed=row["seed"], trial=trial, out=path)
+    return path
+
+
 @pytest.mark.parametrize("name", ["flow", "hall", "branch", "killed", "bump"])
 def test_an_old_episode_branches(name: str, tmp_path: Path) -> None:
     old = read_episode(episode_file(name))
     at = float(old.times[len(old.times) // 2])
     source = episode_file(name)
-    if not SAME_MACHINE:  # a branch starts from the same bytes, so the trial runs on this machine first
-        source = tmp_path / "again.mcap"
-        record(parse_trial(old.xml, folder=FILES / "trials", quiet=True), old.seed, source)
+    if not SAME_MACHINE:  # a branch starts from the same bytes, so the episode is made on this machine first
+        source = make_again(old, tmp_path)
     done = branch(source, at, changes={"duration": at + 0.5}, out=tmp_path)
     new = read_episode(tmp_path / "episode.mcap")
     assert done.outcome == new.outcome

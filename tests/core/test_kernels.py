@@ -10,7 +10,7 @@ from crowdbot.core import kernels
 from crowdbot.core.geometry import ray_to_disc
 before = kernels.is_cold()
 assert ray_to_disc(0.0, 0.0, 1.0, 0.0, 5.0, 0.0, 1.0) == 4.0
-print(before, kernels.is_cold(), sum(ray_to_disc.stats.cache_hits.values()))
+print(before, kernels.is_cold(), sum(ray_to_disc.dispatcher.stats.cache_hits.values()))
 """
 
 

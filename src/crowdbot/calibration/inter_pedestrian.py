@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import prange
 from numpy.typing import NDArray
 
-from crowdbot.core import kernel
+from crowdbot.core import kernel, prange
 
 from .cost import Cost
 from .resimulation import ResimulatedTracks

@@ -48,7 +48,7 @@ from .workers import each, run_saved_jobs
 
 if TYPE_CHECKING:
     from .compiling import notify_compiling
-    from .kernels import cache_folder, is_cold, kernel
+    from .kernels import cache_folder, is_cold, kernel, prange
     from .markup.svg import PERSON_COLOR, ROBOT_COLOR, WALL_COLOR, Disc, Path2D, draw_svg
     from .neighbors import CHUNK, SMALL, Neighbors
 
@@ -56,7 +56,7 @@ __getattr__, __dir__ = lazy_exports(
     __name__,
     {
         "compiling": ["notify_compiling"],
-        "kernels": ["cache_folder", "is_cold", "kernel"],
+        "kernels": ["cache_folder", "is_cold", "kernel", "prange"],
         "neighbors": ["CHUNK", "SMALL", "Neighbors"],
         "markup.svg": ["PERSON_COLOR", "ROBOT_COLOR", "WALL_COLOR", "Disc", "Path2D", "draw_svg"],
     },
@@ -127,6 +127,7 @@ __all__ = [
     "per_agent",
     "plugin_address",
     "plugin_sources",
+    "prange",
     "product",
     "read_bytes",
     "reads_only",

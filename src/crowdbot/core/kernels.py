@@ -17,20 +17,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, cast, overload
 
-import numba
-from numba.core import config
-
-from .threading_layer import ParallelKernel, prefer_safe_layers
-
-__all__ = ["cache_folder", "is_cold", "kernel"]
-
-# For users who choose GNU OpenMP, whose idle threads spin: beside another busy process a step of 1 ms then takes 50 ms
-# (measured). It reads this when the first parallel kernel starts; a value set by the user stays.
-os.environ.setdefault("OMP_WAIT_POLICY", "passive")
-prefer_safe_layers()
+__all__ = ["cache_folder", "is_cold", "kernel", "prange"]
 
 STALE_DAYS = 30
 Function = TypeVar("Function", bound=Callable[..., Any])
+
+prange = range
+"""Range of a parallel loop in a kernel; the compiler gets the ``prange`` of numba in its place."""
 
 
 @overload
@@ -38,32 +31,76 @@ def kernel(function: Function) -> Function: ...
 @overload
 def kernel(*, parallel: bool = False, inline: bool = False) -> Callable[[Function], Function]: ...
 def kernel(function: Function | None = None, *, parallel: bool = False, inline: bool = False) -> Any:
-    """Compile a function of arrays and numbers with numba, cached on disk.
+    """Compile a function of arrays and numbers with numba at its first call, cached on disk.
 
     Works with and without arguments: ``@kernel``, ``@kernel(parallel=True)`` or, for what is called in the innermost
     loop with many arrays, ``@kernel(inline=True)``: every array is some seven numbers to hand over.
     """
     if function is None:
-        return functools.partial(_compiled, parallel=parallel, inline=inline)
-    return _compiled(function, parallel=parallel, inline=inline)
+        return functools.partial(Kernel, parallel=parallel, inline=inline)
+    return Kernel(function, parallel=parallel, inline=inline)
 
 
-def _compiled(function: Function, parallel: bool, inline: bool) -> Function:
-    settings: Any = config
-    before = settings.CACHE_DIR
-    settings.CACHE_DIR = str(cache_folder())
-    try:
-        jit = numba.njit(cache=True, error_model="numpy", fastmath=False, parallel=parallel, forceinline=inline)
-        compiled = jit(function)
-    finally:
-        settings.CACHE_DIR = before
-    starts_threads = parallel or any(isinstance(value, ParallelKernel) for value in _global_values(function))
-    return cast(Function, ParallelKernel(compiled) if starts_threads and not settings.DISABLE_JIT else compiled)
+class Kernel:
+    """A function that numba compiles at the first call; the import of numba takes longer than most commands.
+
+    Other kernels can call it as well: the compiler sees the compiled function inside.
+    """
+
+    def __init__(self, function: Callable[..., Any], parallel: bool = False, inline: bool = False) -> None:
+        functools.update_wrapper(self, function)
+        self.py_func, self._parallel, self._inline = function, parallel, inline
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Run the compiled function."""
+        return self._run(*arguments)
+
+    @functools.cached_property
+    def _run(self) -> Callable[..., Any]:
+        """The compiled function, behind the guard of the threading layer if it starts threads."""
+        from .threading_layer import guard
+
+        return guard(self.dispatcher) if self.starts_threads else cast(Callable[..., Any], self.dispatcher)
+
+    @functools.cached_property
+    def dispatcher(self) -> Any:
+        """The function as numba's dispatcher; with ``NUMBA_DISABLE_JIT`` the plain function."""
+        numba, settings = _load_numba()
+        names = self.py_func.__globals__
+        if names.get("prange") is prange:
+            names["prange"] = numba.prange
+        before = settings.CACHE_DIR
+        settings.CACHE_DIR = str(cache_folder())
+        try:
+            options = {"error_model": "numpy", "fastmath": False, "parallel": self._parallel}
+            return numba.njit(cache=True, forceinline=self._inline, **options)(self.py_func)
+        finally:
+            settings.CACHE_DIR = before
+
+    @functools.cached_property
+    def starts_threads(self) -> bool:
+        """Whether the function or a kernel that it calls is parallel."""
+        used = (self.py_func.__globals__.get(name) for name in self.py_func.__code__.co_names)
+        return self._parallel or any(other.starts_threads for other in used if isinstance(other, Kernel))
+
+    @property
+    def _numba_type_(self) -> Any:
+        return self.dispatcher._numba_type_
 
 
-def _global_values(function: Callable[..., Any]) -> list[Any]:
-    """Return the values of the module that a function refers to, other kernels among them."""
-    return [function.__globals__.get(name) for name in function.__code__.co_names]
+@functools.cache
+def _load_numba() -> tuple[Any, Any]:
+    """Return numba and its settings."""
+    # For users who choose GNU OpenMP, whose idle threads spin: beside another busy process a step of 1 ms then takes
+    # 50 ms (measured). It reads this when the first parallel kernel starts; a value set by the user stays.
+    os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+    import numba
+    from numba.core import config
+
+    from .threading_layer import prefer_safe_layers
+
+    prefer_safe_layers()
+    return numba, config
 
 
 @functools.cache

@@ -11,11 +11,10 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import prange
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError, did_you_mean
-from .kernels import kernel
+from .kernels import kernel, prange
 
 __all__ = ["CHUNK", "SMALL", "Neighbors", "nearest"]
 

@@ -9,7 +9,6 @@ this choice.
 from __future__ import annotations
 
 import ctypes
-import functools
 import importlib.metadata
 import os
 import sys
@@ -21,7 +20,7 @@ from typing import Any
 from numba.core import compiler_lock, config
 from numba.np.ufunc import parallel
 
-__all__ = ["ParallelKernel", "prefer_safe_layers"]
+__all__ = ["guard", "prefer_safe_layers"]
 
 LIBRARY = {"win32": "tbb12.dll", "darwin": "libtbb.12.dylib"}.get(sys.platform, "libtbb.so.12")
 PATIENCE = 10.0
@@ -55,32 +54,27 @@ def _load_tbb() -> None:
                 return
 
 
-class ParallelKernel:
-    """A compiled parallel kernel that several Python threads may call at once.
+def guard(compiled: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a compiled kernel that starts threads as a function that several Python threads may call at once.
 
-    Other kernels can call it as well: the compiler sees the compiled function inside.
+    If the threading layer runs only one kernel at a time, a call waits for the others.
     """
+    if config.DISABLE_JIT:  # type: ignore[attr-defined]
+        return compiled
 
-    def __init__(self, compiled: Callable[..., Any]) -> None:
-        functools.update_wrapper(self, compiled)
-        self.compiled: Any = compiled
-
-    @property
-    def _numba_type_(self) -> Any:
-        return self.compiled._numba_type_
-
-    def __call__(self, *arguments: Any) -> Any:
-        """Run the kernel, after all others if the threading layer runs only one at a time."""
+    def run(*arguments: Any) -> Any:
         if not _is_thread_safe():
             with _entry:
-                return self.compiled(*arguments)
+                return compiled(*arguments)
         call = object()
         with _entry:  # waits while another thread forks
             _running.add(call)
         try:
-            return self.compiled(*arguments)
+            return compiled(*arguments)
         finally:
             _running.discard(call)
+
+    return run
 
 
 def _is_thread_safe() -> bool:

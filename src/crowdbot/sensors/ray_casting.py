@@ -10,11 +10,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from crowdbot.core import Scene, SpatialPose, kernel
+from crowdbot.core import Scene, SpatialPose, kernel, prange
 from crowdbot.core.rays import (
     BOX,
     CAPSULE,
@@ -321,7 +320,7 @@ def _shared(
     place: Floats, rotation: Floats, shapes: RayShapes, beams: Beams, limit: float,
     distance: Floats, cos_incidence: Floats, normal: Floats, hit: Ints, part: Ints,
 ) -> None:  # fmt: skip
-    for e in numba.prange(len(place)):
+    for e in prange(len(place)):
         _one(
             e,
             place[e],

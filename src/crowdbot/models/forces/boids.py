@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 import numpy as np
-from numba import prange
 from numpy.typing import NDArray
 
 from crowdbot.core import (
@@ -21,6 +20,7 @@ from crowdbot.core import (
     kernel,
     parameter,
     per_agent,
+    prange,
 )
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest

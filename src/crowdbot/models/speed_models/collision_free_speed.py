@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 import numpy as np
-from numba import prange
 from numpy.typing import NDArray
 
-from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent
+from crowdbot.core import CHUNK, Neighbors, Paper, PerAgent, Scene, kernel, parameter, per_agent, prange
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest
 from crowdbot.models.model import (

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import prange
 from numpy.typing import NDArray
 
-from crowdbot.core import CHUNK, InputError, Neighbors, Scene, Walls, did_you_mean, kernel
+from crowdbot.core import CHUNK, InputError, Neighbors, Scene, Walls, did_you_mean, kernel, prange
 from crowdbot.core.geometry import nearest_on_segment
 from crowdbot.core.neighbors import nearest
 

@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import prange
 from numpy.typing import ArrayLike, NDArray
 
-from crowdbot.core import CHUNK, InputError, Scene, Walls, did_you_mean, kernel
+from crowdbot.core import CHUNK, InputError, Scene, Walls, did_you_mean, kernel, prange
 
 from .free_space import corners, room_for
 from .wall_cells import WallCells, distance2, sees, wall_cells
