@@ -184,13 +184,13 @@ def test_limbs_have_regions_and_masses():
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: People.of(["man-20"], height=0.0), "height 0.0 m of a person is not 0.5 to 2.5 m"),
+        (lambda: People.of(["man-20"], height=0.0), "height 0.0 m of a person must be from 0.5 to 2.5 m"),
         (lambda: People.of(["man-20"], height=np.nan), "height nan m"),
         (lambda: People.of(["man-20"], height=[1.0, 2.0]), r"height has shape \[2\]"),
-        (lambda: People.of(["man-20"], variation=-1), "variation -1.0 is not a whole number from 0"),
+        (lambda: People.of(["man-20"], variation=-1), "variation -1.0 must be a whole number, at least 0"),
         (lambda: People.of("man-20"), "takes a list of names"),
-        (lambda: People.of(["man-20"]).faces(3), "level of detail 3 is not 0 to 2"),
-        (lambda: People.sample(2, np.random.default_rng(0), kinds=["cat"]), "nobody is of the kinds cat"),
+        (lambda: People.of(["man-20"]).faces(3), "level of detail 3 is not allowed, it must be from 0 to 2"),
+        (lambda: People.sample(2, np.random.default_rng(0), kinds=["cat"]), "there is no person of the kinds cat"),
     ],
 )
 def test_wrong_input_is_named(call, message):

@@ -137,7 +137,7 @@ def test_the_phone_is_at_the_ear_and_who_sits_sits():
         ({"position": [[np.inf, 0.0]]}, "position of person 0 is not finite"),
         ({"heading": [np.nan]}, "heading of person 0 is not finite"),
         ({"velocity": [[1.0, 0.0, 0.0]]}, r"velocity has shape \[1, 3\], it must be \[1, 2\]"),
-        ({"velocity": [[50.0, 0.0]]}, "50.0 m/s is above 12 m/s"),
+        ({"velocity": [[50.0, 0.0]]}, "50.0 m/s is not allowed, it must be at most 12 m/s"),
         ({"dt": np.nan}, "dt = nan s"),
         ({"dt": 0.0}, "dt = 0.0 s"),
         ({"dt": -1.0}, "dt = -1.0 s"),
@@ -157,7 +157,7 @@ def test_wrong_activities_and_counts_are_named():
         gait.start([[0.0, 0.0]], [0.0], activity="fone")
     with pytest.raises(InputError, match="2 activities are given for 1 people"):
         gait.start([[0.0, 0.0]], [0.0], activity=["walk", "sit"])
-    with pytest.raises(InputError, match="activity 9 is not 0 to 5"):
+    with pytest.raises(InputError, match="activity index 9 must be from 0 to 5"):
         gait.start([[0.0, 0.0]], [0.0], activity=np.array([9]))
     with pytest.raises(InputError, match="2 ids are given for 1 people"):
         Gait(People.of(["man-20"]), ids=[1, 2])

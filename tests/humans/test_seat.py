@@ -118,7 +118,7 @@ def test_feet_of_the_small_hang_and_chairs_can_differ():
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: Seat(height=0.0), "height = 0.0 m is not 0.2 to 1.2 m"),
+        (lambda: Seat(height=0.0), "height = 0.0 m must be from 0.2 to 1.2 m"),
         (lambda: Seat(recline=np.nan), "not finite"),
         (lambda: Gait(People.of(["man-20"]), seat=[CHAIR, CHAIR]), "2 seats are given for 1 people"),
     ],

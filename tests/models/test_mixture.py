@@ -147,10 +147,10 @@ def test_the_same_stream_gives_the_same_bytes():
     [
         ({"models": ()}, "it must be a tuple of at least one model"),
         ({"models": (ORCA(), "orca")}, "'orca' is not a crowd model"),
-        ({"models": BOTH, "which": 2}, "names model 2, there are models 0 to 1"),
-        ({"models": BOTH, "which": [0, -1]}, "names model -1"),
-        ({"models": BOTH, "which": [0.5]}, "no whole number"),
-        ({"models": BOTH, "which": [np.nan]}, "no whole number"),
+        ({"models": BOTH, "which": 2}, "which = 2 is out of range, it must be from 0 to 1"),
+        ({"models": BOTH, "which": [0, -1]}, "which = -1 is out of range"),
+        ({"models": BOTH, "which": [0.5]}, "must contain only whole numbers"),
+        ({"models": BOTH, "which": [np.nan]}, "must contain only whole numbers"),
     ],
 )
 def test_a_wrong_mixture_is_explained(values, message):

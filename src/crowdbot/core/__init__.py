@@ -1,4 +1,4 @@
-"""The base of all other rooms: scenes, geometry, clocks, errors, kernels. numba is loaded with the first kernel."""
+"""Base of all other packages: scenes, geometry, clocks, errors, kernels. The first kernel call imports numba."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 STAGE = -1
-"""Owner of shapes that belong to the stage and not to an agent."""
+"""Owner of shapes that belong to the stage instead of an agent."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Skins:
         """Make skins from ``[V, 3]`` or ``[E, V, 3]`` vertices; ``owner`` and ``part`` may be scalars.
 
         Raises:
-            InputError: a shape does not fit, or a face refers to a missing vertex.
+            InputError: a shape is wrong, or a face refers to a missing vertex.
 
         >>> Skins.of([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], owner=3).vertices.shape
         (1, 3, 3)
@@ -103,7 +103,7 @@ class Bodies:
 
     @classmethod
     def of(cls, *, parts: tuple[str, ...] = (), skins: Skins | None = None, **arrays: ArrayLike) -> Bodies:
-        """Make bodies from the given fields; the axis E may be left out for one environment.
+        """Make bodies from the given fields; the axis E is optional for one environment.
 
         Defaults: owner :data:`STAGE`, part -1, boxes not rotated.
 
@@ -114,7 +114,7 @@ class Bodies:
         for name in arrays:
             if name not in known:
                 raise InputError(f"bodies: there is no field {name!r}; there are {', '.join(sorted(known))}")
-        count = {_batches(name, value) for name, value in arrays.items() if name in AXES}
+        count = {_batch_size(name, value) for name, value in arrays.items() if name in AXES}
         count |= {len(skins.vertices)} if skins is not None else set()
         if len(count - {1}) > 1:
             raise InputError(f"bodies: the fields have {sorted(count - {1})} environments; they must agree")
@@ -124,7 +124,9 @@ class Bodies:
             length = max((np.shape(arrays[n])[-1 - shapes[n]] for n in shapes if n in arrays), default=0)
             for name, vector in shapes.items():
                 default = np.broadcast_to([1.0, 0.0, 0.0, 0.0], (length, 4)) if name == "box_turn" else None
-                values[name] = _batched(name, arrays.get(name, default), (environments, length, *size[name]), vector)
+                values[name] = _broadcast_field(
+                    name, arrays.get(name, default), (environments, length, *size[name]), vector
+                )
             for name in labels:
                 values[name] = _labels(name, arrays.get(name, -1), length, "bodies")
         if skins is not None and len(skins.vertices) != environments:
@@ -164,18 +166,18 @@ class Bodies:
         """Return the bytes of all arrays; limbs of agents that are not ``active`` ``[E, A]`` are zeros."""
         found = []
         for _, labels, shapes in GROUPS:
-            here = _present(getattr(self, labels[0]), active)
+            here = _presence(getattr(self, labels[0]), active)
             for name in shapes:
                 value = getattr(self, name)
                 found.append(np.where(here.reshape(here.shape + (1,) * (value.ndim - 2)), value, 0.0).tobytes())
         if self.skins is not None:
-            here = _present(self.skins.owner, active)[..., None, None]
+            here = _presence(self.skins.owner, active)[..., None, None]
             found.append(np.where(here, self.skins.vertices[:, self.skins.faces], 0.0).tobytes())
         return b"".join(found)
 
 
-def _present(owner: Ints, active: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return ``[E, B]``, whether the owner is active; the stage always is."""
+def _presence(owner: Ints, active: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return the mask ``[E, B]`` of shapes whose owner is active; the stage is always active."""
     agents = active.shape[1]
     inside = (owner >= 0) & (owner < agents)
     if agents == 0:
@@ -200,12 +202,12 @@ GROUPS: tuple[tuple[dict[str, tuple[int, ...]], tuple[str, ...], dict[str, int]]
 AXES = {name: vector for _, _, shapes in GROUPS for name, vector in shapes.items()}
 
 
-def _batches(name: str, value: ArrayLike) -> int:
+def _batch_size(name: str, value: ArrayLike) -> int:
     shape = np.shape(value)
     return shape[0] if len(shape) == 2 + AXES[name] else 1
 
 
-def _batched(name: str, value: ArrayLike | None, shape: tuple[int, ...], vector: int) -> Floats:
+def _broadcast_field(name: str, value: ArrayLike | None, shape: tuple[int, ...], vector: int) -> Floats:
     if value is None:
         if shape[1]:
             raise InputError(f"bodies: {name} is missing for {shape[1]} shapes")

@@ -1,4 +1,4 @@
-"""Bounds: the range of allowed numbers, and its text for messages."""
+"""Bounds: range of allowed numbers, and its description in messages."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ __all__ = ["Bounds", "check_number"]
 
 @dataclass(frozen=True)
 class Bounds:
-    """The range of allowed numbers; each end is optional. NaN and infinity are never allowed.
+    """Range of allowed numbers; each end is optional. NaN and infinity are never allowed.
 
     Fields:
-        unit: of the number, for messages.
-        min, exclusive_min: lower end, allowed itself or not.
-        max, exclusive_max: upper end, allowed itself or not.
-        whole: whether the number must be whole.
+        unit: unit of the number, for messages.
+        min, exclusive_min: lower end, inclusive or exclusive.
+        max, exclusive_max: upper end, inclusive or exclusive.
+        whole: whether only whole numbers are allowed.
 
     >>> Bounds("s", exclusive_min=0.0, max=60.0).describe(), Bounds("m", min=0.0).describe()
     ('above 0 s and at most 60 s', 'finite and at least 0 m, without an upper limit')
@@ -47,7 +47,7 @@ class Bounds:
         return bool(np.all(self._contains(numbers)))
 
     def describe(self, high_first: bool = False) -> str:
-        """Return the text that follows ``must be`` in a message, with the upper end first if ``high_first``."""
+        """Return the text after ``must be`` in a message, with the upper end first if ``high_first``."""
         low = [f"{word} {self._amount(end)}" for word, end in (("above", self.exclusive_min), ("at least", self.min))
                if end is not None]  # fmt: skip
         high = [f"{word} {self._amount(end)}" for word, end in (("below", self.exclusive_max), ("at most", self.max))

@@ -11,12 +11,12 @@ from numba.core import event
 __all__ = ["notify_compiling"]
 
 
-class _Once(event.Listener):
+class _FirstCompilation(event.Listener):
     def __init__(self, callback: Callable[[], None]) -> None:
         self.callback, self.is_done = callback, False
 
     def on_start(self, event: Any) -> None:
-        """Notify at the first function of crowdbot that is compiled and not loaded from the cache."""
+        """Notify at the first function of crowdbot that is compiled instead of loaded from the cache."""
         function = event.data["dispatcher"].py_func
         if not self.is_done and str(function.__module__).startswith("crowdbot."):
             self.is_done = True
@@ -33,5 +33,5 @@ def notify_compiling(notify: Callable[[], None]) -> Iterator[None]:
     >>> with notify_compiling(lambda: print("one moment")):
     ...     pass
     """
-    with event.install_listener("numba:compile", _Once(notify)):
+    with event.install_listener("numba:compile", _FirstCompilation(notify)):
         yield

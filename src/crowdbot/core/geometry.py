@@ -1,4 +1,4 @@
-"""Kernels of plane geometry that models, sensors and metrics share. Points are x, y [m]; all loops are explicit."""
+"""Kernels of plane geometry for models, sensors and metrics. Points are x, y [m]."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = [
 
 @kernel
 def nearest_on_segment(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> tuple[float, float]:
-    """Return the point of segment a-b that is nearest to x, y."""
+    """Return the point of segment a-b nearest to x, y."""
     ex, ey = bx - ax, by - ay
     length2 = ex * ex + ey * ey
     if length2 == 0.0:
@@ -28,7 +28,7 @@ def nearest_on_segment(x: float, y: float, ax: float, ay: float, bx: float, by: 
 
 @kernel
 def ray_to_disc(x: float, y: float, ux: float, uy: float, cx: float, cy: float, radius: float) -> float:
-    """Return the distance along the unit ray u from x, y to a disc; inf when missed, 0 from inside."""
+    """Return the distance along the unit ray u from x, y to a disc; inf if it misses, 0 from inside."""
     rx, ry = cx - x, cy - y
     gap = rx * rx + ry * ry - radius * radius
     if gap <= 0.0:
@@ -45,7 +45,7 @@ def ray_to_disc(x: float, y: float, ux: float, uy: float, cx: float, cy: float, 
 
 @kernel
 def ray_to_segment(x: float, y: float, ux: float, uy: float, ax: float, ay: float, bx: float, by: float) -> float:
-    """Return the distance along the unit ray u from x, y to segment a-b; inf when missed or parallel."""
+    """Return the distance along the unit ray u from x, y to segment a-b; inf if it misses or is parallel."""
     ex, ey = bx - ax, by - ay
     cross = ux * ey - uy * ex
     if cross == 0.0:
@@ -60,9 +60,9 @@ def ray_to_segment(x: float, y: float, ux: float, uy: float, ax: float, ay: floa
 
 @kernel
 def time_to_contact(x: float, y: float, vx: float, vy: float, reach: float) -> float:
-    """Return when two discs touch: relative position x, y, relative velocity v, sum of radii ``reach``.
+    """Return the time [s] until two discs touch: relative position x, y, relative velocity v, sum of radii ``reach``.
 
-    0 when they overlap, inf when they never meet (stable root, Karamouzas et al. 2014).
+    The result is 0 if they overlap, inf without contact (numerically stable root, Karamouzas et al. 2014).
     """
     c = x * x + y * y - reach * reach
     if c <= 0.0:
@@ -81,7 +81,7 @@ def time_to_contact(x: float, y: float, vx: float, vy: float, reach: float) -> f
 def time_to_segment(
     x: float, y: float, vx: float, vy: float, radius: float, ax: float, ay: float, bx: float, by: float
 ) -> float:
-    """Return when a disc at x, y with velocity v touches segment a-b; 0 when it does already, inf when never."""
+    """Return the time [s] until a disc at x, y with velocity v touches segment a-b; 0 in contact, inf without one."""
     nx, ny = nearest_on_segment(x, y, ax, ay, bx, by)
     if (x - nx) ** 2 + (y - ny) ** 2 <= radius * radius:
         return 0.0

@@ -1,8 +1,8 @@
-"""The one way to compile a kernel, with a cache that cannot be stale.
+"""Kernels: functions compiled by numba, with a cache that is never stale.
 
-numba does not notice that a jitted function in another file has changed: the caller keeps its cached machine code.
-So the cache folder is keyed by a hash of every source file that holds kernels, next to numba's own key (its version,
-the processor). All kernels use float64, no fast-math, and numpy's rules for division.
+numba does not detect changes of a compiled function in another file: the caller keeps its cached machine code. The
+cache folder is therefore keyed by a hash of all source files with kernels, in addition to numba's own key (version and
+processor). All kernels use float64, no fast-math, and NumPy's rules for division.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ STALE_DAYS = 30
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 prange = range
-"""Range of a parallel loop in a kernel; the compiler gets the ``prange`` of numba in its place."""
+"""Range of a parallel loop in a kernel; the compiler replaces it by the ``prange`` of numba."""
 
 
 @overload
@@ -33,8 +33,8 @@ def kernel(*, parallel: bool = False, inline: bool = False) -> Callable[[Functio
 def kernel(function: Function | None = None, *, parallel: bool = False, inline: bool = False) -> Any:
     """Compile a function of arrays and numbers with numba at its first call, cached on disk.
 
-    Works with and without arguments: ``@kernel``, ``@kernel(parallel=True)`` or, for what is called in the innermost
-    loop with many arrays, ``@kernel(inline=True)``: every array is some seven numbers to hand over.
+    Works with and without arguments: ``@kernel``, ``@kernel(parallel=True)``, or ``@kernel(inline=True)`` for functions
+    with many arrays in innermost loops, because each array argument passes about seven values.
     """
     if function is None:
         return functools.partial(Kernel, parallel=parallel, inline=inline)
@@ -44,7 +44,7 @@ def kernel(function: Function | None = None, *, parallel: bool = False, inline: 
 class Kernel:
     """A function that numba compiles at the first call; the import of numba takes longer than most commands.
 
-    Other kernels can call it as well: the compiler sees the compiled function inside.
+    Other kernels can call it; the compiler uses the compiled function.
     """
 
     def __init__(self, function: Callable[..., Any], parallel: bool = False, inline: bool = False) -> None:
@@ -57,14 +57,14 @@ class Kernel:
 
     @functools.cached_property
     def _run(self) -> Callable[..., Any]:
-        """The compiled function, behind the guard of the threading layer if it starts threads."""
+        """Compiled function, wrapped by the guard of the threading layer if it starts threads."""
         from .threading_layer import guard
 
         return guard(self.dispatcher) if self.starts_threads else cast(Callable[..., Any], self.dispatcher)
 
     @functools.cached_property
     def dispatcher(self) -> Any:
-        """The function as numba's dispatcher; with ``NUMBA_DISABLE_JIT`` the plain function."""
+        """Dispatcher of numba, or the plain function with ``NUMBA_DISABLE_JIT``."""
         numba, settings = _load_numba()
         names = self.py_func.__globals__
         if names.get("prange") is prange:
@@ -91,8 +91,8 @@ class Kernel:
 @functools.cache
 def _load_numba() -> tuple[Any, Any]:
     """Return numba and its settings."""
-    # For users who choose GNU OpenMP, whose idle threads spin: beside another busy process a step of 1 ms then takes
-    # 50 ms (measured). It reads this when the first parallel kernel starts; a value set by the user stays.
+    # For GNU OpenMP, whose idle threads spin: with another busy process, a step of 1 ms takes 50 ms (measured). The
+    # variable is read when the first parallel kernel starts; a value set by the user is kept.
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     import numba
     from numba.core import config
@@ -105,7 +105,7 @@ def _load_numba() -> tuple[Any, Any]:
 
 @functools.cache
 def cache_folder() -> Path:
-    """Return the folder of compiled kernels that belongs to the sources as they are now, made when missing."""
+    """Return the folder of compiled kernels of the current sources; it is created if missing."""
     folder = _cache_root() / f"kernels-{_source_key()}"
     folder.mkdir(parents=True, exist_ok=True)
     os.utime(folder)

@@ -1,7 +1,7 @@
 """Parameters of models: one table for docs, command line, XML and calibration.
 
-A model is a frozen dataclass whose fields are made by :func:`parameter`. A value is a number for all agents, or an
-array that broadcasts to ``[E, A]``.
+A model is a frozen dataclass with fields defined by :func:`parameter`. A value is a number for all agents, or an array
+that broadcasts to ``[E, A]``.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from .errors import InputError
 __all__ = ["Parameter", "PerAgent", "check_parameters", "parameter", "parameters", "per_agent"]
 
 PerAgent = float | NDArray[np.float64]
-"""A number for everyone, or an array that broadcasts to ``[E, A]``."""
+"""A number for all agents, or an array that broadcasts to ``[E, A]``."""
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """One row of a parameter table: ``low`` and ``high`` limit calibration, ``min`` and ``max`` any value."""
+    """One row of a parameter table: ``low`` and ``high`` limit calibration, ``min`` and ``max`` all values."""
 
     name: str
     unit: str
@@ -54,12 +54,12 @@ def parameter(
     """Make the dataclass field of one parameter.
 
     Args:
-        default: value if none is given.
-        unit: SI unit, ``1`` if it has none.
+        default: default value.
+        unit: SI unit, ``1`` for dimensionless parameters.
         low, high: limits for calibration.
-        source: where the default comes from.
-        min: smallest allowed value.
-        max: largest allowed value; None leaves it to the model.
+        source: source of the default.
+        min: minimum value.
+        max: maximum value (default: that of the model).
     """
     row = Parameter("", unit, default, low, high, source, min, max)
     return dataclasses.field(default=default, metadata={"parameter": row})

@@ -1,8 +1,8 @@
-"""Neighbour search: the nearest agents of every agent.
+"""Neighbour search: the nearest agents of each agent.
 
 Neighbours are sorted by distance, then by agent index; the result does not depend on the method. Small crowds are
-searched by brute force, large crowds in a uniform grid that is filled by a counting sort. The grid wraps around: agents
-far away from all others cost no memory, and agents in the same cell by wrapping are rejected by distance.
+searched by brute force, large crowds in a uniform grid that is filled by a counting sort. The grid wraps around:
+distant agents require no additional memory, and agents in the same cell due to wrapping are rejected by distance.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ Rows = NDArray[np.int32]
 
 METHODS = ("auto", "brute", "grid")
 CHUNK = 64
-"""Agents in one work item of a thread."""
+"""Number of agents in one work item of a thread."""
 SMALL = 512
-"""Up to this number of agents one thread is faster than several (measured)."""
+"""Maximum number of agents for which one thread is faster than several (measured)."""
 CROWD = 120
-"""From this number of agents the grid is faster than brute force (measured for single crowds and batches)."""
+"""Minimum number of agents for which the grid is faster than brute force (measured for single crowds and batches)."""
 PER_CELL = 2.0
 """Average number of agents in a cell."""
 SPARE = 32
@@ -39,7 +39,7 @@ SLACK = 1e-12
 
 
 class _Grid(NamedTuple):
-    """Agents of all environments sorted by cell: cell c of environment e begins at ``first[e, c]``."""
+    """Agents of all environments sorted by cell: cell c of environment e starts at ``first[e, c]``."""
 
     shape: NDArray[np.int64]
     """``[E, 2]`` columns and rows before the grid wraps around."""
@@ -50,7 +50,7 @@ class _Grid(NamedTuple):
     order: Rows
     """``[E * A]`` rows of the agents, sorted."""
     place: Array
-    """``[E * A, 2]`` their positions [m], NaN for invisible agents."""
+    """``[E * A, 2]`` positions of the sorted agents [m], NaN for invisible agents."""
 
 
 class _Seekers(NamedTuple):
@@ -63,12 +63,12 @@ class _Seekers(NamedTuple):
 
 
 class Neighbors(NamedTuple):
-    """Neighbours of every agent.
+    """Neighbours of each agent.
 
     Fields:
         agent: ``[E, A, K]`` int32, agents sorted by distance, then by index; -1 past the end.
         number: ``[E, A]`` int32, number of neighbours.
-        order: ``[E * A]`` int32, all rows ``e * A + a`` ordered by place, for loops with good memory locality.
+        order: ``[E * A]`` int32, all rows ``e * A + a`` in spatial order, for memory locality of loops.
     """
 
     agent: Rows
@@ -85,14 +85,14 @@ def nearest(
     *,
     method: str = "auto",
 ) -> Neighbors:
-    """Return the nearest neighbours of every agent in its own environment.
+    """Return the nearest neighbours of each agent in its environment.
 
     Args:
         position: ``[E, A, 2]`` [m].
-        reach: neighbours are strictly nearer than this [m]; broadcasts to ``[E, A]``.
+        reach: maximum distance of neighbours [m], exclusive; broadcasts to ``[E, A]``.
         most: maximum number of neighbours; broadcasts to ``[E, A]``.
         seen: whether an agent can be a neighbour (active and visible); broadcasts to ``[E, A]``.
-        asking: whether an agent needs neighbours; the others get none; broadcasts to ``[E, A]``.
+        asking: whether to search the neighbours of an agent; broadcasts to ``[E, A]``.
         method: ``auto``, ``brute`` or ``grid``; the results are equal.
 
     Raises:
@@ -112,7 +112,9 @@ def nearest(
         _rows(most, (E, A), np.int32),
         _rows(asking, (E, A), np.bool_),
     )
-    grid = _sorted(seekers, _rows(seen, (E, A), np.bool_), E, method == "grid" or (method == "auto" and A >= CROWD))
+    grid = _sort_into_grid(
+        seekers, _rows(seen, (E, A), np.bool_), E, method == "grid" or (method == "auto" and A >= CROWD)
+    )
     widest = max(0, min(int(seekers.most.max(initial=0)), A - 1))
     agent = np.empty((E * A, widest), dtype=np.int32)
     number = np.empty(E * A, dtype=np.int32)
@@ -124,11 +126,11 @@ def nearest(
 
 
 def _rows(value: ArrayLike, shape: tuple[int, int], kind: Any) -> NDArray[Any]:
-    # writeable, too: a read-only array is another type to the compiler
+    # writeable: numba has a separate type for read-only arrays
     return np.require(np.broadcast_to(np.asarray(value, dtype=kind), shape), requirements=["C", "W"]).reshape(-1)
 
 
-def _sorted(seekers: _Seekers, seen: NDArray[np.bool_], E: int, in_cells: bool) -> _Grid:
+def _sort_into_grid(seekers: _Seekers, seen: NDArray[np.bool_], E: int, in_cells: bool) -> _Grid:
     """Sort all agents into cells, or keep their order in one large cell per environment."""
     rows = len(seen)
     shape, size = np.ones((E, 2), dtype=np.int64), np.full(E, 1e100)
@@ -154,7 +156,7 @@ def _sort(
     first: Rows,
     order: Rows,
 ) -> None:
-    """Sort the agents of every environment by cell (counting sort); the last cell holds the absent agents."""
+    """Sort the agents of each environment by cell (counting sort); the last cell contains the absent agents."""
     E = len(sizes)
     A = len(place) // E
     rest = first.shape[1] - 1
@@ -167,15 +169,15 @@ def _sort(
         for i in range(A):
             cell = rest
             if there[begin + i]:
-                line = _wrapped(math.floor(place[begin + i, 1] * inverse), rows)
-                cell = line * columns + _wrapped(math.floor(place[begin + i, 0] * inverse), columns)
+                line = _wrap(math.floor(place[begin + i, 1] * inverse), rows)
+                cell = line * columns + _wrap(math.floor(place[begin + i, 0] * inverse), columns)
             where[i] = cell
             first[e, cell] += 1
         total = begin + A
         for c in range(rest, -1, -1):
             total -= first[e, c]
             first[e, c] = total + first[e, c]
-        for i in range(A - 1, -1, -1):  # backwards, so that agents of one cell keep their order
+        for i in range(A - 1, -1, -1):  # backwards: agents of a cell keep their order
             first[e, where[i]] -= 1
             order[first[e, where[i]]] = begin + i
 
@@ -196,7 +198,7 @@ def _cells(place: Array, there: NDArray[np.bool_], longest: float, cells: int) -
     size = max(math.sqrt(PER_CELL * wide / n) * math.sqrt(high), PER_CELL * max(wide, high) / n)
     if longest > 0.0:
         size = min(size, longest)
-    # farther than 1e9 cells from the origin whole numbers would run out
+    # limit the cell indices to 1e9, against integer overflow
     size = max(size, 1e-9 * max(abs(low_x), abs(high_x), abs(low_y), abs(high_y)), 1e-9)
     columns, rows = math.floor(wide / size) + 1, math.floor(high / size) + 1
     side = math.floor(math.sqrt(cells))
@@ -208,7 +210,7 @@ def _cells(place: Array, there: NDArray[np.bool_], longest: float, cells: int) -
 
 
 @kernel
-def _wrapped(cell: int, count: int) -> int:
+def _wrap(cell: int, count: int) -> int:
     """Return ``cell`` modulo ``count``, without a division if possible."""
     return cell if 0 <= cell < count else cell % count
 
@@ -221,7 +223,7 @@ def _search(seekers: _Seekers, grid: _Grid, agent: Rows, number: Rows) -> None:
 
 @kernel
 def _search_part(begin: int, end: int, seekers: _Seekers, grid: _Grid, agent: Rows, number: Rows) -> None:
-    # the fields are taken out here: a field taken inside the loop counts references, atomically
+    # unpack the tuples outside of the loop: each access counts references, atomically
     place, reach, capacity, asking = seekers
     shape, sizes, first, order, points = grid
     A = len(number) // len(sizes)
@@ -232,7 +234,7 @@ def _search_part(begin: int, end: int, seekers: _Seekers, grid: _Grid, agent: Ro
         row = order[k]
         e = row // A
         x, y, reach2, most = place[row, 0], place[row, 1], reach[row] * reach[row], min(capacity[row], widest)
-        held = int(np.int64(0))  # a plain 0 would be a type of its own and compile what follows twice
+        held = int(np.int64(0))  # a literal 0 has its own type, which compiles the callees twice
         if asking[row] and most > 0 and reach[row] > 0.0 and math.isfinite(x) and math.isfinite(y):
             limit2 = min(reach2, (GUESS * most + 0.5) * sizes[e] * sizes[e])
             while True:
@@ -257,12 +259,12 @@ def _look_around(
     first: Rows, e: int, size: float, columns: int, rows: int, order: Rows, points: Array, x: float, y: float,
     own: int, limit2: float, reach2: float, most: int, near: Rows, near2: Array, sorted_: Rows,
 ) -> int:  # fmt: skip
-    """Collect candidates row by row, from the own row outwards until the next is too far; return their number."""
+    """Collect candidates by grid row, from the agent's row outwards up to the limit; return their number."""
     held = int(np.int64(0))
     inverse = 1.0 / size
     line = math.floor(y * inverse)
     slack = SLACK * (abs(x) + abs(y) + size)
-    for visit in range(rows):  # the own row, then +1, -1, +2, -2, ...
+    for visit in range(rows):  # the agent's row, then +1, -1, +2, -2, ...
         ring = (visit + 1) // 2
         above = max(0.0, (line + ring) * size - y - slack)
         below = max(0.0, y - (line - ring + 1) * size - slack)
@@ -274,16 +276,16 @@ def _look_around(
         if gap * gap > limit2:
             continue
         width = math.sqrt(limit2 - gap * gap) + slack
-        start = _wrapped(line + ring if visit % 2 == 1 else line - ring, rows) * columns
+        start = _wrap(line + ring if visit % 2 == 1 else line - ring, rows) * columns
         low, high = 0, columns - 1
         if 2.0 * width * inverse + 2.0 < columns:
-            low = _wrapped(math.floor((x - width) * inverse), columns)
-            high = _wrapped(math.floor((x + width) * inverse), columns)
+            low = _wrap(math.floor((x - width) * inverse), columns)
+            high = _wrap(math.floor((x + width) * inverse), columns)
         for _ in range(1 if low <= high else 2):  # twice around the end of the row
             last = high if low <= high else columns - 1
             for k in range(first[e, start + low], first[e, start + last + 1]):
                 if held == len(near) - 1:
-                    held, limit2 = _shortened(near, near2, held, most, sorted_)
+                    held, limit2 = _keep_nearest(near, near2, held, most, sorted_)
                 dx, dy = points[k, 0] - x, points[k, 1] - y
                 d2 = dx * dx + dy * dy
                 near[held], near2[held] = order[k], d2
@@ -293,7 +295,7 @@ def _look_around(
 
 
 @kernel
-def _shortened(near: Rows, near2: Array, held: int, most: int, sorted_: Rows) -> tuple[int, float]:
+def _keep_nearest(near: Rows, near2: Array, held: int, most: int, sorted_: Rows) -> tuple[int, float]:
     """Keep only the nearest candidates; return their number and the squared distance of the last."""
     _sort_by_distance(near, near2, held, sorted_)
     limit2 = near2[sorted_[most - 1]]

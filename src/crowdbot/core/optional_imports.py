@@ -15,7 +15,7 @@ def import_optional(module: str, what: str, extra: str) -> Any:
 
     Args:
         module: name of the module.
-        what: the feature that needs it, for the message.
+        what: feature that requires it, for the message.
         extra: the extra of crowdbot that installs it.
 
     Raises:

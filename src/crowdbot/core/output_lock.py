@@ -15,19 +15,19 @@ from .errors import InputError
 __all__ = ["lock_output", "release_stale_lock"]
 
 ATTEMPTS = 20
-"""A stale lock is taken over at most so many times before the file counts as locked."""
+"""Maximum number of attempts to take over a stale lock."""
 WRITING = 5.0
-"""A lock file without content is younger than this [s] while its process still writes it."""
+"""Age [s] below which an empty lock file is assumed to be still being written by its process."""
 
 _held: set[str] = set()
 
 
 @contextlib.contextmanager
 def lock_output(path: Path, force: bool = False) -> Iterator[None]:
-    """Lock a file for writing while the context lasts.
+    """Lock a file for writing within the context.
 
-    The lock is the file ``.NAME.lock`` beside it, which holds the process id and the host. A lock whose process has
-    ended on this host is taken over.
+    The lock is the file ``.NAME.lock`` in the same folder, with process id and host. A lock is taken over if its
+    process was on this host and has ended.
 
     Args:
         path: the file to write, in an existing folder.
@@ -92,12 +92,12 @@ def _acquire(path: Path, lock: Path) -> None:
 
 
 def _remove_stale(path: Path, lock: Path) -> None:
-    """Remove a lock whose process has ended; of several processes that try, one succeeds."""
+    """Remove a lock whose process has ended; only one of several processes succeeds."""
     try:
         text, age = lock.read_text(encoding="utf-8", errors="replace"), time.time() - lock.stat().st_mtime
     except FileNotFoundError:
         return
-    except PermissionError:  # Windows: its process is removing it now
+    except PermissionError:  # Windows: its process is removing it
         time.sleep(0.05)
         return
     pid, _, host = text.strip().partition(" ")
@@ -114,7 +114,7 @@ def _remove_stale(path: Path, lock: Path) -> None:
     taken = lock.with_name(f"{lock.name}.{os.getpid()}")
     with contextlib.suppress(FileNotFoundError):  # another process was faster
         lock.replace(taken)
-        if taken.read_text(encoding="utf-8", errors="replace") != text:  # a new lock has come in between
+        if taken.read_text(encoding="utf-8", errors="replace") != text:  # a new lock was created in between
             taken.replace(lock)
         taken.unlink(missing_ok=True)
 

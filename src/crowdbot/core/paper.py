@@ -1,4 +1,4 @@
-"""Papers: every model, sensor law and metric that comes from somewhere names its source."""
+"""Paper: the publication of a model, sensor or metric."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Paper:
         return f"{self.authors} ({self.year}). {self.title}. {self.venue}.{link}"
 
     def bibtex(self) -> str:
-        """Return the entry in BibTeX."""
+        """Return the BibTeX entry."""
         key = self.authors.split(",")[0].split()[-1].lower() + str(self.year)
         doi = f"  doi = {{{self.doi}}},\n" if self.doi else ""
         return (

@@ -27,19 +27,19 @@ def wrap_angle(angle: float) -> float:
 
 
 class Twist(NamedTuple):
-    """A velocity command in the robot's own frame (REP-103: x forward, y left)."""
+    """A velocity command in the frame of the robot (REP-103: x forward, y left)."""
 
     forward: float = 0.0
     """[m/s]"""
     turn: float = 0.0
     """Counter-clockwise [rad/s]."""
     left: float = 0.0
-    """[m/s]; a differential drive cannot follow it."""
+    """[m/s]; not supported by differential drives."""
 
 
 @dataclass(frozen=True)
 class Pose:
-    """Planar pose of one object in every environment: positions ``[E, 2]`` [m] and headings ``[E]`` [rad].
+    """Planar pose of one object in each environment: positions ``[E, 2]`` [m] and headings ``[E]`` [rad].
 
     >>> Pose.of((1.0, 2.0), 0.5).position.tolist()
     [[1.0, 2.0]]
@@ -73,7 +73,7 @@ class Pose:
 
 @dataclass(frozen=True)
 class SpatialPose:
-    """Spatial pose of one object in every environment.
+    """Spatial pose of one object in each environment.
 
     Positions ``[E, 3]`` [m] and rotations ``[E, 4]`` (unit quaternions w, x, y, z) from the frame of the object to the
     world frame. Axes follow REP-103: x forward, y left, z up.

@@ -1,4 +1,4 @@
-"""Streams of randomness: every consumer draws from its own, named by a seed and a path."""
+"""Random streams: each consumer has its own generator, identified by a seed and a path."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ __all__ = ["stream"]
 
 
 def stream(seed: int, *path: str | int) -> np.random.Generator:
-    """Return the generator that belongs to ``seed`` and ``path``.
+    """Return the random generator of ``seed`` and ``path``.
 
-    Streams with different paths are independent, so that adding a sensor does not change the crowd.
+    Streams with different paths are independent: for example, adding a sensor does not change the crowd.
 
     Args:
         seed: any integer.
-        path: names or numbers of the consumer, from the outside in.
+        path: names or numbers that identify the consumer, from general to specific.
 
     >>> a = stream(7, "spawner", 3).random()
     >>> a == stream(7, "spawner", 3).random(), a == stream(7, "spawner", 4).random()

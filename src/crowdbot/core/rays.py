@@ -1,7 +1,7 @@
-"""Kernels of rays in space, from the origin along a unit vector d, against shapes that the origin is outside of.
+"""Kernels for rays in space, from the origin along a unit vector d, and shapes that do not contain the origin.
 
-All are exact to rounding at any distance: they work with what is perpendicular to ray or axis, so that nothing large
-cancels. A miss is inf. A shape is a row of 16 numbers, as :func:`meet` and :func:`normal_at` read it.
+All are accurate to rounding at any distance: they use components perpendicular to ray or axis, which avoids
+cancellation. The distance is inf if the ray misses. A shape is a row of 16 numbers, see :func:`meet`.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ __all__ = [
 Floats = NDArray[np.float64]
 
 CAPSULE, CYLINDER, WALL, BOX, TRIANGLE = 0, 1, 2, 3, 4
-"""Kinds of shapes and what their rows hold:
+"""Kinds of shapes, and the columns of their rows:
 
 * capsule: start (3), unit axis (3), length, radius;
-* cylinder: middle of one end (3), unit axis (3), length, radius;
-* wall: a lower corner (3), lower edge (3), unit upward (3), height;
-* box: centre (3), its unit axes one after the other (9), half lengths (3);
-* triangle: its corners (9).
+* cylinder: centre of one end (3), unit axis (3), length, radius;
+* wall: a lower corner (3), lower edge (3), upward unit vector (3), height;
+* box: centre (3), unit axes (9), half lengths (3);
+* triangle: corners (9).
 """
 WIDTH = 16
 
@@ -58,11 +58,11 @@ def ray_to_sphere(dx: float, dy: float, dz: float, cx: float, cy: float, cz: flo
 
 
 @kernel
-def _side(
+def _enter_cylinder(
     dx: float, dy: float, dz: float, ax: float, ay: float, az: float, ux: float, uy: float, uz: float, length: float,
     radius: float,
 ) -> tuple[float, float, float, bool]:  # fmt: skip
-    """Return where d enters the endless cylinder of an axis: distance, height there, slope of d, whether it does."""
+    """Return where d enters the infinite cylinder of an axis: distance, height, slope of d, and whether it enters."""
     half = 0.5 * length
     near = dx * (ax + half * ux) + dy * (ay + half * uy) + dz * (az + half * uz)
     wx, wy, wz = near * dx - ax, near * dy - ay, near * dz - az
@@ -88,7 +88,7 @@ def ray_to_capsule(
     radius: float,
 ) -> float:  # fmt: skip
     """Return the distance along d to a capsule from a along the unit axis u."""
-    distance, height, _, enters = _side(dx, dy, dz, ax, ay, az, ux, uy, uz, length, radius)
+    distance, height, _, enters = _enter_cylinder(dx, dy, dz, ax, ay, az, ux, uy, uz, length, radius)
     if not enters:
         return math.inf
     if 0.0 <= height <= length:
@@ -104,7 +104,7 @@ def ray_to_cylinder(
     radius: float,
 ) -> float:  # fmt: skip
     """Return the distance along d to a closed cylinder from a along the unit axis u."""
-    distance, height, slope, enters = _side(dx, dy, dz, ax, ay, az, ux, uy, uz, length, radius)
+    distance, height, slope, enters = _enter_cylinder(dx, dy, dz, ax, ay, az, ux, uy, uz, length, radius)
     if not enters:
         return math.inf
     if 0.0 <= height <= length:
@@ -125,9 +125,9 @@ def ray_to_wall(
     dx: float, dy: float, dz: float, ax: float, ay: float, az: float, ex: float, ey: float, ez: float,
     ux: float, uy: float, uz: float, tall: float,
 ) -> float:  # fmt: skip
-    """Return the distance along d to the rectangle from corner a along its edge e and ``tall`` along the unit u.
+    """Return the distance along d to the rectangle from corner a along edge e and ``tall`` along the unit vector u.
 
-    It is inf when they are parallel.
+    It is inf if they are parallel.
     """
     nx, ny, nz = ey * uz - ez * uy, ez * ux - ex * uz, ex * uy - ey * ux
     against = dx * nx + dy * ny + dz * nz
@@ -169,13 +169,13 @@ def ray_to_triangle(
     dx: float, dy: float, dz: float, ax: float, ay: float, az: float, bx: float, by: float, bz: float,
     cx: float, cy: float, cz: float,
 ) -> float:  # fmt: skip
-    """Return the distance along d to a triangle, from either side; no ray slips between two that share an edge."""
-    # d . (b x c) changes only its sign, to the last bit, when b and c change places
+    """Return the distance along d to a triangle, from either side; no ray passes between two with a common edge."""
+    # d . (b x c) changes only its sign, to the last bit, if b and c are swapped
     one = dx * (by * cz - bz * cy) + dy * (bz * cx - bx * cz) + dz * (bx * cy - by * cx)
     two = dx * (cy * az - cz * ay) + dy * (cz * ax - cx * az) + dz * (cx * ay - cy * ax)
     three = dx * (ay * bz - az * by) + dy * (az * bx - ax * bz) + dz * (ax * by - ay * bx)
     size = max(abs(ax), abs(ay), abs(az), abs(bx), abs(by), abs(bz), abs(cx), abs(cy), abs(cz))
-    hair = 1e-15 * size * size  # at a corner the signs of many edges meet, each rounded on its own
+    hair = 1e-15 * size * size  # tolerance at corners, where each edge is rounded separately
     if (one < -hair or two < -hair or three < -hair) and (one > hair or two > hair or three > hair):
         return math.inf
     ex, ey, ez, fx, fy, fz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
@@ -203,7 +203,7 @@ def meet(kind: int, dx: float, dy: float, dz: float, s: Floats) -> float:
 
 @kernel
 def within(kind: int, s: Floats) -> bool:
-    """Return whether the origin lies in the shape of a row or on it; walls and triangles have no inside."""
+    """Return whether the origin is in or on the shape of a row; walls and triangles have no inside."""
     if kind in (CAPSULE, CYLINDER):
         height = -(s[0] * s[3] + s[1] * s[4] + s[2] * s[5])
         if kind == CYLINDER and (height < 0.0 or height > s[6]):
@@ -221,7 +221,7 @@ def within(kind: int, s: Floats) -> bool:
 
 @kernel
 def normal_at(kind: int, x: float, y: float, z: float, s: Floats) -> tuple[float, float, float]:
-    """Return the unit normal of the shape of a row at its surface point x, y, z; outward, of flat ones either side."""
+    """Return the unit normal of the shape of a row at its surface point x, y, z; outward, either side for flat ones."""
     if kind in (CAPSULE, CYLINDER):
         height = (x - s[0]) * s[3] + (y - s[1]) * s[4] + (z - s[2]) * s[5]
         near = min(s[6], max(0.0, height))

@@ -1,4 +1,4 @@
-"""Scene: the state of all agents and walls at one instant, as arrays. Models, sensors and recorders read it."""
+"""Scene: state of all agents and walls at one instant, as arrays, for models, sensors and recorders."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PERSON_HEIGHT = 1.7
 WALL_HEIGHT = 3.0
 """Default height [m] of walls."""
 TURNING_SPEED = 0.05
-"""Below this speed [m/s] an agent keeps its heading."""
+"""Speed [m/s] below which an agent keeps its heading."""
 
 
 @dataclass(frozen=True)
@@ -38,19 +38,19 @@ class Scene:
         heading: ``[E, A]`` [rad], counter-clockwise from +x.
         radius: ``[E, A]`` [m].
         goal: ``[E, A, 2]`` [m].
-        preferred_speed: ``[E, A]`` [m/s], speed of undisturbed walking.
+        preferred_speed: ``[E, A]`` [m/s], free walking speed.
         max_speed: ``[E, A]`` [m/s].
         active: ``[E, A]`` bool, False for an absent agent.
         visible: ``[E, A]`` bool, whether other agents react to this one.
-        external: ``[E, A]`` bool, True for agents that models see but do not move (a robot, a replayed person).
-        group: ``[E, A]`` int, equal for people who walk together; -1 for none.
+        external: ``[E, A]`` bool, True for agents that models consider but do not move (robots, replayed people).
+        group: ``[E, A]`` int, number of the group; -1 for none.
         walls: shared by all environments.
         preferred_velocity: ``[E, A, 2]`` [m/s]; None derives it from goal and preferred speed.
         time: [s].
         memory: state of a model between steps, by name, each ``[E, A, ...]``.
         bodies: limbs, props and skins at this instant, or None. An agent without limbs is an upright cylinder.
         height: ``[E, A]`` [m], height of these cylinders; None for 1.7 m.
-        wall_height: height of all walls [m]; rays pass above.
+        wall_height: height of all walls [m]; rays can pass above.
 
     >>> scene = Scene.of([[0.0, 0.0], [4.0, 0.0]], [[1.0, 0.0], [-1.0, 0.0]], goal=[[9.0, 0.0], [-9.0, 0.0]])
     >>> scene.position.shape, float(scene.advance(scene.velocity, 0.5).position[0, 0, 0])
@@ -104,7 +104,7 @@ class Scene:
         speed (Helbing & Molnar 1995).
 
         Raises:
-            InputError: a shape does not fit, a value of an active agent is not finite, or a radius is not positive.
+            InputError: a shape is wrong, a value of an active agent is not finite, or a radius is not positive.
         """
         place = _vectors("position", position, None)
         shape = place.shape[:2]
@@ -161,7 +161,7 @@ class Scene:
     def desired_velocity(self, dt: float) -> Floats:
         """Return ``[E, A, 2]`` [m/s]: the given preferred velocity, or the preferred speed towards the goal.
 
-        Near the goal the speed is reduced: a step of ``dt`` [s] does not overshoot.
+        Near the goal, the speed is reduced so that a step of ``dt`` [s] does not overshoot.
         """
         if self.preferred_velocity is not None:
             return self.preferred_velocity
@@ -173,8 +173,8 @@ class Scene:
     def advance(self, velocity: Floats, dt: float) -> Scene:
         """Return the scene ``dt`` [s] later: velocity first, then position (symplectic Euler).
 
-        External and absent agents ignore the new velocity; external agents continue with their own. Bodies of agents
-        are dropped, bodies of the stage stay; limbs must be posed again.
+        External and absent agents ignore the new velocity; external agents keep their own. Bodies of agents are
+        removed (limbs must be posed again), bodies of the stage are kept.
         """
         own = self.active & ~self.external
         moved = np.where(own[..., None], velocity, self.velocity)
@@ -234,14 +234,14 @@ def _vectors(name: str, value: ArrayLike, shape: tuple[int, int] | None) -> Floa
         raise InputError(f"scene: {name} has shape {list(np.shape(value))}, it must be [A, 2] or [E, A, 2]")
     if shape is None:
         return np.ascontiguousarray(array)
-    return np.ascontiguousarray(_fitting(name, array, (*shape, 2)))
+    return np.ascontiguousarray(_broadcast(name, array, (*shape, 2)))
 
 
 def _numbers(name: str, value: ArrayLike, shape: tuple[int, int]) -> Floats:
-    return np.ascontiguousarray(_fitting(name, np.asarray(value, dtype=np.float64), shape))
+    return np.ascontiguousarray(_broadcast(name, np.asarray(value, dtype=np.float64), shape))
 
 
-def _fitting(name: str, array: Floats, shape: tuple[int, ...]) -> Floats:
+def _broadcast(name: str, array: Floats, shape: tuple[int, ...]) -> Floats:
     try:
         return np.broadcast_to(array, shape).copy()
     except ValueError:

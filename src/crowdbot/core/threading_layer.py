@@ -1,9 +1,9 @@
-"""The threads of parallel kernels: safe after ``fork`` and from several Python threads at once.
+"""Threading layer of parallel kernels, safe after ``fork`` and with several Python threads.
 
-numba's default on Linux, GNU OpenMP, hangs in a child process that was forked after the first parallel kernel. Its
-``workqueue`` survives a fork but aborts if two Python threads enter it. oneTBB allows both, so it comes first where its
-wheel exists; elsewhere ``workqueue`` runs behind one lock. The environment variable ``NUMBA_THREADING_LAYER`` overrides
-this choice.
+GNU OpenMP, the default of numba on Linux, hangs in a child process that is forked after the first parallel kernel. The
+``workqueue`` layer supports forks but aborts if two Python threads enter it. oneTBB supports both and is preferred
+where its wheel exists; otherwise ``workqueue`` runs behind a lock. The environment variable ``NUMBA_THREADING_LAYER``
+overrides this choice.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ __all__ = ["guard", "prefer_safe_layers"]
 
 LIBRARY = {"win32": "tbb12.dll", "darwin": "libtbb.12.dylib"}.get(sys.platform, "libtbb.so.12")
 PATIENCE = 10.0
-"""A fork waits this long [s] for kernels that run in other threads."""
+"""Maximum time [s] that a fork waits for kernels in other threads."""
 
 _entry = threading.RLock()
 _compiling: Any = compiler_lock.global_compiler_lock
@@ -41,7 +41,7 @@ def prefer_safe_layers() -> None:
 
 
 def _load_tbb() -> None:
-    """Load the library of the ``tbb`` wheel, which is outside the search path; numba then finds it by its name."""
+    """Load the library of the ``tbb`` wheel, which is outside of the search path; numba then finds it by name."""
     try:
         files = importlib.metadata.files("tbb") or []
     except importlib.metadata.PackageNotFoundError:
@@ -50,14 +50,14 @@ def _load_tbb() -> None:
         if file.name.lower() == LIBRARY:
             try:
                 ctypes.CDLL(os.fspath(file.locate().resolve()))  # type: ignore[attr-defined]
-            except OSError:  # built for another system: numba takes the next layer
+            except OSError:  # built for another system: numba uses the next layer
                 return
 
 
 def guard(compiled: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a compiled kernel that starts threads as a function that several Python threads may call at once.
+    """Return a thread-safe wrapper of a compiled parallel kernel.
 
-    If the threading layer runs only one kernel at a time, a call waits for the others.
+    If the threading layer supports only one kernel at a time, a call waits for the others.
     """
     if config.DISABLE_JIT:  # type: ignore[attr-defined]
         return compiled
@@ -78,7 +78,7 @@ def guard(compiled: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _is_thread_safe() -> bool:
-    """Return whether numba has started its threads, on a layer that several Python threads may enter."""
+    """Return whether numba has started its threads on a layer that supports several Python threads."""
     try:
         return bool(_layer() != "workqueue")
     except ValueError:  # not started yet
@@ -86,7 +86,7 @@ def _is_thread_safe() -> bool:
 
 
 def _before_fork() -> None:
-    """Wait until no other thread runs or compiles a kernel: in the child nobody would finish it."""
+    """Wait until no other thread runs or compiles a kernel, which the child process could not finish."""
     _entry.acquire()
     end = time.monotonic() + PATIENCE
     while _running and time.monotonic() < end:

@@ -1,4 +1,4 @@
-"""Which crowdbot this is, to the letter: results that are kept belong to the code that made them."""
+"""Digest of the source code, which identifies the code that produced a stored result."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["source_digest"]
 
 @functools.cache
 def source_digest() -> str:
-    """Return a hash of every source file of the package.
+    """Return a hash of all source files of the package.
 
     >>> len(source_digest())
     16

@@ -16,7 +16,7 @@ __all__ = ["Walls"]
 
 @dataclass(frozen=True)
 class Walls:
-    """Directed edges and their neighbours along each ring; the solid side is on the left of an edge.
+    """Directed edges and their adjacent edges in each ring; the solid side is on the left of an edge.
 
     A counter-clockwise ring is a solid obstacle; a clockwise ring encloses free space; two points are a thin wall with
     two sides.
@@ -70,9 +70,9 @@ class Walls:
     def around(cls, walkable: Any) -> Walls:
         """Make the walls of a walkable area: a shapely polygon (holes are obstacles) or one ring ``[N, 2]``."""
         if hasattr(walkable, "exterior"):
-            inside = [_turned(np.asarray(r.coords)[:, :2], clockwise=False) for r in walkable.interiors]
-            return cls.of([_turned(np.asarray(walkable.exterior.coords)[:, :2], clockwise=True), *inside])
-        return cls.of([_turned(_clean(walkable, 0), clockwise=True)])
+            inside = [_orient(np.asarray(r.coords)[:, :2], clockwise=False) for r in walkable.interiors]
+            return cls.of([_orient(np.asarray(walkable.exterior.coords)[:, :2], clockwise=True), *inside])
+        return cls.of([_orient(_clean(walkable, 0), clockwise=True)])
 
     def __len__(self) -> int:
         """Return the number of directed edges."""
@@ -89,8 +89,8 @@ def _rings(polygon: Any) -> list[Any]:
     if hasattr(polygon, "geoms"):
         return [ring for part in polygon.geoms for ring in _rings(part)]
     if hasattr(polygon, "exterior"):
-        outer = _turned(np.asarray(polygon.exterior.coords)[:, :2], clockwise=False)
-        return [outer, *(_turned(np.asarray(r.coords)[:, :2], clockwise=True) for r in polygon.interiors)]
+        outer = _orient(np.asarray(polygon.exterior.coords)[:, :2], clockwise=False)
+        return [outer, *(_orient(np.asarray(r.coords)[:, :2], clockwise=True) for r in polygon.interiors)]
     if hasattr(polygon, "coords"):  # an open shapely line: one thin wall per piece
         line = np.asarray(polygon.coords)[:, :2]
         return [line[k : k + 2] for k in range(len(line) - 1)]
@@ -110,7 +110,7 @@ def _clean(points: Any, number: int) -> NDArray[np.float64]:
     return ring
 
 
-def _turned(ring: NDArray[np.float64], clockwise: bool) -> NDArray[np.float64]:
+def _orient(ring: NDArray[np.float64], clockwise: bool) -> NDArray[np.float64]:
     x, y = ring[:, 0], ring[:, 1]
     area = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
     return ring[::-1] if (area > 0.0) == clockwise else ring

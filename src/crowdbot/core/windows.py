@@ -1,6 +1,6 @@
-"""Kernels of how shapes look from the origin: azimuths and elevations that hold them, or a little more.
+"""Kernels for conservative bounds of the azimuth and elevation of shapes, seen from the origin.
 
-A hull is that of corners ``[count, 3]``; a rod is a capsule, or a cylinder that is held by one.
+A hull is the convex hull of corners ``[count, 3]``; a rod is a capsule, or a cylinder inside a capsule.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ TURN = 2.0 * math.pi
 
 
 @kernel
-def _heights(corner: Floats, count: int) -> tuple[float, float, float]:
-    """Return the lowest and highest z of a hull and how far it reaches in the plane."""
+def _extent(corner: Floats, count: int) -> tuple[float, float, float]:
+    """Return the lowest and highest z of a hull, and its largest horizontal distance."""
     low, high, far2 = math.inf, -math.inf, 0.0
     for i in range(count):
         low, high = min(low, corner[i, 2]), max(high, corner[i, 2])
@@ -39,7 +39,7 @@ def _heights(corner: Floats, count: int) -> tuple[float, float, float]:
 
 @kernel
 def hull_gap(corner: Floats, count: int) -> float:
-    """Return how near a hull that does not hold the origin from above comes to it in the plane."""
+    """Return the horizontal distance to a hull that does not contain the origin seen from above."""
     near2 = math.inf
     for i in range(count):
         for j in range(i):
@@ -53,20 +53,20 @@ def hull_gap(corner: Floats, count: int) -> float:
 
 
 @kernel
-def _half(radius: float, away: float) -> float:
-    """Return half the angle that a disc covers, or a little more where it is small."""
+def _half_angle(radius: float, away: float) -> float:
+    """Return half the visual angle of a disc, or an upper bound for small discs."""
     share = radius / away
     return share / math.sqrt(1.0 - share * share) if share < 0.5 else math.asin(share)
 
 
 @kernel
 def rod_width(ax: float, ay: float, bx: float, by: float, radius: float) -> tuple[float, float]:
-    """Return what :func:`hull_width` does, for two discs, or a little more."""
+    """Return start azimuth and width of two discs, or slightly more; see :func:`hull_width`."""
     a, b = math.sqrt(ax * ax + ay * ay), math.sqrt(bx * bx + by * by)
     if a <= radius or b <= radius or a == 0.0 or b == 0.0:
         return -math.pi, TURN
     dot, cross = ax * bx + ay * by, ax * by - ay * bx
-    one, two = _half(radius, a), _half(radius, b)
+    one, two = _half_angle(radius, a), _half_angle(radius, b)
     if abs(cross) < 0.3 * dot:  # t - t^3 / 3 <= atan(t) <= t for t >= 0
         off = cross / dot
         inner = off - off * off * off / 3.0
@@ -82,7 +82,7 @@ def rod_width(ax: float, ay: float, bx: float, by: float, radius: float) -> tupl
 def rod_levels(
     ax: float, ay: float, az: float, bx: float, by: float, bz: float, radius: float, around: bool
 ) -> tuple[float, float]:
-    """Return the lowest and the highest elevation of a rod, or a little more."""
+    """Return conservative bounds of the elevation of a rod, lowest and highest."""
     ex, ey = bx - ax, by - ay
     flat2, near = ex * ex + ey * ey, 0.0
     if not around:
@@ -95,7 +95,7 @@ def rod_levels(
 
 @kernel
 def hull_width(corner: Floats, count: int) -> tuple[float, float]:
-    """Return azimuth at which a hull begins and how wide it is, a full turn when it holds the origin from above."""
+    """Return start azimuth and width of a hull; a full turn if it contains the origin seen from above."""
     least, most, cx, cy = math.inf, -math.inf, 0.0, 0.0
     for i in range(count):
         cx += corner[i, 0]
@@ -114,15 +114,15 @@ def hull_width(corner: Floats, count: int) -> tuple[float, float]:
 
 @kernel
 def hull_in_view(corner: Floats, count: int, limit: float, down: float, up: float) -> bool:
-    """Return whether a hull is within reach and between the lowest and the highest beam."""
-    low, high, far = _heights(corner, count)
+    """Return whether a hull is within range and between the lowest and the highest beam."""
+    low, high, far = _extent(corner, count)
     return low <= far * up and high >= far * down and hull_gap(corner, count) <= limit
 
 
 @kernel
 def hull_levels(corner: Floats, count: int, around: bool) -> tuple[float, float]:
-    """Return the lowest and the highest elevation of a hull, or a little more."""
-    low, high, far = _heights(corner, count)
+    """Return conservative bounds of the elevation of a hull, lowest and highest."""
+    low, high, far = _extent(corner, count)
     near = 0.0 if around else hull_gap(corner, count)
     return math.atan2(low, far if low > 0.0 else near), math.atan2(high, near if high > 0.0 else far)
 
@@ -132,7 +132,7 @@ def ball_in_view(
     x: float, y: float, z: float, slope: float, height: float, half: float, radius: float, limit: float,
     down: float, up: float,
 ) -> bool:  # fmt: skip
-    """Return whether a rod with its middle at x, y, z may be within reach and between the outer beams."""
+    """Return whether a rod with its centre at x, y, z may be within range and between the outer beams."""
     away = math.sqrt(x * x + y * y + z * z)
     far, tall = away + half + radius, half * abs(slope) + radius + 1e-9
     return away - half - radius <= limit and height - tall <= far * up and height + tall >= far * down
@@ -140,7 +140,7 @@ def ball_in_view(
 
 @kernel
 def rod_gap(ax: float, ay: float, az: float, ux: float, uy: float, uz: float, length: float, radius: float) -> float:
-    """Return how near a capsule comes to the origin, 0 inside."""
+    """Return the distance of a capsule to the origin, 0 inside."""
     s = min(length, max(0.0, -(ax * ux + ay * uy + az * uz)))
     x, y, z = ax + s * ux, ay + s * uy, az + s * uz
     return max(0.0, math.sqrt(x * x + y * y + z * z) - radius)

@@ -21,7 +21,7 @@ Job = TypeVar("Job")
 Result = TypeVar("Result")
 
 ATTEMPTS = 3
-"""Attempts at a job whose process dies."""
+"""Maximum number of attempts for a job whose process dies."""
 
 
 def each(
@@ -32,8 +32,8 @@ def each(
     If a process dies, only its job is repeated. Function, jobs and results must be picklable if ``workers`` is above 1.
 
     Args:
-        function: the job; defined at the top level of a module.
-        jobs: its arguments.
+        function: function of a job, defined at the top level of a module.
+        jobs: arguments of the function.
         workers: number of processes; 1 runs the jobs in this process.
         cluster: address of a Ray cluster (``auto`` for the cluster of this environment); ``workers`` is then the number
             of simultaneous jobs. Requires ``pip install crowdbot[cluster]``.
@@ -93,7 +93,7 @@ def _load_saved(file: Path, load: Callable[[Path], Result]) -> Result:
 
 
 def _save_whole(file: Path, result: Result, save: Callable[[Result, Path], None]) -> None:
-    """Write a whole file or none."""
+    """Write a file atomically."""
     draft = file.with_suffix(".part")
     with explain_write_errors(file):
         try:

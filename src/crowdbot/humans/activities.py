@@ -17,11 +17,11 @@ TALK, PHONE, BOTTLE, TEXT, SIT = 1, 2, 3, 4, 5
 
 
 def activity_index(activity: str | Sequence[str] | NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """Return ``[N]``, indices into :data:`ACTIVITIES`, from one name for all or a name (or index) for each.
+    """Return indices ``[N]`` into :data:`ACTIVITIES`, from one name for all people or a name (or index) for each.
 
     Raises:
         UnknownName: there is no such activity.
-        InputError: the number of names differs from ``count``, or a place is not one of the list.
+        InputError: the number of names differs from ``count``, or an index is out of range.
 
     >>> activity_index(["walk", "sit"], 2).tolist(), activity_index("phone", 2).tolist()
     ([0, 5], [2, 2])
@@ -38,6 +38,7 @@ def activity_index(activity: str | Sequence[str] | NDArray[np.int64], count: int
         raise InputError(f"{len(found)} activities are given for {count} people; give one, or one for each")
     if np.any((found < 0) | (found >= len(ACTIVITIES))):
         raise InputError(
-            f"activity {found[(found < 0) | (found >= len(ACTIVITIES))][0]} is not 0 to {len(ACTIVITIES) - 1}"
+            f"activity index {found[(found < 0) | (found >= len(ACTIVITIES))][0]} must be from 0 to"
+            f" {len(ACTIVITIES) - 1}"
         )
     return found

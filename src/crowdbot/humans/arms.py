@@ -16,17 +16,17 @@ __all__ = ["pose_arm"]
 
 Floats = NDArray[np.float64]
 SWING = math.radians(17.0)
-"""Swing of the upper arm to either side at a vigour of 1."""
+"""Amplitude of the upper arm swing at a vigour of 1 [rad]."""
 FINGER_CURL = 0.25
 """Bend of each joint of idle fingers [rad]."""
 LEFT, RIGHT = 0, 1
 
 
 @kernel
-def _angles(g: Gaits, i: int, side: int, vigour: float, sit: float, style: Floats, out: Floats) -> None:
-    """Write flexion and abduction of the shoulder, bend of the elbow, inward turn of the upper arm, twist of the hand.
+def _arm_angles(g: Gaits, i: int, side: int, vigour: float, sit: float, style: Floats, out: Floats) -> None:
+    """Write shoulder flexion and abduction, elbow flexion, inward turn of the upper arm, and hand twist [rad].
 
-    Weights of the blend make the mean of what the activities ask; the phone at the ear is solved elsewhere.
+    The angles are the mean over the activities, weighted by the blend. Inverse kinematics handles the phone at the ear.
     """
     wave = math.cos(2.0 * math.pi * g.phase[i]) * (-1.0 if side == LEFT else 1.0)
     swing = SWING * min(vigour, 1.25) * style[2] * wave
@@ -52,12 +52,12 @@ def _angles(g: Gaits, i: int, side: int, vigour: float, sit: float, style: Float
 
 
 @kernel
-def _hang(angles: Floats, side: float, R: Floats, axis: Floats, hinge: Floats) -> None:
-    """Write direction of the upper arm and hinge of the elbow in the world, ``side`` 1 for left, -1 for right."""
+def _arm_direction(angles: Floats, side: float, R: Floats, axis: Floats, hinge: Floats) -> None:
+    """Write upper arm direction and elbow hinge in world coordinates; ``side`` is 1 for left, -1 for right."""
     sf, cf = math.sin(angles[0]), math.cos(angles[0])
     sa, ca = math.sin(angles[1]), math.cos(angles[1])
     ux, uy, uz = sf * ca, side * sa, -cf * ca
-    # the hinge of a hanging arm points to the right; turned inward it lets the forearm come before the belly
+    # the elbow hinge of a hanging arm points to the right; turned inward, the forearm moves in front of the body
     hx, hy, hz = 0.0, -1.0, 0.0
     dot = hx * ux + hy * uy + hz * uz
     hx, hy, hz = hx - dot * ux, hy - dot * uy, hz - dot * uz
@@ -69,7 +69,7 @@ def _hang(angles: Floats, side: float, R: Floats, axis: Floats, hinge: Floats) -
 
 
 @kernel
-def _to_ear(head: Floats, turned: Floats, side: float, stature: float, goal: Floats, pole: Floats) -> None:
+def _wrist_at_ear(head: Floats, turned: Floats, side: float, stature: float, goal: Floats, pole: Floats) -> None:
     """Write the wrist position with the hand at the ear, and the direction of the elbow."""
     ax, ay, az = 0.060 * stature, side * 0.060 * stature, -0.070 * stature
     for r in range(3):
@@ -78,7 +78,7 @@ def _to_ear(head: Floats, turned: Floats, side: float, stature: float, goal: Flo
 
 
 @kernel
-def _to_rest(g: Gaits, i: int, side: float, seat: Floats, goal: Floats, pole: Floats) -> None:
+def _wrist_on_rest(g: Gaits, i: int, side: float, seat: Floats, goal: Floats, pole: Floats) -> None:
     """Write the wrist position on the arm rest of a seat, and the direction of the elbow."""
     c, s = math.cos(g.yaw[i]), math.sin(g.yaw[i])
     goal[0] = g.position[i, 0] + c * seat[9] - s * side * seat[10]
@@ -88,7 +88,7 @@ def _to_rest(g: Gaits, i: int, side: float, seat: Floats, goal: Floats, pole: Fl
 
 
 @kernel
-def _reached(
+def _reach_wrist(
     shoulder: Floats, goal: Floats, pole: Floats, upper: float, lower: float, axis: Floats, hinge: Floats, aim: Floats
 ) -> float:
     """Write the arm directions for a wrist at ``goal`` (inverse kinematics); return the elbow flexion [rad]."""
@@ -108,13 +108,13 @@ def pose_arm(
     g: Gaits, i: int, side: int, vigour: float, sit: float, lengths: Floats, frame: Floats, style: Floats, seat: Floats,
     R: Floats, P: Floats, work: Floats,
 ) -> None:  # fmt: skip
-    """Turn upper arm, forearm, hand and fingers of one side; requires the trunk and shoulder joints."""
+    """Write the rotations of upper arm, forearm, hand and fingers of one side; requires trunk and shoulder joints."""
     sign = 1.0 - 2.0 * side
     first = 7 + 7 * side
     axis, hinge, axis2, hinge2, lower = work[2], work[3], work[4], work[5], work[6]
     angles = np.empty(5)
-    _angles(g, i, side, vigour, sit, style, angles)
-    _hang(angles, sign, R[3], axis, hinge)
+    _arm_angles(g, i, side, vigour, sit, style, angles)
+    _arm_direction(angles, sign, R[3], axis, hinge)
     elbow, twist = angles[2], angles[4]
     phone = g.blend[i, 2] if side == RIGHT else 0.0
     resting = g.blend[i, 5] if seat[8] > 0.0 else 0.0
@@ -122,10 +122,10 @@ def pose_arm(
     if most > 1e-3:
         share = most * most * (3.0 - 2.0 * most)
         if phone >= resting:
-            _to_ear(P[5], R[5], sign, lengths[4], work[0], work[1])
+            _wrist_at_ear(P[5], R[5], sign, lengths[4], work[0], work[1])
         else:
-            _to_rest(g, i, sign, seat, work[0], work[1])
-        bend = _reached(P[first], work[0], work[1], lengths[2], lengths[3], axis2, hinge2, work[7])
+            _wrist_on_rest(g, i, sign, seat, work[0], work[1])
+        bend = _reach_wrist(P[first], work[0], work[1], lengths[2], lengths[3], axis2, hinge2, work[7])
         for k in range(3):
             axis[k] += share * (axis2[k] - axis[k])
             hinge[k] += share * (hinge2[k] - hinge[k])

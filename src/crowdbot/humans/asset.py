@@ -1,4 +1,4 @@
-"""The body asset: rest shapes, skeleton, skin weights and regions. The file is read once."""
+"""Body asset: rest shapes, skeleton, skin weights and regions. The file is read once."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ UNIT = 1e-4
 
 @dataclass(frozen=True)
 class Level:
-    """One level of detail. Only the rest shape differs between bodies.
+    """One level of detail. Bodies differ only in the rest shape.
 
-    Fields: ``rest [P, V, 3]`` [m], ``faces [F, 3]``, ``bones [V, 4]`` and ``weights [V, 4]`` (sum 1), the part and the
-    region of every vertex and face as indices into the names of :class:`Shapes`.
+    Fields: ``rest [P, V, 3]`` [m], ``faces [F, 3]``, ``bones [V, 4]`` and ``weights [V, 4]`` (sum 1), and the part and
+    region of each vertex and face as indices into the names of :class:`Shapes`.
     """
 
     rest: Floats
@@ -41,7 +41,7 @@ class Level:
 
 @dataclass(frozen=True)
 class Shapes:
-    """All bodies of the asset; ``head`` and ``tail`` are the ends of the bones at rest [m]."""
+    """All bodies of the asset; ``head`` and ``tail`` are the bone ends at rest [m]."""
 
     people: tuple[dict[str, Any], ...]
     bones: tuple[str, ...]
@@ -59,8 +59,8 @@ class Shapes:
 
 @functools.cache
 def shapes() -> Shapes:
-    """Return the bodies of the asset; the last one is the mannequin, the mean of the adults."""
-    stored = _stored("humans_cc0.npz")
+    """Return the bodies of the asset; the last one is the mannequin, which is the mean of the adults."""
+    stored = _read_asset("humans_cc0.npz")
     people = tuple(json.loads(str(stored["people"])))
     adult = np.array([person["years"] >= 18 for person in people])
     return Shapes(
@@ -69,13 +69,13 @@ def shapes() -> Shapes:
         parents=stored["parents"].astype(np.int64),
         parts=tuple(str(p) for p in stored["part_names"]),
         regions=tuple(str(r) for r in stored["regions"]),
-        head=_with_mean(stored["joint_head"].astype(np.float64), adult),
-        tail=_with_mean(stored["joint_tail"].astype(np.float64), adult),
+        head=_append_mean(stored["joint_head"].astype(np.float64), adult),
+        tail=_append_mean(stored["joint_tail"].astype(np.float64), adult),
         levels=tuple(_level(stored, k, adult) for k in range(LEVELS)),
     )
 
 
-def _stored(name: str) -> dict[str, NDArray[Any]]:
+def _read_asset(name: str) -> dict[str, NDArray[Any]]:
     place = importlib.resources.files("crowdbot").joinpath("assets", "humans", name)
     with importlib.resources.as_file(place) as path, np.load(path, allow_pickle=False) as file:
         return {key: file[key] for key in file.files}
@@ -85,7 +85,7 @@ def _level(stored: dict[str, NDArray[Any]], k: int, adult: NDArray[np.bool_]) ->
     counts = stored[f"lod{k}_parts"].astype(np.int64)
     weights = stored[f"lod{k}_weights"].astype(np.float64)
     return Level(
-        rest=_with_mean(stored[f"lod{k}_verts"] * UNIT, adult),
+        rest=_append_mean(stored[f"lod{k}_verts"] * UNIT, adult),
         faces=stored[f"lod{k}_faces"].astype(np.int64),
         bones=stored[f"lod{k}_bones"].astype(np.int64),
         weights=weights / weights.sum(axis=1, keepdims=True),
@@ -96,5 +96,5 @@ def _level(stored: dict[str, NDArray[Any]], k: int, adult: NDArray[np.bool_]) ->
     )
 
 
-def _with_mean(values: Floats, adult: NDArray[np.bool_]) -> Floats:
+def _append_mean(values: Floats, adult: NDArray[np.bool_]) -> Floats:
     return np.concatenate([values, values[adult].mean(axis=0, keepdims=True)])

@@ -21,25 +21,25 @@ __all__ = ["Gait", "posing_and_skinning"]
 
 Floats = NDArray[np.float64]
 FASTEST = 12.0
-"""Largest allowed speed [m/s]."""
+"""Maximum speed [m/s]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Gait:
-    """Gait of a group of people. Feet are planted in the world, the body follows.
+    """Gait of a group of people. Planted feet are fixed in the world; the body moves relative to them.
 
     Args:
-        people: who walks.
-        seed: of everyone's own style: phase, stride, arms, toes, lean, gestures. A person's style depends on the seed
-            and on ``ids`` only, not on who else walks.
-        ids: ``[N]``, a number for each person; None counts from 0.
-        seat: what people sit on when they sit, one for all or one for each.
+        people: bodies of the people.
+        seed: seed of the walking styles (phase, stride, arms, toes, lean, gestures). The style of a person depends only
+            on the seed and its number in ``ids``.
+        ids: number of each person ``[N]`` (default: from 0).
+        seat: seat of sitting people, one for all or one for each.
 
-    People walk; nobody runs: above about 2 m/s the legs only go faster. A foot that stands stays where it is unless the
-    body leaves it behind (velocities that jump by several m/s) or turns more than 80 degrees against it; who sits is
-    carried along and turns with the seat, as on the robot ``wheelchair`` with ``seat=WHEELCHAIR`` and its pose.
+    Running is not supported: above about 2 m/s, only the cadence increases. A planted foot keeps its position unless
+    the body leaves its reach (velocity jumps of several m/s) or turns more than 80 degrees relative to it. Sitting
+    people move and turn with the seat, for example on the robot ``wheelchair`` with ``seat=WHEELCHAIR`` and its pose.
 
-    Source: relations of stride and speed by Boulic, Magnenat-Thalmann & Thalmann 1990, doi:10.1007/BF01901021.
+    Source: stride and speed relations of Boulic, Magnenat-Thalmann & Thalmann 1990, doi:10.1007/BF01901021.
 
     >>> gait = Gait(People.of(["man-20"]))
     >>> state = gait.start(position=[[0, 0]], heading=[0.0])
@@ -93,11 +93,13 @@ class Gait:
             activity: one of :data:`ACTIVITIES` for all, or one for each.
 
         Raises:
-            InputError: a shape does not fit, a value is not finite or a speed is above 12 m/s.
+            InputError: a shape is wrong, a value is not finite or a speed is above 12 m/s.
             UnknownName: there is no such activity.
         """
         count = len(self.people)
-        place, speed, ahead = self._checked(position, np.zeros((count, 2)) if velocity is None else velocity, heading)
+        place, speed, ahead = self._check_motion(
+            position, np.zeros((count, 2)) if velocity is None else velocity, heading
+        )
         wish = activity_index(activity, count).astype(np.float64)
         state = Gaits(
             position=place.copy(), yaw=ahead.copy(), turn=np.zeros(count), drift=speed.copy(), phase=np.zeros(count),
@@ -117,24 +119,24 @@ class Gait:
         dt: float,
         activity: str | Sequence[str] | NDArray[np.int64] | None = None,
     ) -> Gaits:
-        """Return the state ``dt`` [s] later, with everyone at ``position`` with ``velocity``.
+        """Return the state ``dt`` [s] later, with people at ``position`` and ``velocity``.
 
         Args:
-            state: left as it is.
-            position: ``[N, 2]`` [m]; who is further away than any walk leads is set down there anew.
-            velocity: ``[N, 2]`` [m/s]; it says where the next foot goes.
-            heading: ``[N]`` [rad]; the trunk turns there at once, but not faster than 4 rad/s.
-            dt: [s], above 0; from 1 s on everyone is set down anew.
-            activity: None goes on with what everyone does.
+            state: current state; it is not changed.
+            position: ``[N, 2]`` [m]; people who are too far away to have walked there are repositioned.
+            velocity: ``[N, 2]`` [m/s]; it determines the next foot placement.
+            heading: ``[N]`` [rad]; the trunk turns to it by at most 4 rad/s.
+            dt: time step [s], above 0; from 1 s on, all people are repositioned.
+            activity: new activities (default: unchanged).
 
         Raises:
             InputError: as for :meth:`start`, or ``dt`` is not finite and above 0.
         """
-        place, speed, ahead = self._checked(position, velocity, heading)
+        place, speed, ahead = self._check_motion(position, velocity, heading)
         if not (np.isfinite(dt) and dt > 0.0):
-            raise InputError(f"Gait: dt = {dt} s is not a finite time above 0")
+            raise InputError(f"Gait: dt = {dt} s must be finite and above 0")
         if len(state.yaw) != len(self.people):
-            raise InputError(f"Gait: the state has {len(state.yaw)} people, the gait {len(self.people)}")
+            raise InputError(f"Gait: the state has {len(state.yaw)} people, it must have {len(self.people)}")
         after = Gaits(*(part.copy() for part in state))
         if activity is not None:
             after.wish[:] = activity_index(activity, len(self.people))
@@ -143,18 +145,20 @@ class Gait:
         return after
 
     def posture(self, state: Gaits) -> Posture:
-        """Return the posture of everyone."""
+        """Return the posture of all people."""
         return posture(state, self.people.measures, self.style, self.size, self.seats)
 
     def limbs(self, state: Gaits) -> Capsules:
-        """Return the capsules of everyone in the world, in the order of :data:`LIMBS`."""
+        """Return the capsules of all people in world coordinates, in the order of :data:`LIMBS`."""
         return self.people.limbs(self.posture(state))
 
     def skin(self, state: Gaits, level: int = 2) -> Floats:
-        """Return the vertices ``[N, V, 3]`` [m] of everyone at a level of detail from 0 (finest) to 2."""
+        """Return the vertices ``[N, V, 3]`` [m] of all people at a level of detail from 0 (finest) to 2."""
         return self.people.skin(self.posture(state), level)
 
-    def _checked(self, position: ArrayLike, velocity: ArrayLike, heading: ArrayLike) -> tuple[Floats, Floats, Floats]:
+    def _check_motion(
+        self, position: ArrayLike, velocity: ArrayLike, heading: ArrayLike
+    ) -> tuple[Floats, Floats, Floats]:
         count = len(self.people)
         found = []
         for name, value, shape in (
@@ -170,17 +174,17 @@ class Gait:
         speed = np.sqrt((found[1] ** 2).sum(axis=1))
         if np.any(speed > FASTEST):
             raise InputError(
-                f"Gait: a speed of {speed.max():.1f} m/s is above {FASTEST:.0f} m/s, which no person reaches"
+                f"Gait: a speed of {speed.max():.1f} m/s is not allowed, it must be at most {FASTEST:.0f} m/s"
             )
         return found[0], found[1], found[2]
 
 
 def _style(seed: int, number: int) -> list[float]:
-    """Random style parameters of one person, used by feet, posture and arms."""
+    """Return the random style parameters of one person, used by feet, posture and arms."""
     draw = stream(seed, "gait", number)
     return [
         float(draw.uniform(0.0, 1.0)),  # 0 phase at the start
-        float(np.clip(draw.normal(1.0, 0.025), 0.94, 1.06)),  # 1 stride over the usual one
+        float(np.clip(draw.normal(1.0, 0.025), 0.94, 1.06)),  # 1 stride relative to the mean
         float(np.clip(draw.normal(1.0, 0.2), 0.5, 1.5)),  # 2 swing of the arms
         float(np.radians(draw.uniform(2.0, 10.0))),  # 3 toes outward [rad]
         float(np.radians(draw.uniform(0.0, 4.0))),  # 4 lean forward [rad]
@@ -192,7 +196,7 @@ def _style(seed: int, number: int) -> list[float]:
 
 
 def posing_and_skinning(count: int = 100, level: int = 2) -> Callable[[], Floats]:
-    """Return a benchmark workload: pose ``count`` random walkers and deform their skins at a level of detail.
+    """Return a benchmark workload: pose ``count`` random people and deform their skins at a level of detail.
 
     >>> posing_and_skinning(3)().shape
     (3, 447, 3)

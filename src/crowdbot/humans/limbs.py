@@ -1,4 +1,4 @@
-"""Limbs: 17 capsules rest_capsules to every body, with masses and body regions."""
+"""Limbs: 17 capsules fitted to each body, with masses and body regions."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ __all__ = ["LIMBS", "REGIONS", "Limb", "mass_shares", "rest_capsules"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 ROUNDS = 12
-"""Iterations of the fit; it converges to 0.1 mm after about 10."""
+"""Number of fit iterations; about 10 converge to 0.1 mm."""
 HOLD = 0.02
-"""Weight of the initial guess in the fit. It bounds capsule ends without nearby vertices."""
+"""Weight of the initial guess in the fit, which bounds capsule ends without nearby vertices."""
 
 MASS_SOURCE = Paper(
     "Paolo de Leva",
@@ -32,9 +32,9 @@ MASS_SOURCE = Paper(
 
 
 class Limb(NamedTuple):
-    """One capsule: its bone, the bones whose skin it approximates, its region and its ends at rest.
+    """One capsule: its bone, the bones whose skin it approximates, its region and its axis.
 
-    ``along``: the bone at whose head the capsule ends, or empty for the tail; the trunk's capsules lie across.
+    ``along`` is the bone at whose head the capsule ends, empty for the bone's own tail, or ``across`` for the trunk.
     """
 
     name: str
@@ -44,7 +44,7 @@ class Limb(NamedTuple):
     along: str = ""
 
 
-def _side(s: str) -> tuple[Limb, ...]:
+def _side_limbs(s: str) -> tuple[Limb, ...]:
     fingers = (f"hand_{s}", f"fingers_01_{s}", f"fingers_02_{s}", f"thumb_{s}")
     return (
         Limb(f"upperarm_{s}", f"upperarm_{s}", (f"upperarm_{s}",), "arm", f"lowerarm_{s}"),
@@ -62,12 +62,12 @@ LIMBS: tuple[Limb, ...] = (
     Limb("chest", "spine_03", ("spine_03", "clavicle_l", "clavicle_r"), "torso", "across"),
     Limb("neck", "neck_01", ("neck_01",), "head", "head"),
     Limb("head", "head", ("head",), "head"),
-    *_side("l"),
-    *_side("r"),
+    *_side_limbs("l"),
+    *_side_limbs("r"),
 )
 REGIONS = ("head", "torso", "arm", "leg")
 
-SHARES = {  # percent of the body: men, women (de Leva 1996); neck and head are given as one there
+SHARES = {  # percent of body mass: men, women (de Leva 1996, who combines neck and head)
     "head": (6.94, 6.68),
     "chest": (15.96, 15.45),
     "abdomen": (16.33, 14.65),
@@ -80,13 +80,15 @@ SHARES = {  # percent of the body: men, women (de Leva 1996); neck and head are 
     "foot": (1.37, 1.29),
 }
 NECK = 0.15
-"""Share of head and neck that is neck (about its share of their volume in the bodies that ship)."""
+"""Fraction of the neck in the mass of head and neck (about its volume fraction in the included bodies)."""
 
 
 def mass_shares(sex: str) -> Floats:
-    """Return the share of the body's mass in every limb, in the order of :data:`LIMBS`; together 1.
+    """Return the fraction of body mass of each limb, in the order of :data:`LIMBS`; the sum is 1.
 
-    Source: de Leva 1996, doi:10.1016/0021-9290(95)00178-6, table 4; without a sex the mean of men and women.
+    Without a sex, the mean of men and women is used.
+
+    Source: de Leva 1996, doi:10.1016/0021-9290(95)00178-6, table 4.
 
     >>> shares = mass_shares("f")
     >>> round(float(shares.sum()), 9), round(float(shares[0]), 3)
@@ -102,16 +104,16 @@ def mass_shares(sex: str) -> Floats:
 
 @functools.cache
 def rest_capsules() -> Floats:
-    """Return the capsules of every body at rest, ``[P, L, 7]``: start, end, radius [m].
+    """Return the capsules of each body at rest, ``[P, L, 7]``: start, end, radius [m].
 
-    Every capsule has the least squared distance of its surface to the skin that it stands for (finest level of detail,
-    without hair and skirt): about as much skin lies outside as inside.
+    Each capsule is a least-squares fit of its surface to the skin of its bones (finest level of detail, without hair
+    and skirt): the skin is inside and outside of it in about equal parts.
     """
     every = shapes()
     out = np.empty((len(persons()), len(LIMBS), 7))
     for k, limb in enumerate(LIMBS):
         start, end = _ends(every, limb)
-        points = _skin_of(every, limb)
+        points = _skin_vertices(every, limb)
         out[:, k] = _fit(points, start, end)
     return out
 
@@ -120,7 +122,7 @@ def _ends(every: Shapes, limb: Limb) -> tuple[Floats, Floats]:
     """Return the initial guess of both ends, ``[P, 3]``."""
     head, tail = every.head[:, every.bone(limb.bone)], every.tail[:, every.bone(limb.bone)]
     if limb.along == "across":
-        middle = _skin_of(every, limb).mean(axis=1)
+        middle = _skin_vertices(every, limb).mean(axis=1)
         aside = np.array([0.0, 0.25 * 0.2, 0.0])
         return middle - aside, middle + aside
     if limb.along == "":
@@ -129,7 +131,7 @@ def _ends(every: Shapes, limb: Limb) -> tuple[Floats, Floats]:
     return head + 0.15 * (goal - head), head + 0.85 * (goal - head)
 
 
-def _skin_of(every: Shapes, limb: Limb) -> Floats:
+def _skin_vertices(every: Shapes, limb: Limb) -> Floats:
     level = every.levels[0]
     worn = np.isin(level.vertex_part, [every.parts.index(p) for p in ("skin", "top", "legs")])
     main = level.bones[np.arange(len(level.bones)), np.argmax(level.weights, axis=1)]
@@ -138,12 +140,12 @@ def _skin_of(every: Shapes, limb: Limb) -> Floats:
 
 def _fit(points: Floats, start: Floats, end: Floats) -> Floats:
     """Fit capsules with Gauss-Newton on ``distance to the axis - radius``, regularised to the initial guess."""
-    gap = _along(points, start, end)[1]
+    gap = _project_on_axis(points, start, end)[1]
     guess = np.concatenate([start, end, np.sqrt((gap**2).sum(-1)).mean(axis=1)[:, None]], axis=1)
     hold = np.diag([HOLD] * 6 + [1e-6])
     value = guess.copy()
     for _ in range(ROUNDS):
-        t, gap = _along(points, value[:, :3], value[:, 3:6])
+        t, gap = _project_on_axis(points, value[:, :3], value[:, 3:6])
         distance = np.sqrt((gap**2).sum(-1))
         normal = gap / np.maximum(distance, 1e-9)[..., None]
         slope = np.concatenate([-(1.0 - t)[..., None] * normal, -t[..., None] * normal, -np.ones_like(t)[..., None]], 2)
@@ -156,8 +158,8 @@ def _fit(points: Floats, start: Floats, end: Floats) -> Floats:
     return value
 
 
-def _along(points: Floats, start: Floats, end: Floats) -> tuple[Floats, Floats]:
-    """Return the nearest place on the axis (0 to 1) and the vector from there to each point."""
+def _project_on_axis(points: Floats, start: Floats, end: Floats) -> tuple[Floats, Floats]:
+    """Return the nearest position on the axis (0 to 1) and the vector from there to each point."""
     axis = end - start
     length2 = np.maximum((axis**2).sum(-1), 1e-12)
     t = np.clip(np.einsum("pvi,pi->pv", points - start[:, None], axis) / length2[:, None], 0.0, 1.0)

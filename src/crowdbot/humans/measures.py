@@ -1,4 +1,4 @@
-"""Body measures for the gait: legs, feet, arms, and the rest frames of bending limbs."""
+"""Body measures for the gait: legs, feet, arms, and rest frames of limbs."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ __all__ = ["CHAINS", "Measures", "measures"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 CHAINS = ("thigh_l", "thigh_r", "calf_l", "calf_r", "upperarm_l", "upperarm_r", "lowerarm_l", "lowerarm_r")
-"""Bones that are turned from the direction of their axis and of their hinge, in the order of ``frame``."""
+"""Bones whose rotation is computed from the directions of axis and hinge, in the order of ``frame``."""
 ENDS = ("calf_l", "calf_r", "foot_l", "foot_r", "lowerarm_l", "lowerarm_r", "hand_l", "hand_r")
 
 
 class Measures(NamedTuple):
     """Lengths of N bodies [m]; both legs are assumed equal.
 
-    Fields: ``leg [N]`` hip joint to floor; ``thigh``, ``shank``, ``ankle`` (its height); ``ball [N, 2]`` and
-    ``heel``, ``toe`` ``[N]`` ahead of and above the ankle's foot point; ``arm [N, 2]`` upper and lower arm;
-    ``head [N, B, 3]`` start of each bone at rest; ``frame [N, 8, 3, 3]`` the rows are axis, hinge and their
-    cross product of each of :data:`CHAINS` at rest; ``height [N]`` stature.
+    Fields: ``leg [N]`` height of the hip joint; ``thigh``, ``shank [N]``; ``ankle [N]`` height of the ankle;
+    ``ball [N, 2]`` distance ahead of the ankle and height; ``heel``, ``toe [N]`` distance ahead of the ankle;
+    ``arm [N, 2]`` upper and lower arm; ``head [N, B, 3]`` start of each bone at rest; ``frame [N, 8, 3, 3]`` axis,
+    hinge and their cross product (rows) of each of :data:`CHAINS` at rest; ``height [N]`` stature.
     """
 
     leg: Floats
@@ -41,7 +41,7 @@ class Measures(NamedTuple):
 
 
 def measures(body: Ints, scale: Floats, height: Floats) -> Measures:
-    """Return the measures of the bodies ``body [N]`` of the file at ``scale [N]`` and ``height [N]`` [m]."""
+    """Return the measures of the bodies ``body [N]`` of the asset with ``scale [N]`` and ``height [N]`` [m]."""
     every = shapes()
     head = every.head[body] * scale[:, None, None]
 
@@ -67,7 +67,7 @@ def measures(body: Ints, scale: Floats, height: Floats) -> Measures:
 
 
 def _sole(body: Ints, scale: Floats) -> tuple[Floats, Floats]:
-    """Return the rear and front end of the sole, ``[N]`` each: the outermost points within 15 mm of the floor."""
+    """Return the rear and front ends ``[N]`` of the sole: the outermost points within 15 mm of the floor."""
     every = shapes()
     level = every.levels[0]
     main = level.bones[np.arange(len(level.bones)), np.argmax(level.weights, axis=1)]
@@ -79,7 +79,7 @@ def _sole(body: Ints, scale: Floats) -> tuple[Floats, Floats]:
 
 
 def _frames(head: Floats) -> Floats:
-    """Rest frames of :data:`CHAINS`: the knee bends about the body's left axis, the elbow about its rest bend."""
+    """Return the rest frames of :data:`CHAINS`: knees bend about the left axis of the body, elbows as at rest."""
     every = shapes()
     axis = np.stack([head[:, every.bone(e)] - head[:, every.bone(c)] for c, e in zip(CHAINS, ENDS, strict=True)], 1)
     axis = axis / np.linalg.norm(axis, axis=-1, keepdims=True)

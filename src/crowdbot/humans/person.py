@@ -21,8 +21,8 @@ WORD = {("m", True): "man", ("f", True): "woman", ("m", False): "boy", ("f", Fal
 class Person:
     """One available body.
 
-    Fields: ``name`` (sex and age, as ``woman-36``), ``sex`` (``m``, ``f``, or empty for the mannequin), ``years``,
-    ``height`` [m], ``mass`` [kg] (volume of the body times the density of water), ``index`` in the file.
+    Fields: ``name`` (kind and age, such as ``woman-36``), ``sex`` (``m``, ``f``, or empty for the mannequin),
+    ``years``, ``height`` [m], ``mass`` [kg] (body volume times the density of water), ``index`` in the asset.
     """
 
     name: str
@@ -67,10 +67,10 @@ def names() -> tuple[str, ...]:
 
 
 def person(name: str) -> Person:
-    """Return the person of this name.
+    """Return the person with this name.
 
     Raises:
-        UnknownName: there is nobody of this name.
+        UnknownName: there is no person with this name.
 
     >>> person("boy-08").height
     1.28

@@ -1,4 +1,4 @@
-"""Posture: position and rotation of every bone from the gait state."""
+"""Posture: position and rotation of each bone from the gait state."""
 
 from __future__ import annotations
 
@@ -24,29 +24,29 @@ Ints = NDArray[np.int64]
 
 PELVIS_TURN, PELVIS_ROLL, CHEST_TURN = math.radians(5.0), math.radians(3.0), math.radians(4.0)
 SWAY = 0.022
-"""Sideways motion of the pelvis over the stance leg [leg lengths]."""
+"""Lateral motion of the pelvis over the stance leg [leg lengths]."""
 STRAIGHT = 0.998
-"""Largest extension of a leg as a share of its length."""
+"""Maximum extension of a leg as a fraction of its length."""
 BOB = 0.035
 """Vertical motion of the pelvis in a step per speed [m per m/s]."""
 HIGHEST = 0.235
-"""Phase at which the pelvis is highest over the left leg; it is lowest a quarter of a cycle later."""
+"""Phase of the maximum pelvis height over the left leg; the minimum is a quarter of a cycle later."""
 SOFT = 0.004
-"""Width [m] over which the limits of the legs on the height of the pelvis pass into each other."""
+"""Width [m] of the smooth minimum of the height limits of the pelvis."""
 SEAT_FLESH = 0.055
-"""Height of the hip joints above the seat, as a share of stature."""
+"""Height of the hip joints above the seat, as a fraction of stature."""
 SITTING = 5
 
 
 class Posture(NamedTuple):
-    """Bones of N people: ``rotation [N, B, 3, 3]`` from the axes at rest and ``position [N, B, 3]`` of heads [m]."""
+    """Bones of N people: ``rotation [N, B, 3, 3]`` relative to rest, and ``position [N, B, 3]`` of the heads [m]."""
 
     rotation: Floats
     position: Floats
 
 
 @kernel
-def _trunk(g: Gaits, i: int, vigour: float, style: Floats, sit: float, recline: float, R: Floats) -> None:
+def _pose_trunk(g: Gaits, i: int, vigour: float, style: Floats, sit: float, recline: float, R: Floats) -> None:
     """Write the rotations of pelvis, spine, neck, head and collar bones (bones 0 to 6 and 13)."""
     wave = 2.0 * math.pi * g.phase[i]
     strong = min(vigour, 1.2) * (1.0 - sit)
@@ -68,7 +68,7 @@ def _trunk(g: Gaits, i: int, vigour: float, style: Floats, sit: float, recline: 
 
 
 @kernel
-def _hip(head: Floats, b: int, R: Floats, out: Floats) -> None:
+def _hip_offset(head: Floats, b: int, R: Floats, out: Floats) -> None:
     """Write the hip joint relative to the pelvis joint."""
     for r in range(3):
         out[r] = 0.0
@@ -77,8 +77,10 @@ def _hip(head: Floats, b: int, R: Floats, out: Floats) -> None:
 
 
 @kernel
-def _resting(g: Gaits, i: int, f: int, hip: float, lengths: Floats, size: Floats, seat: Floats, out: Floats) -> None:
-    """Write ankle x, y, z and pitch of foot ``f`` of a sitting person, on the foot rest or the floor."""
+def _seated_ankle(
+    g: Gaits, i: int, f: int, hip: float, lengths: Floats, size: Floats, seat: Floats, out: Floats
+) -> None:
+    """Write ankle x, y, z [m] and pitch [rad] of foot ``f`` of a sitting person, on the foot rest or the floor."""
     side, thigh, shank = 1.0 - 2.0 * f, lengths[0], lengths[1]
     ahead, aside, pitch = seat[1] + thigh + 0.02, side * 0.11 * size[5], 0.0
     height = max(size[0], hip - shank * 0.995)
@@ -94,15 +96,15 @@ def _resting(g: Gaits, i: int, f: int, hip: float, lengths: Floats, size: Floats
 
 
 @kernel
-def _ankles(
+def _blend_ankles(
     g: Gaits, i: int, sit: float, hip: float, lengths: Floats, style: Floats, size: Floats, seat: Floats, out: Floats
 ) -> None:
-    """Write both feet as :func:`foot_now` does, drawn to where they are when sitting."""
+    """Write both feet as :func:`foot_now` does, blended with their sitting positions by ``sit``."""
     rest = np.empty(4)
     for f in range(2):
         foot_now(g, i, f, style, size, out[f])
         if sit > 0.0:
-            _resting(g, i, f, hip, lengths, size, seat, rest)
+            _seated_ankle(g, i, f, hip, lengths, size, seat, rest)
             for k in range(3):
                 out[f, k] += sit * (rest[k] - out[f, k])
             out[f, 4] += sit * (rest[3] - out[f, 4])
@@ -110,17 +112,17 @@ def _ankles(
 
 
 @kernel
-def _reach(hip: Floats, foot: Floats, x: float, y: float, longest: float) -> float:
-    """Return the height [m] of the pelvis joint at which this leg is as long as it may be."""
+def _leg_limit(hip: Floats, foot: Floats, x: float, y: float, longest: float) -> float:
+    """Return the height [m] of the pelvis joint at which this leg has the length ``longest`` [m]."""
     dx, dy = foot[0] - x - hip[0], foot[1] - y - hip[1]
     return float(foot[2] + math.sqrt(max(longest**2 - dx * dx - dy * dy, (0.5 * longest) ** 2)) - hip[2])
 
 
 @kernel
-def _swinging(phase: float, speed: float, way: float, vigour: float, length: float, size: Floats) -> float:
-    """Return the height [m] of the hips that the walk asks for: a wave on top of what the leading leg reaches.
+def _walking_height(phase: float, speed: float, way: float, vigour: float, length: float, size: Floats) -> float:
+    """Return the height [m] of the hips in walking: a wave above the height that the leading leg permits.
 
-    ``way`` [m]: how far the foot comes down ahead of the hip.
+    ``way`` is the distance [m] of the foot ahead of the hip at landing.
     """
     ahead, above = ankle_over(-STRIKE * vigour, -STRIKE * vigour, size)
     far = way + ahead
@@ -131,20 +133,20 @@ def _swinging(phase: float, speed: float, way: float, vigour: float, length: flo
 
 
 @kernel
-def _height(hips: Floats, feet: Floats, x: float, y: float, longest: float, tallest: float) -> float:
+def _pelvis_height(hips: Floats, feet: Floats, x: float, y: float, longest: float, tallest: float) -> float:
     """Return the height of the pelvis joint [m]: a smooth minimum of the reach of both legs and ``tallest`` [m]."""
-    left, right = _reach(hips[0], feet[0], x, y, longest), _reach(hips[1], feet[1], x, y, longest)
+    left, right = _leg_limit(hips[0], feet[0], x, y, longest), _leg_limit(hips[1], feet[1], x, y, longest)
     low = min(left, right, tallest)
     far = math.exp((low - left) / SOFT) + math.exp((low - right) / SOFT) + math.exp((low - tallest) / SOFT)
     return low - SOFT * math.log(far)
 
 
 @kernel
-def _leg(
+def _pose_leg(
     hip: Floats, foot: Floats, thigh: float, shank: float, yaw: float, frame: Floats, f: int, R: Floats, bone: int,
     work: Floats,
 ) -> None:  # fmt: skip
-    """Turn thigh, shank, foot and toes so that the ankle is at the foot; the knee bends forward."""
+    """Write the rotations of thigh, shank, foot and toes for an ankle at ``foot``; the knee bends forward."""
     axis, hinge, ahead, turned = work[0], work[1], work[2], work[3]
     for k in range(3):
         axis[k] = foot[k] - hip[k]
@@ -163,7 +165,7 @@ def _leg(
 
 
 @kernel
-def _chain(first: int, last: int, head: Floats, parents: Ints, R: Floats, P: Floats) -> None:
+def _place_chain(first: int, last: int, head: Floats, parents: Ints, R: Floats, P: Floats) -> None:
     """Place bones ``first`` to ``last`` at the ends of their parents."""
     for b in range(first, last):
         p = parents[b]
@@ -182,31 +184,31 @@ def _pose_one(
     sit = smooth(g.blend[i, SITTING])
     time, support, lead, vigour = cycle(g.drift[i, 0], g.drift[i, 1], g.yaw[i], size[5], style[1])
     speed = math.sqrt(g.drift[i, 0] ** 2 + g.drift[i, 1] ** 2)
-    _trunk(g, i, vigour, style, sit, seat[2], R)
+    _pose_trunk(g, i, vigour, style, sit, seat[2], R)
     work, hips, feet = np.empty((8, 3)), np.empty((2, 3)), np.empty((2, 6))
-    _hip(head, 20, R, hips[0])
-    _hip(head, 24, R, hips[1])
+    _hip_offset(head, 20, R, hips[0])
+    _hip_offset(head, 24, R, hips[1])
     sat = seat[0] + SEAT_FLESH * stature
-    _ankles(g, i, sit, sat, lengths, style, size, seat, feet)
+    _blend_ankles(g, i, sit, sat, lengths, style, size, seat, feet)
     sway = SWAY * size[5] * min(speed / 0.6, 1.0) * math.sin(2.0 * math.pi * g.phase[i] - 0.3)
     x = g.position[i, 0] - sway * math.sin(g.yaw[i]) + sit * seat[1] * math.cos(g.yaw[i])
     y = g.position[i, 1] + sway * math.cos(g.yaw[i]) + sit * seat[1] * math.sin(g.yaw[i])
     rest = 0.5 * (hips[0, 2] + hips[1, 2])
-    tallest = _swinging(g.phase[i], speed, lead * support * time * speed, vigour, thigh + shank, size) - rest
-    height = _height(hips, feet, x, y, STRAIGHT * (thigh + shank), tallest)
+    tallest = _walking_height(g.phase[i], speed, lead * support * time * speed, vigour, thigh + shank, size) - rest
+    height = _pelvis_height(hips, feet, x, y, STRAIGHT * (thigh + shank), tallest)
     height += sit * (sat - rest - height)
     P[0, 0], P[0, 1], P[0, 2] = x, y, height
     for f in range(2):
         for k in range(3):
             hips[f, k] += P[0, k]
         ahead = g.yaw[i] + 0.5 * math.atan2(math.sin(feet[f, 3] - g.yaw[i]), math.cos(feet[f, 3] - g.yaw[i]))
-        _leg(hips[f], feet[f], thigh, shank, ahead, frame, f, R, 20 + 4 * f, work)
-    _chain(1, 8, head, parents, R, P)
-    _chain(13, 15, head, parents, R, P)
+        _pose_leg(hips[f], feet[f], thigh, shank, ahead, frame, f, R, 20 + 4 * f, work)
+    _place_chain(1, 8, head, parents, R, P)
+    _place_chain(13, 15, head, parents, R, P)
     for f in range(2):
         pose_arm(g, i, f, vigour, sit, lengths, frame, style, seat, R, P, work)
-    _chain(8, 13, head, parents, R, P)
-    _chain(15, 28, head, parents, R, P)
+    _place_chain(8, 13, head, parents, R, P)
+    _place_chain(15, 28, head, parents, R, P)
 
 
 @kernel
@@ -214,13 +216,13 @@ def _pose(
     g: Gaits, lengths: Floats, heads: Floats, frames: Floats, style: Floats, size: Floats, seats: Floats,
     parents: Ints, R: Floats, P: Floats,
 ) -> None:  # fmt: skip
-    """Pose everyone."""
+    """Pose all people."""
     for i in range(len(lengths)):
         _pose_one(g, i, lengths[i], heads[i], frames[i], style[i], size[i], seats[i], parents, R[i], P[i])
 
 
 def posture(state: Gaits, body: Measures, style: Floats, size: Floats, seats: Floats) -> Posture:
-    """Return the posture of everyone in ``state``."""
+    """Return the posture of all people in ``state``."""
     lengths = np.stack([body.thigh, body.shank, body.arm[:, 0], body.arm[:, 1], body.height], axis=1)
     count, bones = body.head.shape[:2]
     out = Posture(np.empty((count, bones, 3, 3)), np.empty((count, bones, 3)))

@@ -21,16 +21,16 @@ class Seat:
     """A seat, in a frame on the floor at the position of the person, x forward.
 
     Args:
-        height: of the seat [m].
-        ahead: how far the hips are ahead of the position [m].
-        recline: of the trunk [rad]; 0 sits upright.
-        feet: where the left heel rests [m]; the right one mirrors it; None puts the feet on the floor. Feet of who is
-            too short hang.
-        slope: of the foot rests, toes up [rad].
-        hands: where the left wrist lies [m]; the right one mirrors it; None lays the hands on the thighs.
+        height: height of the seat [m].
+        ahead: distance of the hips ahead of the position [m].
+        recline: backward inclination of the trunk [rad]; 0 is upright.
+        feet: position of the left heel [m], mirrored for the right one; None puts the feet on the floor. The feet of
+            short people do not touch the floor.
+        slope: inclination of the foot rests, toes up [rad].
+        hands: position of the left wrist [m], mirrored for the right one; None puts the hands on the thighs.
 
     Raises:
-        InputError: a number is not finite, or ``height`` is not 0.2 to 1.2 m.
+        InputError: a number is not finite, or ``height`` is not from 0.2 to 1.2 m.
 
     >>> WHEELCHAIR.height, CHAIR.feet
     (0.555, None)
@@ -48,11 +48,11 @@ class Seat:
         if not np.all(np.isfinite(self.row)):
             raise InputError(f"Seat: {self} has a value that is not finite")
         if not 0.2 <= self.height <= 1.2:
-            raise InputError(f"Seat: height = {self.height} m is not 0.2 to 1.2 m")
+            raise InputError(f"Seat: height = {self.height} m must be from 0.2 to 1.2 m")
 
     @property
     def row(self) -> list[float]:
-        """The numbers for the kernels: height, ahead, recline, slope, feet there, x, y, z, hands there, x, y, z."""
+        """Values for the kernels: height, ahead, recline, slope, has feet, x, y, z, has hands, x, y, z."""
         feet, hands = self.feet or (0.0, 0.0, 0.0), self.hands or (0.0, 0.0, 0.0)
         there = [float(self.feet is not None), float(self.hands is not None)]
         return [self.height, self.ahead, self.recline, self.slope, there[0], *feet, there[1], *hands]
@@ -63,11 +63,11 @@ CHAIR = Seat()
 WHEELCHAIR = Seat(
     height=0.555, ahead=-0.075, recline=0.17, feet=(0.39, 0.1, 0.1446), slope=0.1, hands=(0.09, 0.262, 0.79)
 )
-"""The robot ``wheelchair`` that ships: the position is that of its ``base_link``, which the person rides along with."""
+"""Seat of the built-in robot ``wheelchair``: the position is that of its ``base_link``."""
 
 
 def seat_rows(seat: Seat | Sequence[Seat], count: int) -> Floats:
-    """Return the numbers of one seat for all or of one for each, ``[N, 12]``.
+    """Return the kernel values ``[N, 12]`` of one seat for all or of one for each.
 
     Raises:
         InputError: the number of seats is not ``count``.

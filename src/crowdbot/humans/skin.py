@@ -1,4 +1,4 @@
-"""The skin of posed people: every vertex follows up to four bones (linear blend skinning)."""
+"""Linear blend skinning of posed people, with up to four bones per vertex."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Ints = NDArray[np.int64]
 def _skin(
     rest: Floats, bones: Ints, weights: Floats, body: Ints, scale: Floats, rotation: Floats, shift: Floats, out: Floats
 ) -> None:
-    """Write ``sum_k w_k (R_k x + t_k)`` of every vertex x of every person."""
+    """Write ``sum_k w_k (R_k x + t_k)`` for each vertex x of each person."""
     for i in range(len(out)):
         for v in range(bones.shape[0]):
             x = rest[body[i], v, 0] * scale[i]
@@ -43,10 +43,10 @@ def skin_vertices(level: Level, body: Ints, scale: Floats, head: Floats, rotatio
 
     Args:
         level: level of detail.
-        body: ``[N]``, row of the rest shape.
-        scale: ``[N]``, stature over that of the rest shape.
-        head: ``[N, B, 3]``, start of each bone at rest [m], scaled.
-        rotation, position: ``[N, B, 3, 3]`` and ``[N, B, 3]`` [m], the bones as they are now.
+        body: row of the rest shape ``[N]``.
+        scale: ratio of stature to that of the rest shape ``[N]``.
+        head: scaled start of each bone at rest ``[N, B, 3]`` [m].
+        rotation, position: current rotation ``[N, B, 3, 3]`` and position ``[N, B, 3]`` [m] of each bone.
     """
     shift = position - np.einsum("nbij,nbj->nbi", rotation, head)
     out = np.empty((len(body), len(level.bones), 3))

@@ -1,7 +1,7 @@
 """Gait parameters as functions of speed: cycle time, stride length, duty factor, and the swing path of a foot.
 
-Relations of Boulic, Magnenat-Thalmann & Thalmann 1990, doi:10.1007/BF01901021, in leg lengths; below a relative speed
-of 0.25 the length follows a power of the speed (our choice).
+Relations of Boulic, Magnenat-Thalmann & Thalmann 1990, doi:10.1007/BF01901021, in leg lengths. Below a relative speed
+of 0.25, the stride length is a power of the speed (not in the source).
 """
 
 from __future__ import annotations
@@ -19,26 +19,26 @@ Floats = NDArray[np.float64]
 RESTING_CYCLE = 1.15
 """Cycle time of stepping on the spot [s]."""
 EASY = 0.3
-"""Below this speed [m/s] the cycle time blends to that of stepping on the spot."""
+"""Speed [m/s] below which the cycle time is blended with that of stepping on the spot."""
 FASTEST = 0.42
-"""Shortest time of a cycle [s]."""
+"""Minimum cycle time [s]."""
 LONGEST = 2.2
-"""Relative speed above which only the cadence increases (people would run)."""
+"""Relative speed above which only the cadence increases (real people would run)."""
 LEAD = 0.36
-"""Distance of the foot ahead of the hip at heel strike, as a share of the body motion during stance."""
+"""Distance of the foot ahead of the hip at heel strike, as a fraction of the body motion during stance."""
 BACKWARD = 0.3
 """Relative shortening of backward strides."""
 ASIDE = 0.5
-"""Longest sideways stride [leg lengths]; feet do not cross."""
+"""Maximum sideways stride [leg lengths]; feet do not cross."""
 STRIKE, PUSH = math.radians(20.0), math.radians(68.0)
-"""Toes up when the heel strikes, and heel up when the toes leave, at a relative speed of 0.9."""
+"""Toes-up angle at heel strike and heel-up angle at toe-off [rad], at a relative speed of 0.9."""
 LANDED, ROLLING, TIPPING = 0.19, 0.50, 0.75
-"""Shares of support: until the first the foot comes down about the heel, from the second it rolls over the ball, from
-the third over the tip of the toes."""
+"""Fractions of the support: up to the first, the foot rotates about the heel; from the second, about the ball; from the
+third, about the tip of the toes."""
 HOP = 0.0355
 """Lift of the ankle in the first half of the swing [leg lengths]; it bends the knee to about 62 degrees."""
 TIPPED = math.radians(35.0)
-"""Pitch of the toes when they leave, at a relative speed of 0.9."""
+"""Pitch of the toes at toe-off [rad], at a relative speed of 0.9."""
 
 
 @kernel
@@ -56,15 +56,15 @@ def wrap_angle(angle: float) -> float:
 
 @kernel
 def cycle(vx: float, vy: float, yaw: float, leg: float, longer: float) -> tuple[float, float, float, float]:
-    """Return time [s] of a cycle, share of support, lead of the foot and vigour of the walk (1 near 1.1 m/s ahead).
+    """Return cycle time [s], duty factor, lead of the foot and vigour of the walk (1 near 1.1 m/s forward).
 
-    The lead is how far a foot comes down ahead of the hip, as a share of the way of the body while it stands.
+    The lead is the distance of the foot ahead of the hip at landing, as a fraction of the body motion during stance.
 
     Args:
         vx, vy: velocity [m/s].
-        yaw: heading of the trunk [rad]; steps aside and backward are shorter.
+        yaw: heading of the trunk [rad]; sideways and backward steps are shorter.
         leg: length of the leg [m].
-        longer: the person's stride over the usual one.
+        longer: stride of the person relative to the mean.
     """
     speed = math.sqrt(vx * vx + vy * vy)
     ahead, aside = vx * math.cos(yaw) + vy * math.sin(yaw), vy * math.cos(yaw) - vx * math.sin(yaw)
@@ -84,9 +84,9 @@ def cycle(vx: float, vy: float, yaw: float, leg: float, longer: float) -> tuple[
 
 @kernel
 def ankle_over(pitch: float, toes: float, size: Floats) -> tuple[float, float]:
-    """Return how far [m] the ankle is ahead of and above its flat foot point when the foot is pitched.
+    """Return the distance [m] of the ankle of a pitched foot ahead of and above the ankle's point on the floor.
 
-    Toes up turns about the heel, heel up about the ball, and toes that leave turn about their tip; these points stay.
+    With toes up, the foot rotates about the fixed heel; with heel up, about the ball; pitched toes, about their tip.
     """
     ankle, ball_x, ball_z, heel, tip = size[0], size[1], size[2], size[3], size[4]
     s, c = math.sin(pitch), math.cos(pitch)
@@ -99,7 +99,7 @@ def ankle_over(pitch: float, toes: float, size: Floats) -> tuple[float, float]:
 
 @kernel
 def lowest(pitch: float, toes: float, size: Floats) -> float:
-    """Return how far the lowest point of the sole lies above the ankle (below 0) for these pitches [rad]."""
+    """Return the height [m] of the lowest point of the sole above the ankle (negative) for these pitches [rad]."""
     sn, c = math.sin(pitch), math.cos(pitch)
     heel = -size[3] * sn - size[0] * c
     ball = -size[1] * sn - (size[0] - size[2]) * c
@@ -112,18 +112,18 @@ def foot_pose(
     u: float, planted: bool, flat: Floats, lift: Floats, goal: Floats, strike: float, next_strike: float, vigour: float,
     push_x: float, push_y: float, size: Floats, out: Floats,
 ) -> None:  # fmt: skip
-    """Write ankle x, y, z [m], yaw, pitch of the foot and pitch of the toes [rad] of one foot.
+    """Write ankle x, y, z [m], yaw, pitch and toe pitch [rad] of one foot.
 
     Args:
-        u: progress of the support when planted, otherwise of the swing, 0 to 1.
-        planted: whether the foot stands.
+        u: progress of the support if planted, otherwise of the swing, 0 to 1.
+        planted: whether the foot is planted.
         flat: x, y, yaw of the planted foot.
-        lift: the same six numbers when the foot left the floor.
-        goal: x, y, yaw where it will stand.
+        lift: output values of the foot at toe-off.
+        goal: x, y, yaw of the next landing.
         strike, next_strike: toes-up angle of the last and of the next landing [rad].
-        vigour: of the walk, 0 when standing.
-        push_x, push_y: velocity [m/s] of the ankle when the foot leaves the floor, over the time of the swing.
-        size: ankle height, ball ahead and above, heel ahead, toe ahead, leg, thigh and shank [m].
+        vigour: vigour of the walk, 0 when standing.
+        push_x, push_y: velocity of the ankle at toe-off times the swing time [m].
+        size: ankle height, ball (ahead, above), heel ahead, toe ahead, leg, thigh plus shank [m].
     """
     if planted:
         pitch = -strike * max(1.0 - u / LANDED, 0.0)

@@ -1,4 +1,4 @@
-"""Rotations used by the posture; matrices are written into ``out [3, 3]``."""
+"""Rotations for postures; matrices are written to ``out [3, 3]``."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def cross(a: Floats, b: Floats, out: Floats) -> None:
 
 @kernel
 def unit(a: Floats) -> float:
-    """Make ``a`` of length 1 in place and return its length; a vector without length becomes z."""
+    """Normalise ``a`` in place and return its length; the zero vector becomes z."""
     length = math.sqrt(a[0] ** 2 + a[1] ** 2 + a[2] ** 2)
     if length < 1e-9:
         a[0], a[1], a[2] = 0.0, 0.0, 1.0
@@ -43,7 +43,7 @@ def unit(a: Floats) -> float:
 
 @kernel
 def about(axis: Floats, angle: float, a: Floats, out: Floats) -> None:
-    """Write ``a`` turned by ``angle`` [rad] about the unit vector ``axis``."""
+    """Write ``a`` rotated by ``angle`` [rad] about the unit vector ``axis``."""
     c, s = math.cos(angle), math.sin(angle)
     dot = (axis[0] * a[0] + axis[1] * a[1] + axis[2] * a[2]) * (1.0 - c)
     x = c * a[0] + s * (axis[1] * a[2] - axis[2] * a[1]) + dot * axis[0]
@@ -54,7 +54,7 @@ def about(axis: Floats, angle: float, a: Floats, out: Floats) -> None:
 
 @kernel
 def align_frame(frame: Floats, axis: Floats, hinge: Floats, out: Floats) -> None:
-    """Write the rotation that brings the rest frame (rows axis, hinge, their product) onto ``axis`` and ``hinge``."""
+    """Write the rotation from the rest frame (rows axis, hinge, cross product) to ``axis`` and ``hinge``."""
     for r in range(3):
         third = axis[(r + 1) % 3] * hinge[(r + 2) % 3] - axis[(r + 2) % 3] * hinge[(r + 1) % 3]
         for c in range(3):

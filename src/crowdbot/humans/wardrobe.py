@@ -1,4 +1,4 @@
-"""Clothes, hair and skin: numbered outfits for every person, as colours of the regions of the body."""
+"""Clothes, hair and skin: numbered outfits for each person, as colours of body regions."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SKIN: dict[str, tuple[str, ...]] = {
 """Skin colours by main ancestry of the shape, light to dark."""
 HAIR = ("16110e", "2a1c14", "46301f", "6d4a2b", "99703f", "c9a566", "7d3b1e")
 DARK_HAIR = 3
-"""Number of hair colours for all skins; the others are for light skins."""
+"""Number of hair colours for all skin colours; the others are for light skin."""
 GREY = ("8f8f8f", "b5b3b0", "d6d4d0")
 TOPS = (
     "b3252b", "2c6e49", "d9a21b", "23262e", "7a8a99", "6b3f8f", "e7e5df", "1f4f9e", "5b2c1f", "c8663a",
@@ -35,15 +35,15 @@ BOTTOMS = ("1f2a44", "2f3b4c", "17181b", "5a4b3a", "3e5f8a", "4a4d52", "8a7a62",
 SHOES = ("121212", "e8e6e1", "5a3520", "2b2f38", "8d2626", "7c7d80")
 EYES = "23201d"
 PLAIN = "b9b4ab"
-"""Colour of the mannequin, whatever its outfit; later numbers take the colours of tops."""
+"""Colour of the mannequin for outfit 0; later numbers use the colours of tops."""
 
 
 @dataclass(frozen=True)
 class Outfit:
-    """Outfit of a person: colours (red, green, blue, 0 to 1) and the cut of clothes and hair.
+    """Outfit of a person: colours (red, green, blue, 0 to 1), clothes and hair style.
 
-    Fields: ``sleeves`` ``long``, ``short`` or ``none``; ``legs`` ``long`` or ``short`` trousers or ``skirt``; ``style``
-    of the hair ``cropped``, ``short`` or ``long``.
+    Fields: colours ``skin``, ``hair``, ``top``, ``bottom``, ``shoes``; ``sleeves`` (``long``, ``short`` or ``none``);
+    ``legs`` (``long`` or ``short`` trousers, or ``skirt``); ``style`` of the hair (``cropped``, ``short`` or ``long``).
     """
 
     skin: Color
@@ -57,9 +57,9 @@ class Outfit:
 
 
 def outfit(person: Person, variation: int = 0) -> Outfit:
-    """Return an outfit of a person; the number seeds everything except the range of skin colours.
+    """Return an outfit of a person; ``variation`` determines all of it except the skin colour.
 
-    Colours of tops and bottoms do not repeat within ten numbers in a row.
+    Colours of tops and bottoms do not repeat within ten consecutive numbers.
 
     >>> from crowdbot.humans.person import person
     >>> len({outfit(person("woman-36"), k) for k in range(20)})
@@ -80,8 +80,8 @@ def outfit(person: Person, variation: int = 0) -> Outfit:
     return Outfit(
         skin=_color(tone),
         hair=_color(hairs[int(chance.integers(len(hairs)))]),
-        top=_shaded(_color(TOPS[tops[variation % len(TOPS)]]), chance),
-        bottom=_shaded(_color(BOTTOMS[bottoms[variation % len(BOTTOMS)]]), chance),
+        top=_shade(_color(TOPS[tops[variation % len(TOPS)]]), chance),
+        bottom=_shade(_color(BOTTOMS[bottoms[variation % len(BOTTOMS)]]), chance),
         shoes=_color(SHOES[int(chance.integers(len(SHOES)))]),
         sleeves=str(chance.choice(["long", "short", "none"], p=[0.5, 0.4, 0.1] if female else [0.55, 0.45, 0.0])),
         legs=str(chance.choice(["long", "short", "skirt"], p=[0.6, 0.15, 0.25] if female else [0.75, 0.25, 0.0])),
@@ -90,7 +90,7 @@ def outfit(person: Person, variation: int = 0) -> Outfit:
 
 
 def worn_parts(worn: Outfit) -> list[int]:
-    """Return the places of the parts of the mesh that are worn."""
+    """Return the indices of the mesh parts that are visible with an outfit."""
     named = ["skin", "top", "legs"]
     named += ["skirt"] if worn.legs == "skirt" else []
     named += [f"hair_{worn.style}"] if worn.style != "cropped" else []
@@ -98,7 +98,7 @@ def worn_parts(worn: Outfit) -> list[int]:
 
 
 def region_colors(worn: Outfit) -> Floats:
-    """Return the colour of every region, ``[regions, 3]``."""
+    """Return the colour of each region, ``[regions, 3]``."""
     bare_legs = worn.legs != "long"
     plain = worn.skin == worn.top
     colors = {
@@ -122,7 +122,7 @@ def _color(text: str) -> Color:
     return red, green, blue
 
 
-def _shaded(color: Color, chance: np.random.Generator) -> Color:
+def _shade(color: Color, chance: np.random.Generator) -> Color:
     light = float(chance.uniform(0.88, 1.08))
     red, green, blue = (round(min(light * part, 1.0), 4) for part in color)
     return red, green, blue

@@ -18,7 +18,7 @@ DT = 0.1
 
 
 def check_model(model: CrowdModel) -> None:
-    """Check that a crowd model keeps its contract on small crowds.
+    """Check that a crowd model fulfils its contract, on small scenes.
 
     Raises:
         InputError: the first violated rule.
@@ -32,16 +32,17 @@ def check_model(model: CrowdModel) -> None:
     _check_frozen(model)
     if not isinstance(getattr(model, "paper", None), Paper):
         raise InputError(f"{name}.paper is missing; it must be a crowdbot.Paper")
-    scene = _crowd()
-    velocity = _velocity(model, scene)
-    if not np.array_equal(_velocity(model, scene), velocity):
-        raise InputError(f"{name}.velocity is not deterministic: the same scene and generator gave other velocities")
+    scene = _example_scene()
+    velocity = _check_velocity(model, scene)
+    if not np.array_equal(_check_velocity(model, scene), velocity):
+        raise InputError(f"{name}.velocity is not deterministic: the same scene and generator give new velocities")
     moved = scene.external & scene.active
     if not np.array_equal(velocity[moved], scene.velocity[moved]):
         raise InputError(f"{name}.velocity changes external agents; they must keep their velocity")
     if np.any(velocity[~scene.active] != 0.0):
         raise InputError(f"{name}.velocity moves absent agents (active=False); their velocity must be 0")
-    if not np.array_equal(scene.position, _crowd().position) or not np.array_equal(scene.velocity, _crowd().velocity):
+    before = _example_scene()
+    if not np.array_equal(scene.position, before.position) or not np.array_equal(scene.velocity, before.velocity):
         raise InputError(f"{name}.velocity changes the scene; it must only read it")
     whole = model.velocity(scene, DT)
     for e in range(scene.shape[0]):
@@ -55,7 +56,7 @@ def check_model(model: CrowdModel) -> None:
 
 
 def check_goal(goal: Goal) -> None:
-    """Check that a goal keeps its contract on small windows.
+    """Check that a goal fulfils its contract, on small windows.
 
     Raises:
         InputError: the first violated rule.
@@ -69,7 +70,7 @@ def check_goal(goal: Goal) -> None:
     _check_frozen(goal)
     for rows in (1, 8):
         past = example_windows(rows)
-        place = _places(goal, past)
+        place = _check_resolve(goal, past)
         if not np.array_equal(place, goal.resolve(dataclasses.replace(past, scored=~past.scored))):
             raise InputError(f"{name}.resolve uses past.scored; it must not")
         for window in range(len(past)):
@@ -86,7 +87,7 @@ def _check_frozen(value: object) -> None:
         raise InputError(f"{type(value).__name__} is not frozen; decorate the class with @dataclass(frozen=True)")
 
 
-def _places(goal: Goal, past: Windows) -> Floats:
+def _check_resolve(goal: Goal, past: Windows) -> Floats:
     name, before, here = type(goal).__name__, past.position.copy(), past.present[:, -1]
     place, wanted = np.asarray(goal.resolve(past)), [*here.shape, 2]
     if list(place.shape) != wanted:
@@ -98,7 +99,7 @@ def _places(goal: Goal, past: Windows) -> Floats:
     return place
 
 
-def _velocity(model: CrowdModel, scene: Scene) -> Floats:
+def _check_velocity(model: CrowdModel, scene: Scene) -> Floats:
     velocity = np.asarray(model.velocity(scene, DT, stream(1, "contract")))
     name, wanted = type(model).__name__, [*scene.shape, 2]
     if list(velocity.shape) != wanted:
@@ -108,7 +109,7 @@ def _velocity(model: CrowdModel, scene: Scene) -> Floats:
     return velocity
 
 
-def _crowd() -> Scene:
+def _example_scene() -> Scene:
     """Return 2 environments with 12 agents, including walls, an external agent and an absent agent."""
     rng = stream(0, "contract")
     grid = np.stack(np.meshgrid(np.arange(4.0), np.arange(3.0)), axis=-1).reshape(1, 12, 2)

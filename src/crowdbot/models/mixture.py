@@ -1,4 +1,4 @@
-"""Mixture: several models in one scene, each person walking by one of them."""
+"""Mixture: several models in one scene, one for each agent."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
 MODEL = "model"
-"""Name in the memory of a scene ``[E, A]``: which model each agent walks by, where it is not what ``which`` says."""
+"""Name in the memory of a scene: the model index of each agent ``[E, A]``, which overrides ``which``."""
 
 
 @dataclass(frozen=True)
@@ -30,17 +30,16 @@ class Mixture(CrowdModel):
         models: the models, at least one.
         which: ``[A]`` or ``[E, A]`` int, the index of each agent's model; a number applies to all agents.
 
-    People of other models are neighbours like any others: a model that shares the work of avoiding takes it that they
-    do their part too. All models choose from the same old scene. Every model is asked for the whole crowd, so that the
-    cost is the sum of theirs; what they keep from step to step is kept for each. Models draw from the stream of
-    randomness one after the other, in their order.
+    Agents of other models are ordinary neighbours: a reciprocal model assumes that they do their share of the
+    avoidance. All models read the same scene. Every model computes the whole crowd, and the computing time is the sum
+    over the models. Each model keeps its own memory. The models use the random generator one after the other.
 
-    People may change their model: :data:`MODEL` in ``Scene.memory`` goes before ``which``.
+    Agents can change their model during a run: :data:`MODEL` in ``Scene.memory`` overrides ``which``.
 
-    Source: models of different kinds side by side as in van Toll et al. 2020, doi:10.1145/3384382.3384532.
+    Source: mixed models as in van Toll et al. 2020, doi:10.1145/3384382.3384532.
 
     Raises:
-        InputError: there is no model, something is no model, or an index is not that of a model.
+        InputError: ``models`` is empty or has an element that is not a crowd model, or an index is out of range.
 
     >>> from crowdbot.models import ORCA, SocialForce
     >>> ahead = Scene.of([[0, 0], [3, 0.1]], [[1, 0], [-1, 0]], preferred_velocity=[[1, 0], [-1, 0]])
@@ -72,12 +71,12 @@ class Mixture(CrowdModel):
 
     @property
     def memory_at_start(self) -> Mapping[str, float]:
-        """What the memory of a scene holds for somebody new, by name, where that is not 0: as the models say it."""
+        """Initial values in the memory of a scene for a new agent, by name: those of all models."""
         parts = (model.memory_at_start for model in self.models)
         return {name: value for part in parts for name, value in part.items()}
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s], each agent's from its own model."""
+        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s], each from the agent's own model."""
         own = self.of(scene)
         out = initial_velocity(scene)
         for k, model in enumerate(self.models):
@@ -85,48 +84,48 @@ class Mixture(CrowdModel):
         return out
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
-        """Return the scene ``dt`` [s] later, each agent as its own model moves it."""
+        """Return the scene ``dt`` [s] later, with each agent moved by its own model."""
         own = self.of(scene)
         after = [model.step(scene, dt, rng) for model in self.models]
 
-        def merged(read: Callable[[Scene], Floats]) -> Floats:
+        def merge(read: Callable[[Scene], Floats]) -> Floats:
             whole = read(after[0])
             for k in range(1, len(after)):
                 whole = np.where((own == k).reshape(*own.shape, *[1] * (whole.ndim - 2)), read(after[k]), whole)
             return whole
 
         return after[0].replace(
-            position=merged(lambda one: one.position),
-            velocity=merged(lambda one: one.velocity),
-            heading=merged(lambda one: one.heading),
+            position=merge(lambda one: one.position),
+            velocity=merge(lambda one: one.velocity),
+            heading=merge(lambda one: one.heading),
             memory=_memory(scene, after, own),
         )
 
     def of(self, scene: Scene) -> Numbers:
-        """Return ``[E, A]``: the index of the model that each agent of a scene walks by."""
+        """Return the model index of each agent ``[E, A]``."""
         which = self._check_indices(np.asarray(scene.memory.get(MODEL, self.which)))
         try:
             return np.broadcast_to(which, scene.shape)
         except ValueError:
             raise InputError(
                 f"Mixture: which has shape {list(which.shape)}, which does not broadcast to [E, A] ="
-                f" {list(scene.shape)}: it must name a model for every agent"
+                f" {list(scene.shape)}; give one model index for each agent"
             ) from None
 
     def _check_indices(self, which: NDArray[Any]) -> Numbers:
         whole = which.astype(np.int64) if which.dtype.kind in "iuf" and np.all(np.isfinite(which)) else None
         if whole is None or np.any(whole != which):
-            raise InputError(f"Mixture: which = {which.tolist()} holds something that is no whole number")
+            raise InputError(f"Mixture: which = {which.tolist()} must contain only whole numbers")
         wrong = whole[(whole < 0) | (whole >= len(self.models))]
         if wrong.size:
             raise InputError(
-                f"Mixture: which names model {wrong.flat[0]}, there are models 0 to {len(self.models) - 1}"
+                f"Mixture: which = {wrong.flat[0]} is out of range, it must be from 0 to {len(self.models) - 1}"
             )
         return whole
 
 
 def _memory(scene: Scene, after: Sequence[Scene], own: Numbers) -> dict[str, Floats]:
-    """Return the memory of all models: where several write under one name, each agent's own model has the say."""
+    """Return the memory of all models; if several models write the same name, the agent's own model takes priority."""
     memory = dict(scene.memory)
     written: set[str] = set()
     for k, one in enumerate(after):

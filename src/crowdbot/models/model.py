@@ -1,4 +1,4 @@
-"""CrowdModel: the contract of every microscopic model of walking people."""
+"""CrowdModel: the contract of microscopic crowd models."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ __all__ = [
 ]
 
 LARGEST = 1e9
-"""No position [m], speed [m/s] or parameter may be larger: beyond it squares of squares overflow."""
+"""Upper limit of positions [m], speeds [m/s] and parameters, against overflow."""
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class CrowdModel(abc.ABC):
-    """How people choose their next velocity.
+    """Contract: compute the next velocities of agents.
 
-    A model is a frozen dataclass; its parameters are fields made by :func:`crowdbot.core.parameter`, each a number for
-    all or an array that broadcasts to ``[E, A]``. The same scene, step and stream give the same bytes, alone or in a
-    batch, with any number of threads.
+    A model is a frozen dataclass. Its parameters are fields defined with :func:`crowdbot.core.parameter`: a number for
+    all agents or an array that broadcasts to ``[E, A]``. Results are reproducible bit for bit from scene, time step and
+    random stream; they do not depend on the batch or the number of threads.
 
     Raises:
-        InputError: a parameter is not finite, below its minimum or absurdly large.
+        InputError: a parameter is not finite, below its minimum or above 1e9.
 
     >>> class Straight(CrowdModel):
     ...     paper = Paper("Nobody", 2020, "Walking straight", "Nowhere")
@@ -62,15 +62,15 @@ class CrowdModel(abc.ABC):
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s].
 
-        All agents choose from the same old scene. External agents keep their velocity, absent ones get 0.
+        All velocities are computed from the same scene. External agents keep their velocity; absent agents get 0.
 
         Raises:
-            InputError: ``dt`` is not positive, or a value of the scene is not finite or absurdly large.
+            InputError: ``dt`` is not positive, or a value of the scene is not finite or above 1e9.
         """
 
     @property
     def memory_at_start(self) -> Mapping[str, float]:
-        """What ``Scene.memory`` holds by name for a person who has just come in; most models keep nothing."""
+        """Initial values in ``Scene.memory`` for a new agent, by name; empty for models without memory."""
         return {}
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
@@ -79,12 +79,12 @@ class CrowdModel(abc.ABC):
 
 
 def movable(scene: Scene) -> NDArray[np.bool_]:
-    """Return ``[E, A]``: the agents that a model moves, active and not external."""
+    """Return the mask ``[E, A]`` of agents that a model moves: active and not external."""
     return np.asarray(scene.active & ~scene.external)
 
 
 def desired_velocity(scene: Scene, dt: float) -> Floats:
-    """Return the desired velocities ``[E, A, 2]`` [m/s], 0 for absent agents, after a check of everything models read.
+    """Check the values that models read; return the desired velocities ``[E, A, 2]`` [m/s], 0 for absent agents.
 
     Raises:
         InputError: ``dt`` is not positive, or a value of an active agent is not finite or larger than 1e9.
@@ -94,57 +94,57 @@ def desired_velocity(scene: Scene, dt: float) -> Floats:
     aim = ("goal", "preferred_speed") if scene.preferred_velocity is None else ()
     for name in ("position", "velocity", "radius", "max_speed", *aim):
         _check(name, getattr(scene, name), scene.active)
-    with np.errstate(invalid="ignore", over="ignore"):  # absent agents may hold anything
+    with np.errstate(invalid="ignore", over="ignore"):  # values of absent agents are arbitrary
         desired = np.where(scene.active[..., None], scene.desired_velocity(dt), 0.0)
     _check("preferred velocity", desired, scene.active)
     return desired
 
 
 def initial_velocity(scene: Scene) -> Floats:
-    """Return velocities ``[E, A, 2]`` [m/s] for a model to fill: external agents keep theirs, all others have 0."""
+    """Return the output array ``[E, A, 2]`` [m/s] of a model: the velocity of external agents, 0 for all others."""
     return np.where((scene.active & scene.external)[..., None], scene.velocity, 0.0)
 
 
 def check_limit(model: CrowdModel, max_speed: PerAgent | None) -> None:
-    """Raise :class:`InputError` unless a model's own maximum speed is None, or finite and not below 0."""
+    """Raise :class:`InputError` unless a model's maximum speed is None, or finite and at least 0."""
     if max_speed is None:
         return
     bounds = Bounds("m/s", min=0.0, max=LARGEST)
     if not bounds.holds(max_speed):
         raise InputError(
             f"{type(model).__name__}: max_speed = {bounds.worst(max_speed)} [m/s] is not allowed, it must be"
-            f" {bounds.describe()}, or left out to take the maximum speed of the scene"
+            f" {bounds.describe()}, or None to use the maximum speed of the scene"
         )
 
 
 def speed_limit(max_speed: PerAgent | None, scene: Scene) -> Floats:
-    """Return the maximum speeds ``[E, A]`` [m/s]: the model's own, or those of the scene when it has none."""
+    """Return the maximum speeds ``[E, A]`` [m/s] of the model, or of the scene if the model has none."""
     return scene.max_speed if max_speed is None else per_agent(max_speed, scene.shape, "max_speed")
 
 
 def neighbors_of(model: Any, scene: Scene, walking: NDArray[np.bool_]) -> Neighbors:
-    """Return whom those who walk see: the nearest visible ones by the model's neighbour distance and number."""
+    """Return the neighbours of ``walking`` agents: the nearest visible agents, limited in distance and number."""
     reach = per_agent(model.neighbor_distance, scene.shape, "neighbor_distance")
     most = np.rint(per_agent(model.max_neighbors, scene.shape, "max_neighbors"))
     return nearest(scene.position, reach, most, scene.active & scene.visible, walking)
 
 
 def rows(value: NDArray[Any]) -> NDArray[Any]:
-    """Return ``[E, A, ...]`` as rows ``[E * A, ...]``, in the one form that kernels are compiled for (C, writeable)."""
+    """Return ``[E, A, ...]`` as rows ``[E * A, ...]``, C-contiguous and writeable as kernels require."""
     E, A = value.shape[:2]
     return np.require(value, requirements=["C", "W"]).reshape(E * A, *value.shape[2:])
 
 
 def launch(whole: Callable[..., None], part: Callable[..., None], out: Floats, *values: Any) -> None:
-    """Fill the rows of ``out`` [E * A, ...] by a kernel: all by one thread when they are few, else by all threads.
+    """Fill the rows of ``out`` [E * A, ...] with a kernel, in one thread if there are few rows, otherwise in parallel.
 
     Args:
         whole: parallel kernel of ``values`` and ``out``, which calls ``part`` for :data:`CHUNK` rows at a time.
-        part: kernel of the first row, the row after the last, ``values`` and ``out``.
-        out: what they fill.
-        values: what they read.
+        part: kernel of the first row, the end row (exclusive), ``values`` and ``out``.
+        out: output of the kernels.
+        values: input of the kernels.
     """
-    # plain tuples: two named ones with like fields are told apart by the compiler only slowly, 0.1 ms a call (measured)
+    # plain tuples: numba dispatches slowly on named tuples with similar fields, 0.1 ms per call (measured)
     plain = [tuple(value) if isinstance(value, tuple) else value for value in values]
     if len(out) <= SMALL:
         part(0, len(out), *plain, out)

@@ -1,4 +1,4 @@
-"""Svg: small drawings of paths and discs as text, for notebooks. Needs no drawing library."""
+"""SVG drawings of paths and discs, for notebooks, without a drawing library."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ WALL_COLOR = "#6b6b6b"
 WIDTH, TALLEST = 640.0, 480.0
 MARGIN, CAPTION = 8.0, 22.0
 POINTS = 20_000
-"""About so many points are drawn at most; longer paths are thinned."""
+"""Approximate maximum number of points; longer paths are subsampled."""
 
 
 class Path2D(NamedTuple):
     """A path in the plane.
 
     Fields:
-        points: ``[N, 2]`` [m]; NaN interrupts it.
-        color: of the line.
-        width: of the line [px].
-        opacity: from 0 to 1.
+        points: ``[N, 2]`` [m]; NaN interrupts the line.
+        color: line colour.
+        width: line width [px].
+        opacity: line opacity, from 0 to 1.
     """
 
     points: NDArray[np.float64]
@@ -44,8 +44,8 @@ class Disc(NamedTuple):
 
     Fields:
         x, y: centre [m].
-        radius: [m].
-        color: of its area.
+        radius: radius [m].
+        color: fill colour.
     """
 
     x: float
@@ -58,9 +58,9 @@ def draw_svg(paths: Iterable[Path2D], discs: Iterable[Disc] = (), caption: str =
     """Return an SVG drawing, seen from above, with y upwards and equal axes.
 
     Args:
-        paths: lines, the first lowest.
-        discs: on top of the lines.
-        caption: a line of text below.
+        paths: lines; later ones are drawn on top.
+        discs: discs, drawn on top of the lines.
+        caption: line of text below the drawing.
 
     >>> drawing = draw_svg([Path2D(np.array([[0.0, 0.0], [2.0, 1.0]]))], [Disc(0.0, 0.0, 0.25)], "one person")
     >>> drawing.startswith("<svg"), drawing.count("<path"), drawing.count("<circle"), "one person" in drawing
@@ -92,7 +92,7 @@ def _place(points: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[
 
 
 def _path(line: Path2D, low: NDArray[np.float64], high: NDArray[np.float64], scale: float, every: int) -> str:
-    """Return one line; a gap of NaN begins another stroke, and the last point stays when it is thinned."""
+    """Return one line; NaN starts a new stroke, and subsampling keeps the last point."""
     finite = np.isfinite(line.points).all(axis=-1)
     cuts = np.flatnonzero(np.diff(np.concatenate([[False], finite, [False]])))
     strokes = [line.points[a:b] for a, b in zip(cuts[::2], cuts[1::2], strict=True) if b - a > 1]

@@ -85,7 +85,7 @@ def parse_xml(
     Args:
         data: the bytes of the file.
         place: name for messages.
-        encoding: of the bytes; None reads it from the XML declaration.
+        encoding: encoding of the bytes (default: from the XML declaration).
         what: kind of file for messages, such as ``trial``.
         root: expected root element, for messages.
         refusal: class of the error.
@@ -109,7 +109,7 @@ def parse_xml(
 def reject_entities(data: bytes, place: str, refusal: Refusal = InputError) -> None:
     """Raise an error unless the bytes are well-formed XML, of any size, without DOCTYPE and entities.
 
-    For files that another library reads afterwards, such as COLLADA meshes.
+    It checks files that another library reads afterwards, such as COLLADA meshes.
     """
     builder = _TreeBuilder(place, None, "mesh", refusal)
     builder.parser.StartElementHandler = builder.parser.EndElementHandler = builder.parser.CharacterDataHandler = None
@@ -209,12 +209,12 @@ def format_xml(root: Element) -> str:
 
 
 def _lines(element: Element, indent: str) -> list[str]:
-    row = "".join(f" {escape(key)}={_quoted(value)}" for key, value in element.attributes.items())
+    row = "".join(f" {escape(key)}={_quote(value)}" for key, value in element.attributes.items())
     if not element.children:
         return [f"{indent}<{element.tag}{row}/>\n"]
     inside = [line for part in element.children for line in _lines(part, indent + "  ")]
     return [f"{indent}<{element.tag}{row}>\n", *inside, f"{indent}</{element.tag}>\n"]
 
 
-def _quoted(value: str) -> str:
+def _quote(value: str) -> str:
     return quoteattr(value, {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"})

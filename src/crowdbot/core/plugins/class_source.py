@@ -1,7 +1,7 @@
-"""Classes described by their source: what a Python file defines, read with ``ast`` and never run.
+"""Class descriptions from source code, which is parsed with ``ast`` and never run.
 
-Checks of files from elsewhere use it. A described class has the fields, literal defaults and class attributes of the
-class in the file, and its built-in base classes. Its methods raise :class:`UnreadableValue`.
+They are used to check files from untrusted sources. A described class has the fields, literal defaults, class
+attributes and built-in base classes of the class in the file. Its methods raise :class:`UnreadableValue`.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ _READS_ONLY: ContextVar[bool] = ContextVar("crowdbot_reads_only", default=False)
 
 
 class UnreadableValue(Exception):
-    """A value that could not be read, or is known only when code runs."""
+    """A value that cannot be determined without running code."""
 
 
 class UnreadText(float):
-    """A value of a type that is known only when code runs: its text; as a number it is NaN."""
+    """Text of a value whose type cannot be determined without running code; as a number it is NaN."""
 
     text: str
 
@@ -61,7 +61,7 @@ UNREAD = UnreadText.parse("")
 
 @contextlib.contextmanager
 def without_running_code() -> Iterator[None]:
-    """Within this context, :func:`find_class` describes the classes of Python files and runs none of them.
+    """Within this context, :func:`find_class` describes classes of Python files instead of running the files.
 
     >>> with without_running_code():
     ...     reads_only()
@@ -75,12 +75,12 @@ def without_running_code() -> Iterator[None]:
 
 
 def reads_only() -> bool:
-    """Return whether the classes of Python files are described and not loaded."""
+    """Return whether classes of Python files are described instead of loaded."""
     return _READS_ONLY.get()
 
 
 def unread_fields(cls: type) -> frozenset[str]:
-    """Return the fields of a described class whose defaults are known only when code runs."""
+    """Return the fields of a described class whose defaults cannot be determined without running code."""
     return frozenset(getattr(cls, "_unread_fields", ()))
 
 
@@ -94,12 +94,12 @@ def describe_class(path: Path, name: str, contract: type, address: str) -> type:
 
     Args:
         path: Python file.
-        name: of the class.
-        contract: class that it must extend.
-        address: for messages, such as ``shy.py:Shy``.
+        name: name of the class.
+        contract: required base class.
+        address: address for messages, such as ``shy.py:Shy``.
 
     Raises:
-        InputError: the file is no Python, or defines no concrete class of this name and contract.
+        InputError: the file is not valid Python, or has no concrete class with this name and base class.
     """
     try:
         with path.open("rb") as stream:
@@ -115,7 +115,8 @@ def describe_class(path: Path, name: str, contract: type, address: str) -> type:
     found = source.described(name, contract, 0) if name in source.classes else None
     if found is None or inspect.isabstract(found) or not issubclass(found, contract):
         raise InputError(
-            f"{address} is not a concrete {contract.__name__}; {path.name} holds {', '.join(source.classes) or 'none'}"
+            f"{address} is not a concrete {contract.__name__}; {path.name} defines"
+            f" {', '.join(source.classes) or 'none'}"
         )
     return found
 
@@ -131,7 +132,7 @@ class _Source:
             if isinstance(node, ast.Import | ast.ImportFrom):
                 self._import(node)
             elif isinstance(node, ast.Assign | ast.AnnAssign):
-                self.names |= dict(self._assigned(node))
+                self.names |= dict(self._assignments(node))
 
     def _import(self, node: ast.Import | ast.ImportFrom) -> None:
         for one in node.names:
@@ -144,7 +145,7 @@ class _Source:
                 if value is not None:
                     self.names[one.asname or one.name] = value
 
-    def _assigned(self, node: ast.Assign | ast.AnnAssign) -> Iterator[tuple[str, Any]]:
+    def _assignments(self, node: ast.Assign | ast.AnnAssign) -> Iterator[tuple[str, Any]]:
         targets = node.targets if isinstance(node, ast.Assign) else [node.target]
         with contextlib.suppress(UnreadableValue):
             value = UNREAD if node.value is None else self.value(node.value)
@@ -154,7 +155,7 @@ class _Source:
         """Return the value of an expression of literals, constants and classes of crowdbot.
 
         Raises:
-            UnreadableValue: it is anything else.
+            UnreadableValue: it is any other expression.
         """
         try:
             return ast.literal_eval(node)
@@ -178,7 +179,7 @@ class _Source:
         raise UnreadableValue(ast.unparse(node)[:60])
 
     def described(self, name: str, contract: type, depth: int) -> type | None:
-        """Return the description of a class, None when it does not extend the contract."""
+        """Return the description of a class, or None if it does not extend the contract."""
         node = self.classes[name]
         bases = tuple(base for one in node.bases if (base := self._base(one, contract, depth)) is not None)
         if not any(issubclass(base, contract) for base in bases):
@@ -191,10 +192,10 @@ class _Source:
             if isinstance(inner, ast.FunctionDef | ast.AsyncFunctionDef):
                 space[inner.name] = _placeholder(inner)
             elif isinstance(inner, ast.Assign):
-                space |= dict(self._assigned(inner))
+                space |= dict(self._assignments(inner))
             elif isinstance(inner, ast.AnnAssign) and isinstance(inner.target, ast.Name):
                 if not own or "ClassVar" in ast.dump(inner.annotation):
-                    space |= dict(self._assigned(inner)) if inner.value is not None else {}
+                    space |= dict(self._assignments(inner)) if inner.value is not None else {}
                 elif (row := self._field(inner, inner.target.id)) is not None:
                     rows.append(row)
                     unread -= {row[0]}
@@ -217,11 +218,11 @@ class _Source:
         return None
 
     def _field(self, node: ast.AnnAssign, name: str) -> tuple[str, Any, Any] | None:
-        """Return the name, the type and the ``dataclasses.Field`` of an attribute, None when it is no field."""
+        """Return the name, the type and the ``dataclasses.Field`` of an attribute, or None if it is not a field."""
         kind = self._kind(node.annotation)
         if node.value is None:
             return name, kind, dataclasses.field()
-        if isinstance(node.value, ast.Call) and _called(node.value) == "field":
+        if isinstance(node.value, ast.Call) and _function_name(node.value) == "field":
             words = {word.arg: word.value for word in node.value.keywords}
             if isinstance(off := words.get("init"), ast.Constant) and off.value is False:
                 return None
@@ -239,7 +240,7 @@ class _Source:
         return UNREAD if isinstance(value, list | dict | set) else value
 
     def _kind(self, node: ast.expr) -> Any:
-        """Return the type of an annotation; :class:`UnreadText` when it is known only when code runs."""
+        """Return the type of an annotation, or :class:`UnreadText` if it cannot be determined without running code."""
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             try:
                 return self._kind(ast.parse(node.value, mode="eval").body)
@@ -279,12 +280,12 @@ def _is_safe(maker: Any) -> bool:
     return inside and (dataclasses.is_dataclass(maker) or getattr(maker, "__name__", "") in FIELD_MAKERS)
 
 
-def _called(node: ast.Call) -> str:
+def _function_name(node: ast.Call) -> str:
     return node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
 
 
 def _placeholder(node: ast.FunctionDef | ast.AsyncFunctionDef) -> Any:
-    """Return a method that raises :class:`UnreadableValue`, with the names of the parameters of the one in the file."""
+    """Return a method that raises :class:`UnreadableValue`, with the parameter names of the method in the file."""
     if node.name == "__post_init__":
         return lambda self: None
 

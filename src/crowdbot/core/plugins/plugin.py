@@ -93,7 +93,7 @@ def find_class(
 
     Raises:
         UnknownName: no built-in class has this name.
-        InputError: the address cannot be loaded, is no concrete subclass of ``contract``, or is not trusted.
+        InputError: the address cannot be loaded, is not a concrete subclass of ``contract``, or is not trusted.
     """
     known = builtin_classes(room, contract)
     plain = {value.__name__.lower(): value for value in known.values()}

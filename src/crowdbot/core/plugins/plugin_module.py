@@ -1,4 +1,4 @@
-"""The modules behind addresses: a Python file, a folder of Python files, or an installed package."""
+"""Modules of plugin addresses: a Python file, a folder of Python files, or an installed package."""
 
 from __future__ import annotations
 

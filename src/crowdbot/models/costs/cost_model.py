@@ -34,11 +34,11 @@ SAMPLES = ("polar", "umans", "random")
 EQUAL = 1e-9
 """Relative tolerance within which costs are equal: rounding does not decide between velocities."""
 BUDGET = 1_000_000
-"""Maximum number of elements of an array; walkers are processed in parts."""
+"""Maximum number of elements of an array; agents are processed in parts."""
 GIVEN = 3
-"""Candidates in addition to the samples: zero, the desired and the current velocity."""
+"""Number of candidates in addition to the samples: zero, the desired and the current velocity."""
 STEEPEST = 1e9
-"""Limit of slopes [m/s^2]."""
+"""Limit of gradients [m/s^2]."""
 
 
 @dataclass(frozen=True)
@@ -55,9 +55,9 @@ class CostModel(CrowdModel):
         contact_stiffness: acceleration per metre of overlap between bodies, and with walls [1/s^2]; limited to the
             value that resolves the overlap in one time step. 62.5 is 5000 kg/s^2 at 80 kg.
         neighbor_distance: maximum distance of neighbours [m].
-        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
+        max_neighbors: maximum number of neighbours (the nearest ones); rounded to a whole number.
         max_acceleration: ``[E, A]`` [m/s^2], without contact forces; None: no limit.
-        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+        max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene.
         samples: ``polar`` (desired, current and zero velocity, and rings around the desired direction), ``umans``
             (rings starting at -x, as in the UMANS library), ``random`` (uniform in the disc of possible speeds).
         speeds, angles: number of rings, and of velocities on each; their product for ``random``.
@@ -93,7 +93,7 @@ class CostModel(CrowdModel):
 
     costs: VelocityCost = field(default_factory=HalfPlanes)
     optimiser: str = "natural"
-    relaxation_time: PerAgent = parameter(0.0, unit="s", low=0.0, high=1.5, source="the best velocity at once")
+    relaxation_time: PerAgent = parameter(0.0, unit="s", low=0.0, high=1.5, source="no relaxation")
     contact_stiffness: PerAgent = parameter(0.0, unit="1/s^2", low=0.0, high=200.0, source="no contact")
     neighbor_distance: PerAgent = parameter(5.0, unit="m", low=1.0, high=15.0, source="UMANS, examples")
     max_neighbors: PerAgent = parameter(10.0, unit="1", low=1.0, high=60.0, source="RVO2, examples")
@@ -125,7 +125,7 @@ class CostModel(CrowdModel):
         if self.max_acceleration is not None and not np.all(np.asarray(self.max_acceleration) >= 0.0):
             raise InputError(
                 f"CostModel: max_acceleration = {self.max_acceleration} [m/s^2] is not allowed, it must be at least 0"
-                " m/s^2 without an upper limit, or left out to have no limit"
+                " m/s^2, or None for no limit"
             )
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
@@ -188,16 +188,16 @@ class CostModel(CrowdModel):
         given = [np.zeros_like(ahead)]
         if self.samples != "umans":
             given += [_limit_length(world.wish, world.max_speed), _limit_length(world.velocity, world.max_speed)]
-        best = _least(self.costs, world, np.concatenate([np.stack(given, axis=1), turned], axis=1))
+        best = _lowest_cost(self.costs, world, np.concatenate([np.stack(given, axis=1), turned], axis=1))
         for level in range(self.refinements):
             span = size[:, 0] * (1.0 / self.speeds) / 2.0 ** (level + 1)
             tries = [best] + [best + span * (i * ahead + j * across) for i in (1, 0, -1) for j in (0, -1, 1) if i or j]
-            best = _least(self.costs, world, np.stack([_limit_length(t, world.max_speed) for t in tries], axis=1))
+            best = _lowest_cost(self.costs, world, np.stack([_limit_length(t, world.max_speed) for t in tries], axis=1))
         return best
 
 
-def _least(costs: VelocityCost, world: NeighborView, candidates: Floats) -> Floats:
-    """Return the candidate with the lowest cost ``[N, 2]``; the first of equal ones."""
+def _lowest_cost(costs: VelocityCost, world: NeighborView, candidates: Floats) -> Floats:
+    """Return the candidate with the lowest cost ``[N, 2]``, the first one among equal costs."""
     cost = costs.value(world, candidates)
     cost = np.where(np.isnan(cost), np.inf, cost)
     least = np.min(cost, axis=1, keepdims=True)

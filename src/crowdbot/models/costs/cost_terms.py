@@ -33,7 +33,7 @@ __all__ = [
 Floats = NDArray[np.float64]
 
 EDGE = 1e-9
-"""Tolerance [m/s] within which a velocity is on the edge of a half plane."""
+"""Tolerance [m/s] outside of a half plane."""
 FAR = 1e3
 """Distance of the goal, in planning times, if only a desired velocity is given."""
 
@@ -43,7 +43,7 @@ class PreferredVelocity(VelocityCost):
     """Distance to the desired velocity: attraction to the goal.
 
     Args:
-        exponent: of the distance; 1 keeps the desired velocity, 2 allows small deviations.
+        exponent: exponent of the distance; 1 keeps the desired velocity, 2 allows small deviations.
     """
 
     natural: ClassVar[str] = "closed-form"
@@ -65,7 +65,7 @@ class Inertia(VelocityCost):
     """Distance to the current velocity.
 
     Args:
-        exponent: of the distance; 1 keeps the current velocity, 2 allows small deviations.
+        exponent: exponent of the distance; 1 keeps the current velocity, 2 allows small deviations.
     """
 
     natural: ClassVar[str] = "closed-form"
@@ -84,7 +84,7 @@ class Inertia(VelocityCost):
 
 @dataclass(frozen=True)
 class NoiseTerm(VelocityCost):
-    """A random cost for every velocity, from the generator of the step; 0 without one.
+    """Random cost of each velocity from the generator of the step; 0 without a generator.
 
     Args:
         deviation: standard deviation of the cost.
@@ -101,7 +101,7 @@ class NoiseTerm(VelocityCost):
 
 @dataclass(frozen=True)
 class GoalForce(Force):
-    """The driving force, ``(p - v) / relaxation_time``.
+    """Driving force ``(p - v) / relaxation_time``.
 
     Args:
         relaxation_time: time constant [s]; at least the time step.
@@ -135,14 +135,14 @@ class ModelForce(Force):
 
 @dataclass(frozen=True)
 class PowerLawForce(Force):
-    """The negative gradient of ``strength t^-exponent exp(-t / time_horizon)``, t the time to collision.
+    """Negative gradient of ``strength t^-exponent exp(-t / time_horizon)``, t the time to collision.
 
-    The wall of the earliest contact is included. Overlapping discs and collisions after ``time_horizon`` do not count.
+    The wall of the earliest contact is included. Overlapping discs and collisions after ``time_horizon`` are ignored.
 
     Args:
-        strength: of the energy, per mass [m^2 s^(exponent - 2)].
-        exponent: of the time to collision [1].
-        time_horizon: time over which the energy falls off [s].
+        strength: factor of the energy, per mass [m^2 s^(exponent - 2)].
+        exponent: exponent of the time to collision [1].
+        time_horizon: decay time of the energy [s]; later collisions are ignored.
 
     Source: Karamouzas, Skinner, Guy 2014, doi:10.1103/PhysRevLett.113.238701.
     """
@@ -156,13 +156,13 @@ class PowerLawForce(Force):
         time = world.contact_times(world.velocity[:, None])[:, 0]
         soon = np.isfinite(time)
         motion = world.velocity[:, None] - world.motion
-        touch = world.offset + motion * np.where(soon, time, 0.0)[..., None]  # from the neighbour to here, on contact
+        touch = world.offset + motion * np.where(soon, time, 0.0)[..., None]  # from neighbour to agent, on contact
         closing = -np.sum(touch * motion, axis=-1)
         size = self._steepness(world, time) / np.where(soon, closing, 1.0)
         pushes = np.sum(size[..., None] * touch, axis=1)
-        return np.asarray(pushes + self._from_walls(world))
+        return np.asarray(pushes + self._wall_force(world))
 
-    def _from_walls(self, world: NeighborView) -> Floats:
+    def _wall_force(self, world: NeighborView) -> Floats:
         if len(world.segments) == 0:
             return np.zeros_like(world.velocity)
         time = world.wall_times(world.velocity[:, None])
@@ -173,7 +173,7 @@ class PowerLawForce(Force):
         return np.asarray((self._steepness(world, time)[:, 0] / np.where(soon, closing, 1.0))[:, None] * away)
 
     def _steepness(self, world: NeighborView, time: Floats) -> Floats:
-        """Return the negative time derivative of the energy ``[N, K]``; 0 without a collision in time."""
+        """Return the negative time derivative of the energy ``[N, K]``; 0 without a collision within the horizon."""
         k, m, horizon = (world.each(getattr(self, name), name)[:, None] for name in _ENERGY)
         soon = (time > 0.0) & (time <= horizon)
         t = np.where(soon, time, 1.0)
@@ -185,14 +185,14 @@ _ENERGY = ("strength", "exponent", "time_horizon")
 
 @dataclass(frozen=True)
 class PowerLawEnergy(VelocityCost):
-    """The energy ``strength t^-exponent exp(-t / time_horizon)`` of a velocity, t its time to collision.
+    """Energy ``strength t^-exponent exp(-t / time_horizon)`` of a velocity, t its time to collision.
 
-    The same collisions count as in :class:`PowerLawForce`.
+    The included collisions are those of :class:`PowerLawForce`.
 
     Args:
-        strength: of the energy, per mass [m^2 s^(exponent - 2)].
-        exponent: of the time to collision [1].
-        time_horizon: time over which the energy falls off [s].
+        strength: factor of the energy, per mass [m^2 s^(exponent - 2)].
+        exponent: exponent of the time to collision [1].
+        time_horizon: decay time of the energy [s]; later collisions are ignored.
 
     Source: Karamouzas, Skinner, Guy 2014, doi:10.1103/PhysRevLett.113.238701.
     """
@@ -217,7 +217,7 @@ class ReciprocalObstacles(VelocityCost):
     """Reciprocal velocity obstacles: ``weight / t + |v' - p|``, t the time to contact at ``2 v' - v``.
 
     Args:
-        weight: of an early contact [m].
+        weight: weight of the inverse time to contact [m].
 
     Source: van den Berg, Lin, Manocha 2008, doi:10.1109/ROBOT.2008.4543489, as a cost by van Toll et al. 2020.
     """
@@ -233,13 +233,13 @@ class ReciprocalObstacles(VelocityCost):
 
 @dataclass(frozen=True)
 class HalfPlanes(VelocityCost):
-    """ORCA as a cost: the distance to the desired velocity inside all half planes, a penalty outside.
+    """ORCA as a cost: distance to the desired velocity inside all half planes, penalty outside.
 
     Args:
         time_horizon: time horizon for agents [s].
         time_horizon_walls: time horizon for walls [s].
 
-    Outside of a half plane the cost is the deepest violation plus twice the maximum speed.
+    Outside, the cost is the largest violation of a half plane plus twice the maximum speed.
 
     Source: van den Berg, Guy, Lin, Manocha 2011, doi:10.1007/978-3-642-19457-3_1, as a cost by van Toll et al. 2020.
     """
@@ -305,7 +305,7 @@ class Effort(VelocityCost):
     Args:
         rest_power: power at rest [J/(kg s)].
         walk_power: power per squared speed [J s/(kg m^2)].
-        planning_time: time at the new velocity [s]; afterwards, the cheapest speed is assumed.
+        planning_time: time at the new velocity [s]; the rest of the path is walked at the cheapest speed.
         safe_time: minimum time to contact [s].
 
     Source: Guy et al. 2010, doi:10.2312/SCA/SCA10/119-128, with the contact rule of van Toll et al. 2020.

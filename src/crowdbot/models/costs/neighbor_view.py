@@ -1,4 +1,4 @@
-"""NeighborView: surroundings of the walkers for cost terms, and times to contact of candidate velocities."""
+"""NeighborView: neighbours and walls of each agent for cost terms, and times to contact of candidate velocities."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class NeighborView:
-    """Surroundings of N walkers of all environments, with K neighbour slots; empty slots are padded.
+    """Neighbours and walls of N moving agents of all environments, with K neighbour slots; empty slots are padded.
 
     Fields:
-        row: ``[N]`` row ``e * A + a`` of each walker in the scene.
+        row: ``[N]`` row ``e * A + a`` of each agent in the scene.
         position, velocity, wish, goal: ``[N, 2]`` [m] and [m/s]; ``wish`` is the desired velocity.
         radius, max_speed, preferred_speed: ``[N]`` [m] and [m/s].
-        offset: ``[N, K, 2]`` vector from each neighbour to the walker [m].
+        offset: ``[N, K, 2]`` vector from each neighbour to the agent [m].
         motion: ``[N, K, 2]`` velocity of each neighbour [m/s].
         reach: ``[N, K]`` sum of the radii [m].
-        there, external, first: ``[N, K]`` whether the slot has a neighbour, whether it is external, and whether the
-            walker comes first in the scene.
+        there, external, first: ``[N, K]`` whether the slot has a neighbour, whether the neighbour is external, and
+            whether the agent precedes it in the scene.
         segments: ``[M, 4]`` walls [m].
         dt: time step [s].
         scene: the whole scene.
@@ -98,18 +98,18 @@ class NeighborView:
         )
 
     def __len__(self) -> int:
-        """Return the number of walkers."""
+        """Return the number of agents."""
         return len(self.row)
 
     def part(self, begin: int, end: int) -> NeighborView:
-        """Return the view of the walkers ``begin`` to ``end`` (exclusive)."""
+        """Return the view of the agents ``begin`` to ``end`` (exclusive)."""
         shared = ("segments", "dt", "scene", "random", "cache")
         names = [field.name for field in dataclasses.fields(self) if field.name not in shared]
         cut: dict[str, Any] = {name: getattr(self, name)[begin:end] for name in names}
         return dataclasses.replace(self, **cut)
 
     def each(self, value: PerAgent, name: str) -> Floats:
-        """Return a parameter of each walker ``[N]`` from a number or an array that broadcasts to ``[E, A]``."""
+        """Return a parameter of each agent ``[N]`` from a number or an array that broadcasts to ``[E, A]``."""
         if np.ndim(value) == 0:
             return np.full(len(self), value, dtype=np.float64)
         return rows(per_agent(value, self.scene.shape, name))[self.row]
@@ -121,7 +121,7 @@ class NeighborView:
         return self.cache[key]
 
     def direction(self) -> Floats:
-        """Return unit directions ``[N, 2]`` of the desired velocity, otherwise of velocity or heading."""
+        """Return unit directions ``[N, 2]`` of the desired velocity; if it is 0, of the velocity or the heading."""
         heading = rows(self.scene.heading)[self.row]
         ahead = np.stack([np.cos(heading), np.sin(heading)], axis=-1)
         for way in (self.velocity, self.wish):
@@ -132,19 +132,19 @@ class NeighborView:
     def contact_times(self, candidates: Floats) -> Floats:
         """Return the time to contact of each velocity ``[N, C, 2]`` with each neighbour, ``[N, C, K]`` [s], or inf.
 
-        Neighbours keep their velocities. Existing contacts do not count.
+        Neighbours keep their velocities. Existing contacts are ignored.
         """
         x, y = self.offset[:, None, :, 0], self.offset[:, None, :, 1]
         vx = candidates[:, :, None, 0] - self.motion[:, None, :, 0]
         vy = candidates[:, :, None, 1] - self.motion[:, None, :, 1]
         apart = x * x + y * y - self.reach[:, None] ** 2
         meets = self.there[:, None] & (apart > 0.0)
-        return _time(x, y, vx, vy, apart, meets)
+        return _contact_time(x, y, vx, vy, apart, meets)
 
     def wall_times(self, candidates: Floats) -> Floats:
         """Return the time to contact of each velocity ``[N, C, 2]`` with a wall, ``[N, C]`` [s], or inf.
 
-        Existing contacts do not count.
+        Existing contacts are ignored.
         """
         best = np.full(candidates.shape[:2], np.inf)
         vx, vy = candidates[..., 0], candidates[..., 1]
@@ -162,16 +162,16 @@ class NeighborView:
             t = np.where((t >= 0.0) & (foot >= 0.0) & (foot <= length**2), t, np.inf)
             for qx, qy in ((px, py), (px - ex, py - ey)):
                 apart = qx * qx + qy * qy - radius**2
-                t = np.minimum(t, _time(qx, qy, vx, vy, apart, apart > 0.0))
+                t = np.minimum(t, _contact_time(qx, qy, vx, vy, apart, apart > 0.0))
             best = np.where(touching, best, np.minimum(best, t))
         return best
 
     def sum_overlaps(self) -> Floats:
-        """Return the overlap of bodies and walls with each walker, as the sum of vectors ``[N, 2]`` [m] outwards."""
+        """Return the sum ``[N, 2]`` [m] of the overlap vectors of each agent with bodies and walls, pointing away."""
         distance = np.sqrt(self.offset[..., 0] ** 2 + self.offset[..., 1] ** 2)
         deep = np.where(self.there, np.maximum(self.reach - distance, 0.0), 0.0)
         away = self.offset / np.maximum(distance, 1e-300)[..., None]
-        same = np.where(self.first, -1.0, 1.0)  # at the same position one moves left and one right
+        same = np.where(self.first, -1.0, 1.0)  # at the same position, one moves left and one right
         away[..., 0] = np.where(distance > 0.0, away[..., 0], same)
         total = np.sum(deep[..., None] * away, axis=1)
         for segment in self.segments:
@@ -201,7 +201,7 @@ class NeighborView:
         )
 
 
-def _time(x: Floats, y: Floats, vx: Floats, vy: Floats, apart: Floats, meets: Any) -> Floats:
+def _contact_time(x: Floats, y: Floats, vx: Floats, vy: Floats, apart: Floats, meets: Any) -> Floats:
     """Return the time to contact (see :func:`crowdbot.core.geometry.time_to_contact`) where ``meets``, else inf."""
     a, b = vx * vx + vy * vy, x * vx + y * vy
     root = b * b - a * apart

@@ -1,7 +1,7 @@
 """VelocityCost: contract of costs over velocities, their sums, and forces as costs.
 
-Most microscopic models are a cost over velocities with an optimiser (van Toll et al. 2020,
-doi:10.1145/3384382.3384532). A force is a cost, too: the squared distance to the resulting velocity.
+Most microscopic models can be written as a cost over velocities with an optimiser (van Toll et al. 2020,
+doi:10.1145/3384382.3384532). A force is the cost ``squared distance to the resulting velocity``.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ __all__ = ["Force", "Sum", "VelocityCost", "length", "suitable_optimiser"]
 Floats = NDArray[np.float64]
 
 STEP = 1e-4
-"""Half of the velocity difference [m/s] for numerical gradients."""
+"""Half step [m/s] of numerical gradients."""
 
 
 @dataclass(frozen=True)
 class VelocityCost(abc.ABC):
-    """Contract: the cost of velocities. Costs can be added and scaled: ``PreferredVelocity() + 0.5 * Inertia()``.
+    """Contract: compute the cost of velocities. Costs can be added and scaled: ``GoalForce() + 0.5 * Inertia()``.
 
-    A cost is a frozen dataclass with one method, :meth:`value`. It may also define its :meth:`gradient` and its minimum
-    (:meth:`best`); ``natural`` is its preferred optimiser.
+    A cost is a frozen dataclass with the method :meth:`value`. Optional methods are :meth:`gradient` and, for a minimum
+    in closed form, :meth:`best`. ``natural`` is the preferred optimiser.
 
     Raises:
         InputError: a parameter is not finite or below its minimum.
@@ -58,7 +58,7 @@ class VelocityCost(abc.ABC):
         """Return the gradient ``[N, 2]`` of the cost at ``velocity`` [N, 2] [m/s]; by default numerical."""
         steps = STEP * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
         cost = self.value(world, velocity[:, None] + steps)
-        with np.errstate(invalid="ignore"):  # inf - inf: the model takes no step there
+        with np.errstate(invalid="ignore"):  # inf - inf: no step
             return np.stack([cost[:, 0] - cost[:, 1], cost[:, 2] - cost[:, 3]], axis=-1) / (2.0 * STEP)
 
     def best(self, world: NeighborView) -> Floats:
@@ -147,9 +147,9 @@ def length(vectors: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Force(VelocityCost):
-    """A force F [m/s^2] as a cost, ``|v' - (v + F dt)|^2 / (2 dt)``: one step down the slope is the step by the force.
+    """A force F [m/s^2] as a cost ``|v' - (v + F dt)|^2 / (2 dt)``: one gradient step equals one step with the force.
 
-    Subclasses have one method, :meth:`force`.
+    Subclasses define :meth:`force`.
     """
 
     natural: ClassVar[str] = "gradient"

@@ -50,7 +50,7 @@ WALL_SHARE = 7.6
 SIMULATOR_SPEED = 2.5
 """Speed limit of the CrowdBot simulator [m/s]."""
 TOUCH = 1e-6
-"""Below this fraction of its reach, a push has no direction of its own."""
+"""Below this fraction of the reach, the predicted offset has no direction."""
 CANDIDATES = 32
 """Number of near agents searched for the nearest body."""
 
@@ -82,7 +82,7 @@ class _Crowd(NamedTuple):
 
 
 @kernel
-def _away(x: float, y: float, vx: float, vy: float, time: float, reach: float) -> tuple[float, float]:
+def _separation(x: float, y: float, vx: float, vy: float, time: float, reach: float) -> tuple[float, float]:
     """Return the push away from the origin: 0 if x, y is at distance ``reach`` after ``time``, 1 at distance 0."""
     now = math.sqrt(x * x + y * y)
     tx, ty = x + vx * time, y + vy * time
@@ -93,12 +93,12 @@ def _away(x: float, y: float, vx: float, vy: float, time: float, reach: float) -
         return (1.0 / then - 1.0 / reach) * tx, (1.0 / then - 1.0 / reach) * ty
     if now == 0.0:
         return 0.0, 0.0
-    size = 1.0 - then / reach  # it will be right there: only where it is now tells the way out
+    size = 1.0 - then / reach  # predicted at the origin: use the current direction
     return size * x / now, size * y / now
 
 
 @kernel
-def _nearest_time(x: float, y: float, vx: float, vy: float, ahead: float) -> float:
+def _closest_approach_time(x: float, y: float, vx: float, vy: float, ahead: float) -> float:
     """Return the time at which x, y is nearest to the origin, from now to ``ahead``."""
     closing, speed2 = -(x * vx + y * vy), vx * vx + vy * vy
     if closing <= 0.0:
@@ -107,7 +107,7 @@ def _nearest_time(x: float, y: float, vx: float, vy: float, ahead: float) -> flo
 
 
 @kernel
-def _from_people(
+def _neighbor_acceleration(
     row: int,
     a: int,
     place: Floats,
@@ -128,7 +128,7 @@ def _from_people(
         ox, oy = x - place[other, 0], y - place[other, 1]
         wx, wy = vx - velocity[other, 0], vy - velocity[other, 1]
         reach = radius[row] + radius[other] + margin
-        px, py = _away(ox, oy, wx, wy, _nearest_time(ox, oy, wx, wy, ahead), reach)
+        px, py = _separation(ox, oy, wx, wy, _closest_approach_time(ox, oy, wx, wy, ahead), reach)
         ax, ay = ax + separation * px, ay + separation * py
         if ox * ox + oy * oy < flock * flock:
             dx, dy, dvx, dvy = dx - ox, dy - oy, dvx - wx, dvy - wy
@@ -140,7 +140,7 @@ def _from_people(
 
 
 @kernel
-def _from_walls(
+def _wall_acceleration(
     x: float, y: float, vx: float, vy: float, radius: float, ahead: float, margin: float, separation: float,
     face: Floats, corner: Floats, arm: Floats, first: NDArray[np.int64],
 ) -> tuple[float, float]:  # fmt: skip
@@ -163,15 +163,15 @@ def _from_walls(
         ax, ay = ax + size * uy, ay - size * ux
     for c in range(len(corner)):
         ox, oy = x - corner[c, 0], y - corner[c, 1]
-        time = _nearest_time(ox, oy, vx, vy, ahead)
-        px, py = _away(ox, oy, vx, vy, time, reach)
+        time = _closest_approach_time(ox, oy, vx, vy, ahead)
+        px, py = _separation(ox, oy, vx, vy, time, reach)
         if (px != 0.0 or py != 0.0) and is_nearest_corner(corner, arm, first, c, x + vx * time, y + vy * time):
             ax, ay = ax + separation * px, ay + separation * py
     return ax, ay
 
 
 @kernel
-def _as_simulator(
+def _simulator_acceleration(
     row: int, a: int, place: Floats, radius: Floats, agent: NDArray[np.int32], number: int, zone: float, gain: float,
     segment: Floats,
 ) -> tuple[float, float]:  # fmt: skip
@@ -191,13 +191,13 @@ def _as_simulator(
         length = math.sqrt((x - fx) ** 2 + (y - fy) ** 2)
         if length < to_wall:
             to_wall, wx, wy = length, x - fx, y - fy
-    felt = distance
+    gap = distance
     if to_wall < WALL_REACH * own:
-        felt = to_wall  # sic: the distance of the wall replaces that of the neighbour
+        gap = to_wall  # as in the simulator: the wall distance replaces the neighbour distance
         size = WALL_SHARE * gain * (1.0 - to_wall / zone) ** 2
         ax, ay = size * wx, size * wy
     if distance < zone:
-        size = gain * (1.0 - felt / zone) ** 2
+        size = gain * (1.0 - gap / zone) ** 2
         ax, ay = ax + size * ox, ay + size * oy
     return ax, ay
 
@@ -216,7 +216,7 @@ def _choose_part(
     begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: WallSurfaces, segment: Floats, simulator: bool,
     dt: float, out: Floats,
 ) -> None:  # fmt: skip
-    # fields are taken out of the tuples here: inside the loop each access would count references
+    # unpack the tuples outside of the loop: each access counts references
     place, velocity, desired, radius, top, walking, laws = crowd
     agent, number, order = near
     face, corner, arm, first = walls
@@ -230,13 +230,13 @@ def _choose_part(
         law = laws[row if len(laws) > 1 else 0]
         ax, ay = law[0] * (desired[row, 0] - vx), law[0] * (desired[row, 1] - vy)
         if simulator:
-            px, py = _as_simulator(
+            px, py = _simulator_acceleration(
                 row, a, place, radius, agent[e, a], number[e, a], law[1] * radius[row], law[2], segment
             )
             ax, ay = ax + px, ay + py
         else:
-            px, py = _from_people(row, a, place, velocity, radius, agent[e, a], number[e, a], law)
-            qx, qy = _from_walls(
+            px, py = _neighbor_acceleration(row, a, place, velocity, radius, agent[e, a], number[e, a], law)
+            qx, qy = _wall_acceleration(
                 place[row, 0], place[row, 1], vx, vy, radius[row], law[3], law[4], law[5], face, corner, arm, first
             )
             ax, ay = limit_length(ax + px + qx, ay + py + qy, law[9])
@@ -252,26 +252,27 @@ class Boids(CrowdModel):
         look_ahead: prediction time at constant velocity [s]; 0 uses current positions only.
         margin: clearance between bodies [m] below which they push apart.
         separation: push [m/s^2] at a predicted distance of 0, falling linearly to 0 at a clearance of ``margin``; the
-            smallest distance within ``look_ahead`` counts. Above twice ``goal_gain`` times the speed, a walker stops
+            smallest distance within ``look_ahead`` is used. Above twice ``goal_gain`` times the speed, an agent stops
             before bodies of equal size and margin overlap.
         alignment: pull to the mean velocity of the flock [1/s].
         cohesion: pull to the mean position of the flock [1/s^2].
         flock_distance: maximum distance of the flock [m].
         neighbor_distance: maximum distance of neighbours [m].
-        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
+        max_neighbors: maximum number of neighbours (the nearest ones); rounded to a whole number.
         max_acceleration: limit of the sum of all rules [m/s^2].
-        zone_factor: the zone of separation of the ``crowdbot`` variant in own radii [1].
-        zone_gain: its push per distance [1/s^2].
-        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene, in ``crowdbot`` 2.5 m/s.
-        variant: ``predictive``, or ``crowdbot``, the law of the CrowdBot simulator's library: one push by the nearest
-            body and one by the nearest wall, no prediction. It reads ``goal_gain``, ``zone_factor``, ``zone_gain`` and
-            ``max_speed`` only, the other variant all but the zone.
+        zone_factor: radius of the separation zone of the ``crowdbot`` variant, in radii of the agent [1].
+        zone_gain: push per distance in the separation zone [1/s^2].
+        max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene, in ``crowdbot`` 2.5 m/s.
+        variant: ``predictive``, or ``crowdbot``, the law of the CrowdBot simulator: one push by the nearest body and
+            one by the nearest wall, no prediction. ``crowdbot`` uses only ``goal_gain``, ``zone_factor``, ``zone_gain``
+            and ``max_speed``; ``predictive`` uses all parameters except the zone.
 
     The default variant is ``predictive``. Unlike the original, separation acts on predicted positions and an attraction
     to the goal is added; alignment and cohesion are off.
 
     Source: Reynolds 1987, doi:10.1145/37401.37406; goal and prediction as in Wolinski et al. 2014,
-    doi:10.1111/cgf.12328, whose constants are not public; ours separate 20 people who exchange positions on a circle.
+    doi:10.1111/cgf.12328, whose constants are not published; the defaults separate 20 people who exchange positions on
+    a circle.
 
     Raises:
         InputError: a parameter is not finite or below its minimum, or the variant is unknown.
@@ -286,26 +287,24 @@ class Boids(CrowdModel):
         "10.1145/37401.37406",
     )  # fmt: skip
 
-    goal_gain: PerAgent = parameter(3.5, unit="1/s", low=1.0, high=8.0, source="CrowdBot simulator, found by probing")
-    look_ahead: PerAgent = parameter(1.5, unit="s", low=0.0, high=4.0, source="20 people change places on a circle")
+    goal_gain: PerAgent = parameter(3.5, unit="1/s", low=1.0, high=8.0, source="CrowdBot simulator, measured")
+    look_ahead: PerAgent = parameter(
+        1.5, unit="s", low=0.0, high=4.0, source="20 people exchange positions on a circle"
+    )
     margin: PerAgent = parameter(0.5, unit="m", low=0.1, high=1.5, source="own choice, personal space", min=1e-3)
     separation: PerAgent = parameter(
-        12.0, unit="m/s^2", low=1.0, high=30.0, source="20 people change places on a circle"
+        12.0, unit="m/s^2", low=1.0, high=30.0, source="20 people exchange positions on a circle"
     )
-    alignment: PerAgent = parameter(0.0, unit="1/s", low=0.0, high=2.0, source="off: people are no flock")
-    cohesion: PerAgent = parameter(0.0, unit="1/s^2", low=0.0, high=2.0, source="off: people are no flock")
+    alignment: PerAgent = parameter(0.0, unit="1/s", low=0.0, high=2.0, source="off by default")
+    cohesion: PerAgent = parameter(0.0, unit="1/s^2", low=0.0, high=2.0, source="off by default")
     flock_distance: PerAgent = parameter(3.0, unit="m", low=1.0, high=10.0, source="own choice")
     neighbor_distance: PerAgent = parameter(6.0, unit="m", low=1.0, high=15.0, source="look_ahead at walking speed")
     max_neighbors: PerAgent = parameter(
-        30.0, unit="1", low=1.0, high=60.0, source="crowdbot: all who matter up to 1 person/m^2"
+        30.0, unit="1", low=1.0, high=60.0, source="crowdbot: all relevant agents up to 1 person/m^2"
     )
     max_acceleration: PerAgent = parameter(5.0, unit="m/s^2", low=1.0, high=20.0, source="UMANS, default of agents")
-    zone_factor: PerAgent = parameter(
-        5.4, unit="1", low=2.0, high=8.0, source="CrowdBot simulator, found by probing", min=1e-3
-    )
-    zone_gain: PerAgent = parameter(
-        65.0, unit="1/s^2", low=10.0, high=150.0, source="CrowdBot simulator, found by probing"
-    )
+    zone_factor: PerAgent = parameter(5.4, unit="1", low=2.0, high=8.0, source="CrowdBot simulator, measured", min=1e-3)
+    zone_gain: PerAgent = parameter(65.0, unit="1/s^2", low=10.0, high=150.0, source="CrowdBot simulator, measured")
     max_speed: PerAgent | None = None
     variant: str = "predictive"
 
@@ -324,7 +323,7 @@ class Boids(CrowdModel):
         reach = per_agent(self.neighbor_distance, scene.shape, "neighbor_distance")
         most = np.rint(per_agent(self.max_neighbors, scene.shape, "max_neighbors"))
         top = self.max_speed
-        if simulator:  # agents in the zone, or with a body nearer than one in it
+        if simulator:  # agents in the zone, and those whose body is nearer than that of an agent in the zone
             zone = per_agent(self.zone_factor, scene.shape, "zone_factor") * np.where(scene.active, scene.radius, 0.0)
             reach, most = zone + np.max(scene.radius, where=seen, initial=0.0), np.full(scene.shape, CANDIDATES)
             top = SIMULATOR_SPEED if top is None else top

@@ -54,7 +54,7 @@ MOST_STEPS = 1000
 """Maximum number of substeps; very long steps have longer substeps."""
 
 MEMORY = "escape-panic"
-"""Name in the memory of a scene: difference of the velocity at the end of the last step from its mean."""
+"""Name in the memory of a scene: difference between the final and the mean velocity of the last step."""
 LAW = ("strength", "body", "friction", "mass", "distance", "relaxation_time", "neighbor_distance")
 
 
@@ -70,7 +70,7 @@ class _Crowd(NamedTuple):
 
 
 class _Walls(NamedTuple):
-    """Walls for both variants: faces and corners (see :mod:`.surfaces`), and every segment ``[N, 4]``."""
+    """Walls for both variants: faces and corners (see :mod:`.wall_surfaces`), and every segment ``[N, 4]``."""
 
     face: Floats
     corner: Floats
@@ -122,7 +122,7 @@ def _next_velocity(
 
 
 @kernel
-def _next_as_simulator(
+def _next_simulator_velocity(
     row: int, a: int, agent: NDArray[np.int32], number: int, place: Floats, velocity: Floats, desired: Floats,
     radius: Floats, law: Floats, segment: Floats, h: float,
 ) -> tuple[float, float]:  # fmt: skip
@@ -137,7 +137,7 @@ def _next_as_simulator(
         gap = math.sqrt(dx * dx + dy * dy)
         overlap = own + radius[other] - gap
         if pressed and overlap <= 0.0:
-            continue  # neighbours come nearest first, but not bodies
+            continue  # neighbours are sorted by the distance of centres, not of bodies
         if overlap > 0.0 and not pressed:  # ignore all agents without contact
             pressed = True
             ax, ay = (desired[row, 0] - vx) / relaxation, (desired[row, 1] - vy) / relaxation
@@ -167,7 +167,7 @@ def _walk(
     """Move all agents by substeps of ``h`` [s], in place; ``total`` is the sum of the velocities."""
     parts = (len(place) + CHUNK - 1) // CHUNK
     for _ in range(steps):
-        if len(place) <= SMALL:  # threads would take longer
+        if len(place) <= SMALL:  # faster in one thread
             _walk_part(0, len(place), place, velocity, after, crowd, near, walls, simulator, h)
         else:
             for part in prange(parts):
@@ -185,7 +185,7 @@ def _walk_part(
     begin: int, end: int, place: Floats, velocity: Floats, after: Floats, crowd: _Crowd, near: Neighbors,
     walls: _Walls, simulator: bool, h: float,
 ) -> None:  # fmt: skip
-    # fields are taken out of the tuples here: inside the loop each access would count references
+    # unpack the tuples outside of the loop: each access counts references
     desired, radius, top, walking, laws = crowd
     agent, number, order = near
     face, corner, arm, first, segment = walls
@@ -197,7 +197,7 @@ def _walk_part(
         e, a = row // A, row % A
         mates, count, law = agent[e, a], number[e, a], laws[row if len(laws) > 1 else 0]
         if simulator:
-            x, y = _next_as_simulator(row, a, mates, count, place, velocity, desired, radius, law, segment, h)
+            x, y = _next_simulator_velocity(row, a, mates, count, place, velocity, desired, radius, law, segment, h)
         else:
             x, y = _next_velocity(
                 row, a, mates, count, place, velocity, desired, radius, law, face, corner, arm, first, h
@@ -217,21 +217,21 @@ class EscapePanic(CrowdModel):
         mass: mass [kg].
         relaxation_time: time constant to the desired velocity [s].
         neighbor_distance: maximum distance of neighbours and walls [m], for walls measured from the body.
-        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
-        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene, in ``crowdbot`` 2.5 m/s.
+        max_neighbors: maximum number of neighbours (the nearest ones); rounded to a whole number.
+        max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene, in ``crowdbot`` 2.5 m/s.
         longest_step: maximum substep [s]; a longer time step is divided into equal substeps, at most 1000.
-        variant: ``textbook``, or ``crowdbot``, the law of the CrowdBot simulator's library: forces between agents grow
+        variant: ``textbook``, or ``crowdbot``, the law of the CrowdBot simulator: forces between agents grow
             with the distance of their centres, agents in contact ignore all others, every wall segment nearer than 1.4
             radii pushes, and there are no substeps.
 
     All people move in each substep, external agents at constant velocity; neighbours are searched once. The velocity of
     a step is the mean of its substeps, consistent with the displacement. Its difference from the final velocity is
     stored in ``scene.memory["escape-panic"]`` [m/s] for the next step, initially 0. Friction is implicit in the
-    velocity, which avoids overshoot in long steps. A wall of many segments pushes like one wall; agents inside a solid
+    velocity, which avoids overshoot in long steps. A wall of many segments acts like one wall; agents inside a solid
     wall do not interact with it.
 
     The default variant is ``textbook``, the force of the paper. Differences: substeps, implicit friction, limited
-    neighbourhoods, and walls made of several segments that push once.
+    neighbourhoods, and walls of several segments that act like one wall.
 
     Source: Helbing, Farkas, Vicsek 2000, doi:10.1038/35035023.
 
@@ -257,9 +257,9 @@ class EscapePanic(CrowdModel):
     friction: PerAgent = parameter(2.4e5, unit="kg/(m s)", low=0.0, high=2.4e5, source="Helbing et al. 2000")
     mass: PerAgent = parameter(80.0, unit="kg", low=40.0, high=120.0, source="Helbing et al. 2000", min=1e-3)
     relaxation_time: PerAgent = parameter(0.5, unit="s", low=0.1, high=1.5, source="Helbing et al. 2000", min=1e-3)
-    neighbor_distance: PerAgent = parameter(3.0, unit="m", low=1.0, high=10.0, source="the repulsion is nothing beyond")
+    neighbor_distance: PerAgent = parameter(3.0, unit="m", low=1.0, high=10.0, source="negligible repulsion beyond")
     max_neighbors: PerAgent = parameter(
-        40.0, unit="1", low=1.0, high=60.0, source="crowdbot: all who matter up to 1 person/m^2"
+        40.0, unit="1", low=1.0, high=60.0, source="crowdbot: all relevant agents up to 1 person/m^2"
     )
     max_speed: PerAgent | None = None
     longest_step: float = 0.01

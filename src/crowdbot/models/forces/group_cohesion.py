@@ -17,7 +17,7 @@ Ints = NDArray[np.int64]
 
 
 class Groups(NamedTuple):
-    """Members of groups: the group of a row is ``member[begin[row]:end[row]]``, including the row itself."""
+    """Group members: the group of a row is ``member[begin[row]:end[row]]``, including the row itself."""
 
     member: Ints
     begin: Ints
@@ -36,7 +36,7 @@ def groups_of(scene: Scene) -> Groups:
     begin, end = np.zeros((2, len(group)), dtype=np.int64)
     member = np.flatnonzero((group >= 0) & scene.active.reshape(-1))
     place = scene.position.reshape(-1, 2)[member]
-    # by place within a group: sums do not depend on the numbers of its members
+    # sorted by position within a group: sums do not depend on the order of agents
     member = member[np.lexsort((place[:, 1], place[:, 0], group[member], environment[member]))]
     if len(member) > 0:
         first = np.flatnonzero(np.diff(group[member], prepend=-1) | np.diff(environment[member], prepend=-1))
@@ -51,7 +51,7 @@ def group_acceleration(
     row: int, begin: int, end: int, member: Ints, seen: NDArray[np.bool_], place: Floats, velocity: Floats,
     gaze: float, view_angle: float, cohesion: float, repulsion: float, apart: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """Return the acceleration that keeps a group together, in sight and apart (Moussaïd et al. 2010)."""
+    """Return the acceleration by the group: gaze, cohesion and repulsion (Moussaïd et al. 2010)."""
     x, y = place[row, 0], place[row, 1]
     ax = ay = sx = sy = 0.0
     others = 0
@@ -86,8 +86,8 @@ def pysocialforce_group_acceleration(
 ) -> tuple[float, float]:  # fmt: skip
     """Return the acceleration by the group as PySocialForce 1.1.2 computes it.
 
-    ``heading`` holds the unit direction to the goal and its distance [m]. Cohesion takes the distance to the centre as
-    0, and the factors of gaze and cohesion are 1, whatever is configured.
+    ``heading`` contains the unit direction to the goal and its distance [m]. Cohesion assumes that the distance to the
+    centre is 0; the factors of gaze and cohesion are always 1.
     """
     x, y = place[row, 0], place[row, 1]
     ax = ay = sx = sy = 0.0

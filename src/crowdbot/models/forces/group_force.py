@@ -1,4 +1,4 @@
-"""GroupForce: social forces measured in experiments, and people who walk in groups (Moussaïd et al. 2009 and 2010)."""
+"""GroupForce: social forces measured in experiments, with group forces (Moussaïd et al. 2009 and 2010)."""
 
 from __future__ import annotations
 
@@ -45,17 +45,17 @@ Ints = NDArray[np.int64]
 
 VARIANTS = ("moussaid", "pysocialforce")
 ARRIVED = 0.5
-"""PySocialForce stops who is nearer to the goal than this [m]."""
+"""Distance to the goal [m] below which PySocialForce stops an agent."""
 BODY = 0.35
-"""Its radius of everyone before walls [m]."""
+"""Radius of all bodies for wall forces in PySocialForce [m]."""
 SIGHT = 3.35
-"""It feels points of walls nearer than this [m] to the body."""
+"""Range of wall points in PySocialForce [m], measured from the body."""
 POINTS = 10.0
-"""It takes so many points of a wall per metre."""
+"""Number of points per metre of wall in PySocialForce."""
 NOTHING = 20.0
-"""A force that has fallen off by this exponent, to 2e-9, is left out."""
+"""Forces with a larger decay exponent (a factor below 2e-9) are ignored."""
 STEEPEST = 300.0
-"""Largest exponent of the push by walls, so that it stays a number however deep a body is in them."""
+"""Upper limit of the exponent of the wall force, against overflow for deep overlaps."""
 LAW = (
     "strength",
     "anticipation",
@@ -75,13 +75,13 @@ LAW = (
 
 
 class _Crowd(NamedTuple):
-    """What the kernel reads of every agent, by row ``e * A + a``."""
+    """Data of every agent for the kernel, by row ``e * A + a``."""
 
     position: Floats
     velocity: Floats
     desired: Floats
     heading: Floats
-    """``[E * A, 3]``: unit direction to the goal, and its distance [m]."""
+    """``[E * A, 3]``: unit direction to the goal and its distance [m]."""
     radius: Floats
     max_speed: Floats
     walking: NDArray[np.bool_]
@@ -91,7 +91,7 @@ class _Crowd(NamedTuple):
 
 
 class _Walls(NamedTuple):
-    """Walls for both variants: faces and corners (see :mod:`.surfaces`), and every segment ``[N, 4]``."""
+    """Walls for both variants: faces and corners (see :mod:`.wall_surfaces`), and every segment ``[N, 4]``."""
 
     face: Floats
     corner: Floats
@@ -101,13 +101,13 @@ class _Walls(NamedTuple):
 
 
 @kernel
-def _pair(
+def _pair_force(
     x: float, y: float, wx: float, wy: float, anticipation: float, distance: float, turn: float, brake: float,
     wrapped: bool,
 ) -> tuple[float, float]:  # fmt: skip
-    """Return the force in units of the strength by someone at -x, -y who moves by w relative to the own velocity.
+    """Return the force in units of ``strength`` by a neighbour at -x, -y with relative velocity w.
 
-    Brakes along the interaction direction t, and turns across it, away from the side on which the other is.
+    The force brakes along the interaction direction t and turns across it, away from the side of the neighbour.
     """
     gap = math.sqrt(x * x + y * y)
     if gap == 0.0:
@@ -120,7 +120,7 @@ def _pair(
         return 0.0, 0.0
     tx, ty, far = tx / length, ty / length, gap / reach
     ahead, aside = nx * tx + ny * ty, nx * ty - ny * tx
-    least = reach * min(turn, brake) * (abs(aside) if ahead > 0.0 else 1.0)  # an angle is larger than its sine
+    least = reach * min(turn, brake) * (abs(aside) if ahead > 0.0 else 1.0)  # an angle is at least its sine
     if far + least * least > NOTHING:
         return 0.0, 0.0
     angle = math.atan2(aside, ahead)
@@ -134,8 +134,8 @@ def _pair(
 
 
 @kernel
-def _from_points(x: float, y: float, strength: float, distance: float, segment: Floats) -> tuple[float, float]:
-    """Return the acceleration by walls as PySocialForce takes them: as points, ten per metre."""
+def _wall_point_force(x: float, y: float, strength: float, distance: float, segment: Floats) -> tuple[float, float]:
+    """Return the acceleration by walls as in PySocialForce, which represents walls as ten points per metre."""
     ax = ay = 0.0
     for k in range(len(segment)):
         sx, sy = segment[k, 0], segment[k, 1]
@@ -172,7 +172,7 @@ def _choose_part(
     start: int, stop: int, crowd: _Crowd, near: Neighbors, groups: Groups, walls: _Walls, package: bool, dt: float,
     out: Floats,
 ) -> None:  # fmt: skip
-    # fields are taken out of the tuples here: inside the loop each access would count references
+    # unpack the tuples outside of the loop: each access counts references
     place, velocity, desired, heading, radius, top, walking, seen, laws = crowd
     agent, number, order = near
     member, begin, end = groups
@@ -188,7 +188,7 @@ def _choose_part(
         for n in range(A if package else number[e, a]):
             other = row - a + (n if package else agent[e, a, n])
             if other != row and seen[other]:
-                px, py = _pair(
+                px, py = _pair_force(
                     x - place[other, 0], y - place[other, 1], velocity[other, 0] - vx, velocity[other, 1] - vy,
                     law[1], law[2], law[3], law[4], not package,
                 )  # fmt: skip
@@ -196,12 +196,12 @@ def _choose_part(
         ax = (desired[row, 0] - vx) / law[7] + law[0] * fx
         ay = (desired[row, 1] - vy) / law[7] + law[0] * fy
         if package:
-            px, py = _from_points(x, y, law[5], law[6], segment)
+            px, py = _wall_point_force(x, y, law[5], law[6], segment)
             qx, qy = pysocialforce_group_acceleration(
                 row, begin[row], end[row], member, seen, place, heading, law[11], law[12]
             )  # fmt: skip
         else:
-            px, py = _from_surfaces(x, y, radius[row], law[5], law[6], law[13], face, corner, arm, first)
+            px, py = _wall_surface_force(x, y, radius[row], law[5], law[6], law[13], face, corner, arm, first)
             qx, qy = group_acceleration(
                 row, begin[row], end[row], member, seen, place, velocity, law[8], law[9], law[10], law[11], law[12]
             )
@@ -210,11 +210,11 @@ def _choose_part(
 
 
 @kernel
-def _from_surfaces(
+def _wall_surface_force(
     x: float, y: float, radius: float, strength: float, distance: float, sight: float,
     face: Floats, corner: Floats, arm: Floats, first: Ints,
 ) -> tuple[float, float]:  # fmt: skip
-    """Return the acceleration by walls, which falls off with the clearance of the body."""
+    """Return the acceleration by walls, which decays with the clearance of the body."""
     ax = ay = 0.0
     for k in range(len(face) + len(corner)):
         gap, nx, ny = surface_distance(face, corner, arm, first, k, x, y, radius + sight)
@@ -229,32 +229,32 @@ class GroupForce(CrowdModel):
     """Measured pair interactions (braking and turning) with group forces: gaze, cohesion and repulsion.
 
     Args:
-        strength: of the force between two agents [m/s^2].
-        anticipation: weight of the relative velocity in the direction of interaction [s/m].
-        distance: range of the force per length of that direction [m].
-        turn_width: how fast turning ends beside that direction [1/(m rad)].
-        brake_width: how fast braking does [1/(m rad)].
+        strength: strength of the force between two agents [m/s^2].
+        anticipation: weight of the relative velocity in the interaction direction [s/m].
+        distance: range of the force per length of the interaction vector [m].
+        turn_width: angular decay of the turning force [1/(m rad)].
+        brake_width: angular decay of the braking force [1/(m rad)].
         wall_strength: acceleration by a wall at contact [m/s^2].
-        wall_distance: over which it falls off [m].
-        relaxation_time: time [s] in which the desired velocity is taken up again.
-        gaze: braking of who has the group behind, per angle out of view and speed [1/(s rad)].
-        view_angle: half the field of view [rad].
-        cohesion: pull of who is farther than ``(N - 1) / 2`` m from the centre of a group of N [m/s^2].
-        repulsion: push between members nearer than ``group_distance`` [m/s^2].
-        group_distance: [m].
-        neighbor_distance: neighbours and walls are nearer than this [m], walls measured from the body.
-        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
-        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
-        variant: ``moussaid``, or ``pysocialforce``, what version 1.1.2 of that package does. Then the angle between
-            direction of interaction and neighbour is not brought to -pi..pi, everyone counts however far, the speed
-            aimed at is the maximum speed, who is nearer than 0.5 m to the goal stops at once, walls are rows of points
-            before bodies of 0.35 m, gaze pulls along the way to the goal, repulsion grows with the distance, and
-            ``gaze``, ``view_angle``, ``cohesion`` and both limits of neighbours are not read.
+        wall_distance: decay length of the wall force [m].
+        relaxation_time: time constant to the desired velocity [s].
+        gaze: braking if the group is out of view, per angle and speed [1/(s rad)].
+        view_angle: half field of view [rad].
+        cohesion: acceleration to the group centre if it is farther than ``(N - 1) / 2`` m in a group of N [m/s^2].
+        repulsion: acceleration between group members nearer than ``group_distance`` [m/s^2].
+        group_distance: maximum distance of the repulsion in a group [m].
+        neighbor_distance: maximum distance of neighbours and walls [m], for walls measured from the body.
+        max_neighbors: maximum number of neighbours (the nearest ones); rounded to a whole number.
+        max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene.
+        variant: ``moussaid``, or ``pysocialforce``, which reproduces version 1.1.2 of that package. It has no limits of
+            neighbours and does not wrap the angle between neighbour and interaction direction to -pi..pi. The desired
+            speed is the maximum speed. Agents stop within 0.5 m of the goal. Walls are rows of points, and bodies have
+            a radius of 0.35 m for wall forces. Gaze acts along the direction to the goal, and repulsion grows with
+            distance. ``gaze``, ``view_angle``, ``cohesion``, ``neighbor_distance`` and ``max_neighbors`` are ignored.
 
-    Groups are the agents of one environment with the same number in ``scene.group``. There is no contact force: in
-    crowds too dense to walk bodies overlap.
+    Groups are the agents of one environment with the same number in ``scene.group``. There is no contact force: bodies
+    overlap in very dense crowds.
 
-    The default variant is ``moussaid``, the law of the papers. Strength, wall force and group distance are those of
+    The default variant is ``moussaid``, the model of the papers. Strength, wall force and group distance are those of
     PySocialForce 1.1.2.
 
     Source: Moussaïd et al. 2010 (groups), Moussaïd et al. 2009, doi:10.1098/rspb.2009.0405 (pairs); strength, walls and
@@ -330,7 +330,7 @@ class GroupForce(CrowdModel):
 
 
 def _heading(scene: Scene, wish: Floats) -> Floats:
-    """Return ``[E, A, 3]``: unit direction to the goal and its distance, inf when only a velocity is wished."""
+    """Return ``[E, A, 3]``: unit direction to the goal and its distance, inf if only a desired velocity is given."""
     away = wish if scene.preferred_velocity is not None else scene.goal - scene.position
     away = np.where(scene.active[..., None], away, 0.0)
     distance = np.sqrt(away[..., 0] ** 2 + away[..., 1] ** 2)

@@ -1,4 +1,4 @@
-"""What laws of force share: their parameters as rows for kernels, and the limit of a vector."""
+"""Shared functions of force models: parameters as rows for kernels, and limited vectors."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 
 def parameter_rows(model: Any, names: Sequence[str], shape: tuple[int, int]) -> Floats:
-    """Return the parameters ``names`` of a model as ``[E * A, N]``, or ``[1, N]`` when they are the same for all.
+    """Return the parameters ``names`` of a model as ``[E * A, N]``, or ``[1, N]`` if they are equal for all agents.
 
     Raises:
         InputError: a parameter does not broadcast to ``shape`` [E, A].
@@ -35,7 +35,7 @@ def parameter_rows(model: Any, names: Sequence[str], shape: tuple[int, int]) -> 
 
 @kernel
 def limit_length(x: float, y: float, longest: float) -> tuple[float, float]:
-    """Return the vector x, y, not longer than ``longest``."""
+    """Return the vector x, y limited to the length ``longest``."""
     length = math.sqrt(x * x + y * y)
     if length <= longest:
         return x, y

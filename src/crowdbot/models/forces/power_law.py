@@ -1,4 +1,4 @@
-"""PowerLaw: people avoid each other by the time that is left to a collision (Karamouzas, Skinner, Guy 2014)."""
+"""PowerLaw: avoidance force from the time to collision (Karamouzas, Skinner, Guy 2014)."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ __all__ = ["PowerLaw"]
 Floats = NDArray[np.float64]
 
 SHRUNK = 0.99
-"""Bodies that overlap count as this share of the distance between them, so that they still have a time to collision."""
+"""Reach of overlapping bodies as a fraction of their distance, which gives them a time to collision."""
 STRONGEST = 1e12
-"""No single force [m/s^2] counts as more: the law has no bound where two discs just graze."""
+"""Upper limit of a single force [m/s^2]; the force of grazing discs is unbounded."""
 
 LAW = ("strength", "exponent", "time_horizon", "relaxation_time", "max_acceleration")
 
 
 class _Crowd(NamedTuple):
-    """What the kernel reads of every agent, by row ``e * A + a``."""
+    """Data of every agent for the kernel, by row ``e * A + a``."""
 
     position: Floats
     velocity: Floats
@@ -58,10 +58,10 @@ def _steepness(time: float, strength: float, exponent: float, horizon: float) ->
 
 
 @kernel
-def _from_disc(
+def _disc_force(
     x: float, y: float, vx: float, vy: float, reach: float, strength: float, exponent: float, horizon: float
 ) -> tuple[float, float, float]:
-    """Return the force of a disc on x, y relative to it, and when they touch; nothing and inf when they do not."""
+    """Return the force of a disc on a point at x, y (relative) and the time to contact; 0 and inf without contact."""
     distance2 = x * x + y * y
     gap = distance2 - reach * reach
     if gap <= 0.0:
@@ -87,11 +87,11 @@ def _from_disc(
 
 
 @kernel
-def _from_face(
+def _face_force(
     face: Floats, k: int, x: float, y: float, vx: float, vy: float,
     radius: float, strength: float, exponent: float, horizon: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """Return the force of face k on an agent that will touch it inside."""
+    """Return the force of face k on an agent that will touch its interior."""
     ux, uy = face[k, 4], face[k, 5]
     height = (x - face[k, 0]) * uy - (y - face[k, 1]) * ux
     closing = vy * ux - vx * uy
@@ -105,7 +105,7 @@ def _from_face(
     if (tx - face[k, 0]) * ux + (ty - face[k, 1]) * uy <= 0.0 or (tx - face[k, 2]) * ux + (ty - face[k, 3]) * uy >= 0.0:
         return 0.0, 0.0
     size = _steepness(time, strength, exponent, horizon) / closing
-    if not size < STRONGEST:  # inf and NaN too
+    if not size < STRONGEST:  # or if it is NaN
         size = STRONGEST
     return size * uy, -size * ux
 
@@ -121,7 +121,7 @@ def _choose(crowd: _Crowd, near: Neighbors, walls: WallSurfaces, dt: float, out:
 def _choose_part(
     begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: WallSurfaces, dt: float, out: Floats
 ) -> None:
-    # fields are taken out of the tuples here: inside the loop each access would count references
+    # unpack the tuples outside of the loop: each access counts references
     place, velocity, desired, radius, top, walking, law = crowd
     agent, number, order = near
     face, corner, arm, first = walls
@@ -137,16 +137,16 @@ def _choose_part(
         ax, ay = (desired[row, 0] - vx) / relaxation, (desired[row, 1] - vy) / relaxation
         for i in range(number[e, a]):
             other = row - a + agent[e, a, i]
-            fx, fy, _ = _from_disc(
+            fx, fy, _ = _disc_force(
                 x - place[other, 0], y - place[other, 1], vx - velocity[other, 0], vy - velocity[other, 1],
                 radius[row] + radius[other], k, m, t,
             )  # fmt: skip
             ax, ay = ax + fx, ay + fy
         for i in range(len(face)):
-            fx, fy = _from_face(face, i, x, y, vx, vy, radius[row], k, m, t)
+            fx, fy = _face_force(face, i, x, y, vx, vy, radius[row], k, m, t)
             ax, ay = ax + fx, ay + fy
         for c in range(len(corner)):
-            fx, fy, time = _from_disc(x - corner[c, 0], y - corner[c, 1], vx, vy, radius[row], k, m, t)
+            fx, fy, time = _disc_force(x - corner[c, 0], y - corner[c, 1], vx, vy, radius[row], k, m, t)
             if time < math.inf and is_nearest_corner(corner, arm, first, c, x + vx * time, y + vy * time):
                 ax, ay = ax + fx, ay + fy
         ax, ay = limit_length(ax, ay, most)
@@ -157,28 +157,28 @@ def _choose_part(
 class PowerLaw(CrowdModel):
     """Power law model: the force is the gradient of an interaction energy that depends only on the time to collision.
 
-    Each pair has the energy ``strength t^-exponent exp(-t / time_horizon)``, t its time to collision if both keep
-    their velocities; later collisions than ``time_horizon`` do not count. Walls are capsules as wide as the agent with
-    the same energy. Bodies that overlap already are taken as just touching (1 % smaller than their distance).
+    Each pair has the energy ``strength t^-exponent exp(-t / time_horizon)``, t its time to collision at constant
+    velocities; collisions after ``time_horizon`` are ignored. Walls have the same energy, as capsules with the radius
+    of the agent. Overlapping bodies are treated as nearly touching (the reach is 1 % below their distance).
 
     Args:
-        strength: of the energy, per mass [m^2 s^(exponent - 2)].
-        exponent: of the time to collision [1].
-        time_horizon: time [s] over which the energy falls off.
-        relaxation_time: time [s] in which the desired velocity is taken up again.
-        neighbor_distance: neighbours are nearer than this [m].
-        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
-        max_acceleration: limit of the sum of all forces [m/s^2]; just before a grazing collision the law has none.
-        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+        strength: factor of the energy, per mass [m^2 s^(exponent - 2)].
+        exponent: exponent of the time to collision [1].
+        time_horizon: decay time of the energy [s]; later collisions are ignored.
+        relaxation_time: time constant to the desired velocity [s].
+        neighbor_distance: maximum distance of neighbours [m].
+        max_neighbors: maximum number of neighbours (the nearest ones); rounded to a whole number.
+        max_acceleration: limit of the sum of all forces [m/s^2]; forces just before a grazing collision are unbounded.
+        max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene.
 
-    Use steps of at most 0.05 s where exact paths matter; larger ones stay finite and bounded. Exactly head-on pairs
-    slow each other down and do not pass: give goals or starts a small offset.
+    Use time steps of at most 0.05 s if exact paths matter; with larger steps, velocities stay finite and bounded.
+    Agents that walk exactly head on slow down and do not pass each other: add a small offset to goals or starts.
 
-    The default has the exponent of the paper. Differences: a limit of acceleration, a wall force from the same energy,
+    The default uses the exponent of the paper. Differences: an acceleration limit, a wall force from the same energy,
     and a contact rule for overlapping bodies.
 
-    Source: Karamouzas, Skinner, Guy 2014, doi:10.1103/PhysRevLett.113.238701; the force of walls is derived from the
-    same energy. The UMANS library uses ``relaxation_time=0.5, neighbor_distance=5, max_acceleration=5``.
+    Source: Karamouzas, Skinner, Guy 2014, doi:10.1103/PhysRevLett.113.238701; the wall force is derived from the same
+    energy. The UMANS library uses ``relaxation_time=0.5, neighbor_distance=5, max_acceleration=5``.
 
     Raises:
         InputError: a parameter is not finite or below its minimum.
@@ -200,16 +200,16 @@ class PowerLaw(CrowdModel):
     exponent: PerAgent = parameter(2.0, unit="1", low=1.0, high=4.0, source="Karamouzas et al. 2014")
     time_horizon: PerAgent = parameter(3.0, unit="s", low=0.5, high=8.0, source="Karamouzas et al. 2014", min=1e-3)
     relaxation_time: PerAgent = parameter(
-        0.54, unit="s", low=0.2, high=1.5, source="Karamouzas et al. 2014, as remembered", min=1e-3
+        0.54, unit="s", low=0.2, high=1.5, source="Karamouzas et al. 2014, not verified", min=1e-3
     )
     neighbor_distance: PerAgent = parameter(
-        10.0, unit="m", low=1.0, high=15.0, source="Karamouzas et al. 2014, as remembered"
+        10.0, unit="m", low=1.0, high=15.0, source="Karamouzas et al. 2014, not verified"
     )
     max_neighbors: PerAgent = parameter(
         64.0, unit="1", low=1.0, high=64.0, source="crowdbot: all within 5 m up to 0.8 people/m^2"
     )
     max_acceleration: PerAgent = parameter(
-        20.0, unit="m/s^2", low=1.0, high=20.0, source="Karamouzas et al. 2014, as remembered"
+        20.0, unit="m/s^2", low=1.0, high=20.0, source="Karamouzas et al. 2014, not verified"
     )
     max_speed: PerAgent | None = None
 

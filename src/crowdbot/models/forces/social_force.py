@@ -1,4 +1,4 @@
-"""SocialForce: people as particles pushed by their goal, by each other and by walls (Helbing and Molnár 1995)."""
+"""SocialForce: social force model (Helbing and Molnár 1995)."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ Floats = NDArray[np.float64]
 
 VARIANTS = ("gradient", "umans2018")
 UMANS_LOOK_AHEAD = 0.5
-"""The 2018 library looks half as far ahead as its parameter says (1 s at 2 s), found by fitting its answers."""
+"""Factor of ``look_ahead`` in the 2018 library: 1 s for a parameter of 2 s (fitted to its output)."""
 UMANS_CONTACT = 62.5
-"""Push of the 2018 library per overlap [1/s^2], 5000 N/m for 80 kg, found by fitting its answers."""
+"""Contact acceleration per overlap in the 2018 library [1/s^2]: 5000 N/m for 80 kg (fitted to its output)."""
 
 
 class _Law(NamedTuple):
-    """Parameters of the law, each one number for all or one per row ``e * A + a``."""
+    """Parameters of the force, each one number for all agents or one per row ``e * A + a``."""
 
     strength: Floats
     distance: Floats
@@ -62,7 +62,7 @@ class _Law(NamedTuple):
 
 
 class _Crowd(NamedTuple):
-    """What the kernel reads of every agent, by row ``e * A + a``."""
+    """Data of every agent for the kernel, by row ``e * A + a``."""
 
     position: Floats
     velocity: Floats
@@ -75,27 +75,28 @@ class _Crowd(NamedTuple):
 
 
 @kernel
-def _push(x: float, y: float, yx: float, yy: float, strength: float, distance: float) -> tuple[float, float]:
-    """Return minus the gradient of ``strength exp(-b / distance)`` [m/s^2] at x, y from an agent that walks by yx, yy.
+def _ellipse_force(x: float, y: float, yx: float, yy: float, strength: float, distance: float) -> tuple[float, float]:
+    """Return the negative gradient of ``strength exp(-b / distance)`` [m/s^2] at x, y for a neighbour with stride y.
 
-    b is the half minor axis of the ellipse through x, y with foci in the other's place now and after its next stride.
+    b is the semi-minor axis of the ellipse through x, y with foci at the neighbour's positions before and after its
+    stride yx, yy.
     """
     near, far = math.sqrt(x * x + y * y), math.sqrt((x - yx) ** 2 + (y - yy) ** 2)
     b2 = 0.25 * ((near + far) ** 2 - (yx * yx + yy * yy))
     if b2 <= 0.0 or near == 0.0 or far == 0.0:
-        return 0.0, 0.0  # in the way of its stride: no side is better
+        return 0.0, 0.0  # on the stride: no direction is preferred
     b = math.sqrt(b2)
     size = strength / distance * math.exp(-b / distance) * (near + far) / (4.0 * b)
     return size * (x / near + (x - yx) / far), size * (y / near + (y - yy) / far)
 
 
 @kernel
-def _push_umans(
+def _ellipse_force_umans(
     x: float, y: float, yx: float, yy: float, stride: float, strength: float, distance: float
 ) -> tuple[float, float]:
-    """Return the push of the 2018 library: a derivative along the line between the two, longer with their distance.
+    """Return the force of the 2018 library: the derivative along the line between the agents, times their distance.
 
-    Whoever has arrived but still moves has a ``stride`` there, which makes the ellipse thinner, but no direction.
+    A neighbour at its goal that still moves has a ``stride``, which makes the ellipse thinner, but no direction.
     """
     near, far = math.sqrt(x * x + y * y), math.sqrt((x - yx) ** 2 + (y - yy) ** 2)
     b2 = 0.25 * ((near + far) ** 2 - stride * stride)
@@ -108,14 +109,14 @@ def _push_umans(
 
 
 @kernel
-def _sight(x: float, y: float, ex: float, ey: float, least: float, behind: float) -> float:
-    """Return the weight of what pushes along x, y on someone who looks along e: 1 in view, ``behind`` out of it."""
+def _view_weight(x: float, y: float, ex: float, ey: float, least: float, behind: float) -> float:
+    """Return the weight of a force along x, y on an agent that looks along e: 1 in view, ``behind`` out of view."""
     length = math.sqrt((x * x + y * y) * (ex * ex + ey * ey))
     return behind if length > 0.0 and -(x * ex + y * ey) < least * length else 1.0
 
 
 @kernel
-def _by_people(
+def _neighbor_force(
     row: int,
     ex: float,
     ey: float,
@@ -128,7 +129,7 @@ def _by_people(
     first: int,
     umans: bool,
 ) -> tuple[float, float, float, float]:
-    """Return the acceleration by neighbours, and the push by those in contact; rows of others are from ``first`` on."""
+    """Return the acceleration by neighbours and the sum of contact overlaps; ``first`` is the row of neighbour 0."""
     ax = ay = push_x = push_y = 0.0
     for n in range(len(others)):
         j = first + others[n]
@@ -144,16 +145,16 @@ def _by_people(
             wish = math.sqrt(desired[j, 0] ** 2 + desired[j, 1] ** 2)
             stride = UMANS_LOOK_AHEAD * law[2] * speed
             yx, yy = (stride * desired[j, 0] / wish, stride * desired[j, 1] / wish) if wish > 0.0 else (0.0, 0.0)
-            fx, fy = _push_umans(x, y, yx, yy, stride, law[0], law[1])
+            fx, fy = _ellipse_force_umans(x, y, yx, yy, stride, law[0], law[1])
         else:
-            fx, fy = _push(x, y, law[2] * velocity[j, 0], law[2] * velocity[j, 1], law[0], law[1])
-        weight = _sight(x, y, ex, ey, law[6], law[7])
+            fx, fy = _ellipse_force(x, y, law[2] * velocity[j, 0], law[2] * velocity[j, 1], law[0], law[1])
+        weight = _view_weight(x, y, ex, ey, law[6], law[7])
         ax, ay = ax + weight * fx, ay + weight * fy
     return ax, ay, push_x, push_y
 
 
 @kernel
-def _by_walls(x: float, y: float, ex: float, ey: float, law: Floats, segments: Floats) -> tuple[float, float]:
+def _wall_force(x: float, y: float, ex: float, ey: float, law: Floats, segments: Floats) -> tuple[float, float]:
     """Return the acceleration by the nearest point of each segment."""
     ax = ay = 0.0
     for k in range(len(segments)):
@@ -161,7 +162,7 @@ def _by_walls(x: float, y: float, ex: float, ey: float, law: Floats, segments: F
         dx, dy = x - nx, y - ny
         gap = math.sqrt(dx * dx + dy * dy)
         if 0.0 < gap < law[8]:
-            weight = _sight(dx, dy, ex, ey, law[6], law[7])
+            weight = _view_weight(dx, dy, ex, ey, law[6], law[7])
             size = weight * law[3] / law[4] * math.exp(-gap / law[4]) / gap
             ax, ay = ax + size * dx, ay + size * dy
     return ax, ay
@@ -169,7 +170,7 @@ def _by_walls(x: float, y: float, ex: float, ey: float, law: Floats, segments: F
 
 @kernel
 def _limit_length(x: float, y: float, most: float) -> tuple[float, float]:
-    """Return a vector no longer than ``most``."""
+    """Return a vector limited to the length ``most``."""
     length = math.sqrt(x * x + y * y)
     if length <= most:
         return x, y
@@ -187,7 +188,7 @@ def _choose(crowd: _Crowd, near: Neighbors, segments: Floats, umans: bool, dt: f
 def _choose_part(
     begin: int, end: int, crowd: _Crowd, near: Neighbors, segments: Floats, umans: bool, dt: float, out: Floats
 ) -> None:
-    # fields are taken out of the tuples here: inside the loop each access would count references
+    # unpack the tuples outside of the loop: each access counts references
     position, velocity, desired, radius, top, walking, laws = crowd
     agent, number, order = near
     A = agent.shape[1]
@@ -201,12 +202,12 @@ def _choose_part(
         still = px == 0.0 and py == 0.0
         ex, ey = (vx, vy) if umans or still else (px, py)
         others = agent[e, a, : number[e, a]]
-        ax, ay, push_x, push_y = _by_people(
+        ax, ay, push_x, push_y = _neighbor_force(
             row, ex, ey, position, velocity, desired, radius, law, others, row - a, umans
         )
-        wx, wy = _by_walls(position[row, 0], position[row, 1], ex, ey, law, segments)
+        wx, wy = _wall_force(position[row, 0], position[row, 1], ex, ey, law, segments)
         ax, ay = ax + wx + (px - vx) / law[5], ay + wy + (py - vy) / law[5]
-        if umans and still:  # the library stops whoever has arrived
+        if umans and still:  # the library stops agents at their goal
             ax, ay = -vx / dt, -vy / dt
         ax, ay = _limit_length(ax, ay, law[9])
         vx, vy = _limit_length(vx + ax * dt, vy + ay * dt, top[row])
@@ -216,29 +217,29 @@ def _choose_part(
 
 @dataclass(frozen=True)
 class SocialForce(CrowdModel):
-    """Social force model: attraction to the desired velocity, elliptical repulsion by others, repulsion by walls.
+    """Social force model: relaxation to the desired velocity, elliptical repulsion by agents, repulsion by walls.
 
     Args:
-        strength: potential at the centre of another's ellipse [m^2/s^2].
-        distance: over which the push of another falls by e [m].
-        look_ahead: length of another's stride [s]; its step is velocity times this.
+        strength: potential at the centre of a neighbour's ellipse [m^2/s^2].
+        distance: decay length of the repulsion by neighbours [m].
+        look_ahead: duration of a neighbour's stride [s]; the stride is its velocity times this.
         wall_strength: potential at a wall [m^2/s^2].
-        wall_distance: over which the push of a wall falls by e [m].
-        relaxation_time: of the velocity towards the desired one [s].
-        view_angle: half angle of the field of view about the desired direction [rad].
-        behind: weight of what is out of view.
-        neighbor_distance: people and walls beyond do not count [m].
-        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
-        max_acceleration: of the sum of all [m/s^2].
-        variant: ``gradient``, the published force, or ``umans2018``, the answers of the UMANS library of that year
-            (a derivative along the line between two; contact instead of force while two discs overlap).
-        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+        wall_distance: decay length of the repulsion by walls [m].
+        relaxation_time: time constant to the desired velocity [s].
+        view_angle: half field of view around the desired direction [rad].
+        behind: weight of neighbours and walls out of view.
+        neighbor_distance: maximum distance of neighbours and walls [m].
+        max_neighbors: maximum number of neighbours (the nearest ones); rounded to a whole number.
+        max_acceleration: limit of the sum of all forces [m/s^2].
+        variant: ``gradient``, the published force, or ``umans2018``, the force of the UMANS library of 2018 (derivative
+            along the line between two agents; contact force instead of repulsion while two discs overlap).
+        max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene.
 
     The force does not depend on radii; ``distance`` accounts for them. Adjacent wall segments both repel. If the
     desired velocity is 0, the field of view follows the velocity.
 
     The default variant is ``gradient``, the force of the paper without its random fluctuations and attractions.
-    Differences: limited neighbourhoods and a limit of acceleration.
+    Differences: limited neighbourhoods and an acceleration limit.
 
     Source: Helbing, Molnár 1995, doi:10.1103/PhysRevE.51.4282; van Toll et al. 2020, doi:10.1145/3384382.3384532.
 
@@ -289,7 +290,7 @@ class SocialForce(CrowdModel):
         """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` is not used."""
         wish, walking = desired_velocity(scene, dt), movable(scene)
         umans = self.variant == "umans2018"
-        if umans and scene.preferred_velocity is None:  # there one has arrived when the goal is under the own disc
+        if umans and scene.preferred_velocity is None:  # in the library, the goal is reached within the agent's radius
             away = scene.goal - scene.position
             wish[away[..., 0] ** 2 + away[..., 1] ** 2 <= scene.radius**2] = 0.0
         near = neighbors_of(self, scene, walking)

@@ -1,7 +1,7 @@
-"""Walls as what people feel of them: faces and corners, each side and each corner once.
+"""Surfaces of walls for force models: faces and corners without duplicates.
 
-A face is felt where the foot of the perpendicular lies strictly inside it, a corner where it is nearer than all edges
-that meet there. So a wall made of many edges pushes like one wall: joints do not count twice, and there is no gap.
+A face acts where the foot of the perpendicular is strictly inside it; a corner acts where it is nearer than its edges.
+A wall of many edges therefore acts like a single wall: joints do not count twice, and there are no gaps.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ class WallSurfaces(NamedTuple):
     corner: Floats
     """``[C, 2]`` [m]."""
     arm: Floats
-    """``[I, 2]`` unit directions of the edges that leave the corners; those of corner c begin at ``first[c]``."""
+    """``[I, 2]`` unit directions of the edges at each corner; those of corner c begin at ``first[c]``."""
     first: NDArray[np.int64]
-    """``[C + 1]``."""
+    """``[C + 1]`` first index in ``arm`` of each corner."""
 
 
 def wall_surfaces(walls: Walls) -> WallSurfaces:
-    """Return the faces of ``walls``, and the corners that stick out into free space.
+    """Return the faces and the convex corners of ``walls``.
 
     >>> wall = wall_surfaces(Walls.of([[(0, 0), (2, 0)], [(2, 0), (4, 0)]]))
     >>> len(wall.face), wall.corner.tolist()
@@ -42,7 +42,7 @@ def wall_surfaces(walls: Walls) -> WallSurfaces:
     along = walls.end - walls.start
     direction = along / np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-300)[:, None]
     ends = np.concatenate([walls.start, walls.end])
-    corner, which = np.unique(ends + 0.0, axis=0, return_inverse=True)  # + 0.0 makes one zero of -0 and 0
+    corner, which = np.unique(ends + 0.0, axis=0, return_inverse=True)  # + 0.0 converts -0 to 0
     which = which.reshape(-1)
     out = np.zeros(len(corner), dtype=np.bool_)
     out[which[: len(walls)][walls.convex]] = True
@@ -59,7 +59,7 @@ def wall_surfaces(walls: Walls) -> WallSurfaces:
 
 @kernel
 def is_nearest_corner(corner: Floats, arm: Floats, first: NDArray[np.int64], c: int, x: float, y: float) -> bool:
-    """Return whether corner c is nearer to x, y than the rest of all edges that meet there."""
+    """Return whether corner c is nearer to x, y than all other points of its edges."""
     dx, dy = x - corner[c, 0], y - corner[c, 1]
     near = True
     for k in range(first[c], first[c + 1]):
@@ -71,7 +71,7 @@ def is_nearest_corner(corner: Floats, arm: Floats, first: NDArray[np.int64], c: 
 def surface_distance(
     face: Floats, corner: Floats, arm: Floats, first: NDArray[np.int64], k: int, x: float, y: float, reach: float
 ) -> tuple[float, float, float]:
-    """Return distance and unit normal of surface k, faces first, at x, y; inf when it is not felt within ``reach``."""
+    """Return distance and unit normal of surface k (faces first) at x, y; inf if it does not act within ``reach``."""
     if k < len(face):
         ux, uy = face[k, 4], face[k, 5]
         dx, dy = x - face[k, 0], y - face[k, 1]

@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class CurrentDirection(Goal):
-    """A point far ahead in the direction of the last steps.
+    """Goal far ahead in the direction of the last steps.
 
     Args:
         steps: number of last steps over which the velocity is averaged; fewer after a gap.
@@ -31,7 +31,7 @@ class CurrentDirection(Goal):
     The goal of people observed only at the last step is their position.
 
     Raises:
-        InputError: ``steps`` is below 1 or given together with ``adaptive``, or ``horizon`` is not positive.
+        InputError: ``steps`` is below 1 or combined with ``adaptive``, or ``horizon`` is not positive.
     """
 
     steps: int = 1

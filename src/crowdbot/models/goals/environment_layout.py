@@ -32,12 +32,12 @@ ZIEBART = Paper(
 
 @dataclass(frozen=True, eq=False)
 class EnvironmentLayout(Goal):
-    """The exits of a place, weighted by the progress of each person towards them.
+    """Exits of a place, weighted by the progress of each person towards them.
 
     The posterior of an exit is its prior times exp(``certainty`` x progress). The progress [m] is the decrease of the
     path length to the exit, averaged over the whole observation and its second half. This is the likelihood of the
     observed path for noisy shortest-path walking, up to a common factor (Ziebart et al. 2009). Paths to exits lead
-    around walls. Walking straight on is an additional candidate for destinations that the layout does not contain.
+    around walls. Walking straight on is an additional candidate, for destinations that are not in the layout.
 
     People turn towards their exit gradually: the predicted heading is between the current one and that to the exit.
     ``pull`` is the fraction of the turn, which increases if the next waypoint is closer than ``lookahead``.
@@ -51,7 +51,7 @@ class EnvironmentLayout(Goal):
         prior: prior weights of the exits ``[G]`` (default: equal).
         straight: prior probability that people keep their direction.
         certainty: how directly people walk to their exit [1/m].
-        pull: fraction of the turn to the exit.
+        pull: minimum fraction of the turn to the exit.
         lookahead: time [s] within which the turn is completed.
         horizon: distance of the goals as time at the observed velocity [s].
         pace: learned velocity from the last displacements, for a recorded place.
@@ -59,7 +59,7 @@ class EnvironmentLayout(Goal):
     Raises:
         InputError: there is no exit, or a value is not allowed.
 
-    Paper: Ziebart et al. (2009), doi 10.1109/IROS.2009.5354147.
+    Source: Ziebart et al. 2009, doi:10.1109/IROS.2009.5354147.
 
     >>> layout = EnvironmentLayout([(10.0, 0.0), (0.0, 10.0)], walls=[[(2.0, 1.0), (2.0, -9.0)]])
     >>> layout.exits.shape, layout.routes.corners.round(1).tolist()
@@ -218,13 +218,12 @@ def _segments(exits: Any) -> Floats:
         found = np.stack([found, found], axis=1)
     if found.size == 0:
         raise InputError(
-            "environment-layout: the layout has no exit; give exits as points, or an area with an open border"
+            "environment-layout: the layout has no exit; give exits as points, or an area with an opening in its border"
         )
     if found.ndim != 3 or found.shape[1:] != (2, 2) or not np.all(np.isfinite(found)):
         raise InputError(
-            f"environment-layout: exits have shape {list(found.shape)}; they must be finite points [G, 2] or "
-            f"segments"
-            " [G, 2, 2] in metres"
+            f"environment-layout: exits have shape {list(found.shape)}; they must be finite points [G, 2] or"
+            " segments [G, 2, 2] in metres"
         )
     return found
 

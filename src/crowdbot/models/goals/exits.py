@@ -28,9 +28,9 @@ NARROWEST = 0.5
 
 
 def track_ends(tracks: Trajectories) -> tuple[Integers, Floats, NDArray[np.bool_]]:
-    """Return the ids of people ``[P]``, the ends of their tracks ``[P, 2]``, and whether they end before the recording.
+    """Return the ids of people ``[P]``, the ends of their tracks ``[P, 2]`` [m], and whether a track is complete.
 
-    Tracks that reach the last row are truncated and have no destination.
+    Tracks that reach the end of the recording are truncated: their end is not a destination.
     """
     order = np.lexsort((tracks.frame, tracks.id))
     last = np.append(tracks.id[order][1:] != tracks.id[order][:-1], True)
@@ -57,7 +57,7 @@ def clusters(points: Floats, width: float, fewest: int) -> Floats:
 
 
 def hull(points: Floats) -> Floats:
-    """Return the convex hull ``[N, 2]`` of points, counter-clockwise, from the corner farthest from their mean on."""
+    """Return the convex hull ``[N, 2]`` of points, counter-clockwise, starting at the corner farthest from the mean."""
     from scipy.spatial import ConvexHull
 
     corner = points[ConvexHull(points).vertices]
@@ -66,9 +66,9 @@ def hull(points: Floats) -> Floats:
 
 
 def openings(border: Floats, walls: Walls, width: float) -> Floats:
-    """Return parts of the ring ``border [N, 2]`` without walls, in segments ``[G, 2, 2]`` of about ``width`` [m]."""
-    place = _along(border)
-    open_ = ~_covered(place, walls)
+    """Return the parts of the ring ``border [N, 2]`` without walls as segments ``[G, 2, 2]`` of about ``width`` [m]."""
+    place = _sample_ring(border)
+    open_ = ~_is_near_wall(place, walls)
     if not np.any(open_):
         return np.zeros((0, 2, 2))
     if not np.all(open_):  # start at a wall so that no opening is divided
@@ -89,8 +89,8 @@ def openings(border: Floats, walls: Walls, width: float) -> Floats:
     return np.array(pieces, dtype=np.float64).reshape(-1, 2, 2)
 
 
-def _along(border: Floats) -> Floats:
-    """Return points along a ring at equal distances."""
+def _sample_ring(border: Floats) -> Floats:
+    """Return points on a ring at equal distances."""
     parts = []
     for start, end in zip(border, np.roll(border, -1, axis=0), strict=True):
         count = max(1, round(float(length(end - start)) / STEP))
@@ -98,17 +98,17 @@ def _along(border: Floats) -> Floats:
     return np.concatenate(parts)
 
 
-def _covered(place: Floats, walls: Walls) -> NDArray[np.bool_]:
+def _is_near_wall(place: Floats, walls: Walls) -> NDArray[np.bool_]:
     """Return which points are near a wall or inside a solid."""
     if len(walls) == 0:
         return np.zeros(len(place), np.bool_)
     along = walls.end - walls.start
     share = np.sum((place[:, None] - walls.start) * along, axis=-1) / np.sum(along * along, axis=-1)
     off = place[:, None] - walls.start - np.clip(share, 0.0, 1.0)[..., None] * along
-    return np.asarray((length(off).min(axis=1) < NEAR_WALL) | _inside(place, walls))
+    return np.asarray((length(off).min(axis=1) < NEAR_WALL) | _is_in_solid(place, walls))
 
 
-def _inside(place: Floats, walls: Walls) -> NDArray[np.bool_]:
+def _is_in_solid(place: Floats, walls: Walls) -> NDArray[np.bool_]:
     """Return which points lie inside a solid ring (winding number 1)."""
     start, end = walls.start - place[:, None], walls.end - place[:, None]
     cross = start[..., 0] * end[..., 1] - start[..., 1] * end[..., 0]

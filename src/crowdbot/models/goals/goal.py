@@ -41,7 +41,7 @@ class Choices:
             )
 
     def likeliest(self, count: int) -> Choices:
-        """Return the ``count`` slots of the largest weights, scaled to sum to 1; padded if there are fewer.
+        """Return the ``count`` slots with the largest weights, scaled to sum to 1; padded if there are fewer.
 
         >>> import numpy as np
         >>> choices = Choices(np.arange(6.0).reshape(1, 1, 3, 2), np.array([[[0.25, 0.5, 0.25]]]))
@@ -68,9 +68,9 @@ class Goal(abc.ABC):
     """
 
     knows_future: ClassVar[bool] = False
-    """Whether the goal uses the future, for evaluation only."""
+    """Whether the goal uses the future (for evaluation only)."""
     learns: ClassVar[bool] = False
-    """Whether the goal belongs to a place and must be created with :meth:`learn` or with values, not by name."""
+    """Whether the goal is specific to a place: created with :meth:`learn` or with values, not by name."""
 
     @abc.abstractmethod
     def resolve(self, past: Windows) -> Floats:

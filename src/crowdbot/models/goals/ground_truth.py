@@ -21,15 +21,16 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class GroundTruth(Goal):
-    """The last recorded position of each person in the future, for evaluation only.
+    """Last recorded future position of each person, for evaluation only.
 
-    It measures the part of an error caused by unknown goals. People without a future keep their position.
+    It measures which part of an error is caused by unknown goals. The goal of people without a future is their
+    position.
 
     Args:
-        past, future: windows from one call; all of them, or their first observed rows, can be resolved.
+        past, future: windows from one call; :meth:`resolve` accepts these windows or their first observed rows.
 
     Raises:
-        InputError: past and future have different people; on resolving, a window is unknown.
+        InputError: past and future have different people, or :meth:`resolve` gets an unknown window.
     """
 
     knows_future: ClassVar[bool] = True
@@ -45,7 +46,7 @@ class GroundTruth(Goal):
 
     def resolve(self, past: Windows) -> Floats:
         """Return the goals ``[W, A, 2]`` [m]; 0 for people who are not present at the last observed step."""
-        future = self.future[self._places(past)]
+        future = self.future[self._window_indices(past)]
         goal = np.where(past.present[:, -1, :, None], past.position[:, -1], 0.0)
         for step in range(future.present.shape[1]):
             seen = future.present[:, step] & past.present[:, -1]
@@ -56,7 +57,7 @@ class GroundTruth(Goal):
         """Return the velocity of the last displacement ``[W, A, 2]`` [m/s]; the goal does not define a speed."""
         return observed_velocity(past)
 
-    def _places(self, past: Windows) -> NDArray[np.int64]:
+    def _window_indices(self, past: Windows) -> NDArray[np.int64]:
         """Return the indices of the windows, identified by first frame and people."""
         if past.id.shape == self.past.id.shape and np.array_equal(past.id, self.past.id):
             return np.arange(len(past))
@@ -64,9 +65,8 @@ class GroundTruth(Goal):
         missing = next((number for number, name in enumerate(names) if name not in self._known), None)
         if missing is not None:
             raise InputError(
-                f"ground-truth: window {missing} of {past.source}, from frame {past.frame[missing, 0]}, is not "
-                f"one of"
-                f" the {len(self.past)} windows with a known future"
+                f"ground-truth: window {missing} of {past.source}, from frame {past.frame[missing, 0]}, is not one"
+                f" of the {len(self.past)} windows with a known future"
             )
         return np.array([self._known[name] for name in names], dtype=np.int64)
 

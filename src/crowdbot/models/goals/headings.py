@@ -10,7 +10,7 @@ __all__ = ["MOVING", "angle_between", "extrapolate", "length", "median", "rotate
 Floats = NDArray[np.float64]
 
 MOVING = 0.2
-"""Minimum speed [m/s] of a meaningful heading, above the sway of standing people."""
+"""Minimum speed [m/s] for a valid heading, above the sway of standing people."""
 
 
 def length(vector: Floats) -> Floats:

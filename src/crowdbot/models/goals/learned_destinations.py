@@ -28,24 +28,24 @@ BENNEWITZ = Paper(
     "International Journal of Robotics Research 24(1)",
 )
 STRAIGHT = np.radians(15.0)
-"""Smaller turns count partly as straight on."""
+"""Turns below this angle [rad] count partly as straight on."""
 RAREST = 0.02
-"""Minimum share of all track ends at an exit, and at least two."""
+"""Minimum fraction of all track ends at an exit; at least two."""
 MOST_VOTERS = 20_000
 """Maximum number of stored rows; above it, every k-th row is stored."""
 CHUNK_PEOPLE = 512
-"""People processed at the same time."""
+"""Number of people processed at the same time."""
 
 
 @dataclass(frozen=True, eq=False)
 class LearnedDestinations(Goal):
-    """Destinations of earlier people at the same position with the same heading.
+    """Destinations of recorded people with a similar position and heading.
 
     Created by :meth:`learn`. The ends of the recorded tracks are clustered into exits. Each recorded row is a sample
-    with position, heading, turn after ``lookahead`` and exit. Samples with similar position and heading vote: their
-    weights for each exit (and for straight on) are the weights of :meth:`choices`, and their median turn is the
-    direction to that exit. :meth:`resolve` returns the median turn of all samples plus some votes for no turn; where
-    nobody was recorded, people walk straight on. The velocity is learned, too, as a weighted mean of displacements.
+    with position, heading, turn after ``lookahead`` and exit. The samples are weighted by the similarity of position
+    and heading. Their weights for each exit (and for straight on) are the weights of :meth:`choices`, and their median
+    turn is the direction to that exit. :meth:`resolve` returns the median turn of all samples and a prior for no turn;
+    without samples, people walk straight on. The velocity is also learned, as a weighted mean of displacements.
 
     All goals are ``horizon`` ahead in the predicted direction, since crowd models walk straight to a goal. Positions of
     exits are in ``exits``.
@@ -56,13 +56,13 @@ class LearnedDestinations(Goal):
         pace: learned velocity.
         reach: standard deviation of the distance of samples [m].
         spread: standard deviation of the heading difference [rad].
-        doubt: number of votes (times m/s) for no turn.
+        doubt: weight of the prior for no turn [m/s].
         horizon: distance of the goals as time at the learned velocity [s].
 
     Raises:
         InputError: a value is not allowed; on use, windows have a different time step or are in pixels.
 
-    Source: after Bennewitz et al. (2005), who cluster whole tracks.
+    Source: based on Bennewitz et al. (2005), who cluster whole tracks.
     """
 
     exits: Floats
@@ -93,8 +93,7 @@ class LearnedDestinations(Goal):
         Args:
             recordings: recordings of the place, in metres, with one time step; exclude the test data.
             observe: maximum number of rows for the learned velocity.
-            lookahead: time for which the direction is learned [s]; between a third of the prediction time and all of
-                it.
+            lookahead: time for which the direction is learned [s]; from a third of the prediction time to all of it.
             width: width of an exit [m].
             values: fields ``reach``, ``spread``, ``doubt`` and ``horizon``.
 
@@ -126,22 +125,23 @@ class LearnedDestinations(Goal):
     def resolve(self, past: Windows) -> Floats:
         """Return the goal of each person ``[W, A, 2]`` [m] in the median direction; 0 for absent people."""
         velocity, here = self.velocity(past), past.present[:, -1]
-        asked = here & (length(velocity) > MOVING)
+        moving = here & (length(velocity) > MOVING)
         turn = np.zeros(here.shape)
-        if np.any(asked):
-            polled = self._turn_histograms(past.position[:, -1][asked], velocity[asked], False)
-            turn[asked] = polled[0]
+        if np.any(moving):
+            turn[moving] = self._turn_histograms(past.position[:, -1][moving], velocity[moving], False)[0]
         return extrapolate(past.position[:, -1], here, rotate(velocity, turn), self.horizon)
 
     def choices(self, past: Windows) -> Choices:
-        """Return straight on (slot 0) and the direction to each exit (slots 1 to G) with its share of the votes."""
+        """Return straight on (slot 0) and the direction to each exit (slots 1 to G), weighted by the samples."""
         velocity, here = self.velocity(past), past.present[:, -1]
         weight = np.zeros((*here.shape, len(self.exits) + 1))
         turn = np.zeros(weight.shape)
         weight[here, 0] = 1.0
-        asked = here & (length(velocity) > MOVING)
-        if np.any(asked):
-            _, weight[asked], turn[asked] = self._turn_histograms(past.position[:, -1][asked], velocity[asked], True)
+        moving = here & (length(velocity) > MOVING)
+        if np.any(moving):
+            _, weight[moving], turn[moving] = self._turn_histograms(
+                past.position[:, -1][moving], velocity[moving], True
+            )
         place = np.where(here[..., None], past.position[:, -1], 0.0)
         way = np.where(here[..., None, None], rotate(velocity[:, :, None], turn), 0.0)
         return Choices(place[:, :, None] + self.horizon * way, weight)
@@ -154,8 +154,8 @@ class LearnedDestinations(Goal):
         for first in range(0, count, CHUNK_PEOPLE):
             part = slice(first, min(first + CHUNK_PEOPLE, count))
             histogram = np.zeros((part.stop - first, ways + 1, BINS))
-            asked = np.ascontiguousarray(place[part]), heading[part]
-            accumulate(*asked, self.samples, len(self.exits), self.reach, self.spread, histogram)
+            people = np.ascontiguousarray(place[part]), heading[part]
+            accumulate(*people, self.samples, len(self.exits), self.reach, self.spread, histogram)
             middle[part] = median_turn(np.sum(histogram, axis=1), self.doubt)
             if by_exit:
                 known = np.sum(histogram[:, :ways], axis=2)

@@ -16,23 +16,23 @@ __all__ = ["LearnedVelocity", "mean_velocity", "pairs_of"]
 Floats = NDArray[np.float64]
 
 RIDGE = 0.01
-"""Regularisation of the weights, as a share of the mean square of their inputs."""
+"""Regularisation of the weights, as a fraction of the mean square of the inputs."""
 ROUNDS = 15
-"""Iterations of re-weighting; the weights converge earlier."""
+"""Number of re-weighting iterations; the weights converge earlier."""
 SMALLEST = 0.05
-"""Lower limit of residuals as a share of their median, against unbounded weights."""
+"""Lower limit of residuals as a fraction of their median, against unbounded weights."""
 
 
 @dataclass(frozen=True, eq=False)
 class LearnedVelocity:
-    """A weighted mean of displacements around :func:`~crowdbot.data.motion.steady_velocity`.
+    """Weighted mean of displacements around :func:`~crowdbot.data.motion.steady_velocity`.
 
     The weights minimise the sum of distances between the predicted and the mean future velocity. Distances are not
-    squared, which limits the influence of people who turn. The weights are equal for x and y, hence invariant to
-    rotation. There is one row of weights for each length of history.
+    squared, which limits the influence of people who turn. The weights are equal for x and y and therefore invariant
+    to rotation. There is one row of weights for each length of history.
 
     Fields:
-        weight: ``[N, N]``: row n - 1 holds the weights of the last n displacements, oldest first, at its end.
+        weight: ``[N, N]``: the end of row n - 1 contains the weights of the last n displacements, oldest first.
         dt: time step of the recordings [s]; windows must have the same time step.
     """
 
@@ -82,7 +82,7 @@ class LearnedVelocity:
         most = len(self.weight)
         known = slice_rows(fill_gaps(past), max(0, past.position.shape[1] - 1 - most), past.position.shape[1])
         steady = steady_velocity(known)
-        offs, both = _offs(known, steady)
+        offs, both = _velocity_deviations(known, steady)
         count = np.minimum(np.sum(both, axis=1), most)
         if most == 0 or offs.shape[1] == 0:
             return steady
@@ -95,7 +95,7 @@ class LearnedVelocity:
 def pairs_of(recordings: tuple[Trajectories, ...], observe: int, lookahead: float) -> list[tuple[Windows, Windows]]:
     """Return past and future windows for learning; futures need at least two rows."""
     if not recordings:
-        raise InputError("goals: there is no recording to learn from; give at least one of the place")
+        raise InputError("goals: there is no recording to learn from; give at least one")
     if not 0.0 < lookahead < np.inf:
         raise InputError(f"goals: lookahead = {lookahead} s must be finite and above 0")
     dt = recordings[0].dt
@@ -104,30 +104,27 @@ def pairs_of(recordings: tuple[Trajectories, ...], observe: int, lookahead: floa
             raise InputError(f"goals: {tracks.name} is in pixels; convert it to metres to learn from it")
         if not abs(tracks.dt - dt) <= 0.01 * dt:
             raise InputError(
-                f"goals: {recordings[0].name} has steps of {dt:.4g} s and {tracks.name} has steps of "
-                f"{tracks.dt:.4g} s;"
-                " resample one of them"
+                f"goals: {recordings[0].name} has steps of {dt:.4g} s and {tracks.name} has steps of"
+                f" {tracks.dt:.4g} s; resample one of them"
             )
     steps = max(1, round(lookahead / dt))
     return [tracks.windows(max(2, observe), steps, "partial") for tracks in recordings]
 
 
-def _offs(known: Windows, steady: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return the differences of displacement velocities from the steady one ``[W, n, A, 2]`` [m/s], and their
-    presence.
-    """
+def _velocity_deviations(known: Windows, steady: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return displacement velocities minus the steady velocity ``[W, n, A, 2]`` [m/s], and which ones are known."""
     both = known.present[:, 1:] & known.present[:, :-1]
     off = np.diff(known.position, axis=1) / known.dt - steady[:, None]
     return np.where(both[..., None], off, 0.0), both
 
 
 def _sample(past: Windows, future: Windows, count: int) -> tuple[Floats, Floats]:
-    """Return differences ``[P, count, 2]`` and errors of the steady velocity ``[P, 2]`` [m/s] of scored people."""
+    """Return deviations ``[P, count, 2]`` and errors of the steady velocity ``[P, 2]`` [m/s] of scored people."""
     rows = past.position.shape[1]
     known = slice_rows(past, rows - 1 - count, rows)
     steady = steady_velocity(known)
     counted = future.scored
-    off = np.moveaxis(_offs(fill_gaps(known), steady)[0], 1, 2)[counted]
+    off = np.moveaxis(_velocity_deviations(fill_gaps(known), steady)[0], 1, 2)[counted]
     return off, (mean_velocity(past, future) - steady)[counted]
 
 

@@ -70,10 +70,10 @@ class Routes:
         count = len(corners)
         if count == 0:
             return cls(exits, segments, corners, np.zeros((0, len(exits))))
-        to_exit = _on_exits(corners, exits)
-        rest = np.where(_visible(corners, to_exit, segments), length(to_exit - corners[:, None]), np.inf)
+        to_exit = _nearest_on_exits(corners, exits)
+        rest = np.where(_visibility(corners, to_exit, segments), length(to_exit - corners[:, None]), np.inf)
         every = np.broadcast_to(corners, (count, count, 2))
-        between = np.where(_visible(corners, every, segments), length(every - corners[:, None]), np.inf)
+        between = np.where(_visibility(corners, every, segments), length(every - corners[:, None]), np.inf)
         for middle in range(count):  # Floyd-Warshall
             between = np.minimum(between, between[:, middle, None] + between[None, middle])
         return cls(exits, segments, corners, np.min(between[:, :, None] + rest[None], axis=1))
@@ -83,12 +83,12 @@ class Routes:
 
         The waypoint is the exit if it is visible, otherwise the next corner; the length is inf without a path.
         """
-        aim = _on_exits(place, self.exits)
-        way = np.where(_visible(place, aim, self.segments), length(aim - place[:, None]), np.inf)
+        aim = _nearest_on_exits(place, self.exits)
+        way = np.where(_visibility(place, aim, self.segments), length(aim - place[:, None]), np.inf)
         if len(self.corners) == 0 or np.all(np.isfinite(way)):
             return aim, way
         corner = np.broadcast_to(self.corners, (len(place), *self.corners.shape))
-        near = np.where(_visible(place, corner, self.segments), length(corner - place[:, None]), np.inf)
+        near = np.where(_visibility(place, corner, self.segments), length(corner - place[:, None]), np.inf)
         around = near[:, :, None] + self.rest
         best = np.argmin(around, axis=1)
         hidden = ~np.isfinite(way)
@@ -96,14 +96,14 @@ class Routes:
         return aim, np.where(hidden, np.min(around, axis=1), way)
 
 
-def _visible(place: Floats, target: Floats, segments: Floats) -> Bools:
+def _visibility(place: Floats, target: Floats, segments: Floats) -> Bools:
     seen = np.ones(target.shape[:2], np.bool_)
     if len(segments):
         mark_visible(np.ascontiguousarray(place), np.ascontiguousarray(target), segments, seen)
     return seen
 
 
-def _on_exits(place: Floats, exits: Floats) -> Floats:
+def _nearest_on_exits(place: Floats, exits: Floats) -> Floats:
     """Return the nearest point ``[P, G, 2]`` [m] on the inner half of each exit."""
     start = 0.75 * exits[:, 0] + 0.25 * exits[:, 1]
     along = 0.5 * (exits[:, 1] - exits[:, 0])

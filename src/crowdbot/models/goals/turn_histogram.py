@@ -18,7 +18,7 @@ Integers = NDArray[np.int64]
 WIDEST = math.pi / 2
 """Largest turn in the histogram [rad]."""
 BINS = 61
-"""Number of bins, 3 degrees apart; a vote is split between the two nearest bins."""
+"""Number of bins, 3 degrees apart; a sample is split between the two nearest bins."""
 
 
 class TurnSamples(NamedTuple):
@@ -45,10 +45,10 @@ class TurnSamples(NamedTuple):
 def accumulate(
     place: Floats, heading: Floats, samples: TurnSamples, exits: int, reach: float, spread: float, histogram: Floats
 ) -> None:
-    """Fill ``votes [P, exits + 2, NODES]``: straight on, each exit, exit unknown; for people ``[P, 2]``.
+    """Fill ``histogram [P, exits + 2, BINS]`` for people ``[P, 2]``: straight on, each exit, exit unknown.
 
-    A sample has the weight (1 - d/8)^4, d the squared distance in units of ``reach`` [m] plus the squared difference of
-    headings in units of ``spread``. This is close to a Gaussian, and 0 beyond d = 8.
+    The weight of a sample is (1 - d/8)^4, d the squared distance in units of ``reach`` [m] plus the squared difference
+    of headings in units of ``spread``. This approximates a Gaussian, and is 0 beyond d = 8.
     """
     step = 2.0 * WIDEST / (BINS - 1)
     farthest = 8.0 * reach * reach
@@ -77,7 +77,7 @@ def accumulate(
 
 
 def median_turn(histogram: Floats, doubt: float = 0.0) -> Floats:
-    """Return the median turn [rad] of votes ``[..., NODES]``, plus ``doubt`` votes for no turn; 0 without votes.
+    """Return the median turn [rad] of ``histogram [..., BINS]`` plus a weight ``doubt`` for no turn; 0 if empty.
 
     >>> import numpy as np
     >>> histogram = np.zeros(BINS)
@@ -88,7 +88,7 @@ def median_turn(histogram: Floats, doubt: float = 0.0) -> Floats:
     counted = histogram.copy()
     counted[..., BINS // 2] += doubt
     total = np.cumsum(counted, axis=-1)
-    # votes are spread uniformly within a bin, which makes the median continuous in the votes
+    # weights are spread uniformly within a bin, which makes the median continuous
     middle = total - 0.5 * counted
     half = 0.5 * total[..., -1:]
     above = np.clip(np.sum(middle < half, axis=-1, keepdims=True), 1, BINS - 1)

@@ -1,1 +1,1 @@
-"""Models that choose a direction first, and then a speed that depends on the space ahead (first-order models)."""
+"""First-order models: they choose a direction, and then a speed that depends on the space ahead."""

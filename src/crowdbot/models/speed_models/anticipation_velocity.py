@@ -1,4 +1,4 @@
-"""Anticipation velocity: people turn to the side that will be free and walk as fast as the way ahead allows."""
+"""AnticipationVelocity: velocity-based model with anticipation (Xu, Chraibi, Seyfried 2021)."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ __all__ = ["AnticipationVelocity"]
 Floats = NDArray[np.float64]
 
 CREEP = 0.01
-"""Below this speed [m/s] people shuffle: forward, backward or not at all."""
+"""Below this speed [m/s] agents shuffle: forward, backward or not at all."""
 ALIGNED = 1e-3
-"""Who will be so near the line of the own walk [m] may be passed on either side."""
+"""Lateral offset [m] below which a neighbour counts as exactly ahead."""
 
 
 class _Crowd(NamedTuple):
-    """What the kernel reads of every agent, by row ``e * A + a``."""
+    """Data of every agent for the kernel, by row ``e * A + a``."""
 
     position: Floats
     velocity: Floats
@@ -53,20 +53,20 @@ class _Crowd(NamedTuple):
     pushout: Floats
     reach: Floats
     side: Floats
-    """1 or -1: goes to the left or right of who stands exactly ahead."""
+    """1 or -1: passes a neighbour exactly ahead on the left or right."""
     shuffle: Floats
-    """1, 0 or -1: goes forward, not at all or backward when there is hardly room; NaN does not."""
+    """1, 0 or -1: moves forward, not at all or backward without free space; NaN: no shuffling."""
     walking: NDArray[np.bool_]
 
 
 @kernel
-def _away_from_walls(
+def _deflect_from_walls(
     walls: Floats, found: NDArray[np.int64], count: int, x: float, y: float, near: float, push: float,
     ux: float, uy: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """Take out of u what leads into walls, all of it nearer than ``near``, less and less up to twice that distance.
+    """Remove the component of u towards walls: all of it within ``near``, linearly less up to twice that distance.
 
-    Nearer than ``near``, ``push`` away from the wall is added. Return a unit vector, or zeros when nothing is left.
+    Within ``near``, add ``push`` away from the wall. Return a unit vector, or zeros if the result is 0.
     """
     for n in range(count):
         m = found[n]
@@ -89,18 +89,18 @@ def _influence(
     dx: float, dy: float, gx: float, gy: float, wx: float, wy: float, ox: float, oy: float, facing: float,
     contact: float, strength: float, scale: float, ahead: float, other_ahead: float, side: float,
 ) -> float:  # fmt: skip
-    """Return how strongly a neighbour turns the direction to the left of the desired one, g.
+    """Return the influence of a neighbour on the direction, positive to the left of the desired direction g.
 
     Args:
-        dx, dy: from here to it [m].
+        dx, dy: position of the neighbour relative to the agent [m].
         gx, gy: desired direction.
-        wx, wy: own velocity [m/s].
-        ox, oy: its velocity [m/s].
-        facing: its heading [rad].
+        wx, wy: velocity of the agent [m/s].
+        ox, oy: velocity of the neighbour [m/s].
+        facing: heading of the neighbour [rad].
         contact: sum of the radii [m].
-        strength, scale: of the influence, [1] and [m].
-        ahead, other_ahead: how far I foresee, and it [s].
-        side: where to go when it will be exactly ahead, 1 left or -1 right.
+        strength, scale: strength [1] and range [m] of the influence.
+        ahead, other_ahead: anticipation time of the agent and of the neighbour [s].
+        side: side for a neighbour that will be exactly ahead, 1 left or -1 right.
     """
     distance = math.sqrt(dx * dx + dy * dy)
     closing = ((wx - ox) * dx + (wy - oy) * dy) / distance if distance > 0.0 else 0.0
@@ -113,7 +113,7 @@ def _influence(
 
 @kernel
 def _turn(ux: float, uy: float, hx: float, hy: float, gx: float, gy: float, share: float) -> tuple[float, float]:
-    """Return the heading h turned by a share of the way to u; at once when only one of them leads to the goal at g."""
+    """Return the heading h turned to u by ``share``, or u if only one of them points towards the goal direction g."""
     if (gx * ux + gy * uy) * (gx * hx + gy * hy) < 0.0:
         return ux, uy
     ux, uy = hx + (ux - hx) * share, hy + (uy - hy) * share
@@ -132,13 +132,13 @@ def _choose(crowd: _Crowd, near: Neighbors, walls: Floats, dt: float, turned: Fl
 def _choose_part(
     begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Floats, dt: float, turned: Floats, out: Floats
 ) -> None:
-    # fields are taken out of the tuples here: inside the loop each access would count references
+    # unpack the tuples outside of the loop: each access counts references
     place, velocity, heading, desired, radius, top, strength, scale = crowd[:8]
     gap, anticipation, reaction, buffer, pushout, reach, side, shuffle, walking = crowd[8:]
     agent, number, order = near
     A = agent.shape[1]
     found = np.empty(len(walls), dtype=np.int64)
-    seen = np.empty((agent.shape[2], 3))  # where a neighbour is from here, and the sum of the radii
+    seen = np.empty((agent.shape[2], 3))  # relative position of each visible neighbour, and sum of the radii
     for k in range(begin, end):
         row = order[k]
         wish = math.sqrt(desired[row, 0] ** 2 + desired[row, 1] ** 2)
@@ -164,7 +164,7 @@ def _choose_part(
                 )  # fmt: skip
         length = math.sqrt(1.0 + aside * aside)
         ux, uy = _turn((gx - aside * gy) / length, (gy + aside * gx) / length, hx, hy, gx, gy, dt / reaction[row])
-        ux, uy = _away_from_walls(walls, found, count, x, y, radius[row] + buffer[row], pushout[row], ux, uy)
+        ux, uy = _deflect_from_walls(walls, found, count, x, y, radius[row] + buffer[row], pushout[row], ux, uy)
         speed = min(wish, top[row])
         for n in range(held):
             speed = min(speed, max(0.0, way_to(seen[n, 0], seen[n, 1], ux, uy, seen[n, 2])) / gap[row])
@@ -180,19 +180,19 @@ class AnticipationVelocity(CrowdModel):
     """Velocity-based model with anticipation: agents turn towards the side that will be free and keep a time gap ahead.
 
     Args:
-        strength: of the influence of a neighbour, against 1 for the desired direction.
-        range: over which it falls to 1/e [m].
-        time_gap: time to the next one ahead at the chosen speed [s].
-        anticipation_time: how far people foresee the way of the others [s].
-        reaction_time: in which the heading follows the chosen direction [s]; no less than the time step counts.
-        wall_buffer: nearer to a wall than the radius and this [m] nobody walks towards it; up to twice that distance
-            the way bends off the wall.
-        pushout: there, how much of the direction leads away from the wall.
-        neighbor_distance: neighbours and walls are no farther than this [m], and not hidden by a wall.
-        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
-        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+        strength: strength of the influence of a neighbour, relative to 1 for the desired direction.
+        range: decay length of the influence [m].
+        time_gap: time gap to the next agent ahead at the chosen speed [s].
+        anticipation_time: prediction time for the motion of neighbours [s].
+        reaction_time: time constant of the heading [s]; at least the time step.
+        wall_buffer: clearance between body and wall [m] below which agents do not walk towards the wall; up to twice
+            the distance of the centre, the direction is deflected.
+        pushout: component of the direction away from the wall within the clearance.
+        neighbor_distance: maximum distance of neighbours and walls [m]; neighbours behind a wall are ignored.
+        max_neighbors: maximum number of neighbours (the nearest ones); rounded to a whole number.
+        max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene.
 
-    The heading is a state of its own (``Scene.heading``) and turns even in those who stand; :meth:`step` writes it.
+    The heading is a separate state (``Scene.heading``), which also changes at rest; :meth:`step` updates it.
     With ``rng``, agents slower than 0.01 m/s shuffle forward, backward or not at all, and agents that meet
     exactly head on choose a random side. Without it, agents do not shuffle and pass on the right.
 
@@ -228,9 +228,7 @@ class AnticipationVelocity(CrowdModel):
     wall_buffer: PerAgent = parameter(0.1, unit="m", low=0.0, high=0.5, source="JuPedSim 1.4.2")
     pushout: PerAgent = parameter(0.3, unit="1", low=0.0, high=1.0, source="JuPedSim 1.4.2")
     neighbor_distance: PerAgent = parameter(3.0, unit="m", low=1.0, high=5.0, source="JuPedSim 1.4.2")
-    max_neighbors: PerAgent = parameter(
-        50.0, unit="1", low=5.0, high=100.0, source="chosen here: more are never needed"
-    )
+    max_neighbors: PerAgent = parameter(50.0, unit="1", low=5.0, high=100.0, source="crowdbot: more are never needed")
     max_speed: PerAgent | None = None
 
     def __post_init__(self) -> None:

@@ -1,4 +1,4 @@
-"""Collision-free speed: choose a direction by repulsion, then walk no faster than the free way ahead allows."""
+"""CollisionFreeSpeed: direction from repulsion, speed from the gap ahead (Tordeux, Chraibi, Seyfried 2016)."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ __all__ = ["CollisionFreeSpeed", "is_hidden", "way_to", "within"]
 Floats = NDArray[np.float64]
 
 STEEPEST = 100.0
-"""Exponents are cut here: only the direction of a repulsion counts, and its square must stay finite."""
+"""Upper limit of exponents, against overflow; only the direction of a strong repulsion matters."""
 APART = 1e-9
-"""People at the same place count as so far apart [m], along x, the first of them on the right."""
+"""Assumed distance of agents at the same position [m], along x, the first of them on the right."""
 
 
 class _Crowd(NamedTuple):
-    """What the kernel reads of every agent, by row ``e * A + a``."""
+    """Data of every agent for the kernel, by row ``e * A + a``."""
 
     position: Floats
     heading: Floats
@@ -52,8 +52,8 @@ class _Crowd(NamedTuple):
 
 @kernel
 def within(walls: Floats, x: float, y: float, reach: float, found: NDArray[np.int64]) -> int:
-    """Write the segments of ``walls`` that are no farther than ``reach`` from x, y to ``found``; return how many."""
-    count = int(np.int64(0))  # a plain 0 would be a type of its own and compile all that follows twice
+    """Write the indices of the ``walls`` within ``reach`` of x, y to ``found``; return their number."""
+    count = int(np.int64(0))  # a literal 0 has its own type, which compiles the callees twice
     for m in range(len(walls)):
         nx, ny = nearest_on_segment(x, y, walls[m, 0], walls[m, 1], walls[m, 2], walls[m, 3])
         if (nx - x) ** 2 + (ny - y) ** 2 <= reach * reach:
@@ -71,7 +71,7 @@ def is_hidden(walls: Floats, found: NDArray[np.int64], count: int, x: float, y: 
         ex, ey = bx - ax, by - ay
         side_a, side_b = dx * ay - dy * ax, dx * by - dy * bx
         side_x, side_o = ay * ex - ax * ey, (dx - ax) * ey - (dy - ay) * ex
-        # the ends of the wall lie on both sides of the line of sight, and its ends on both sides of the wall
+        # each segment separates the ends of the other one
         if side_a * side_b <= 0.0 and side_x * side_o <= 0.0 and (side_a != 0.0 or side_b != 0.0):
             return True
     return False
@@ -79,7 +79,7 @@ def is_hidden(walls: Floats, found: NDArray[np.int64], count: int, x: float, y: 
 
 @kernel
 def way_to(dx: float, dy: float, ex: float, ey: float, reach: float) -> float:
-    """Return the free way [m] to a neighbour at dx, dy when walking along e; inf when it is not in the way."""
+    """Return the free distance [m] to a neighbour at dx, dy in direction e; inf if it is not in the way."""
     if ex * dx + ey * dy < 0.0 or abs(ex * dy - ey * dx) > reach:
         return math.inf
     return math.sqrt(dx * dx + dy * dy) - reach
@@ -94,12 +94,12 @@ def _choose(crowd: _Crowd, near: Neighbors, walls: Floats, out: Floats) -> None:
 
 @kernel
 def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Floats, out: Floats) -> None:
-    # fields are taken out of the tuples here: inside the loop each access would count references
+    # unpack the tuples outside of the loop: each access counts references
     place, heading, desired, radius, top, strength, scale, wall_strength, wall_scale, gap, reach, walking = crowd
     agent, number, order = near
     A = agent.shape[1]
     found = np.empty(len(walls), dtype=np.int64)
-    seen = np.empty((agent.shape[2], 3))  # where a neighbour is from here, and the sum of the radii
+    seen = np.empty((agent.shape[2], 3))  # relative position of each visible neighbour, and sum of the radii
     for k in range(begin, end):
         row = order[k]
         wish = math.sqrt(desired[row, 0] ** 2 + desired[row, 1] ** 2)
@@ -147,20 +147,19 @@ class CollisionFreeSpeed(CrowdModel):
     """First-order model: neighbours and walls deflect the direction; the gap ahead and a time gap limit the speed.
 
     Args:
-        strength: of the repulsion between people, against 1 for the desired direction.
-        range: over which it falls to 1/e [m].
-        wall_strength: of the repulsion by walls.
-        wall_range: over which it falls to 1/e [m].
-        time_gap: time to the next one ahead at the chosen speed [s].
-        neighbor_distance: neighbours and walls are no farther than this [m], and not hidden by a wall.
-        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
-        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+        strength: strength of the repulsion between agents, relative to 1 for the desired direction.
+        range: decay length of the repulsion between agents [m].
+        wall_strength: strength of the repulsion by walls, relative to 1 for the desired direction.
+        wall_range: decay length of the repulsion by walls [m].
+        time_gap: time gap to the next agent ahead at the chosen speed [s].
+        neighbor_distance: maximum distance of neighbours and walls [m]; neighbours behind a wall are ignored.
+        max_neighbors: maximum number of neighbours (the nearest ones); rounded to a whole number.
+        max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene.
 
     The model has no inertia: direction and speed may jump, and agents never walk backwards. The speed avoids contact
     with the agent straight ahead; walls change only the direction.
 
-    The default follows version 2 of the model in JuPedSim 1.4.2. Neighbourhoods are
-    limited by distance and by number.
+    The default follows version 2 of the model in JuPedSim 1.4.2. Neighbourhoods are limited by distance and by number.
 
     Source: Tordeux, Chraibi, Seyfried 2016, doi:10.1007/978-3-319-33482-0_29, as version 2 of JuPedSim 1.4.2.
 
@@ -186,9 +185,7 @@ class CollisionFreeSpeed(CrowdModel):
     wall_range: PerAgent = parameter(0.02, unit="m", low=0.01, high=0.2, source="JuPedSim 1.4.2", min=1e-3)
     time_gap: PerAgent = parameter(1.0, unit="s", low=0.3, high=2.0, source="JuPedSim 1.4.2", min=1e-2)
     neighbor_distance: PerAgent = parameter(3.0, unit="m", low=1.0, high=5.0, source="JuPedSim 1.4.2")
-    max_neighbors: PerAgent = parameter(
-        50.0, unit="1", low=5.0, high=100.0, source="chosen here: more are never needed"
-    )
+    max_neighbors: PerAgent = parameter(50.0, unit="1", low=5.0, high=100.0, source="crowdbot: more are never needed")
     max_speed: PerAgent | None = None
 
     def __post_init__(self) -> None:

@@ -1,1 +1,1 @@
-"""Models that choose a velocity outside of velocity obstacles."""
+"""Models based on velocity obstacles."""

@@ -17,34 +17,34 @@ __all__ = ["best_velocity"]
 Array = NDArray[np.float64]
 
 PARALLEL = 1e-5
-"""Lines count as parallel when the sine of their angle is not above this."""
+"""Lines count as parallel if the sine of their angle is at most this."""
 
 
 @kernel
 def best_velocity(
     lines: Array, fixed: int, count: int, speed: float, wish_x: float, wish_y: float, spare: Array
 ) -> tuple[float, float]:
-    """Return the velocity nearest to the wish, not above ``speed``, on the left of every line.
+    """Return the velocity nearest to the desired one, at most ``speed``, on the left of every line.
 
-    When no velocity is on the left of all lines, the largest violation of the lines from ``fixed`` on becomes as small
-    as possible; the ``fixed`` lines before (walls) never give way. ``spare`` is room for as many lines.
+    If no velocity is on the left of all lines, the largest violation of the lines from ``fixed`` on is minimised; the
+    first ``fixed`` lines (walls) are hard constraints. ``spare`` is working memory for as many lines.
     """
     if wish_x * wish_x + wish_y * wish_y > speed * speed:
         length = math.sqrt(wish_x * wish_x + wish_y * wish_y)
         x, y = wish_x / length * speed, wish_y / length * speed
     else:
         x, y = wish_x, wish_y
-    failed, x, y = _plane(lines, count, speed, wish_x, wish_y, False, x, y)
+    failed, x, y = _solve_plane(lines, count, speed, wish_x, wish_y, False, x, y)
     if failed < count:
-        x, y = _least_violation(lines, fixed, count, failed, speed, x, y, spare)
+        x, y = _minimize_violation(lines, fixed, count, failed, speed, x, y, spare)
     return x, y
 
 
 @kernel
-def _on_line(
+def _solve_on_line(
     lines: Array, k: int, speed: float, wish_x: float, wish_y: float, along: bool
 ) -> tuple[bool, float, float]:
-    """Return whether line k has an allowed point, and the best: nearest to the wish, or farthest ``along`` it."""
+    """Return whether line k has a permitted point, and the best: nearest to the desired, or farthest ``along`` it."""
     x, y, ux, uy = lines[k, 0], lines[k, 1], lines[k, 2], lines[k, 3]
     across = ux * y - uy * x
     half2 = speed * speed - across * across
@@ -75,13 +75,13 @@ def _on_line(
 
 
 @kernel
-def _plane(
+def _solve_plane(
     lines: Array, count: int, speed: float, wish_x: float, wish_y: float, along: bool, x: float, y: float
 ) -> tuple[int, float, float]:
-    """Take the lines one by one, from the best point x, y of the disc; return the first that fails, or ``count``."""
+    """Add the lines one by one, from the best point x, y of the disc; return the first that fails, or ``count``."""
     for k in range(count):
         if lines[k, 2] * (lines[k, 1] - y) - lines[k, 3] * (lines[k, 0] - x) > 0.0:
-            found, new_x, new_y = _on_line(lines, k, speed, wish_x, wish_y, along)
+            found, new_x, new_y = _solve_on_line(lines, k, speed, wish_x, wish_y, along)
             if not found:
                 return k, x, y
             x, y = new_x, new_y
@@ -89,10 +89,10 @@ def _plane(
 
 
 @kernel
-def _least_violation(
+def _minimize_violation(
     lines: Array, fixed: int, count: int, failed: int, speed: float, x: float, y: float, spare: Array
 ) -> tuple[float, float]:
-    """Move away from the worst line, from the failed one on, while lines before it are violated no more than it."""
+    """Minimise the violation of each worst line, from the failed one on; earlier lines are not violated more."""
     for k in range(fixed):
         for c in range(4):
             spare[k, c] = lines[k, c]
@@ -103,17 +103,17 @@ def _least_violation(
             continue
         held = fixed
         for j in range(fixed, i):
-            held += _bisector(lines, i, j, spare, held)
-        passed, new_x, new_y = _plane(spare, held, speed, -uy, ux, True, -uy * speed, ux * speed)
-        if passed == held:  # else only rounding has failed: keep the velocity so far
+            held += _write_bisector(lines, i, j, spare, held)
+        passed, new_x, new_y = _solve_plane(spare, held, speed, -uy, ux, True, -uy * speed, ux * speed)
+        if passed == held:  # otherwise, failed by rounding only: keep the velocity
             x, y = new_x, new_y
         worst = ux * (lines[i, 1] - y) - uy * (lines[i, 0] - x)
     return x, y
 
 
 @kernel
-def _bisector(lines: Array, i: int, j: int, spare: Array, at: int) -> int:
-    """Write the line where lines i and j are equally violated to ``spare[at]``; return 0 when there is none."""
+def _write_bisector(lines: Array, i: int, j: int, spare: Array, at: int) -> int:
+    """Write the line on which lines i and j are equally violated to ``spare[at]``; return 1, or 0 if there is none."""
     x, y, ux, uy = lines[i, 0], lines[i, 1], lines[i, 2], lines[i, 3]
     ox, oy, vx, vy = lines[j, 0], lines[j, 1], lines[j, 2], lines[j, 3]
     turn = ux * vy - uy * vx

@@ -28,11 +28,11 @@ __all__ = ["ORCA"]
 
 Floats = NDArray[np.float64]
 SHORTEST = 1e-3
-"""Shortest horizon [s]: a horizon of 0 has no line."""
+"""Minimum time horizon [s]; a horizon of 0 has no line."""
 
 
 class _Crowd(NamedTuple):
-    """What the kernel reads of every agent, by row ``e * A + a``."""
+    """Data of every agent for the kernel, by row ``e * A + a``."""
 
     position: Floats
     velocity: Floats
@@ -54,7 +54,7 @@ def _choose(crowd: _Crowd, near: Neighbors, edges: Edges, dt: float, out: Floats
 
 @kernel
 def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, edges: Edges, dt: float, out: Floats) -> None:
-    # fields are taken out of the tuples here: inside the loop each access would count references
+    # unpack the tuples outside of the loop: each access counts references
     place, velocity, desired, radius, top, horizon, wall_horizon, external, walking = crowd
     agent, number, order = near
     corner, direction, previous, following, convex = edges
@@ -70,7 +70,7 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, edges: Ed
         e, a = row // A, row % A
         x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
         reach = wall_horizon[row] * top[row] + radius[row]
-        fixed = int(np.int64(0))  # a plain 0 would be a type of its own and compile all that follows twice
+        fixed = int(np.int64(0))  # a literal 0 has its own type, which compiles the callees twice
         for n in range(edges_in_reach(corner, following, x, y, reach, found, gap2)):
             fixed += avoid_edge(
                 lines, fixed, found[n], corner, direction, previous, following, convex,
@@ -94,14 +94,14 @@ class ORCA(CrowdModel):
 
     Args:
         neighbor_distance: maximum distance of neighbours [m].
-        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
+        max_neighbors: maximum number of neighbours (the nearest ones); rounded to a whole number.
         time_horizon: time horizon for agents [s].
         time_horizon_walls: time horizon for walls [s].
-        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+        max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene.
 
-    External agents do not give way; the others take the whole change. The chosen velocity is the permitted one nearest
-    to the desired velocity. If none is permitted, the largest violation is minimised (walls are never violated).
-    Velocities may be discontinuous: real robots need an acceleration limit.
+    External agents do not give way; the others make the whole change. The model chooses the permitted velocity nearest
+    to the desired one. If none is permitted, it minimises the largest violation (walls are never violated). Velocities
+    may be discontinuous: real robots need an acceleration limit.
 
     The default reproduces the RVO2 library. Differences: external agents take no share of the avoidance, and
     overlapping walls and degenerate scenes give bounded velocities.

@@ -19,11 +19,11 @@ __all__ = ["Edges", "avoid_agent", "avoid_edge", "edges_in_reach", "edges_of"]
 Array = NDArray[np.float64]
 
 COVERED = 1e-5
-"""An edge is left out when lines before cover it up to this [m/s]."""
+"""An edge is skipped if earlier lines cover it up to this tolerance [m/s]."""
 
 
 class Edges(NamedTuple):
-    """Walls as kernels read them: edge k runs from corner k to corner ``next[k]``, solid on its left."""
+    """Walls for kernels: edge k leads from corner k to corner ``next[k]``, with the solid on its left."""
 
     corner: Array
     """``[M, 2]`` start of the edge [m]."""
@@ -67,14 +67,14 @@ def avoid_agent(
     """Write the line of one neighbour to ``lines[at]``.
 
     Args:
-        lines, at: where to write.
-        x, y: position of the neighbour relative to the own [m].
-        vx, vy, other_vx, other_vy: own velocity and its [m/s].
+        lines, at: output array and row.
+        x, y: position of the neighbour relative to the agent [m].
+        vx, vy, other_vx, other_vy: velocities of the agent and of the neighbour [m/s].
         reach: sum of the radii [m].
-        horizon: no contact before this [s].
-        dt: time step [s], in which an overlap is to end.
-        share: how much of the change is mine: 1/2, or 1 when the other does not react.
-        side: 1 or -1, where to go when nothing else decides.
+        horizon: time without contact [s].
+        dt: time step [s], in which an overlap is resolved.
+        share: share of the agent in the change: 1/2, or 1 if the neighbour does not react.
+        side: 1 or -1, direction along x if no other direction is defined.
     """
     wx, wy = vx - other_vx, vy - other_vy
     distance2 = x * x + y * y
@@ -83,13 +83,13 @@ def avoid_agent(
     cx, cy = wx - inverse * x, wy - inverse * y  # from the centre of the cut-off disc to the relative velocity
     inward = cx * x + cy * y
     if not apart or (inward < 0.0 and inward * inward > reach * reach * (cx * cx + cy * cy)):
-        nx, ny = _way_out(cx, cy, x, y, side)
+        nx, ny = _exit_direction(cx, cy, x, y, side)
         ux, uy = ny, -nx
         change = reach * inverse - math.sqrt(cx * cx + cy * cy)
         px, py = change * nx, change * ny
     else:
         turn = 1.0 if x * cy - y * cx > 0.0 else -1.0
-        ux, uy = _leg(x, y, reach, turn)
+        ux, uy = _tangent(x, y, reach, turn)
         ux, uy = turn * ux, turn * uy
         along = wx * ux + wy * uy
         px, py = along * ux - wx, along * uy - wy
@@ -98,8 +98,8 @@ def avoid_agent(
 
 
 @kernel
-def _way_out(cx: float, cy: float, x: float, y: float, side: float) -> tuple[float, float]:
-    """Return the unit vector along c; without c the one away from x, y; without that one to the given side."""
+def _exit_direction(cx: float, cy: float, x: float, y: float, side: float) -> tuple[float, float]:
+    """Return the unit vector along c; if c is 0, away from x, y; if that is 0, too, to the given side."""
     length = math.sqrt(cx * cx + cy * cy)
     if length > 0.0:
         return cx / length, cy / length
@@ -110,8 +110,8 @@ def _way_out(cx: float, cy: float, x: float, y: float, side: float) -> tuple[flo
 
 
 @kernel
-def _leg(px: float, py: float, radius: float, turn: float) -> tuple[float, float]:
-    """Return the unit direction of the tangent to a disc at p, on its left (``turn`` 1) or right (-1)."""
+def _tangent(px: float, py: float, radius: float, turn: float) -> tuple[float, float]:
+    """Return the unit direction of the tangent to a disc at p, on the left (``turn`` 1) or right (-1)."""
     distance2 = px * px + py * py
     leg = math.sqrt(max(0.0, distance2 - radius * radius))
     return (px * leg - turn * py * radius) / distance2, (turn * px * radius + py * leg) / distance2
@@ -121,7 +121,7 @@ def _leg(px: float, py: float, radius: float, turn: float) -> tuple[float, float
 def edges_in_reach(
     corner: Array, following: NDArray[np.int64], x: float, y: float, reach: float, found: NDArray[np.int64], gap2: Array
 ) -> int:
-    """Find the edges seen from their free side and strictly nearer than ``reach``, nearest first; return how many."""
+    """Find the edges within ``reach`` that face x, y with their free side, nearest first; return their number."""
     held = 0
     for k in range(len(corner)):
         ax, ay = corner[k, 0], corner[k, 1]
@@ -158,7 +158,7 @@ def avoid_edge(
     radius: float,
     horizon: float,
 ) -> int:
-    """Write the line of the edge from corner a to the next to ``lines[at]``; return 1, or 0 when it needs none."""
+    """Write the line of the edge from corner a to the next to ``lines[at]``; return 1, or 0 if it needs none."""
     b = following[a]
     ax, ay, bx, by = corner[a, 0] - x, corner[a, 1] - y, corner[b, 0] - x, corner[b, 1] - y
     ex, ey = bx - ax, by - ay
@@ -169,25 +169,27 @@ def avoid_edge(
     off2 = (ax + s * ex) ** 2 + (ay + s * ey) ** 2
     r2 = radius * radius
     if s < 0.0 and ax * ax + ay * ay <= r2:
-        return _stop_at(lines, at, -ay, ax) if convex[a] else 0
+        return _write_stop_line(lines, at, -ay, ax) if convex[a] else 0
     if s > 1.0 and bx * bx + by * by <= r2:
         behind = bx * direction[b, 1] - by * direction[b, 0] < 0.0
-        return _stop_at(lines, at, -by, bx) if convex[b] and not behind else 0
+        return _write_stop_line(lines, at, -by, bx) if convex[b] and not behind else 0
     if 0.0 <= s <= 1.0 and off2 <= r2:
-        return _stop_at(lines, at, -direction[a, 0], -direction[a, 1])
+        return _write_stop_line(lines, at, -direction[a, 0], -direction[a, 1])
     left, right = a, b  # corners that bound the cone
-    if off2 <= r2:  # seen so obliquely that one corner hides the other
+    if off2 <= r2:  # oblique view: one corner hides the other
         left = right = a if s < 0.0 else b
         if not convex[left]:
             return 0
-    return _cone(lines, at, a, left, right, corner, direction, previous, convex, x, y, vx, vy, radius, inverse)
+    return _write_cone_line(
+        lines, at, a, left, right, corner, direction, previous, convex, x, y, vx, vy, radius, inverse
+    )
 
 
 @kernel
 def _is_covered(
     lines: Array, count: int, ax: float, ay: float, bx: float, by: float, radius: float, inverse: float
 ) -> bool:
-    """Return whether one of the lines so far already keeps clear of both ends of an edge."""
+    """Return whether an earlier line already excludes contact with both ends of an edge."""
     for k in range(count):
         px, py, ux, uy = lines[k, 0], lines[k, 1], lines[k, 2], lines[k, 3]
         of_a = (inverse * ax - px) * uy - (inverse * ay - py) * ux - inverse * radius
@@ -198,8 +200,8 @@ def _is_covered(
 
 
 @kernel
-def _stop_at(lines: Array, at: int, ux: float, uy: float) -> int:
-    """Write a line through standing still, for a wall that is touched already."""
+def _write_stop_line(lines: Array, at: int, ux: float, uy: float) -> int:
+    """Write a line through zero velocity, for a wall in contact; return 1, or 0 without a direction."""
     length = math.sqrt(ux * ux + uy * uy)
     if length == 0.0:
         return 0
@@ -209,7 +211,7 @@ def _stop_at(lines: Array, at: int, ux: float, uy: float) -> int:
 
 
 @kernel
-def _legs(
+def _cone_legs(
     lx: float,
     ly: float,
     rx: float,
@@ -224,25 +226,25 @@ def _legs(
 ) -> tuple[float, float, bool, float, float, bool]:
     """Return the directions of the left and right leg of the cone, and whether each belongs to this edge.
 
-    A leg does not point into the neighbouring edge: then it follows that edge, which has a line of its own.
+    A leg that would point into the adjacent edge follows that edge instead, which has its own line.
     """
     mlx, mly = -direction[a, 0], -direction[a, 1]
     mrx, mry = direction[a, 0], direction[a, 1]
     left_own = right_own = True
     if convex[left]:
-        mlx, mly = _leg(lx, ly, radius, 1.0)
+        mlx, mly = _tangent(lx, ly, radius, 1.0)
         before = previous[left]
         if mly * direction[before, 0] - mlx * direction[before, 1] >= 0.0:
             mlx, mly, left_own = -direction[before, 0], -direction[before, 1], False
     if convex[right]:
-        mrx, mry = _leg(rx, ry, radius, -1.0)
+        mrx, mry = _tangent(rx, ry, radius, -1.0)
         if mrx * direction[right, 1] - mry * direction[right, 0] <= 0.0:
             mrx, mry, right_own = direction[right, 0], direction[right, 1], False
     return mlx, mly, left_own, mrx, mry, right_own
 
 
 @kernel
-def _cone(
+def _write_cone_line(
     lines: Array,
     at: int,
     a: int,
@@ -259,10 +261,12 @@ def _cone(
     radius: float,
     inverse: float,
 ) -> int:
-    """Write the line of the velocity obstacle between two corners, where it is nearest to the velocity."""
+    """Write the line of the velocity obstacle between two corners at the point nearest to the velocity."""
     lx, ly = corner[left, 0] - x, corner[left, 1] - y
     rx, ry = corner[right, 0] - x, corner[right, 1] - y
-    mlx, mly, left_own, mrx, mry, right_own = _legs(lx, ly, rx, ry, a, left, right, direction, previous, convex, radius)
+    mlx, mly, left_own, mrx, mry, right_own = _cone_legs(
+        lx, ly, rx, ry, a, left, right, direction, previous, convex, radius
+    )
     same = left == right
     clx, cly, crx, cry = inverse * lx, inverse * ly, inverse * rx, inverse * ry
     reach = inverse * radius
@@ -271,22 +275,22 @@ def _cone(
     tl = (vx - clx) * mlx + (vy - cly) * mly
     tr = (vx - crx) * mrx + (vy - cry) * mry
     if (t < 0.0 and tl < 0.0) or (same and tl < 0.0 and tr < 0.0):
-        return _around(lines, at, clx, cly, vx, vy, reach)
+        return _write_disc_line(lines, at, clx, cly, vx, vy, reach)
     if t > 1.0 and tr < 0.0:
-        return _around(lines, at, crx, cry, vx, vy, reach)
+        return _write_disc_line(lines, at, crx, cry, vx, vy, reach)
     to_cut = math.inf if same or t < 0.0 or t > 1.0 else (vx - clx - t * cx) ** 2 + (vy - cly - t * cy) ** 2
     to_left = math.inf if tl < 0.0 else (vx - clx - tl * mlx) ** 2 + (vy - cly - tl * mly) ** 2
     to_right = math.inf if tr < 0.0 else (vx - crx - tr * mrx) ** 2 + (vy - cry - tr * mry) ** 2
     if to_cut <= to_left and to_cut <= to_right:
-        return _beside(lines, at, clx, cly, -direction[a, 0], -direction[a, 1], reach)
+        return _write_offset_line(lines, at, clx, cly, -direction[a, 0], -direction[a, 1], reach)
     if to_left <= to_right:
-        return _beside(lines, at, clx, cly, mlx, mly, reach) if left_own else 0
-    return _beside(lines, at, crx, cry, -mrx, -mry, reach) if right_own else 0
+        return _write_offset_line(lines, at, clx, cly, mlx, mly, reach) if left_own else 0
+    return _write_offset_line(lines, at, crx, cry, -mrx, -mry, reach) if right_own else 0
 
 
 @kernel
-def _around(lines: Array, at: int, cx: float, cy: float, vx: float, vy: float, reach: float) -> int:
-    """Write the tangent of the disc about c at the point nearest to the velocity."""
+def _write_disc_line(lines: Array, at: int, cx: float, cy: float, vx: float, vy: float, reach: float) -> int:
+    """Write the tangent of the disc around c at the point nearest to the velocity."""
     length = math.sqrt((vx - cx) ** 2 + (vy - cy) ** 2)
     nx, ny = (vx - cx) / length, (vy - cy) / length
     lines[at, 0], lines[at, 1] = cx + reach * nx, cy + reach * ny
@@ -295,8 +299,8 @@ def _around(lines: Array, at: int, cx: float, cy: float, vx: float, vy: float, r
 
 
 @kernel
-def _beside(lines: Array, at: int, cx: float, cy: float, ux: float, uy: float, reach: float) -> int:
-    """Write the line with direction u that passes c at ``reach`` on its left."""
+def _write_offset_line(lines: Array, at: int, cx: float, cy: float, ux: float, uy: float, reach: float) -> int:
+    """Write the line with direction u at distance ``reach`` to the left of c."""
     lines[at, 0], lines[at, 1] = cx - reach * uy, cy + reach * ux
     lines[at, 2], lines[at, 3] = ux, uy
     return 1

@@ -1,4 +1,4 @@
-"""PLEdestrians: of all velocities that keep clear of the others, the one that costs the least effort to the goal."""
+"""PLEdestrians: least-effort velocities among those permitted by ORCA (Guy et al. 2010)."""
 
 from __future__ import annotations
 
@@ -29,21 +29,21 @@ __all__ = ["PLEdestrians"]
 
 Floats = NDArray[np.float64]
 SHORTEST = 1e-3
-"""Shortest horizon [s]: a horizon of 0 has no line."""
+"""Minimum time horizon [s]; a horizon of 0 has no line."""
 ROUNDS = 30
-"""Maximum number of iterations of the search for the least effort; it rarely needs them."""
+"""Maximum number of iterations of the search for the least effort; rarely reached."""
 SETTLED = 1e-9
-"""It has ended when the way left to the goal changes by less than this share."""
+"""Relative change of the remaining distance to the goal at which the search stops."""
 
 
 class _Crowd(NamedTuple):
-    """What the kernel reads of every agent, by row ``e * A + a``."""
+    """Data of every agent for the kernel, by row ``e * A + a``."""
 
     position: Floats
     velocity: Floats
     desired: Floats
     distance: Floats
-    """To the goal [m]; inf when there is only a desired velocity."""
+    """Distance to the goal [m]; inf if only a desired velocity is given."""
     radius: Floats
     max_speed: Floats
     planning: Floats
@@ -58,11 +58,11 @@ def _least_effort(
     lines: Floats, fixed: int, count: int, top: float, wish_x: float, wish_y: float, distance: float, planning: float,
     dt: float, spare: Floats,
 ) -> tuple[float, float]:  # fmt: skip
-    """Return the velocity on the left of all lines with the least t |v|^2 + 2 s |g - t v|.
+    """Return the velocity on the left of all lines that minimises t |v|^2 + 2 s |g - t v|.
 
-    ``s`` is the length of the wish, ``g`` the way to the goal, ``t`` the planning time. For a given length L of the way
-    left, |g - t v|^2 / L stands for |g - t v|: then the best velocity is the one nearest to s g / (L + s t). Doing
-    that again with the length that comes out makes the effort less every time.
+    ``s`` is the desired speed, ``g`` the vector to the goal, ``t`` the planning time. Each iteration replaces
+    |g - t v| by |g - t v|^2 / L, L the remaining distance of the previous iteration. The minimum is then the permitted
+    velocity nearest to s g / (L + s t). The effort decreases in each iteration.
     """
     x, y = best_velocity(lines, fixed, count, top, wish_x, wish_y, spare)
     speed = math.sqrt(wish_x * wish_x + wish_y * wish_y)
@@ -89,7 +89,7 @@ def _choose(crowd: _Crowd, near: Neighbors, edges: Edges, dt: float, out: Floats
 
 @kernel
 def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, edges: Edges, dt: float, out: Floats) -> None:
-    # fields are taken out of the tuples here: inside the loop each access would count references
+    # unpack the tuples outside of the loop: each access counts references
     place, velocity, desired, distance, radius, top, planning, horizon, wall_horizon, external, walking = crowd
     agent, number, order = near
     corner, direction, previous, following, convex = edges
@@ -105,7 +105,7 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, edges: Ed
         e, a = row // A, row % A
         x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
         reach = wall_horizon[row] * top[row] + radius[row]
-        fixed = int(np.int64(0))  # a plain 0 would be a type of its own and compile all that follows twice
+        fixed = int(np.int64(0))  # a literal 0 has its own type, which compiles the callees twice
         for n in range(edges_in_reach(corner, following, x, y, reach, found, gap2)):
             fixed += avoid_edge(
                 lines, fixed, found[n], corner, direction, previous, following, convex,
@@ -133,10 +133,10 @@ class PLEdestrians(CrowdModel):
         planning_time: time at the new velocity [s]; the remaining straight path is walked at the preferred speed. The
             plan ends at the goal at the latest.
         neighbor_distance: maximum distance of neighbours [m].
-        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
+        max_neighbors: maximum number of neighbours (the nearest ones); rounded to a whole number.
         time_horizon: time horizon for agents [s].
         time_horizon_walls: time horizon for walls [s].
-        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+        max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene.
 
     Walking at speed v costs e_s + e_w v^2 per second and kilogram; over a planning time t that is
     E(v) = t (e_s + e_w |v|^2) + 2 |g - t v| sqrt(e_s e_w) to a goal at g. The best velocity depends only on sqrt(e_s /

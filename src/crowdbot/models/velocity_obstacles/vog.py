@@ -32,19 +32,19 @@ Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 MEMORY = "vog_calm"
-"""What the scene remembers of every agent: how long it has not changed its mind."""
+"""Name in the memory of a scene: calm of each agent, which grows with the time since its last large velocity change."""
 CALM = 1.0
-"""What it is at first."""
+"""Initial calm."""
 CHANGED2 = 0.01
-"""From this squared change of velocity [m2/s2] on an agent has changed its mind."""
+"""Squared change of velocity [m2/s2] above which the calm is reset."""
 BRIEF = 0.02
-"""Weight of the desired velocity in the choice of where to sample more closely."""
+"""Weight of the desired velocity when choosing the samples to refine."""
 SHORTEST = 1e-3
-"""Shortest horizon [s]."""
+"""Minimum time horizon [s]."""
 
 
 class _Crowd(NamedTuple):
-    """What the kernel reads of every agent, by row ``e * A + a``."""
+    """Data of every agent for the kernel, by row ``e * A + a``."""
 
     position: Floats
     velocity: Floats
@@ -67,7 +67,7 @@ class _Crowd(NamedTuple):
 
 
 class _Groups(NamedTuple):
-    """The rows of every group together: fellows of row k are ``member[first[k]:last[k]]``, itself among them."""
+    """Group members by row: the group of row k is ``member[first[k]:last[k]]``, including the row itself."""
 
     member: Rows
     first: Rows
@@ -85,7 +85,7 @@ def _choose(crowd: _Crowd, near: Neighbors, groups: _Groups, walls: Floats, out:
 def _choose_part(
     begin: int, end: int, crowd: _Crowd, near: Neighbors, groups: _Groups, walls: Floats, out: Floats
 ) -> None:
-    # fields are taken out of the tuples here: inside the loop each access would count references
+    # unpack the tuples outside of the loop: each access counts references
     (
         place, velocity, desired, radius, top, calm, external, walking, horizon, wall_horizon, preference, weight, most,
         keep, reach, group_horizon, formation, closeness,
@@ -124,7 +124,7 @@ def _choose_part(
             samples, best, vx, vy, px, py, r, cones[:cone_count], close[:wall_count], wall_horizon[row],
             fellows[:fellow_count], weight[row], keep[row], formation[row], closeness[row], preference[row], calm[row],
         )  # fmt: skip
-        out[row, 0], out[row, 1], out[row, 2] = _slow_down(bx, by, vx, vy, top[row], calm[row])
+        out[row, 0], out[row, 1], out[row, 2] = _limit_speed(bx, by, vx, vy, top[row], calm[row])
 
 
 @kernel
@@ -133,7 +133,7 @@ def _search(
     walls: Floats, wall_horizon: float, fellows: Floats, weight: float, keep: float, formation: float,
     closeness: float, preference: float, calm: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """Return the sampled velocity of the lowest cost; ``samples`` and ``best`` are working memory."""
+    """Return the sampled velocity with the lowest cost; ``samples`` and ``best`` are working memory."""
     wish, now = (px, py, *unit(px, py)), unit(vx, vy)
     count = sample_first(samples, vx, vy, px, py, radius)
     best[:, :3] = 0.0
@@ -156,8 +156,8 @@ def _search(
 
 
 @kernel
-def _slow_down(x: float, y: float, vx: float, vy: float, top: float, calm: float) -> tuple[float, float, float]:
-    """Return the chosen velocity, slow ones as 0 and fast ones as ``top``, and how calm the agent is after it."""
+def _limit_speed(x: float, y: float, vx: float, vy: float, top: float, calm: float) -> tuple[float, float, float]:
+    """Return the velocity, set to 0 if slow and limited to ``top``, and the calm after the step."""
     speed = math.sqrt(x * x + y * y)
     if speed < SLOW:
         x = y = speed = 0.0
@@ -175,8 +175,9 @@ class VOG(CrowdModel):
 
     The cost of a velocity is its depth in the worst velocity obstacle of neighbours and walls, plus the mean violation
     of the constraints to stay with (and abreast of) the members of the group, plus the deviation from the desired
-    velocity, plus a penalty on turning that decreases while an agent is calm. The memory ``vog_calm`` of the scene
-    contains the time since the last change of mind and its size. Groups are those of the scene; -1 is no group.
+    velocity, plus a penalty on turning that decreases with calm. The calm of an agent is stored in the memory
+    ``vog_calm`` of the scene: it is reset by large velocity changes and then grows with time. Groups are those of the
+    scene; -1 is no group.
 
     Args:
         neighbor_distance: maximum distance of neighbours [m].
@@ -185,19 +186,19 @@ class VOG(CrowdModel):
         wall_horizon: time horizon for walls [s].
         preference_weight: weight of the desired velocity.
         group_weight: weight of the group.
-        group_neighbors: maximum number of group members considered, near ones ahead with the same direction first; at
-            most 16.
+        group_neighbors: maximum number of group members considered, at most 16; members that are near, ahead and walk
+            in the same direction are preferred.
         group_radius: target distance of group members after one second [m].
         group_distance: group members farther than this [m] are ignored.
         group_horizon: time to return into the range of the group [s].
         formation: maximum offset ahead or behind when walking abreast [m]; 0 for no formation.
         closeness: importance of the group for an agent, 0 to 1.
-        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+        max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene.
 
-    External agents do not give way. The cost of walls is our own: the excess speed of a velocity that touches a wall
-    within the horizon. Use :meth:`step`; :meth:`velocity` does not update the memory.
+    External agents do not give way. The cost of walls is specific to crowdbot: the excess speed of a velocity that
+    touches a wall within the horizon. Use :meth:`step`; :meth:`velocity` does not update the memory.
 
-    The default follows the implementation in the CrowdBot simulator; the cost of walls is our own.
+    The default follows the implementation in the CrowdBot simulator, except for the cost of walls.
 
     Source: Ren, Charalambous, Bruneau, Peng, Pettré 2017, doi:10.1111/cgf.12993, as in the CrowdBot simulator.
 
@@ -245,11 +246,11 @@ class VOG(CrowdModel):
 
     @property
     def memory_at_start(self) -> Mapping[str, float]:
-        """A person who has just entered is calm."""
+        """Initial calm of a new agent."""
         return {MEMORY: CALM}
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:
-        """Return the scene ``dt`` [s] later, which remembers how calm everyone is as ``vog_calm``."""
+        """Return the scene ``dt`` [s] later, with the updated memory ``vog_calm``."""
         out = self._choose_velocity(scene, dt)
         calm = np.where(movable(scene), out[..., 2] + 10.0 * dt, CALM)
         return scene.advance(out[..., :2], dt).replace(memory={**scene.memory, MEMORY: calm})

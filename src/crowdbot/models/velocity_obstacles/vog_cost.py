@@ -1,7 +1,7 @@
-"""Costs of VOG (Ren et al. 2017): how bad a velocity is for colliding, for the own group and for the own way.
+"""Costs of VOG (Ren et al. 2017): collision, group, and deviation from the desired velocity.
 
-What does not depend on the candidate velocity is worked out once an agent: a cone a neighbour, a term a fellow of the
-group. Each is a row of numbers that the cost functions read.
+Values that do not depend on the candidate velocity are computed once per agent: a cone for each neighbour, and a term
+for each group member. Both are rows of numbers for the cost functions.
 """
 
 from __future__ import annotations
@@ -19,24 +19,25 @@ __all__ = ["CONE", "DIRECTED", "FELLOW", "collision", "companion", "cone", "fell
 Floats = NDArray[np.float64]
 
 CONE = 10
-"""Numbers of a cone: direction to the neighbour (2), cap, radius, near tangent (normal 2, offset), far one (3)."""
+"""Columns of a cone: direction to the neighbour (2), cap, radius, near tangent (normal 2, offset), far tangent (3)."""
 FELLOW = 11
-"""Numbers of a group term: 1 in range, then centre, direction of walking; 0 not, direction, caps, tangents."""
+"""Columns of a group term: in range 1, centre, walking direction; out of range 0, direction, caps, tangents."""
 DEEP = 0.5
-"""Cost of a unit of depth [m/s] in the cone of a neighbour."""
+"""Cost per depth [m/s] in the cone of a neighbour."""
 OVERLAP = 50.0
-"""Cost of a unit of depth [m/s] while two bodies overlap."""
+"""Cost per depth [m/s] while two bodies overlap."""
 SOLID = 2.5
-"""Cost of a unit of speed [m/s] too much towards a wall."""
+"""Cost per excess speed [m/s] towards a wall."""
 BACKWARDS = 10.0
 """Cost of walking away from the desired direction."""
 STOPPING = 5.0
-"""Cost of standing while wanting to walk; both begin at this squared speed [m2/s2]:"""
+"""Cost of standing if the desired velocity is not standing."""
 STANDING2 = 0.1
+"""Squared speed [m2/s2] below which an agent counts as standing."""
 DIRECTED = 1e-5
 """Below this length [m/s] a velocity has no direction."""
 IN_RANGE = 1.2
-"""Fellows nearer than this many group radii only have to be within the radius one second from now."""
+"""Group members within this many group radii only have to be within one radius after one second."""
 
 
 @kernel
@@ -47,13 +48,13 @@ def cone(
     """Write the velocity obstacle of a neighbour at x, y (relative) to ``cones[at]``.
 
     Args:
-        cones, at: where to write.
-        x, y: position of the neighbour relative to the own [m].
-        vx, vy, other_vx, other_vy: own velocity and its [m/s].
+        cones, at: output array and row.
+        x, y: position of the neighbour relative to the agent [m].
+        vx, vy, other_vx, other_vy: velocities of the agent and of the neighbour [m/s].
         reach: sum of the radii [m].
-        horizon: look ahead [s].
-        reacts: whether it gives way, too.
-        side: 1 or -1, where it is when both are at the same place.
+        horizon: time horizon [s].
+        reacts: whether the neighbour gives way, too.
+        side: 1 or -1, assumed direction along x of a neighbour at the same position.
     """
     distance = math.sqrt(x * x + y * y)
     nx, ny = (x / distance, y / distance) if distance > 0.0 else (side, 0.0)
@@ -70,7 +71,7 @@ def cone(
     sine = reach / distance
     cosine = math.sqrt(1.0 - sine * sine)
     cx, cy = ax + x * inverse, ay + y * inverse
-    # the relative velocity is on the right of the line to the neighbour (or on it): leave over the right tangent
+    # relative velocity on the right of the line to the neighbour (or on it): leave across the right tangent
     turn = 1.0 if x * (vy - other_vy) - y * (vx - other_vx) <= 0.0 else -1.0
     row[4], row[5] = -nx * sine + turn * ny * cosine, -ny * sine - turn * nx * cosine
     row[6] = row[3] + cx * row[4] + cy * row[5]
@@ -83,7 +84,7 @@ def companion(
     fellows: Floats, at: int, x: float, y: float, other_vx: float, other_vy: float, wx: float, wy: float,
     radius: float, horizon: float,
 ) -> None:  # fmt: skip
-    """Write the constraint to stay with a fellow at x, y (relative) who walks along w to ``fellows[at]``."""
+    """Write the constraint to stay with a group member at x, y (relative) that walks along w to ``fellows[at]``."""
     row = fellows[at]
     distance = math.sqrt(x * x + y * y)
     if distance < IN_RANGE * radius or distance == 0.0:
@@ -106,7 +107,7 @@ def companion(
 
 @kernel
 def walls_near(walls: Floats, x: float, y: float, reach: float, near: Floats) -> int:
-    """Write the walls nearer than ``reach``, relative to x, y, to ``near``; return how many."""
+    """Write the walls nearer than ``reach``, relative to x, y, to ``near``; return their number."""
     held = 0
     for k in range(len(walls)):
         ax, ay, bx, by = walls[k, 0] - x, walls[k, 1] - y, walls[k, 2] - x, walls[k, 3] - y
@@ -122,7 +123,7 @@ def walls_near(walls: Floats, x: float, y: float, reach: float, near: Floats) ->
 def collision(
     vx: float, vy: float, cones: Floats, count: int, walls: Floats, wall_count: int, radius: float, horizon: float
 ) -> float:
-    """Return how deep a velocity is in the worst cone or wall."""
+    """Return the cost of the worst cone or wall."""
     worst = 0.0
     for k in range(count):
         behind = vx * cones[k, 0] + vy * cones[k, 1] - cones[k, 2]
@@ -135,13 +136,13 @@ def collision(
         if near >= 0.0 and cones[k, 9] - vx * cones[k, 7] - vy * cones[k, 8] >= 0.0:
             worst = max(worst, DEEP * (behind if behind < cones[k, 3] else near))
     for k in range(wall_count):
-        worst = max(worst, _into_wall(vx, vy, walls[k], radius, horizon))
+        worst = max(worst, _wall_cost(vx, vy, walls[k], radius, horizon))
     return worst
 
 
 @kernel
-def _into_wall(vx: float, vy: float, wall: Floats, radius: float, horizon: float) -> float:
-    """Return the cost of the speed that must go so that the wall is not touched within ``horizon``."""
+def _wall_cost(vx: float, vy: float, wall: Floats, radius: float, horizon: float) -> float:
+    """Return the cost of the excess speed with which the wall is touched within ``horizon``."""
     nx, ny = float(wall[4]), float(wall[5])
     distance = math.sqrt(nx * nx + ny * ny)
     if distance == 0.0:
@@ -183,9 +184,9 @@ def fellowship(
 def own_way(
     vx: float, vy: float, wish: tuple[float, float, float, float], now: tuple[float, float], calm: float
 ) -> tuple[float, float]:
-    """Return how far a velocity is from the desired one, and the penalties of turning, backing and standing.
+    """Return the deviation from the desired velocity, and the penalties of turning, walking backwards and standing.
 
-    ``wish`` is the desired velocity, its direction apart: x, y, unit x, unit y; ``now`` the present unit direction.
+    ``wish`` is the desired velocity and its unit direction (x, y, unit x, unit y), ``now`` the current unit direction.
     """
     speed2 = vx * vx + vy * vy
     speed = math.sqrt(speed2)

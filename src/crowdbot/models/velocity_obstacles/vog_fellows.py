@@ -1,4 +1,4 @@
-"""Fellows in VOG: which members of the own group an agent keeps with, and the direction in which two walk together."""
+"""Group members in VOG: selection of members to stay with, and common walking direction."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 MOST_FELLOWS = 16
-"""Most fellows that count."""
+"""Maximum number of group members considered."""
 ALIKE = 0.7
-"""Fellows are ignored if the cosine of the angle between the desired directions is lower."""
+"""Group members are ignored if the cosine of the angle between the desired directions is lower."""
 PURPOSE = 0.5
-"""Desired speeds [m/s] above this have a direction in the choice of fellows."""
+"""Minimum desired speed [m/s] that defines a direction in the selection of group members."""
 POINTED = 0.1
-"""A desired speed [m/s] above this gives the direction of walking."""
+"""Minimum desired speed [m/s] that defines the walking direction."""
 
 
 @kernel
@@ -31,7 +31,7 @@ def pick_fellows(
     row: int, mates: Rows, place: Floats, velocity: Floats, desired: Floats, reach: float, most: int,
     found: Rows, key: Floats,
 ) -> int:  # fmt: skip
-    """Find the fellows to keep with: near, ahead and going the same way; return how many."""
+    """Find the group members to stay with: near, ahead and in the same direction; return their number."""
     held = 0
     px, py = desired[row, 0], desired[row, 1]
     own = math.sqrt(px * px + py * py)
@@ -65,14 +65,14 @@ def pick_fellows(
 
 @kernel
 def unit(x: float, y: float) -> tuple[float, float]:
-    """Return the direction of a velocity, 0 when it has none."""
+    """Return the direction of a velocity, or 0 if it is too slow."""
     length = math.sqrt(x * x + y * y)
     return (x / length, y / length) if length > DIRECTED else (0.0, 0.0)
 
 
 @kernel
 def walking_direction(px: float, py: float, qx: float, qy: float, vx: float, vy: float) -> tuple[float, float]:
-    """Return the direction in which two fellows walk: as one wants to, or the other, or as one walks."""
+    """Return the common walking direction of two agents: desired direction of either, otherwise current direction."""
     if px * px + py * py > POINTED * POINTED:
         return unit(px, py)
     if qx * qx + qy * qy > POINTED * POINTED:

@@ -1,1 +1,1 @@
-"""Models that react to what people see: directions, times and distances of closest approach."""
+"""Vision-based models: they use directions, times and distances of closest approach."""

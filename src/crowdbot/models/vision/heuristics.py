@@ -29,13 +29,13 @@ Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 ANGLES = 61
-"""Directions that are looked at, the desired one and as many on each side."""
+"""Number of candidate directions: the desired one and as many on each side."""
 EQUAL = 1e-9
-"""Relative advantage [share of the largest cost] required of another direction, against rounding."""
+"""Minimum advantage of another direction as a fraction of the largest cost, against rounding."""
 
 
 class _Crowd(NamedTuple):
-    """What the kernel reads of every agent, by row ``e * A + a``."""
+    """Data of every agent for the kernel, by row ``e * A + a``."""
 
     position: Floats
     velocity: Floats
@@ -50,8 +50,8 @@ class _Crowd(NamedTuple):
 
 
 @kernel
-def _fan(ux: float, uy: float, widest: float, left_first: bool, fan: Floats) -> None:
-    """Write unit directions to ``fan``: u first, then one step more to the one and the other side, up to ``widest``.
+def _write_fan(ux: float, uy: float, widest: float, left_first: bool, fan: Floats) -> None:
+    """Write unit directions to ``fan``: u first, then alternately to both sides in equal steps up to ``widest``.
 
     The third column is the cosine of the angle to u.
     """
@@ -67,16 +67,16 @@ def _fan(ux: float, uy: float, widest: float, left_first: bool, fan: Floats) -> 
 
 
 @kernel
-def _free_of_agent(
+def _shorten_by_agent(
     x: float, y: float, vx: float, vy: float, reach: float, speed: float, fan: Floats, free: Floats
 ) -> None:
-    """Shorten the free ways to the contact with a neighbour: x, y from it to here, v its velocity."""
+    """Limit the free paths by a neighbour: x, y is the vector from it to the agent, v its velocity."""
     c = x * x + y * y - reach * reach
     for k in range(len(fan)):
         wx, wy = speed * fan[k, 0] - vx, speed * fan[k, 1] - vy
         a, b = wx * wx + wy * wy, x * wx + y * wy
         root = b * b - a * c
-        if b < 0.0 and root > 0.0:  # who is in contact is in the way only of those who come nearer
+        if b < 0.0 and root > 0.0:  # bodies in contact block only approaching agents
             free[k] = min(free[k], speed * max(0.0, c) / (math.sqrt(root) - b))
 
 
@@ -84,7 +84,7 @@ def _free_of_agent(
 def _time_to_wall(
     x: float, y: float, vx: float, vy: float, radius: float, ax: float, ay: float, bx: float, by: float
 ) -> float:
-    """Return when a disc touches segment a-b; when it touches it already, 0 if it goes on and inf if it leaves."""
+    """Return the time until a disc touches segment a-b; in contact, 0 if it approaches, otherwise inf."""
     nx, ny = nearest_on_segment(x, y, ax, ay, bx, by)
     nx, ny = x - nx, y - ny
     if nx * nx + ny * ny > radius * radius:
@@ -93,8 +93,8 @@ def _time_to_wall(
 
 
 @kernel
-def _contact(dx: float, dy: float, reach: float, stiffness: float, side: float) -> tuple[float, float]:
-    """Return the acceleration by a body at -dx, -dy that is nearer than ``reach``."""
+def _contact_acceleration(dx: float, dy: float, reach: float, stiffness: float, side: float) -> tuple[float, float]:
+    """Return the acceleration by contact with a body at -dx, -dy; 0 beyond ``reach``."""
     distance = math.sqrt(dx * dx + dy * dy)
     if distance >= reach:
         return 0.0, 0.0
@@ -105,16 +105,16 @@ def _contact(dx: float, dy: float, reach: float, stiffness: float, side: float) 
 
 
 @kernel
-def _free_ways(
+def _write_free_paths(
     row: int, others: Rows, place: Floats, velocity: Floats, radius: Floats, walls: Floats, sight: float, speed: float,
     fan: Floats, free: Floats,
 ) -> None:  # fmt: skip
-    """Write how far one could walk in every direction at ``speed`` before a contact to ``free``, ``sight`` at most."""
+    """Write the path length at ``speed`` before a contact in each direction to ``free``, at most ``sight``."""
     x, y, r = place[row, 0], place[row, 1], radius[row]
     free[:] = sight
     for o in others:
         reach = r + radius[o]
-        _free_of_agent(x - place[o, 0], y - place[o, 1], velocity[o, 0], velocity[o, 1], reach, speed, fan, free)
+        _shorten_by_agent(x - place[o, 0], y - place[o, 1], velocity[o, 0], velocity[o, 1], reach, speed, fan, free)
     for m in range(len(walls)):
         ax, ay, bx, by = walls[m, 0], walls[m, 1], walls[m, 2], walls[m, 3]
         nx, ny = nearest_on_segment(x, y, ax, ay, bx, by)
@@ -135,8 +135,8 @@ def _most_direct(sight: float, fan: Floats, free: Floats) -> int:
 
 
 @kernel
-def _ahead(row: int, others: Rows, place: Floats, radius: Floats, walls: Floats, ux: float, uy: float) -> float:
-    """Return the free distance along u if all others stand still."""
+def _free_distance(row: int, others: Rows, place: Floats, radius: Floats, walls: Floats, ux: float, uy: float) -> float:
+    """Return the free distance along u with all other agents at rest."""
     x, y, r = place[row, 0], place[row, 1], radius[row]
     way = math.inf
     for o in others:
@@ -148,19 +148,19 @@ def _ahead(row: int, others: Rows, place: Floats, radius: Floats, walls: Floats,
 
 
 @kernel
-def _contacts(
+def _sum_contacts(
     row: int, others: Rows, place: Floats, radius: Floats, walls: Floats, stiffness: float
 ) -> tuple[float, float]:
-    """Return the acceleration by all bodies and walls that touch the body."""
+    """Return the sum of the contact accelerations by bodies and walls."""
     x, y, r = place[row, 0], place[row, 1], radius[row]
     fx, fy = 0.0, 0.0
     for o in others:
         side = -1.0 if row < o else 1.0
-        px, py = _contact(x - place[o, 0], y - place[o, 1], r + radius[o], stiffness, side)
+        px, py = _contact_acceleration(x - place[o, 0], y - place[o, 1], r + radius[o], stiffness, side)
         fx, fy = fx + px, fy + py
     for m in range(len(walls)):
         nx, ny = nearest_on_segment(x, y, walls[m, 0], walls[m, 1], walls[m, 2], walls[m, 3])
-        px, py = _contact(x - nx, y - ny, r, stiffness, 0.0)
+        px, py = _contact_acceleration(x - nx, y - ny, r, stiffness, 0.0)
         fx, fy = fx + px, fy + py
     return fx, fy
 
@@ -174,7 +174,7 @@ def _choose(crowd: _Crowd, near: Neighbors, walls: Floats, dt: float, out: Float
 
 @kernel
 def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Floats, dt: float, out: Floats) -> None:
-    # fields are taken out of the tuples here: inside the loop each access would count references
+    # unpack the tuples outside of the loop: each access counts references
     place, velocity, desired, radius, top, field, sight, relaxation, stiffness, walking = crowd
     agent, number, order = near
     A = agent.shape[1]
@@ -193,12 +193,12 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Fl
         ux, uy = 0.0, 0.0
         if speed > 0.0:
             ux, uy = desired[row, 0] / speed, desired[row, 1] / speed
-            _fan(ux, uy, field[row], ux * vy - uy * vx > EQUAL * speed, fan)
-            _free_ways(row, others, place, velocity, radius, walls, sight[row], speed, fan, free)
+            _write_fan(ux, uy, field[row], ux * vy - uy * vx > EQUAL * speed, fan)
+            _write_free_paths(row, others, place, velocity, radius, walls, sight[row], speed, fan, free)
             best = _most_direct(sight[row], fan, free)
             ux, uy = fan[best, 0], fan[best, 1]
-            speed = min(speed, _ahead(row, others, place, radius, walls, ux, uy) / relaxation[row])
-        fx, fy = _contacts(row, others, place, radius, walls, stiffness[row])
+            speed = min(speed, _free_distance(row, others, place, radius, walls, ux, uy) / relaxation[row])
+        fx, fy = _sum_contacts(row, others, place, radius, walls, stiffness[row])
         vx += ((speed * ux - vx) / relaxation[row] + fx) * dt
         vy += ((speed * uy - vy) / relaxation[row] + fy) * dt
         shorter = min(1.0, top[row] / max(math.sqrt(vx * vx + vy * vy), 1e-300))
@@ -216,8 +216,8 @@ class Heuristics(CrowdModel):
         contact_stiffness: acceleration per metre of overlap between bodies, and with walls [1/s^2]; limited to the
             value that resolves the overlap in one time step.
         neighbor_distance: maximum distance of neighbours [m].
-        max_neighbors: maximum number of neighbours, the nearest first; rounded to a whole number.
-        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+        max_neighbors: maximum number of neighbours (the nearest ones); rounded to a whole number.
+        max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene.
 
     In direction a, the free path f(a) is the distance at the desired speed to the first contact with a wall or a moving
     neighbour. Of 61 directions, the model chooses the one whose free path ends nearest to the point at sight distance

@@ -28,14 +28,13 @@ __all__ = ["Tangent"]
 Floats = NDArray[np.float64]
 
 REACTION = 3.5
-"""Walkers with the default errors react when contact is this near [s] (measured on the original)."""
+"""Time to contact [s] at which agents with the default errors react (measured on the original)."""
 RELAXATION = 1.0
-"""Time [s] in which the desired velocity draws the present one to it, before the result is judged (measured on the
-original)."""
+"""Time constant [s] from the current to the desired velocity in the evaluated velocity (measured on the original)."""
 
 
 class _Crowd(NamedTuple):
-    """What the kernel reads of every agent, by row ``e * A + a``."""
+    """Data of every agent for the kernel, by row ``e * A + a``."""
 
     position: Floats
     velocity: Floats
@@ -61,7 +60,7 @@ def _choose(crowd: _Crowd, near: Neighbors, walls: Floats, dt: float, out: Float
 
 @kernel
 def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Floats, dt: float, out: Floats) -> None:
-    # fields are taken out of the tuples here: inside the loop each access would count references
+    # unpack the tuples outside of the loop: each access counts references
     (place, velocity, desired, comfort, remaining, radius, area, top, reaction, horizon, wall_horizon, external,
      walking) = crowd  # fmt: skip
     agent, number, order = near
@@ -76,18 +75,18 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Fl
         e, a = row // A, row % A
         x, y, vx, vy = place[row, 0], place[row, 1], velocity[row, 0], velocity[row, 1]
         pull = min(1.0, dt / RELAXATION)
-        hx, hy = vx + pull * (px - vx), vy + pull * (py - vy)  # the velocity that is judged
+        hx, hy = vx + pull * (px - vx), vy + pull * (py - vy)  # evaluated velocity
         tx, ty = px, py
-        close = _first_inside(row, row - a, x, y, place, area, agent[e, a], number[e, a])
+        close = _nearest_overlap(row, row - a, x, y, place, area, agent[e, a], number[e, a])
         if close >= 0:
             tx, ty = retreat(place[close, 0] - x, place[close, 1] - y, hx, hy, 1.0 if row < close else -1.0)
-        for turn in range(2):  # first what is wrong with walking on like this, then with the target
+        for turn in range(2):  # evaluate the current course first, then the target
             bx, by = (hx, hy) if turn == 0 and close < 0 else (tx, ty)
-            count = int(np.int64(0))  # a plain 0 would be a type of its own
+            count = int(np.int64(0))  # a literal 0 has its own type
             for n in range(number[e, a] if close < 0 else 0):
                 other = row - a + agent[e, a, n]
                 if turn == 1 and not external[other]:
-                    continue  # people are met when they are in the way; robots do not give way
+                    continue  # other agents give way themselves; external agents do not
                 if threat_of_neighbor(new, place[other, 0] - x, place[other, 1] - y, bx, by, velocity[other, 0],
                            velocity[other, 1], area[row] + area[other], reaction[row], horizon[row], external[other],
                            top[row]):  # fmt: skip
@@ -104,7 +103,7 @@ def _choose_part(begin: int, end: int, crowd: _Crowd, near: Neighbors, walls: Fl
 
 
 @kernel
-def _first_inside(
+def _nearest_overlap(
     row: int, first: int, x: float, y: float, place: Floats, area: Floats, others: NDArray[np.int32], count: int
 ) -> int:
     """Return the row of the nearest neighbour whose personal area overlaps that of the agent, or -1."""
@@ -120,7 +119,7 @@ def _first_inside(
 def _change_velocity(
     vx: float, vy: float, tx: float, ty: float, most: float, top: float, arriving: float
 ) -> tuple[float, float]:
-    """Return the velocity on the way to its target, limited in change, in speed and near the goal."""
+    """Return the velocity changed towards the target t, limited in change, in speed and near the goal."""
     dx, dy = tx - vx, ty - vy
     change = math.sqrt(dx * dx + dy * dy)
     if change > most:
@@ -151,13 +150,13 @@ class Tangent(CrowdModel):
         wall_horizon: time horizon for walls [s].
         neighbor_distance: maximum distance of neighbours [m].
         max_neighbors: maximum number of neighbours, the nearest first.
-        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
+        max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene.
 
-    The comfort speed is the preferred speed of the scene, or the length of the preferred velocity. The cost of walls is
-    our own: the speed towards a wall is limited to reaching it at the end of the horizon.
+    The comfort speed is the preferred speed of the scene, or the length of the preferred velocity. The constraint of
+    walls is specific to crowdbot: the speed towards a wall is limited so that it is reached at the end of the horizon.
 
-    The default has the geometry of the paper. The reaction time and the braking are fitted to the implementation in the
-    CrowdBot simulator; the paper's law of perception errors is not reproduced.
+    The default uses the geometry of the paper. Reaction time and braking are fitted to the implementation in the
+    CrowdBot simulator; the law of perception errors of the paper is not reproduced.
 
     Source: Pettré, Ondřej, Olivier, Cretual, Donikian 2009, doi:10.1145/1599470.1599495.
 
@@ -199,8 +198,8 @@ class Tangent(CrowdModel):
 
         most = np.rint(each("max_neighbors"))
         near = nearest(scene.position, each("neighbor_distance"), most, scene.active & scene.visible, walking)
-        comfort, remaining = _pace(scene, wish)
-        with np.errstate(divide="ignore"):  # without errors, walkers react immediately
+        comfort, remaining = _comfort_speed(scene, wish)
+        with np.errstate(divide="ignore"):  # without errors, agents react immediately
             errors = (each("direction_error") / 0.5) ** 0.62 * (each("speed_error") / 0.25) ** 0.38
             reaction = REACTION / errors
         crowd = _Crowd(
@@ -214,7 +213,7 @@ class Tangent(CrowdModel):
         return out
 
 
-def _pace(scene: Scene, wish: Floats) -> tuple[Floats, Floats]:
+def _comfort_speed(scene: Scene, wish: Floats) -> tuple[Floats, Floats]:
     """Return comfort speeds [m/s] and distances to the goal [m], each ``[E, A]``."""
     if scene.preferred_velocity is not None:
         return np.sqrt(wish[..., 0] ** 2 + wish[..., 1] ** 2), np.full(scene.shape, np.inf)

@@ -1,4 +1,4 @@
-"""VBM: vision-based steering down the slope of a cost of what an agent sees coming."""
+"""VBM: gradient-based steering for vision-based crowd simulation (Dutra et al. 2017)."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ Floats = NDArray[np.float64]
 VARIANTS = ("agents", "crowdbot")
 MOST_RAYS = 4096
 FAST = 1e6
-"""No step turns by more [rad]."""
+"""Upper limit of the turn in a step [rad]."""
 
 
 class _Crowd(NamedTuple):
-    """What the kernel reads of every agent, by row ``e * A + a``."""
+    """Data of every agent for the kernel, by row ``e * A + a``."""
 
     position: Floats
     velocity: Floats
@@ -81,7 +81,7 @@ def _choose_part(
     begin: int, end: int, crowd: _Crowd, seen: Neighbors, walls: Floats, rays: Floats, field: bool, luck: Floats,
     dt: float, out: Floats,
 ) -> None:  # fmt: skip
-    # fields are taken out of the tuples here: inside the loop each access would count references
+    # unpack the tuples outside of the loop: each access counts references
     place, velocity, heading, desired, radius, top, walking, late, near, slow, wide, far, most, sharp, ridge, gain = (
         crowd
     )
@@ -139,22 +139,21 @@ class VBM(CrowdModel):
         wall_distance: maximum distance of visible walls [m].
         time_scale: spread of the cost over the time of closest approach [s].
         distance_scale: spread of the cost over the distance of closest approach [m].
-        speed_scale: spread of the desire for the desired speed [m/s].
-        angle_scale: spread of the desire for the desired direction [rad].
+        speed_scale: spread of the cost over the deviation from the desired speed [m/s].
+        angle_scale: spread of the cost over the deviation from the desired direction [rad].
         max_acceleration: maximum forward acceleration [m/s^2].
         max_turn: maximum lateral acceleration [m/s^2]; agents at rest turn immediately.
         gain: gain of the gradient step; larger values return to the desired path sooner.
         ridge: minimum distance of closest approach [m] for sideways pushes; exact hits push to the right.
-        max_speed: ``[E, A]`` [m/s]; None takes the maximum speed of the scene.
-        variant: ``agents``: every agent counts by the angle that it fills, distances run from body to body, walls are
-            seen along 15 rays. ``crowdbot``: the field of view is an array of rays in which the nearest thing hides the
-            others; distances run from the own centre to the other's; ``ridge`` has no effect (agents who walk exactly
-            into each other do not turn).
+        max_speed: ``[E, A]`` [m/s]; None uses the maximum speed of the scene.
+        variant: ``agents``: each agent is weighted by its visual angle, distances are between bodies, and walls are
+            seen along 15 rays. ``crowdbot``: the field of view is an array of rays with occlusion, distances are
+            between centres, and ``ridge`` has no effect (agents exactly head on do not turn).
         rays: number of rays of the ``crowdbot`` variant.
 
-    With ``rng`` the push aside varies by a quarter; without, it has its mean.
+    With ``rng``, the sideways push varies by a quarter; otherwise it is the mean.
 
-    The default variant ``agents`` replaces the image of the paper by the angle of each agent, without occlusion.
+    The default variant ``agents`` replaces the image of the paper by the visual angle of each agent, without occlusion.
 
     Source: Dutra, Marques, Cavalcante-Neto, Vidal, Pettré 2017, doi:10.1111/cgf.13130; ``crowdbot`` is the version of
     the CrowdBot simulator.
@@ -200,7 +199,7 @@ class VBM(CrowdModel):
             raise InputError(f"VBM: rays = {self.rays!r} is not allowed, it must be a whole number, 2 to {MOST_RAYS}")
 
     def velocity(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Floats:
-        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` varies the push aside."""
+        """Return the velocities ``[E, A, 2]`` [m/s] for the next ``dt`` [s]; ``rng`` varies the sideways push."""
         return self._choose_velocity(scene, dt, rng)[..., :2]
 
     def step(self, scene: Scene, dt: float, rng: np.random.Generator | None = None) -> Scene:

@@ -17,29 +17,30 @@ Floats = NDArray[np.float64]
 FIELD = math.radians(150.0)
 """Width of the field of view [rad]."""
 FAN = 15
-"""Rays along which the variant ``agents`` sees walls."""
+"""Number of rays for walls in the variant ``agents``."""
 STILL = 1e-3
-"""Below this speed [m/s] an agent looks along its heading; a relative velocity is nothing below its square root."""
+"""Speed [m/s] below which an agent looks along its heading, and squared relative speed that counts as 0."""
 FORESIGHT = 10.0
-"""What comes closest later than this [s] does not count."""
+"""Maximum time of closest approach [s]; later ones are ignored."""
 FAINT = 1e-3
-"""A ray counts only when both slopes are steeper; a term of the variant ``agents``, when its cost is higher."""
+"""Minimum slopes of a ray (both) in the variant ``crowdbot``, and minimum cost of a term in ``agents``."""
 SQUEEZED = 0.05
-"""Bodies that touch are this share of the distance of their centres apart, so that the direction stays known."""
+"""Minimum distance of bodies as a fraction of the distance of their centres, which keeps the direction defined."""
 EXACT = 1e-9
-"""A closest approach nearer than this [m] has no side."""
+"""A closest approach below this distance [m] has no side."""
 STEEP = 0.1
-"""The field of view adds a slope of about this where left and right are equally bad."""
+"""Slope added in the variant ``crowdbot`` if left and right have nearly equal costs."""
 
 
 @kernel
 def slopes(
     x: float, y: float, wx: float, wy: float, hx: float, hy: float, speed: float, late: float, near: float, ridge: float
 ) -> tuple[float, float, float]:  # fmt: skip
-    """Return the cost of something at x, y with relative velocity w, and its slopes over own angle and own speed.
+    """Return the cost of an object at x, y with relative velocity w, and its slopes over the agent's angle and speed.
 
-    ``h`` is the own direction, ``late`` and ``near`` the scales of time and distance. 0 when it goes away or comes
-    closest too late. Nearer to a hit than ``ridge`` the slope is as steep as there.
+    ``h`` is the direction of the agent, ``late`` and ``near`` are the scales of time and distance. The result is 0 if
+    the object moves away or its closest approach is too late. For a closest approach below ``ridge``, the slope is
+    that at ``ridge``.
     """
     w2 = wx * wx + wy * wy
     if w2 < STILL:
@@ -53,12 +54,12 @@ def slopes(
     if miss < ridge:
         if miss > EXACT:
             cx, cy = cx * ridge / miss, cy * ridge / miss
-        else:  # no side is better: keep right
+        else:  # no side is preferred: keep right
             right = math.copysign(ridge / math.sqrt(w2), -(wx * hx + wy * hy))
             cx, cy = right * wy, -right * wx
-    px, py = speed * hy, -speed * hx  # how w changes when the agent turns
+    px, py = speed * hy, -speed * hx  # derivative of w over the angle
     qx, qy = (x + 2.0 * t * wx) / w2, (y + 2.0 * t * wy) / w2
-    # c is at right angles to w, so that a change of t leaves its length alone
+    # c is perpendicular to w: its length does not depend on t
     of_angle = -(qx * px + qy * py) * t / (late * late) + t * (cx * px + cy * py) / (near * near)
     of_speed = (qx * hx + qy * hy) * t / (late * late) - t * (cx * hx + cy * hy) / (near * near)
     return cost, -cost * of_angle, -cost * of_speed
@@ -81,7 +82,7 @@ def _first_ray(sines: Floats, value: float) -> int:
 def look_at_walls(
     walls: Floats, x: float, y: float, hx: float, hy: float, reach: float, rays: Floats, depth: Floats
 ) -> None:
-    """Write the distance to the nearest wall along every ray to ``depth``, inf when there is none in reach."""
+    """Write the distance to the nearest wall along each ray to ``depth``; inf without a wall within ``reach``."""
     for k in range(len(depth)):
         depth[k] = math.inf
     sines = rays[0]
@@ -91,10 +92,10 @@ def look_at_walls(
         before, after = hx * ax + hy * ay, hx * bx + hy * by
         if nx * nx + ny * ny >= reach * reach or (before <= 0.0 and after <= 0.0):
             continue
-        turn = ax * by - ay * bx  # above 0: seen from here, b is on the left of a
+        turn = ax * by - ay * bx  # above 0: b is on the left of a, seen from x, y
         if turn == 0.0:
             continue
-        left = math.copysign(1.0, turn)  # an end behind the back lies beyond the border of the field
+        left = math.copysign(1.0, turn)  # an end behind the agent is outside of the field of view
         sine_a = -left if before < 0.0 else (hx * ay - hy * ax) / math.sqrt(ax * ax + ay * ay)
         sine_b = left if after < 0.0 else (hx * by - hy * bx) / math.sqrt(bx * bx + by * by)
         for k in range(_first_ray(sines, min(sine_a, sine_b)), _first_ray(sines, max(sine_a, sine_b))):
@@ -123,10 +124,10 @@ def sum_slopes(
     ridge: float,
     sums: Floats,
 ) -> None:
-    """Add up the slopes of all that is seen: over angle, over speed, rising ones over angle or costs, weights.
+    """Sum the slopes of visible objects: over angle, over speed, positive ones over angle, weights.
 
-    In the ``field`` of view every ray counts, and the nearest thing hides the others; else every agent counts as much
-    as the angle it fills, and distances run from body to body.
+    With ``field``, each ray has the same weight and shows the nearest object; otherwise agents are weighted by their
+    visual angle, and distances are between bodies.
     """
     sums[:] = 0.0
     taken[:] = False
@@ -175,7 +176,7 @@ def _add(sums: Floats, cost: float, turn: float, change: float, weight: float, f
 
 @kernel
 def mean_slopes(sums: Floats, push: float) -> tuple[float, float]:
-    """Return the mean slopes over angle and speed, with a ``push`` to one side where no side is better."""
+    """Return the mean slopes over angle and speed, with a ``push`` to one side if no side is preferred."""
     turn, change, rising, weight = sums[0], sums[1], sums[2], sums[3]
     if weight == 0.0:
         return 0.0, 0.0
@@ -188,9 +189,9 @@ def mean_slopes(sums: Floats, push: float) -> tuple[float, float]:
 def desire_slopes(
     hx: float, hy: float, speed: float, px: float, py: float, slow: float, wide: float, most: float
 ) -> tuple[float, float]:
-    """Return the slopes over angle and speed of the cost of not walking as desired.
+    """Return the slopes over angle and speed of the cost of deviations from the desired velocity.
 
-    They are steeper for slow walkers, but not so steep that a step with gain ``1 / most`` overshoots.
+    They are steeper for slow agents, limited such that a step with gain ``1 / most`` does not overshoot.
     """
     desired = math.sqrt(px * px + py * py)
     steeper = max(1.0, 1.0 / max(STILL, speed))
