@@ -242,7 +242,7 @@ def test_somebody_alone_cannot_be_compared_with_others(capsys, tmp_path):
     save(Trajectories(0 * row, row, 0.4 * row, 0.0 * row, row_rate=2.5), file)
     words = ["calibrate", "--data", str(file), "--cost", "inter-pedestrian", "--search", "random-search"]
     assert main([*words, "--budget", "5"]) == 2
-    assert "and neighbors if the cost uses distances between people" in capsys.readouterr().err
+    assert "and others nearby if the cost uses distances between people" in capsys.readouterr().err
 
 
 def test_kept_parts_belong_to_the_content_of_the_file(capsys, street, tmp_path):
