@@ -90,11 +90,11 @@ def _write_and_print(options: argparse.Namespace, study: GanComparison, runs: li
     rows = [("real against real", *(number(ideal[name]) for name in names))]
     rows += [(row["method"], *(number(row[name]) for name in names)) for row in found["methods"]]
     caption = (
-        f"{study.updates} updates, {len(study.seeds)} seeds; 200 real against 200 drawn paths of each group, and 20"
+        f"{study.updates} updates, {len(study.seeds)} seeds; 200 real against 200 drawn paths per group, and 20"
         " against 20 as in the report; means over the last quarter of the measurements"
     )
     print_table(
-        "GANs on the toy set",
+        "GANs on the toy data",
         ("method", "1-NN", "EMD [m]", "modes", "groups with all", "1-NN of 20", "EMD of 20"),
         rows,
         caption,

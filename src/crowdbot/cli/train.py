@@ -188,8 +188,8 @@ def _print_result(options: argparse.Namespace, done: TrainingResult, file: Path,
         ("best", *(number(best.get(name)) for name in ("update", "ade", "fde"))),
     ]
     rows.append(("last", *(number(done.rows[-1].get(name)) for name in ("update", "ade", "fde"))))
-    caption = f"{done.updates} updates in {done.seconds:.0f} s{', stopped early' if done.stopped else ''};"
-    f" weights in {file}"
+    ending = ", stopped early" if done.stopped else ""
+    caption = f"{done.updates} updates in {done.seconds:.0f} s{ending}; weights in {file}"
     print_table(
         f"{options.what}, best of 20 on the validation data", ("", "update", "ADE [m]", "FDE [m]"), rows, caption
     )
