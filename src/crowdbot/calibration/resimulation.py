@@ -19,7 +19,7 @@ __all__ = ["ResimulatedTracks", "Resimulation"]
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Candidate = Callable[[Rollout, Scene, int], tuple[Rollout, Scene]]
-"""Assigns the parameters of the candidates to copies of a scene; the number is the consecutive repeats of a window."""
+"""Assigns the parameters of candidates to copies of a scene, in which each window is repeated ``copies`` times."""
 
 
 class ResimulatedTracks:

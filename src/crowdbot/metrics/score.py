@@ -211,8 +211,10 @@ class Score:
 
         Hand them to :meth:`cells` of each.
         """
-        told = {name: None for one in scores for name, word in one._words().items() if word != "-"}
-        kept = {"collisions", "ms/window", *told} - (set(SAMPLED) if all(one.samples == 1 for one in scores) else set())
+        measured = {name: None for one in scores for name, word in one._words().items() if word != "-"}
+        kept = {"collisions", "ms/window", *measured} - (
+            set(SAMPLED) if all(one.samples == 1 for one in scores) else set()
+        )
         order = dict.fromkeys(name for one in scores for name in one._words())
         return tuple(name for name in order if name in kept)
 

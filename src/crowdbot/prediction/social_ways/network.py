@@ -94,8 +94,8 @@ class Generator(nn.Module):
         for step in range(steps):
             pooled = self.pool(hidden[0], place, velocity, seen)  # [K * B * A, P]
             spoken = self.decoder(torch.cat([hidden[0], pooled, rows], dim=1), spoken)
-            said = self.say(spoken[0]).view(-1, people, 2) * self.scales[1]  # [K * B, A, 2] m/s
-            velocity = seen.velocity + said if self.config.residual else said.float()
+            output = self.say(spoken[0]).view(-1, people, 2) * self.scales[1]  # [K * B, A, 2] m/s
+            velocity = seen.velocity + output if self.config.residual else output.float()
             moved = place + self.dt * velocity
             if plan is not None:
                 known = plan[:, step].repeat(draws, 1, 1)
@@ -191,5 +191,5 @@ class Discriminator(nn.Module):
         _, (past, _) = self.observed(observed)  # [1, N, H]
         _, (ahead, _) = self.future(future)  # [1, N, H]
         both = torch.cat([self.of_observed(past[0]), self.of_future(ahead[0])], dim=1)  # [N, 128]
-        told = self.joined(both)  # [N, 64]
-        return self.real(told)[:, 0], self.codes(told)
+        features = self.joined(both)  # [N, 64]
+        return self.real(features)[:, 0], self.codes(features)

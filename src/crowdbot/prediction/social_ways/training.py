@@ -112,14 +112,14 @@ class SocialWaysTraining(Trainable):
         noise = self._noise(tensors, rng, c.variety_draws if c.use_variety_loss else 1)
         codes = noise[0][tensors.scored][:, : c.latent_codes]
         _, made = self._draw(tensors, noise)  # both networks use the same draw
-        told = made[0].detach()
+        sample = made[0].detach()
         penalty = self._penalty(number / total)
-        losses = self._discriminator_step(tensors, told, codes, rng, penalty)
+        losses = self._discriminator_step(tensors, sample, codes, rng, penalty)
         kept = None
         if c.unrolling_steps:
             kept = copy.deepcopy((self.discriminator.state_dict(), self.of_discriminator.state_dict()))
             for _ in range(c.unrolling_steps):
-                self._discriminator_step(tensors, told, codes, rng, penalty)
+                self._discriminator_step(tensors, sample, codes, rng, penalty)
         losses |= self._generator_step(tensors, made, codes, self._variety_weight(number / total))
         if kept is not None:  # all layers and the state of Adam
             self.discriminator.load_state_dict(kept[0])
@@ -221,8 +221,8 @@ class SocialWaysTraining(Trainable):
         if penalty > 0.0:
             aside = torch.as_tensor(rng.standard_normal(both.shape, dtype=np.float32), device=self.device)
             asked = torch.cat([both, both + ASIDE * aside])
-        said, read = self.discriminator(tensors.observed.repeat(len(asked) // len(made), 1, 1), asked)
-        real, fake, *others = said.split(len(made))
+        logits, read = self.discriminator(tensors.observed.repeat(len(asked) // len(made), 1, 1), asked)
+        real, fake, *others = logits.split(len(made))
         adversarial = adversarial_loss(real, True, self.config) + adversarial_loss(fake, False, self.config)
         loss = adversarial + self._info(read[len(made) : len(both)], codes)
         for here, there in zip((real, fake), others, strict=False):
