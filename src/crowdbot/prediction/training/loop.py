@@ -216,9 +216,8 @@ def _begin_or_resume(model: Trainable, schedule: TrainingSchedule, folder: Path 
         raise InputError(f"{folder} already contains a training: resume it with --resume, or choose another folder")
     kept = load_checkpoint(folder / LAST, f"{model.kind} training")
     now = _about(model)
-    kept["config"] = (
-        _defaults(model.config) | kept["config"]
-    )  # the defaults of newer settings reproduce the earlier behavior
+    # the defaults of newer settings reproduce the earlier behavior
+    kept["config"] = _defaults(model.config) | kept["config"]
     for word, what in (("config", "settings"), ("data", "data")):
         if kept[word] != now[word]:
             was = _difference(kept[word], now[word])
