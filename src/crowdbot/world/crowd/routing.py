@@ -333,7 +333,8 @@ class Router:
         if not self._reaches(part, goal):
             if self.unreachable == "error":
                 raise InputError(
-                    f"Router: the goal ({goal[0]:g}, {goal[1]:g}) of agent {who[1]} in environment {who[0]} cannot be"
+                    f"Router: the goal ({goal[0]:g}, {goal[1]:g}) of agent {who[1]} in environment {who[0]} "
+                    f"cannot be"
                     f" reached from ({place[0]:g}, {place[1]:g}) by a body of radius {self.radius} m: it lies in or"
                     " behind walls; move it, or set unreachable='nearest'"
                 )
