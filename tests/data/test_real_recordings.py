@@ -163,7 +163,7 @@ def test_juelich_units_rates_and_walls(recordings):
 
 def test_hidden_futures_are_left_out_and_counted(recordings):
     tracks = load(recordings / "sdd_trajnet/Test/stanford/gates_2.txt")
-    assert "1860 rows with '?' left out" in tracks.note
+    assert "1860 rows with '?' are excluded" in tracks.note
     with pytest.raises(DataError, match="the longest of 155 tracks has 8 rows and 20 are needed"):
         tracks.windows()
 
